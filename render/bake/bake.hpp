@@ -1,0 +1,26 @@
+// From an imported scene to a model: clusters, levels of detail, boxes, splits, every error bounded.
+#pragma once
+
+#include <cstdint>
+
+#include "render/import/scene.hpp"
+#include "render/model/cost.hpp"
+#include "render/model/model.hpp"
+#include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::bake {
+
+enum class Quality { draft, full };
+
+struct BakeOptions {
+    Quality quality = Quality::draft;
+    int workers = 0;                       ///< 0: all cores
+    double frame_us = 33333;               ///< the frame of the 1/16 rule, at 30 Hz
+    const model::CostModel* costs = nullptr;  ///< calibrated; null: default_costs()
+};
+
+/// Deterministic at any worker count. Errors: nothing drawable, stopped by the user, out of limits.
+Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress);
+
+}  // namespace surefoot::bake

@@ -1,0 +1,89 @@
+// What importers make: meshes, materials, images, and a tree of named, placed nodes; and what they had to mend.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/model/model.hpp"
+#include "rt/base/geometry.hpp"
+#include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::importer {
+
+using Index = std::uint32_t;
+constexpr Index none = model::none;
+
+/// Decoded RGBA8, row 0 on top.
+struct Image {
+    std::string name;
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+    bool clamp = false;
+};
+
+struct Material {
+    std::string name;
+    std::array<float, 4> colour{1, 1, 1, 1};
+    Index image = none;
+    float alpha_cutoff = 0.5F;
+    model::AlphaMode alpha = model::AlphaMode::opaque;
+    bool two_sided = false;
+    bool unlit = false;
+};
+
+/// Triangles of one material. Optional arrays are empty or as long as positions.
+struct Primitive {
+    std::vector<vec3> positions;   ///< finite, metres in the mesh's frame
+    std::vector<vec3> normals;     ///< unit
+    std::vector<vec2> uvs;
+    std::vector<std::array<std::uint8_t, 4>> colours;
+    std::vector<std::uint32_t> indices;  ///< triples, each < positions.size(), no two equal, area > 0
+    Index material = 0;
+};
+
+struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+};
+
+/// parent < own index (parents come first), none for roots.
+struct Node {
+    std::string name;
+    Index parent = none;
+    Index mesh = none;
+    dmat4 world{1.0};  ///< mesh frame to world
+    float importance = 1.0F;
+};
+
+struct Scene {
+    std::vector<Mesh> meshes;
+    std::vector<Node> nodes;
+    std::vector<Material> materials;  ///< at least one
+    std::vector<Image> images;
+    std::vector<std::string> sources;
+    std::vector<std::string> warnings;  ///< what was repaired or dropped, one line each with counts
+    [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
+};
+
+/// By ending: .gltf .glb .obj .ostf. Several files become one scene.
+/// Errors: missing, empty or truncated file, unknown ending, nothing drawable in it. Missing textures: a warning and white.
+Result<Scene> import_files(const std::vector<std::string>& files, const Progress& progress);
+
+Result<Scene> import_gltf(const std::string& file, const Progress& progress);
+Result<Scene> import_obj(const std::string& file, const Progress& progress);
+
+/// Drops what is not finite, out of range, repeated or of zero area, and says so in `warnings`; makes normals where missing
+/// (only where `needs_normals`). Every importer ends with it.
+void clean(Primitive& primitive, const std::string& mesh_name, std::vector<std::string>& warnings);
+
+/// PNG or JPEG by signature. Refuses dimensions over 16384 before allocating.
+Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& place);
+/// 8-bit RGB or RGBA PNG; used by snapshots and scene generators.
+Result<void> write_png(const std::string& file, std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba);
+std::vector<std::uint8_t> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba);
+
+}  // namespace surefoot::importer

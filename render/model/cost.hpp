@@ -1,0 +1,56 @@
+// What drawing costs on one machine: tables over (log2 triangles, log2 pixels, state class), and how items add up to a frame.
+// Plain data and evaluation; render/measure fills it in. Source: Maciel 3.3.1 (a measured table instead of max(G, R)).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/model/effects.hpp"
+
+namespace surefoot::model {
+
+/// Predicted time of one item, in its two places: the frame thread (submit: calls, vertices, binning) and the rasterisers.
+struct ItemCost {
+    float submit_us = 0;
+    float raster_us = 0;
+};
+
+/// One state class: bilinear over log2(triangles) 2^0..2^(nt-1) and log2(pixels) 2^0..2^(np-1).
+struct CostGrid {
+    EffectMask effects = 0;
+    std::uint32_t triangle_steps = 0, pixel_steps = 0;  ///< nt, np
+    std::vector<ItemCost> cells;                        ///< [t * np + p]
+};
+
+/// frame_us = fixed + sum_submit * S + sum_raster * R + max(S, R) * M, with S, R the sums over items.
+struct FrameCombine {
+    float fixed_us = 500;
+    float submit_weight = 1;
+    float raster_weight = 0.5F;
+    float max_weight = 0;
+    [[nodiscard]] float frame_us(float submit_us, float raster_us) const {
+        return fixed_us + submit_weight * submit_us + raster_weight * raster_us +
+               max_weight * (submit_us > raster_us ? submit_us : raster_us);
+    }
+};
+
+struct CostModel {
+    std::vector<CostGrid> grids;      ///< at least one; class looked up by exact mask, else the grid with the most bits in common above it
+    FrameCombine combine;
+    float upper_factor = 1.25F;       ///< p90 of actual / predicted whole-frame cost at calibration: what the budget spends
+    float slice_us = 30;              ///< cost of ending a slice (flush and fence)
+    std::string machine;              ///< CPU and renderer, rasteriser count: a table of another machine is refused
+    bool timer_query_honest = false;
+    bool calibrated = false;          ///< false: built-in defaults
+
+    /// Interpolated; arguments below 1 count as 1, beyond the grid are extrapolated linearly in the argument. Never negative, NaN in: the largest cell.
+    [[nodiscard]] ItemCost item(float triangles, float pixels, const CostGrid& grid) const;
+    [[nodiscard]] const CostGrid& grid_for(EffectMask effects) const;
+};
+
+/// Conservative figures for a machine that was not calibrated (llvmpipe on two cores).
+CostModel default_costs();
+
+}  // namespace surefoot::model

@@ -1,0 +1,32 @@
+// The effects that a scene may call for, as bits, and what was found in a scene: the state class of a draw is a set of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace surefoot::model {
+
+/// One bit an effect. The bare pipeline (mask 0) draws the material's colour, opaque, unlit.
+enum Effect : std::uint32_t {
+    effect_texture = 1U << 0U,        ///< base colour texture
+    effect_vertex_colour = 1U << 1U,  ///< colour a vertex
+    effect_sun = 1U << 2U,            ///< sun and sky light, Gouraud: needs normals
+    effect_alpha_mask = 1U << 3U,     ///< alpha test against the material's cutoff
+    effect_blend = 1U << 4U,          ///< ordered transparency: drawn last, back to front
+};
+using EffectMask = std::uint32_t;
+constexpr int effect_count = 5;
+constexpr std::array<std::string_view, effect_count> effect_names = {"texture", "vertex_colour", "sun", "alpha_mask", "blend"};
+
+/// Whether a scene calls for an effect, and the evidence. One entry for every effect, called for or not.
+struct EffectFinding {
+    std::uint32_t bit = 0;
+    bool called_for = false;
+    std::uint64_t triangles = 0;  ///< full-detail triangles that use it
+    std::string reason;           ///< e.g. "78 images on 74 materials", or why not
+};
+
+}  // namespace surefoot::model

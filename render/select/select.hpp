@@ -1,0 +1,113 @@
+// From candidates and one budget to a cut: the selectors behind one interface, their accounting, their bound.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/model/cost.hpp"
+#include "render/model/model.hpp"
+#include "render/prepare/prepared.hpp"
+
+namespace surefoot::select {
+
+using model::Index;
+using model::none;
+
+struct CutItem {
+    Index candidate = 0;
+    Index node = 0;
+    Index rep = 0;
+    Index choice = 0;  ///< in PreparedFrame::choices
+};
+
+/// The chosen set (DESIGN 4). items is in candidate order of the selector's tree walk; legal: every visible leaf covered once.
+struct Cut {
+    std::vector<CutItem> items;      ///< reserved; never grows after
+    model::ItemCost sum;             ///< over items
+    float predicted_us = 0;          ///< whole frame, combined and corrected, at the upper quantile
+    float floor_us = 0;              ///< the cheapest legal cut's
+    bool floor_binds = false;        ///< floor_us > budget: the floor is drawn
+    float worst_error_rad = 0;       ///< 1 / accuracy
+    double benefit = 0;              ///< sum over items of what is shown, 0..items
+    std::uint64_t triangles = 0;
+    std::uint32_t switches = 0;      ///< representations that differ from the previous frame's
+    std::uint64_t hash = 0;          ///< of (node, rep) in order
+    std::uint32_t refinements = 0;   ///< upgrades bought
+};
+
+struct SelectInput {
+    const model::Model* model = nullptr;
+    const prepare::PreparedFrame* prepared = nullptr;
+    const model::CostModel* costs = nullptr;
+    double budget_us = 0;             ///< whole frame; infinity: full detail
+    double correction = 1;            ///< online factor on predictions
+    double target_error_rad = 0;      ///< stop refining below it (0: refine as far as the budget goes)
+};
+
+/// Kept by the frame thread between frames, sized once: what was refined and shown, for hysteresis and switches.
+struct SelectState {
+    std::vector<std::uint8_t> refined;  ///< a node: its children were in the last cut
+    std::vector<Index> shown;           ///< a node: representation in the last cut, or none
+    std::vector<Index> touched;         ///< nodes to clear next time
+    std::vector<std::uint32_t> scratch_next, scratch_head, scratch_a, scratch_b;
+    float hysteresis = 1.25F;           ///< benefit factor for what was refined in the last frame
+    void reserve(const model::Model& model, std::uint32_t max_candidates);
+};
+
+/// A selector allocates nothing, and is a pure function of its arguments.
+class Selector {
+public:
+    virtual ~Selector() = default;
+    [[nodiscard]] virtual std::string_view name() const = 0;
+    virtual void run(const SelectInput& input, SelectState& state, Cut& cut) const = 0;
+};
+
+/// flat (all full detail), distance (static angular threshold), depth-first, best-first, two-stage (mended accounting),
+/// and the published accounting of the three searches: depth-first-1994, best-first-1994, two-stage-1994.
+/// Null for an unknown name.
+const Selector* find_selector(std::string_view name);
+std::span<const std::string_view> selector_names();
+
+void reserve(Cut& cut, std::uint32_t max_candidates);
+
+/// Checks that the cut is legal over the prepared frame: no ancestor with its descendant, every visible leaf covered once.
+/// Returns an empty string, or what is wrong. For tests and `--strict`.
+std::string check_legal(const prepare::PreparedFrame& prepared, const Cut& cut);
+
+// ---- slices: subtree by subtree, each with a coarser stand-in (DESIGN 1.2) ----
+
+/// Items [first_item, +item_count) of SlicePlan::order are drawn, or instead the stand-in items
+/// [first_stand_in, +stand_in_count) of SlicePlan::stand_ins: the coarsest legal cover of the same leaves.
+struct Slice {
+    std::uint32_t first_item = 0, item_count = 0;
+    std::uint32_t first_stand_in = 0, stand_in_count = 0;
+    model::ItemCost cost, stand_in_cost;
+};
+
+struct SlicePlan {
+    std::vector<Slice> slices;          ///< in submission order: most beneficial (nearest) subtrees first
+    std::vector<CutItem> order;         ///< the cut's items, grouped by slice
+    std::vector<CutItem> stand_ins;
+    std::vector<std::uint32_t> scratch_a, scratch_b, scratch_c;
+    void reserve(std::uint32_t max_candidates);
+};
+
+/// Groups the cut into slices of about slice_us predicted each. Allocates nothing.
+void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, SlicePlan& plan);
+
+/// In-frame check, a pure function: whether slices [next, n) still fit. elapsed_us: since the frame began, work in flight
+/// included; predicted_so_far_us: of the slices already submitted (full combine); limit_us: when the frame must be done.
+/// The prediction of the rest is scaled by how wrong the frame has been so far (1..8).
+struct CheckInput {
+    double elapsed_us = 0, predicted_so_far_us = 0, rest_us = 0, rest_stand_in_us = 0, limit_us = 0;
+    double margin = 1.15;
+};
+/// true: go on with full slices; false: draw every unstarted slice by its stand-ins.
+bool still_fits(const CheckInput& input);
+
+}  // namespace surefoot::select

@@ -1,0 +1,47 @@
+// Whole files in and out: bounded reads, and writes that replace the old file only when complete.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt/base/result.hpp"
+
+namespace surefoot {
+
+/// The whole file. Refuses directories, and files over max_bytes.
+Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t max_bytes = 1ULL << 34U);
+Result<std::string> read_text(const std::string& path, std::uint64_t max_bytes = 1ULL << 30U);
+
+/// A file written under a temporary name beside its place; commit() syncs and renames it over the old one.
+/// Destroyed without commit(): the temporary is removed and the old file stays (Ctrl-C handlers rely on it).
+class AtomicFile {
+public:
+    static Result<AtomicFile> create(const std::string& path);
+    AtomicFile(AtomicFile&& other) noexcept;
+    AtomicFile& operator=(AtomicFile&& other) noexcept;
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+    ~AtomicFile();
+
+    Result<void> write(std::span<const std::byte> bytes);
+    Result<void> write(std::string_view text);
+    Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+    Result<void> commit();
+
+private:
+    AtomicFile() = default;
+    void discard() noexcept;
+    std::string path_;
+    std::string temporary_;
+    int fd_ = -1;
+};
+
+/// write + commit in one call.
+Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);
+Result<void> write_text(const std::string& path, std::string_view text);
+
+}  // namespace surefoot

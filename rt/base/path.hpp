@@ -1,0 +1,34 @@
+// Recorded paths: poses over time, read from and written to CSV (DESIGN 6), sampled in between.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rt/base/geometry.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot {
+
+struct PathSample {
+    double time_s = 0.0;
+    Pose pose;
+};
+
+/// At least one sample; times strictly increasing.
+struct Path {
+    std::vector<PathSample> samples;
+    [[nodiscard]] double duration_s() const {
+        return samples.empty() ? 0.0 : samples.back().time_s - samples.front().time_s;
+    }
+};
+
+/// CSV `time_s,x,y,z,qx,qy,qz,qw,fov_y_deg`; '#' comments; a header row is allowed. A last column that is missing, or
+/// that is not named fov_y_deg in a comment or header (recorded drives: speed), means 60 degrees.
+/// Bad rows (not numbers, not finite, zero quaternion, time not increasing) are an error with their line number.
+Result<Path> read_path(const std::string& file);
+Result<void> write_path(const std::string& file, const Path& path);
+
+/// The pose at `time_s` from the path's start: linear in position, slerp in orientation; clamped at both ends.
+Pose sample_path(const Path& path, double time_s);
+
+}  // namespace surefoot
