@@ -1,0 +1,108 @@
+// Everything that a walk leaves for people: ledger, trace, table, JSON, and the one-page report.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rt/base/result.hpp"
+#include "rt/frame/record.hpp"
+
+namespace surefoot::report {
+
+struct Quantiles { double p50 = 0, p90 = 0, p99 = 0, p999 = 0, max = 0, mean = 0, min = 0; };
+
+struct ControlBlock {
+    bool walk = false;               ///< else the bare loop
+    std::uint32_t frames = 0, misses = 0, own_misses = 0;
+    double steal_ms = 0;
+};
+
+struct ControlSummary {
+    bool ran = false;
+    std::uint32_t walk_misses = 0, control_misses = 0, pairs = 0;
+    double p_value = 1;              ///< one-sided permutation test, walk minus control > 0
+    double other_miss_share = -1;    ///< the load proof under SCHED_OTHER; -1 not run
+    std::vector<ControlBlock> blocks;
+};
+
+struct Degraded { std::string what, remedy; };
+
+/// All that `walk --json` prints (DESIGN 6), computed once from the records.
+struct WalkSummary {
+    std::string model, path, selector, backend, renderer, machine, late_policy, clock;
+    std::uint32_t width = 0, height = 0;
+    double rate_hz = 0, seconds = 0;
+    std::uint64_t frames = 0, slots = 0, skipped = 0, misses = 0, own_misses = 0;
+    std::map<std::string, std::uint64_t> miss_causes;
+    Quantiles frame_ms, wake_us, select_us, prepare_cpu_us, prepared_age, cost_error, submit_ms, raster_ms, visits;
+    double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
+    double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
+    std::uint64_t triangles_max = 0, downgrades = 0, floor_bound_frames = 0, model_triangles = 0;
+    std::string cut_hash;            ///< 16 hex digits over all frames
+    double steal_ms = 0;
+    bool fifo = false, pinned = false, isolated = false, locked = false;
+    std::uint64_t page_faults = 0, guard_violations = 0, driver_faults = 0, driver_allocations = 0;
+    std::vector<std::string> census_problems;
+    std::vector<Degraded> degraded;  ///< what is not real-time here, and how to grant it
+    ControlSummary control;
+};
+
+/// Pure: percentiles and sums over the records (control blocks' bare frames excluded from the walk's figures).
+Quantiles quantiles(std::vector<double> values);
+void summarize(std::span<const rt::FrameRecord> records, std::int64_t period_ns, WalkSummary& summary);
+
+std::string to_json(const WalkSummary& summary);
+/// The table for a terminal, at most 100 columns.
+std::string to_table(const WalkSummary& summary, bool colour);
+
+Result<void> write_ledger(const std::string& file, std::span<const rt::FrameRecord> records);
+/// Chrome trace events: opens in Perfetto. Expected and actual slices a frame, phases, misses with their cause.
+Result<void> write_trace(const std::string& file, std::span<const rt::FrameRecord> records);
+
+/// One place along the path: the walk's picture, full detail, difference, and the top view of what was drawn.
+struct ReportShot {
+    std::uint64_t frame = 0;
+    double time_s = 0;
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> walk, full, difference;  ///< RGBA8; may be empty (null backend)
+    double snr_db = 0, ssim = 0;
+    std::uint64_t triangles = 0, full_triangles = 0;
+    float accuracy = 0;
+    /// Top view (Maciel's 't' view): rectangles of the drawn nodes in the XZ plane, world metres.
+    struct Rect { float x0, z0, x1, z1; int kind; float detail; };  ///< kind: 0 cluster, 1 object, 2 piece; detail 0 coarse..1 full
+    std::vector<Rect> drawn;
+    std::array<double, 3> eye{}, forward{};
+    double fov_x_rad = 1;
+    std::array<double, 4> world_xz{};  ///< min x, min z, max x, max z
+};
+
+/// DIR/index.html, self-contained (SVG and data-URI pictures, light and dark, no network), and DIR/ledger.csv, DIR/walk.json.
+Result<void> write_report(const std::string& dir, const WalkSummary& summary, std::span<const rt::FrameRecord> records,
+                          std::span<const ReportShot> shots);
+
+// ---- accuracy against time ----
+struct AccuracyPoint {
+    std::string selector;
+    double budget_ms = 0, frame_ms_p50 = 0, frame_ms_p90 = 0, accuracy_mean = 0, snr_db = 0, ssim = 0, triangles = 0, cost_us = 0;
+    std::uint32_t snr_undefined = 0, snr_infinite = 0, frames = 0;
+};
+struct AccuracyRun {
+    std::string model, path, renderer, machine;
+    std::uint32_t width = 0, height = 0, poses = 0;
+    double full_frame_ms = 0;
+    std::vector<AccuracyPoint> points;
+};
+std::string accuracy_svg(const AccuracyRun& run, bool dark);
+std::string accuracy_csv(const AccuracyRun& run);
+std::string accuracy_json(const AccuracyRun& run);
+Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run);
+
+/// Maciel's figure 3.4 for this machine: cost against pixels, a line a triangle count, a panel a state class.
+struct CostPoint { std::string state; double triangles, pixels, cost_us; };
+std::string cost_plot_svg(const std::string& title, std::span<const CostPoint> points);
+
+}  // namespace surefoot::report
