@@ -1,0 +1,286 @@
+// The renderer's door, implemented: owns model, device and arrays, and runs the sliced submission with its in-frame check.
+#include "render/engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "render/effects/effects.hpp"
+#include "render/model/view.hpp"
+
+namespace surefoot {
+
+namespace {
+
+constexpr std::uint32_t coarse_nodes = 256;  // of select_coarse: a few hundred small meshes, whatever the model's size
+
+/// The coarsest representation that is valid with the eye anywhere; validate() has made sure that there is one.
+model::Index everywhere_rep(const model::Model& model, model::Index node) {
+    const model::Node& n = model.nodes[node];
+    for (model::Index r = n.first_rep; r < n.first_rep + n.rep_count; ++r) {
+        if (model.reps[r].everywhere) return r;
+    }
+    return n.first_rep;
+}
+
+/// An antichain that covers the model with about coarse_nodes nodes: open the largest box first.
+std::vector<gl::DrawItem> coarse_cover(const model::Model& model) {
+    std::vector<model::Index> open{0};
+    const auto smaller = [&](model::Index a, model::Index b) {
+        const double da = model.nodes[a].child_count == 0 ? -1 : model.nodes[a].box.diagonal();
+        const double db = model.nodes[b].child_count == 0 ? -1 : model.nodes[b].box.diagonal();
+        return da != db ? da < db : a > b;
+    };
+    while (true) {
+        std::pop_heap(open.begin(), open.end(), smaller);
+        const model::Node& node = model.nodes[open.back()];
+        if (node.child_count == 0 || open.size() + node.child_count > coarse_nodes) {
+            break;  // the largest does not fit: stop rather than skip on
+        }
+        open.pop_back();
+        for (std::uint32_t c = 0; c < node.child_count; ++c) {
+            open.push_back(node.first_child + c);
+            std::push_heap(open.begin(), open.end(), smaller);
+        }
+    }
+    std::sort(open.begin(), open.end());
+    std::vector<gl::DrawItem> items;
+    items.reserve(open.size());
+    for (const model::Index n : open) items.push_back({n, everywhere_rep(model, n)});
+    return items;
+}
+
+}  // namespace
+
+struct Engine::Impl {
+    model::Model model;
+    model::CostModel costs;
+    EngineOptions options;
+    std::unique_ptr<gl::Device> device;
+    std::unique_ptr<prepare::Preparer> preparer;
+    const select::Selector* selector = nullptr;
+    select::SelectState state;
+    select::Cut cut;
+    select::SlicePlan plan;
+    std::vector<gl::DrawItem> drawn;
+    std::vector<gl::DrawItem> coarse;
+    bool use_coarse = false;
+    const prepare::PreparedFrame* prepared = nullptr;
+    double correction = 1;
+
+    double now_us(const SubmitLimits& limits) const {
+        return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
+    }
+    void draw_slice(std::span<const select::CutItem> items, SubmitReport& report);
+    void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report);
+    void submit_coarse();
+};
+
+Engine::Engine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Engine::~Engine() = default;
+
+Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::CostModel& costs, const EngineOptions& options) {
+    auto impl = std::make_unique<Impl>();
+    impl->model = std::move(model);
+    impl->costs = costs;
+    impl->options = options;
+    impl->selector = select::find_selector(options.selector);
+    if (impl->selector == nullptr) {
+        std::string names;
+        for (const auto name : select::selector_names()) names += (names.empty() ? "" : ", ") + std::string(name);
+        return Error{"--selector " + options.selector, "no such selector", "one of: " + names};
+    }
+    gl::NullOptions null = options.null;
+    null.costs = &impl->costs;
+    auto device = options.device.kind == gl::BackendKind::null ? gl::open_null_device(options.device, null)
+                                                               : gl::open_device(options.device);
+    if (!device) return device.error();
+    impl->device = std::move(*device);
+    auto loaded = impl->device->load(impl->model, effects::assemble_program);
+    if (!loaded) return loaded.error();
+    const auto candidates = static_cast<std::uint32_t>(
+        std::min<std::size_t>(options.prepare.max_candidates, impl->model.nodes.size()));
+    impl->options.prepare.max_candidates = candidates;
+    impl->options.prepare.max_choices = static_cast<std::uint32_t>(
+        std::min<std::size_t>(options.prepare.max_choices, impl->model.reps.size()));
+    impl->preparer = std::make_unique<prepare::Preparer>(impl->model, impl->costs, impl->options.prepare);
+    impl->state.reserve(impl->model, candidates);
+    impl->state.hysteresis = options.hysteresis;
+    select::reserve(impl->cut, candidates);
+    impl->plan.reserve(candidates);
+    impl->coarse = coarse_cover(impl->model);
+    impl->drawn.reserve(std::max<std::size_t>(candidates, impl->coarse.size()) * 2);
+    return std::unique_ptr<Engine>(new Engine(std::move(impl)));
+}
+
+const model::Model& Engine::model() const { return impl_->model; }
+const model::CostModel& Engine::costs() const { return impl_->costs; }
+gl::Device& Engine::device() { return *impl_->device; }
+const EngineOptions& Engine::options() const { return impl_->options; }
+std::span<const gl::DrawItem> Engine::drawn() const { return impl_->drawn; }
+
+void Engine::reserve(prepare::PreparedFrame& frame) const { impl_->preparer->reserve(frame); }
+
+void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
+                     prepare::PreparedFrame& out) {
+    impl_->preparer->run(region, impl_->options.device.viewport, frame, speed_mps, turn_rps, out);
+}
+
+const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double budget_us, double correction,
+                                  double target_error_rad) {
+    Impl& e = *impl_;
+    e.use_coarse = false;
+    e.prepared = &prepared;
+    e.correction = correction;
+    const select::SelectInput input{&e.model, &prepared, &e.costs, budget_us, correction, target_error_rad};
+    e.selector->run(input, e.state, e.cut);
+    select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
+    return e.cut;
+}
+
+void Engine::select_coarse() { impl_->use_coarse = true; }
+
+void Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitReport& report) {
+    const std::size_t first = drawn.size();
+    for (const select::CutItem& item : items) {
+        if (drawn.size() == drawn.capacity()) break;  // cannot happen: capacity is twice the candidates
+        drawn.push_back({item.node, item.rep});
+        const prepare::Choice& choice = prepared->choices[item.choice];
+        report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
+        report.benefit_mean += 1.0 - choice.benefit;
+        report.triangles += model.reps[item.rep].triangles;
+    }
+    device->draw(std::span<const gl::DrawItem>(drawn).subspan(first));
+    device->end_slice();
+    device->wait_slices(1);
+}
+
+void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) {
+    const model::FrameCombine& combine = costs.combine;
+    model::ItemCost rest, rest_stand_in, so_far;
+    for (const select::Slice& slice : plan.slices) {
+        rest.submit_us += slice.cost.submit_us;
+        rest.raster_us += slice.cost.raster_us;
+        rest_stand_in.submit_us += slice.stand_in_cost.submit_us;
+        rest_stand_in.raster_us += slice.stand_in_cost.raster_us;
+    }
+    bool full = true;
+    float in_flight_us = 0;
+    const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
+    for (const select::Slice& slice : plan.slices) {
+        const float predicted_so_far = combine.frame_us(so_far.submit_us, so_far.raster_us);
+        const auto with = [&](const model::ItemCost& more) {
+            return static_cast<double>(combine.frame_us(so_far.submit_us + more.submit_us, so_far.raster_us + more.raster_us) -
+                                       predicted_so_far) + 0.0;
+        };
+        if (full && options.in_frame_check) {
+            select::CheckInput check;
+            check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + in_flight_us;
+            check.predicted_so_far_us = limits.elapsed_us + predicted_so_far;
+            check.rest_us = with(rest) * correction * costs.upper_factor;
+            check.rest_stand_in_us = with(rest_stand_in) * correction * costs.upper_factor;
+            check.limit_us = limits.limit_us;
+            full = select::still_fits(check);
+        }
+        rest.submit_us -= slice.cost.submit_us;
+        rest.raster_us -= slice.cost.raster_us;
+        rest_stand_in.submit_us -= slice.stand_in_cost.submit_us;
+        rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
+        const model::ItemCost& cost = full ? slice.cost : slice.stand_in_cost;
+        draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
+                        : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count), report);
+        so_far.submit_us += cost.submit_us + costs.slice_us;
+        so_far.raster_us += cost.raster_us;
+        in_flight_us = cost.raster_us;
+        ++report.slices;
+        if (!full) ++report.downgraded_slices;
+    }
+    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us);
+}
+
+void Engine::Impl::submit_coarse() {
+    drawn.assign(coarse.begin(), coarse.end());
+    device->draw(drawn);
+    device->end_slice();
+}
+
+SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
+    Impl& e = *impl_;
+    SubmitReport report;
+    const double start_us = e.now_us(limits);
+    e.drawn.clear();
+    e.device->begin_frame(pose);
+    if (e.use_coarse) {
+        e.submit_coarse();
+        report.slices = 1;
+        report.downgraded_slices = 1;
+        report.worst_error_rad = std::numeric_limits<float>::infinity();
+    } else {
+        e.submit_cut(limits, start_us, report);
+    }
+    e.device->end_items();
+    report.submitted_us = e.now_us(limits) - start_us;
+    e.device->finish_frame();
+    report.finished_us = e.now_us(limits) - start_us;
+    const gl::FrameStats stats = e.device->stats();
+    report.items = stats.items;
+    report.draws = stats.draws;
+    if (!e.drawn.empty()) report.benefit_mean /= static_cast<double>(e.drawn.size());
+    return report;
+}
+
+void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items) {
+    gl::Device& device = *impl_->device;
+    device.begin_frame(pose);
+    constexpr std::size_t chunk = 4096;  // below the device's max_items, and bounded work a slice
+    for (std::size_t at = 0; at < items.size(); at += chunk) {
+        device.draw(items.subspan(at, std::min(chunk, items.size() - at)));
+        device.end_slice();
+        device.wait_slices(1);
+    }
+    device.end_items();
+    device.finish_frame();
+}
+
+std::vector<gl::DrawItem> Engine::full_detail(const Pose& pose) const {
+    const model::Model& model = impl_->model;
+    const model::Frustum frustum = model::make_frustum(pose, impl_->options.device.viewport, 2 * model.nodes[0].box.diagonal() + 1e3);
+    std::vector<gl::DrawItem> items;
+    std::vector<model::Index> stack{0};
+    while (!stack.empty()) {
+        const model::Index n = stack.back();
+        stack.pop_back();
+        const model::Node& node = model.nodes[n];
+        if (!model::visible(frustum, node.box)) continue;
+        if (node.child_count == 0) items.push_back({n, node.first_rep + node.rep_count - 1});
+        for (std::uint32_t c = node.child_count; c > 0; --c) stack.push_back(node.first_child + c - 1);
+    }
+    return items;
+}
+
+bool covers(const prepare::Region& region, const Pose& pose) {
+    const double moved = glm::length(pose.position - region.centre.position);
+    const double w = std::min(1.0, std::abs(glm::dot(pose.orientation, region.centre.orientation)));
+    const double turned = 2.0 * std::acos(w);
+    // The acos of a rounded 1 is up to 2e-8: far below any region's angle, but not below 0.
+    return moved <= region.radius_m + 1e-9 && turned <= region.angle_rad + 1e-6 &&
+           pose.fov_y_rad <= region.centre.fov_y_rad + 2.0 * region.angle_rad + 1e-9;
+}
+
+prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s) {
+    const double dt = std::max(dt_s, 1e-4);
+    const dvec3 velocity = (now.position - before.position) / dt;
+    const double w = std::min(1.0, std::abs(glm::dot(before.orientation, now.orientation)));
+    const double turn_rps = 2.0 * std::acos(w) / dt;
+    prepare::Region region;
+    region.centre = now;
+    region.centre.position = now.position + velocity * (0.5 * horizon_s);
+    // Half the way on is the centre; the radius reaches both ends, and half as far again for a change of speed.
+    const double travel = glm::length(velocity) * horizon_s;
+    region.radius_m = 0.75 * travel + 0.02;
+    region.angle_rad = std::min(1.0, 1.5 * turn_rps * horizon_s + 0.01);
+    return region;
+}
+
+}  // namespace surefoot
