@@ -1,0 +1,205 @@
+// Whole files in and out through plain system calls: errors keep their errno, and the old file outlives a failed write.
+#include "rt/base/file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace surefoot {
+
+namespace {
+
+/// What a system error means to the person at the keyboard.
+std::string remedy_for(int error) {
+    switch (error) {
+        case ENOENT: return "check the path";
+        case EACCES:
+        case EPERM: return "check who may read and write there";
+        case EROFS: return "the file system is mounted read-only: choose another place";
+        case ENOSPC:
+        case EDQUOT: return "free some space or choose another disk";
+        case ENOTDIR: return "a part of the path is a file, not a folder";
+        default: return {};
+    }
+}
+
+Error system_error(const std::string& place, std::string_view doing, int error) {
+    return {place, fmt::format("{}: {}", doing, std::strerror(error)), remedy_for(error)};  // NOLINT(concurrency-mt-unsafe)
+}
+
+Error too_large(const std::string& path, std::uint64_t limit) {
+    return {path, fmt::format("larger than the limit of {} bytes", limit), "is this the right file?"};
+}
+
+/// Closes on every way out.
+struct Descriptor {
+    int fd = -1;
+    explicit Descriptor(int opened) : fd(opened) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() {
+        if (fd >= 0) ::close(fd);
+    }
+};
+
+std::string folder_of(const std::string& path) {
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    return folder.empty() ? "." : folder;
+}
+
+/// Reads to the end into a string or vector; the size hint only saves growing (a pipe has none).
+template <class Bytes>
+Result<Bytes> read_all(const std::string& path, std::uint64_t max_bytes) {
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.fd < 0) return system_error(path, "cannot open", errno);
+    struct stat info {};
+    if (::fstat(file.fd, &info) != 0) return system_error(path, "cannot examine", errno);
+    if (S_ISDIR(info.st_mode)) return Error{path, "is a folder, not a file", "name a file"};
+    const auto hint = static_cast<std::uint64_t>(std::max<off_t>(info.st_size, 0));
+    if (hint > max_bytes) return too_large(path, max_bytes);
+    Bytes bytes;
+    bytes.resize(hint);
+    std::size_t filled = 0;
+    std::array<std::byte, 65536> beyond{};
+    for (;;) {
+        const bool fits = filled < bytes.size();
+        auto* into = fits ? reinterpret_cast<std::byte*>(bytes.data()) + filled : beyond.data();
+        const ssize_t got = ::read(file.fd, into, fits ? bytes.size() - filled : beyond.size());
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return system_error(path, "cannot read", errno);
+        if (got == 0) break;
+        if (!fits) {
+            if (filled + static_cast<std::size_t>(got) > max_bytes) return too_large(path, max_bytes);
+            bytes.resize(filled + static_cast<std::size_t>(got));
+            std::memcpy(bytes.data() + filled, beyond.data(), static_cast<std::size_t>(got));
+        }
+        filled += static_cast<std::size_t>(got);
+    }
+    bytes.resize(filled);
+    return bytes;
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t max_bytes) {
+    return read_all<std::vector<std::byte>>(path, max_bytes);
+}
+
+Result<std::string> read_text(const std::string& path, std::uint64_t max_bytes) {
+    return read_all<std::string>(path, max_bytes);
+}
+
+Result<AtomicFile> AtomicFile::create(const std::string& path) {
+    if (path.empty()) return Error{"output", "the file name is empty", "name a file"};
+    AtomicFile file;
+    std::error_code ignored;
+    // Through a link, the file that it names is replaced, not the link.
+    const auto target = std::filesystem::canonical(path, ignored);
+    file.path_ = ignored ? path : target.string();
+
+    struct stat old {};
+    const bool exists = ::stat(file.path_.c_str(), &old) == 0;
+    if (exists && S_ISDIR(old.st_mode)) return Error{path, "is a folder, not a file", "name a file in it"};
+    if (exists && !S_ISREG(old.st_mode)) return Error{path, "is not a plain file", "name a plain file"};
+    if (exists && ::access(file.path_.c_str(), W_OK) != 0) return system_error(path, "cannot replace", errno);
+
+    for (int attempt = 0; attempt < 100; ++attempt) {
+        file.temporary_ = fmt::format("{}.{}-{}.tmp", file.path_, ::getpid(), attempt);
+        file.fd_ = ::open(file.temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file.fd_ >= 0 || errno != EEXIST) break;
+    }
+    if (file.fd_ < 0) {
+        const int error = errno;
+        file.temporary_.clear();
+        return system_error(path, fmt::format("cannot write in {}", folder_of(file.path_)), error);
+    }
+    if (exists) (void)::fchmod(file.fd_, old.st_mode & 07777);
+    return file;
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : path_(std::move(other.path_)), temporary_(std::move(other.temporary_)), fd_(std::exchange(other.fd_, -1)) {
+    other.temporary_.clear();
+}
+
+AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
+    if (this == &other) return *this;
+    discard();
+    path_ = std::move(other.path_);
+    temporary_ = std::move(other.temporary_);
+    fd_ = std::exchange(other.fd_, -1);
+    other.temporary_.clear();
+    return *this;
+}
+
+AtomicFile::~AtomicFile() { discard(); }
+
+void AtomicFile::discard() noexcept {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    temporary_.clear();
+}
+
+Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
+    if (fd_ < 0) return Error{path_, "written to after it was closed", {}};
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t put = ::write(fd_, bytes.data() + done, bytes.size() - done);
+        if (put < 0 && errno == EINTR) continue;
+        if (put < 0) return system_error(path_, "cannot write", errno);
+        done += static_cast<std::size_t>(put);
+    }
+    return {};
+}
+
+Result<void> AtomicFile::write(std::string_view text) { return write(std::as_bytes(std::span(text.data(), text.size()))); }
+
+Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+    if (fd_ < 0) return Error{path_, "written to after it was closed", {}};
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t put = ::pwrite(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+        if (put < 0 && errno == EINTR) continue;
+        if (put < 0) return system_error(path_, "cannot write", errno);
+        done += static_cast<std::size_t>(put);
+    }
+    return {};
+}
+
+// The order matters: contents reach the disk before the name does, and the name before we say that it is done.
+Result<void> AtomicFile::commit() {
+    if (fd_ < 0) return Error{path_, "committed after it was closed", {}};
+    int error = ::fsync(fd_) != 0 ? errno : 0;
+    if (::close(std::exchange(fd_, -1)) != 0 && error == 0) error = errno;
+    if (error == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) error = errno;
+    if (error != 0) {
+        discard();
+        return system_error(path_, "cannot finish writing", error);
+    }
+    temporary_.clear();
+    const Descriptor folder(::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    // Some file systems refuse to sync a folder (EINVAL); the file itself is complete either way.
+    if (folder.fd >= 0 && ::fsync(folder.fd) != 0 && errno != EINVAL) return system_error(path_, "cannot sync its folder", errno);
+    return {};
+}
+
+Result<void> write_file(const std::string& path, std::span<const std::byte> bytes) {
+    auto file = AtomicFile::create(path);
+    if (!file) return file.error();
+    if (auto written = file->write(bytes); !written) return written;
+    return file->commit();
+}
+
+Result<void> write_text(const std::string& path, std::string_view text) {
+    return write_file(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+}  // namespace surefoot
