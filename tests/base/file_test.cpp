@@ -1,0 +1,140 @@
+// Files: clear errors, and an old file that survives every failed write.
+#include "rt/base/file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+namespace surefoot {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FileTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        std::string pattern = (fs::temp_directory_path() / "surefoot-file-XXXXXX").string();
+        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+    }
+    void TearDown() override {
+        fs::permissions(folder_, fs::perms::owner_all);
+        fs::remove_all(folder_);
+    }
+    [[nodiscard]] std::string in(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] std::size_t files() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
+    }
+    fs::path folder_;
+};
+
+TEST_F(FileTest, ErrorReadsAsPlaceWhatRemedy) {
+    EXPECT_EQ((Error{"a.csv:3", "bad row", "mend it"}).text(), "a.csv:3: bad row (mend it)");
+    EXPECT_EQ((Error{"a", "b", ""}).text(), "a: b");
+    EXPECT_EQ((Error{"", "b", ""}).text(), "b");
+}
+
+TEST_F(FileTest, MissingFileIsNamed) {
+    const auto read = read_file(in("none"));
+    ASSERT_FALSE(read.ok());
+    EXPECT_NE(read.error().text().find(in("none")), std::string::npos);
+    EXPECT_NE(read.error().text().find("No such file"), std::string::npos);
+}
+
+TEST_F(FileTest, FolderIsRefused) {
+    const auto read = read_file(folder_.string());
+    ASSERT_FALSE(read.ok());
+    EXPECT_NE(read.error().what.find("folder"), std::string::npos);
+}
+
+TEST_F(FileTest, EmptyFileIsNoError) {
+    ASSERT_TRUE(write_text(in("empty"), "").ok());
+    const auto read = read_file(in("empty"));
+    ASSERT_TRUE(read.ok());
+    EXPECT_TRUE(read->empty());
+}
+
+TEST_F(FileTest, LimitIsHeld) {
+    ASSERT_TRUE(write_text(in("ten"), "0123456789").ok());
+    EXPECT_TRUE(read_text(in("ten"), 10).ok());
+    EXPECT_FALSE(read_text(in("ten"), 9).ok());
+}
+
+TEST_F(FileTest, LimitIsHeldWhereTheSizeIsUnknown) {
+    const auto whole = read_text("/proc/self/status");  // says size 0
+    ASSERT_TRUE(whole.ok());
+    EXPECT_GT(whole->size(), 100U);
+    EXPECT_FALSE(read_text("/proc/self/status", 100).ok());
+}
+
+TEST_F(FileTest, WithoutCommitTheOldFileStaysAndNoTemporaryIsLeft) {
+    ASSERT_TRUE(write_text(in("f"), "old").ok());
+    {
+        auto file = AtomicFile::create(in("f"));
+        ASSERT_TRUE(file.ok());
+        ASSERT_TRUE(file->write("new").ok());
+    }
+    EXPECT_EQ(*read_text(in("f")), "old");
+    EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(FileTest, CommitReplacesAndKeepsTheMode) {
+    ASSERT_TRUE(write_text(in("f"), "old").ok());
+    ASSERT_EQ(::chmod(in("f").c_str(), 0640), 0);
+    ASSERT_TRUE(write_text(in("f"), "new").ok());
+    EXPECT_EQ(*read_text(in("f")), "new");
+    EXPECT_EQ(files(), 1U);
+    struct stat info {};
+    ASSERT_EQ(::stat(in("f").c_str(), &info), 0);
+    EXPECT_EQ(info.st_mode & 0777U, 0640U);
+}
+
+TEST_F(FileTest, WriteAtFillsEarlierBytes) {
+    auto file = AtomicFile::create(in("f"));
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE(file->write("....tail").ok());
+    ASSERT_TRUE(file->write_at(0, std::as_bytes(std::span("head", 4))).ok());
+    ASSERT_TRUE(file->commit().ok());
+    EXPECT_EQ(*read_text(in("f")), "headtail");
+}
+
+TEST_F(FileTest, MovedFileStillCommitsAndTheSourceRefuses) {
+    auto first = AtomicFile::create(in("f"));
+    ASSERT_TRUE(first.ok());
+    AtomicFile second = std::move(*first);
+    EXPECT_FALSE(first->write("x").ok());  // NOLINT(bugprone-use-after-move): this is the case tested
+    ASSERT_TRUE(second.write("kept").ok());
+    ASSERT_TRUE(second.commit().ok());
+    EXPECT_EQ(*read_text(in("f")), "kept");
+}
+
+TEST_F(FileTest, LinkIsWrittenThrough) {
+    ASSERT_TRUE(write_text(in("real"), "old").ok());
+    fs::create_symlink("real", in("link"));
+    ASSERT_TRUE(write_text(in("link"), "new").ok());
+    EXPECT_TRUE(fs::is_symlink(in("link")));
+    EXPECT_EQ(*read_text(in("real")), "new");
+}
+
+TEST_F(FileTest, UnwritablePlacesAreNamed) {
+    EXPECT_FALSE(AtomicFile::create("").ok());
+    EXPECT_FALSE(AtomicFile::create(folder_.string()).ok());
+    EXPECT_FALSE(AtomicFile::create("/dev/null").ok());
+    const auto nowhere = AtomicFile::create(in("no/such/f"));
+    ASSERT_FALSE(nowhere.ok());
+    EXPECT_NE(nowhere.error().text().find(in("no/such")), std::string::npos);
+}
+
+TEST_F(FileTest, ReadOnlyFolderIsRefused) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+    const auto file = AtomicFile::create(in("f"));
+    ASSERT_FALSE(file.ok());
+    EXPECT_FALSE(file.error().remedy.empty());
+}
+
+}  // namespace
+}  // namespace surefoot
