@@ -51,6 +51,13 @@ std::vector<gl::DrawItem> coarse_cover(const model::Model& model) {
     return items;
 }
 
+Result<const select::Selector*> selector_named(std::string_view wanted) {
+    if (const select::Selector* selector = select::find_selector(wanted); selector != nullptr) return selector;
+    std::string names;
+    for (const auto name : select::selector_names()) names += (names.empty() ? "" : ", ") + std::string(name);
+    return Error{"selector '" + std::string(wanted) + "'", "there is no such selector", "one of: " + names};
+}
+
 }  // namespace
 
 struct Engine::Impl {
@@ -85,12 +92,9 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->model = std::move(model);
     impl->costs = costs;
     impl->options = options;
-    impl->selector = select::find_selector(options.selector);
-    if (impl->selector == nullptr) {
-        std::string names;
-        for (const auto name : select::selector_names()) names += (names.empty() ? "" : ", ") + std::string(name);
-        return Error{"--selector " + options.selector, "no such selector", "one of: " + names};
-    }
+    auto selector = selector_named(options.selector);
+    if (!selector) return selector.error();
+    impl->selector = *selector;
     gl::NullOptions null = options.null;
     null.costs = &impl->costs;
     auto device = options.device.kind == gl::BackendKind::null ? gl::open_null_device(options.device, null)
@@ -126,6 +130,15 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
                      prepare::PreparedFrame& out) {
     impl_->preparer->run(region, impl_->options.device.viewport, frame, speed_mps, turn_rps, out);
 }
+
+Result<void> Engine::set_selector(std::string_view name) {
+    auto selector = selector_named(name);
+    if (!selector) return selector.error();
+    impl_->selector = *selector;
+    return {};
+}
+
+void Engine::set_in_frame_check(bool on) { impl_->options.in_frame_check = on; }
 
 const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double budget_us, double correction,
                                   double target_error_rad) {

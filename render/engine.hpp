@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/gl/device.hpp"
@@ -66,6 +67,11 @@ public:
 
     void reserve(prepare::PreparedFrame& frame) const;
     void prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps, prepare::PreparedFrame& out);
+
+    /// Takes another selector from the next select() on.
+    Result<void> set_selector(std::string_view name);
+    /// Turns the in-frame check off or on: off where whole cuts are to be timed.
+    void set_in_frame_check(bool on);
 
     /// budget_us: of the whole frame; correction: online factor on predictions; target_error_rad 0: as far as the budget goes.
     const select::Cut& select(const prepare::PreparedFrame& prepared, double budget_us, double correction, double target_error_rad);

@@ -1,0 +1,179 @@
+// What accuracy costs in time: budgets swept over poses of a path, a line a selector, against full detail.
+#include "tools/app/accuracy.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "render/engine.hpp"
+#include "render/measure/calibrate.hpp"
+#include "render/measure/image_metrics.hpp"
+#include "render/model/walk_file.hpp"
+#include "tools/app/path_source.hpp"
+#include "tools/app/state.hpp"
+
+namespace surefoot::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::int64_t steady_ns(void*) { return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count(); }
+
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// One pose, its full-detail picture, and its prepared arrays.
+struct Station {
+    Pose pose;
+    std::vector<std::uint8_t> full;
+    prepare::PreparedFrame prepared;
+};
+
+struct Sweep {
+    Engine& engine;
+    std::vector<Station> stations;
+    int repeats;
+
+    double time_full(const Station& station, const std::vector<gl::DrawItem>& items);
+    Result<report::AccuracyPoint> measure(const std::string& selector, double budget_us, double target_error_rad);
+};
+
+double Sweep::time_full(const Station& station, const std::vector<gl::DrawItem>& items) {
+    std::vector<double> ms;
+    for (int i = 0; i < repeats; ++i) {
+        const auto begun = Clock::now();
+        engine.draw_unbudgeted(station.pose, items);
+        ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begun).count());
+    }
+    return median(ms);
+}
+
+Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double budget_us, double target_error_rad) {
+    report::AccuracyPoint point;
+    point.selector = selector;
+    point.budget_ms = budget_us * 1e-3;
+    std::vector<double> frame_ms;
+    double accuracy = 0, snr_sum = 0, ssim_sum = 0, triangles = 0, cost = 0;
+    std::uint32_t snr_count = 0;
+    SubmitLimits limits;
+    limits.now_ns = steady_ns;
+    limits.limit_us = 1e12;
+    const auto n = static_cast<double>(stations.size());
+    for (const Station& station : stations) {
+        const select::Cut& cut = engine.select(station.prepared, budget_us, 1.0, target_error_rad);
+        accuracy += cut.worst_error_rad > 0 ? 1.0 / cut.worst_error_rad : 1e4;  // full detail: beyond any screen's pixels
+        triangles += static_cast<double>(cut.triangles);
+        cost += cut.predicted_us;
+        std::vector<double> ms;
+        for (int i = 0; i < repeats; ++i) ms.push_back(engine.submit(station.pose, limits).finished_us * 1e-3);
+        frame_ms.push_back(median(ms));
+        auto image = engine.device().read_pixels();
+        if (!image) return image.error();
+        const measure::Snr snr = measure::snr(image->rgba, station.full);
+        if (!snr.defined) {
+            ++point.snr_undefined;
+        } else if (std::isinf(snr.db)) {
+            ++point.snr_infinite;
+        } else {
+            snr_sum += snr.db;
+            ++snr_count;
+        }
+        ssim_sum += measure::ssim(image->rgba, station.full, image->width, image->height);
+    }
+    const report::Quantiles q = report::quantiles(frame_ms);
+    point.frame_ms_p50 = q.p50;
+    point.frame_ms_p90 = q.p90;
+    point.accuracy_mean = accuracy / n;
+    point.snr_db = snr_count == 0 ? 0.0 : snr_sum / snr_count;
+    point.ssim = ssim_sum / n;
+    point.triangles = triangles / n;
+    point.cost_us = cost / n;
+    point.frames = static_cast<std::uint32_t>(stations.size());
+    return point;
+}
+
+Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, model::Model model, std::string& machine) {
+    EngineOptions options;
+    auto kind = gl::parse_backend(request.backend);
+    if (!kind) return kind.error();
+    if (*kind == gl::BackendKind::null) {
+        return Error{"--backend null", "draws no pictures to compare", "use egl, device, osmesa or window"};
+    }
+    options.device.kind = *kind;
+    options.device.viewport = {request.width, request.height};
+    options.device.rasterisers = request.rasterisers;
+    options.prepare.workers = request.workers > 0 ? request.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    options.in_frame_check = false;
+    std::string note;
+    auto costs = load_costs(state_directory(request.state_dir), "", note);
+    if (!costs) return costs.error();
+    auto engine = Engine::open(std::move(model), *costs, options);
+    if (engine) machine = measure::machine_identity((*engine)->device().renderer(), request.rasterisers);
+    return engine;
+}
+
+}  // namespace
+
+Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress) {
+    auto model = model::read_walk(request.model_file);
+    if (!model) return model.error();
+    auto chosen = choose_path(request.path_file, request.model_file, *model, request.lift_m);
+    if (!chosen) return chosen.error();
+    report::AccuracyRun run;
+    run.model = request.model_file;
+    run.path = chosen->source;
+    run.width = request.width;
+    run.height = request.height;
+    run.poses = request.poses;
+    auto opened = open_engine(request, std::move(*model), run.machine);
+    if (!opened) return opened.error();
+    Engine& engine = **opened;
+    engine.device().bind();
+    run.renderer = engine.device().renderer();
+
+    Sweep sweep{engine, std::vector<Station>(request.poses), std::max(1, request.repeats)};
+    std::vector<double> full_ms;
+    for (std::uint32_t i = 0; i < request.poses; ++i) {
+        if (progress.stopped()) return Error{request.model_file, "stopped by the user", ""};
+        progress.say("full detail", static_cast<double>(i) / request.poses);
+        Station& station = sweep.stations[i];
+        station.pose = sample_path(chosen->path, chosen->path.duration_s() * (i + 0.5) / request.poses);
+        full_ms.push_back(sweep.time_full(station, engine.full_detail(station.pose)));
+        auto image = engine.device().read_pixels();
+        if (!image) return image.error();
+        station.full = std::move(image->rgba);
+        engine.reserve(station.prepared);
+        engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
+    }
+    run.full_frame_ms = median(full_ms);
+
+    std::vector<double> budgets = request.budgets_ms;
+    if (budgets.empty()) {
+        for (const double share : {0.12, 0.18, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4}) budgets.push_back(share * run.full_frame_ms);
+    }
+    const double pixel = model::pixel_angle(sweep.stations[0].pose, {request.width, request.height});
+    const double points = static_cast<double>(request.selectors.size() * budgets.size());
+    std::size_t done = 0;
+    for (const std::string& selector : request.selectors) {
+        if (auto set = engine.set_selector(selector); !set) return set.error();
+        for (std::size_t b = 0; b < budgets.size(); ++b) {
+            if (progress.stopped()) return Error{request.model_file, "stopped by the user", ""};
+            progress.say(selector, static_cast<double>(done++) / points);
+            const bool by_threshold = selector == "distance";
+            const double threshold = pixel * 32.0 * std::pow(0.5, static_cast<double>(b));  // 32 pixels down to a quarter
+            auto point = sweep.measure(selector, by_threshold ? 1e12 : budgets[b] * 1e3, by_threshold ? threshold : 0.0);
+            if (!point) return point.error();
+            if (by_threshold) point->budget_ms = 0;
+            run.points.push_back(*point);
+            if (selector == "flat") break;
+        }
+    }
+    return run;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,28 @@
+// What accuracy costs in time: budgets swept over poses of a path, a line a selector, against full detail.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/gl/device.hpp"
+#include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
+#include "tools/report/report.hpp"
+
+namespace surefoot::app {
+
+struct AccuracyRequest {
+    std::string model_file, path_file, state_dir, backend = "egl";
+    std::uint32_t width = 1280, height = 720, poses = 16;
+    int repeats = 3;              ///< submissions a pose and budget; the median counts
+    int workers = 0, rasterisers = 0;
+    double lift_m = 0;
+    std::vector<std::string> selectors{"distance", "depth-first", "best-first", "two-stage"};
+    std::vector<double> budgets_ms;  ///< empty: eight, from an eighth of the full frame's time to all of it
+};
+
+/// Every budget is spent on every pose by every selector; pictures are compared with full detail at the same pose.
+/// `distance` has no budget: its threshold is swept instead. `flat` is the full frame itself.
+Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress);
+
+}  // namespace surefoot::app

@@ -1,0 +1,23 @@
+// Where a walk's path comes from: the file asked for, the one beside the model, or a tour made from the model's box.
+#pragma once
+
+#include <string>
+
+#include "render/model/model.hpp"
+#include "rt/base/path.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::app {
+
+struct ChosenPath {
+    Path path;
+    std::string source;  ///< the file, or "generated tour"
+};
+
+/// asked: a CSV file or empty. lift_m is added to every y (recorded drives give the vehicle's ground pose).
+Result<ChosenPath> choose_path(const std::string& asked, const std::string& model_file, const model::Model& model, double lift_m);
+
+/// 40 s: from above one corner, round the model once, closing in to its middle. For models that bring no path.
+Path generated_tour(const model::Model& model);
+
+}  // namespace surefoot::app

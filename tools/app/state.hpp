@@ -1,0 +1,19 @@
+// Where this machine's figures live: the state folder and the calibrated cost table in it.
+#pragma once
+
+#include <string>
+
+#include "render/model/cost.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::app {
+
+/// `asked` if not empty, else $STATE_DIRECTORY, else $XDG_STATE_HOME/surefoot, else ~/.local/state/surefoot.
+std::string state_directory(const std::string& asked);
+std::string cost_table_file(const std::string& state_dir);
+
+/// The calibrated table of this machine and renderer; without one, or with another machine's, default_costs() and
+/// `note` says so and how to calibrate. A damaged table is an Error.
+Result<model::CostModel> load_costs(const std::string& state_dir, const std::string& machine, std::string& note);
+
+}  // namespace surefoot::app

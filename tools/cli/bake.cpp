@@ -1,0 +1,80 @@
+// surefoot bake: imports model files, clusters, simplifies, captures, and writes a .walk model.
+#include <chrono>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "render/bake/bake.hpp"
+#include "render/import/scene.hpp"
+#include "render/model/walk_file.hpp"
+#include "tools/app/state.hpp"
+#include "tools/cli/command.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+struct BakeArguments {
+    std::vector<std::string> in;
+    std::string out, quality = "draft", state;
+    int workers = 0;
+    double rate_hz = 30;
+    bool json = false;
+};
+
+double peak_memory_mib() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+int run_bake(const BakeArguments& a, const Context& context) {
+    const auto begun = std::chrono::steady_clock::now();
+    const Progress progress = terminal_progress(context);
+    std::string cost_note;
+    auto costs = app::load_costs(app::state_directory(a.state), "", cost_note);
+    if (!costs) return fail(costs.error());
+    auto scene = importer::import_files(a.in, progress);
+    if (!scene) return end_progress(context), fail(scene.error());
+    bake::BakeOptions options;
+    options.quality = a.quality == "full" ? bake::Quality::full : bake::Quality::draft;
+    options.workers = a.workers;
+    options.frame_us = 1e6 / a.rate_hz;
+    options.costs = &*costs;
+    auto model = bake::bake(*scene, options, progress);
+    if (!model) return end_progress(context), fail(model.error());
+    auto written = model::write_walk(a.out, *model);
+    end_progress(context);
+    if (!written) return fail(written.error());
+    if (!cost_note.empty()) note(cost_note);
+    for (const std::string& warning : model->provenance.warnings) note(warning);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    if (a.json) {
+        print_json({{"file", a.out}, {"objects", model->object_count}, {"nodes", model->nodes.size()},
+                    {"representations", model->reps.size()}, {"triangles", model->triangles()}, {"bytes", written->bytes},
+                    {"seconds", seconds}, {"peak_mib", peak_memory_mib()}, {"quality", a.quality},
+                    {"warnings", model->provenance.warnings}});
+    } else {
+        fmt::print("{}: {} objects, {} triangles, {} nodes, {} representations; {:.1f} MiB; {:.1f} s, {:.0f} MiB of memory\n", a.out,
+                   model->object_count, model->triangles(), model->nodes.size(), model->reps.size(),
+                   static_cast<double>(written->bytes) / 1048576.0, seconds, peak_memory_mib());
+    }
+    return exit_success;
+}
+}  // namespace
+
+void add_bake(CLI::App& app, Context& context) {
+    auto a = std::make_shared<BakeArguments>();
+    CLI::App* c = add_command(app, "bake", "Import, cluster, simplify, capture, and write a model to walk",
+                              "surefoot bake house.glb garden.obj -o home.walk", a->json);
+    c->add_option("in", a->in, "Model files: .glb, .gltf, .obj, .ostf; several become one scene")->required();
+    c->add_option("-o,--out", a->out, "The model to write; what was there stays until it is complete")->required();
+    c->add_option("--quality", a->quality, "draft: at most a minute a million triangles; full: tighter error bounds")
+        ->check(CLI::IsMember({"draft", "full"}))->capture_default_str();
+    c->add_option("--workers", a->workers, "Threads; 0: one a core. The result is the same at any number")->check(CLI::Range(0, 256));
+    c->add_option("--rate", a->rate_hz, "Frame rate in Hz for the rule that no item costs over 1/16 of a frame")
+        ->check(CLI::Range(1.0, 240.0))->capture_default_str();
+    c->add_option("--state", a->state, "Folder with the calibrated cost table");
+    c->callback([&context, a] { context.run = [a, &context] { return run_bake(*a, context); }; });
+}
+
+}  // namespace surefoot::cli

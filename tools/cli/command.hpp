@@ -1,0 +1,48 @@
+// What every command shares: registration with CLI11, exit codes, progress on a terminal, one JSON object on stdout.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::cli {
+
+/// Exit codes of the contract (DESIGN 6).
+constexpr int exit_success = 0, exit_failure = 1, exit_usage = 2;
+
+/// Handed to the commands: what to run after parsing, and the wish to stop.
+struct Context {
+    std::function<int()> run;                    ///< set by the chosen command
+    const std::atomic<bool>* stop = nullptr;     ///< set by SIGINT and SIGTERM
+    bool terminal = false;                       ///< stderr is a terminal: progress and colour
+    bool colour = false;                         ///< stdout is a terminal and NO_COLOR is not set
+};
+
+/// A subcommand with its help, an example, and --json.
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example, bool& json);
+
+/// A bar with the time left on stderr; silent where stderr is no terminal. `context` must outlive it.
+Progress terminal_progress(const Context& context);
+/// Clears the bar's line.
+void end_progress(const Context& context);
+
+/// "surefoot: place: what" and the remedy on its own line; returns exit_failure.
+int fail(const Error& error);
+void note(const std::string& text);
+void print_json(const nlohmann::ordered_json& object);
+
+void add_scene(CLI::App& app, Context& context);
+void add_bake(CLI::App& app, Context& context);
+void add_inspect(CLI::App& app, Context& context);
+void add_effects(CLI::App& app, Context& context);
+void add_calibrate(CLI::App& app, Context& context);
+void add_walk(CLI::App& app, Context& context);
+void add_accuracy(CLI::App& app, Context& context);
+void add_replay(CLI::App& app, Context& context);
+
+}  // namespace surefoot::cli

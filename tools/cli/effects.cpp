@@ -1,0 +1,45 @@
+// surefoot effects: the table of what a scene calls for and what it does not, with the reasons.
+#include <fmt/format.h>
+
+#include "render/effects/effects.hpp"
+#include "render/model/walk_file.hpp"
+#include "tools/cli/command.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+struct EffectsArguments {
+    std::string file;
+    bool json = false;
+};
+
+int run_effects(const EffectsArguments& a) {
+    auto m = model::read_walk(a.file);
+    if (!m) return fail(m.error());
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    if (!a.json) fmt::print("{:<14} {:<11} {:>12}  {}\n", "effect", "called for", "triangles", "reason");
+    for (const effects::EffectModule& effect : effects::all_effects()) {
+        for (const model::EffectFinding& f : m->effects) {
+            if (f.bit != effect.bit) continue;
+            if (a.json) {
+                list.push_back({{"effect", std::string(effect.name)}, {"what", std::string(effect.what)}, {"asked_by", std::string(effect.asked_by)},
+                                {"called_for", f.called_for}, {"triangles", f.triangles}, {"reason", f.reason}});
+            } else {
+                fmt::print("{:<14} {:<11} {:>12}  {}\n", effect.name, f.called_for ? "yes" : "no", f.triangles, f.reason);
+            }
+        }
+    }
+    if (a.json) print_json({{"model", a.file}, {"effects", list}});
+    return exit_success;
+}
+}  // namespace
+
+void add_effects(CLI::App& app, Context& context) {
+    auto a = std::make_shared<EffectsArguments>();
+    CLI::App* c = add_command(app, "effects", "Which effects a scene calls for, and why; the others cost it nothing",
+                              "surefoot effects town.walk", a->json);
+    c->add_option("model", a->file, "The .walk model")->required();
+    c->callback([&context, a] { context.run = [a] { return run_effects(*a); }; });
+}
+
+}  // namespace surefoot::cli

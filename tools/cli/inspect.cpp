@@ -1,0 +1,82 @@
+// surefoot inspect: what is in a .walk model.
+#include <fmt/format.h>
+
+#include "render/model/walk_file.hpp"
+#include "tools/cli/command.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+struct InspectArguments {
+    std::string file;
+    bool tree = false;
+    bool json = false;
+};
+
+const char* kind_name(model::NodeKind kind) {
+    return kind == model::NodeKind::cluster ? "cluster" : kind == model::NodeKind::object ? "object" : "piece";
+}
+const char* rep_name(model::RepKind kind) {
+    return kind == model::RepKind::mesh ? "mesh" : kind == model::RepKind::colour_box ? "colour_box" : "textured_box";
+}
+
+void print_tree(const model::Model& m) {
+    struct Open { model::Index node; int depth; };
+    std::vector<Open> open{{0, 0}};
+    while (!open.empty()) {
+        const Open at = open.back();
+        open.pop_back();
+        const model::Node& node = m.nodes[at.node];
+        fmt::print("{:{}}{} {} {} triangles", "", at.depth * 2, kind_name(node.kind), m.name_of(node), node.triangles);
+        for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
+            fmt::print("  {}:{}@{:.3g}m", rep_name(m.reps[r].kind), m.reps[r].triangles, m.reps[r].error_m);
+        }
+        fmt::print("\n");
+        for (std::uint32_t c = node.child_count; c > 0; --c) open.push_back({node.first_child + c - 1, at.depth + 1});
+    }
+}
+
+nlohmann::ordered_json effects_json(const model::Model& m) {
+    nlohmann::ordered_json effects = nlohmann::ordered_json::array();
+    for (const model::EffectFinding& f : m.effects) {
+        for (int e = 0; e < model::effect_count; ++e) {
+            if (f.bit == 1U << static_cast<unsigned>(e) && f.called_for) effects.push_back(std::string(model::effect_names[e]));
+        }
+    }
+    return effects;
+}
+
+int run_inspect(const InspectArguments& a) {
+    model::WalkFileInfo info;
+    auto m = model::read_walk(a.file, &info);
+    if (!m) return fail(m.error());
+    if (a.tree) return print_tree(*m), exit_success;
+    std::uint64_t clusters = 0, pieces = 0;
+    for (const model::Node& node : m->nodes) {
+        clusters += node.kind == model::NodeKind::cluster;
+        pieces += node.kind == model::NodeKind::piece;
+    }
+    std::map<std::string, std::uint64_t> kinds;
+    for (const model::Representation& rep : m->reps) ++kinds[rep_name(rep.kind)];
+    const Box& box = m->nodes[0].box;
+    print_json({{"file", a.file}, {"objects", m->object_count}, {"clusters", clusters}, {"pieces", pieces},
+                {"nodes", m->nodes.size()}, {"representations", m->reps.size()}, {"representation_kinds", kinds},
+                {"triangles", m->triangles()}, {"stored_triangles", m->indices.size() / 3}, {"vertices", m->vertices.size()},
+                {"materials", m->materials.size()}, {"textures", m->textures.size()}, {"bytes", info.bytes},
+                {"payload_bytes", info.payload_bytes}, {"pages", info.pages}, {"effects", effects_json(*m)},
+                {"box_m", {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}}},
+                {"sources", m->provenance.sources}, {"quality", m->provenance.quality}, {"bake_s", m->provenance.bake_s},
+                {"warnings", m->provenance.warnings}});
+    return exit_success;
+}
+}  // namespace
+
+void add_inspect(CLI::App& app, Context& context) {
+    auto a = std::make_shared<InspectArguments>();
+    CLI::App* c = add_command(app, "inspect", "Say what is in a .walk model, as JSON", "surefoot inspect town.walk", a->json);
+    c->add_option("model", a->file, "The .walk model")->required();
+    c->add_flag("--tree", a->tree, "The hierarchy instead: a line a node, with its representations as kind:triangles@error");
+    c->callback([&context, a] { context.run = [a] { return run_inspect(*a); }; });
+}
+
+}  // namespace surefoot::cli
