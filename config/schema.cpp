@@ -1,0 +1,107 @@
+// The schema: every key once, with its unit, limits and help.
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <vector>
+
+#include "config/settings.hpp"
+
+namespace surefoot::config {
+
+namespace {
+
+using S = Settings;
+using std::string_view;
+
+constexpr std::array<string_view, 8> selectors = {"flat",      "distance",         "depth-first",     "best-first",
+                                                  "two-stage", "depth-first-1994", "best-first-1994", "two-stage-1994"};
+constexpr std::array<string_view, 2> late_policies = {"lock", "float"};
+constexpr std::array<string_view, 6> backends = {"egl", "device", "kms", "window", "osmesa", "null"};
+constexpr std::array<string_view, 2> clocks = {"real", "virtual"};
+
+constexpr Entry number(string_view key, string_view unit, double min, double max, string_view help, double S::*member) {
+    return {key, Kind::number, unit, min, max, {}, help, member};
+}
+constexpr Entry integer(string_view key, string_view unit, double min, double max, string_view help, std::int64_t S::*member) {
+    return {key, Kind::integer, unit, min, max, {}, help, member};
+}
+constexpr Entry flag(string_view key, string_view help, bool S::*member) { return {key, Kind::flag, {}, 0, 1, {}, help, member}; }
+constexpr Entry choice(string_view key, std::span<const string_view> of, string_view help, std::string S::*member) {
+    return {key, Kind::choice, {}, 0, 0, of, help, member};
+}
+
+const std::array<Entry, 23> entries = {
+    number("rate_hz", "Hz", 1, 1000, "Frames a second that the walk keeps.", &S::rate_hz),
+    integer("width", "px", 16, 16384, "Width of the picture.", &S::width),
+    integer("height", "px", 16, 16384, "Height of the picture.", &S::height),
+    number("budget_ms", "ms", 0, 1000, "Time that a frame may spend; 0: what the rate allows.", &S::budget_ms),
+    number("accuracy", "1/rad", 0, 1e6, "Stop refining at this accuracy; 0: refine as far as the budget goes.", &S::accuracy),
+    number("cost_scale", "", 0.01, 100, "Factor on the machine's cost table (to try under- and over-prediction).",
+           &S::cost_scale),
+    choice("selector", selectors, "How the cut is chosen.", &S::selector),
+    choice("late", late_policies, "A late frame: 'lock' skips whole slots, 'float' shows when done.", &S::late),
+    choice("backend", backends, "Where pictures are drawn; 'null' draws none and charges the predicted cost.", &S::backend),
+    choice("clock", clocks, "'virtual' charges predicted costs instead of waiting: the same frames on every machine.", &S::clock),
+    integer("workers", "threads", 0, 256, "Threads that prepare frames; 0: chosen for the machine.", &S::workers),
+    integer("rasterisers", "threads", 0, 256, "Threads of a software renderer; 0: chosen for the machine.", &S::rasterisers),
+    flag("fifo", "Real-time scheduling (SCHED_FIFO) for the frame thread, rasterisers and workers.", &S::fifo),
+    flag("strict", "Do not start where real-time scheduling or locked memory is refused.", &S::strict),
+    flag("in_frame_check", "Between slices, draw stand-ins when the rest no longer fits the frame.", &S::in_frame_check),
+    flag("control", "Alternate the walk with a bare loop of the same cost, to judge misses against.", &S::control),
+    integer("frame_core", "", -1, 4095, "Core of the frame thread; -1: chosen for the machine.", &S::frame_core),
+    number("slice_us", "us", 50, 100000, "Predicted length of a slice of submission.", &S::slice_us),
+    number("hysteresis", "", 1, 10, "How much better a representation must be to replace the one on screen.", &S::hysteresis),
+    {"sky", Kind::colour, {}, 0, 0, {}, "Background, as \"#rrggbb\".", &S::sky},
+    integer("frame_priority", "FIFO", 1, 98, "Priority of the frame thread.", &S::frame_priority),
+    integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),
+    integer("worker_priority", "FIFO", 1, 98, "Priority of the workers; below the rasterisers'.", &S::worker_priority),
+};
+
+std::string normalised(string_view key) {
+    std::string text(key);
+    for (char& c : text) c = c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+/// Levenshtein distance: insertions, deletions and replacements.
+std::size_t edits_between(string_view a, string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = std::exchange(row[j + 1], std::min({replaced, row[j] + 1, row[j + 1] + 1}));
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+std::span<const Entry> schema() { return entries; }
+
+const Entry* find_entry(string_view key) {
+    const std::string wanted = normalised(key);
+    const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == wanted; });
+    return found == entries.end() ? nullptr : &*found;
+}
+
+string_view nearest_key(string_view key) {
+    if (key.size() > 64) return {};
+    const std::string wanted = normalised(key);
+    string_view nearest;
+    std::size_t fewest = std::max<std::size_t>(2, wanted.size() / 2);  // further than that is another word
+    for (const Entry& entry : entries) {
+        // Half a name is a common slip: "rate" for rate_hz.
+        const bool half = wanted.size() >= 3 && entry.key.find(wanted) != string_view::npos;
+        const std::size_t edits = half ? 1 : edits_between(wanted, entry.key);
+        if (edits < fewest || (edits == fewest && nearest.empty())) {
+            fewest = edits;
+            nearest = entry.key;
+        }
+    }
+    return nearest;
+}
+
+}  // namespace surefoot::config

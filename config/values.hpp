@@ -1,0 +1,20 @@
+// Inside the config room: one value put into the settings within the schema's limits. Used by the TOML reader.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "config/settings.hpp"
+
+namespace surefoot::config {
+
+using Value = std::variant<double, bool, std::string>;
+
+/// What the entry allows, for people: "a number from 1 to 1000 (Hz)".
+std::string allowed(const Entry& entry);
+/// Puts the value in, or says why not and changes nothing.
+std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value);
+Error unknown_key(std::string place, std::string_view key);
+
+}  // namespace surefoot::config
