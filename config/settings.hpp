@@ -31,7 +31,7 @@ struct Settings {
     std::int64_t frame_core = -1;  ///< -1: chosen
     double slice_us = 1000;
     double hysteresis = 1.25;
-    std::string sky = "#8fb3d9";
+    std::string sky = "#9eb8d1";
     std::int64_t frame_priority = 80, raster_priority = 70, worker_priority = 60;
 };
 
