@@ -1,0 +1,50 @@
+// The frame grid: which slot a frame belongs to, when it is due, which comes next. Pure functions of injected time.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "rt/base/result.hpp"
+
+namespace surefoot::rt {
+
+/// What happens to a frame that is late, named as in OpenGL Performer (research/realtime.md 2).
+/// lock:     a picture is shown on grid points only. A late frame is shown on the first grid point after it is done, and the
+///           next frame starts there; the slots that it ran over are skipped whole. Latency is a whole number of periods.
+/// floating: (`float`) a late frame is shown when it is done, and the next frame starts at once, in the slot that has begun.
+///           Only slots that have passed entirely are skipped.
+/// A frame that is in time is shown at its deadline (lock) or when done (floating); the next starts on the next grid point.
+enum class LatePolicy : std::uint8_t { lock, floating };
+
+/// "lock" or "float".
+Result<LatePolicy> parse_late_policy(std::string_view name);
+
+/// Slot k is due (may start) at t0 + k * period, and its deadline is due + period. Integer nanoseconds: no drift.
+struct Grid {
+    std::int64_t t0_ns = 0;
+    std::int64_t period_ns = 1;  ///< > 0
+
+    [[nodiscard]] constexpr std::int64_t due_ns(std::uint64_t slot) const {
+        return t0_ns + static_cast<std::int64_t>(slot) * period_ns;
+    }
+    [[nodiscard]] constexpr std::int64_t deadline_ns(std::uint64_t slot) const { return due_ns(slot) + period_ns; }
+};
+
+/// The period of a rate, which may be fractional (59.94), rounded to whole nanoseconds. Error: not within 0.1 to 1000 Hz.
+Result<std::int64_t> period_of_rate_ns(double rate_hz);
+
+/// What follows a frame.
+struct NextSlot {
+    std::uint64_t slot = 0;     ///< the next frame's
+    std::uint32_t skipped = 0;  ///< slots between the two
+    bool missed = false;        ///< finished after its deadline (exactly on it is in time)
+    std::int64_t shown_ns = 0;  ///< when the picture appears
+    std::int64_t start_ns = 0;  ///< earliest start of the next frame: its due time, or (floating, late) the finish
+};
+
+/// The slot after the frame of `slot`, finished at finished_ns. A stall of any length (a stopped process, a stolen core)
+/// is one call: the late frame counts as run, every slot that it ran over as skipped.
+/// After any sequence of frames from slot s: run + skipped = next.slot - s, exactly.
+NextSlot next_slot(const Grid& grid, LatePolicy late, std::uint64_t slot, std::int64_t finished_ns);
+
+}  // namespace surefoot::rt

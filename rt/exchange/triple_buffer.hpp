@@ -1,0 +1,53 @@
+// The latest value from one writer to one reader, wait-free on both sides: neither ever waits, old values are overwritten.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace surefoot::rt {
+
+/// Three slots: the writer fills one, the reader holds one, the third changes hands. T's memory is reserved beforehand through
+/// slot(); nothing is copied or allocated afterwards. One writer thread and one reader thread.
+template <class T>
+class TripleBuffer {
+public:
+    TripleBuffer() = default;
+    explicit TripleBuffer(const T& initial) : slots_{Slot{initial}, Slot{initial}, Slot{initial}} {}
+    TripleBuffer(const TripleBuffer&) = delete;
+    TripleBuffer& operator=(const TripleBuffer&) = delete;
+
+    /// Before the threads start: slot 0, 1, 2, to reserve memory in each.
+    T& slot(std::size_t i) { return slots_[i].value; }
+
+    /// Writer: the slot to fill. It holds what was written there some publications ago.
+    T& back() { return slots_[back_].value; }
+    /// Writer: hands the filled slot over; back() is another from now on.
+    void publish() {
+        const std::uint8_t before = middle_.exchange(static_cast<std::uint8_t>(back_ | fresh), std::memory_order_acq_rel);
+        back_ = before & index_mask;
+    }
+
+    /// Reader: takes the newest published value, if there is one since the last call.
+    bool refresh() {
+        if ((middle_.load(std::memory_order_relaxed) & fresh) == 0) return false;
+        const std::uint8_t before = middle_.exchange(front_, std::memory_order_acq_rel);
+        front_ = before & index_mask;
+        return true;
+    }
+    /// Reader: what the last refresh() took (the initial value before the first). The reader may change it.
+    T& front() { return slots_[front_].value; }
+    [[nodiscard]] const T& front() const { return slots_[front_].value; }
+
+private:
+    static constexpr std::uint8_t index_mask = 3, fresh = 4;
+    struct alignas(64) Slot {
+        T value{};
+    };
+    std::array<Slot, 3> slots_{};
+    alignas(64) std::uint8_t back_ = 0;  ///< writer's
+    alignas(64) std::atomic<std::uint8_t> middle_{1};
+    alignas(64) std::uint8_t front_ = 2;  ///< reader's
+};
+
+}  // namespace surefoot::rt

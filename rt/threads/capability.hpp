@@ -1,0 +1,48 @@
+// What this machine grants to real-time work, what it lacks, and how to grant it (never silently not real-time, DESIGN 7).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rt/base/result.hpp"
+#include "rt/threads/placement.hpp"
+
+namespace surefoot::rt {
+
+/// One thing that is missing, for people.
+struct Lack {
+    std::string what;
+    std::string remedy;
+};
+
+/// Read from the system; unknown numbers are -1.
+struct Capabilities {
+    int fifo_priority = 0;            ///< highest SCHED_FIFO priority granted, tried out; 0: refused
+    bool can_lock = false;            ///< mlock granted without a limit that matters (1 GiB)
+    std::int64_t memlock_bytes = -1;  ///< RLIMIT_MEMLOCK, soft; -1: unlimited, or privileged
+    CpuMask allowed, isolated;        ///< isolated: kernel's list, within allowed
+    std::int64_t rt_runtime_us = -1;  ///< -1: no throttling
+    std::int64_t rt_period_us = 1000000;
+    std::int64_t rttime_us = -1;  ///< RLIMIT_RTTIME, soft; -1 unlimited
+    bool preempt_rt = false;
+    bool virtual_machine = false;
+    std::vector<Lack> lacking;  ///< from the above; empty: nothing is missing
+};
+
+/// Tries FIFO on a thread made for it, and reads limits, /proc and /sys. wanted_priority: what the frame thread asks for.
+/// root: where /proc and /sys lie, for tests.
+Capabilities probe_capabilities(int wanted_priority, const std::string& root = "");
+/// Pure: what is missing, given the rest.
+std::vector<Lack> find_lacking(const Capabilities& c, int wanted_priority);
+
+/// Limits as they were, to go back to.
+struct SavedLimits {
+    std::uint64_t rtprio_soft = 0, rtprio_hard = 0, rttime_soft = 0, rttime_hard = 0, memlock_soft = 0, memlock_hard = 0;
+};
+/// Raises RLIMIT_RTPRIO, RTTIME and MEMLOCK as far as allowed (the hard limit too, where privileged). Never fails: what
+/// stays low shows up in probe_capabilities().
+SavedLimits raise_limits(int wanted_priority);
+void restore_limits(const SavedLimits& limits);
+
+}  // namespace surefoot::rt

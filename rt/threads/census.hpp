@@ -1,0 +1,30 @@
+// The thread census: a declared table of threads compared with what is there; every difference named (DESIGN 7).
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rt/threads/placement.hpp"
+
+namespace surefoot::rt {
+
+/// A row of the table. A thread belongs to the row with the longest matching name.
+struct DeclaredThread {
+    std::string name;  ///< prefix of the thread's name, or the whole of it
+    bool whole_name = false;
+    Policy policy = Policy::other;
+    int priority = 0;
+    CpuMask cpus;  ///< exactly these; empty: not checked
+    int min_count = 1;
+    int max_count = 1;
+};
+
+/// Pure. Empty: all as declared. Otherwise one line a problem: thread missing, too many, undeclared, or of the wrong policy,
+/// priority or cores.
+std::vector<std::string> census(std::span<const DeclaredThread> declared, std::span<const ThreadInfo> found);
+
+/// Of this process, now.
+std::vector<std::string> census_now(std::span<const DeclaredThread> declared);
+
+}  // namespace surefoot::rt

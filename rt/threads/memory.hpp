@@ -1,0 +1,30 @@
+// Memory that never faults again: locked, the allocator kept from giving pages back, stack and heap touched beforehand.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "rt/base/result.hpp"
+
+namespace surefoot::rt {
+
+struct MemoryOptions {
+    bool lock = true;                        ///< mlockall, present and future
+    std::size_t heap_bytes = 32U << 20U;     ///< grown, touched and kept in the calling thread's heap
+    std::uint64_t growth_bytes = 1U << 30U;  ///< what the process may still map: with a finite RLIMIT_MEMLOCK, locking is refused
+                                             ///< unless it leaves this much (future maps would fail instead of merely faulting)
+};
+
+/// Keeps freed memory (no trim, no mmap: 160 faults a frame become 0, research M5), touches the heap, then locks.
+/// Error: locking refused, with the remedy; the rest is done all the same.
+Result<void> prepare_memory(const MemoryOptions& options);
+/// Undoes prepare_memory(): unlocks, and lets the allocator trim again (touched pages stay until it does).
+void release_memory();
+
+/// Touches the calling thread's stack below here. At most half of the stack is touched.
+void prefault_stack(std::size_t bytes = 256U << 10U);
+
+/// Bytes locked in this process (/proc/self/status VmLck); 0 when unknown.
+std::uint64_t locked_bytes();
+
+}  // namespace surefoot::rt
