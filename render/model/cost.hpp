@@ -17,7 +17,8 @@ struct ItemCost {
     float raster_us = 0;
 };
 
-/// One state class: bilinear over log2(triangles) 2^0..2^(nt-1) and log2(pixels) 2^0..2^(np-1).
+/// One state class: knots at triangles 2^0..2^(nt-1) and pixels 2^0..2^(np-1), linear in the argument between knots
+/// (exact where cost is linear, and no logarithm in the frame).
 struct CostGrid {
     EffectMask effects = 0;
     std::uint32_t triangle_steps = 0, pixel_steps = 0;  ///< nt, np

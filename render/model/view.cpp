@@ -1,0 +1,96 @@
+// Frustum, visibility and projection: double precision, never losing a box that encloses the frustum.
+#include "render/model/view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::model {
+
+namespace {
+
+constexpr double widest_half_angle_rad = 89.0 / 180.0 * 3.14159265358979323846 - 1e-6;
+
+struct HalfAngles {
+    double x = 0, y = 0;
+};
+
+HalfAngles half_angles(const Pose& pose, Viewport viewport) {
+    const double y = std::clamp(0.5 * pose.fov_y_rad, 1e-4, widest_half_angle_rad);
+    const double aspect = static_cast<double>(std::max(viewport.width, 1U)) / static_cast<double>(std::max(viewport.height, 1U));
+    return {std::min(std::atan(std::tan(y) * aspect), widest_half_angle_rad), y};
+}
+
+// A ray at elevation e on a side plane is only cos(e) * sin(w) away from the plane turned outwards by w: the corner rays decide.
+double widen(double half, double other, double angle_rad) {
+    const double cos_corner = 1.0 / std::sqrt(1.0 + std::pow(std::tan(other) * std::cos(half), 2));
+    const double by = std::asin(std::min(1.0, std::sin(std::min(angle_rad, widest_half_angle_rad)) / cos_corner));
+    return std::min(half + by, widest_half_angle_rad);
+}
+
+}  // namespace
+
+Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m, double angle_rad) {
+    HalfAngles half = half_angles(pose, viewport);
+    if (angle_rad > 0) half = {widen(half.x, half.y, angle_rad), widen(half.y, half.x, angle_rad)};
+    const dvec3 forward = pose.forward(), up = pose.up(), right = pose.right();
+    // Seen from this apex, the same angles hold the whole ball of eyes.
+    const double pull = radius_m > 0 ? radius_m / std::sin(std::min(half.x, half.y)) : 0.0;
+    const dvec3 apex = pose.position - pull * forward;
+
+    const auto plane = [](const dvec3& normal, const dvec3& through) { return dvec4(normal, -glm::dot(normal, through)); };
+    const double sx = std::sin(half.x), cx = std::cos(half.x), sy = std::sin(half.y), cy = std::cos(half.y);
+    const bool exact = !(radius_m > 0) && !(angle_rad > 0);
+    // A turned near plane sweeps towards the eye: every region but a single pose keeps all that is in front of the ball.
+    const dvec3 near_point = pose.position + (exact ? near_plane_m : -radius_m) * forward;
+    Frustum frustum;
+    frustum.planes = {plane(cx * right + sx * forward, apex), plane(-cx * right + sx * forward, apex),
+                      plane(cy * up + sy * forward, apex), plane(-cy * up + sy * forward, apex), plane(forward, near_point)};
+    frustum.corners[0] = apex;
+    const double reach = std::max(far_m, 1.0) + pull;
+    for (int i = 0; i < 4; ++i) {
+        const double side = (i & 1) != 0 ? 1.0 : -1.0, lift = (i & 2) != 0 ? 1.0 : -1.0;
+        frustum.corners[static_cast<std::size_t>(i) + 1] =
+            apex + reach * (forward + side * std::tan(half.x) * right + lift * std::tan(half.y) * up);
+    }
+    return frustum;
+}
+
+bool visible(const Frustum& frustum, const Box& box) {
+    if (box.empty()) return false;
+    const dvec3 centre = box.centre(), half = box.half();
+    for (const dvec4& p : frustum.planes) {
+        const double reach = std::abs(p.x) * half.x + std::abs(p.y) * half.y + std::abs(p.z) * half.z;
+        const double away = p.x * centre.x + p.y * centre.y + p.z * centre.z + p.w;
+        if (away + reach < -1e-9 * (std::abs(p.w) + reach)) return false;  // the slack covers rounding far from the origin
+    }
+    // The far plane is infinite: a face separates only if the apex is beyond it and no edge ray comes back.
+    for (int axis = 0; axis < 3; ++axis) {
+        const double apex = frustum.corners[0][axis];
+        bool below = apex<box.min[axis], above = apex> box.max[axis];
+        for (std::size_t i = 1; i < 5 && (below || above); ++i) {
+            const double step = frustum.corners[i][axis] - apex;
+            below = below && step <= 0;
+            above = above && step >= 0;
+        }
+        if (below || above) return false;
+    }
+    return true;
+}
+
+mat4 view_rotation(const Pose& pose) { return mat4(glm::mat4_cast(glm::conjugate(glm::normalize(pose.orientation)))); }
+
+mat4 projection(const Pose& pose, Viewport viewport) {
+    const HalfAngles half = half_angles(pose, viewport);
+    mat4 m(0.0F);
+    m[0][0] = static_cast<float>(1.0 / std::tan(half.x));
+    m[1][1] = static_cast<float>(1.0 / std::tan(half.y));
+    m[2][3] = -1.0F;
+    m[3][2] = static_cast<float>(near_plane_m);
+    return m;
+}
+
+double pixel_angle(const Pose& pose, Viewport viewport) {
+    return std::atan(2.0 * std::tan(half_angles(pose, viewport).y) / static_cast<double>(std::max(viewport.height, 1U)));
+}
+
+}  // namespace surefoot::model
