@@ -35,7 +35,7 @@ using ProgramFactory = std::function<ProgramSource(model::EffectMask)>;
 struct DeviceOptions {
     BackendKind kind = BackendKind::egl;
     model::Viewport viewport;
-    int rasterisers = 0;             ///< software GL threads (LP_NUM_THREADS); 0: the measured default
+    int rasterisers = 0;                  ///< software GL threads (LP_NUM_THREADS); 0: the measured default
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
     std::array<float, 3> sky{0.62F, 0.72F, 0.82F};
@@ -55,7 +55,7 @@ struct PixelImage {
 class Device {
 public:
     virtual ~Device() = default;
-    [[nodiscard]] virtual std::string renderer() const = 0;      ///< GL_RENDERER, or "null"
+    [[nodiscard]] virtual std::string renderer() const = 0;  ///< GL_RENDERER, or "null"
     [[nodiscard]] virtual bool software() const = 0;
     /// Uploads geometry and textures, compiles the programs of the scene's state classes (and only those), warms each up.
     virtual Result<void> load(const model::Model& model, const ProgramFactory& programs) = 0;
@@ -82,6 +82,11 @@ public:
     /// Of the current frame; slow.
     virtual Result<PixelImage> read_pixels() = 0;
 
+    /// A GL_TIME_ELAPSED query around what is drawn in between; slow (waits). False, and nothing to end, where there is none.
+    /// Software GL lies here: see measure::TimerQueryCheck.
+    virtual bool begin_timer() { return false; }
+    virtual double end_timer_ms() { return 0; }
+
     /// Virtual time charged so far, us (null backend); 0 elsewhere.
     [[nodiscard]] virtual double charged_us() const { return 0; }
 };
@@ -94,7 +99,7 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options);
 struct NullOptions {
     const model::CostModel* costs = nullptr;
     double cost_scale = 1;
-    double noise = 0;           ///< relative, seeded
+    double noise = 0;  ///< relative, seeded
     std::uint64_t seed = 1;
 };
 Result<std::unique_ptr<Device>> open_null_device(const DeviceOptions& options, const NullOptions& null_options);

@@ -1,0 +1,18 @@
+// Effect: alpha test against the material's cutoff: leaves, fences.
+#include "render/effects/modules.hpp"
+
+namespace surefoot::effects {
+
+constexpr EffectModule alpha_mask{
+    .bit = model::effect_alpha_mask,
+    .name = "alpha_mask",
+    .what = "holes where alpha is below the material's cutoff",
+    .asked_by = "a material whose alpha mode is mask",
+    .vertex_declarations = "in float alpha_cutoff;\nflat out float v_alpha_cutoff;\n",
+    .vertex_code = "    v_alpha_cutoff = alpha_cutoff;\n",
+    .fragment_declarations = "flat in float v_alpha_cutoff;\n",
+    .fragment_code = "    if (colour.a < v_alpha_cutoff) discard;\n",
+};
+const EffectModule alpha_mask_module = alpha_mask;
+
+}  // namespace surefoot::effects

@@ -1,0 +1,18 @@
+// Effect: a colour at each vertex, multiplied with the material's.
+#include "render/effects/modules.hpp"
+
+namespace surefoot::effects {
+
+constexpr EffectModule vertex_colour{
+    .bit = model::effect_vertex_colour,
+    .name = "vertex_colour",
+    .what = "a colour at each vertex",
+    .asked_by = "a mesh whose vertices carry colours",
+    .vertex_declarations = "in vec4 vertex_colour;\n",
+    .vertex_code = "    v_colour *= vertex_colour;\n",
+    .fragment_declarations = "",
+    .fragment_code = "",
+};
+const EffectModule vertex_colour_module = vertex_colour;
+
+}  // namespace surefoot::effects

@@ -1,0 +1,106 @@
+// The OpenGL functions that this room calls, loaded by name: one table a context, no link to libGL.
+#pragma once
+
+#include <GL/glcorearb.h>
+
+#include <functional>
+#include <string_view>
+
+#include "rt/base/result.hpp"
+
+namespace surefoot::gl {
+
+// name without "gl", type of its pointer
+#define SUREFOOT_GL_FUNCTIONS(X)                                                                         \
+    X(ActiveTexture, PFNGLACTIVETEXTUREPROC)                                                             \
+    X(AttachShader, PFNGLATTACHSHADERPROC)                                                               \
+    X(BeginQuery, PFNGLBEGINQUERYPROC)                                                                   \
+    X(BindBuffer, PFNGLBINDBUFFERPROC)                                                                   \
+    X(BindFramebuffer, PFNGLBINDFRAMEBUFFERPROC)                                                         \
+    X(BindRenderbuffer, PFNGLBINDRENDERBUFFERPROC)                                                       \
+    X(BindTexture, PFNGLBINDTEXTUREPROC)                                                                 \
+    X(BindVertexArray, PFNGLBINDVERTEXARRAYPROC)                                                         \
+    X(BindVertexBuffer, PFNGLBINDVERTEXBUFFERPROC)                                                       \
+    X(BlendFuncSeparate, PFNGLBLENDFUNCSEPARATEPROC)                                                     \
+    X(BlitFramebuffer, PFNGLBLITFRAMEBUFFERPROC)                                                         \
+    X(BufferStorage, PFNGLBUFFERSTORAGEPROC)                                                             \
+    X(CheckFramebufferStatus, PFNGLCHECKFRAMEBUFFERSTATUSPROC)                                           \
+    X(Clear, PFNGLCLEARPROC)                                                                             \
+    X(ClearColor, PFNGLCLEARCOLORPROC)                                                                   \
+    X(ClearDepthf, PFNGLCLEARDEPTHFPROC)                                                                 \
+    X(ClientWaitSync, PFNGLCLIENTWAITSYNCPROC)                                                           \
+    X(ClipControl, PFNGLCLIPCONTROLPROC)                                                                 \
+    X(CompileShader, PFNGLCOMPILESHADERPROC)                                                             \
+    X(CreateProgram, PFNGLCREATEPROGRAMPROC)                                                             \
+    X(CreateShader, PFNGLCREATESHADERPROC)                                                               \
+    X(CullFace, PFNGLCULLFACEPROC)                                                                       \
+    X(DeleteBuffers, PFNGLDELETEBUFFERSPROC)                                                             \
+    X(DeleteProgram, PFNGLDELETEPROGRAMPROC)                                                             \
+    X(DeleteQueries, PFNGLDELETEQUERIESPROC)                                                             \
+    X(DeleteShader, PFNGLDELETESHADERPROC)                                                               \
+    X(DeleteSync, PFNGLDELETESYNCPROC)                                                                   \
+    X(DeleteTextures, PFNGLDELETETEXTURESPROC)                                                           \
+    X(DeleteVertexArrays, PFNGLDELETEVERTEXARRAYSPROC)                                                   \
+    X(DepthFunc, PFNGLDEPTHFUNCPROC)                                                                     \
+    X(DepthMask, PFNGLDEPTHMASKPROC)                                                                     \
+    X(Disable, PFNGLDISABLEPROC)                                                                         \
+    X(DrawElementsInstancedBaseVertexBaseInstance, PFNGLDRAWELEMENTSINSTANCEDBASEVERTEXBASEINSTANCEPROC) \
+    X(Enable, PFNGLENABLEPROC)                                                                           \
+    X(EnableVertexAttribArray, PFNGLENABLEVERTEXATTRIBARRAYPROC)                                         \
+    X(EndQuery, PFNGLENDQUERYPROC)                                                                       \
+    X(FenceSync, PFNGLFENCESYNCPROC)                                                                     \
+    X(Finish, PFNGLFINISHPROC)                                                                           \
+    X(Flush, PFNGLFLUSHPROC)                                                                             \
+    X(FramebufferRenderbuffer, PFNGLFRAMEBUFFERRENDERBUFFERPROC)                                         \
+    X(FrontFace, PFNGLFRONTFACEPROC)                                                                     \
+    X(GenBuffers, PFNGLGENBUFFERSPROC)                                                                   \
+    X(GenFramebuffers, PFNGLGENFRAMEBUFFERSPROC)                                                         \
+    X(GenQueries, PFNGLGENQUERIESPROC)                                                                   \
+    X(GenRenderbuffers, PFNGLGENRENDERBUFFERSPROC)                                                       \
+    X(GenTextures, PFNGLGENTEXTURESPROC)                                                                 \
+    X(GenVertexArrays, PFNGLGENVERTEXARRAYSPROC)                                                         \
+    X(GetAttribLocation, PFNGLGETATTRIBLOCATIONPROC)                                                     \
+    X(GetError, PFNGLGETERRORPROC)                                                                       \
+    X(GetIntegerv, PFNGLGETINTEGERVPROC)                                                                 \
+    X(GetProgramInfoLog, PFNGLGETPROGRAMINFOLOGPROC)                                                     \
+    X(GetProgramiv, PFNGLGETPROGRAMIVPROC)                                                               \
+    X(GetQueryObjectui64v, PFNGLGETQUERYOBJECTUI64VPROC)                                                 \
+    X(GetShaderInfoLog, PFNGLGETSHADERINFOLOGPROC)                                                       \
+    X(GetShaderiv, PFNGLGETSHADERIVPROC)                                                                 \
+    X(GetString, PFNGLGETSTRINGPROC)                                                                     \
+    X(GetStringi, PFNGLGETSTRINGIPROC)                                                                   \
+    X(GetUniformLocation, PFNGLGETUNIFORMLOCATIONPROC)                                                   \
+    X(LinkProgram, PFNGLLINKPROGRAMPROC)                                                                 \
+    X(MapBufferRange, PFNGLMAPBUFFERRANGEPROC)                                                           \
+    X(MultiDrawElementsIndirect, PFNGLMULTIDRAWELEMENTSINDIRECTPROC)                                     \
+    X(PixelStorei, PFNGLPIXELSTOREIPROC)                                                                 \
+    X(ReadBuffer, PFNGLREADBUFFERPROC)                                                                   \
+    X(ReadPixels, PFNGLREADPIXELSPROC)                                                                   \
+    X(RenderbufferStorage, PFNGLRENDERBUFFERSTORAGEPROC)                                                 \
+    X(ShaderSource, PFNGLSHADERSOURCEPROC)                                                               \
+    X(TexParameteri, PFNGLTEXPARAMETERIPROC)                                                             \
+    X(TexStorage2D, PFNGLTEXSTORAGE2DPROC)                                                               \
+    X(TexSubImage2D, PFNGLTEXSUBIMAGE2DPROC)                                                             \
+    X(Uniform1i, PFNGLUNIFORM1IPROC)                                                                     \
+    X(Uniform3f, PFNGLUNIFORM3FPROC)                                                                     \
+    X(UniformMatrix4fv, PFNGLUNIFORMMATRIX4FVPROC)                                                       \
+    X(UseProgram, PFNGLUSEPROGRAMPROC)                                                                   \
+    X(VertexAttribBinding, PFNGLVERTEXATTRIBBINDINGPROC)                                                 \
+    X(VertexAttribFormat, PFNGLVERTEXATTRIBFORMATPROC)                                                   \
+    X(VertexBindingDivisor, PFNGLVERTEXBINDINGDIVISORPROC)                                               \
+    X(Viewport, PFNGLVIEWPORTPROC)
+
+struct Api {
+#define SUREFOOT_GL_MEMBER(name, type) type name = nullptr;
+    SUREFOOT_GL_FUNCTIONS(SUREFOOT_GL_MEMBER)
+#undef SUREFOOT_GL_MEMBER
+    int version = 0;  ///< 45 for 4.5
+
+    [[nodiscard]] bool has_extension(std::string_view name) const;
+};
+
+/// Loads the table with a context current, and checks version (4.3 at least), clip control and buffer storage.
+/// `find` is the context's GetProcAddress; glvnd answers any name, so presence is read from version and extensions.
+Result<Api> load_api(const std::function<void*(const char*)>& find, const std::string& place);
+
+}  // namespace surefoot::gl

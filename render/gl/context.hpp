@@ -1,0 +1,33 @@
+// A GL context of one backend: made, made current, released; presents where there is a window.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/gl/api.hpp"
+#include "render/gl/device.hpp"
+
+namespace surefoot::gl {
+
+/// Made current on the thread that opens it.
+class Context {
+public:
+    virtual ~Context() = default;
+    virtual bool make_current() = 0;
+    virtual void release() = 0;
+    [[nodiscard]] virtual void* find(const char* function) const = 0;
+    [[nodiscard]] virtual std::string name() const = 0;  ///< for error messages
+    /// True where the default framebuffer is a window: the frame is blitted there, then present() swaps.
+    [[nodiscard]] virtual bool has_window() const { return false; }
+    virtual void present() {}
+};
+
+Result<std::unique_ptr<Context>> open_egl_surfaceless();
+Result<std::unique_ptr<Context>> open_egl_device();
+Result<std::unique_ptr<Context>> open_osmesa();
+Result<std::unique_ptr<Context>> open_window(model::Viewport viewport, const std::string& title);
+
+/// Opens the backend of options.kind (not null), with the rasteriser threads asked for.
+Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options);
+
+}  // namespace surefoot::gl

@@ -1,0 +1,176 @@
+// The device on a real GL context: opening, loading, warming up, slices and fences. Drawing itself: gl_draw.cpp.
+#include "render/gl/gl_device.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace surefoot::gl {
+
+namespace {
+
+constexpr std::uint32_t most_slices = 1024;   // fences kept a frame; beyond it the oldest is waited for first
+constexpr GLuint64 wait_ns = 10'000'000'000;  // a driver that needs longer hangs
+
+bool is_software(std::string_view renderer) {
+    for (const std::string_view name : {"llvmpipe", "softpipe", "swrast", "Software"}) {
+        if (renderer.find(name) != std::string_view::npos) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+GlDevice::GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options)
+    : context_(std::move(context)), options_(options) {}
+
+GlDevice::~GlDevice() = default;  // the context takes every object with it
+
+Result<std::unique_ptr<Device>> GlDevice::make(std::unique_ptr<Context> context, const DeviceOptions& options) {
+    std::unique_ptr<GlDevice> device(new GlDevice(std::move(context), options));
+    if (auto ready = device->set_up(); !ready) return ready.error();
+    return std::unique_ptr<Device>(std::move(device));
+}
+
+Result<void> GlDevice::set_up() {
+    auto api = load_api([this](const char* function) { return context_->find(function); }, context_->name());
+    if (!api) return api.error();
+    gl_ = *api;
+    const auto* name = reinterpret_cast<const char*>(gl_.GetString(GL_RENDERER));
+    renderer_ = name != nullptr ? name : "unknown";
+    software_ = is_software(renderer_);
+    auto target = make_target(gl_, options_.viewport);
+    if (!target) return target.error();
+    target_ = *target;
+    auto frame = make_frame_buffers(gl_, std::max(1U, options_.max_items));
+    if (!frame) return frame.error();
+    frame_ = *frame;
+    pending_.resize(frame_.instances.size());
+    blended_.resize(frame_.instances.size());
+    fences_.resize(most_slices, nullptr);
+    gl_.GenQueries(1, &timer_);
+    return check_errors(gl_, context_->name(), "see `surefoot doctor`");
+}
+
+Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
+    free_resources(gl_, resources_);
+    tables_ = make_tables(model);
+    auto resources = load_resources(gl_, model, tables_.masks, programs, frame_, software_);
+    if (!resources) return resources.error();
+    resources_ = std::move(*resources);
+    sun_direction_ = vec3(glm::normalize(model.sun_direction));
+    warm_up();
+    return check_errors(gl_, "warming up " + renderer_, "report this together with the driver's version");
+}
+
+/// Every combination of program, texture and culling in the model is drawn once: drivers compile on first use, and the frame
+/// may not pay for it. One triangle of each; what it shows does not matter.
+void GlDevice::warm_up() {
+    std::vector<std::pair<State, Pending>> kinds;
+    for (std::uint32_t r = 0; r < tables_.reps.size(); ++r) {
+        const DrawRep& rep = tables_.reps[r];
+        for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+            const Pending pending{0, p, r};
+            kinds.emplace_back(state_of(pending), pending);
+        }
+    }
+    const auto order = [](const auto& a, const auto& b) {
+        const auto tuple = [](const State& s) { return std::tuple(s.program, s.texture, s.culling); };
+        return tuple(a.first) < tuple(b.first);
+    };
+    std::sort(kinds.begin(), kinds.end(), order);
+    const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
+    kinds.erase(std::unique(kinds.begin(), kinds.end(), same), kinds.end());
+
+    begin_frame(Pose{});
+    for (auto& [state, pending] : kinds) {
+        if (used_instances_ >= frame_.instances.size()) break;
+        set_blending(tables_.parts[pending.part].blended);
+        write_instance(pending, used_instances_);
+        append_command(pending, used_instances_, used_commands_);
+        frame_.commands[used_commands_].index_count = std::min(3U, frame_.commands[used_commands_].index_count);
+        apply(state);
+        issue(state, used_commands_, 1);
+        ++used_instances_;
+        ++used_commands_;
+    }
+    set_blending(false);
+    finish_frame();
+    stats_ = {};
+}
+
+std::vector<std::string> GlDevice::program_listing() const {
+    std::vector<std::string> lines;
+    for (const Program& program : resources_.programs) {
+        lines.push_back(std::to_string(program.mask) + ": " + mask_text(program.mask));
+    }
+    return lines;
+}
+
+std::string GlDevice::program_text(model::EffectMask mask) const {
+    for (const Program& program : resources_.programs) {
+        if (program.mask == mask) return program.source.vertex + program.source.fragment;
+    }
+    return {};
+}
+
+std::uint32_t GlDevice::end_slice() {
+    if (slices_ - slices_done_ >= most_slices) wait_slices(most_slices - 1);
+    fences_[slices_ % most_slices] = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl_.Flush();
+    return ++slices_;
+}
+
+void GlDevice::wait_slices(std::uint32_t in_flight) {
+    while (slices_ - slices_done_ > in_flight) {
+        GLsync& fence = fences_[slices_done_ % most_slices];
+        gl_.ClientWaitSync(fence, 0, wait_ns);
+        gl_.DeleteSync(fence);
+        fence = nullptr;
+        ++slices_done_;
+    }
+}
+
+void GlDevice::finish_frame() {
+    end_slice();
+    wait_slices(0);
+    if (!context_->has_window()) return;
+    const auto w = static_cast<GLint>(options_.viewport.width);
+    const auto h = static_cast<GLint>(options_.viewport.height);
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    gl_.BlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    context_->present();
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer);
+}
+
+Result<PixelImage> GlDevice::read_pixels() {
+    PixelImage image;
+    image.width = options_.viewport.width;
+    image.height = options_.viewport.height;
+    const std::size_t row = 4ULL * image.width;
+    std::vector<std::uint8_t> upside_down(row * image.height);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer);
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    gl_.ReadPixels(0, 0, static_cast<GLsizei>(image.width), static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE,
+                   upside_down.data());
+    if (auto fine = check_errors(gl_, "reading the picture", "see `surefoot doctor`"); !fine) return fine.error();
+    image.rgba.resize(upside_down.size());
+    for (std::uint32_t y = 0; y < image.height; ++y) {
+        std::copy_n(upside_down.data() + row * (image.height - 1 - y), row, image.rgba.data() + row * y);
+    }
+    return image;
+}
+
+bool GlDevice::begin_timer() {
+    gl_.BeginQuery(GL_TIME_ELAPSED, timer_);
+    return gl_.GetError() == GL_NO_ERROR;
+}
+
+double GlDevice::end_timer_ms() {
+    gl_.EndQuery(GL_TIME_ELAPSED);
+    GLuint64 ns = 0;
+    gl_.GetQueryObjectui64v(timer_, GL_QUERY_RESULT, &ns);
+    return static_cast<double>(ns) * 1e-6;
+}
+
+}  // namespace surefoot::gl

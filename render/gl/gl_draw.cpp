@@ -1,0 +1,207 @@
+// Drawing on a GL context: from items to sorted, batched multi-draws. Nothing here allocates, outside the driver.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "render/gl/gl_device.hpp"
+#include "render/model/view.hpp"
+
+namespace surefoot::gl {
+
+namespace {
+
+/// A non-negative float's bits sort as the float does; anything else sorts first.
+std::uint32_t distance_bits(float distance) { return distance > 0 ? std::bit_cast<std::uint32_t>(distance) : 0U; }
+
+/// Program, culling, texture, then front to back. Textures beyond 2^20 share keys: batches compare the true state.
+std::uint64_t state_key(std::uint32_t program, Culling culling, std::uint32_t texture, float distance) {
+    return static_cast<std::uint64_t>(program & 0x3ffU) << 54U | static_cast<std::uint64_t>(culling) << 52U |
+           static_cast<std::uint64_t>(texture & 0xfffffU) << 32U | distance_bits(distance);
+}
+
+}  // namespace
+
+void GlDevice::begin_frame(const Pose& pose) {
+    if (slices_ != slices_done_) wait_slices(0);  // an abandoned frame: its buffers may still be read
+    ++frame_number_;
+    pose_ = pose;
+    view_projection_ = model::projection(pose, options_.viewport) * model::view_rotation(pose);
+    stats_ = {};
+    slices_ = slices_done_ = 0;
+    blended_count_ = 0;
+    used_instances_ = used_commands_ = 0;
+    state_known_ = false;
+
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer);
+    gl_.Viewport(0, 0, static_cast<GLsizei>(options_.viewport.width), static_cast<GLsizei>(options_.viewport.height));
+    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // reversed-Z needs 0..1: -1..1 would round near 1 (DESIGN 8)
+    gl_.Enable(GL_DEPTH_TEST);
+    gl_.DepthFunc(GL_GREATER);
+    gl_.CullFace(GL_BACK);
+    set_blending(false);
+    gl_.ClearColor(options_.sky[0], options_.sky[1], options_.sky[2], 1.0F);
+    gl_.ClearDepthf(0.0F);
+    gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl_.BindBuffer(GL_DRAW_INDIRECT_BUFFER, frame_.command_buffer);
+}
+
+void GlDevice::set_blending(bool on) {
+    if (on) {
+        gl_.Enable(GL_BLEND);
+        gl_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    } else {
+        gl_.Disable(GL_BLEND);
+    }
+    gl_.DepthMask(on ? GL_FALSE : GL_TRUE);
+}
+
+GlDevice::State GlDevice::state_of(const Pending& pending) const {
+    const DrawPart& part = tables_.parts[pending.part];
+    return {part.program, part.texture, culling(part, tables_.placements[tables_.reps[pending.rep].placement])};
+}
+
+void GlDevice::draw(std::span<const DrawItem> items) {
+    const vec3 eye(pose_.position - tables_.middle);
+    std::size_t count = 0;
+    for (const DrawItem& item : items) {
+        const DrawRep& rep = tables_.reps[item.rep];
+        const Placed& placed = tables_.placements[rep.placement];
+        const float distance = glm::length(vec3(tables_.centres[item.node]) - eye);
+        ++stats_.items;
+        stats_.triangles += rep.triangles;
+        for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+            const DrawPart& part = tables_.parts[p];
+            if (part.index_count == 0) continue;
+            if (part.blended) {
+                if (blended_count_ == blended_.size()) submit_blended();  // out of order rather than not at all
+                // Far first; ids break ties.
+                const std::uint64_t key = static_cast<std::uint64_t>(~distance_bits(distance)) << 32U | item.node;
+                blended_[blended_count_++] = {key, p, item.rep};
+                continue;
+            }
+            if (count == pending_.size()) {
+                submit({pending_.data(), count});
+                count = 0;
+            }
+            pending_[count++] = {state_key(part.program, culling(part, placed), part.texture, distance), p, item.rep};
+        }
+    }
+    submit({pending_.data(), count});
+}
+
+void GlDevice::end_items() {
+    if (blended_count_ == 0) return;
+    submit_blended();
+    end_slice();
+}
+
+void GlDevice::submit_blended() {
+    set_blending(true);
+    submit({blended_.data(), blended_count_});
+    set_blending(false);
+    blended_count_ = 0;
+}
+
+void GlDevice::submit(std::span<Pending> sorted) {
+    if (sorted.empty()) return;
+    std::sort(sorted.begin(), sorted.end(), [](const Pending& a, const Pending& b) {
+        return a.key != b.key ? a.key < b.key : a.part != b.part ? a.part < b.part : a.rep < b.rep;
+    });
+    State state = state_of(sorted.front());
+    std::uint32_t first = used_commands_;
+    for (const Pending& pending : sorted) {
+        const State next = state_of(pending);
+        const bool full = used_instances_ == frame_.instances.size();
+        if (next != state || full) {
+            issue(state, first, used_commands_ - first);
+            state = next;
+            first = used_commands_;
+        }
+        if (full) {  // more parts than max_items: wait until the buffers may be written again; correct, if slow
+            gl_.Finish();
+            used_instances_ = used_commands_ = first = 0;
+        }
+        write_instance(pending, used_instances_);
+        append_command(pending, used_instances_, first);
+        ++used_instances_;
+    }
+    issue(state, first, used_commands_ - first);
+}
+
+void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
+    const DrawPart& part = tables_.parts[pending.part];
+    const Placed& placed = tables_.placements[tables_.reps[pending.rep].placement];
+    Instance instance;
+    eye_relative_rows(placed, pose_.position, instance.rows);
+    instance.colour = part.colour;
+    instance.alpha_cutoff = part.alpha_cutoff;
+    instance.two_sided = part.two_sided ? 1.0F : 0.0F;
+    instance.spare = 0;
+    frame_.instances[at] = instance;
+}
+
+/// A command of its own, or one instance more of the batch's last command when the geometry is the same.
+void GlDevice::append_command(const Pending& pending, std::uint32_t at, std::uint32_t first_of_batch) {
+    const DrawPart& part = tables_.parts[pending.part];
+    if (used_commands_ > first_of_batch) {
+        DrawCommand& last = frame_.commands[used_commands_ - 1];
+        if (last.first_index == part.first_index && last.base_vertex == part.base_vertex &&
+            last.index_count == part.index_count) {
+            ++last.instances;
+            return;
+        }
+    }
+    frame_.commands[used_commands_++] = {part.index_count, 1, part.first_index, part.base_vertex, at};
+}
+
+void GlDevice::apply(const State& state) {
+    Program& program = resources_.programs[state.program];
+    const bool all = !state_known_;
+    if (all || state.program != current_.program) {
+        gl_.UseProgram(program.id);
+        gl_.BindVertexArray(program.vertex_array);
+        ++stats_.state_changes;
+    }
+    if (program.frame != frame_number_) {
+        gl_.UniformMatrix4fv(program.view_projection, 1, GL_FALSE, &view_projection_[0][0]);
+        if (program.sun_direction >= 0)
+            gl_.Uniform3f(program.sun_direction, sun_direction_.x, sun_direction_.y, sun_direction_.z);
+        program.frame = frame_number_;
+    }
+    if (state.texture != model::none && (all || state.texture != current_.texture)) {
+        gl_.BindTexture(GL_TEXTURE_2D, resources_.textures[state.texture]);
+        ++stats_.state_changes;
+    }
+    if (all || state.culling != current_.culling) {
+        if (state.culling == Culling::none) {
+            gl_.Disable(GL_CULL_FACE);
+        } else {
+            gl_.Enable(GL_CULL_FACE);
+            gl_.FrontFace(state.culling == Culling::front_flipped ? GL_CW : GL_CCW);
+        }
+        ++stats_.state_changes;
+    }
+    current_ = state;
+    state_known_ = true;
+}
+
+void GlDevice::issue(const State& state, std::uint32_t first, std::uint32_t count) {
+    if (count == 0) return;
+    apply(state);
+    ++stats_.batches;
+    stats_.draws += count;
+    if (multi_draw_) {
+        const auto offset = reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * sizeof(DrawCommand));
+        gl_.MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset, static_cast<GLsizei>(count), sizeof(DrawCommand));
+        return;
+    }
+    for (std::uint32_t i = first; i < first + count; ++i) {
+        const DrawCommand& c = frame_.commands[i];
+        const auto offset = reinterpret_cast<const void*>(static_cast<std::uintptr_t>(c.first_index) * sizeof(std::uint32_t));
+        gl_.DrawElementsInstancedBaseVertexBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(c.index_count), GL_UNSIGNED_INT,
+                                                        offset, static_cast<GLsizei>(c.instances), c.base_vertex,
+                                                        c.first_instance);
+    }
+}
+
+}  // namespace surefoot::gl

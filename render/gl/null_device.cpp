@@ -1,0 +1,140 @@
+// The null device: draws nothing, records counts, and charges every item to the virtual cost clock exactly as prepare
+// predicts it: same table, same pixel estimate, same combination of sums.
+#include <algorithm>
+#include <utility>
+
+#include "render/gl/program.hpp"
+#include "render/gl/tables.hpp"
+#include "render/model/pixels.hpp"
+#include "rt/base/random.hpp"
+
+namespace surefoot::gl {
+
+namespace {
+
+class NullDevice final : public Device {
+public:
+    NullDevice(const DeviceOptions& options, const NullOptions& null_options)
+        : options_(options),
+          null_(null_options),
+          costs_(null_options.costs != nullptr ? *null_options.costs : model::default_costs()),
+          random_(null_options.seed) {}
+
+    [[nodiscard]] std::string renderer() const override { return "null"; }
+    [[nodiscard]] bool software() const override { return true; }
+    Result<void> load(const model::Model& model, const ProgramFactory& programs) override;
+    [[nodiscard]] std::vector<std::string> program_listing() const override;
+    [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
+    void bind() override {}
+    void release() override {}
+
+    void begin_frame(const Pose& pose) override;
+    void draw(std::span<const DrawItem> items) override;
+    std::uint32_t end_slice() override {
+        ++slices_;
+        charge();
+        return slices_;
+    }
+    void wait_slices(std::uint32_t) override {}
+    void end_items() override {
+        if (blended_ > 0) end_slice();
+        blended_ = 0;
+    }
+    void finish_frame() override {}
+    [[nodiscard]] FrameStats stats() const override { return stats_; }
+    Result<PixelImage> read_pixels() override {
+        return Error{"backend 'null'", "draws nothing, so there is no picture", "use --backend egl for pictures"};
+    }
+    [[nodiscard]] double charged_us() const override { return before_us_ + frame_us_; }
+
+private:
+    void charge();
+
+    DeviceOptions options_;
+    NullOptions null_;
+    model::CostModel costs_;
+    Random random_;
+    struct LoadedProgram {
+        model::EffectMask mask;
+        ProgramSource source;
+    };
+    std::vector<LoadedProgram> programs_;
+    std::vector<Box> boxes_;
+    std::vector<model::Representation> reps_;
+    std::vector<std::uint32_t> grids_;  ///< a rep: index of its cost grid
+    dvec3 eye_{0.0};
+    model::ViewScale scale_;
+    FrameStats stats_;
+    double submit_us_ = 0, raster_us_ = 0, factor_ = 1, before_us_ = 0, frame_us_ = 0;
+    std::uint32_t slices_ = 0, blended_ = 0;
+};
+
+Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& programs) {
+    if (costs_.grids.empty()) return Error{"cost table", "holds no state class", "run `surefoot calibrate`"};
+    programs_.clear();
+    for (const model::EffectMask mask : make_tables(model).masks) programs_.push_back({mask, programs(mask)});
+    boxes_.clear();
+    for (const model::Node& node : model.nodes) boxes_.push_back(node.box);
+    reps_ = model.reps;
+    grids_.clear();
+    for (const model::Representation& rep : reps_) {
+        grids_.push_back(static_cast<std::uint32_t>(&costs_.grid_for(rep.effects) - costs_.grids.data()));
+    }
+    return {};
+}
+
+std::vector<std::string> NullDevice::program_listing() const {
+    std::vector<std::string> lines;
+    for (const auto& program : programs_) lines.push_back(std::to_string(program.mask) + ": " + mask_text(program.mask));
+    return lines;
+}
+
+std::string NullDevice::program_text(model::EffectMask mask) const {
+    for (const auto& program : programs_) {
+        if (program.mask == mask) return program.source.vertex + program.source.fragment;
+    }
+    return {};
+}
+
+void NullDevice::begin_frame(const Pose& pose) {
+    before_us_ += frame_us_;
+    eye_ = pose.position;
+    scale_ = model::make_view_scale(pose, options_.viewport);
+    stats_ = {};
+    submit_us_ = raster_us_ = 0;
+    slices_ = blended_ = 0;
+    // One factor a frame: what makes real predictions wrong is common to a frame's items. Drawn even without noise, so that
+    // the sequence does not depend on it.
+    factor_ = std::max(0.0, 1.0 + null_.noise * (2.0 * random_.unit() - 1.0));
+    charge();
+}
+
+void NullDevice::draw(std::span<const DrawItem> items) {
+    for (const DrawItem& item : items) {
+        const model::Representation& rep = reps_[item.rep];
+        const float pixels = model::rasterised_pixels(rep, boxes_[item.node], eye_, scale_);
+        const model::ItemCost cost = costs_.item(static_cast<float>(rep.triangles), pixels, costs_.grids[grids_[item.rep]]);
+        submit_us_ += static_cast<double>(cost.submit_us);
+        raster_us_ += static_cast<double>(cost.raster_us);
+        ++stats_.items;
+        stats_.draws += rep.part_count;
+        stats_.triangles += rep.triangles;
+        if ((rep.effects & model::effect_blend) != 0) ++blended_;
+    }
+    ++stats_.batches;
+    charge();
+}
+
+void NullDevice::charge() {
+    const float sums = costs_.combine.frame_us(static_cast<float>(submit_us_), static_cast<float>(raster_us_));
+    const double slices = static_cast<double>(slices_) * static_cast<double>(costs_.slice_us);
+    frame_us_ = null_.cost_scale * factor_ * (static_cast<double>(sums) + slices);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Device>> open_null_device(const DeviceOptions& options, const NullOptions& null_options) {
+    return std::unique_ptr<Device>(std::make_unique<NullDevice>(options, null_options));
+}
+
+}  // namespace surefoot::gl

@@ -1,0 +1,65 @@
+// Opening a device by backend.
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+
+#include "render/gl/context.hpp"
+#include "render/gl/gl_device.hpp"
+
+namespace surefoot::gl {
+
+namespace {
+
+constexpr int default_rasterisers = 1;
+
+}  // namespace
+
+Result<BackendKind> parse_backend(std::string_view name) {
+    if (name == "egl") return BackendKind::egl;
+    if (name == "device") return BackendKind::device;
+    if (name == "window") return BackendKind::window;
+    if (name == "osmesa") return BackendKind::osmesa;
+    if (name == "null") return BackendKind::null;
+    return Error{"backend '" + std::string(name) + "'", "there is no such backend", "one of: egl, device, window, osmesa, null"};
+}
+
+Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options) {
+    // llvmpipe reads it when its screen is made; other drivers do not care.
+    const std::string threads = std::to_string(options.rasterisers > 0 ? options.rasterisers : default_rasterisers);
+    setenv("LP_NUM_THREADS", threads.c_str(), 1);
+    switch (options.kind) {
+        case BackendKind::egl:
+            return open_egl_surfaceless();
+        case BackendKind::device:
+            return open_egl_device();
+        case BackendKind::window:
+            return open_window(options.viewport, options.window_title);
+        case BackendKind::osmesa:
+            return open_osmesa();
+        case BackendKind::null:
+            break;
+    }
+    return Error{"backend 'null'", "has no GL context", "use egl, device, window or osmesa"};
+}
+
+Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
+    if (options.kind == BackendKind::null) return open_null_device(options, {});
+    if (options.viewport.width == 0 || options.viewport.height == 0) {
+        return Error{"viewport", "has no pixels", "give a --size of at least 1x1"};
+    }
+    auto context = open_context(options);
+    if (!context) return context.error();
+    return GlDevice::make(std::move(*context), options);
+}
+
+std::vector<std::string> driver_thread_prefixes() {
+    // Mesa names its queues "<program>:<queue><n>" within 15 characters, the rasterisers "llvmpipe-<n>".
+    const std::string program = program_invocation_short_name;
+    std::vector<std::string> prefixes{"llvmpipe-"};
+    for (const std::string queue : {"disk$", "gdrv", "gl"}) {
+        prefixes.push_back(program.substr(0, 13 - queue.size() - 1) + ":" + queue);
+    }
+    return prefixes;
+}
+
+}  // namespace surefoot::gl

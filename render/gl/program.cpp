@@ -1,0 +1,129 @@
+// Compiling programs and binding their attributes (program.hpp).
+#include "render/gl/program.hpp"
+
+#include <cstddef>
+#include <utility>
+
+#include "render/model/model.hpp"
+
+namespace surefoot::gl {
+
+namespace {
+
+constexpr GLuint vertex_binding = 0;
+constexpr GLuint instance_binding = 1;
+
+/// An attribute that a program may read: GLSL name (without array index), place and form in its buffer.
+struct Attribute {
+    const char* name;
+    GLuint binding;
+    GLint components;
+    GLenum type;
+    GLboolean normalised;
+    std::size_t offset;
+    int locations;  ///< an array takes several
+};
+
+constexpr std::array<Attribute, 8> attributes{{
+    {"position", vertex_binding, 3, GL_FLOAT, GL_FALSE, offsetof(model::Vertex, position), 1},
+    {"normal", vertex_binding, 3, GL_BYTE, GL_TRUE, offsetof(model::Vertex, normal), 1},
+    {"vertex_colour", vertex_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(model::Vertex, colour), 1},
+    {"uv", vertex_binding, 2, GL_FLOAT, GL_FALSE, offsetof(model::Vertex, uv), 1},
+    {"world_rows", instance_binding, 4, GL_FLOAT, GL_FALSE, offsetof(Instance, rows), 3},
+    {"material_colour", instance_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Instance, colour), 1},
+    {"alpha_cutoff", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, alpha_cutoff), 1},
+    {"two_sided", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, two_sided), 1},
+}};
+
+Result<GLuint> compile(const Api& gl, GLenum kind, const std::string& text, const std::string& place) {
+    const GLuint shader = gl.CreateShader(kind);
+    const char* source = text.c_str();
+    gl.ShaderSource(shader, 1, &source, nullptr);
+    gl.CompileShader(shader);
+    GLint ok = GL_FALSE;
+    gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    if (ok == GL_TRUE) return shader;
+    std::string log(2048, ' ');
+    GLsizei length = 0;
+    gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    gl.DeleteShader(shader);
+    return Error{place, "does not compile: " + log, "report this together with the driver's version"};
+}
+
+void make_vertex_array(const Api& gl, Program& program, const GeometryBuffers& buffers) {
+    gl.GenVertexArrays(1, &program.vertex_array);
+    gl.BindVertexArray(program.vertex_array);
+    gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices);
+    gl.BindVertexBuffer(vertex_binding, buffers.vertices, 0, sizeof(model::Vertex));
+    gl.BindVertexBuffer(instance_binding, buffers.instances, 0, sizeof(Instance));
+    gl.VertexBindingDivisor(instance_binding, 1);
+    for (const Attribute& a : attributes) {
+        const GLint first = gl.GetAttribLocation(program.id, a.name);
+        if (first < 0) continue;
+        for (int i = 0; i < a.locations; ++i) {
+            const auto location = static_cast<GLuint>(first + i);
+            const auto offset = static_cast<GLuint>(a.offset + static_cast<std::size_t>(i) * 4 * sizeof(float));
+            gl.VertexAttribFormat(location, a.components, a.type, a.normalised, offset);
+            gl.VertexAttribBinding(location, a.binding);
+            gl.EnableVertexAttribArray(location);
+            program.attributes |= 1U << location;
+        }
+    }
+    gl.BindVertexArray(0);
+}
+
+}  // namespace
+
+std::string mask_text(model::EffectMask mask) {
+    std::string text;
+    for (int i = 0; i < model::effect_count; ++i) {
+        if ((mask >> static_cast<unsigned>(i) & 1U) == 0) continue;
+        text += (text.empty() ? "" : " ") + std::string(model::effect_names[static_cast<std::size_t>(i)]);
+    }
+    return text.empty() ? "bare" : text;
+}
+
+Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers) {
+    const std::string place = "program '" + mask_text(mask) + "'";
+    auto vertex = compile(gl, GL_VERTEX_SHADER, source.vertex, place);
+    if (!vertex) return vertex.error();
+    auto fragment = compile(gl, GL_FRAGMENT_SHADER, source.fragment, place);
+    if (!fragment) return fragment.error();
+    Program program;
+    program.mask = mask;
+    program.source = source;
+    program.id = gl.CreateProgram();
+    gl.AttachShader(program.id, *vertex);
+    gl.AttachShader(program.id, *fragment);
+    gl.LinkProgram(program.id);
+    gl.DeleteShader(*vertex);
+    gl.DeleteShader(*fragment);
+    GLint ok = GL_FALSE;
+    gl.GetProgramiv(program.id, GL_LINK_STATUS, &ok);
+    if (ok != GL_TRUE) {
+        std::string log(2048, ' ');
+        GLsizei length = 0;
+        gl.GetProgramInfoLog(program.id, static_cast<GLsizei>(log.size()), &length, log.data());
+        log.resize(static_cast<std::size_t>(length));
+        return Error{place, "does not link: " + log, "report this together with the driver's version"};
+    }
+    program.view_projection = gl.GetUniformLocation(program.id, "view_projection");
+    program.sun_direction = gl.GetUniformLocation(program.id, "sun_direction");
+    const GLint sampler = gl.GetUniformLocation(program.id, "base_colour");
+    if (sampler >= 0) {
+        gl.UseProgram(program.id);
+        gl.Uniform1i(sampler, 0);
+    }
+    make_vertex_array(gl, program, buffers);
+    return program;
+}
+
+void delete_program(const Api& gl, Program& program) {
+    gl.DeleteProgram(program.id);
+    gl.DeleteVertexArrays(1, &program.vertex_array);
+    program.id = 0;
+    program.vertex_array = 0;
+}
+
+}  // namespace surefoot::gl

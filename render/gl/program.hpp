@@ -1,0 +1,45 @@
+// One compiled program of a state class, with the vertex array that enables exactly the attributes it reads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "render/gl/api.hpp"
+#include "render/gl/device.hpp"
+
+namespace surefoot::gl {
+
+/// What one draw needs besides vertices, fetched once an instance. std430-like, 64 bytes.
+struct Instance {
+    std::array<float, 12> rows;          ///< three rows of the eye-relative model matrix
+    std::array<std::uint8_t, 4> colour;  ///< material colour
+    float alpha_cutoff;
+    float two_sided;  ///< 1: normals turn towards the eye
+    float spare;
+};
+static_assert(sizeof(Instance) == 64);
+
+struct Program {
+    model::EffectMask mask = 0;
+    ProgramSource source;
+    GLuint id = 0, vertex_array = 0;
+    GLint view_projection = -1, sun_direction = -1;  ///< uniform locations, -1: not used
+    std::uint64_t frame = 0;                         ///< the frame whose uniforms it holds
+    std::uint32_t attributes = 0;                    ///< bit a location
+};
+
+/// Buffers that every vertex array reads.
+struct GeometryBuffers {
+    GLuint vertices = 0, indices = 0, instances = 0, commands = 0;
+};
+
+/// Compiles, links and builds the vertex array; the error carries the compiler's message.
+Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers);
+void delete_program(const Api& gl, Program& program);
+
+/// "texture sun", or "bare".
+std::string mask_text(model::EffectMask mask);
+
+}  // namespace surefoot::gl

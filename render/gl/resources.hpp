@@ -1,0 +1,50 @@
+// What a loaded model holds on the device: buffers, textures, programs; and the frame's target. Made at load, freed together.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/gl/api.hpp"
+#include "render/gl/program.hpp"
+#include "render/model/model.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::gl {
+
+/// As glMultiDrawElementsIndirect reads it.
+struct DrawCommand {
+    std::uint32_t index_count, instances, first_index;
+    std::int32_t base_vertex;
+    std::uint32_t first_instance;
+};
+static_assert(sizeof(DrawCommand) == 20);
+
+/// RGBA8 colour and 32-bit float depth of the viewport's size; bound for drawing.
+struct Target {
+    GLuint framebuffer = 0, colour = 0, depth = 0;
+};
+Result<Target> make_target(const Api& gl, model::Viewport viewport);
+
+/// Instance and command buffers, mapped for the device's life: the frame writes them without a call.
+struct FrameBuffers {
+    GLuint instance_buffer = 0, command_buffer = 0;
+    std::span<Instance> instances;
+    std::span<DrawCommand> commands;
+};
+Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items);
+
+struct Resources {
+    GLuint vertices = 0, indices = 0;
+    std::vector<GLuint> textures;
+    std::vector<Program> programs;  ///< in the order of DrawTables::masks
+};
+/// soft: nearest mip level instead of trilinear, which software pays for a pixel.
+Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
+                                 const ProgramFactory& programs, const FrameBuffers& frame, bool soft);
+void free_resources(const Api& gl, Resources& resources);
+
+/// An Error naming `place` if GL has recorded an error since the last check.
+Result<void> check_errors(const Api& gl, const std::string& place, const std::string& remedy);
+
+}  // namespace surefoot::gl

@@ -1,0 +1,73 @@
+// Building the drawing tables (tables.hpp).
+#include "render/gl/tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::gl {
+
+namespace {
+
+std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F))); }
+
+DrawPart make_part(const model::Model& model, const model::Part& part, const std::vector<model::EffectMask>& masks) {
+    const model::Material& material = model.materials[part.material];
+    DrawPart out{};
+    out.first_index = part.first_index;
+    out.index_count = part.index_count;
+    out.base_vertex = static_cast<std::int32_t>(part.first_vertex);
+    const bool textured = (material.effects & model::effect_texture) != 0;
+    out.texture = textured ? material.texture : model::none;
+    for (std::size_t i = 0; i < 4; ++i) out.colour[i] = to_byte(material.colour[i]);
+    out.alpha_cutoff = material.alpha_cutoff;
+    const auto found = std::lower_bound(masks.begin(), masks.end(), material.effects);
+    out.program = static_cast<std::uint16_t>(found - masks.begin());
+    out.two_sided = material.two_sided;
+    out.blended = (material.effects & model::effect_blend) != 0;
+    return out;
+}
+
+}  // namespace
+
+DrawTables make_tables(const model::Model& model) {
+    DrawTables tables;
+    for (const model::Part& part : model.parts) tables.masks.push_back(model.materials[part.material].effects);
+    std::sort(tables.masks.begin(), tables.masks.end());
+    tables.masks.erase(std::unique(tables.masks.begin(), tables.masks.end()), tables.masks.end());
+
+    tables.parts.reserve(model.parts.size());
+    for (const model::Part& part : model.parts) tables.parts.push_back(make_part(model, part, tables.masks));
+    tables.reps.reserve(model.reps.size());
+    for (const model::Representation& rep : model.reps) {
+        tables.reps.push_back({rep.placement, rep.first_part, rep.part_count, rep.triangles});
+    }
+    tables.placements.reserve(model.placements.size());
+    for (const model::Placement& placement : model.placements) {
+        Placed placed{placement.origin, {}, glm::determinant(placement.linear) < 0};
+        for (int row = 0; row < 3; ++row) {
+            for (int column = 0; column < 3; ++column) {
+                placed.rows[static_cast<std::size_t>(3 * row + column)] = placement.linear[column][row];
+            }
+        }
+        tables.placements.push_back(placed);
+    }
+    if (!model.nodes.empty() && !model.nodes[0].box.empty()) tables.middle = model.nodes[0].box.centre();
+    tables.centres.reserve(model.nodes.size());
+    for (const model::Node& node : model.nodes) {
+        const dvec3 centre = node.box.empty() ? dvec3(0.0) : node.box.centre() - tables.middle;
+        tables.centres.emplace_back(vec3(centre), 0.0F);
+    }
+    return tables;
+}
+
+void eye_relative_rows(const Placed& placed, const dvec3& eye, std::array<float, 12>& rows) {
+    const dvec3 origin = placed.origin - eye;
+    for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column) rows[4 * row + column] = placed.rows[3 * row + column];
+    }
+    rows[3] = static_cast<float>(origin.x);
+    rows[7] = static_cast<float>(origin.y);
+    rows[11] = static_cast<float>(origin.z);
+}
+
+}  // namespace surefoot::gl

@@ -1,0 +1,54 @@
+// The model as drawing needs it: flat tables of parts, representations and placements, built once at load.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "render/gl/device.hpp"
+#include "render/gl/program.hpp"
+
+namespace surefoot::gl {
+
+enum class Culling : std::uint8_t { back, front_flipped, none };
+
+struct DrawPart {
+    std::uint32_t first_index, index_count;
+    std::int32_t base_vertex;
+    std::uint32_t texture;  ///< in Model::textures, or none
+    std::array<std::uint8_t, 4> colour;
+    float alpha_cutoff;
+    std::uint16_t program;  ///< in the list of masks
+    bool two_sided, blended;
+};
+
+struct DrawRep {
+    std::uint32_t placement, first_part, part_count, triangles;
+};
+
+struct Placed {
+    dvec3 origin;
+    std::array<float, 9> rows;  ///< linear part, row-major
+    bool mirrored;
+};
+
+struct DrawTables {
+    std::vector<model::EffectMask> masks;  ///< state classes that the model's parts call for, ascending
+    std::vector<DrawPart> parts;
+    std::vector<DrawRep> reps;
+    std::vector<Placed> placements;
+    std::vector<vec4> centres;  ///< of a node's box, relative to `middle`; for sorting only
+    dvec3 middle{0.0};
+};
+
+DrawTables make_tables(const model::Model& model);
+
+/// The eye-relative rows of a placement: the origin is made relative in double (DESIGN 1.7).
+void eye_relative_rows(const Placed& placed, const dvec3& eye, std::array<float, 12>& rows);
+
+inline Culling culling(const DrawPart& part, const Placed& placed) {
+    if (part.two_sided) return Culling::none;
+    return placed.mirrored ? Culling::front_flipped : Culling::back;
+}
+
+}  // namespace surefoot::gl

@@ -1,0 +1,74 @@
+// A scene pays only for what it calls for: programs hold their effects' code and no other's; findings name the evidence.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "render/effects/effects.hpp"
+#include "tests/gl/small_models.hpp"
+
+namespace surefoot {
+namespace {
+
+std::string text_of(model::EffectMask mask) {
+    const auto source = effects::assemble_program(mask);
+    return source.vertex + source.fragment;
+}
+
+TEST(Programs, hold_the_code_of_their_effects_and_of_no_other) {
+    for (model::EffectMask mask = 0; mask < 1U << model::effect_count; ++mask) {
+        const std::string text = text_of(mask);
+        for (const auto& module : effects::all_effects()) {
+            for (const auto piece :
+                 {module.vertex_declarations, module.vertex_code, module.fragment_declarations, module.fragment_code}) {
+                if (piece.empty()) continue;
+                EXPECT_EQ(text.find(piece) != std::string::npos, (mask & module.bit) != 0) << module.name << " in mask " << mask;
+            }
+        }
+    }
+}
+
+TEST(Programs, the_bare_one_mentions_no_effect) {
+    const std::string text = text_of(0);
+    for (const std::string word :
+         {"uv", "normal", "sun", "discard", "cutoff", "sampler", "texture", "vertex_colour", "opacity = colour"}) {
+        EXPECT_EQ(text.find(word), std::string::npos) << word;
+    }
+}
+
+TEST(Modules, are_one_a_bit_in_bit_order) {
+    const auto modules = effects::all_effects();
+    ASSERT_EQ(modules.size(), static_cast<std::size_t>(model::effect_count));
+    for (std::size_t i = 0; i < modules.size(); ++i) {
+        EXPECT_EQ(modules[i].bit, 1U << i);
+        EXPECT_EQ(modules[i].name, model::effect_names[i]);
+    }
+}
+
+TEST(Findings, say_what_a_scene_calls_for_and_why) {
+    test::SmallModel scene;
+    auto material = test::plain(1, 1, 1, 1, model::effect_texture | model::effect_sun);
+    material.texture = scene.texture({255, 0, 0, 255}, {0, 255, 0, 255});
+    scene.square(scene.material(material), test::at(0, 0, -1));
+    scene.square(scene.material(test::plain(1, 0, 0)), test::at(0, 0, -2));
+    const auto findings = effects::find_effects(scene.finish());
+    ASSERT_EQ(findings.size(), static_cast<std::size_t>(model::effect_count));
+    EXPECT_TRUE(findings[0].called_for);
+    EXPECT_EQ(findings[0].triangles, 2U);
+    EXPECT_EQ(findings[0].reason, "1 image on 1 material");
+    EXPECT_FALSE(findings[1].called_for);
+    EXPECT_EQ(findings[1].reason, "no mesh whose vertices carry colours");
+    EXPECT_TRUE(findings[2].called_for);
+    EXPECT_FALSE(findings[3].called_for);
+    EXPECT_FALSE(findings[4].called_for);
+}
+
+TEST(Findings, of_an_empty_model_call_for_nothing) {
+    for (const auto& finding : effects::find_effects({})) {
+        EXPECT_FALSE(finding.called_for);
+        EXPECT_FALSE(finding.reason.empty());
+    }
+}
+
+}  // namespace
+}  // namespace surefoot

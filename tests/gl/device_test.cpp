@@ -1,0 +1,327 @@
+// The GL device on small pictures: right pixels, right order, nothing lost. Skipped with the reason where there is no EGL.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/effects/effects.hpp"
+#include "render/gl/device.hpp"
+#include "tests/gl/small_models.hpp"
+
+namespace surefoot {
+namespace {
+
+using gl::BackendKind;
+using test::at;
+using test::plain;
+using test::SmallModel;
+using Pixel = std::array<int, 3>;
+
+constexpr std::uint32_t side = 100;
+
+Result<std::unique_ptr<gl::Device>> open(BackendKind kind, std::uint32_t max_items = 4096) {
+    gl::DeviceOptions options;
+    options.kind = kind;
+    options.viewport = {side, side};
+    options.max_items = max_items;
+    options.sky = {0, 0, 1};
+    return gl::open_device(options);
+}
+
+Pixel pixel(const gl::PixelImage& image, std::uint32_t x, std::uint32_t y) {
+    const std::size_t i = 4 * (static_cast<std::size_t>(y) * image.width + x);
+    return {image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]};
+}
+
+constexpr Pixel red{255, 0, 0}, green{0, 255, 0}, blue{0, 0, 255};
+
+void show(gl::Device& device, const std::vector<gl::DrawItem>& items, const Pose& pose) {
+    device.begin_frame(pose);
+    device.draw(items);
+    device.end_slice();
+    device.wait_slices(1);
+    device.end_items();
+    device.finish_frame();
+}
+
+/// A 90 degree view from the origin along -z: at depth 1 the picture spans -1..1.
+Pose straight() {
+    Pose pose;
+    pose.fov_y_rad = 1.5707963267948966;
+    return pose;
+}
+
+class DeviceTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        auto device = open(BackendKind::egl);
+        if (!device) GTEST_SKIP() << "no EGL: " << device.error().text();
+        device_ = std::move(*device);
+    }
+    gl::PixelImage picture(const model::Model& model, const std::vector<model::Index>& nodes, const Pose& pose = straight()) {
+        const auto loaded = device_->load(model, effects::assemble_program);
+        EXPECT_TRUE(loaded.ok()) << (loaded.ok() ? "" : loaded.error().text());
+        std::vector<gl::DrawItem> items;
+        for (const model::Index node : nodes) items.push_back({node, model.nodes[node].first_rep});
+        show(*device_, items, pose);
+        auto image = device_->read_pixels();
+        EXPECT_TRUE(image.ok());
+        return image.ok() ? *image : gl::PixelImage{};
+    }
+    std::unique_ptr<gl::Device> device_;
+};
+
+TEST_F(DeviceTest, a_triangle_covers_its_pixels_and_no_others) {
+    SmallModel scene;
+    const auto node = scene.triangle(scene.material(plain(1, 0, 0)), {vec3(-1, -1, -1), vec3(0, -1, -1), vec3(-1, 0, -1)});
+    const auto image = picture(scene.finish(), {node});
+    EXPECT_EQ(pixel(image, 2, 97), red);  // lower left
+    EXPECT_EQ(pixel(image, 2, 53), red);  // its upper corner: row 50 is the horizon
+    EXPECT_EQ(pixel(image, 2, 47), blue);
+    EXPECT_EQ(pixel(image, 53, 97), blue);
+    EXPECT_EQ(pixel(image, 40, 60), blue);  // beyond the diagonal
+}
+
+TEST_F(DeviceTest, the_nearer_plane_wins_in_either_order) {
+    SmallModel scene;
+    const auto far = scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -5000), 5000);
+    const auto near = scene.square(scene.material(plain(0, 1, 0)), at(0, 0, -4999.9), 2500);
+    const auto model = scene.finish();
+    for (const auto& order : {std::vector<model::Index>{far, near}, std::vector<model::Index>{near, far}}) {
+        const auto image = picture(model, order);
+        EXPECT_EQ(pixel(image, 50, 50), green);
+        EXPECT_EQ(pixel(image, 10, 50), red);
+    }
+}
+
+TEST_F(DeviceTest, far_from_the_origin_nothing_moves) {
+    const dvec3 away(6.4e6, 1.2e6, -3.3e6);
+    SmallModel here;
+    const auto a = here.triangle(here.material(plain(1, 0, 0)), {vec3(-1, -1, -1), vec3(0.3F, -1, -1), vec3(-1, 0.2F, -1)});
+    SmallModel there;
+    const auto b = there.triangle(there.material(plain(1, 0, 0)), {vec3(-1, -1, -1), vec3(0.3F, -1, -1), vec3(-1, 0.2F, -1)},
+                                  at(away.x, away.y, away.z));
+    Pose pose = straight();
+    const auto near_picture = picture(here.finish(), {a}, pose);
+    pose.position = away;
+    EXPECT_EQ(near_picture.rgba, picture(there.finish(), {b}, pose).rgba);
+}
+
+TEST_F(DeviceTest, a_mirrored_placement_shows_its_front) {
+    SmallModel scene;
+    mat3 mirror(1.0F);
+    mirror[0][0] = -1;
+    const auto node = scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1, mirror), 0.5F);
+    EXPECT_EQ(pixel(picture(scene.finish(), {node}), 50, 50), red);
+}
+
+TEST_F(DeviceTest, a_back_face_shows_only_if_two_sided) {
+    mat3 turned(1.0F);
+    turned[0][0] = -1;
+    turned[2][2] = -1;
+    for (const bool two_sided : {false, true}) {
+        SmallModel scene;
+        auto material = plain(1, 0, 0);
+        material.two_sided = two_sided;
+        const auto node = scene.square(scene.material(material), at(0, 0, -1, turned), 0.5F);
+        EXPECT_EQ(pixel(picture(scene.finish(), {node}), 50, 50), two_sided ? red : blue);
+    }
+}
+
+TEST_F(DeviceTest, mirrored_and_two_sided_surfaces_are_lit_as_their_originals) {
+    const auto shade = [&](const mat3& linear, bool two_sided, dvec3 sun) {
+        SmallModel scene;
+        auto material = plain(0.5F, 0.5F, 0.5F, 1, model::effect_sun);
+        material.two_sided = two_sided;
+        const auto node = scene.square(scene.material(material), at(0, 0, -1, linear), 0.5F);
+        auto model = scene.finish();
+        model.sun_direction = sun;
+        return pixel(picture(model, {node}), 50, 50)[0];
+    };
+    mat3 mirror(1.0F);
+    mirror[0][0] = -1;
+    mat3 turned = mirror;
+    turned[2][2] = -1;
+    const int front = shade(mat3(1.0F), false, {0, 0, 1});
+    EXPECT_GT(front, shade(mat3(1.0F), false, {0, 0, -1}) + 40);
+    EXPECT_EQ(front, shade(mirror, false, {0, 0, 1}));
+    EXPECT_EQ(front, shade(turned, true, {0, 0, 1}));
+    EXPECT_EQ(front, shade(mat3(3.0F), true, {0, 0, 1}));
+}
+
+TEST_F(DeviceTest, the_alpha_mask_cuts_holes_and_the_texture_colours) {
+    SmallModel scene;
+    auto material = plain(1, 1, 1, 1, model::effect_texture | model::effect_alpha_mask);
+    material.texture = scene.texture({0, 255, 0, 255}, {0, 255, 0, 0});
+    material.alpha = model::AlphaMode::mask;
+    const auto node = scene.square(scene.material(material), at(0, 0, -1), 0.8F);
+    const auto image = picture(scene.finish(), {node});
+    EXPECT_EQ(pixel(image, 30, 50), green);
+    EXPECT_EQ(pixel(image, 70, 50), blue);
+}
+
+TEST_F(DeviceTest, blended_items_are_drawn_back_to_front_whatever_their_order) {
+    SmallModel scene;
+    const auto wall = scene.square(scene.material(plain(0, 0, 0)), at(0, 0, -4), 10);
+    auto glass = plain(1, 0, 0, 0.5F, model::effect_blend);
+    glass.alpha = model::AlphaMode::blend;
+    auto other = glass;
+    other.colour = {0, 1, 0, 0.5F};
+    const auto back = scene.square(scene.material(glass), at(0, 0, -3), 10);
+    const auto front = scene.square(scene.material(other), at(0, 0, -2), 10);
+    const auto model = scene.finish();
+    for (const auto& order : {std::vector<model::Index>{front, back, wall}, std::vector<model::Index>{wall, back, front}}) {
+        const Pixel seen = pixel(picture(model, order), 50, 50);
+        EXPECT_NEAR(seen[0], 64, 1);  // red under half of green
+        EXPECT_NEAR(seen[1], 128, 1);
+        EXPECT_EQ(seen[2], 0);
+    }
+}
+
+TEST_F(DeviceTest, vertex_colours_multiply_the_material) {
+    SmallModel scene;
+    const auto node =
+        scene.square(scene.material(plain(1, 0.5F, 1, 1, model::effect_vertex_colour)), at(0, 0, -1), 0.5F, {255, 255, 0, 255});
+    const Pixel seen = pixel(picture(scene.finish(), {node}), 50, 50);
+    EXPECT_NEAR(seen[1], 128, 1);
+    EXPECT_EQ(seen[0], 255);
+    EXPECT_EQ(seen[2], 0);
+}
+
+TEST_F(DeviceTest, more_parts_than_the_arrays_hold_are_all_drawn) {
+    auto small = open(BackendKind::egl, 3);
+    ASSERT_TRUE(small.ok());
+    device_ = std::move(*small);
+    SmallModel scene;
+    const auto material = scene.material(plain(1, 0, 0));
+    std::vector<model::Index> nodes;
+    for (int i = 0; i < 10; ++i) nodes.push_back(scene.square(material, at(-0.9 + 0.2 * i, 0, -1), 0.05F));
+    const auto image = picture(scene.finish(), nodes);
+    for (std::uint32_t i = 0; i < 10; ++i) EXPECT_EQ(pixel(image, 5 + 10 * i, 50), red) << i;
+}
+
+TEST_F(DeviceTest, equal_state_goes_out_in_one_batch) {
+    SmallModel scene;
+    const auto a = scene.material(plain(1, 0, 0));
+    const auto b = scene.material(plain(0, 1, 0));  // a colour is data, not state
+    std::vector<model::Index> nodes;
+    for (int i = 0; i < 10; ++i) nodes.push_back(scene.square(i % 2 == 0 ? a : b, at(-0.9 + 0.2 * i, 0, -1), 0.05F));
+    picture(scene.finish(), nodes);
+    EXPECT_EQ(device_->stats().batches, 1U);
+    EXPECT_EQ(device_->stats().draws, 10U);
+    EXPECT_EQ(device_->stats().items, 10U);
+    EXPECT_EQ(device_->stats().triangles, 20U);
+}
+
+TEST_F(DeviceTest, only_the_scenes_programs_are_compiled) {
+    SmallModel scene;
+    const auto node = scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1));
+    picture(scene.finish(), {node});
+    EXPECT_EQ(device_->program_listing(), std::vector<std::string>{"0: bare"});
+    EXPECT_FALSE(device_->program_text(0).empty());
+    EXPECT_TRUE(device_->program_text(model::effect_texture).empty());
+}
+
+TEST_F(DeviceTest, a_program_that_does_not_compile_is_an_error_with_its_name) {
+    SmallModel scene;
+    scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1));
+    const auto loaded = device_->load(scene.finish(), [](model::EffectMask) {
+        return gl::ProgramSource{"nonsense", "nonsense"};
+    });
+    ASSERT_FALSE(loaded.ok());
+    EXPECT_NE(loaded.error().text().find("bare"), std::string::npos);
+}
+
+TEST_F(DeviceTest, the_context_moves_between_threads) {
+    SmallModel scene;
+    const auto node = scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1), 0.5F);
+    const auto model = scene.finish();
+    ASSERT_TRUE(device_->load(model, effects::assemble_program).ok());
+    device_->release();
+    device_->bind();
+    const auto again = picture(model, {node});
+    EXPECT_EQ(pixel(again, 50, 50), red);
+}
+
+/// Squares of every effect, for comparisons between backends.
+model::Model mixed_scene(std::vector<gl::DrawItem>& items) {
+    SmallModel scene;
+    auto leaf = plain(1, 1, 1, 1, model::effect_texture | model::effect_alpha_mask | model::effect_sun);
+    leaf.texture = scene.texture({30, 200, 60, 255}, {30, 90, 200, 0}, 16);
+    leaf.two_sided = true;
+    auto glass = plain(0.9F, 0.4F, 0.1F, 0.4F, model::effect_blend);
+    const std::array<model::Index, 4> materials{
+        scene.material(leaf), scene.material(glass),
+        scene.material(plain(0.8F, 0.7F, 0.6F, 1, model::effect_sun | model::effect_vertex_colour)),
+        scene.material(plain(0.3F, 0.3F, 0.35F))};
+    for (int i = 0; i < 40; ++i) {
+        const float angle = 0.37F * static_cast<float>(i);
+        const mat3 turn(glm::mat3_cast(glm::angleAxis(angle, glm::normalize(vec3(0.3F, 1, 0.1F)))));
+        const double x = -2.0 + 0.45 * (i % 10), y = -1.5 + 1.0 * (i / 10.0);
+        const auto node =
+            scene.square(materials[static_cast<std::size_t>(i) % 4], at(x, y, -3.0 - 0.1 * i, turn), 0.5F, {200, 220, 255, 255});
+        items.push_back({node, node - 1});
+    }
+    return scene.finish();
+}
+
+TEST(Backends, osmesa_and_egl_agree_within_one_step) {
+    std::vector<gl::DrawItem> items;
+    const auto model = mixed_scene(items);
+    std::vector<gl::PixelImage> images;
+    for (const auto kind : {BackendKind::egl, BackendKind::osmesa}) {
+        auto device = open(kind);
+        if (!device) GTEST_SKIP() << device.error().text();
+        ASSERT_TRUE((*device)->load(model, effects::assemble_program).ok());
+        show(**device, items, straight());
+        auto image = (*device)->read_pixels();
+        ASSERT_TRUE(image.ok());
+        images.push_back(*image);
+    }
+    int worst = 0;
+    for (std::size_t i = 0; i < images[0].rgba.size(); ++i) {
+        worst = std::max(worst, std::abs(static_cast<int>(images[0].rgba[i]) - static_cast<int>(images[1].rgba[i])));
+    }
+    EXPECT_LE(worst, 1);
+}
+
+TEST(Backends, two_devices_live_side_by_side_and_one_after_the_other) {
+    SmallModel scene;
+    const auto node = scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1), 0.5F);
+    const auto model = scene.finish();
+    auto first = open(BackendKind::egl);
+    if (!first) GTEST_SKIP() << first.error().text();
+    {
+        auto second = open(BackendKind::egl);
+        ASSERT_TRUE(second.ok());
+        ASSERT_TRUE((*second)->load(model, effects::assemble_program).ok());
+    }
+    (*first)->bind();
+    ASSERT_TRUE((*first)->load(model, effects::assemble_program).ok());
+    show(**first, {{node, 0}}, straight());
+    EXPECT_EQ(pixel(*(*first)->read_pixels(), 50, 50), red);
+}
+
+TEST(Backends, names_are_parsed_and_unknown_ones_refused) {
+    EXPECT_EQ(gl::parse_backend("osmesa").value(), BackendKind::osmesa);
+    const auto wrong = gl::parse_backend("vulkan");
+    ASSERT_FALSE(wrong.ok());
+    EXPECT_NE(wrong.error().remedy.find("egl"), std::string::npos);
+}
+
+TEST(Backends, a_window_without_a_display_says_what_to_do) {
+    const char* display = std::getenv("DISPLAY");
+    const std::string before = display != nullptr ? display : "";
+    unsetenv("DISPLAY");
+    const auto device = open(BackendKind::window);
+    if (display != nullptr) setenv("DISPLAY", before.c_str(), 1);
+    ASSERT_FALSE(device.ok());
+    EXPECT_NE(device.error().text().find("DISPLAY"), std::string::npos);
+    EXPECT_FALSE(device.error().remedy.empty());
+}
+
+}  // namespace
+}  // namespace surefoot

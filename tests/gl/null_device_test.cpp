@@ -1,0 +1,113 @@
+// The null device: the virtual cost clock gives the same numbers on every run, and exactly those that were predicted.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "render/effects/effects.hpp"
+#include "render/gl/device.hpp"
+#include "render/model/pixels.hpp"
+#include "tests/gl/small_models.hpp"
+
+namespace surefoot {
+namespace {
+
+using test::at;
+using test::plain;
+using test::SmallModel;
+
+struct Scene {
+    model::Model model;
+    std::vector<gl::DrawItem> items;
+};
+
+Scene scene_of_squares(int count) {
+    SmallModel small;
+    const auto material = small.material(plain(1, 0, 0));
+    Scene scene;
+    for (int i = 0; i < count; ++i) {
+        const auto node = small.square(material, at(0.1 * i, 0, -3.0 - i), 1);
+        scene.items.push_back({node, node - 1});
+    }
+    scene.model = small.finish();
+    return scene;
+}
+
+std::unique_ptr<gl::Device> null_device(const Scene& scene, const gl::NullOptions& options) {
+    auto device = gl::open_null_device({}, options);
+    EXPECT_TRUE(device.ok());
+    EXPECT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    return std::move(*device);
+}
+
+double charge_of(gl::Device& device, const Scene& scene, int frames) {
+    for (int i = 0; i < frames; ++i) {
+        Pose pose;
+        pose.position.z = 0.01 * i;
+        device.begin_frame(pose);
+        device.draw(scene.items);
+        device.end_slice();
+        device.end_items();
+        device.finish_frame();
+    }
+    return device.charged_us();
+}
+
+TEST(NullDevice, charges_exactly_what_the_table_predicts) {
+    const auto scene = scene_of_squares(5);
+    const model::CostModel costs = model::default_costs();
+    gl::NullOptions options;
+    options.costs = &costs;
+    options.cost_scale = 2;
+    const auto device = null_device(scene, options);
+    const double charged = charge_of(*device, scene, 1);
+    const auto scale = model::make_view_scale(Pose{}, {1280, 720});
+    double submit = 0;
+    double raster = 0;
+    for (const auto& item : scene.items) {
+        const auto& rep = scene.model.reps[item.rep];
+        const float pixels = model::rasterised_pixels(rep, scene.model.nodes[item.node].box, Pose{}.position, scale);
+        const auto cost = costs.item(static_cast<float>(rep.triangles), pixels, costs.grid_for(rep.effects));
+        submit += static_cast<double>(cost.submit_us);
+        raster += static_cast<double>(cost.raster_us);
+    }
+    const double frame = static_cast<double>(costs.combine.frame_us(static_cast<float>(submit), static_cast<float>(raster)));
+    EXPECT_DOUBLE_EQ(charged, 2 * (frame + static_cast<double>(costs.slice_us)));
+}
+
+TEST(NullDevice, the_same_seed_charges_the_same_noise) {
+    const auto scene = scene_of_squares(5);
+    gl::NullOptions options;
+    options.noise = 0.3;
+    options.seed = 7;
+    const double first = charge_of(*null_device(scene, options), scene, 50);
+    EXPECT_EQ(first, charge_of(*null_device(scene, options), scene, 50));
+    options.seed = 8;
+    EXPECT_NE(first, charge_of(*null_device(scene, options), scene, 50));
+}
+
+TEST(NullDevice, the_charge_grows_within_the_frame) {
+    const auto scene = scene_of_squares(4);
+    const auto device = null_device(scene, {});
+    double before = device->charged_us();
+    device->begin_frame(Pose{});
+    for (const auto& item : scene.items) {
+        device->draw({&item, 1});
+        EXPECT_GT(device->charged_us(), before);
+        before = device->charged_us();
+    }
+    device->end_slice();
+    EXPECT_GT(device->charged_us(), before);
+}
+
+TEST(NullDevice, counts_and_lists_but_has_no_picture) {
+    const auto scene = scene_of_squares(4);
+    const auto device = null_device(scene, {});
+    charge_of(*device, scene, 1);
+    EXPECT_EQ(device->stats().items, 4U);
+    EXPECT_EQ(device->stats().triangles, 8U);
+    EXPECT_EQ(device->program_listing(), std::vector<std::string>{"0: bare"});
+    EXPECT_FALSE(device->read_pixels().ok());
+}
+
+}  // namespace
+}  // namespace surefoot

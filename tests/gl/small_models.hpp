@@ -1,0 +1,139 @@
+// Models of a few triangles for the device's tests.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "render/model/model.hpp"
+
+namespace surefoot::test {
+
+using model::Index;
+
+/// Builds a model of one root cluster whose children are objects with one representation each.
+class SmallModel {
+public:
+    SmallModel() {
+        model_.names = std::string(1, '\0');
+        model_.nodes.emplace_back();
+        model_.placements.emplace_back();
+        model_.sun_direction = glm::normalize(dvec3(0.36, 0.80, 0.48));
+    }
+    Index material(const model::Material& material) {
+        model_.materials.push_back(material);
+        return static_cast<Index>(model_.materials.size() - 1);
+    }
+    /// One colour (RGBA bytes), side x side, with mip levels.
+    Index texture(std::array<std::uint8_t, 4> left, std::array<std::uint8_t, 4> right, std::uint32_t side = 8) {
+        model::Texture t;
+        t.width = t.height = side;
+        t.first_byte = model_.texels.size();
+        for (std::uint32_t s = side; s > 0; s /= 2, ++t.levels) {
+            for (std::uint32_t i = 0; i < s * s; ++i) {
+                const auto& texel = 2 * (i % s) < s ? left : right;
+                for (const std::uint8_t byte : texel) model_.texels.push_back(static_cast<std::byte>(byte));
+            }
+        }
+        model_.textures.push_back(t);
+        return static_cast<Index>(model_.textures.size() - 1);
+    }
+    /// A square of half size `half` in the plane z = 0 facing +z, corner colours white, in its own object.
+    Index square(Index material, const model::Placement& placement, float half = 1,
+                 std::array<std::uint8_t, 4> colour = {255, 255, 255, 255}) {
+        std::vector<model::Vertex> vertices;
+        for (const auto& [x, y] : {std::pair{-1.0F, -1.0F}, {1.0F, -1.0F}, {1.0F, 1.0F}, {-1.0F, 1.0F}}) {
+            model::Vertex v{};
+            v.position[0] = x * half;
+            v.position[1] = y * half;
+            v.normal[2] = 127;
+            for (std::size_t i = 0; i < 4; ++i) v.colour[i] = colour[i];
+            v.uv[0] = 0.5F + 0.5F * x;
+            v.uv[1] = 0.5F - 0.5F * y;
+            vertices.push_back(v);
+        }
+        return object(vertices, {0, 1, 2, 0, 2, 3}, material, placement);
+    }
+    Index triangle(Index material, std::array<vec3, 3> corners, const model::Placement& placement = {}) {
+        std::vector<model::Vertex> vertices;
+        for (const vec3& c : corners) {
+            model::Vertex v{};
+            v.position[0] = c.x;
+            v.position[1] = c.y;
+            v.position[2] = c.z;
+            v.normal[2] = 127;
+            for (auto& byte : v.colour) byte = 255;
+            vertices.push_back(v);
+        }
+        return object(vertices, {0, 1, 2}, material, placement);
+    }
+    /// Returns the node.
+    Index object(const std::vector<model::Vertex>& vertices, const std::vector<std::uint32_t>& indices, Index material,
+                 const model::Placement& placement) {
+        model::Part part;
+        part.material = material;
+        part.first_index = static_cast<std::uint32_t>(model_.indices.size());
+        part.index_count = static_cast<std::uint32_t>(indices.size());
+        part.first_vertex = static_cast<std::uint32_t>(model_.vertices.size());
+        part.vertex_count = static_cast<std::uint32_t>(vertices.size());
+        model_.vertices.insert(model_.vertices.end(), vertices.begin(), vertices.end());
+        model_.indices.insert(model_.indices.end(), indices.begin(), indices.end());
+        model_.parts.push_back(part);
+        model_.placements.push_back(placement);
+        model::Representation rep;
+        rep.placement = static_cast<Index>(model_.placements.size() - 1);
+        rep.first_part = static_cast<Index>(model_.parts.size() - 1);
+        rep.part_count = 1;
+        rep.triangles = part.index_count / 3;
+        rep.effects = model_.materials[material].effects;
+        model::Node node;
+        for (const model::Vertex& v : vertices) {
+            node.box.grow(placement.origin + dvec3(placement.linear * vec3(v.position[0], v.position[1], v.position[2])));
+        }
+        const dvec3 size = node.box.max - node.box.min;
+        rep.area_m2 = {static_cast<float>(size.y * size.z), static_cast<float>(size.x * size.z),
+                       static_cast<float>(size.x * size.y)};
+        model_.reps.push_back(rep);
+        node.parent = 0;
+        node.first_rep = static_cast<Index>(model_.reps.size() - 1);
+        node.rep_count = 1;
+        node.triangles = rep.triangles;
+        node.kind = model::NodeKind::object;
+        model_.nodes.push_back(node);
+        return static_cast<Index>(model_.nodes.size() - 1);
+    }
+    /// The root shows the first object's representation.
+    model::Model finish() {
+        model::Node& root = model_.nodes[0];
+        root.first_child = 1;
+        root.child_count = static_cast<std::uint32_t>(model_.nodes.size() - 1);
+        root.rep_count = 1;
+        for (std::size_t i = 1; i < model_.nodes.size(); ++i) {
+            root.box.grow(model_.nodes[i].box);
+            root.triangles += model_.nodes[i].triangles;
+        }
+        model_.object_count = root.child_count;
+        return model_;
+    }
+    model::Model& model() { return model_; }
+
+private:
+    model::Model model_;
+};
+
+inline model::Material plain(float r, float g, float b, float a = 1, model::EffectMask effects = 0) {
+    model::Material material;
+    material.colour = {r, g, b, a};
+    material.effects = effects;
+    return material;
+}
+
+inline model::Placement at(double x, double y, double z, const mat3& linear = mat3(1.0F)) {
+    model::Placement placement;
+    placement.origin = dvec3(x, y, z);
+    placement.linear = linear;
+    return placement;
+}
+
+}  // namespace surefoot::test
