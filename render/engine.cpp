@@ -123,6 +123,7 @@ const model::CostModel& Engine::costs() const { return impl_->costs; }
 gl::Device& Engine::device() { return *impl_->device; }
 const EngineOptions& Engine::options() const { return impl_->options; }
 std::span<const gl::DrawItem> Engine::drawn() const { return impl_->drawn; }
+std::size_t Engine::drawn_capacity() const { return impl_->drawn.capacity(); }
 
 void Engine::reserve(prepare::PreparedFrame& frame) const { impl_->preparer->reserve(frame); }
 

@@ -82,6 +82,8 @@ public:
 
     /// (node, representation) in drawing order of the last submit(); valid until the next.
     [[nodiscard]] std::span<const gl::DrawItem> drawn() const;
+    /// The most items that drawn() can hold.
+    [[nodiscard]] std::size_t drawn_capacity() const;
 
     /// Draws items outside any budget (pictures for reports): full detail of everything visible, or a remembered set.
     void draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items);

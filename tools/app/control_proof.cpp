@@ -1,0 +1,89 @@
+// The control's side of a walk: steal a block, the proof that the load is real, and the verdict.
+#include "tools/app/control_proof.hpp"
+
+#include <thread>
+
+#include "rt/clock/clock.hpp"
+#include "rt/clock/grid.hpp"
+#include "rt/frame/control.hpp"
+#include "rt/threads/usage.hpp"
+
+namespace surefoot::app {
+
+double total_steal_ms() {
+    auto steal = rt::read_steal();
+    return steal ? steal->total_ms : 0.0;
+}
+
+void BlockSteal::on_record(const rt::FrameRecord& record) {
+    if (at_start_ < 0) {
+        at_start_ = total_steal_ms();
+        block_ = record.block;
+        return;
+    }
+    if (record.block == block_) return;
+    const double now = total_steal_ms();
+    per_block_.resize(block_ + 1, 0.0);
+    per_block_[block_] = now - at_start_;
+    at_start_ = now;
+    block_ = record.block;
+}
+
+std::vector<double> BlockSteal::finish() {
+    per_block_.resize(block_ + 1, 0.0);
+    if (at_start_ >= 0) per_block_[block_] = total_steal_ms() - at_start_;
+    return per_block_;
+}
+
+namespace {
+
+/// Share of slots that a bare loop under SCHED_OTHER misses or skips, burning `burn_ns` a slot on the frame core.
+double missed_under_other(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns) {
+    double share = 0;
+    std::thread([&] {
+        rt::Placement placement;
+        placement.cpus = rt::CpuMask{plan.frame_core};
+        placement.name = "sf-frame";
+        (void)rt::place_thread(0, placement);
+        rt::RealClock clock;
+        const rt::Grid grid{clock.now_ns() + period_ns, period_ns};
+        const std::uint64_t slots = static_cast<std::uint64_t>(10'000'000'000 / period_ns);
+        std::uint64_t bad = 0, slot = 0;
+        while (slot < slots) {
+            clock.sleep_until_ns(grid.due_ns(slot));
+            clock.burn_ns(burn_ns);
+            const rt::NextSlot next = rt::next_slot(grid, rt::LatePolicy::lock, slot, clock.now_ns());
+            bad += (next.missed ? 1U : 0U) + next.skipped;
+            slot = next.slot;
+        }
+        share = static_cast<double>(bad) / static_cast<double>(slot);
+    }).join();
+    return share;
+}
+
+}  // namespace
+
+void judge_control(const PlacingPlan& plan, std::int64_t period_ns, BlockSteal& steal, WalkOutcome& outcome, const Progress& progress) {
+    std::vector<rt::BlockTally> blocks = rt::tally_blocks(outcome.records);
+    const std::vector<double> steal_ms = steal.finish();
+    rt::BurnMeter burn;
+    for (const rt::FrameRecord& record : outcome.records) {
+        if (!record.control) burn.add(record.cpu_ns);
+    }
+    progress.say("control under SCHED_OTHER", 0.5);
+    const double other = missed_under_other(plan, period_ns, burn.mean_ns());
+    const rt::DeadlineVerdict verdict = rt::judge(blocks, other);
+    report::ControlSummary& c = outcome.summary.control;
+    c.ran = true;
+    c.walk_misses = static_cast<std::uint32_t>(verdict.walk_misses);
+    c.control_misses = static_cast<std::uint32_t>(verdict.control_misses);
+    c.pairs = verdict.pairs;
+    c.p_value = verdict.p_value;
+    c.other_miss_share = other;
+    for (rt::BlockTally& block : blocks) {
+        block.steal_ms = block.block < steal_ms.size() ? steal_ms[block.block] : 0.0;
+        c.blocks.push_back({block.walk, block.frames, block.misses, block.own_misses, block.steal_ms});
+    }
+}
+
+}  // namespace surefoot::app

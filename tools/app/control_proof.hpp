@@ -1,0 +1,33 @@
+// The control's side of a walk: steal a block, the proof that the load is real, and the verdict.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "rt/frame/record.hpp"
+#include "tools/app/placing.hpp"
+#include "tools/app/walk.hpp"
+
+namespace surefoot::app {
+
+/// Of all cores since boot, ms; 0 where the kernel does not say.
+double total_steal_ms();
+
+/// Steal a block, read at the blocks' borders by the monitor thread.
+class BlockSteal {
+public:
+    void on_record(const rt::FrameRecord& record);
+    /// By block number; ms.
+    [[nodiscard]] std::vector<double> finish();
+
+private:
+    std::vector<double> per_block_;
+    std::uint32_t block_ = 0;
+    double at_start_ = -1;
+};
+
+/// Fills outcome.summary.control: tallies the blocks, runs 10 s of the bare loop under SCHED_OTHER on the frame core with
+/// the same CPU time (the load counts only if that misses a fifth), and applies the permutation test.
+void judge_control(const PlacingPlan& plan, std::int64_t period_ns, BlockSteal& steal, WalkOutcome& outcome, const Progress& progress);
+
+}  // namespace surefoot::app

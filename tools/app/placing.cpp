@@ -1,0 +1,92 @@
+// Which thread runs where, at which priority.
+#include "tools/app/placing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "render/gl/device.hpp"
+
+namespace surefoot::app {
+
+Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted) {
+    PlacingPlan plan;
+    plan.all = rt::allowed_cpus();
+    const std::vector<int> cpus = plan.all.cpus();
+    plan.frame_core = request.frame_core >= 0 ? request.frame_core : cpus.back();
+    if (!plan.all.has(plan.frame_core)) {
+        return Error{fmt::format("frame core {}", plan.frame_core), "this process may not use it", "choose one of " + plan.all.text()};
+    }
+    for (const int cpu : cpus) {
+        if (cpu != plan.frame_core) plan.raster_cores.push_back(cpu);
+    }
+    plan.raster_cores.push_back(plan.frame_core);
+    plan.fifo = request.fifo && fifo_granted;
+    plan.frame_priority = request.frame_priority;
+    plan.raster_priority = request.raster_priority;
+    plan.worker_priority = request.worker_priority;
+    plan.driver_prefixes = gl::driver_thread_prefixes();
+    return plan;
+}
+
+Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan) {
+    std::vector<pid_t> tids;
+    for (const std::string& prefix : plan.driver_prefixes) {
+        rt::Placement placement;
+        placement.policy = plan.fifo ? rt::Policy::fifo : rt::Policy::other;
+        placement.priority = plan.fifo ? plan.raster_priority : 0;
+        auto placed = rt::spread_by_prefix(prefix, placement, plan.raster_cores);
+        if (!placed) return placed.error();
+        tids.insert(tids.end(), placed->begin(), placed->end());
+    }
+    plan.rasterisers = static_cast<int>(tids.size());
+    return tids;
+}
+
+std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_t>& rasterisers) {
+    std::vector<pid_t> sharing;
+    for (std::size_t i = 0; i < rasterisers.size(); ++i) {
+        if (plan.raster_cores[i % plan.raster_cores.size()] == plan.frame_core) sharing.push_back(rasterisers[i]);
+    }
+    return sharing;
+}
+
+Result<void> place_workers(const PlacingPlan& plan) {
+    rt::Placement placement;
+    placement.policy = plan.fifo ? rt::Policy::fifo : rt::Policy::other;
+    placement.priority = plan.fifo ? plan.worker_priority : 0;
+    placement.cpus = plan.all;
+    auto placed = rt::place_by_prefix("sf-prepare", placement);
+    if (!placed) return placed.error();
+    return {};
+}
+
+rt::Placement frame_placement(const PlacingPlan& plan) {
+    rt::Placement placement;
+    placement.policy = plan.fifo ? rt::Policy::fifo : rt::Policy::other;
+    placement.priority = plan.fifo ? plan.frame_priority : 0;
+    placement.cpus = rt::CpuMask{plan.frame_core};
+    placement.name = "sf-frame";
+    return placement;
+}
+
+std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_clock, const std::string& program_name) {
+    const rt::Policy real_time = plan.fifo ? rt::Policy::fifo : rt::Policy::other;
+    const auto priority = [&](int p) { return plan.fifo ? p : 0; };
+    std::vector<rt::DeclaredThread> table;
+    // The main thread and what the driver makes for itself (its shader and disk caches lower themselves to BATCH).
+    table.push_back({.name = program_name, .whole_name = true, .policy = rt::Policy::other, .cpus = plan.all, .min_count = 1, .max_count = 64});
+    table.push_back({.name = program_name.substr(0, 7) + ":disk", .policy = rt::Policy::batch, .cpus = {}, .min_count = 0, .max_count = 16});
+    table.push_back({.name = program_name.substr(0, 7) + ":sh", .policy = rt::Policy::other, .cpus = {}, .min_count = 0, .max_count = 16});
+    table.push_back({.name = "sf-frame", .policy = real_time, .priority = priority(plan.frame_priority), .cpus = rt::CpuMask{plan.frame_core}});
+    table.push_back({.name = "sf-monitor", .policy = rt::Policy::other, .cpus = plan.all});
+    if (real_clock) {
+        table.push_back({.name = "sf-prepare", .policy = real_time, .priority = priority(plan.worker_priority), .cpus = plan.all, .min_count = 1, .max_count = 256});
+    }
+    for (const std::string& prefix : plan.driver_prefixes) {
+        table.push_back({.name = prefix, .policy = real_time, .priority = priority(plan.raster_priority), .cpus = {}, .min_count = 0, .max_count = 64});
+    }
+    return table;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,39 @@
+// Which thread runs where, at which priority: the declared table of the session, and putting it in force (DESIGN 7).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rt/base/result.hpp"
+#include "rt/threads/census.hpp"
+#include "rt/threads/placement.hpp"
+#include "tools/app/walk.hpp"
+
+namespace surefoot::app {
+
+/// Cores and priorities of one session, worked out from the request and the machine.
+struct PlacingPlan {
+    bool fifo = false;               ///< asked for and granted
+    int frame_core = 0;
+    std::vector<int> raster_cores;   ///< one rasteriser each, the frame core last
+    rt::CpuMask all;
+    int frame_priority = 80, raster_priority = 70, worker_priority = 60;
+    std::vector<std::string> driver_prefixes;  ///< the driver's rasterisers
+    int rasterisers = 0;             ///< how many were found
+};
+
+/// The frame thread gets the last allowed core unless the request names one; rasterisers start on the others.
+Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted);
+
+/// Places the driver's rasterisers one a core; returns their thread ids. Call when the context exists.
+Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan);
+/// The ids among `rasterisers` that share the frame core.
+std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_t>& rasterisers);
+/// Workers (threads named sf-prepare*): below the rasterisers, on every core.
+Result<void> place_workers(const PlacingPlan& plan);
+rt::Placement frame_placement(const PlacingPlan& plan);
+
+/// What the census compares with: every thread that a session may have.
+std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_clock, const std::string& program_name);
+
+}  // namespace surefoot::app

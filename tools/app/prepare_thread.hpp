@@ -1,0 +1,49 @@
+// The coordinator of preparation: on its own grid point a little after each frame's start it takes the newest pose, lets
+// the workers prepare, and publishes. The frame thread never waits for it, nor wakes it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+#include "render/engine.hpp"
+#include "rt/clock/grid.hpp"
+#include "rt/exchange/triple_buffer.hpp"
+
+namespace surefoot::app {
+
+/// What the frame thread publishes at each frame's start.
+struct PoseSample {
+    std::uint64_t frame = 0;
+    std::int64_t time_ns = 0;   ///< when it was due
+    Pose pose, before;          ///< now, and one frame ago
+    double dt_s = 0;
+    bool valid = false;
+};
+
+/// The pictures of the next frames are prepared for: this many periods ahead of the newest pose (DESIGN 1.4: 3 at most).
+constexpr double horizon_periods = 3.0;
+
+/// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.
+void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out);
+
+class PrepareThread {
+public:
+    /// Start from a neutral thread; the thread is named sf-prepare. The buffers must outlive it.
+    PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses, rt::TripleBuffer<prepare::PreparedFrame>& prepared);
+    ~PrepareThread();
+    PrepareThread(const PrepareThread&) = delete;
+    PrepareThread& operator=(const PrepareThread&) = delete;
+    void stop();
+
+private:
+    void run();
+    Engine& engine_;
+    rt::Grid grid_;
+    rt::TripleBuffer<PoseSample>& poses_;
+    rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
+    std::atomic<bool> stopping_{false};
+    std::thread thread_;
+};
+
+}  // namespace surefoot::app

@@ -1,0 +1,285 @@
+// The session: opens everything from a neutral thread, places the threads, runs the frame loop, sums up and writes.
+#include "tools/app/walk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "render/capture/capture.hpp"
+#include "render/engine.hpp"
+#include "render/measure/calibrate.hpp"
+#include "render/model/walk_file.hpp"
+#include "rt/clock/clock.hpp"
+#include "rt/frame/control.hpp"
+#include "rt/frame/loop.hpp"
+#include "rt/monitor/recorder.hpp"
+#include "rt/threads/capability.hpp"
+#include "rt/threads/guard.hpp"
+#include "rt/threads/memory.hpp"
+#include "tools/app/control_proof.hpp"
+#include "tools/app/path_source.hpp"
+#include "tools/app/placing.hpp"
+#include "tools/app/prepare_thread.hpp"
+#include "tools/app/state.hpp"
+#include "tools/app/walk_results.hpp"
+#include "tools/app/walk_stages.hpp"
+
+namespace surefoot::app {
+
+namespace {
+
+constexpr double budget_share = 0.85;  // of the period, where none is asked for
+constexpr double limit_share = 0.92;   // of the period: when the in-frame check wants the frame done
+
+/// Everything that one walk holds, in the order in which it must be made and (backwards) taken down.
+struct Session {
+    const WalkRequest& request;
+    WalkFacts facts;
+    PlacingPlan plan;
+    std::unique_ptr<Engine> engine;
+    ChosenPath path;
+    rt::Grid grid;
+    rt::LatePolicy late = rt::LatePolicy::lock;
+    bool virtual_clock = false;
+    std::uint64_t frames = 0;
+    std::vector<pid_t> rasterisers;
+    rt::TripleBuffer<PoseSample> poses;
+    rt::TripleBuffer<prepare::PreparedFrame> prepared;
+    KeptFrame kept;
+    rt::ControlSchedule control;
+
+    explicit Session(const WalkRequest& r) : request(r) {}
+};
+
+Result<void> read_request(Session& s) {
+    const WalkRequest& r = s.request;
+    auto late = rt::parse_late_policy(r.late);
+    if (!late) return late.error();
+    s.late = *late;
+    auto period = rt::period_of_rate_ns(r.rate_hz);
+    if (!period) return period.error();
+    s.grid.period_ns = *period;
+    if (r.clock != "real" && r.clock != "virtual") return Error{"--clock " + r.clock, "there is no such clock", "real or virtual"};
+    s.virtual_clock = r.clock == "virtual";
+    if (r.control && s.virtual_clock) return Error{"--control", "judges real time", "leave out --clock virtual"};
+    return {};
+}
+
+/// Real time, or what it lacks; with --strict the lack is an error.
+Result<void> claim_real_time(Session& s) {
+    const WalkRequest& r = s.request;
+    bool granted = false;
+    if (!s.virtual_clock) {
+        rt::raise_limits(r.frame_priority);
+        const rt::Capabilities c = rt::probe_capabilities(r.frame_priority);
+        granted = c.fifo_priority >= r.frame_priority;
+        if (r.fifo) {
+            for (const rt::Lack& lack : c.lacking) s.facts.degraded.push_back({lack.what, lack.remedy});
+        } else {
+            s.facts.degraded.push_back({"real-time scheduling is switched off", "leave out --no-fifo"});
+        }
+        if (!rt::guard_active()) s.facts.degraded.push_back({"a sanitizer build: allocations are not guarded", "use the release build"});
+    }
+    auto plan = plan_placing(r, granted);
+    if (!plan) return plan.error();
+    s.plan = *plan;
+    s.facts.isolated = !s.virtual_clock && rt::probe_capabilities(r.frame_priority).isolated.has(s.plan.frame_core);
+    if (s.virtual_clock) s.plan.fifo = false;
+    if (r.strict && !s.virtual_clock && !s.plan.fifo) {
+        const report::Degraded why = s.facts.degraded.empty() ? report::Degraded{"no real time", ""} : s.facts.degraded.front();
+        return Error{"--strict", why.what, why.remedy};
+    }
+    if (!s.virtual_clock && rt::guard_active()) {
+        auto locked = rt::prepare_memory({});
+        s.facts.locked = locked.ok();
+        if (!locked && r.strict) return locked.error();
+        if (!locked) s.facts.degraded.push_back({locked.error().what, locked.error().remedy});
+    }
+    return {};
+}
+
+Result<void> open_session(Session& s, const Progress& progress) {
+    const WalkRequest& r = s.request;
+    progress.say("open", 0.1);
+    auto model = model::read_walk(r.model_file);
+    if (!model) return model.error();
+    auto path = choose_path(r.path_file, r.model_file, *model, r.lift_m);
+    if (!path) return path.error();
+    s.path = std::move(*path);
+
+    EngineOptions options;
+    auto kind = gl::parse_backend(r.backend);
+    if (!kind) return kind.error();
+    options.device.kind = *kind;
+    options.device.viewport = {r.width, r.height};
+    options.device.rasterisers = r.rasterisers;
+    options.null.cost_scale = r.cost_scale;
+    options.null.noise = r.cost_noise;
+    options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, s.plan.all.count() - 1);
+    options.selector = r.selector;
+    options.slice_us = r.slice_us;
+    options.hysteresis = static_cast<float>(r.hysteresis);
+    options.in_frame_check = r.in_frame_check;
+    std::string cost_note;
+    auto costs = load_costs(state_directory(r.state_dir), "", cost_note);
+    if (!costs) return costs.error();
+    if (!cost_note.empty()) s.facts.degraded.push_back({cost_note, "run `surefoot calibrate`"});
+    progress.say("open", 0.5);
+    auto engine = Engine::open(std::move(*model), *costs, options);
+    if (!engine) return engine.error();
+    s.engine = std::move(*engine);
+    s.facts.renderer = s.engine->device().renderer();
+    s.facts.machine = measure::machine_identity(s.facts.renderer, r.rasterisers);
+    if (costs->calibrated && *kind != gl::BackendKind::null && costs->machine != s.facts.machine) {
+        s.facts.degraded.push_back({"the cost table was measured on \"" + costs->machine + "\", this is \"" + s.facts.machine + "\"",
+                                    "run `surefoot calibrate` here"});
+    }
+    for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
+    if (r.capture_file.empty()) return {};
+    s.engine->reserve(s.kept.prepared);
+    select::reserve(s.kept.cut, s.engine->options().prepare.max_candidates);
+    return {};
+}
+
+/// A few frames at the start of the path, so that programs, buffers and caches are warm and memory is touched.
+void warm_up(Session& s) {
+    Engine& engine = *s.engine;
+    engine.device().bind();
+    SubmitLimits limits;
+    limits.limit_us = 1e9;
+    const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
+    for (int i = 0; i < 12; ++i) {
+        const Pose pose = pose_at(s.path.path, i * s.path.path.duration_s() / 12.0);
+        prepare::PreparedFrame& set = s.prepared.slot(0);
+        engine.prepare({pose, 0.1, 0.05}, 0, 0, 0, set);
+        engine.select(set, budget_share * period_us, 1.0, 0);
+        engine.submit(pose, limits);
+        engine.select_coarse();
+        engine.submit(pose, limits);
+    }
+    engine.device().release();
+    // Ready for the first frame: a complete set for where the path begins.
+    engine.prepare({pose_at(s.path.path, 0), 0.5, 0.2}, 0, 0, 0, s.prepared.back());
+    s.prepared.publish();
+}
+
+std::uint64_t frames_wanted(const Session& s) {
+    const double period_s = static_cast<double>(s.grid.period_ns) * 1e-9;
+    if (s.request.frames > 0) return s.request.frames;
+    const double seconds = s.request.seconds > 0 ? s.request.seconds : std::max(s.path.path.duration_s(), 1.0);
+    return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(seconds / period_s)));
+}
+
+WalkStagesOptions stages_options(const Session& s) {
+    const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
+    WalkStagesOptions o;
+    o.period_ns = s.grid.period_ns;
+    o.budget_us = s.request.budget_ms > 0 ? s.request.budget_ms * 1e3 : budget_share * period_us;
+    o.limit_us = limit_share * period_us;
+    o.target_error_rad = s.request.accuracy > 0 ? 1.0 / s.request.accuracy : 0;
+    o.correct_costs = s.request.correct_costs;
+    o.virtual_clock = s.virtual_clock;
+    o.cost_scale = s.request.cost_scale;
+    if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
+    return o;
+}
+
+/// The frame loop on its own thread; the caller's thread waits, and takes the census meanwhile.
+void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring, const Progress& progress) {
+    rt::RealClock real;
+    rt::VirtualClock virtual_time;
+    rt::Clock& clock = s.virtual_clock ? static_cast<rt::Clock&>(virtual_time) : real;
+    rt::FrameLoopOptions options;
+    options.period_ns = s.grid.period_ns;
+    options.frames = s.frames;
+    options.late = s.late;
+    options.control = s.request.control ? &s.control : nullptr;
+    options.stop = progress.stop;
+    options.continued = s.virtual_clock ? nullptr : rt::count_continues();
+    const std::vector<pid_t> sharing = on_frame_core(s.plan, s.rasterisers);
+    options.rasterisers = s.rasterisers;
+    options.rasterisers_on_core = sharing;
+    options.limits.fifo = s.plan.fifo;
+    options.wait_for_ring = s.virtual_clock;
+    // Far enough ahead that all threads are in place before the first slot.
+    options.t0_ns = s.virtual_clock ? s.grid.period_ns : real.now_ns() + 300'000'000;
+    s.grid.t0_ns = options.t0_ns;
+
+    std::unique_ptr<PrepareThread> preparing;
+    if (!s.virtual_clock) preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared);
+    std::atomic<bool> done{false};
+    std::thread frame_thread([&] {
+        auto placed = s.virtual_clock ? rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-frame"}) : rt::place_thread(0, frame_placement(s.plan));
+        s.facts.pinned = placed.ok() && !s.virtual_clock;
+        rt::prefault_stack();
+        WalkStages stages(*s.engine, s.path.path, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
+        s.engine->device().bind();
+        rt::run_frame_loop(options, clock, stages, ring);
+        s.engine->device().release();
+        done.store(true);
+    });
+    if (!s.virtual_clock) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        if (auto placed = place_workers(s.plan); !placed) s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
+    }
+    bool counted = s.virtual_clock;
+    while (!done.load()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(s.virtual_clock ? 5 : 100));
+        const double ran = s.virtual_clock ? 0.5 : static_cast<double>(real.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
+        progress.say("walk", std::clamp(ran / static_cast<double>(s.frames), 0.0, 1.0));
+        if (!counted && ran > 30) {
+            s.facts.census_problems = rt::census_now(thread_table(s.plan, true, "surefoot"));
+            counted = true;
+        }
+    }
+    frame_thread.join();
+    if (preparing) preparing->stop();
+}
+
+}  // namespace
+
+Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress) {
+    Session s(request);
+    if (auto ok = read_request(s); !ok) return ok.error();
+    if (auto ok = claim_real_time(s); !ok) return ok.error();
+    if (auto ok = open_session(s, progress); !ok) return ok.error();
+    if (!s.virtual_clock) {
+        auto placed = place_rasterisers(s.plan);
+        if (!placed) return placed.error();
+        s.rasterisers = *placed;
+    }
+    warm_up(s);
+    s.control = rt::control_schedule(s.grid.period_ns, request.control_block_s, request.control_pairs);
+    s.frames = request.control ? s.control.slots() : frames_wanted(s);
+
+    const bool pictures = !request.report_dir.empty();
+    const std::uint64_t every = request.snap_every > 0 ? request.snap_every : pictures ? std::max<std::uint64_t>(1, s.frames / 6) : 0;
+    const std::size_t most = request.snap_every > 0 ? s.frames / every + 1 : pictures ? 7 : 0;
+    ShotStore shots(every, most, s.engine->drawn_capacity());
+    rt::SpscRing<rt::FrameRecord> ring(4096);
+    BlockSteal steal;
+    rt::RecorderOptions recorder_options;
+    recorder_options.reserve_records = s.frames + 64;
+    recorder_options.on_record = [&](const rt::FrameRecord& record) { steal.on_record(record); };
+    rt::Recorder recorder(ring, recorder_options);
+
+    const double steal_before = total_steal_ms();
+    run_loop(s, shots, ring, progress);
+    recorder.stop();
+    s.facts.steal_ms = total_steal_ms() - steal_before;
+    s.facts.dropped_records = ring.dropped();
+    WalkOutcome outcome;
+    outcome.records = recorder.take_records();
+    fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
+    if (request.control) judge_control(s.plan, s.grid.period_ns, steal, outcome, progress);
+    s.engine->device().bind();
+    auto written = write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
+    s.engine->device().release();
+    if (!s.virtual_clock && rt::guard_active()) rt::release_memory();
+    if (!written) return written.error();
+    return outcome;
+}
+
+}  // namespace surefoot::app

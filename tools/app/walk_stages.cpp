@@ -1,0 +1,132 @@
+// The walk's frame: sample the path, take the newest prepared set, select, submit, account.
+#include "tools/app/walk_stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt/threads/guard.hpp"
+
+namespace surefoot::app {
+
+namespace {
+constexpr std::uint64_t oldest_prepared = 3;  // frames; older sets are not used (DESIGN 1.4)
+
+std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
+}  // namespace
+
+Pose pose_at(const Path& path, double time_s) {
+    const double duration_s = path.duration_s();
+    if (duration_s <= 0) return sample_path(path, 0);
+    const double turn = std::fmod(time_s, 2.0 * duration_s);
+    return sample_path(path, turn <= duration_s ? turn : 2.0 * duration_s - turn);
+}
+
+WalkStages::WalkStages(Engine& engine, const Path& path, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
+                       rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
+                       const WalkStagesOptions& options)
+    : engine_(engine), path_(path), clock_(clock), poses_(poses), prepared_(prepared), shots_(shots), kept_(kept), options_(options) {}
+
+void WalkStages::sample(rt::FrameRecord& record) {
+    const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
+    const double time_s = static_cast<double>(record.slot) * period_s;
+    const Pose pose = pose_at(path_, time_s);
+    if (options_.virtual_clock) {
+        if (!now_.valid) {
+            now_.pose = now_.before = pose;
+            now_.dt_s = period_s;
+        }
+        prepare_inline();  // from what was known one frame ago, as the workers would
+    }
+    now_.before = now_.valid ? now_.pose : pose;
+    now_.dt_s = period_s * (1.0 + record.skipped_before);
+    now_.pose = pose;
+    now_.frame = record.frame;
+    now_.time_ns = record.due_ns;
+    now_.valid = true;
+    poses_.back() = now_;
+    poses_.publish();
+    record.eye = {pose.position.x, pose.position.y, pose.position.z};
+    record.orientation = {pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w};
+}
+
+void WalkStages::prepare_inline() {
+    const rt::DriverScope not_the_frame_threads_own;  // the workers' library may allocate
+    prepare_after(engine_, now_, static_cast<double>(options_.period_ns) * 1e-9, prepared_.back());
+    prepared_.publish();
+}
+
+void WalkStages::select(rt::FrameRecord& record) {
+    prepared_.refresh();
+    const prepare::PreparedFrame& set = prepared_.front();
+    const std::uint64_t age = options_.virtual_clock ? 1 : record.frame - std::min(set.frame, record.frame);
+    record.prepared_age = static_cast<std::uint32_t>(age);
+    record.correction = static_cast<float>(options_.correct_costs ? controller_.factor() : 1.0);
+    record.budget_us = static_cast<float>(options_.budget_us);
+    coarse_ = set.candidates.empty() || age > oldest_prepared || !covers(set.region, now_.pose);
+    if (coarse_) {
+        engine_.select_coarse();
+        return;
+    }
+    const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
+    const double budget_us = std::max(0.0, options_.budget_us - spent_us);
+    const select::Cut& cut = engine_.select(set, budget_us, record.correction, options_.target_error_rad);
+    record.floor_us = cut.floor_us;
+    record.floor_binds = cut.floor_binds;
+    record.switches = cut.switches;
+    record.cut_hash = cut.hash;
+    record.visits = set.visits;
+    record.candidates = static_cast<std::uint32_t>(set.candidates.size());
+    record.prepare_cpu_us = static_cast<float>(set.cpu_us);
+    if (record.frame == options_.capture_frame) keep(cut, budget_us);
+}
+
+void WalkStages::keep(const select::Cut& cut, double budget_us) {
+    const prepare::PreparedFrame& set = prepared_.front();
+    kept_.prepared = set;  // into vectors that were reserved: no allocation
+    kept_.cut = cut;
+    kept_.budget_us = budget_us;
+    kept_.correction = options_.correct_costs ? controller_.factor() : 1.0;
+    kept_.target_error_rad = options_.target_error_rad;
+    kept_.kept = true;
+}
+
+void WalkStages::submit(rt::FrameRecord& record) {
+    SubmitLimits limits;
+    const std::int64_t begun_ns = clock_.now_ns();
+    limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
+    limits.limit_us = options_.limit_us;
+    if (!options_.virtual_clock) {
+        limits.now_ns = clock_now;
+        limits.now_context = &clock_;
+    }
+    report_ = engine_.submit(now_.pose, limits);
+    if (options_.virtual_clock) {
+        const double charged_us = report_.finished_us > 0 ? report_.finished_us : report_.predicted_us * options_.cost_scale;
+        static_cast<rt::VirtualClock&>(clock_).advance(static_cast<std::int64_t>(charged_us * 1e3));
+        report_.finished_us = charged_us;
+        report_.submitted_us = std::min(report_.submitted_us, charged_us);
+    }
+    record.submitted_ns = begun_ns + static_cast<std::int64_t>(report_.submitted_us * 1e3);
+    record.rastered_ns = begun_ns + static_cast<std::int64_t>(report_.finished_us * 1e3);
+}
+
+void WalkStages::finish(rt::FrameRecord& /*record*/) {}  // submit() has waited for the last fence and presented
+
+void WalkStages::account(rt::FrameRecord& record) {
+    record.slices = report_.slices;
+    record.downgraded_slices = report_.downgraded_slices;
+    record.items = report_.items;
+    record.draws = report_.draws;
+    record.triangles = report_.triangles;
+    record.accuracy = report_.worst_error_rad > 0 ? 1.0F / report_.worst_error_rad : 1e6F;
+    record.benefit = static_cast<float>(report_.benefit_mean);
+    record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);
+    const double actual_us = report_.finished_us - static_cast<double>(record.stolen_ns) * 1e-3;
+    record.actual_us = static_cast<float>(actual_us);
+    if (!coarse_) controller_.update(report_.predicted_us, actual_us);
+    if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
+    const double time_s = static_cast<double>(record.slot) * static_cast<double>(options_.period_ns) * 1e-9;
+    shots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn());
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,70 @@
+// The walk's frame: sample the path, take the newest prepared set, select, submit, account. Runs on the frame thread.
+#pragma once
+
+#include <cstdint>
+
+#include "render/engine.hpp"
+#include "rt/base/path.hpp"
+#include "rt/clock/clock.hpp"
+#include "rt/exchange/triple_buffer.hpp"
+#include "rt/frame/controller.hpp"
+#include "rt/frame/loop.hpp"
+#include "tools/app/prepare_thread.hpp"
+#include "tools/app/shots.hpp"
+
+namespace surefoot::app {
+
+struct WalkStagesOptions {
+    std::int64_t period_ns = 0;
+    double budget_us = 0;           ///< of the whole frame, from its due time
+    double limit_us = 0;            ///< of the in-frame check, from the due time
+    double target_error_rad = 0;
+    bool correct_costs = true;
+    bool virtual_clock = false;     ///< prepare inline, charge the device's virtual time
+    double cost_scale = 1;          ///< virtual clock with a device that charges nothing
+    std::uint64_t capture_frame = ~0ULL;
+};
+
+/// One frame kept for `surefoot replay`, copied into memory that was sized before.
+struct KeptFrame {
+    bool kept = false;
+    prepare::PreparedFrame prepared;
+    select::Cut cut;
+    double budget_us = 0, correction = 1, target_error_rad = 0;
+};
+
+/// The pose at a slot: the path forth and back again for as long as the walk lasts (a jump back would be a teleport).
+Pose pose_at(const Path& path, double time_s);
+
+class WalkStages final : public rt::FrameStages {
+public:
+    /// `clock` is the loop's; virtual_clock: a rt::VirtualClock. Everything must outlive this.
+    WalkStages(Engine& engine, const Path& path, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
+               rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept, const WalkStagesOptions& options);
+
+    void sample(rt::FrameRecord& record) override;
+    void select(rt::FrameRecord& record) override;
+    void submit(rt::FrameRecord& record) override;
+    void finish(rt::FrameRecord& record) override;
+    void account(rt::FrameRecord& record) override;
+
+private:
+    void prepare_inline();
+    void keep(const select::Cut& cut, double budget_us);
+
+    Engine& engine_;
+    const Path& path_;
+    rt::Clock& clock_;
+    rt::TripleBuffer<PoseSample>& poses_;
+    rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
+    ShotStore& shots_;
+    KeptFrame& kept_;
+    WalkStagesOptions options_;
+    rt::CostController controller_;
+    PoseSample now_;
+    SubmitReport report_;
+    double predicted_us_ = 0;
+    bool coarse_ = false;
+};
+
+}  // namespace surefoot::app

@@ -1,0 +1,137 @@
+// surefoot walk: a real-time walk through a model, with its figures.
+#include <fmt/format.h>
+
+#include "config/settings.hpp"
+#include "tools/app/walk.hpp"
+#include "tools/cli/command.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+
+/// What the command line says; settings come through the schema, so that a file and a flag obey the same limits.
+struct WalkArguments {
+    app::WalkRequest request;
+    std::string config_file, profile, size;
+    std::vector<std::pair<std::string, std::string>> values;  ///< schema key and text, in the order given
+    bool no_fifo = false, no_check = false, no_correction = false, json = false;
+};
+
+Result<app::WalkRequest> to_request(WalkArguments& a) {
+    config::Configuration c;
+    if (!a.config_file.empty()) {
+        if (auto ok = config::load_file(c, a.config_file, a.profile); !ok) return ok.error();
+    }
+    if (!a.size.empty()) {
+        const std::size_t x = a.size.find('x');
+        if (x == std::string::npos) return Error{"--size " + a.size, "is no size", "write WIDTHxHEIGHT, e.g. 1280x720"};
+        a.values.emplace_back("width", a.size.substr(0, x));
+        a.values.emplace_back("height", a.size.substr(x + 1));
+    }
+    if (a.no_fifo) a.values.emplace_back("fifo", "false");
+    if (a.no_check) a.values.emplace_back("in_frame_check", "false");
+    if (a.request.strict) a.values.emplace_back("strict", "true");
+    if (a.request.control) a.values.emplace_back("control", "true");
+    for (const auto& [key, text] : a.values) {
+        if (auto ok = config::set_value(c, key, text); !ok) return ok.error();
+    }
+    if (auto ok = config::check(c); !ok) return ok.error();
+    const config::Settings& s = c.values;
+    app::WalkRequest r = a.request;
+    r.rate_hz = s.rate_hz;
+    r.width = static_cast<std::uint32_t>(s.width);
+    r.height = static_cast<std::uint32_t>(s.height);
+    r.budget_ms = s.budget_ms;
+    r.accuracy = s.accuracy;
+    r.cost_scale = s.cost_scale;
+    r.selector = s.selector;
+    r.late = s.late;
+    r.backend = s.backend;
+    r.clock = s.clock;
+    r.workers = static_cast<int>(s.workers);
+    r.rasterisers = static_cast<int>(s.rasterisers);
+    r.fifo = s.fifo;
+    r.strict = s.strict;
+    r.control = s.control;
+    r.in_frame_check = s.in_frame_check;
+    r.frame_core = static_cast<int>(s.frame_core);
+    r.frame_priority = static_cast<int>(s.frame_priority);
+    r.raster_priority = static_cast<int>(s.raster_priority);
+    r.worker_priority = static_cast<int>(s.worker_priority);
+    r.slice_us = s.slice_us;
+    r.hysteresis = s.hysteresis;
+    r.correct_costs = !a.no_correction;
+    if (!r.snap_dir.empty() && r.snap_every == 0) r.snap_every = 30;
+    return r;
+}
+
+int run_walk_command(WalkArguments& a, const Context& context) {
+    auto request = to_request(a);
+    if (!request) return fail(request.error()), exit_usage;
+    auto outcome = app::run_walk(*request, terminal_progress(context));
+    end_progress(context);
+    if (!outcome) return fail(outcome.error());
+    for (const report::Degraded& d : outcome->summary.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
+    for (const std::string& problem : outcome->summary.census_problems) note("thread census: " + problem);
+    if (a.json) {
+        fmt::print("{}\n", report::to_json(outcome->summary));
+    } else {
+        fmt::print("{}", report::to_table(outcome->summary, context.colour));
+        if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
+    }
+    return exit_success;
+}
+
+/// An option that goes through the settings' schema under `key`.
+void add_setting(CLI::App* c, const std::shared_ptr<WalkArguments>& a, const std::string& flag, const std::string& key) {
+    const config::Entry* entry = config::find_entry(key);
+    std::string help(entry->help);
+    if (!entry->unit.empty()) help += " (" + std::string(entry->unit) + ")";
+    help += " [" + config::value_text({}, *entry) + "]";
+    c->add_option_function<std::string>(flag, [a, key](const std::string& text) { a->values.emplace_back(key, text); }, help);
+}
+
+}  // namespace
+
+void add_walk(CLI::App& app, Context& context) {
+    auto a = std::make_shared<WalkArguments>();
+    app::WalkRequest& r = a->request;
+    CLI::App* c = add_command(app, "walk", "Walk through a model in real time, and show the figures",
+                              "surefoot walk town.walk --seconds 30 --report report\n"
+                              "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
+                              "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
+                              a->json);
+    c->add_option("model", r.model_file, "The .walk model")->required();
+    c->add_option("--path", r.path_file, "Poses over time, CSV (else MODEL.path.csv, else a tour)");
+    c->add_option("--lift", r.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")->capture_default_str();
+    c->add_option("--frames", r.frames, "Frames to walk (else --seconds, else the path once)");
+    c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")->check(CLI::Range(0.0, 1e7));
+    c->add_option("--size", a->size, "Picture size [1280x720]");
+    for (const auto& [flag, key] : {std::pair{"--rate", "rate_hz"}, {"--budget", "budget_ms"}, {"--accuracy", "accuracy"},
+                                    {"--cost-scale", "cost_scale"}, {"--selector", "selector"}, {"--late", "late"},
+                                    {"--backend", "backend"}, {"--clock", "clock"}, {"--workers", "workers"},
+                                    {"--rasterisers", "rasterisers"}, {"--frame-core", "frame_core"}, {"--slice", "slice_us"},
+                                    {"--hysteresis", "hysteresis"}}) {
+        add_setting(c, a, flag, key);
+    }
+    c->add_option("--cost-noise", r.cost_noise, "Virtual clock: relative noise on costs")->check(CLI::Range(0.0, 10.0));
+    c->add_flag("--no-fifo", a->no_fifo, "Ordinary scheduling (the figures are marked)");
+    c->add_flag("--strict", r.strict, "Do not start where real time is refused");
+    c->add_flag("--no-check", a->no_check, "Without the in-frame check, to see what it is worth");
+    c->add_flag("--no-correction", a->no_correction, "Predictions are not corrected online");
+    c->add_flag("--control", r.control, "Alternate blocks of the walk and of a bare loop, and judge by the deadline rule");
+    c->add_option("--control-pairs", r.control_pairs, "Pairs of blocks; the rule wants 90")->check(CLI::Range(1U, 100000U))->capture_default_str();
+    c->add_option("--config", a->config_file, "Settings in TOML; the command line wins");
+    c->add_option("--profile", a->profile, "A [profile.NAME] of the settings file");
+    c->add_option("--state", r.state_dir, "Folder with the calibrated cost table");
+    c->add_option("--ledger", r.ledger_file, "CSV, a row a frame");
+    c->add_option("--trace", r.trace_file, "A trace that ui.perfetto.dev opens");
+    c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html");
+    c->add_option("--snap", r.snap_dir, "Pictures of what the walk drew: DIR/00000.png, ...");
+    c->add_option("--every", r.snap_every, "A picture every N frames [30]");
+    c->add_option("--capture", r.capture_file, "One frame's prepared arrays and cut, for `surefoot replay`");
+    c->add_option("--capture-frame", r.capture_frame, "Which frame to capture")->capture_default_str();
+    c->callback([&context, a] { context.run = [a, &context] { return run_walk_command(*a, context); }; });
+}
+
+}  // namespace surefoot::cli
