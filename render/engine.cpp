@@ -79,7 +79,8 @@ struct Engine::Impl {
     double now_us(const SubmitLimits& limits) const {
         return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
     }
-    void draw_slice(std::span<const select::CutItem> items, SubmitReport& report);
+    model::Frustum frustum;  ///< of the pose that is drawn: narrower than the region that was prepared
+    model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report);
     void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report);
     void submit_coarse();
 };
@@ -147,7 +148,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.use_coarse = false;
     e.prepared = &prepared;
     e.correction = correction;
-    const select::SelectInput input{&e.model, &prepared, &e.costs, budget_us, correction, target_error_rad};
+    const select::SelectInput input{&e.model, &prepared, &e.costs, budget_us, correction, target_error_rad, e.options.slice_us};
     e.selector->run(input, e.state, e.cut);
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
     return e.cut;
@@ -155,12 +156,20 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
 
 void Engine::select_coarse() { impl_->use_coarse = true; }
 
-void Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitReport& report) {
+/// Draws what of a slice the pose really sees; returns what that was predicted to cost.
+model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitReport& report) {
     const std::size_t first = drawn.size();
+    model::ItemCost cost;
     for (const select::CutItem& item : items) {
         if (drawn.size() == drawn.capacity()) break;  // cannot happen: capacity is twice the candidates
+        if (!model::visible(frustum, model.nodes[item.node].box)) {
+            ++report.culled;
+            continue;
+        }
         drawn.push_back({item.node, item.rep});
         const prepare::Choice& choice = prepared->choices[item.choice];
+        cost.submit_us += choice.cost.submit_us;
+        cost.raster_us += choice.cost.raster_us;
         report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
         report.benefit_mean += 1.0 - choice.benefit;
         report.triangles += model.reps[item.rep].triangles;
@@ -168,6 +177,7 @@ void Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitRepo
     device->draw(std::span<const gl::DrawItem>(drawn).subspan(first));
     device->end_slice();
     device->wait_slices(1);
+    return cost;
 }
 
 void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) {
@@ -186,7 +196,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         const float predicted_so_far = combine.frame_us(so_far.submit_us, so_far.raster_us);
         const auto with = [&](const model::ItemCost& more) {
             return static_cast<double>(combine.frame_us(so_far.submit_us + more.submit_us, so_far.raster_us + more.raster_us) -
-                                       predicted_so_far) + 0.0;
+                                       predicted_so_far);
         };
         if (full && options.in_frame_check) {
             select::CheckInput check;
@@ -201,9 +211,8 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         rest.raster_us -= slice.cost.raster_us;
         rest_stand_in.submit_us -= slice.stand_in_cost.submit_us;
         rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
-        const model::ItemCost& cost = full ? slice.cost : slice.stand_in_cost;
-        draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
-                        : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count), report);
+        const model::ItemCost cost = draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
+                                                     : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count), report);
         so_far.submit_us += cost.submit_us + costs.slice_us;
         so_far.raster_us += cost.raster_us;
         in_flight_us = cost.raster_us;
@@ -224,6 +233,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     SubmitReport report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();
+    e.frustum = model::make_frustum(pose, e.options.device.viewport, 2 * e.model.nodes[0].box.diagonal() + 1e3);
     e.device->begin_frame(pose);
     if (e.use_coarse) {
         e.submit_coarse();

@@ -45,6 +45,7 @@ struct SubmitReport {
     double finished_us = 0;         ///< last fence passed
     double predicted_us = 0;        ///< of what was drawn, uncorrected, median (not the upper quantile)
     std::uint32_t slices = 0, downgraded_slices = 0, items = 0, draws = 0;
+    std::uint32_t culled = 0;       ///< of the region's cut, outside this pose's view
     std::uint64_t triangles = 0;
     float worst_error_rad = 0;      ///< of what was drawn, stand-ins included
     double benefit_mean = 0;

@@ -45,7 +45,7 @@ Result<void> write_capture(const WalkRequest& request, const KeptFrame& kept, co
         return Error{request.capture_file, fmt::format("frame {} was not selected in this walk", request.capture_frame),
                      "choose a frame within the walk with --capture-frame"};
     }
-    const select::SelectInput input{&engine.model(), &kept.prepared, &engine.costs(), kept.budget_us, kept.correction, kept.target_error_rad};
+    const select::SelectInput input{&engine.model(), &kept.prepared, &engine.costs(), kept.budget_us, kept.correction, kept.target_error_rad, request.slice_us};
     return capture::write_capture(request.capture_file, request.model_file, request.selector, input, kept.cut);
 }
 

@@ -62,7 +62,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.prepared_age = static_cast<std::uint32_t>(age);
     record.correction = static_cast<float>(options_.correct_costs ? controller_.factor() : 1.0);
     record.budget_us = static_cast<float>(options_.budget_us);
-    coarse_ = set.candidates.empty() || age > oldest_prepared || !covers(set.region, now_.pose);
+    coarse_ = age > oldest_prepared || !covers(set.region, now_.pose);
     if (coarse_) {
         engine_.select_coarse();
         return;
