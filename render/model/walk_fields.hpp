@@ -1,0 +1,128 @@
+// The fields of a .walk file's records, listed once for writing and reading; little-endian, without padding.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "render/model/model.hpp"
+#include "rt/base/reader.hpp"
+
+namespace surefoot::model::walk {
+
+/// Appends values to a byte buffer.
+struct PutArchive {
+    std::vector<std::byte> bytes;
+
+    template <class T>
+    void operator()(const T& value) {
+        static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+        const auto at = bytes.size();
+        bytes.resize(at + sizeof(T));
+        std::memcpy(bytes.data() + at, &value, sizeof(T));
+    }
+    void operator()(const std::string& text) {
+        (*this)(static_cast<std::uint32_t>(text.size()));
+        const auto* data = reinterpret_cast<const std::byte*>(text.data());
+        bytes.insert(bytes.end(), data, data + text.size());
+    }
+    template <class T>
+    void list(const std::vector<T>& values) {
+        (*this)(static_cast<std::uint64_t>(values.size()));
+        for (const T& value : values) fields(*this, value);
+    }
+};
+
+/// Takes values from bounded bytes; failed() after any read beyond the end, or a flag that is neither 0 nor 1.
+struct TakeArchive {
+    ByteReader reader;
+    bool bad = false;
+
+    template <class T>
+    void operator()(T& value) {
+        static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+        if constexpr (std::is_same_v<T, bool>) {
+            const auto raw = reader.read<std::uint8_t>();
+            bad = bad || raw > 1;
+            value = raw == 1;
+        } else {
+            value = reader.read<T>();
+        }
+    }
+    void operator()(std::string& text) {
+        const auto view = reader.bytes(reader.read<std::uint32_t>());
+        text.assign(reinterpret_cast<const char*>(view.data()), view.size());
+    }
+    /// Grows as records are read: a wrong count meets the end of the bytes before it costs memory.
+    template <class T>
+    void list(std::vector<T>& values) {
+        const auto count = reader.read<std::uint64_t>();
+        for (std::uint64_t i = 0; i < count && !failed(); ++i) fields(*this, values.emplace_back());
+    }
+    [[nodiscard]] bool failed() const { return bad || reader.failed(); }
+};
+
+template <class Archive, class Vec>
+void vector3(Archive& a, Vec& v) {
+    a(v.x), a(v.y), a(v.z);
+}
+
+template <class Archive, class NodeT>
+requires std::is_same_v<std::remove_const_t<NodeT>, Node>
+void fields(Archive& a, NodeT& n) {
+    vector3(a, n.box.min), vector3(a, n.box.max);
+    a(n.parent), a(n.first_child), a(n.child_count), a(n.first_rep), a(n.rep_count), a(n.name), a(n.object);
+    a(n.importance), a(n.kind), a(n.triangles);
+}
+
+template <class Archive, class RepT>
+requires std::is_same_v<std::remove_const_t<RepT>, Representation>
+void fields(Archive& a, RepT& r) {
+    a(r.kind), a(r.everywhere), a(r.error_m), a(r.min_distance_m), a(r.placement), a(r.first_part), a(r.part_count);
+    a(r.triangles), a(r.effects), a(r.area_m2[0]), a(r.area_m2[1]), a(r.area_m2[2]);
+}
+
+template <class Archive, class PartT>
+requires std::is_same_v<std::remove_const_t<PartT>, Part>
+void fields(Archive& a, PartT& p) { a(p.material), a(p.first_index), a(p.index_count), a(p.first_vertex), a(p.vertex_count); }
+
+template <class Archive, class PlacementT>
+requires std::is_same_v<std::remove_const_t<PlacementT>, Placement>
+void fields(Archive& a, PlacementT& p) {
+    vector3(a, p.origin);
+    for (int column = 0; column < 3; ++column) vector3(a, p.linear[column]);
+}
+
+template <class Archive, class MaterialT>
+requires std::is_same_v<std::remove_const_t<MaterialT>, Material>
+void fields(Archive& a, MaterialT& m) {
+    for (auto& c : m.colour) a(c);
+    a(m.texture), a(m.alpha_cutoff), a(m.alpha), a(m.two_sided), a(m.effects);
+}
+
+template <class Archive, class TextureT>
+requires std::is_same_v<std::remove_const_t<TextureT>, Texture>
+void fields(Archive& a, TextureT& t) { a(t.width), a(t.height), a(t.levels), a(t.first_byte), a(t.clamp); }
+
+template <class Archive, class FindingT>
+requires std::is_same_v<std::remove_const_t<FindingT>, EffectFinding>
+void fields(Archive& a, FindingT& f) { a(f.bit), a(f.called_for), a(f.triangles), a(f.reason); }
+
+template <class Archive, class TextT>
+requires std::is_same_v<std::remove_const_t<TextT>, std::string>
+void fields(Archive& a, TextT& text) { a(text); }
+
+/// What is no array: counts, sun, provenance.
+template <class Archive, class ModelT>
+void rest(Archive& a, ModelT& m) {
+    a(m.object_count);
+    vector3(a, m.sun_direction);
+    a(m.names);
+    a(m.provenance.quality), a(m.provenance.bake_s);
+    a.list(m.provenance.sources), a.list(m.provenance.warnings);
+}
+
+}  // namespace surefoot::model::walk
