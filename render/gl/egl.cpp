@@ -34,16 +34,16 @@ Result<Egl> load_egl() {
     auto library = Library::open("libEGL.so.1", "libegl1 (and libegl-mesa0)");
     if (!library) return library.error();
     Egl egl;
-    const bool found = library->get(egl.GetError, "eglGetError") && library->get(egl.QueryString, "eglQueryString") &&
-                       library->get(egl.Initialize, "eglInitialize") && library->get(egl.Terminate, "eglTerminate") &&
-                       library->get(egl.BindAPI, "eglBindAPI") && library->get(egl.ChooseConfig, "eglChooseConfig") &&
-                       library->get(egl.GetConfigAttrib, "eglGetConfigAttrib") &&
-                       library->get(egl.CreateContext, "eglCreateContext") &&
-                       library->get(egl.DestroyContext, "eglDestroyContext") &&
-                       library->get(egl.CreateWindowSurface, "eglCreateWindowSurface") &&
-                       library->get(egl.DestroySurface, "eglDestroySurface") && library->get(egl.MakeCurrent, "eglMakeCurrent") &&
-                       library->get(egl.SwapBuffers, "eglSwapBuffers") && library->get(egl.SwapInterval, "eglSwapInterval") &&
-                       library->get(egl.GetProcAddress, "eglGetProcAddress");
+    const bool found =
+        library->get(egl.GetError, "eglGetError") && library->get(egl.QueryString, "eglQueryString") &&
+        library->get(egl.Initialize, "eglInitialize") && library->get(egl.Terminate, "eglTerminate") &&
+        library->get(egl.BindAPI, "eglBindAPI") && library->get(egl.ChooseConfig, "eglChooseConfig") &&
+        library->get(egl.GetConfigAttrib, "eglGetConfigAttrib") && library->get(egl.CreateContext, "eglCreateContext") &&
+        library->get(egl.DestroyContext, "eglDestroyContext") &&
+        library->get(egl.CreateWindowSurface, "eglCreateWindowSurface") &&
+        library->get(egl.DestroySurface, "eglDestroySurface") && library->get(egl.MakeCurrent, "eglMakeCurrent") &&
+        library->get(egl.SwapBuffers, "eglSwapBuffers") && library->get(egl.SwapInterval, "eglSwapInterval") &&
+        library->get(egl.GetProcAddress, "eglGetProcAddress") && library->get(egl.GetCurrentContext, "eglGetCurrentContext");
     if (found) {
         egl.GetPlatformDisplay =
             reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.GetProcAddress("eglGetPlatformDisplayEXT"));
@@ -68,10 +68,17 @@ EglContext::EglContext(const Egl& egl, EGLDisplay display, bool counted, std::st
     : egl_(egl), display_(display), counted_(counted), name_(std::move(name)) {}
 
 EglContext::~EglContext() {
-    egl_.MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    destroy();
+    if (counted_) egl_.Terminate(display_);
+}
+
+void EglContext::destroy() {
+    if (context_ == EGL_NO_CONTEXT && surface_ == EGL_NO_SURFACE) return;
+    if (egl_.GetCurrentContext() == context_) release();
     if (context_ != EGL_NO_CONTEXT) egl_.DestroyContext(display_, context_);
     if (surface_ != EGL_NO_SURFACE) egl_.DestroySurface(display_, surface_);
-    if (counted_) egl_.Terminate(display_);
+    context_ = EGL_NO_CONTEXT;
+    surface_ = EGL_NO_SURFACE;
 }
 
 Result<void> EglContext::create(EGLConfig config) {

@@ -29,6 +29,7 @@ struct Egl {
     decltype(&eglMakeCurrent) MakeCurrent = nullptr;
     decltype(&eglSwapBuffers) SwapBuffers = nullptr;
     decltype(&eglSwapInterval) SwapInterval = nullptr;
+    decltype(&eglGetCurrentContext) GetCurrentContext = nullptr;
     decltype(&eglGetProcAddress) GetProcAddress = nullptr;
     PFNEGLGETPLATFORMDISPLAYEXTPROC GetPlatformDisplay = nullptr;
 
@@ -66,6 +67,9 @@ public:
     [[nodiscard]] EGLDisplay display() const { return display_; }
 
 protected:
+    /// Destroys context and surface; unbinds only if this context is the calling thread's: another device's may be.
+    void destroy();
+
     Egl egl_;
     EGLDisplay display_;
     EGLContext context_ = EGL_NO_CONTEXT;

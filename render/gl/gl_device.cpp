@@ -86,13 +86,13 @@ void GlDevice::warm_up() {
     for (auto& [state, pending] : kinds) {
         if (used_instances_ >= frame_.instances.size()) break;
         set_blending(tables_.parts[pending.part].blended);
+        const std::uint32_t at = used_commands_;
         write_instance(pending, used_instances_);
-        append_command(pending, used_instances_, used_commands_);
-        frame_.commands[used_commands_].index_count = std::min(3U, frame_.commands[used_commands_].index_count);
+        append_command(pending, used_instances_, at);
+        frame_.commands[at].index_count = std::min(3U, frame_.commands[at].index_count);
         apply(state);
-        issue(state, used_commands_, 1);
+        issue(state, at, 1);
         ++used_instances_;
-        ++used_commands_;
     }
     set_blending(false);
     finish_frame();

@@ -26,8 +26,9 @@ class OsMesa final : public Context {
 public:
     static Result<std::unique_ptr<Context>> open();
     ~OsMesa() override {
-        release();
-        if (context_ != nullptr) destroy_(context_);
+        if (context_ == nullptr) return;
+        if (current_() == context_) release();
+        destroy_(context_);
     }
     OsMesa(const OsMesa&) = delete;
     OsMesa& operator=(const OsMesa&) = delete;
@@ -45,6 +46,7 @@ private:
     void (*destroy_)(OsMesaContext) = nullptr;
     unsigned char (*make_current_)(OsMesaContext, void*, unsigned, int, int) = nullptr;
     Proc (*get_proc_)(const char*) = nullptr;
+    OsMesaContext (*current_)() = nullptr;
     OsMesaContext context_ = nullptr;
     std::array<std::uint8_t, 4 * buffer_side * buffer_side> pixels_{};
 };
@@ -60,6 +62,7 @@ Result<std::unique_ptr<Context>> OsMesa::open() {
     std::unique_ptr<OsMesa> context(new OsMesa);
     if (!library->get(context->create_, "OSMesaCreateContextAttribs") ||
         !library->get(context->destroy_, "OSMesaDestroyContext") || !library->get(context->make_current_, "OSMesaMakeCurrent") ||
+        !library->get(context->current_, "OSMesaGetCurrentContext") ||
         !library->get(context->get_proc_, "OSMesaGetProcAddress")) {
         return Error{"OSMesa", "the library is too old to make core contexts", "install libosmesa6 of Mesa 22 or newer"};
     }

@@ -95,11 +95,7 @@ public:
     WindowContext(const Egl& egl, EGLDisplay display, std::unique_ptr<XWindow> window)
         : EglContext(egl, display, false, "X11 window"), window_(std::move(window)) {}
     ~WindowContext() override {
-        egl_.MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-        if (context_ != EGL_NO_CONTEXT) egl_.DestroyContext(display_, context_);
-        if (surface_ != EGL_NO_SURFACE) egl_.DestroySurface(display_, surface_);
-        context_ = EGL_NO_CONTEXT;
-        surface_ = EGL_NO_SURFACE;
+        destroy();
         egl_.Terminate(display_);  // this display is of this window's own connection
     }
     WindowContext(const WindowContext&) = delete;

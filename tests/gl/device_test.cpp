@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -241,9 +242,16 @@ TEST_F(DeviceTest, the_context_moves_between_threads) {
     const auto model = scene.finish();
     ASSERT_TRUE(device_->load(model, effects::assemble_program).ok());
     device_->release();
+    gl::PixelImage image;
+    std::thread frame_thread([&] {
+        device_->bind();
+        show(*device_, {{node, 0}}, straight());
+        image = *device_->read_pixels();
+        device_->release();
+    });
+    frame_thread.join();
+    EXPECT_EQ(pixel(image, 50, 50), red);
     device_->bind();
-    const auto again = picture(model, {node});
-    EXPECT_EQ(pixel(again, 50, 50), red);
 }
 
 /// Squares of every effect, for comparisons between backends.

@@ -1,0 +1,112 @@
+// The frame's own code allocates nothing (DESIGN 7). operator new is counted: our code and the standard library use it, and so
+// does the driver's compiler, while the driver's C code calls malloc.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "render/effects/effects.hpp"
+#include "render/gl/device.hpp"
+#include "tests/gl/small_models.hpp"
+
+namespace {
+thread_local bool counting = false;
+std::atomic<long> counted{0};
+}  // namespace
+
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // the pair below is matched; inlining hides it
+// operator new is what our code and the standard library allocate with; the driver, in C, calls malloc.
+void* operator new(std::size_t size) {
+    if (counting) counted.fetch_add(1);
+    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+    throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace surefoot {
+namespace {
+
+struct Counted {
+    model::Model model;
+    std::vector<gl::DrawItem> items;
+};
+
+/// Behind the eye of Pose{}, where the warm-up at load draws; in front of the eye of frame().
+Counted many_squares() {
+    test::SmallModel scene;
+    auto glass = test::plain(1, 0, 0, 0.5F, model::effect_blend);
+    const auto a = scene.material(test::plain(1, 0, 0));
+    const auto b = scene.material(test::plain(0, 1, 0, 1, model::effect_sun));
+    const auto c = scene.material(glass);
+    Counted counted_scene;
+    for (int i = 0; i < 500; ++i) {
+        const auto node = scene.square(i % 3 == 0 ? a : i % 3 == 1 ? b : c, test::at(0.01 * i - 2, 0, 8.0 - 0.01 * i), 0.1F);
+        counted_scene.items.push_back({node, node - 1});
+    }
+    counted_scene.model = scene.finish();
+    return counted_scene;
+}
+
+void frame(gl::Device& device, const std::vector<gl::DrawItem>& items) {
+    Pose pose;
+    pose.position.z = 11;
+    device.begin_frame(pose);
+    const std::span<const gl::DrawItem> all(items);
+    for (std::size_t i = 0; i < items.size(); i += 100) {
+        device.draw(all.subspan(i, std::min<std::size_t>(100, items.size() - i)));
+        device.end_slice();
+        device.wait_slices(2);
+    }
+    device.end_items();
+    device.finish_frame();
+}
+
+long allocations_of_a_frame(gl::Device& device, const Counted& scene) {
+    frame(device, scene.items);
+    counted = 0;
+    counting = true;
+    frame(device, scene.items);
+    counting = false;
+    return counted;
+}
+
+TEST(Allocation, a_frame_on_gl_makes_none_of_its_own) {
+    const auto scene = many_squares();
+    gl::DeviceOptions options;
+    options.viewport = {64, 64};
+    auto device = gl::open_device(options);
+    if (!device) GTEST_SKIP() << device.error().text();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    // The JIT of a software driver is C++: anything left here after the warm-up frame would be a compilation in a frame.
+    EXPECT_EQ(allocations_of_a_frame(**device, scene), 0);
+}
+
+TEST(Allocation, a_frame_on_null_makes_none) {
+    const auto scene = many_squares();
+    auto device = gl::open_null_device({}, {});
+    ASSERT_TRUE(device.ok());
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    EXPECT_EQ(allocations_of_a_frame(**device, scene), 0);
+}
+
+TEST(Allocation, the_first_frame_after_load_compiles_nothing) {
+    const auto scene = many_squares();
+    gl::DeviceOptions options;
+    options.viewport = {64, 64};
+    auto device = gl::open_device(options);
+    if (!device) GTEST_SKIP() << device.error().text();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    counted = 0;
+    counting = true;
+    frame(**device, scene.items);
+    counting = false;
+    EXPECT_EQ(counted, 0) << "a state combination was not warmed up: LLVM ran inside the frame";
+}
+
+}  // namespace
+}  // namespace surefoot
