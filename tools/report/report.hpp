@@ -13,10 +13,12 @@
 
 namespace surefoot::report {
 
-struct Quantiles { double p50 = 0, p90 = 0, p99 = 0, p999 = 0, max = 0, mean = 0, min = 0; };
+struct Quantiles {
+    double p50 = 0, p90 = 0, p99 = 0, p999 = 0, max = 0, mean = 0, min = 0;
+};
 
 struct ControlBlock {
-    bool walk = false;               ///< else the bare loop
+    bool walk = false;  ///< else the bare loop
     std::uint32_t frames = 0, misses = 0, own_misses = 0;
     double steal_ms = 0;
 };
@@ -24,17 +26,20 @@ struct ControlBlock {
 struct ControlSummary {
     bool ran = false;
     std::uint32_t walk_misses = 0, control_misses = 0, pairs = 0;
-    double p_value = 1;              ///< one-sided permutation test, walk minus control > 0
-    double other_miss_share = -1;    ///< the load proof under SCHED_OTHER; -1 not run
+    double p_value = 1;            ///< one-sided permutation test, walk minus control > 0
+    double other_miss_share = -1;  ///< the load proof under SCHED_OTHER; -1 not run
     std::vector<ControlBlock> blocks;
 };
 
-struct Degraded { std::string what, remedy; };
+struct Degraded {
+    std::string what, remedy;
+};
 
 /// All that `walk --json` prints (DESIGN 6), computed once from the records.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
     std::uint32_t width = 0, height = 0;
+    std::uint32_t rasterisers = 1;  ///< threads that share raster_cpu_ns; set before summarize
     double rate_hz = 0, seconds = 0;
     std::uint64_t frames = 0, slots = 0, skipped = 0, misses = 0, own_misses = 0;
     std::map<std::string, std::uint64_t> miss_causes;
@@ -42,7 +47,7 @@ struct WalkSummary {
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
     std::uint64_t triangles_max = 0, downgrades = 0, floor_bound_frames = 0, model_triangles = 0;
-    std::string cut_hash;            ///< 16 hex digits over all frames
+    std::string cut_hash;  ///< 16 hex digits over all frames
     double steal_ms = 0;
     bool fifo = false, pinned = false, isolated = false, locked = false;
     std::uint64_t page_faults = 0, guard_violations = 0, driver_faults = 0, driver_allocations = 0;
@@ -73,7 +78,11 @@ struct ReportShot {
     std::uint64_t triangles = 0, full_triangles = 0;
     float accuracy = 0;
     /// Top view (Maciel's 't' view): rectangles of the drawn nodes in the XZ plane, world metres.
-    struct Rect { float x0, z0, x1, z1; int kind; float detail; };  ///< kind: 0 cluster, 1 object, 2 piece; detail 0 coarse..1 full
+    struct Rect {
+        float x0, z0, x1, z1;
+        int kind;
+        float detail;
+    };  ///< kind: 0 cluster, 1 object, 2 piece; detail 0 coarse..1 full
     std::vector<Rect> drawn;
     std::array<double, 3> eye{}, forward{};
     double fov_x_rad = 1;
@@ -102,7 +111,10 @@ std::string accuracy_json(const AccuracyRun& run);
 Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run);
 
 /// Maciel's figure 3.4 for this machine: cost against pixels, a line a triangle count, a panel a state class.
-struct CostPoint { std::string state; double triangles, pixels, cost_us; };
+struct CostPoint {
+    std::string state;
+    double triangles, pixels, cost_us;
+};
 std::string cost_plot_svg(const std::string& title, std::span<const CostPoint> points);
 
 }  // namespace surefoot::report

@@ -1,0 +1,181 @@
+// What accuracy costs in time: accuracy, SNR and SSIM against frame time, a line a selector. The picture at the top of the
+// README.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/report/accuracy.hpp"
+#include "tools/report/report.hpp"
+#include "tools/report/style.hpp"
+#include "tools/report/svg.hpp"
+
+namespace surefoot::report {
+
+namespace {
+
+constexpr double width = 900;
+constexpr double height = 420;
+constexpr std::string_view published_ending = "-1994";
+
+struct Panel {
+    std::string_view title, unit;
+    double (*value)(const AccuracyPoint&);
+    bool log;
+};
+constexpr std::array<Panel, 3> panels = {{
+    {"Accuracy, rad⁻¹", "", [](const AccuracyPoint& p) { return p.accuracy_mean; }, true},
+    {"SNR, dB", "", [](const AccuracyPoint& p) { return p.snr_db; }, false},
+    {"SSIM", "", [](const AccuracyPoint& p) { return p.ssim; }, false},
+}};
+
+/// One selector's points, in order of budget.
+struct Series {
+    std::string name;
+    std::size_t colour = 0;
+    bool published = false;  ///< accounting as in 1994: the same colour as the mended one, dashed
+    std::vector<const AccuracyPoint*> points;
+};
+
+std::vector<Series> series_of(const AccuracyRun& run) {
+    std::vector<Series> all;
+    std::vector<std::string> families;
+    for (const AccuracyPoint& point : run.points) {
+        auto found = std::find_if(all.begin(), all.end(), [&](const Series& s) { return s.name == point.selector; });
+        if (found == all.end()) {
+            Series s;
+            s.name = point.selector;
+            s.published = s.name.ends_with(published_ending);
+            const std::string family = s.published ? s.name.substr(0, s.name.size() - published_ending.size()) : s.name;
+            auto kin = std::find(families.begin(), families.end(), family);
+            if (kin == families.end()) kin = families.insert(families.end(), family);
+            s.colour = static_cast<std::size_t>(kin - families.begin()) % series_colours;
+            all.push_back(std::move(s));
+            found = all.end() - 1;
+        }
+        found->points.push_back(&point);
+    }
+    for (Series& s : all)
+        std::stable_sort(s.points.begin(), s.points.end(),
+                         [](const auto* a, const auto* b) { return a->budget_ms < b->budget_ms; });
+    return all;
+}
+
+struct Range {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    void grow(double v) {
+        if (!std::isfinite(v)) return;
+        low = std::min(low, v);
+        high = std::max(high, v);
+    }
+    [[nodiscard]] bool empty() const { return low > high; }
+};
+
+Scale time_scale(const AccuracyRun& run, const PlotArea& area) {
+    Range range;
+    for (const AccuracyPoint& p : run.points)
+        if (p.frame_ms_p50 > 0) range.grow(p.frame_ms_p50);
+    if (run.full_frame_ms > 0) range.grow(run.full_frame_ms);
+    if (range.empty()) return {1, 10, area.left, area.right, true};
+    return {range.low * 0.9, std::max(range.high * 1.12, range.low * 1.5), area.left, area.right, true};
+}
+
+Scale value_scale(const AccuracyRun& run, const Panel& panel, const PlotArea& area) {
+    Range range;
+    for (const AccuracyPoint& p : run.points) {
+        const double v = panel.value(p);
+        if (!panel.log || v > 0) range.grow(v);
+    }
+    if (range.empty()) return {panel.log ? 1.0 : 0.0, 10, area.bottom, area.top, panel.log};
+    if (panel.log) return {range.low / 1.25, std::max(range.high * 1.25, range.low * 2), area.bottom, area.top, true};
+    const double margin = std::max((range.high - range.low) * 0.08, std::max(1e-3, std::abs(range.high) * 0.01));
+    return {range.low - margin, range.high + margin, area.bottom, area.top, false};
+}
+
+bool drawable(const AccuracyPoint& p, double value, const Panel& panel) {
+    return p.frame_ms_p50 > 0 && std::isfinite(value) && (!panel.log || value > 0);
+}
+
+std::string tip_of(const AccuracyPoint& p) {
+    return fmt::format(
+        "{}, budget {} ms: frame {:.1f} ms (p90 {:.1f}), accuracy {} rad⁻¹, SNR {:.1f} dB, SSIM {:.3f}, {} triangles",
+        escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited", p.frame_ms_p50,
+        p.frame_ms_p90, short_number(p.accuracy_mean), p.snr_db, p.ssim, short_number(p.triangles));
+}
+
+std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, const Panel& panel, const PlotArea& area) {
+    const Scale x = time_scale(run, area);
+    const Scale y = value_scale(run, panel, area);
+    std::string out = text_at(area.left, area.top - 14, "title", panel.title);
+    out += y_axis(area, y, panel.log ? log_ticks(y.from, y.to) : nice_ticks(y.from, y.to, 5), panel.unit);
+    out += x_axis(area, x, log_ticks(x.from, x.to), "");
+    if (run.full_frame_ms > 0) {
+        out += line_between(x(run.full_frame_ms), area.top, x(run.full_frame_ms), area.bottom, "budget");
+        out += text_at(x(run.full_frame_ms) - 5, area.bottom - 8, "note end budget-text", "full detail");
+    }
+    for (const Series& s : all) {
+        std::vector<Point> line;
+        std::string dots;
+        for (const AccuracyPoint* p : s.points) {
+            const double v = panel.value(*p);
+            if (!drawable(*p, v, panel)) continue;
+            line.push_back({x(p->frame_ms_p50), y(v), false});
+            dots += fmt::format(
+                "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" class=\"dot\" fill=\"var(--s{})\"><title>{}</title></circle>",
+                line.back().x, line.back().y, s.published ? 2.8 : 3.8, s.colour, tip_of(*p));
+        }
+        std::string path;
+        for (std::size_t i = 0; i < line.size(); ++i)
+            path += fmt::format("{}{:.1f} {:.1f}", i == 0 ? "M" : "L", line[i].x, line[i].y);
+        if (line.size() > 1)
+            out += fmt::format(
+                "<path d=\"{}\" fill=\"none\" stroke=\"var(--s{})\" stroke-width=\"{}\" stroke-linejoin=\"round\"{}/>", path,
+                s.colour, s.published ? 1.6 : 2.2, s.published ? " stroke-dasharray=\"5 4\"" : "");
+        out += dots;
+    }
+    return out;
+}
+
+std::string legend_of(const std::vector<Series>& all, double top) {
+    std::string out;
+    double at = 52;
+    double y = top;
+    for (const Series& s : all) {
+        const double length = 46 + 7.3 * static_cast<double>(s.name.size());
+        if (at + length > width - 8 && at > 52) {
+            at = 52;
+            y += 20;
+        }
+        out += fmt::format("<path d=\"M{:.1f} {:.1f}h22\" stroke=\"var(--s{})\" stroke-width=\"{}\"{}/>", at, y - 4, s.colour,
+                           s.published ? 1.6 : 2.4, s.published ? " stroke-dasharray=\"5 4\"" : "");
+        if (!s.published)
+            out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.8\" fill=\"var(--s{})\"/>", at + 11, y - 4, s.colour);
+        out += text_at(at + 28, y, "", s.name);
+        at += length;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string accuracy_chart(const AccuracyRun& run) {
+    const auto all = series_of(run);
+    std::string out = open_chart(width, height, "What accuracy costs in time");
+    out += legend_of(all, 24);
+    constexpr double panel_width = width / 3;
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        const double left = panel_width * static_cast<double>(i);
+        out += panel_chart(run, all, panels[i], {left + 52, 96, left + panel_width - 14, height - 46});
+    }
+    out += text_at(width / 2, height - 8, "note mid", "median frame time, ms (logarithmic)");
+    return out + close_chart();
+}
+
+std::string accuracy_svg(const AccuracyRun& run, bool dark) { return stand_alone(accuracy_chart(run), dark); }
+
+}  // namespace surefoot::report

@@ -1,0 +1,78 @@
+// `walk --json`: exactly the keys of the contract, figures rounded to what was measured.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/report/report.hpp"
+
+namespace surefoot::report {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Three decimals; infinity and not-a-number become null (an accuracy without any error, a test not run).
+Json rounded(double value) {
+    if (!std::isfinite(value)) return nullptr;
+    const double scaled = std::round(value * 1000.0) / 1000.0;
+    return std::isfinite(scaled) ? Json(scaled) : Json(value);
+}
+
+Json tail(const Quantiles& q) {
+    return {{"p50", rounded(q.p50)}, {"p99", rounded(q.p99)}, {"p999", rounded(q.p999)}, {"max", rounded(q.max)}};
+}
+
+Json control_of(const ControlSummary& control) {
+    Json blocks = Json::array();
+    for (const ControlBlock& b : control.blocks)
+        blocks.push_back({{"walk", b.walk},
+                          {"frames", b.frames},
+                          {"misses", b.misses},
+                          {"own_misses", b.own_misses},
+                          {"steal_ms", rounded(b.steal_ms)}});
+    // A p-value keeps its digits: 0.0004 is not 0.
+    return {
+        {"misses", control.control_misses}, {"p_value", control.ran ? Json(control.p_value) : Json(nullptr)}, {"blocks", blocks}};
+}
+
+}  // namespace
+
+std::string to_json(const WalkSummary& s) {
+    Json causes = Json::object();
+    for (const auto& [cause, count] : s.miss_causes) causes[cause] = count;
+    const Json json = {
+        {"frames", s.frames},
+        {"slots", s.slots},
+        {"skipped", s.skipped},
+        {"misses", s.misses},
+        {"own_misses", s.own_misses},
+        {"miss_causes", causes},
+        {"frame_ms", tail(s.frame_ms)},
+        {"wake_us", tail(s.wake_us)},
+        {"select_us", tail(s.select_us)},
+        {"prepare_cpu_us", tail(s.prepare_cpu_us)},
+        {"prepared_age",
+         {{"p50", rounded(s.prepared_age.p50)}, {"p99", rounded(s.prepared_age.p99)}, {"max", rounded(s.prepared_age.max)}}},
+        {"budget_ms", rounded(s.budget_ms)},
+        {"budget_used", {{"mean", rounded(s.budget_used_mean)}, {"p99", rounded(s.budget_used_p99)}}},
+        {"cost_error",
+         {{"p50", rounded(s.cost_error.p50)}, {"p90", rounded(s.cost_error.p90)}, {"p99", rounded(s.cost_error.p99)}}},
+        {"accuracy", {{"min", rounded(s.accuracy_min)}, {"mean", rounded(s.accuracy_mean)}}},
+        {"triangles", {{"mean", rounded(s.triangles_mean)}, {"max", s.triangles_max}}},
+        {"downgrades", s.downgrades},
+        {"switches_per_frame", rounded(s.switches_per_frame)},
+        {"cut_hash", s.cut_hash},
+        {"steal_ms", rounded(s.steal_ms)},
+        {"rt",
+         {{"fifo", s.fifo},
+          {"pinned", s.pinned},
+          {"isolated", s.isolated},
+          {"locked", s.locked},
+          {"page_faults", s.page_faults},
+          {"guard_violations", s.guard_violations}}},
+        {"control", control_of(s.control)},
+    };
+    return json.dump(2) + "\n";
+}
+
+}  // namespace surefoot::report

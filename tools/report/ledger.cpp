@@ -1,0 +1,111 @@
+// The ledger: one row a frame, bare control frames included and marked. A column is one line of the table below.
+#include <fmt/format.h>
+
+#include <array>
+#include <iterator>
+#include <string>
+
+#include "rt/base/file.hpp"
+#include "tools/report/report.hpp"
+#include "tools/report/times.hpp"
+
+namespace surefoot::report {
+
+namespace {
+
+using rt::FrameRecord;
+
+struct Column {
+    std::string_view name;
+    void (*put)(fmt::memory_buffer& row, const FrameRecord& f);
+};
+
+template <class... Args>
+void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(row), format, std::forward<Args>(args)...);
+}
+
+std::string_view cause_of(const FrameRecord& f) { return rt::cause_names[static_cast<std::size_t>(f.cause)]; }
+
+// clang-format off
+constexpr std::array<Column, 54> columns = {{
+    {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
+    {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
+    {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
+    {"wake_us", [](auto& r, auto& f) { add(r, "{:.3f}", wake_us(f)); }},
+    {"select_us", [](auto& r, auto& f) { add(r, "{:.3f}", select_us(f)); }},
+    {"submit_us", [](auto& r, auto& f) { add(r, "{:.3f}", submit_us(f)); }},
+    {"raster_us", [](auto& r, auto& f) { add(r, "{:.3f}", raster_us(f)); }},
+    {"present_us", [](auto& r, auto& f) { add(r, "{:.3f}", present_us(f)); }},
+    {"slack_us", [](auto& r, auto& f) { add(r, "{:.3f}", slack_us(f)); }},
+    {"frame_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(f.due_ns, f.presented_ns)); }},
+    {"predicted_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.predicted_us); }},
+    {"actual_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.actual_us); }},
+    {"budget_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.budget_us); }},
+    {"floor_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.floor_us); }},
+    {"correction", [](auto& r, auto& f) { add(r, "{:.4f}", f.correction); }},
+    {"nodes", [](auto& r, auto& f) { add(r, "{}", f.items); }},
+    {"draws", [](auto& r, auto& f) { add(r, "{}", f.draws); }},
+    {"triangles", [](auto& r, auto& f) { add(r, "{}", f.triangles); }},
+    {"accuracy", [](auto& r, auto& f) { add(r, "{:.3f}", f.accuracy); }},
+    {"benefit", [](auto& r, auto& f) { add(r, "{:.5f}", f.benefit); }},
+    {"switches", [](auto& r, auto& f) { add(r, "{}", f.switches); }},
+    {"slices", [](auto& r, auto& f) { add(r, "{}", f.slices); }},
+    {"downgraded_slices", [](auto& r, auto& f) { add(r, "{}", f.downgraded_slices); }},
+    {"candidates", [](auto& r, auto& f) { add(r, "{}", f.candidates); }},
+    {"visits", [](auto& r, auto& f) { add(r, "{}", f.visits); }},
+    {"prepared_age", [](auto& r, auto& f) { add(r, "{}", f.prepared_age); }},
+    {"prepare_cpu_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.prepare_cpu_us); }},
+    {"cpu_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.cpu_ns)); }},
+    {"raster_cpu_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.raster_cpu_ns)); }},
+    {"stolen_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.stolen_ns)); }},
+    {"upload_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.upload_ns)); }},
+    {"voluntary", [](auto& r, auto& f) { add(r, "{}", f.voluntary); }},
+    {"involuntary", [](auto& r, auto& f) { add(r, "{}", f.involuntary); }},
+    {"minor_faults", [](auto& r, auto& f) { add(r, "{}", f.minor_faults); }},
+    {"major_faults", [](auto& r, auto& f) { add(r, "{}", f.major_faults); }},
+    {"driver_faults", [](auto& r, auto& f) { add(r, "{}", f.driver_faults); }},
+    {"driver_allocations", [](auto& r, auto& f) { add(r, "{}", f.driver_allocations); }},
+    {"guard_violations", [](auto& r, auto& f) { add(r, "{}", f.guard_violations); }},
+    {"skipped_before", [](auto& r, auto& f) { add(r, "{}", f.skipped_before); }},
+    {"missed", [](auto& r, auto& f) { add(r, "{:d}", f.missed); }},
+    {"own_miss", [](auto& r, auto& f) { add(r, "{:d}", f.own_miss); }},
+    {"cause", [](auto& r, auto& f) { add(r, "{}", cause_of(f)); }},
+    {"floor_binds", [](auto& r, auto& f) { add(r, "{:d}", f.floor_binds); }},
+    {"control", [](auto& r, auto& f) { add(r, "{:d}", f.control); }},
+    {"block", [](auto& r, auto& f) { add(r, "{}", f.block); }},
+    {"cut_hash", [](auto& r, auto& f) { add(r, "{:016x}", f.cut_hash); }},
+    {"snapped", [](auto& r, auto& f) { add(r, "{:d}", f.snapped); }},
+    {"x", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[0]); }},
+    {"y", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[1]); }},
+    {"z", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[2]); }},
+    {"qx", [](auto& r, auto& f) { add(r, "{:.6f}", f.orientation[0]); }},
+    {"qy", [](auto& r, auto& f) { add(r, "{:.6f}", f.orientation[1]); }},
+    {"qz", [](auto& r, auto& f) { add(r, "{:.6f}", f.orientation[2]); }},
+    {"qw", [](auto& r, auto& f) { add(r, "{:.6f}", f.orientation[3]); }},
+}};
+// clang-format on
+
+}  // namespace
+
+Result<void> write_ledger(const std::string& file, std::span<const FrameRecord> records) {
+    auto out = AtomicFile::create(file);
+    if (!out) return out.error();
+    fmt::memory_buffer rows;
+    for (const Column& column : columns) add(rows, "{}{}", &column == columns.data() ? "" : ",", column.name);
+    rows.push_back('\n');
+    for (const FrameRecord& f : records) {
+        for (const Column& column : columns) {
+            if (&column != columns.data()) rows.push_back(',');
+            column.put(rows, f);
+        }
+        rows.push_back('\n');
+        if (rows.size() < (1U << 20U)) continue;
+        if (auto written = out->write(std::string_view(rows.data(), rows.size())); !written) return written;
+        rows.clear();
+    }
+    if (auto written = out->write(std::string_view(rows.data(), rows.size())); !written) return written;
+    return out->commit();
+}
+
+}  // namespace surefoot::report

@@ -1,0 +1,116 @@
+// The walk's page: one file that a person reads from top to bottom, verdict first, pictures last but one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "rt/base/file.hpp"
+#include "tools/report/charts.hpp"
+#include "tools/report/page_parts.hpp"
+#include "tools/report/report.hpp"
+#include "tools/report/style.hpp"
+#include "tools/report/svg.hpp"
+#include "tools/report/verdict.hpp"
+
+namespace surefoot::report {
+
+namespace {
+
+using rt::FrameRecord;
+
+WalkFrames walk_frames(const WalkSummary& s, std::span<const FrameRecord> records, std::span<const ReportShot> shots) {
+    WalkFrames walk;
+    for (const FrameRecord& record : records)
+        if (!record.control) walk.frames.push_back(&record);
+    if (!walk.frames.empty()) {
+        walk.start_ns = walk.frames.front()->due_ns;
+        walk.period_ns = std::max<std::int64_t>(1, walk.frames.front()->deadline_ns - walk.frames.front()->due_ns);
+    } else if (s.rate_hz > 0) {
+        walk.period_ns = static_cast<std::int64_t>(1e9 / s.rate_hz);
+    }
+    for (const ReportShot& shot : shots) {
+        const auto at = std::lower_bound(walk.frames.begin(), walk.frames.end(), shot.frame,
+                                         [](const FrameRecord* f, std::uint64_t frame) { return f->frame < frame; });
+        walk.shots_s.push_back(at != walk.frames.end() && (*at)->frame == shot.frame ? walk.time_s(**at) : shot.time_s);
+    }
+    return walk;
+}
+
+std::string card(std::string_view title, std::string_view words, const std::string& chart) {
+    return fmt::format("<div class=\"card\"><h3>{}</h3><p>{}</p>{}</div>\n", escaped(title), escaped(words), chart);
+}
+
+std::string legend(std::initializer_list<std::pair<std::string_view, std::string_view>> entries) {
+    std::string out = "<div class=\"legend\">";
+    for (const auto& [css, name] : entries) out += fmt::format("<span><i class=\"{}\"></i>{}</span>", css, name);
+    return out + "</div>";
+}
+
+std::string time_section(const WalkSummary& s, const WalkFrames& walk) {
+    std::string out =
+        "<h2>Time</h2>\n<p class=\"sub\">Every frame, from when it was due to when it was done. The band runs from the fastest "
+        "to the "
+        "slowest frame of each column, so no slow frame is hidden; numbers on top are the pictures below.</p>\n";
+    out += fmt::format("<div class=\"card\">{}</div>\n", frame_time_chart(walk, s.budget_ms));
+    out += "<div class=\"two\">\n";
+    out += card("How long frames took", "Counted on a logarithmic scale: a single slow frame shows.",
+                frame_histogram(walk, s.budget_ms));
+    out += fmt::format("<div class=\"card\"><h3>Where the time goes</h3>{}{}</div>\n",
+                       legend({{"c7", "wake"}, {"c2", "select"}, {"c0", "submit"}, {"c3", "raster"}, {"c5", "present"}}),
+                       phases_chart(walk));
+    out += card("Budget spent", "Time spent over time allowed: close to full, never beyond.", budget_chart(walk));
+    out += card("Wake lateness", "How late the machine woke the frame thread, before any work of its own.", wake_chart(walk));
+    return out + "</div>\n";
+}
+
+std::string picture_section(const WalkSummary& s, const WalkFrames& walk, std::span<const ReportShot> shots) {
+    std::string out =
+        "<h2>What was drawn</h2>\n<p class=\"sub\">Accuracy is one over the largest angular error of anything on screen: higher "
+        "is finer. "
+        "Overload lowers it; it never drops an object.</p>\n<div class=\"two\">\n";
+    out += card("Accuracy",
+                fmt::format("Mean {}, at worst {} of error.", accuracy_words(s.accuracy_mean), accuracy_words(s.accuracy_min)),
+                accuracy_chart_over_time(walk));
+    out += card("Triangles",
+                s.model_triangles > 0 ? fmt::format("Mean {} of the model's {}.", short_number(s.triangles_mean),
+                                                    short_number(static_cast<double>(s.model_triangles)))
+                                      : fmt::format("Mean {}.", short_number(s.triangles_mean)),
+                triangles_chart(walk, s.model_triangles));
+    out += card("The path", shots.empty() ? "From above." : "From above; numbers are where the pictures were taken.",
+                path_map(walk, shots));
+    out += card("Misses by cause", s.misses == 0 ? "" : "One cause a miss, from the evidence of that frame.", cause_chart(s));
+    return out + "</div>\n" + shot_cards(s, walk.shots_s, shots);
+}
+
+std::string control_section(const ControlSummary& control) {
+    if (!control.ran) return {};
+    return fmt::format("<h2>Against a bare loop</h2>\n<p class=\"sub\">{}</p>\n<div class=\"card\">{}{}</div>\n",
+                       escaped(control_words(control)), legend({{"c0", "walk"}, {"c8", "bare loop of the same cost"}}),
+                       control_chart(control));
+}
+
+std::string body_of(const WalkSummary& s, std::span<const FrameRecord> records, std::span<const ReportShot> shots) {
+    const WalkFrames walk = walk_frames(s, records, shots);
+    return page_header(s) + degraded_notes(s) + tiles(s) + time_section(s, walk) + picture_section(s, walk, shots) +
+           control_section(s.control) + figures_table(s) + machine_table(s) + page_footer();
+}
+
+}  // namespace
+
+Result<void> write_report(const std::string& dir, const WalkSummary& summary, std::span<const FrameRecord> records,
+                          std::span<const ReportShot> shots) {
+    std::error_code failed;
+    std::filesystem::create_directories(dir, failed);
+    if (failed) return Error{dir, "cannot make the folder: " + failed.message(), "choose a folder that you may write in"};
+    const std::filesystem::path folder(dir);
+    if (auto written = write_ledger((folder / "ledger.csv").string(), records); !written) return written;
+    if (auto written = write_text((folder / "walk.json").string(), to_json(summary)); !written) return written;
+    const std::string title = fmt::format("Surefoot: {}", escaped(summary.model));
+    return write_text((folder / "index.html").string(), page(title, body_of(summary, records, shots)));
+}
+
+}  // namespace surefoot::report

@@ -1,0 +1,195 @@
+// Words, tiles, pictures and tables of the walk's page. Everything that came from outside is escaped here.
+#include "tools/report/page_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "tools/report/charts.hpp"
+#include "tools/report/pictures.hpp"
+#include "tools/report/svg.hpp"
+#include "tools/report/verdict.hpp"
+
+namespace surefoot::report {
+
+namespace {
+
+constexpr int picture_quality = 84;
+
+std::string file_name(const std::string& path) { return escaped(std::filesystem::path(path).filename().string()); }
+
+std::string badge(const WalkSummary& s) {
+    switch (verdict_of(s)) {
+        case Verdict::good:
+            return "<div class=\"badge good\"><i></i>every frame in time</div>";
+        case Verdict::warn:
+            return "<div class=\"badge warn\"><i></i>late at times, within the rule</div>";
+        case Verdict::bad:
+            return "<div class=\"badge bad\"><i></i>does not keep its frame</div>";
+    }
+    return {};
+}
+
+std::string tile(std::string_view name, const std::string& value, std::string_view unit, const std::string& note) {
+    return fmt::format(
+        "<div class=\"tile\"><div class=\"name\">{}</div><div class=\"value\">{}<small> {}</small></div><div "
+        "class=\"note\">{}</div></div>\n",
+        name, value, unit, note);
+}
+
+std::string figure(const std::string& uri, std::string_view alt, std::string_view caption) {
+    if (uri.empty()) return {};
+    return fmt::format("<figure><img loading=\"lazy\" alt=\"{0}\" src=\"{1}\"><figcaption>{2}</figcaption></figure>\n", alt, uri,
+                       caption);
+}
+
+std::string decibels(double db) { return std::isinf(db) ? (db > 0 ? "∞ dB" : "undefined") : fmt::format("{:.1f} dB", db); }
+
+std::string shot_card(const ReportShot& shot, std::size_t number, double time_s, const std::string& selector) {
+    const auto chip = [](std::string_view name, const std::string& value) {
+        return fmt::format("<span class=\"chip\">{} <b>{}</b></span>", name, value);
+    };
+    std::string out = fmt::format("<section class=\"shot\"><div class=\"head\"><h3>{}</h3><div class=\"chips\">", number);
+    out += chip("at", fmt::format("{:.1f} s", time_s)) + chip("frame", grouped(static_cast<double>(shot.frame)));
+    const double share =
+        shot.full_triangles > 0 ? static_cast<double>(shot.triangles) / static_cast<double>(shot.full_triangles) : 1;
+    out += chip("triangles", fmt::format("{} of {} ({})", short_number(static_cast<double>(shot.triangles)),
+                                         short_number(static_cast<double>(shot.full_triangles)), percent(share)));
+    if (!shot.difference.empty()) out += chip("SNR", decibels(shot.snr_db)) + chip("SSIM", fmt::format("{:.3f}", shot.ssim));
+    out +=
+        chip("accuracy", fmt::format("{} rad⁻¹", short_number(double{shot.accuracy}))) + "</div></div>\n<div class=\"views\">\n";
+    const auto uri = [&](const std::vector<std::uint8_t>& rgba) {
+        return jpeg_data_uri(rgba, shot.width, shot.height, picture_quality);
+    };
+    out += figure(uri(shot.walk), "the walk's picture", fmt::format("The walk, {}", escaped(selector)));
+    out += figure(uri(shot.full), "full detail", "Full detail, however long it takes");
+    out += figure(uri(shot.difference), "difference of the two", "Difference, four times amplified");
+    if (!shot.drawn.empty())
+        out += fmt::format("<figure><div class=\"map\">{}</div><figcaption>From above: {} nodes drawn</figcaption></figure>\n",
+                           top_view(shot), grouped(static_cast<double>(shot.drawn.size())));
+    return out + "</div></section>\n";
+}
+
+std::string row_of(std::string_view name, const Quantiles& q, double factor, int decimals) {
+    std::string out = fmt::format("<tr><td>{}</td>", name);
+    for (const double v : {q.min, q.mean, q.p50, q.p90, q.p99, q.p999, q.max})
+        out += fmt::format("<td>{:.{}f}</td>", v * factor, decimals);
+    return out + "</tr>\n";
+}
+
+}  // namespace
+
+std::string page_header(const WalkSummary& s) {
+    std::string out =
+        fmt::format("<header>\n<p class=\"brand\"><b>Surefoot</b> walk report</p>\n{}\n<h1>{}</h1>\n<p class=\"lead\"><b>{}</b>",
+                    badge(s), escaped(headline(s)), file_name(s.model));
+    if (!s.path.empty()) out += fmt::format(" along <b>{}</b>", file_name(s.path));
+    out += fmt::format(" for {:.0f} seconds at {:.4g} Hz and {}×{} pixels, chosen by <b>{}</b>, drawn by {}.", s.seconds,
+                       s.rate_hz, s.width, s.height, escaped(s.selector), escaped(s.renderer.empty() ? s.backend : s.renderer));
+    if (s.model_triangles > 0)
+        out += fmt::format(" The model has {} triangles; a frame drew {} on average.",
+                           grouped(static_cast<double>(s.model_triangles)), grouped(s.triangles_mean));
+    if (s.clock == "virtual") out += " On the virtual clock: times are predictions, not measurements.";
+    return out + "</p>\n</header>\n";
+}
+
+std::string degraded_notes(const WalkSummary& s) {
+    if (s.degraded.empty() && s.census_problems.empty()) return {};
+    std::string out = "<ul class=\"notes\">\n";
+    for (const Degraded& d : s.degraded) {
+        out += fmt::format("<li><b>Not fully real-time: {}</b>", escaped(d.what));
+        if (!d.remedy.empty()) out += fmt::format("<code>{}</code>", escaped(d.remedy));
+        out += "</li>\n";
+    }
+    for (const std::string& problem : s.census_problems)
+        out += fmt::format("<li><b>A thread is not where it should be: {}</b></li>\n", escaped(problem));
+    return out + "</ul>\n";
+}
+
+std::string tiles(const WalkSummary& s) {
+    std::string out = "<div class=\"tiles\">\n";
+    const double period_ms = s.rate_hz > 0 ? 1000 / s.rate_hz : 0;
+    const auto count = [](std::uint64_t n) { return grouped(static_cast<double>(n)); };
+    out += tile("Missed", count(s.misses), fmt::format("of {}", count(s.frames)),
+                s.misses == 0 ? (s.skipped == 0 ? "none skipped either" : fmt::format("{} slots skipped", count(s.skipped)))
+                              : fmt::format("{} own, {} slots skipped", count(s.own_misses), count(s.skipped)));
+    out += tile("Typical frame", fmt::format("{:.1f}", s.frame_ms.p50), "ms",
+                fmt::format("of {:.1f} until the deadline", period_ms));
+    out += tile("Slow frame, p99.9", fmt::format("{:.1f}", s.frame_ms.p999), "ms", fmt::format("slowest {:.1f}", s.frame_ms.max));
+    out += tile("Budget used", fmt::format("{:.0f}", s.budget_used_wall_mean * 100), "%",
+                fmt::format("of {:.1f} ms a frame", s.budget_ms));
+    out += tile("Accuracy", short_number(s.accuracy_mean), "rad⁻¹",
+                fmt::format("{} of error on average", accuracy_words(s.accuracy_mean)));
+    out += tile("Triangles", short_number(s.triangles_mean), "a frame",
+                s.model_triangles > 0 ? fmt::format("of {} in the model", short_number(static_cast<double>(s.model_triangles)))
+                                      : fmt::format("most {}", short_number(static_cast<double>(s.triangles_max))));
+    return out + "</div>\n";
+}
+
+std::string shot_cards(const WalkSummary& s, std::span<const double> time_s, std::span<const ReportShot> shots) {
+    if (shots.empty()) return {};
+    std::string out =
+        "<h2>Along the path</h2>\n<p class=\"sub\">The same place drawn by the walk in its time and at full detail without one. "
+        "From above: "
+        "which nodes stood for what was in view, fuller colour for finer detail.</p>\n"
+        "<div class=\"legend\"><span><i class=\"c1\"></i>cluster: one shape for several objects</span><span><i "
+        "class=\"c0\"></i>object</span>"
+        "<span><i class=\"c2\"></i>piece of an object</span></div>\n";
+    for (std::size_t i = 0; i < shots.size(); ++i) out += shot_card(shots[i], i + 1, time_s[i], s.selector);
+    return out;
+}
+
+std::string figures_table(const WalkSummary& s) {
+    std::string out =
+        "<h2>Figures</h2>\n<div class=\"card "
+        "scroll\"><table>\n<tr><th></th><th>min</th><th>mean</th><th>p50</th><th>p90</th><th>p99</th><th>p99.9</th><th>max</th></"
+        "tr>\n";
+    out += row_of("Frame, ms", s.frame_ms, 1, 2) + row_of("Wake lateness, µs", s.wake_us, 1, 0) +
+           row_of("Select, µs", s.select_us, 1, 0) + row_of("Submit, ms", s.submit_ms, 1, 2) +
+           row_of("Raster, ms", s.raster_ms, 1, 2) + row_of("Prepare (workers' CPU), µs", s.prepare_cpu_us, 1, 0) +
+           row_of("Age of prepared arrays, frames", s.prepared_age, 1, 0) + row_of("Nodes visited to prepare", s.visits, 1, 0) +
+           row_of("Error of predicted cost, %", s.cost_error, 100, 1);
+    out += "</table></div>\n";
+    out += fmt::format(
+        "<p class=\"sub\">{:.2f} switches a frame · {} slices drawn coarser than chosen · the floor was bound in {} frames · cut "
+        "hash <code>{}</code></p>\n",
+        s.switches_per_frame, grouped(static_cast<double>(s.downgrades)), grouped(static_cast<double>(s.floor_bound_frames)),
+        escaped(s.cut_hash));
+    return out;
+}
+
+std::string machine_table(const WalkSummary& s) {
+    const auto yes = [](bool b) { return b ? "yes" : "no"; };
+    const std::array<std::pair<std::string_view, std::string>, 9> rows = {{
+        {"Machine", s.machine},
+        {"Renderer", fmt::format("{} ({})", s.renderer, s.backend)},
+        {"Clock, late frames", fmt::format("{}, {}", s.clock, s.late_policy)},
+        {"Real-time scheduling (FIFO)", yes(s.fifo)},
+        {"Threads pinned to cores", yes(s.pinned)},
+        {"Core set apart from others", yes(s.isolated)},
+        {"Memory locked", yes(s.locked)},
+        {"Frame thread's own code", fmt::format("{} page faults, {} guard violations", s.page_faults, s.guard_violations)},
+        {"Driver, and the host", fmt::format("{} page faults, {} allocations; {:.1f} ms stolen by the host", s.driver_faults,
+                                             s.driver_allocations, s.steal_ms)},
+    }};
+    std::string out = "<h2>The machine</h2>\n<div class=\"card scroll\"><table>\n";
+    for (const auto& [name, value] : rows)
+        out += fmt::format("<tr><td>{}</td><td class=\"words\">{}</td></tr>\n", name, escaped(value));
+    return out + "</table></div>\n";
+}
+
+std::string page_footer() {
+    return "<footer><p>Beside this page: <a href=\"ledger.csv\">ledger.csv</a>, one row a frame, and <a "
+           "href=\"walk.json\">walk.json</a>, "
+           "the figures above.</p><p><b>Own miss</b>: late even with the time taken out that the host stole. <b>Budget</b>: what "
+           "a frame may spend of its slot. "
+           "<b>Cluster</b>: a node standing for several objects. <b>Switch</b>: a node's representation changed between two "
+           "frames. "
+           "<b>SNR</b>: variance of the walk's picture over its mean square difference from full detail (Pasman and Jansen "
+           "2002); "
+           "<b>SSIM</b>: structural similarity of luma, 1 for equal pictures.</p></footer>\n";
+}
+
+}  // namespace surefoot::report

@@ -1,0 +1,24 @@
+// Parts of the walk's page that are words, figures and pictures rather than charts.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "tools/report/report.hpp"
+
+namespace surefoot::report {
+
+/// Brand, verdict and what was walked.
+std::string page_header(const WalkSummary& summary);
+/// What is not real-time here, and how to grant it; empty where nothing lacks.
+std::string degraded_notes(const WalkSummary& summary);
+/// The six figures that matter.
+std::string tiles(const WalkSummary& summary);
+/// Pictures along the path, each with its top view; empty without shots. time_s: one a shot.
+std::string shot_cards(const WalkSummary& summary, std::span<const double> time_s, std::span<const ReportShot> shots);
+/// All percentiles, for who wants them.
+std::string figures_table(const WalkSummary& summary);
+std::string machine_table(const WalkSummary& summary);
+std::string page_footer();
+
+}  // namespace surefoot::report

@@ -1,0 +1,139 @@
+// From frame records to the figures of a walk: pure sums and percentiles, nothing measured here.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "rt/base/hash.hpp"
+#include "tools/report/report.hpp"
+#include "tools/report/times.hpp"
+
+#include <fmt/format.h>
+
+namespace surefoot::report {
+
+namespace {
+
+using rt::FrameRecord;
+
+/// Nearest rank: the smallest value that at least a share q of all values do not exceed. Never a value that did not occur.
+double nearest_rank(const std::vector<double>& sorted, double q) {
+    const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size()) - 1e-9));
+    return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
+}
+
+template <class Value>
+Quantiles quantiles_of(std::span<const FrameRecord* const> frames, Value value) {
+    std::vector<double> values;
+    values.reserve(frames.size());
+    for (const FrameRecord* frame : frames) values.push_back(value(*frame));
+    return quantiles(std::move(values));
+}
+
+void count_frames(std::span<const FrameRecord* const> frames, WalkSummary& s) {
+    std::uint64_t hash = fnv_start;
+    for (const FrameRecord* f : frames) {
+        s.skipped += f->skipped_before;
+        s.misses += f->missed ? 1 : 0;
+        s.own_misses += f->own_miss ? 1 : 0;
+        if (f->missed) ++s.miss_causes[std::string(rt::cause_names[static_cast<std::size_t>(f->cause)])];
+        s.downgrades += f->downgraded_slices;
+        s.floor_bound_frames += f->floor_binds ? 1 : 0;
+        s.page_faults += f->minor_faults + f->major_faults;
+        s.guard_violations += f->guard_violations;
+        s.driver_faults += f->driver_faults;
+        s.driver_allocations += f->driver_allocations;
+        s.steal_ms += static_cast<double>(f->stolen_ns) * 1e-6;
+        s.triangles_max = std::max(s.triangles_max, f->triangles);
+        hash = fnv1a(hash, f->cut_hash);
+    }
+    s.frames = frames.size();
+    s.slots = s.frames + s.skipped;
+    s.cut_hash = fmt::format("{:016x}", hash);
+}
+
+/// The mean is over frames that have an error; where none has, everything drawn was exact.
+void accuracy_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
+    double sum = 0;
+    std::size_t counted = 0;
+    s.accuracy_min = std::numeric_limits<double>::infinity();
+    for (const FrameRecord* f : frames) {
+        const double accuracy = f->accuracy;
+        if (std::isnan(accuracy)) continue;
+        s.accuracy_min = std::min(s.accuracy_min, accuracy);
+        if (!std::isfinite(accuracy)) continue;
+        sum += accuracy;
+        ++counted;
+    }
+    s.accuracy_mean = counted > 0 ? sum / static_cast<double>(counted) : std::numeric_limits<double>::infinity();
+}
+
+void budget_figures(std::span<const FrameRecord* const> frames, std::int64_t period_ns, WalkSummary& s) {
+    s.budget_ms = quantiles_of(frames, [](const FrameRecord& f) { return f.budget_us * 1e-3; }).p50;
+    const auto used =
+        quantiles_of(frames, [&](const FrameRecord& f) { return busy_ns(f, s.rasterisers) / static_cast<double>(period_ns); });
+    s.budget_used_mean = used.mean;
+    s.budget_used_p99 = used.p99;
+    s.budget_used_wall_mean = quantiles_of(frames, [](const FrameRecord& f) { return share_of_budget(f); }).mean;
+    std::vector<double> errors;
+    for (const FrameRecord* f : frames)
+        if (f->actual_us > 0) errors.push_back(std::abs(double{f->predicted_us} - double{f->actual_us}) / double{f->actual_us});
+    s.cost_error = quantiles(std::move(errors));
+}
+
+/// Everything that is counted up starts from zero, so that a summary can be made anew from longer records.
+void clear_counts(WalkSummary& s) {
+    s.frames = s.slots = s.skipped = s.misses = s.own_misses = 0;
+    s.miss_causes.clear();
+    s.downgrades = s.floor_bound_frames = s.page_faults = s.guard_violations = s.driver_faults = s.driver_allocations = 0;
+    s.steal_ms = 0;
+    s.triangles_max = 0;
+}
+
+}  // namespace
+
+Quantiles quantiles(std::vector<double> values) {
+    std::erase_if(values, [](double v) { return !std::isfinite(v); });
+    Quantiles q;
+    if (values.empty()) return q;
+    std::sort(values.begin(), values.end());
+    q.p50 = nearest_rank(values, 0.50);
+    q.p90 = nearest_rank(values, 0.90);
+    q.p99 = nearest_rank(values, 0.99);
+    q.p999 = nearest_rank(values, 0.999);
+    q.min = values.front();
+    q.max = values.back();
+    double sum = 0;
+    for (const double v : values) sum += v;
+    q.mean = sum / static_cast<double>(values.size());
+    return q;
+}
+
+void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, WalkSummary& summary) {
+    std::vector<const FrameRecord*> frames;
+    frames.reserve(records.size());
+    for (const FrameRecord& record : records)
+        if (!record.control) frames.push_back(&record);
+
+    period_ns = std::max<std::int64_t>(period_ns, 1);
+    clear_counts(summary);
+    count_frames(frames, summary);
+    accuracy_figures(frames, summary);
+    budget_figures(frames, period_ns, summary);
+    summary.rate_hz = 1e9 / static_cast<double>(period_ns);
+    summary.seconds = static_cast<double>(summary.slots) * static_cast<double>(period_ns) * 1e-9;
+    summary.frame_ms = quantiles_of(frames, frame_ms);
+    summary.wake_us = quantiles_of(frames, wake_us);
+    summary.select_us = quantiles_of(frames, select_us);
+    summary.submit_ms = quantiles_of(frames, [](const FrameRecord& f) { return submit_us(f) * 1e-3; });
+    summary.raster_ms = quantiles_of(frames, [](const FrameRecord& f) { return raster_us(f) * 1e-3; });
+    summary.prepare_cpu_us = quantiles_of(frames, [](const FrameRecord& f) { return double{f.prepare_cpu_us}; });
+    summary.prepared_age = quantiles_of(frames, [](const FrameRecord& f) { return double(f.prepared_age); });
+    summary.visits = quantiles_of(frames, [](const FrameRecord& f) { return double(f.visits); });
+    summary.triangles_mean = quantiles_of(frames, [](const FrameRecord& f) { return static_cast<double>(f.triangles); }).mean;
+    summary.switches_per_frame = quantiles_of(frames, [](const FrameRecord& f) { return double(f.switches); }).mean;
+}
+
+}  // namespace surefoot::report

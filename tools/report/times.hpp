@@ -1,0 +1,37 @@
+// What the times of one frame record mean, in one place: the ledger, the summary, the trace and the page agree by construction.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "rt/frame/record.hpp"
+
+namespace surefoot::report {
+
+inline double us_between(std::int64_t from_ns, std::int64_t to_ns) { return static_cast<double>(to_ns - from_ns) * 1e-3; }
+
+inline double wake_us(const rt::FrameRecord& f) { return us_between(f.due_ns, f.woken_ns); }
+inline double select_us(const rt::FrameRecord& f) { return us_between(f.woken_ns, f.selected_ns); }
+inline double submit_us(const rt::FrameRecord& f) { return us_between(f.selected_ns, f.submitted_ns); }
+inline double raster_us(const rt::FrameRecord& f) { return us_between(f.submitted_ns, f.rastered_ns); }
+inline double present_us(const rt::FrameRecord& f) { return us_between(f.rastered_ns, f.presented_ns); }
+inline double slack_us(const rt::FrameRecord& f) { return us_between(f.presented_ns, f.deadline_ns); }
+/// From when the frame was due (not from when it woke) to its end: comparable with the period.
+inline double frame_ms(const rt::FrameRecord& f) { return us_between(f.due_ns, f.presented_ns) * 1e-3; }
+
+/// CPU time that the frame took of its grid: the frame thread's, and the rasterisers' as spread over their threads. Where a
+/// clock is not known (a GPU, the virtual clock), the wall time of that part less what was stolen.
+inline double busy_ns(const rt::FrameRecord& f, std::uint32_t rasterisers) {
+    const double stolen = static_cast<double>(f.stolen_ns);
+    const double raster_wall = std::max(0.0, static_cast<double>(f.rastered_ns - f.submitted_ns) - stolen);
+    if (f.cpu_ns <= 0) return std::max(0.0, static_cast<double>(f.rastered_ns - f.woken_ns) - stolen);
+    const double raster = f.raster_cpu_ns > 0 ? static_cast<double>(f.raster_cpu_ns) / std::max(1U, rasterisers) : raster_wall;
+    return static_cast<double>(f.cpu_ns) + raster;
+}
+
+/// Wall time spent over the budget that the frame had; 0 where it had none.
+inline double share_of_budget(const rt::FrameRecord& f) {
+    return f.budget_us > 0 ? double{f.actual_us} / double{f.budget_us} : 0;
+}
+
+}  // namespace surefoot::report

@@ -1,0 +1,68 @@
+// The verdict in words. Says what was measured, claims no more.
+#include "tools/report/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/report/svg.hpp"
+
+namespace surefoot::report {
+
+namespace {
+
+constexpr double own_misses_allowed_per_frame = 2.0 / 1800.0;
+constexpr double significance = 0.01;
+
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
+    return fmt::format("{} {}", grouped(static_cast<double>(count)), count == 1 ? one : many);
+}
+
+}  // namespace
+
+Verdict verdict_of(const WalkSummary& s) {
+    if (s.frames == 0) return Verdict::bad;
+    if (s.misses == 0 && s.skipped == 0) return Verdict::good;
+    const bool own = static_cast<double>(s.own_misses) > own_misses_allowed_per_frame * static_cast<double>(s.frames);
+    const bool worse_than_control = s.control.ran && s.control.p_value < significance;
+    return own || worse_than_control ? Verdict::bad : Verdict::warn;
+}
+
+std::string headline(const WalkSummary& s) {
+    if (s.frames == 0) return "No frame was drawn.";
+    const double period_ms = s.rate_hz > 0 ? 1000.0 / s.rate_hz : 0;
+    std::string text = fmt::format("{}, {} missed", counted(s.frames, "frame", "frames"), grouped(static_cast<double>(s.misses)));
+    if (s.misses > 0 && s.own_misses == 0) text += ", none of them by its own doing";
+    if (s.misses > 0 && s.own_misses > 0)
+        text += fmt::format(", {} by its own doing", grouped(static_cast<double>(s.own_misses)));
+    text += fmt::format(": the slowest took {:.1f} of {:.1f} ms", s.frame_ms.max, period_ms);
+    if (s.skipped > 0) text += fmt::format(", {} skipped", counted(s.skipped, "slot was", "slots were"));
+    return text + ".";
+}
+
+std::string control_words(const ControlSummary& c) {
+    if (!c.ran) return {};
+    std::string text = fmt::format("Over {} pairs of blocks the walk missed {} and a bare loop of the same cost missed {}",
+                                   c.pairs, c.walk_misses, c.control_misses);
+    text += c.p_value < significance ? fmt::format(": the walk misses more (p = {:.4f}).", c.p_value)
+                                     : fmt::format(": no more than the machine itself (p = {:.2f}).", c.p_value);
+    if (c.other_miss_share >= 0)
+        text += fmt::format(
+            " Without real-time scheduling the bare loop missed {}{}.", percent(c.other_miss_share),
+            c.other_miss_share < 0.2 ? "; below a fifth, so the load was too light to judge by" : ": the load counts");
+    return text;
+}
+
+std::string accuracy_words(double accuracy) {
+    if (std::isinf(accuracy)) return "exact";
+    if (!(accuracy > 0)) return "unknown";
+    const double degrees = 57.29577951308232 / accuracy;
+    return degrees >= 0.1 ? fmt::format("{:.2g}°", degrees) : fmt::format("{:.2g}′", degrees * 60);
+}
+
+std::string percent(double share) {
+    const double value = share * 100;
+    return std::abs(value) < 10 && value != 0 ? fmt::format("{:.1f} %", value) : fmt::format("{:.0f} %", value);
+}
+
+}  // namespace surefoot::report

@@ -1,0 +1,24 @@
+// What the figures amount to, in plain words: shared by the terminal's table and the page.
+#pragma once
+
+#include <string>
+
+#include "tools/report/report.hpp"
+
+namespace surefoot::report {
+
+enum class Verdict { good, warn, bad };
+
+/// good: nothing missed; warn: misses, but within the deadline rule (DESIGN 7: own misses at most 2 per 1800 frames);
+/// bad: beyond it, or nothing ran.
+Verdict verdict_of(const WalkSummary& summary);
+/// "1800 frames, 0 missed: the slowest took 31.2 of 33.3 ms."
+std::string headline(const WalkSummary& summary);
+/// The control's part of the rule in words; empty where no control ran.
+std::string control_words(const ControlSummary& control);
+/// The largest angular error of an accuracy: "0.24°", "3.1′"; "exact" where no error was drawn.
+std::string accuracy_words(double accuracy);
+/// "2.5 %" of a share.
+std::string percent(double share);
+
+}  // namespace surefoot::report
