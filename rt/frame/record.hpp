@@ -9,44 +9,59 @@ namespace surefoot::rt {
 
 /// One cause a miss (DESIGN 7). none: on time.
 enum class Cause : std::uint8_t {
-    none, woken_late, stolen, preempted, select, submit, raster, upload, prepared_too_old, page_fault, present, stopped
+    none,
+    woken_late,
+    stolen,
+    preempted,
+    select,
+    submit,
+    raster,
+    upload,
+    prepared_too_old,
+    page_fault,
+    present,
+    stopped
 };
 constexpr int cause_count = 12;
 constexpr std::array<std::string_view, cause_count> cause_names = {
-    "none", "woken_late", "stolen", "preempted", "select", "submit", "raster", "upload", "prepared_too_old", "page_fault", "present", "stopped"};
+    "none",   "woken_late", "stolen",           "preempted",  "select",  "submit",
+    "raster", "upload",     "prepared_too_old", "page_fault", "present", "stopped"};
 
 /// Times in integer nanoseconds of CLOCK_MONOTONIC (or of the virtual clock).
 struct FrameRecord {
-    std::uint64_t slot = 0;             ///< grid slot; skipped slots are the gaps
-    std::uint64_t frame = 0;            ///< frames run, from 0
-    std::int64_t due_ns = 0;            ///< t0 + slot * T
+    std::uint64_t slot = 0;   ///< grid slot; skipped slots are the gaps
+    std::uint64_t frame = 0;  ///< frames run, from 0
+    std::int64_t due_ns = 0;  ///< t0 + slot * T
     std::int64_t woken_ns = 0;
-    std::int64_t selected_ns = 0;       ///< sample, select and slice plan done
-    std::int64_t submitted_ns = 0;      ///< last slice handed to the driver
-    std::int64_t rastered_ns = 0;       ///< last fence passed
-    std::int64_t presented_ns = 0;      ///< end of the frame
-    std::int64_t deadline_ns = 0;       ///< due + T
-    std::int64_t cpu_ns = 0;            ///< frame thread's own CPU time
-    std::int64_t raster_cpu_ns = 0;     ///< of the driver's rasterisers (read by the monitor; 0 where unknown)
-    std::int64_t stolen_ns = 0;         ///< wall minus CPU minus known waits, with no involuntary switch
+    std::int64_t selected_ns = 0;    ///< sample, select and slice plan done
+    std::int64_t submitted_ns = 0;   ///< last slice handed to the driver
+    std::int64_t rastered_ns = 0;    ///< last fence passed
+    std::int64_t presented_ns = 0;   ///< end of the frame
+    std::int64_t deadline_ns = 0;    ///< due + T
+    std::int64_t cpu_ns = 0;         ///< frame thread's own CPU time
+    std::int64_t raster_cpu_ns = 0;  ///< of the driver's rasterisers (read by the monitor; 0 where unknown)
+    std::int64_t stolen_ns = 0;      ///< wall minus CPU minus known waits, with no involuntary switch
+    std::int64_t preempted_ns = 0;   ///< the same gap, where involuntary switches were seen
+    std::int64_t waited_ns = 0;      ///< known waits: for the driver's rasterisers
     std::int64_t upload_ns = 0;
-    std::uint32_t skipped_before = 0;   ///< slots skipped just before this one
+    std::uint32_t skipped_before = 0;                  ///< slots skipped just before this one
     std::uint32_t voluntary = 0, involuntary = 0;      ///< context switches in the frame
     std::uint32_t minor_faults = 0, major_faults = 0;  ///< in own code
     std::uint32_t driver_faults = 0, driver_allocations = 0, guard_violations = 0;
-    std::uint32_t prepared_age = 0;     ///< frames; 1 is the newest possible
+    std::uint32_t continued = 0;     ///< times the process was stopped and continued since the last frame
+    std::uint32_t prepared_age = 0;  ///< frames; 1 is the newest possible
     std::uint32_t slices = 0, downgraded_slices = 0;
     std::uint32_t items = 0, draws = 0, switches = 0, visits = 0, candidates = 0;
     std::uint64_t triangles = 0;
     std::uint64_t cut_hash = 0;
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;
     float prepare_cpu_us = 0;
-    float accuracy = 0;                 ///< rad^-1
-    float benefit = 0;                  ///< mean over items
+    float accuracy = 0;  ///< rad^-1
+    float benefit = 0;   ///< mean over items
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     Cause cause = Cause::none;
-    std::uint32_t block = 0;            ///< control blocks: number of the 2 s block
-    std::array<double, 3> eye{};        ///< metres
+    std::uint32_t block = 0;              ///< control blocks: number of the 2 s block
+    std::array<double, 3> eye{};          ///< metres
     std::array<double, 4> orientation{};  ///< x, y, z, w
 };
 

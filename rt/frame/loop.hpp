@@ -1,0 +1,65 @@
+// The frame loop: wake on the grid, run the stages that are handed in, account, next slot. Short enough to audit in one look.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include "rt/clock/clock.hpp"
+#include "rt/clock/grid.hpp"
+#include "rt/exchange/spsc_ring.hpp"
+#include "rt/frame/blame.hpp"
+#include "rt/frame/control.hpp"
+#include "rt/frame/record.hpp"
+#include "rt/threads/usage.hpp"
+
+namespace surefoot::rt {
+
+/// What a frame does; called in this order, on the frame thread, with the record's slot, frame, due_ns, deadline_ns, woken_ns
+/// and skipped_before filled in. Own code in them may not allocate, lock or fault.
+class FrameStages {
+public:
+    virtual ~FrameStages() = default;
+    /// Takes the newest input: the pose of this frame.
+    virtual void sample(FrameRecord& record) = 0;
+    /// Chooses the cut. selected_ns is taken when it returns.
+    virtual void select(FrameRecord& record) = 0;
+    /// Hands the slices to the driver (driver tier of memory). submitted_ns is taken when it returns, unless it set it.
+    virtual void submit(FrameRecord& record) = 0;
+    /// Waits for the last fence and presents (driver tier). presented_ns is taken when it returns, and rastered_ns too unless
+    /// submit() or finish() set it.
+    virtual void finish(FrameRecord& record) = 0;
+    /// After the frame's end, with usage, missed, own_miss and cause filled in: corrects costs, fills the rest of the record.
+    virtual void account(FrameRecord& record) = 0;
+};
+
+struct FrameLoopOptions {
+    std::int64_t period_ns = 16'666'667;
+    std::int64_t t0_ns = 0;    ///< 0: the first slot is due one period after the call
+    std::uint64_t frames = 0;  ///< frames to run; 0: until stopped (or the control schedule ends)
+    LatePolicy late = LatePolicy::lock;
+    const ControlSchedule* control = nullptr;  ///< not null: ends after its last block
+    const std::atomic<bool>* stop = nullptr;   ///< looked at once a frame
+    /// Times that the process was continued after a stop, counted by a SIGCONT handler (see count_continues()); may be null.
+    const std::atomic<std::uint32_t>* continued = nullptr;
+    std::span<const pid_t> rasterisers;          ///< the driver's threads, for raster_cpu_ns and known waits
+    std::span<const pid_t> rasterisers_on_core;  ///< those of them on the frame core: the control burns their time too
+    BlameLimits limits;                          ///< period_ns is taken from above
+    bool wait_for_ring = false;                  ///< virtual clock only: yields to the recorder instead of dropping records
+};
+
+struct FrameLoopResult {
+    std::uint64_t run = 0;      ///< frames, bare ones of the control included
+    std::uint64_t skipped = 0;  ///< slots
+    std::uint64_t elapsed = 0;  ///< slots; always run + skipped
+};
+
+/// Runs on the calling thread, which the caller has placed. Records go to `records`, in order; what does not fit is dropped and
+/// counted there. Allocates nothing.
+FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, FrameStages& stages,
+                               SpscRing<FrameRecord>& records);
+
+/// Installs the SIGCONT handler that `continued` wants, process-wide, and returns its counter.
+const std::atomic<std::uint32_t>* count_continues();
+
+}  // namespace surefoot::rt

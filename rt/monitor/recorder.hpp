@@ -1,0 +1,50 @@
+// The monitor thread: empties the ring of frame records into memory reserved in advance, beside the frame thread.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "rt/exchange/spsc_ring.hpp"
+#include "rt/frame/record.hpp"
+#include "rt/monitor/flight_recorder.hpp"
+
+namespace surefoot::rt {
+
+struct RecorderOptions {
+    std::size_t reserve_records = 36000;  ///< more are kept too, at the price of growing
+    std::int64_t poll_ns = 10'000'000;    ///< how often the ring is emptied
+    std::string thread_name = "sf-monitor";
+    std::function<void(const FrameRecord&)> on_record;  ///< live figures; on the monitor thread; may be empty
+};
+
+/// Start it from a neutral thread: its thread inherits from its creator. `ring` must outlive it.
+class Recorder {
+public:
+    Recorder(SpscRing<FrameRecord>& ring, RecorderOptions options);
+    ~Recorder();  ///< stops
+    Recorder(const Recorder&) = delete;
+    Recorder& operator=(const Recorder&) = delete;
+
+    /// Empties the ring a last time and ends the thread. Call it when the producer has stopped.
+    void stop();
+    /// After stop().
+    [[nodiscard]] const std::vector<FrameRecord>& records() const { return records_; }
+    [[nodiscard]] std::vector<FrameRecord> take_records() { return std::move(records_); }
+    [[nodiscard]] const FlightRecorder& flight() const { return flight_; }
+
+private:
+    void run();
+    void drain();
+    SpscRing<FrameRecord>& ring_;
+    RecorderOptions options_;
+    std::vector<FrameRecord> records_;
+    FlightRecorder flight_;
+    std::atomic<bool> stopping_{false};
+    std::thread thread_;
+};
+
+}  // namespace surefoot::rt
