@@ -1,0 +1,102 @@
+// Bench: predicted against measured whole-frame cost on random poses, online correction frozen at 1.
+// bench_whole_frame_cost MODEL.walk [POSES 500] [PATH.csv] [STATE_DIR] -> one JSON object.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "render/engine.hpp"
+#include "render/model/walk_file.hpp"
+#include "rt/base/random.hpp"
+#include "rt/threads/memory.hpp"
+#include "rt/threads/placement.hpp"
+#include "tools/app/path_source.hpp"
+#include "tools/app/placing.hpp"
+#include "tools/app/state.hpp"
+
+namespace {
+
+using namespace surefoot;
+
+std::int64_t now_ns(void* /*context*/) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double quantile(std::vector<double> v, double q) {
+    std::sort(v.begin(), v.end());
+    return v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
+}
+
+/// A place on the path, moved by up to 3 m, looking anywhere about the horizon.
+Pose random_pose(const Path& path, Random& random) {
+    Pose pose = sample_path(path, random.range(0, path.duration_s()));
+    pose.position += dvec3(random.range(-3, 3), random.range(-0.3, 1.5), random.range(-3, 3));
+    const double yaw = random.range(-3.14159265358979, 3.14159265358979), pitch = random.range(-0.3, 0.3);
+    pose.orientation = glm::normalize(glm::angleAxis(yaw, dvec3(0, 1, 0)) * glm::angleAxis(pitch, dvec3(1, 0, 0)));
+    return pose;
+}
+
+int fail(const Error& error) {
+    fmt::print(stderr, "{}\n", error.text());
+    return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2) return fmt::print(stderr, "bench_whole_frame_cost MODEL.walk [POSES] [PATH.csv] [STATE_DIR]\n"), 2;
+    const int poses = argc > 2 ? std::atoi(argv[2]) : 500;
+    auto model = model::read_walk(argv[1]);
+    if (!model) return fail(model.error());
+    auto path = app::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, 0);
+    if (!path) return fail(path.error());
+    std::string note;
+    auto costs = app::load_costs(app::state_directory(argc > 4 ? argv[4] : ""), "", note);
+    if (!costs) return fail(costs.error());
+    if (!note.empty()) fmt::print(stderr, "{}\n", note);
+    (void)rt::prepare_memory({});
+    EngineOptions options;
+    options.in_frame_check = false;
+    auto engine = Engine::open(std::move(*model), *costs, options);
+    if (!engine) return fail(engine.error());
+    app::WalkRequest request;
+    auto plan = app::plan_placing(request, true);
+    if (!plan) return fail(plan.error());
+    (void)app::place_rasterisers(*plan);
+    (void)rt::place_thread(0, app::frame_placement(*plan));
+    (*engine)->device().bind();
+
+    Random random(2026);
+    prepare::PreparedFrame prepared;
+    (*engine)->reserve(prepared);
+    SubmitLimits limits;
+    limits.limit_us = 1e12;
+    limits.now_ns = now_ns;
+    std::vector<double> errors, ratios, frame_ms;
+    for (int i = 0; i < poses + 20; ++i) {
+        const Pose pose = random_pose(path->path, random);
+        const double budget_us = random.range(3000, 28000);
+        (*engine)->prepare({pose, 0, 0}, 0, 0, 0, prepared);
+        (*engine)->select(prepared, budget_us, 1.0, 0);
+        std::vector<double> times;
+        double predicted = 0;
+        for (int r = 0; r < 3; ++r) {
+            const SubmitReport report = (*engine)->submit(pose, limits);
+            times.push_back(report.finished_us);
+            predicted = report.predicted_us;
+        }
+        if (i < 20) continue;  // warm-up
+        std::sort(times.begin(), times.end());
+        errors.push_back(std::abs(predicted - times[1]) / times[1]);
+        ratios.push_back(times[1] / predicted);
+        frame_ms.push_back(times[1] * 1e-3);
+    }
+    fmt::print("{{\"model\": \"{}\", \"poses\": {}, \"error\": {{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}, "
+               "\"actual_over_predicted\": {{\"p10\": {:.3f}, \"p50\": {:.3f}, \"p90\": {:.3f}}}, \"frame_ms\": {{\"p50\": {:.2f}, \"p90\": {:.2f}}}}}\n",
+               argv[1], poses, quantile(errors, 0.5), quantile(errors, 0.9), quantile(errors, 0.99), quantile(ratios, 0.1), quantile(ratios, 0.5),
+               quantile(ratios, 0.9), quantile(frame_ms, 0.5), quantile(frame_ms, 0.9));
+    return 0;
+}
