@@ -35,7 +35,8 @@ struct Material {
     bool unlit = false;
 };
 
-/// Triangles of one material. Optional arrays are empty or as long as positions.
+/// Triangles of one material. Optional arrays are empty or as long as positions. Colours are sRGB-encoded, as a Material's
+/// and an Image's are (glTF's linear ones are encoded on import); v = 0 of a uv is the picture's top row.
 struct Primitive {
     std::vector<vec3> positions;   ///< finite, metres in the mesh's frame
     std::vector<vec3> normals;     ///< unit
@@ -76,13 +77,13 @@ Result<Scene> import_files(const std::vector<std::string>& files, const Progress
 Result<Scene> import_gltf(const std::string& file, const Progress& progress);
 Result<Scene> import_obj(const std::string& file, const Progress& progress);
 
-/// Drops what is not finite, out of range, repeated or of zero area, and says so in `warnings`; makes normals where missing
-/// (only where `needs_normals`). Every importer ends with it.
+/// Drops what is not finite, out of range, repeated or of zero area, and says so in `warnings`; renormalises normals, and
+/// makes those that are missing (the triangles' mean by area). Vertices that no triangle uses go. Every importer ends with it.
 void clean(Primitive& primitive, const std::string& mesh_name, std::vector<std::string>& warnings);
 
 /// PNG or JPEG by signature. Refuses dimensions over 16384 before allocating.
 Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& place);
-/// 8-bit RGB or RGBA PNG; used by snapshots and scene generators.
+/// 8-bit RGB (where all is opaque) or RGBA PNG of width * height * 4 bytes; used by snapshots and scene generators.
 Result<void> write_png(const std::string& file, std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba);
 std::vector<std::uint8_t> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba);
 

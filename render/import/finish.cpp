@@ -1,0 +1,82 @@
+// What every importer ends with: meshes cleaned, empty ones gone, at least one material, something drawable.
+#include "render/import/finish.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "render/import/mend.hpp"
+#include "rt/base/file.hpp"
+
+namespace surefoot::importer {
+namespace {
+
+/// Farther than this from the origin even double loses the millimetre.
+constexpr double farthest_m = 1e12;
+
+std::string why_not_drawable(const dmat4& world) {
+    for (int c = 0; c < 4; ++c) {
+        for (int r = 0; r < 4; ++r) {
+            if (!std::isfinite(world[c][r])) return "transform is not finite";
+            if (std::abs(world[c][r]) > farthest_m) return "transform is beyond 1e12 m";
+        }
+    }
+    const dmat3 linear(world);
+    const double size = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+    if (!(std::abs(glm::determinant(linear)) > 1e-12 * size)) return "transform is singular (a scale of 0)";
+    return {};
+}
+
+void clean_meshes(Scene& scene, const Progress& progress) {
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+        Mesh& mesh = scene.meshes[i];
+        Mended counts;
+        for (Primitive& primitive : mesh.primitives) {
+            mend(primitive, counts);
+            if (primitive.material >= scene.materials.size()) primitive.material = 0;
+        }
+        say(counts, mesh.name, scene.warnings);
+        std::erase_if(mesh.primitives, [](const Primitive& p) { return p.indices.empty(); });
+        progress.say("clean", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
+    }
+}
+
+}  // namespace
+
+Result<void> finish(Scene& scene, const std::string& file, const Progress& progress) {
+    if (scene.materials.empty()) scene.materials.push_back(Material{.name = "white"});
+    clean_meshes(scene, progress);
+    for (Node& node : scene.nodes) {
+        if (node.mesh == none) continue;
+        if (scene.meshes[node.mesh].primitives.empty()) {
+            node.mesh = none;
+        } else if (const std::string why = why_not_drawable(node.world); !why.empty()) {
+            scene.warnings.push_back(fmt::format("node '{}' dropped: its {}", node.name, why));
+            node.mesh = none;
+        }
+    }
+    scene.sources.push_back(file);
+    if (scene.triangles() > 0) return {};
+    std::string why;
+    for (std::size_t i = 0; i < std::min<std::size_t>(scene.warnings.size(), 3); ++i) why += (i == 0 ? ": " : "; ") + scene.warnings[i];
+    return Error{file, "nothing drawable in it" + why, "export the model with its triangles"};
+}
+
+Index load_texture(Scene& scene, const std::string& file, const std::string& name) {
+    std::string portable = name;
+    std::replace(portable.begin(), portable.end(), '\\', '/');
+    const std::filesystem::path beside = std::filesystem::path(file).parent_path() / portable;
+    auto bytes = read_file(beside.string());
+    auto image = bytes ? decode_image(*bytes, beside.string()) : Result<Image>(bytes.error());
+    if (!image) {
+        scene.warnings.push_back(fmt::format("texture '{}' left white: {}", name, image.error().text()));
+        return none;
+    }
+    image->name = name;
+    scene.images.push_back(std::move(*image));
+    return static_cast<Index>(scene.images.size() - 1);
+}
+
+}  // namespace surefoot::importer

@@ -1,0 +1,102 @@
+// The importers' common door: choice by ending, several files into one scene, and what every scene must have.
+#include "render/import/scene.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <exception>
+#include <filesystem>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "render/import/ostf.hpp"
+
+namespace surefoot::importer {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* endings = ".gltf .glb .obj .ostf";
+
+std::string ending_of(const std::string& file) {
+    std::string ending = fs::path(file).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending;
+}
+
+/// What a person most often gets wrong, said before any reader starts.
+Result<void> check_file(const std::string& file) {
+    std::error_code code;
+    const fs::file_status status = fs::status(file, code);
+    if (!fs::exists(status)) return Error{file, "no such file", "check the name"};
+    if (fs::is_directory(status)) return Error{file, "is a directory", "name the model file in it"};
+    if (!fs::is_regular_file(status)) return Error{file, "is not a regular file", "name a model file"};
+    if (fs::file_size(file, code) == 0) return Error{file, "is empty", "export the model again"};
+    return {};
+}
+
+Result<Scene> import_one(const std::string& file, const Progress& progress) {
+    if (auto usable = check_file(file); !usable) return usable.error();
+    const std::string ending = ending_of(file);
+    if (ending == ".gltf" || ending == ".glb") return import_gltf(file, progress);
+    if (ending == ".obj") return import_obj(file, progress);
+    if (ending == ".ostf") return import_ostf(file, progress);
+    return Error{file, ending.empty() ? "has no ending" : fmt::format("unknown ending '{}'", ending), fmt::format("convert it to one of {}", endings)};
+}
+
+void shift(Index& index, std::size_t by) {
+    if (index != none) index += static_cast<Index>(by);
+}
+
+template <class T>
+void move_all(std::vector<T>& to, std::vector<T>& from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+void append(Scene& to, Scene&& from) {
+    for (Mesh& mesh : from.meshes) {
+        for (Primitive& primitive : mesh.primitives) shift(primitive.material, to.materials.size());
+    }
+    for (Node& node : from.nodes) {
+        shift(node.parent, to.nodes.size());
+        shift(node.mesh, to.meshes.size());
+    }
+    for (Material& material : from.materials) shift(material.image, to.images.size());
+    move_all(to.meshes, from.meshes);
+    move_all(to.nodes, from.nodes);
+    move_all(to.materials, from.materials);
+    move_all(to.images, from.images);
+    move_all(to.sources, from.sources);
+    move_all(to.warnings, from.warnings);
+}
+
+}  // namespace
+
+std::uint64_t Scene::triangles() const {
+    std::vector<std::uint64_t> of_mesh(meshes.size(), 0);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        for (const Primitive& primitive : meshes[i].primitives) of_mesh[i] += primitive.indices.size() / 3;
+    }
+    std::uint64_t sum = 0;
+    for (const Node& node : nodes) sum += node.mesh == none ? 0 : of_mesh[node.mesh];
+    return sum;
+}
+
+Result<Scene> import_files(const std::vector<std::string>& files, const Progress& progress) {
+    if (files.empty()) return Error{"import", "no file given", fmt::format("name at least one model ({})", endings)};
+    Scene scene;
+    for (const std::string& file : files) {
+        try {
+            Result<Scene> one = import_one(file, progress);
+            if (!one) return one.error();
+            append(scene, std::move(one).value());
+        } catch (const std::bad_alloc&) {
+            return Error{file, "needs more memory than this machine gives", "split the model, or import it as .ostf"};
+        } catch (const std::exception& trouble) {
+            return Error{file, fmt::format("cannot be read: {}", trouble.what()), "export the model again"};
+        }
+    }
+    return scene;
+}
+
+}  // namespace surefoot::importer

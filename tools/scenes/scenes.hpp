@@ -1,0 +1,32 @@
+// Generated scenes and the paths through them: the same bits from the same (name, scale, seed).
+// forest: the walk of the thesis' successors: 100 trees, 105 000 polygons at scale 1. room: furniture that interpenetrates.
+// town: streets, houses with rooms, furniture, trees, lamps; about a million triangles at scale 1.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/import/scene.hpp"
+#include "rt/base/path.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::scenes {
+
+struct GeneratedScene {
+    importer::Scene scene;  ///< metres, +Y up, ground about y = 0; instances share meshes
+    Path path;              ///< 60 s at scale 1, at walking height but for its overlook; smooth
+};
+
+/// forest, room, town.
+std::vector<std::string> scene_names();
+
+/// scale > 0 multiplies what there is (trees, rooms' area, blocks of houses), 1 is the size named above; 0.01 to 200.
+/// Errors: unknown name, scale out of range.
+Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed);
+
+/// By ending: .glb, .obj (with .mtl and PNG beside it) or .ostf; and beside it `out` with its ending replaced by .path.csv.
+Result<void> write_scene(const std::string& out, const GeneratedScene& generated);
+
+}  // namespace surefoot::scenes
