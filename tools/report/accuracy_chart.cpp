@@ -14,6 +14,7 @@
 #include "tools/report/report.hpp"
 #include "tools/report/style.hpp"
 #include "tools/report/svg.hpp"
+#include "tools/report/verdict.hpp"
 
 namespace surefoot::report {
 
@@ -102,10 +103,10 @@ bool drawable(const AccuracyPoint& p, double value, const Panel& panel) {
 }
 
 std::string tip_of(const AccuracyPoint& p) {
-    return fmt::format(
-        "{}, budget {} ms: frame {:.1f} ms (p90 {:.1f}), accuracy {} rad⁻¹, SNR {:.1f} dB, SSIM {:.3f}, {} triangles",
-        escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited", p.frame_ms_p50,
-        p.frame_ms_p90, short_number(p.accuracy_mean), p.snr_db, p.ssim, short_number(p.triangles));
+    return fmt::format("{}, budget {} ms: frame {:.1f} ms (p90 {:.1f}), accuracy {} rad⁻¹, SNR {}, SSIM {:.3f}, {} triangles",
+                       escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited",
+                       p.frame_ms_p50, p.frame_ms_p90, short_number(p.accuracy_mean), decibels(p.snr_db), p.ssim,
+                       short_number(p.triangles));
 }
 
 std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, const Panel& panel, const PlotArea& area) {

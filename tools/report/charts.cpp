@@ -64,7 +64,7 @@ std::string frame_time_chart(const WalkFrames& walk, double budget_ms) {
 
 std::string frame_histogram(const WalkFrames& walk, double budget_ms) {
     const double deadline = deadline_ms(walk);
-    const PlotArea area{44, 24, small_width - 10, 250 - 36};
+    const PlotArea area{44, 24, small_width - 10, 250 - 28};
     const double top = deadline * 1.5;
     constexpr std::size_t bins = 75;  // 50 of them before the deadline
     std::array<std::uint64_t, bins + 1> counts{};
@@ -106,7 +106,7 @@ std::string phases_chart(const WalkFrames& walk) {
     };
     constexpr std::array<Phase, 5> phases = {
         {{"wake", wake_us}, {"select", select_us}, {"submit", submit_us}, {"raster", raster_us}, {"present", present_us}}};
-    const PlotArea area{52, 24, small_width - 10, 250 - 36};
+    const PlotArea area{52, 24, small_width - 10, 250 - 28};
     constexpr std::size_t columns = 102;
     std::vector<std::array<double, 5>> sums(columns);
     std::vector<double> counts(columns);
@@ -178,12 +178,18 @@ std::string triangles_chart(const WalkFrames& walk, std::uint64_t model_triangle
     return time_chart(chart);
 }
 
+std::string switches_chart(const WalkFrames& walk) {
+    auto chart = over_time(walk, "Switches", "", [](const FrameRecord& f) { return static_cast<double>(f.switches); });
+    chart.width = small_width;
+    chart.height = 250;
+    return time_chart(chart);
+}
+
 std::string cause_chart(const WalkSummary& s) {
-    if (s.miss_causes.empty()) return "<p>Every frame was in time.</p>\n";
     std::vector<std::pair<std::string, std::uint64_t>> causes(s.miss_causes.begin(), s.miss_causes.end());
     std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
     const double height = 14 + 30 * static_cast<double>(causes.size());
-    const double most = static_cast<double>(causes.front().second);
+    const double most = causes.empty() ? 1 : static_cast<double>(causes.front().second);
     std::string out = open_chart(small_width, height, "Misses by cause");
     for (std::size_t i = 0; i < causes.size(); ++i) {
         const double at = 8 + 30 * static_cast<double>(i);

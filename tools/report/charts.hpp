@@ -48,6 +48,7 @@ std::string budget_chart(const WalkFrames& walk);
 std::string wake_chart(const WalkFrames& walk);
 std::string accuracy_chart_over_time(const WalkFrames& walk);
 std::string triangles_chart(const WalkFrames& walk, std::uint64_t model_triangles);
+std::string switches_chart(const WalkFrames& walk);
 std::string cause_chart(const WalkSummary& summary);
 std::string control_chart(const ControlSummary& control);
 

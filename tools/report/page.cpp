@@ -82,7 +82,9 @@ std::string picture_section(const WalkSummary& s, const WalkFrames& walk, std::s
                 triangles_chart(walk, s.model_triangles));
     out += card("The path", shots.empty() ? "From above." : "From above; numbers are where the pictures were taken.",
                 path_map(walk, shots));
-    out += card("Misses by cause", s.misses == 0 ? "" : "One cause a miss, from the evidence of that frame.", cause_chart(s));
+    out += s.misses > 0
+               ? card("Misses by cause", "One cause a miss, from the evidence of that frame.", cause_chart(s))
+               : card("Switches", "Nodes drawn in another form than the frame before: few is calm.", switches_chart(walk));
     return out + "</div>\n" + shot_cards(s, walk.shots_s, shots);
 }
 

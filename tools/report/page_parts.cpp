@@ -45,8 +45,6 @@ std::string figure(const std::string& uri, std::string_view alt, std::string_vie
                        caption);
 }
 
-std::string decibels(double db) { return std::isinf(db) ? (db > 0 ? "∞ dB" : "undefined") : fmt::format("{:.1f} dB", db); }
-
 std::string shot_card(const ReportShot& shot, std::size_t number, double time_s, const std::string& selector) {
     const auto chip = [](std::string_view name, const std::string& value) {
         return fmt::format("<span class=\"chip\">{} <b>{}</b></span>", name, value);
@@ -122,9 +120,10 @@ std::string tiles(const WalkSummary& s) {
                 fmt::format("of {:.1f} ms a frame", s.budget_ms));
     out += tile("Accuracy", short_number(s.accuracy_mean), "rad⁻¹",
                 fmt::format("{} of error on average", accuracy_words(s.accuracy_mean)));
-    out += tile("Triangles", short_number(s.triangles_mean), "a frame",
-                s.model_triangles > 0 ? fmt::format("of {} in the model", short_number(static_cast<double>(s.model_triangles)))
-                                      : fmt::format("most {}", short_number(static_cast<double>(s.triangles_max))));
+    out += tile("Triangles", short_number(s.triangles_mean), "",
+                s.model_triangles > 0
+                    ? fmt::format("a frame, of {} in the model", short_number(static_cast<double>(s.model_triangles)))
+                    : fmt::format("a frame, at most {}", short_number(static_cast<double>(s.triangles_max))));
     return out + "</div>\n";
 }
 

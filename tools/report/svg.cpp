@@ -134,17 +134,18 @@ std::string y_axis(const PlotArea& area, const Scale& y, const std::vector<doubl
         out += line_between(area.left, y(tick), area.right, y(tick), tick == 0 ? "axis" : "grid");
         out += text_at(area.left - 8, y(tick) + 4, "tick end", short_number(tick));
     }
-    if (!unit.empty()) out += text_at(area.left - 8, area.top - 6, "unit end", unit);
+    if (!unit.empty()) out += text_at(area.left - 8, area.top - 11, "unit end", unit);
     return out;
 }
 
 std::string x_axis(const PlotArea& area, const Scale& x, const std::vector<double>& ticks, std::string_view unit) {
     std::string out = line_between(area.left, area.bottom, area.right, area.bottom, "axis");
-    for (const double tick : ticks) {
+    for (const double& tick : ticks) {
+        const bool last = &tick == &ticks.back();
         out += line_between(x(tick), area.bottom, x(tick), area.bottom + 4, "axis");
-        out += text_at(x(tick), area.bottom + 18, "tick mid", short_number(tick));
+        out += text_at(x(tick), area.bottom + 18, "tick mid",
+                       short_number(tick) + (last && !unit.empty() ? " " + std::string(unit) : ""));
     }
-    if (!unit.empty()) out += text_at(area.right, area.bottom + 32, "unit end", unit);
     return out;
 }
 

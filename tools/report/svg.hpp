@@ -39,7 +39,7 @@ struct PlotArea {
 std::string open_chart(double width, double height, std::string_view label);
 std::string close_chart();
 
-/// Horizontal grid lines with figures at the left, and figures below with their unit after the last.
+/// Horizontal grid lines with figures at the left, and figures below, the last one with its unit.
 std::string y_axis(const PlotArea& area, const Scale& y, const std::vector<double>& ticks, std::string_view unit);
 std::string x_axis(const PlotArea& area, const Scale& x, const std::vector<double>& ticks, std::string_view unit);
 

@@ -74,12 +74,17 @@ std::string tips_of(const TimeChart& c, const PlotArea& area, const Scale& x, do
     return out;
 }
 
+/// Labels stand above their line; one that would run into the label before goes below its own.
 std::string lines_of(const TimeChart& c, const PlotArea& area, const Scale& y) {
     std::string out;
+    double last_label = -1e9;
     for (const auto& line : c.lines) {
         if (!(line.value > 0) || line.value > y.to) continue;
-        out += line_between(area.left, y(line.value), area.right, y(line.value), line.css);
-        out += text_at(area.right, y(line.value) - 5, "note end " + line.css + "-text", line.text);
+        const double at = y(line.value);
+        const bool crowded = std::abs(at - 5 - last_label) < 14;
+        last_label = crowded ? at + 14 : at - 5;
+        out += line_between(area.left, at, area.right, at, line.css);
+        out += text_at(area.right, last_label, "note end " + line.css + "-text", line.text);
     }
     return out;
 }
@@ -122,7 +127,7 @@ Scale value_scale(const TimeChart& c, const PlotArea& area) {
 }  // namespace
 
 std::string time_chart(const TimeChart& c) {
-    const PlotArea area{52, 24, c.width - 10, c.height - 36};
+    const PlotArea area{52, 24, c.width - 10, c.height - 28};
     const bool empty = c.time_s.empty();
     const double from_s = empty ? 0 : c.time_s.front();
     const double to_s = empty ? 1 : std::max(c.time_s.back(), from_s + 1e-3);

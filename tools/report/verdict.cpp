@@ -35,8 +35,10 @@ std::string headline(const WalkSummary& s) {
     if (s.misses > 0 && s.own_misses == 0) text += ", none of them by its own doing";
     if (s.misses > 0 && s.own_misses > 0)
         text += fmt::format(", {} by its own doing", grouped(static_cast<double>(s.own_misses)));
-    text += fmt::format(": the slowest took {:.1f} of {:.1f} ms", s.frame_ms.max, period_ms);
-    if (s.skipped > 0) text += fmt::format(", {} skipped", counted(s.skipped, "slot was", "slots were"));
+    text += s.frame_ms.max > period_ms
+                ? fmt::format(": the slowest took {:.1f} ms where {:.1f} were allowed", s.frame_ms.max, period_ms)
+                : fmt::format(": the slowest took {:.1f} of {:.1f} ms", s.frame_ms.max, period_ms);
+    if (s.skipped > 0) text += fmt::format("; {} skipped", counted(s.skipped, "slot was", "slots were"));
     return text + ".";
 }
 
@@ -58,6 +60,11 @@ std::string accuracy_words(double accuracy) {
     if (!(accuracy > 0)) return "unknown";
     const double degrees = 57.29577951308232 / accuracy;
     return degrees >= 0.1 ? fmt::format("{:.2g}°", degrees) : fmt::format("{:.2g}′", degrees * 60);
+}
+
+std::string decibels(double db) {
+    if (std::isfinite(db)) return fmt::format("{:.1f} dB", db);
+    return db > 0 ? "∞ dB" : "undefined";
 }
 
 std::string percent(double share) {

@@ -18,6 +18,8 @@ std::string headline(const WalkSummary& summary);
 std::string control_words(const ControlSummary& control);
 /// The largest angular error of an accuracy: "0.24°", "3.1′"; "exact" where no error was drawn.
 std::string accuracy_words(double accuracy);
+/// "14.2 dB", "∞ dB" for equal pictures, "undefined" where there is no signal.
+std::string decibels(double db);
 /// "2.5 %" of a share.
 std::string percent(double share);
 

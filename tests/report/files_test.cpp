@@ -1,0 +1,256 @@
+// What a walk leaves on disk: ledger, trace, and pages that need nothing outside themselves.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "rt/base/file.hpp"
+#include "tests/report/records.hpp"
+#include "tools/report/pictures.hpp"
+#include "tools/report/report.hpp"
+
+namespace surefoot::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ReportFiles : public ::testing::Test {
+protected:
+    void SetUp() override {
+        std::string pattern = (fs::temp_directory_path() / "surefoot-report-XXXXXX").string();
+        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    [[nodiscard]] std::string in(const std::string& name) const { return (folder_ / name).string(); }
+    fs::path folder_;
+};
+
+std::vector<std::string> split(const std::string& text, char by) {
+    std::vector<std::string> parts;
+    std::stringstream stream(text);
+    for (std::string part; std::getline(stream, part, by);) parts.push_back(part);
+    return parts;
+}
+
+std::size_t count_of(const std::string& text, std::string_view what) {
+    std::size_t count = 0;
+    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+    return count;
+}
+
+TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
+    auto records = frames_with_a_miss();
+    records[3].control = true;
+    ASSERT_TRUE(write_ledger(in("l.csv"), records).ok());
+    const auto lines = split(*read_text(in("l.csv")), '\n');
+    ASSERT_EQ(lines.size(), records.size() + 1);
+    const auto names = split(lines[0], ',');
+    EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size()) << "a column twice";
+    for (const auto* wanted : {"wake_us", "select_us", "submit_us", "raster_us", "present_us", "slack_us", "predicted_us",
+                               "actual_us", "nodes", "triangles", "accuracy", "benefit", "switches", "cause"})
+        EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end()) << wanted;
+    std::map<std::string, std::string> miss;
+    const auto cells = split(lines[2], ',');
+    ASSERT_EQ(cells.size(), names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) miss[names[i]] = cells[i];
+    EXPECT_EQ(miss["wake_us"], "50.000");
+    EXPECT_EQ(miss["select_us"], "500.000");
+    EXPECT_EQ(miss["slack_us"], "-16666.667");
+    EXPECT_EQ(miss["frame_us"], "50000.000");
+    EXPECT_EQ(miss["cause"], "raster");
+    EXPECT_EQ(miss["missed"], "1");
+    EXPECT_EQ(miss["triangles"], "5000");
+    EXPECT_EQ(miss["cut_hash"], "0000000000001235");
+    for (const auto& line : lines) EXPECT_EQ(split(line, ',').size(), names.size());
+}
+
+TEST_F(ReportFiles, TraceParsesAndHasOneFrameEventARecord) {
+    auto records = frames_with_a_miss();
+    records[3].control = true;
+    ASSERT_TRUE(write_trace(in("t.json"), records).ok());
+    const auto trace = nlohmann::json::parse(*read_text(in("t.json")));
+    std::map<std::string, int> counts;
+    for (const auto& event : trace["traceEvents"]) {
+        if (event["ph"] == "M") continue;
+        ++counts[event.value("cat", "")];
+        EXPECT_GE(event["ts"].get<double>(), 0.0);
+        if (event["ph"] == "X") {
+            EXPECT_GE(event["dur"].get<double>(), 0.0);
+        }
+        if (event.value("cat", "") == "miss") {
+            EXPECT_EQ(event["name"], "raster");
+            EXPECT_NEAR(event["args"]["late_us"].get<double>(), 16666.7, 0.1);
+        }
+    }
+    EXPECT_EQ(counts["frame"], 4);
+    EXPECT_EQ(counts["expected"], 4);
+    EXPECT_EQ(counts["phase"], 5 * 3) << "the bare loop has no phases";
+    EXPECT_EQ(counts["miss"], 1);
+    EXPECT_EQ(counts["skipped"], 1);
+}
+
+TEST_F(ReportFiles, EmptyWalkStillMakesReadableFiles) {
+    ASSERT_TRUE(write_trace(in("t.json"), {}).ok());
+    EXPECT_TRUE(nlohmann::json::accept(*read_text(in("t.json"))));
+    WalkSummary s;
+    summarize({}, period_ns, s);
+    ASSERT_TRUE(write_report(in("r"), s, {}, {}).ok());
+    EXPECT_NE(read_text(in("r/index.html"))->find("No frame was drawn."), std::string::npos);
+}
+
+ReportShot shot_of(std::uint64_t frame) {
+    ReportShot shot;
+    shot.frame = frame;
+    shot.width = 8;
+    shot.height = 4;
+    shot.walk.assign(8 * 4 * 4, 90);
+    shot.full.assign(8 * 4 * 4, 100);
+    shot.difference.assign(8 * 4 * 4, 40);
+    shot.snr_db = 12.5;
+    shot.ssim = 0.9;
+    shot.triangles = 100;
+    shot.full_triangles = 400;
+    shot.drawn = {{0, 0, 4, 4, 0, 0.2F}, {1, 1, 2, 2, 1, 1.0F}, {std::numeric_limits<float>::quiet_NaN(), 0, 1, 1, 1, 1}};
+    shot.forward = {0, 0, -1};
+    shot.world_xz = {-5, -5, 5, 5};
+    return shot;
+}
+
+TEST_F(ReportFiles, PageNeedsNothingOutsideItself) {
+    WalkSummary s;
+    auto records = frames_with_a_miss();
+    summarize(records, period_ns, s);
+    s.model = "forest.walk";
+    s.degraded = {{"FIFO refused", "grant rtprio"}};
+    s.control.ran = true;
+    s.control.blocks.resize(4);
+    const std::vector<ReportShot> shots = {shot_of(0), shot_of(2)};
+    ASSERT_TRUE(write_report(in("r"), s, records, shots).ok());
+    const auto page = *read_text(in("r/index.html"));
+    EXPECT_EQ(page.find("http"), std::string::npos);
+    EXPECT_EQ(page.find("<script"), std::string::npos);
+    EXPECT_EQ(page.find("url("), std::string::npos);
+    EXPECT_EQ(page.find("@import"), std::string::npos);
+    EXPECT_EQ(page.find("nan"), std::string::npos) << "a figure that is none";
+    EXPECT_EQ(count_of(page, "data:image/jpeg;base64,"), 6U);
+    EXPECT_EQ(count_of(page, "<svg"), count_of(page, "</svg>"));
+    EXPECT_NE(page.find("prefers-color-scheme:dark"), std::string::npos);
+    EXPECT_NE(page.find("4 frames, 1 missed"), std::string::npos);
+    EXPECT_NE(page.find("grant rtprio"), std::string::npos);
+    EXPECT_TRUE(fs::exists(in("r/ledger.csv")));
+    EXPECT_TRUE(nlohmann::json::accept(*read_text(in("r/walk.json"))));
+}
+
+TEST_F(ReportFiles, NamesCannotBreakThePage) {
+    WalkSummary s;
+    summarize(good_frames(2), period_ns, s);
+    s.model = "<img src=x onerror=alert(1)>.walk";
+    s.renderer = "\"quoted\" & <b>";
+    ASSERT_TRUE(write_report(in("r"), s, good_frames(2), {}).ok());
+    const auto page = *read_text(in("r/index.html"));
+    EXPECT_EQ(page.find("<img src=x"), std::string::npos);
+    EXPECT_EQ(page.find("& <b>"), std::string::npos);
+}
+
+TEST_F(ReportFiles, PicturesOfTheNullBackendMayBeMissing) {
+    WalkSummary s;
+    const auto records = good_frames(3);
+    summarize(records, period_ns, s);
+    ReportShot shot = shot_of(1);
+    shot.walk.clear();
+    shot.full.clear();
+    shot.difference.clear();
+    ASSERT_TRUE(write_report(in("r"), s, records, std::vector<ReportShot>{shot}).ok());
+    const auto page = *read_text(in("r/index.html"));
+    EXPECT_EQ(page.find("<img"), std::string::npos);
+    EXPECT_NE(page.find("nodes drawn"), std::string::npos);
+}
+
+TEST_F(ReportFiles, UnwritablePlaceIsNamed) {
+    ASSERT_TRUE(write_text(in("file"), "x").ok());
+    WalkSummary s;
+    const auto written = write_report(in("file"), s, {}, {});
+    ASSERT_FALSE(written.ok());
+    EXPECT_NE(written.error().text().find(in("file")), std::string::npos);
+    EXPECT_EQ(*read_text(in("file")), "x");
+}
+
+AccuracyRun sweep() {
+    AccuracyRun run;
+    run.model = "forest.walk";
+    run.full_frame_ms = 100;
+    for (const auto* selector : {"two-stage", "two-stage-1994", "flat"})
+        for (const double budget : {10.0, 20.0, 40.0}) {
+            AccuracyPoint p;
+            p.selector = selector;
+            p.budget_ms = budget;
+            p.frame_ms_p50 = budget * 0.9;
+            p.accuracy_mean = budget * 10;
+            p.snr_db = budget / 3;
+            p.ssim = 0.9;
+            p.frames = 5;
+            run.points.push_back(p);
+        }
+    run.points.back().snr_db = std::numeric_limits<double>::infinity();
+    run.points.back().snr_infinite = 5;
+    return run;
+}
+
+TEST_F(ReportFiles, AccuracyPageAndFiles) {
+    const auto run = sweep();
+    ASSERT_TRUE(write_accuracy_page(in("a"), run).ok());
+    const auto page = *read_text(in("a/index.html"));
+    EXPECT_EQ(page.find("http"), std::string::npos);
+    EXPECT_EQ(split(*read_text(in("a/accuracy.csv")), '\n').size(), run.points.size() + 1);
+    const auto json = nlohmann::json::parse(*read_text(in("a/accuracy.json")));
+    EXPECT_EQ(json["points"].size(), run.points.size());
+    EXPECT_TRUE(json["points"].back()["snr_db"].is_null());
+    for (const bool dark : {false, true}) {
+        const auto svg = accuracy_svg(run, dark);
+        EXPECT_EQ(svg.rfind("<svg xmlns=", 0), 0U);
+        // 9 points in two panels, the infinite one left out of the third; a dot each for two mended selectors in the legend.
+        EXPECT_EQ(count_of(svg, "<title>two-stage"), 18U);
+        EXPECT_EQ(count_of(svg, "<title>flat"), 8U);
+        EXPECT_EQ(svg.find("nan"), std::string::npos);
+        EXPECT_EQ(svg.find("inf"), std::string::npos);
+    }
+    EXPECT_NE(accuracy_svg(run, false), accuracy_svg(run, true));
+}
+
+TEST_F(ReportFiles, EmptySweepAndCostPlotDoNotDivideByZero) {
+    for (const auto& svg : {accuracy_svg({}, false), cost_plot_svg("cost", {})}) {
+        EXPECT_EQ(svg.find("nan"), std::string::npos);
+        EXPECT_EQ(svg.find("inf"), std::string::npos);
+    }
+    const std::vector<CostPoint> one = {
+        {"plain", 1, 1, 3.0}, {"plain", 1, 0, 3.0}, {"plain", 4, 16, std::numeric_limits<double>::infinity()}};
+    const auto svg = cost_plot_svg("cost", one);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(count_of(svg, "<circle"), 1U);
+}
+
+TEST(Pictures, Base64IsPadded) {
+    const std::vector<std::uint8_t> bytes = {'M', 'a', 'n'};
+    EXPECT_EQ(base64(bytes), "TWFu");
+    EXPECT_EQ(base64(std::span(bytes).first(2)), "TWE=");
+    EXPECT_EQ(base64(std::span(bytes).first(1)), "TQ==");
+    EXPECT_EQ(base64({}), "");
+}
+
+TEST(Pictures, WrongSizeIsNoPicture) {
+    const std::vector<std::uint8_t> rgba(16 * 4);
+    EXPECT_TRUE(jpeg_data_uri(rgba, 5, 4, 80).empty());
+    EXPECT_TRUE(jpeg_data_uri({}, 0, 0, 80).empty());
+    EXPECT_EQ(jpeg_data_uri(rgba, 4, 4, 80).rfind("data:image/jpeg;base64,/9j/", 0), 0U);
+}
+
+}  // namespace
+}  // namespace surefoot::report

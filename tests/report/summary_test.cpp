@@ -1,0 +1,212 @@
+// The walk's figures: percentiles that occurred, slots that add up, bare control frames kept out.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "tests/report/records.hpp"
+#include "tools/report/report.hpp"
+#include "tools/report/verdict.hpp"
+
+namespace surefoot::report {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+TEST(Quantiles, AreNearestRanksThatOccurred) {
+    std::vector<double> values;
+    for (int i = 1000; i >= 1; --i) values.push_back(i);
+    const auto q = quantiles(values);
+    EXPECT_EQ(q.p50, 500);
+    EXPECT_EQ(q.p90, 900);
+    EXPECT_EQ(q.p99, 990);
+    EXPECT_EQ(q.p999, 999);
+    EXPECT_EQ(q.max, 1000);
+    EXPECT_EQ(q.min, 1);
+    EXPECT_DOUBLE_EQ(q.mean, 500.5);
+}
+
+TEST(Quantiles, OneSlowFrameOfThousandIsTheMaximumAndNoMore) {
+    std::vector<double> values(1000, 1.0);
+    values[3] = 50;
+    EXPECT_EQ(quantiles(values).p999, 1.0);
+    EXPECT_EQ(quantiles(values).max, 50.0);
+    values.resize(999);
+    EXPECT_EQ(quantiles(values).p999, 50.0);
+}
+
+TEST(Quantiles, EmptyAndNotFiniteValues) {
+    EXPECT_EQ(quantiles({}).max, 0);
+    EXPECT_EQ(quantiles({std::nan(""), infinity, 3.0}).max, 3);
+    EXPECT_EQ(quantiles({7.0}).p50, 7);
+}
+
+TEST(Summary, RunAndSkippedSlotsAddUp) {
+    WalkSummary s;
+    summarize(frames_with_a_miss(), period_ns, s);
+    EXPECT_EQ(s.frames, 4U);
+    EXPECT_EQ(s.skipped, 1U);
+    EXPECT_EQ(s.slots, 5U);
+    EXPECT_NEAR(s.seconds, 5.0 / 30, 1e-6);
+    EXPECT_EQ(s.misses, 1U);
+    EXPECT_EQ(s.own_misses, 1U);
+    EXPECT_EQ(s.miss_causes, (std::map<std::string, std::uint64_t>{{"raster", 1}}));
+}
+
+TEST(Summary, FiguresAreThoseOfTheFrames) {
+    WalkSummary s;
+    s.rasterisers = 2;
+    summarize(good_frames(10), period_ns, s);
+    EXPECT_NEAR(s.frame_ms.p50, 20, 1e-9);
+    EXPECT_NEAR(s.wake_us.max, 50, 1e-9);
+    EXPECT_NEAR(s.select_us.p99, 500, 1e-9);
+    EXPECT_NEAR(s.submit_ms.p50, 10, 1e-9);
+    EXPECT_NEAR(s.raster_ms.p50, 9, 1e-9);
+    EXPECT_NEAR(s.budget_ms, 25, 1e-9);
+    EXPECT_NEAR(s.budget_used_mean, 18.0 / 33.333333, 1e-6);  // 10 ms, and 16 ms over two rasterisers
+    EXPECT_NEAR(s.budget_used_wall_mean, 0.8, 1e-6);
+    EXPECT_NEAR(s.cost_error.p50, 0.1, 1e-6);
+    EXPECT_EQ(s.accuracy_mean, 500);
+    EXPECT_EQ(s.triangles_max, 1000U);
+    EXPECT_EQ(s.switches_per_frame, 2);
+    EXPECT_EQ(s.cut_hash.size(), 16U);
+}
+
+TEST(Summary, BareControlFramesDoNotCount) {
+    auto records = good_frames(4);
+    WalkSummary without;
+    summarize(records, period_ns, without);
+    auto bare = good_frame(9, 9);
+    bare.control = bare.missed = true;
+    bare.triangles = 1'000'000;
+    bare.stolen_ns = 5'000'000;
+    records.insert(records.begin() + 2, bare);
+    WalkSummary with;
+    summarize(records, period_ns, with);
+    EXPECT_EQ(to_json(with), to_json(without));
+}
+
+TEST(Summary, CutHashFollowsTheOrderOfCuts) {
+    auto records = good_frames(2);
+    WalkSummary a, b;
+    summarize(records, period_ns, a);
+    std::swap(records[0].cut_hash, records[1].cut_hash);
+    summarize(records, period_ns, b);
+    EXPECT_NE(a.cut_hash, b.cut_hash);
+}
+
+TEST(Summary, SecondCallStartsAnew) {
+    WalkSummary s;
+    summarize(frames_with_a_miss(), period_ns, s);
+    const auto first = to_json(s);
+    summarize(frames_with_a_miss(), period_ns, s);
+    EXPECT_EQ(to_json(s), first);
+}
+
+TEST(Summary, NoFramesAreNoFigures) {
+    WalkSummary s;
+    summarize({}, period_ns, s);
+    EXPECT_EQ(s.slots, 0U);
+    EXPECT_EQ(verdict_of(s), Verdict::bad);
+    EXPECT_TRUE(nlohmann::json::accept(to_json(s)));
+    EXPECT_FALSE(to_table(s, false).empty());
+}
+
+TEST(Summary, ExactPicturesHaveInfiniteAccuracyAndDoNotSpoilTheMean) {
+    auto records = good_frames(3);
+    records[1].accuracy = std::numeric_limits<float>::infinity();
+    WalkSummary s;
+    summarize(records, period_ns, s);
+    EXPECT_EQ(s.accuracy_mean, 500);
+    for (auto& r : records) r.accuracy = std::numeric_limits<float>::infinity();
+    summarize(records, period_ns, s);
+    EXPECT_EQ(s.accuracy_mean, infinity);
+    EXPECT_TRUE(nlohmann::json::parse(to_json(s))["accuracy"]["mean"].is_null());
+}
+
+std::set<std::string> keys_of(const nlohmann::json& object) {
+    std::set<std::string> keys;
+    for (const auto& [key, value] : object.items()) keys.insert(key);
+    return keys;
+}
+
+TEST(Json, HasExactlyTheKeysOfTheContract) {
+    WalkSummary s;
+    summarize(frames_with_a_miss(), period_ns, s);
+    s.control.blocks.resize(1);
+    const auto json = nlohmann::json::parse(to_json(s));
+    using Keys = std::set<std::string>;
+    EXPECT_EQ(keys_of(json),
+              (Keys{"frames",      "slots",      "skipped",   "misses",         "own_misses",   "miss_causes",
+                    "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age", "budget_ms",
+                    "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
+                    "cut_hash",    "steal_ms",   "rt",        "control"}));
+    for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
+        EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
+    EXPECT_EQ(keys_of(json["prepared_age"]), (Keys{"p50", "p99", "max"}));
+    EXPECT_EQ(keys_of(json["budget_used"]), (Keys{"mean", "p99"}));
+    EXPECT_EQ(keys_of(json["cost_error"]), (Keys{"p50", "p90", "p99"}));
+    EXPECT_EQ(keys_of(json["accuracy"]), (Keys{"min", "mean"}));
+    EXPECT_EQ(keys_of(json["triangles"]), (Keys{"mean", "max"}));
+    EXPECT_EQ(keys_of(json["rt"]), (Keys{"fifo", "pinned", "isolated", "locked", "page_faults", "guard_violations"}));
+    EXPECT_EQ(keys_of(json["control"]), (Keys{"misses", "p_value", "blocks"}));
+    EXPECT_EQ(json["miss_causes"]["raster"], 1);
+    EXPECT_TRUE(json["control"]["p_value"].is_null()) << "no control ran";
+    EXPECT_EQ(json["control"]["blocks"].size(), 1U);
+}
+
+TEST(Verdict, MissesOfTheHostAreNotTheWalksOwn) {
+    WalkSummary s;
+    summarize(good_frames(1800), period_ns, s);
+    EXPECT_EQ(verdict_of(s), Verdict::good);
+    EXPECT_EQ(headline(s), "1800 frames, 0 missed: the slowest took 20.0 of 33.3 ms.");
+    s.misses = 3;
+    EXPECT_EQ(verdict_of(s), Verdict::warn);
+    EXPECT_NE(headline(s).find("none of them by its own doing"), std::string::npos);
+    s.own_misses = 2;
+    EXPECT_EQ(verdict_of(s), Verdict::warn);
+    s.own_misses = 3;
+    EXPECT_EQ(verdict_of(s), Verdict::bad);
+    s.own_misses = 0;
+    s.control.ran = true;
+    s.control.p_value = 0.001;
+    EXPECT_EQ(verdict_of(s), Verdict::bad);
+}
+
+/// Columns on screen, without colour codes.
+std::size_t columns_of(const std::string& line) {
+    std::size_t columns = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '\x1b') {
+            i = line.find('m', i);
+            continue;
+        }
+        columns += (static_cast<unsigned char>(line[i]) & 0xc0U) != 0x80U ? 1 : 0;
+    }
+    return columns;
+}
+
+TEST(Table, KeepsWithinAHundredColumnsAndColoursOnlyWhenAsked) {
+    WalkSummary s;
+    summarize(frames_with_a_miss(), period_ns, s);
+    s.model = "/a/very/long/path/" + std::string(150, 'm') + "/forest.walk";
+    s.renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
+    s.degraded = {
+        {"FIFO refused", std::string("grant it: ") + std::string(120, 'x') + " and then log in again, once more and again"}};
+    s.census_problems = {std::string(40, 'a') + " " + std::string(70, 'b')};
+    EXPECT_EQ(to_table(s, false).find('\x1b'), std::string::npos);
+    const std::string table = to_table(s, true);
+    EXPECT_NE(table.find('\x1b'), std::string::npos);
+    for (std::size_t at = 0; at < table.size();) {
+        const auto end = table.find('\n', at);
+        EXPECT_LE(columns_of(table.substr(at, end - at)), 100U) << table.substr(at, end - at);
+        at = end + 1;
+    }
+    EXPECT_NE(table.find("forest.walk"), std::string::npos) << "the end of a long path must stay";
+}
+
+}  // namespace
+}  // namespace surefoot::report
