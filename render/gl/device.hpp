@@ -104,6 +104,9 @@ struct NullOptions {
 };
 Result<std::unique_ptr<Device>> open_null_device(const DeviceOptions& options, const NullOptions& null_options);
 
+/// The number of software rasterisers that options.rasterisers stands for: 0 is the measured default.
+int effective_rasterisers(int rasterisers);
+
 /// What the driver's own threads are called, by name prefix in /proc/self/task (for the census).
 std::vector<std::string> driver_thread_prefixes();
 

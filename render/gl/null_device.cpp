@@ -125,10 +125,11 @@ void NullDevice::draw(std::span<const DrawItem> items) {
     charge();
 }
 
+/// As the engine predicts a frame: slices are submit time.
 void NullDevice::charge() {
-    const float sums = costs_.combine.frame_us(static_cast<float>(submit_us_), static_cast<float>(raster_us_));
-    const double slices = static_cast<double>(slices_) * static_cast<double>(costs_.slice_us);
-    frame_us_ = null_.cost_scale * factor_ * (static_cast<double>(sums) + slices);
+    const double slices_us = static_cast<double>(slices_) * static_cast<double>(costs_.slice_us);
+    const float sums = costs_.combine.frame_us(static_cast<float>(submit_us_ + slices_us), static_cast<float>(raster_us_));
+    frame_us_ = null_.cost_scale * factor_ * static_cast<double>(sums);
 }
 
 }  // namespace

@@ -14,6 +14,8 @@ constexpr int default_rasterisers = 1;
 
 }  // namespace
 
+int effective_rasterisers(int rasterisers) { return rasterisers > 0 ? rasterisers : default_rasterisers; }
+
 Result<BackendKind> parse_backend(std::string_view name) {
     if (name == "egl") return BackendKind::egl;
     if (name == "device") return BackendKind::device;
@@ -25,7 +27,7 @@ Result<BackendKind> parse_backend(std::string_view name) {
 
 Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options) {
     // llvmpipe reads it when its screen is made; other drivers do not care.
-    const std::string threads = std::to_string(options.rasterisers > 0 ? options.rasterisers : default_rasterisers);
+    const std::string threads = std::to_string(effective_rasterisers(options.rasterisers));
     setenv("LP_NUM_THREADS", threads.c_str(), 1);
     switch (options.kind) {
         case BackendKind::egl:

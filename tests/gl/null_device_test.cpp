@@ -70,8 +70,9 @@ TEST(NullDevice, charges_exactly_what_the_table_predicts) {
         submit += static_cast<double>(cost.submit_us);
         raster += static_cast<double>(cost.raster_us);
     }
-    const double frame = static_cast<double>(costs.combine.frame_us(static_cast<float>(submit), static_cast<float>(raster)));
-    EXPECT_DOUBLE_EQ(charged, 2 * (frame + static_cast<double>(costs.slice_us)));
+    submit += static_cast<double>(costs.slice_us);
+    EXPECT_DOUBLE_EQ(charged,
+                     2.0 * static_cast<double>(costs.combine.frame_us(static_cast<float>(submit), static_cast<float>(raster))));
 }
 
 TEST(NullDevice, the_same_seed_charges_the_same_noise) {

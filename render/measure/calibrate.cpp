@@ -1,0 +1,207 @@
+// Calibration: measures cells in interleaved order, then whole frames, and fits how items add up. Source: Maciel 3.3.1 (the
+// measured table), DESIGN 5 (sums instead of the larger).
+#include "render/measure/calibrate.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "render/measure/calibrate_fit.hpp"
+#include "render/measure/calibrate_run.hpp"
+#include "render/measure/calibrate_scene.hpp"
+#include "render/model/pixels.hpp"
+
+namespace surefoot::measure {
+
+namespace {
+
+constexpr double slice_target_us = 1000;  // the engine's
+
+double now_s() {
+    timespec t{};
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+const Error stopped{"calibration", "was stopped", "run it again: nothing was written"};
+
+/// A random order of n things.
+std::vector<std::size_t> shuffled(std::size_t n, Random& random) {
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random.below(static_cast<std::uint32_t>(i))]);
+    return order;
+}
+
+double median(const std::vector<double>& values) { return quantile_of(values, 0.5); }
+
+class Run {
+public:
+    Run(gl::Device& device, const CalibrateOptions& options, const Progress& progress)
+        : device_(device),
+          options_(options),
+          progress_(progress),
+          random_(options.seed),
+          scene_(make_calibration_scene(options.device.viewport, options.quick, options.seed)) {}
+
+    Result<void> load() { return device_.load(scene_.model, effects::assemble_program); }
+    void timer(Calibration& out);
+    void slices(Calibration& out);
+    Result<void> cells(Calibration& out);
+    Result<void> frames(Calibration& out);
+
+private:
+    /// The frame twice: the second finds warm caches, as a walk's frames do.
+    FrameTiming timed(const Pose& pose, std::span<const gl::DrawItem> items, std::size_t slice_items) {
+        run_frame(device_, clocks_, pose, items, slice_items);
+        return run_frame(device_, clocks_, pose, items, slice_items);
+    }
+    [[nodiscard]] int repeats() const { return options_.quick ? 3 : 5; }
+    FrameSample predict(const TownView& view, const model::CostModel& costs) const;
+
+    gl::Device& device_;
+    const CalibrateOptions& options_;
+    const Progress& progress_;
+    Random random_;
+    CalibrationScene scene_;
+    RasteriserClocks clocks_;
+    FrameTiming empty_;
+};
+
+/// The heaviest cells of the bare class, once by query and once by the wall.
+void Run::timer(Calibration& out) {
+    std::vector<gl::DrawItem> items;
+    for (const CalibrationCell& cell : scene_.cells) {
+        if (cell.effects == 0 && cell.pixels > 5000) items.insert(items.end(), cell.items.begin(), cell.items.end());
+    }
+    check_timer(device_, Pose{}, items);
+    out.timer = check_timer(device_, Pose{}, items);
+    out.costs.timer_query_honest = out.timer.honest;
+}
+
+/// The same items as one slice and as many, both front to back, by the frame thread's CPU time; and the empty frame, which
+/// every cell's time contains.
+void Run::slices(Calibration& out) {
+    const CalibrationCell* small = &scene_.cells.front();
+    for (const CalibrationCell& cell : scene_.cells) {
+        if (cell.effects == 0 && cell.triangles < 100 && cell.pixels < 2000) small = &cell;
+    }
+    const std::span<const gl::DrawItem> items = small->items;
+    constexpr std::size_t parts = 16;
+    const std::size_t part = (items.size() + parts - 1) / parts;
+    std::vector<double> difference, empty_submit, empty_raster, empty_wall;
+    for (int i = 0; i < 5 * repeats(); ++i) {
+        const double one = timed(Pose{}, items, items.size()).submit_us;
+        const double many = timed(Pose{}, items, part).submit_us;
+        difference.push_back((many - one) / static_cast<double>(parts - 1));
+        const FrameTiming empty = timed(Pose{}, {}, 1);
+        empty_submit.push_back(empty.submit_us);
+        empty_raster.push_back(empty.raster_us);
+        empty_wall.push_back(empty.wall_us);
+    }
+    out.costs.slice_us = static_cast<float>(std::clamp(median(difference), 0.0, 500.0));
+    empty_ = {median(empty_submit), median(empty_raster), median(empty_wall)};
+}
+
+Result<void> Run::cells(Calibration& out) {
+    const std::size_t n = scene_.cells.size();
+    std::vector<std::vector<FrameTiming>> timings(n);
+    for (int round = 0; round < repeats(); ++round) {
+        std::size_t done = 0;
+        for (const std::size_t c : shuffled(n, random_)) {
+            if (progress_.stopped()) return stopped;
+            const auto& items = scene_.cells[c].items;
+            timings[c].push_back(timed(Pose{}, items, std::max<std::size_t>(1, (items.size() + 2) / 3)));
+            progress_.say("items", (round + static_cast<double>(done++) / static_cast<double>(n)) / repeats());
+        }
+    }
+    for (std::size_t c = 0; c < n; ++c) {
+        const CalibrationCell& cell = scene_.cells[c];
+        const auto count = static_cast<double>(cell.items.size());
+        std::vector<double> submit, raster, wall;
+        for (const FrameTiming& t : timings[c]) {
+            submit.push_back(std::max(0.0, t.submit_us - empty_.submit_us) / count);
+            raster.push_back(std::max(0.0, t.raster_us - empty_.raster_us) / count);
+            wall.push_back(std::max(0.0, t.wall_us - empty_.wall_us) / count);
+        }
+        CalibrationPoint point{cell.effects, cell.triangles, cell.pixels, median(submit), median(raster), median(wall), 0};
+        point.spread = (quantile_of(wall, 0.9) - quantile_of(wall, 0.1)) / std::max(1e-3, point.wall_us);
+        out.points.push_back(point);
+    }
+    for (const model::EffectMask effects : calibration_classes(options_.quick)) {
+        std::vector<CalibrationPoint> points;
+        for (const CalibrationPoint& p : out.points) {
+            if (p.effects == effects) points.push_back(p);
+        }
+        out.costs.grids.push_back(fill_grid(effects, points));
+    }
+    return {};
+}
+
+FrameSample Run::predict(const TownView& view, const model::CostModel& costs) const {
+    const model::ViewScale scale = model::make_view_scale(view.pose, options_.device.viewport);
+    FrameSample sample;
+    for (const gl::DrawItem& item : view.items) {
+        const model::Representation& rep = scene_.model.reps[item.rep];
+        const float pixels = model::rasterised_pixels(rep, scene_.model.nodes[item.node].box, view.pose.position, scale);
+        const model::ItemCost cost = costs.item(static_cast<float>(rep.triangles), pixels, costs.grid_for(rep.effects));
+        sample.submit_us += static_cast<double>(cost.submit_us);
+        sample.raster_us += static_cast<double>(cost.raster_us);
+    }
+    return sample;
+}
+
+/// Random views of the town: every other one teaches the weights, the rest judge them.
+Result<void> Run::frames(Calibration& out) {
+    const int wanted = options_.quick ? 80 : 240;
+    std::vector<FrameSample> taught, held_out;
+    for (int i = 0; i < wanted; ++i) {
+        if (progress_.stopped()) return stopped;
+        const TownView view = random_town_view(scene_, options_.device.viewport, random_);
+        if (view.items.empty()) continue;
+        FrameSample sample = predict(view, out.costs);
+        const double slices = std::max(1.0, std::round((sample.submit_us + sample.raster_us) / slice_target_us));
+        const auto slice_items = static_cast<std::size_t>(std::ceil(static_cast<double>(view.items.size()) / slices));
+        sample.submit_us += slices * static_cast<double>(out.costs.slice_us);
+        std::vector<double> walls;
+        run_frame(device_, clocks_, view.pose, view.items, slice_items);
+        for (int k = 0; k < 3; ++k) walls.push_back(run_frame(device_, clocks_, view.pose, view.items, slice_items).wall_us);
+        sample.actual_us = median(walls);
+        (i % 2 == 0 ? taught : held_out).push_back(sample);
+        progress_.say("frames", static_cast<double>(i) / wanted);
+    }
+    out.costs.combine = fit_combine(taught);
+    out.costs.upper_factor = static_cast<float>(std::max(1.0, ratio(held_out, out.costs.combine, 0.9)));
+    out.frame_error_p50 = relative_error(held_out, out.costs.combine, 0.5);
+    out.frame_error_p90 = relative_error(held_out, out.costs.combine, 0.9);
+    out.frame_error_p99 = relative_error(held_out, out.costs.combine, 0.99);
+    return {};
+}
+
+}  // namespace
+
+Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& progress) {
+    if (options.device.kind == gl::BackendKind::null) {
+        return Error{"calibration", "the null backend draws nothing", "use --backend egl, device, window or osmesa"};
+    }
+    const double start_s = now_s();
+    progress.say("opening", 0);
+    auto device = gl::open_device(options.device);
+    if (!device) return device.error();
+    Run run(**device, options, progress);
+    if (auto loaded = run.load(); !loaded) return loaded.error();
+    Calibration out;
+    out.costs.machine = machine_identity((*device)->renderer(), options.device.rasterisers);
+    out.costs.calibrated = true;
+    run.timer(out);
+    run.slices(out);
+    if (auto done = run.cells(out); !done) return done.error();
+    if (auto done = run.frames(out); !done) return done.error();
+    out.seconds = now_s() - start_s;
+    progress.say("done", 1);
+    return out;
+}
+
+}  // namespace surefoot::measure

@@ -1,0 +1,203 @@
+// Filling tables and fitting weights (calibrate_fit.hpp).
+#include "render/measure/calibrate_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace surefoot::measure {
+
+namespace {
+
+constexpr std::uint32_t triangle_steps = 21, pixel_steps = 25;  // to 2^20 triangles and 2^24 pixels
+constexpr int terms = 4;                                        // fixed, S, R, max
+
+using Row = std::array<double, terms>;
+
+Row row_of(const FrameSample& s) { return {1.0, s.submit_us, s.raster_us, std::max(s.submit_us, s.raster_us)}; }
+
+double predicted(const FrameSample& s, const Row& w) {
+    const Row x = row_of(s);
+    double sum = 0;
+    for (int i = 0; i < terms; ++i) sum += w[static_cast<std::size_t>(i)] * x[static_cast<std::size_t>(i)];
+    return sum;
+}
+
+/// Solves the normal equations over the terms in `active` by Gauss-Jordan elimination; false where they are singular.
+bool solve(const std::array<Row, terms>& normal, const Row& right, unsigned active, Row& out) {
+    std::array<std::array<double, terms + 1>, terms> a{};
+    std::array<std::size_t, terms> index{};
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < terms; ++i) {
+        if ((active >> i & 1U) != 0) index[n++] = i;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) a[i][j] = normal[index[i]][index[j]];
+        a[i][n] = right[index[i]];
+    }
+    for (std::size_t c = 0; c < n; ++c) {
+        std::size_t pivot = c;
+        for (std::size_t r = c; r < n; ++r) {
+            if (std::abs(a[r][c]) > std::abs(a[pivot][c])) pivot = r;
+        }
+        if (std::abs(a[pivot][c]) < 1e-9 * (1.0 + std::abs(normal[index[c]][index[c]]))) return false;
+        std::swap(a[c], a[pivot]);
+        for (std::size_t r = 0; r < n; ++r) {
+            if (r == c) continue;
+            const double factor = a[r][c] / a[c][c];
+            for (std::size_t k = c; k <= n; ++k) a[r][k] -= factor * a[c][k];
+        }
+    }
+    out = {};
+    for (std::size_t i = 0; i < n; ++i) out[index[i]] = a[i][n] / a[i][i];
+    return true;
+}
+
+/// Non-negative weighted least squares over at most four terms: the best of all subsets whose solution is non-negative.
+Row non_negative(std::span<const FrameSample> samples, std::span<const double> weights) {
+    std::array<Row, terms> normal{};
+    Row right{};
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+        const Row x = row_of(samples[s]);
+        for (std::size_t i = 0; i < terms; ++i) {
+            for (std::size_t j = 0; j < terms; ++j) normal[i][j] += weights[s] * x[i] * x[j];
+            right[i] += weights[s] * x[i] * samples[s].actual_us;
+        }
+    }
+    Row best{};
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned active = 1; active < 1U << terms; ++active) {
+        Row w{};
+        if (!solve(normal, right, active, w) || std::any_of(w.begin(), w.end(), [](double v) { return !(v >= 0); })) continue;
+        double residual = 0;
+        for (std::size_t s = 0; s < samples.size(); ++s) {
+            residual += weights[s] * std::pow(samples[s].actual_us - predicted(samples[s], w), 2);
+        }
+        if (residual < least) {
+            least = residual;
+            best = w;
+        }
+    }
+    return best;
+}
+
+/// Index of the interval of `knots` that x is in, and the place within (below 0 or above 1 outside).
+struct Place {
+    std::size_t low;
+    double t;
+};
+Place place_in(const std::vector<double>& knots, double x) {
+    if (knots.size() < 2) return {0, 0};
+    std::size_t low = 0;
+    while (low + 2 < knots.size() && x > knots[low + 1]) ++low;
+    return {low, (x - knots[low]) / (knots[low + 1] - knots[low])};
+}
+
+/// The points of one triangle count, by rising pixels. Each has its own pixel counts: a coarse mesh covers less of its sphere.
+struct Level {
+    double triangles = 0;
+    std::vector<double> pixels;
+    std::vector<std::array<double, 2>> values;  ///< submit, raster
+};
+
+std::vector<Level> levels_of(std::span<const CalibrationPoint> points) {
+    std::vector<CalibrationPoint> sorted(points.begin(), points.end());
+    std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+        return a.triangles != b.triangles ? a.triangles < b.triangles : a.pixels < b.pixels;
+    });
+    std::vector<Level> levels;
+    for (const CalibrationPoint& p : sorted) {
+        if (levels.empty() || p.triangles != levels.back().triangles) levels.push_back({p.triangles, {}, {}});
+        Level& level = levels.back();
+        std::array<double, 2> value{p.submit_us, p.raster_us};
+        for (std::size_t k = 0; k < 2; ++k) {
+            value[k] = std::max(value[k], level.values.empty() ? 0.0 : level.values.back()[k]);  // noise makes no work cheaper
+        }
+        level.pixels.push_back(p.pixels);
+        level.values.push_back(value);
+    }
+    return levels;
+}
+
+double value_in(const Level& level, std::size_t kind, double pixels) {
+    const Place p = place_in(level.pixels, std::max(pixels, level.pixels.front()));
+    const double low = level.values[p.low][kind];
+    const double high = level.values[std::min(p.low + 1, level.values.size() - 1)][kind];
+    return low + p.t * (high - low);
+}
+
+}  // namespace
+
+double quantile_of(std::vector<double> values, double quantile) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const auto at = static_cast<std::size_t>(quantile * static_cast<double>(values.size()));
+    return values[std::min(at, values.size() - 1)];
+}
+
+model::CostGrid fill_grid(model::EffectMask effects, std::span<const CalibrationPoint> points) {
+    model::CostGrid grid{effects, triangle_steps, pixel_steps, {}};
+    if (points.empty()) return grid;
+    const std::vector<Level> levels = levels_of(points);
+    std::vector<double> knots;
+    for (const Level& level : levels) knots.push_back(level.triangles);
+    const auto value = [&](std::size_t kind, std::uint32_t t, std::uint32_t p) {
+        const Place place = place_in(knots, std::max(std::ldexp(1.0, static_cast<int>(t)), knots.front()));
+        const double pixels = std::ldexp(1.0, static_cast<int>(p));
+        const double low = value_in(levels[place.low], kind, pixels);
+        const double high = value_in(levels[std::min(place.low + 1, levels.size() - 1)], kind, pixels);
+        return static_cast<float>(std::max(0.0, low + place.t * (high - low)));
+    };
+    for (std::uint32_t t = 0; t < triangle_steps; ++t) {
+        for (std::uint32_t p = 0; p < pixel_steps; ++p) {
+            model::ItemCost cost{value(0, t, p), value(1, t, p)};
+            if (t > 0) {
+                const model::ItemCost& fewer = grid.cells[(t - 1) * pixel_steps + p];
+                cost = {std::max(cost.submit_us, fewer.submit_us), std::max(cost.raster_us, fewer.raster_us)};
+            }
+            grid.cells.push_back(cost);
+        }
+    }
+    return grid;
+}
+
+model::FrameCombine fit_combine(std::span<const FrameSample> samples) {
+    std::vector<double> weights(samples.size());
+    Row w{};
+    constexpr double tolerated = 0.15;  // relative error up to which a sample counts in full
+    for (int round = 0; round < 8; ++round) {
+        for (std::size_t s = 0; s < samples.size(); ++s) {
+            const double actual = std::max(1.0, samples[s].actual_us);
+            const double error = round == 0 ? 0.0 : std::abs(predicted(samples[s], w) - actual) / actual;
+            weights[s] = (error <= tolerated ? 1.0 : tolerated / error) / (actual * actual);
+        }
+        w = non_negative(samples, weights);
+    }
+    model::FrameCombine combine;
+    combine.fixed_us = static_cast<float>(w[0]);
+    combine.submit_weight = static_cast<float>(w[1]);
+    combine.raster_weight = static_cast<float>(w[2]);
+    combine.max_weight = static_cast<float>(w[3]);
+    return combine;
+}
+
+double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile) {
+    std::vector<double> values;
+    for (const FrameSample& s : samples) {
+        const float frame = combine.frame_us(static_cast<float>(s.submit_us), static_cast<float>(s.raster_us));
+        values.push_back(s.actual_us / std::max(1.0, static_cast<double>(frame)));
+    }
+    return quantile_of(std::move(values), quantile);
+}
+
+double relative_error(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile) {
+    std::vector<double> values;
+    for (const FrameSample& s : samples) {
+        const float frame = combine.frame_us(static_cast<float>(s.submit_us), static_cast<float>(s.raster_us));
+        values.push_back(std::abs(s.actual_us - static_cast<double>(frame)) / std::max(1.0, s.actual_us));
+    }
+    return quantile_of(std::move(values), quantile);
+}
+
+}  // namespace surefoot::measure

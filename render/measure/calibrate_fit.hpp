@@ -1,0 +1,32 @@
+// From measured points to a cost table, and from measured frames to how items add up.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/measure/calibrate.hpp"
+#include "render/model/cost.hpp"
+
+namespace surefoot::measure {
+
+/// The grid of one state class from its points (a full lattice of triangles x pixels, any spacing): linear in triangles and
+/// pixels between points, by the outermost slope beyond them, never falling with either.
+model::CostGrid fill_grid(model::EffectMask effects, std::span<const CalibrationPoint> points);
+
+/// Sums of one measured frame and what it took.
+struct FrameSample {
+    double submit_us = 0, raster_us = 0;  ///< predicted sums over items, slices included
+    double actual_us = 0;
+};
+
+/// Weights >= 0 of fixed, S, R and max(S, R) with the least relative error; outliers count less (Huber).
+model::FrameCombine fit_combine(std::span<const FrameSample> samples);
+
+/// |actual - predicted| / actual at a quantile, 0..1.
+double relative_error(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile);
+/// actual / predicted at a quantile.
+double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile);
+
+double quantile_of(std::vector<double> values, double quantile);
+
+}  // namespace surefoot::measure

@@ -1,0 +1,41 @@
+// Timing one frame in its places: the frame thread, the rasterisers, and by the clock on the wall.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/gl/device.hpp"
+#include "render/measure/calibrate.hpp"
+
+namespace surefoot::measure {
+
+/// us. submit: CPU time of the calling thread; raster: CPU time of the busiest of the driver's rasterisers, or, where the
+/// driver has none (a GPU), what was waited for after the last call.
+struct FrameTiming {
+    double submit_us = 0, raster_us = 0, wall_us = 0;
+};
+
+/// CPU clocks of the driver's rasteriser threads, found by name. Empty for hardware.
+class RasteriserClocks {
+public:
+    RasteriserClocks();
+    [[nodiscard]] bool any() const { return !threads_.empty(); }
+    void start();
+    [[nodiscard]] double busiest_us() const;
+
+private:
+    std::vector<int> threads_;
+    std::vector<std::int64_t> before_;
+};
+
+/// Draws the items in slices of slice_items, at most one slice ahead of the rasterisers, as the engine does.
+FrameTiming run_frame(gl::Device& device, RasteriserClocks& rasterisers, const Pose& pose, std::span<const gl::DrawItem> items,
+                      std::size_t slice_items);
+
+/// The same work by timer query and by the wall. Draws `items` as one slice.
+TimerQueryCheck check_timer(gl::Device& device, const Pose& pose, std::span<const gl::DrawItem> items);
+/// Honest: within 20 % of the wall.
+TimerQueryCheck judge_timer(bool available, double query_ms, double wall_ms);
+
+}  // namespace surefoot::measure

@@ -1,0 +1,293 @@
+// Generating the calibration model (calibrate_scene.hpp).
+#include "render/measure/calibrate_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "render/model/cost.hpp"
+#include "render/model/pixels.hpp"
+
+namespace surefoot::measure {
+
+namespace {
+
+using model::Index;
+
+constexpr model::EffectMask texture = model::effect_texture, colours = model::effect_vertex_colour, sun = model::effect_sun,
+                            mask = model::effect_alpha_mask, blend = model::effect_blend;
+constexpr std::array<model::EffectMask, 7> all_classes{
+    0, colours | sun, texture, texture | sun, texture | sun | colours, texture | sun | mask, texture | sun | blend};
+constexpr std::array<int, 8> triangle_levels{4, 16, 64, 256, 1024, 4096, 16384, 65536};
+constexpr std::array<double, 6> pixel_levels{16, 128, 1024, 8192, 65536, 262144};
+constexpr int copies_of_small = 8;       // of each mesh: equal neighbours would merge into one instanced draw
+constexpr double cell_us = 2500;         // aim for this long a measurement
+constexpr std::size_t most_items = 300;  // in a cell
+
+/// A mesh in the model, to be referenced by parts of any class.
+struct Mesh {
+    model::Part part;  ///< material to be filled in
+    std::uint32_t triangles = 0;
+    std::array<float, 3> area{};  ///< at radius 1, culled back faces
+};
+
+class Builder {
+public:
+    explicit Builder(std::uint64_t seed) : random_(seed) {
+        model_.names = std::string(1, '\0');
+        model_.nodes.emplace_back();
+        model_.sun_direction = glm::normalize(dvec3(0.36, 0.80, 0.48));
+        add_texture();
+    }
+
+    Index material(model::EffectMask effects) {
+        model::Material m;
+        m.colour = {0.8F, 0.75F, 0.7F, (effects & blend) != 0 ? 0.6F : 1.0F};
+        m.effects = effects;
+        if ((effects & texture) != 0) m.texture = 0;
+        m.alpha = (effects & mask) != 0    ? model::AlphaMode::mask
+                  : (effects & blend) != 0 ? model::AlphaMode::blend
+                                           : model::AlphaMode::opaque;
+        model_.materials.push_back(m);
+        return static_cast<Index>(model_.materials.size() - 1);
+    }
+
+    /// A bumpy sphere of radius about 1 with about `triangles` triangles.
+    Mesh sphere(int triangles) {
+        const int segments = std::max(3, static_cast<int>(std::lround(std::sqrt(triangles))));
+        const int rings = std::max(2, static_cast<int>(std::lround(triangles / (2.0 * segments))) + 1);
+        Mesh mesh;
+        begin(mesh);
+        for (int i = 0; i <= rings; ++i) {
+            for (int j = 0; j <= segments; ++j) {
+                const double a = std::numbers::pi * i / rings;
+                const double b = 2 * std::numbers::pi * (j % segments) / segments;
+                const bool seam = i == 0 || i == rings || j % segments == 0;
+                const double r = seam ? 1.0 : random_.range(0.93, 1.0);
+                add_vertex(dvec3(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)), r,
+                           vec2(2.0 * j / segments, 1.0 * i / rings));
+            }
+        }
+        for (int i = 0; i < rings; ++i) {
+            for (int j = 0; j < segments; ++j) {
+                const auto a = static_cast<std::uint32_t>(i * (segments + 1) + j);
+                const auto c = a + static_cast<std::uint32_t>(segments) + 1;
+                if (i > 0) add_triangle({a, a + 1, c});
+                if (i + 1 < rings) add_triangle({a + 1, c + 1, c});
+            }
+        }
+        finish(mesh);
+        return mesh;
+    }
+
+    /// A node at a place, without representations yet.
+    Index node(const dvec3& centre, double radius) {
+        model::Node n;
+        n.box.grow(centre - dvec3(radius));
+        n.box.grow(centre + dvec3(radius));
+        n.parent = 0;
+        n.kind = model::NodeKind::object;
+        n.first_rep = static_cast<Index>(model_.reps.size());
+        model_.nodes.push_back(n);
+        model::Placement placement;
+        placement.origin = centre;
+        placement.linear = mat3(static_cast<float>(radius));
+        model_.placements.push_back(placement);
+        return static_cast<Index>(model_.nodes.size() - 1);
+    }
+
+    /// One more representation of the node made last.
+    Index rep(const Mesh& mesh, Index material, double radius) {
+        model::Part part = mesh.part;
+        part.material = material;
+        model_.parts.push_back(part);
+        model::Representation r;
+        r.placement = static_cast<Index>(model_.placements.size() - 1);
+        r.first_part = static_cast<Index>(model_.parts.size() - 1);
+        r.part_count = 1;
+        r.triangles = mesh.triangles;
+        r.effects = model_.materials[material].effects;
+        for (std::size_t i = 0; i < 3; ++i) r.area_m2[i] = mesh.area[i] * static_cast<float>(radius * radius);
+        model_.reps.push_back(r);
+        ++model_.nodes.back().rep_count;
+        model_.nodes.back().triangles = mesh.triangles;
+        return static_cast<Index>(model_.reps.size() - 1);
+    }
+
+    Random& random() { return random_; }
+    model::Model& model() { return model_; }
+
+private:
+    void add_texture() {
+        model::Texture t;
+        t.width = t.height = 256;
+        for (std::uint32_t side = 256; side > 0; side /= 2, ++t.levels) {
+            for (std::uint32_t i = 0; i < side * side; ++i) {
+                const std::uint64_t noise = random_.next();
+                // A tenth of the texels are holes for the mask.
+                const bool hole = noise % 10 == 0;
+                for (unsigned c = 0; c < 3; ++c)
+                    model_.texels.push_back(static_cast<std::byte>(0x60U | (noise >> (8 * c + 8) & 0x7fU)));
+                model_.texels.push_back(static_cast<std::byte>(hole ? 0 : 255));
+            }
+        }
+        model_.textures.push_back(t);
+    }
+    void begin(Mesh& mesh) const {
+        mesh.part.first_index = static_cast<std::uint32_t>(model_.indices.size());
+        mesh.part.first_vertex = static_cast<std::uint32_t>(model_.vertices.size());
+    }
+    void add_vertex(const dvec3& direction, double radius, const vec2& uv) {
+        model::Vertex v{};
+        for (int i = 0; i < 3; ++i) {
+            v.position[i] = static_cast<float>(direction[i] * radius);
+            v.normal[i] = static_cast<std::int8_t>(std::lround(127 * direction[i]));
+            v.colour[i] = static_cast<std::uint8_t>(160 + random_.below(90));
+        }
+        v.colour[3] = 255;
+        v.uv[0] = uv.x;
+        v.uv[1] = uv.y;
+        model_.vertices.push_back(v);
+    }
+    void add_triangle(const std::array<std::uint32_t, 3>& corners) {
+        model_.indices.insert(model_.indices.end(), corners.begin(), corners.end());
+    }
+    void finish(Mesh& mesh) const {
+        mesh.part.index_count = static_cast<std::uint32_t>(model_.indices.size()) - mesh.part.first_index;
+        mesh.part.vertex_count = static_cast<std::uint32_t>(model_.vertices.size()) - mesh.part.first_vertex;
+        mesh.triangles = mesh.part.index_count / 3;
+        const auto at = [&](std::uint32_t i) {
+            const float* p = model_.vertices[mesh.part.first_vertex + model_.indices[mesh.part.first_index + i]].position;
+            return vec3(p[0], p[1], p[2]);
+        };
+        for (std::uint32_t i = 0; i < mesh.part.index_count; i += 3) {
+            const vec3 normal = glm::cross(at(i + 1) - at(i), at(i + 2) - at(i));  // twice the area
+            for (int k = 0; k < 3; ++k) mesh.area[static_cast<std::size_t>(k)] += 0.25F * std::abs(normal[k]);
+        }
+    }
+
+    model::Model model_;
+    Random random_;
+};
+
+using Meshes = std::vector<std::vector<Mesh>>;  ///< [level][copy]
+
+Meshes make_meshes(Builder& builder) {
+    Meshes meshes;
+    for (const int level : triangle_levels) {
+        auto& copies = meshes.emplace_back();
+        const int count = level <= 4096 ? copies_of_small : 2;
+        for (int i = 0; i < count; ++i) copies.push_back(builder.sphere(level));
+    }
+    return meshes;
+}
+
+/// Items of about `pixels` each over the view of Pose{}, at rising depth so that equal meshes are never sorted side by side.
+CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, Index material, double pixels,
+                          model::Viewport viewport) {
+    const model::ViewScale scale = model::make_view_scale(Pose{}, viewport);
+    const double f = static_cast<double>(scale.pixels_per_radian);
+    const double angular = std::sqrt(pixels / std::numbers::pi) / f;  // radius over depth
+    const model::CostModel guess = model::default_costs();
+    const model::ItemCost cost = guess.item(static_cast<float>(meshes[0].triangles), static_cast<float>(pixels),
+                                            guess.grid_for(builder.model().materials[material].effects));
+    const double each_us = static_cast<double>(cost.submit_us + cost.raster_us);
+    const auto count = static_cast<std::size_t>(std::clamp(cell_us / each_us, 1.0, static_cast<double>(most_items)));
+    CalibrationCell cell;
+    cell.effects = builder.model().materials[material].effects;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double depth = 20.0 * (1.0 + 0.002 * static_cast<double>(i));
+        const double reach_x = std::max(0.0, static_cast<double>(scale.tan_half_x) - angular);
+        const double reach_y = std::max(0.0, static_cast<double>(scale.tan_half_y) - angular);
+        const dvec3 centre(depth * builder.random().range(-reach_x, reach_x), depth * builder.random().range(-reach_y, reach_y),
+                           -depth);
+        const double radius = angular * depth;
+        const Index node = builder.node(centre, radius);
+        const Index rep = builder.rep(meshes[i % meshes.size()], material, radius);
+        cell.items.push_back({node, rep});
+        const model::Model& m = builder.model();
+        cell.pixels += static_cast<double>(model::rasterised_pixels(m.reps[rep], m.nodes[node].box, dvec3(0.0), scale));
+        cell.triangles += m.reps[rep].triangles;
+    }
+    cell.pixels /= static_cast<double>(count);
+    cell.triangles /= static_cast<double>(count);
+    return cell;
+}
+
+constexpr double town_side_m = 400;
+constexpr int blocks = 12;  // a side
+constexpr int objects_a_block = 16;
+
+void make_town(Builder& builder, const Meshes& meshes, std::span<const Index> materials, CalibrationScene& scene) {
+    Random& random = builder.random();
+    const double block = town_side_m / blocks;
+    for (int b = 0; b < blocks * blocks; ++b) {
+        const dvec3 corner(block * (b % blocks) - 0.5 * town_side_m, 0, block * (b / blocks) - 0.5 * town_side_m + 1000);
+        for (int i = 0; i < objects_a_block; ++i) {
+            const double radius = 0.4 * std::exp(2.6 * random.unit());  // 0.4 to 5.4 m
+            const dvec3 centre = corner + dvec3(block * random.unit(), radius * random.range(0.2, 1.0), block * random.unit());
+            TownObject object;
+            object.node = builder.node(centre, radius);
+            const Index material = materials[random.below(static_cast<std::uint32_t>(materials.size()))];
+            object.effects = builder.model().materials[material].effects;
+            const std::uint32_t finest = 2 + random.below(4);  // 64 to 4096 triangles
+            object.first_rep = static_cast<Index>(builder.model().reps.size());
+            for (std::uint32_t level = 0; level <= finest; ++level, ++object.levels) {
+                builder.rep(meshes[level][random.below(static_cast<std::uint32_t>(meshes[level].size()))], material, radius);
+            }
+            scene.town.push_back(object);
+            scene.town_box.grow(builder.model().nodes[object.node].box);
+        }
+    }
+}
+
+}  // namespace
+
+std::span<const model::EffectMask> calibration_classes(bool quick) {
+    return std::span<const model::EffectMask>(all_classes).subspan(0, quick ? 4 : all_classes.size());
+}
+
+CalibrationScene make_calibration_scene(model::Viewport viewport, bool quick, std::uint64_t seed) {
+    Builder builder(seed);
+    CalibrationScene scene;
+    const Meshes meshes = make_meshes(builder);
+    std::vector<Index> materials;
+    for (const model::EffectMask effects : calibration_classes(quick)) materials.push_back(builder.material(effects));
+    for (const Index material : materials) {
+        for (std::size_t t = 0; t < meshes.size(); t += quick ? 2 : 1) {
+            for (std::size_t p = 0; p < pixel_levels.size(); ++p) {
+                scene.cells.push_back(make_cell(builder, meshes[t], material, pixel_levels[p], viewport));
+            }
+        }
+    }
+    make_town(builder, meshes, materials, scene);
+    scene.model = std::move(builder.model());
+    return scene;
+}
+
+TownView random_town_view(const CalibrationScene& scene, model::Viewport viewport, Random& random) {
+    TownView view;
+    const Box& box = scene.town_box;
+    view.pose.position = dvec3(random.range(box.min.x, box.max.x), random.range(1.0, 12.0), random.range(box.min.z, box.max.z));
+    view.pose.orientation = glm::angleAxis(random.range(0, 2 * std::numbers::pi), dvec3(0, 1, 0)) *
+                            glm::angleAxis(random.range(-0.3, 0.2), dvec3(1, 0, 0));
+    const double reach = 25.0 * std::pow(16.0, random.unit());
+    const auto detail = static_cast<double>(random.below(5));
+    // Some frames of one class only: what a scene without the others looks like.
+    const bool pure = random.unit() < 0.4;
+    const model::EffectMask only = scene.town[random.below(static_cast<std::uint32_t>(scene.town.size()))].effects;
+    const model::Frustum frustum = model::make_frustum(view.pose, viewport, 4 * town_side_m);
+    for (const TownObject& object : scene.town) {
+        if (pure && object.effects != only) continue;
+        const model::Node& node = scene.model.nodes[object.node];
+        const double distance = node.box.distance(view.pose.position);
+        if (distance > reach || distance < 0.5 || !model::visible(frustum, node.box)) continue;
+        const double level = detail + 1.0 - std::log2(1.0 + distance / 25.0);
+        const auto chosen = static_cast<std::uint32_t>(std::clamp(level, 0.0, static_cast<double>(object.levels - 1)));
+        view.items.push_back({object.node, object.first_rep + chosen});
+    }
+    return view;
+}
+
+}  // namespace surefoot::measure

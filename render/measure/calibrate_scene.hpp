@@ -1,0 +1,49 @@
+// The model that calibration draws: generated in memory, so that every machine measures the same work.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/gl/device.hpp"
+#include "render/model/model.hpp"
+#include "render/model/view.hpp"
+#include "rt/base/random.hpp"
+
+namespace surefoot::measure {
+
+/// The state classes that are measured, the bare one first.
+std::span<const model::EffectMask> calibration_classes(bool quick);
+
+/// Items of one (class, triangles, pixels) cell, in front of Pose{}.
+struct CalibrationCell {
+    model::EffectMask effects = 0;
+    double triangles = 0, pixels = 0;  ///< of one item, as the shared estimate counts them
+    std::vector<gl::DrawItem> items;
+};
+
+/// An object of the town: the same place at several levels of detail, coarse to fine.
+struct TownObject {
+    model::Index node = 0;
+    model::Index first_rep = 0;
+    std::uint32_t levels = 0;
+    model::EffectMask effects = 0;
+};
+
+struct CalibrationScene {
+    model::Model model;
+    std::vector<CalibrationCell> cells;
+    std::vector<TownObject> town;  ///< in blocks: neighbours in the list are neighbours in space
+    Box town_box;
+};
+
+CalibrationScene make_calibration_scene(model::Viewport viewport, bool quick, std::uint64_t seed);
+
+/// A random view of the town: what of it is seen, at what level, in drawing order.
+struct TownView {
+    Pose pose;
+    std::vector<gl::DrawItem> items;
+};
+TownView random_town_view(const CalibrationScene& scene, model::Viewport viewport, Random& random);
+
+}  // namespace surefoot::measure
