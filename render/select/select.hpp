@@ -27,35 +27,37 @@ struct CutItem {
 
 /// The chosen set (DESIGN 4). items is in candidate order of the selector's tree walk; legal: every visible leaf covered once.
 struct Cut {
-    std::vector<CutItem> items;      ///< reserved; never grows after
-    model::ItemCost sum;             ///< over items
-    float predicted_us = 0;          ///< whole frame, combined and corrected, at the upper quantile
-    float floor_us = 0;              ///< the cheapest legal cut's
-    bool floor_binds = false;        ///< floor_us > budget: the floor is drawn
-    float worst_error_rad = 0;       ///< 1 / accuracy
-    double benefit = 0;              ///< sum over items of what is shown, 0..items
+    std::vector<CutItem> items;  ///< reserved; never grows after
+    model::ItemCost sum;         ///< over items
+    float predicted_us = 0;      ///< whole frame, combined and corrected, at the upper quantile
+    float floor_us = 0;          ///< the cheapest legal cut's
+    bool floor_binds = false;    ///< floor_us > budget: the floor is drawn
+    float worst_error_rad = 0;   ///< 1 / accuracy
+    double benefit = 0;          ///< sum over items of what is shown, 0..items
     std::uint64_t triangles = 0;
-    std::uint32_t switches = 0;      ///< representations that differ from the previous frame's
-    std::uint64_t hash = 0;          ///< of (node, rep) in order
-    std::uint32_t refinements = 0;   ///< upgrades bought
+    std::uint32_t switches = 0;     ///< representations that differ from the previous frame's
+    std::uint64_t hash = 0;         ///< of (node, rep) in order
+    std::uint32_t refinements = 0;  ///< upgrades bought
 };
 
 struct SelectInput {
     const model::Model* model = nullptr;
     const prepare::PreparedFrame* prepared = nullptr;
     const model::CostModel* costs = nullptr;
-    double budget_us = 0;             ///< whole frame; infinity: full detail
-    double correction = 1;            ///< online factor on predictions
-    double target_error_rad = 0;      ///< stop refining below it (0: refine as far as the budget goes)
+    double budget_us = 0;         ///< whole frame; infinity: full detail
+    double correction = 1;        ///< online factor on predictions
+    double target_error_rad = 0;  ///< stop refining below it (0: refine as far as the budget goes)
+    double slice_us = 1000;       ///< predicted length of a slice: what ending the slices costs is in the prediction
 };
 
-/// Kept by the frame thread between frames, sized once: what was refined and shown, for hysteresis and switches.
+/// Kept by the frame thread between frames, sized once: what was shown, for hysteresis and switches; room for the searches.
 struct SelectState {
-    std::vector<std::uint8_t> refined;  ///< a node: its children were in the last cut
-    std::vector<Index> shown;           ///< a node: representation in the last cut, or none
-    std::vector<Index> touched;         ///< nodes to clear next time
-    std::vector<std::uint32_t> scratch_next, scratch_head, scratch_a, scratch_b;
-    float hysteresis = 1.25F;           ///< benefit factor for what was refined in the last frame
+    static constexpr Index opened = none - 1;
+    std::vector<Index> shown;    ///< a node: representation in the last cut, `opened` if that was among its descendants, or none
+    std::vector<Index> touched;  ///< nodes whose `shown` is not none
+    std::vector<std::uint32_t> scratch_next, scratch_head, scratch_a, scratch_b;  ///< a candidate; scratch_head: the queue
+    /// Benefit factor, 1..2, for what was refined in the last frame; 1: no memory.
+    float hysteresis = 1.25F;
     void reserve(const model::Model& model, std::uint32_t max_candidates);
 };
 
@@ -90,10 +92,10 @@ struct Slice {
 };
 
 struct SlicePlan {
-    std::vector<Slice> slices;          ///< in submission order: most beneficial (nearest) subtrees first
-    std::vector<CutItem> order;         ///< the cut's items, grouped by slice
+    std::vector<Slice> slices;   ///< in submission order: most beneficial (nearest) subtrees first
+    std::vector<CutItem> order;  ///< the cut's items, grouped by slice
     std::vector<CutItem> stand_ins;
-    std::vector<std::uint32_t> scratch_a, scratch_b, scratch_c;
+    std::vector<std::uint32_t> scratch_a, scratch_b, scratch_c, scratch_d;
     void reserve(std::uint32_t max_candidates);
 };
 

@@ -1,0 +1,135 @@
+// Choices of one node: legality over the region, predicted cost, error as an angle, and the benefit's factors.
+#include "render/prepare/evaluate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::prepare {
+
+namespace {
+
+constexpr float near_m = static_cast<float>(model::near_plane_m);
+constexpr float largest_error_rad = 1e6F;  // keeps every product finite; an error of a million radians is just "wrong"
+
+/// The eye of the region that is nearest to the box: there it costs most.
+dvec3 nearest_eye(const RegionView& view, const Box& box) {
+    const dvec3 away = glm::clamp(view.eye, box.min, box.max) - view.eye;
+    const double distance = glm::length(away);
+    if (!(distance > 0.0) || !(view.radius_m > 0.0)) return view.eye;
+    return view.eye + away * (std::min(view.radius_m, distance) / distance);
+}
+
+struct Extent {
+    float centre, half;
+};
+Extent along(const vec3& centre, const vec3& half, const vec3& axis) {
+    return {glm::dot(centre, axis), glm::dot(half, glm::abs(axis))};
+}
+
+float overlap(const Extent& e, float limit) {
+    return std::max(0.0F, std::min(e.centre + e.half, limit) - std::max(e.centre - e.half, -limit));
+}
+
+/// How far off the middle of the view the box begins, 0..1 of the half view.
+float off_centre(const Extent& e, float limit) { return std::clamp((std::abs(e.centre) - e.half) / limit, 0.0F, 1.0F); }
+
+struct Seen {
+    float pixels = 0;  ///< of the box's outline, clipped to the view
+    float focus = 1;
+};
+
+Seen look(const RegionView& view, const Box& box, const dvec3& eye) {
+    const model::ViewScale& s = view.wide;
+    const vec3 centre(box.centre() - eye), half(box.half());
+    const Extent x = along(centre, half, s.right), y = along(centre, half, s.up), z = along(centre, half, s.forward);
+    Seen seen;
+    const float deepest = z.centre + z.half;
+    if (!(deepest > near_m)) return {0.0F, 1.0F - view.focus_strength};
+    const float depth = std::max(z.centre - z.half, near_m);
+    const float scale = s.pixels_per_radian / depth;
+    seen.pixels =
+        std::min(overlap(x, depth * s.tan_half_x) * overlap(y, depth * s.tan_half_y) * scale * scale, s.viewport_pixels);
+    const float right = off_centre(x, deepest * s.tan_half_x), up = off_centre(y, deepest * s.tan_half_y);
+    seen.focus = 1.0F - view.focus_strength * 0.5F * (right * right + up * up);
+    return seen;
+}
+
+/// What moves fast across the view is blurred (Maciel 3.3.2): down to a half, since walking towards a thing does not blur it.
+float motion_factor(const RegionView& view, float distance_m) {
+    const float omega = view.speed_mps / distance_m + view.turn_rps;
+    return 1.0F - 0.5F * omega / (omega + 4.0F);
+}
+
+}  // namespace
+
+float nearest_distance(const RegionView& view, const Box& box) {
+    const double distance = box.distance(view.eye) - view.radius_m;
+    return distance > 0.0 ? static_cast<float>(std::min(distance, 1e30)) : 0.0F;
+}
+
+float error_distance(float nearest_m) { return std::max(nearest_m, near_m); }
+
+bool legal(const model::Representation& rep, float nearest_m) {
+    return nearest_m >= rep.min_distance_m && (rep.everywhere || nearest_m > 0.0F);
+}
+
+float finest_error(const model::Model& model, const model::Node& node, float nearest_m) {
+    for (Index r = node.first_rep + node.rep_count; r > node.first_rep; --r) {
+        const model::Representation& rep = model.reps[r - 1];
+        if (legal(rep, nearest_m)) return rep.error_m;
+    }
+    return model.reps[node.first_rep].error_m;
+}
+
+Evaluator::Evaluator(const model::Model& model, const model::CostModel& costs) : model_(model), costs_(costs) {
+    grid_of_rep_.reserve(model.reps.size());
+    for (const model::Representation& rep : model.reps) {
+        const auto grid = &costs.grid_for(rep.effects) - costs.grids.data();
+        grid_of_rep_.push_back(static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(grid, 255)));
+    }
+}
+
+std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices,
+                                  Weight& weight) const {
+    const model::Node& node = model_.nodes[candidate.node];
+    const dvec3 eye = nearest_eye(view, node.box);
+    const float distance = error_distance(nearest_m);
+    const Seen seen = look(view, node.box, eye);
+    candidate.pixels = seen.pixels;
+    const float size = std::sqrt(seen.pixels / view.wide.viewport_pixels);
+    const float importance = node.importance >= 0.0F ? std::min(node.importance, 1.0F) : 0.0F;
+    weight = {size * importance * seen.focus * motion_factor(view, distance), distance};
+
+    const auto fill = [&](Choice& choice, Index r, float error_rad) {
+        const model::Representation& rep = model_.reps[r];
+        const float pixels = model::rasterised_pixels(rep, node.box, eye, view.scale);
+        choice.rep = r;
+        choice.cost = costs_.item(static_cast<float>(rep.triangles), pixels, costs_.grids[grid_of_rep_[r]]);
+        choice.error_rad = error_rad;
+        choice.benefit = weight.weight * accuracy_gain(error_rad, view.pixel_angle_rad);
+        choice.subtree_benefit = choice.benefit;
+        choice.triangles = rep.triangles;
+    };
+    const auto error_of = [&](Index r) { return std::clamp(model_.reps[r].error_m / distance, 0.0F, largest_error_rad); };
+
+    std::uint32_t count = 0;
+    for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
+        if (!legal(model_.reps[r], nearest_m)) continue;
+        const float error_rad = error_of(r);
+        if (count > 0 && !(error_rad < choices[count - 1].error_rad)) continue;
+        Choice choice;
+        fill(choice, r, error_rad);
+        const float metric = cost_metric(costs_.combine, choice.cost);
+        while (count > 0 && metric <= cost_metric(costs_.combine, choices[count - 1].cost)) --count;  // better and no dearer
+        choices[count++] = choice;
+        if (error_rad <= view.target_error_rad && !view.full_depth) break;
+    }
+    if (count == 0) {  // a model that breaks its promise of an everywhere-legal form is still drawn
+        fill(choices[0], node.first_rep, error_of(node.first_rep));
+        count = 1;
+    }
+    candidate.choice_count = count;
+    return count;
+}
+
+}  // namespace surefoot::prepare

@@ -1,0 +1,70 @@
+// One visible node seen from a region: its legal choices with cost and error, its pixels, its weight in the benefit.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/model/cost.hpp"
+#include "render/model/model.hpp"
+#include "render/model/pixels.hpp"
+#include "render/prepare/prepared.hpp"
+
+namespace surefoot::prepare {
+
+/// What a frame's evaluation needs of region, viewport and options; made once a frame.
+struct RegionView {
+    dvec3 eye{0.0};
+    double radius_m = 0;
+    model::ViewScale scale;  ///< at the centre's orientation: pixels are counted once, whichever way the eye turns
+    model::ViewScale wide;   ///< widened by the region's angle: for size and focus, so that the rim is not forgotten
+    float pixel_angle_rad = 1e-3F;
+    float target_error_rad = 0;  ///< finer forms than this are left out
+    bool full_depth = false;
+    float focus_strength = 0.5F;
+    float speed_mps = 0, turn_rps = 0;
+};
+
+/// Metres between the node's box and the nearest eye of the region; 0 inside.
+float nearest_distance(const RegionView& view, const Box& box);
+/// What errors are divided by.
+float error_distance(float nearest_m);
+
+/// Whether the representation may be drawn with every eye of the region.
+bool legal(const model::Representation& rep, float nearest_m);
+/// Error in metres of the finest legal representation.
+float finest_error(const model::Model& model, const model::Node& node, float nearest_m);
+
+/// Size x importance x focus x motion, each 0..1, and where it is seen from: what is common to the benefits of a node's
+/// choices. Sources: Funkhouser's factors as Maciel 3.3.2 lists them; the accuracy factor is accuracy_gain().
+struct Weight {
+    float weight = 0;
+    float distance_m = 1;  ///< error_distance()
+};
+
+/// The accuracy factor of the benefit, 0..1: e / (e + 8) with e the error in pixels. Below a pixel there is little to win
+/// (1/9 at one pixel), and beyond a few dozen pixels a thing is simply wrong, however much.
+inline float accuracy_gain(float error_rad, float pixel_angle_rad) {
+    const float error_px = error_rad / pixel_angle_rad;
+    return error_px / (error_px + 8.0F);
+}
+
+/// One number to compare costs by, before the frame's sums are known.
+inline float cost_metric(const model::FrameCombine& combine, const model::ItemCost& cost) {
+    return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
+}
+
+class Evaluator {
+public:
+    Evaluator(const model::Model& model, const model::CostModel& costs);
+
+    /// Fills `candidate.pixels` and the choices, `rep_count` of the node at most; returns how many. candidate.node is given.
+    /// Choices have benefit = weight x accuracy, not yet monotone down the tree.
+    std::uint32_t evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices, Weight& weight) const;
+
+private:
+    const model::Model& model_;
+    const model::CostModel& costs_;
+    std::vector<std::uint8_t> grid_of_rep_;  ///< index of the cost grid: the look-up by state class is done once
+};
+
+}  // namespace surefoot::prepare

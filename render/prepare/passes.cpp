@@ -1,0 +1,72 @@
+// Serial passes over the candidates: a parent comes before its children, so one loop each way does.
+#include "render/prepare/passes.hpp"
+
+#include <algorithm>
+
+namespace surefoot::prepare {
+
+namespace {
+
+struct Below {
+    Weight weight;      ///< greatest weight and least distance among the visible leaves below
+    float benefit = 0;  ///< the children's greatest
+    model::ItemCost floor;
+};
+
+Below below(const Candidate& candidate, std::span<const Weight> weights, const PreparedFrame& frame, model::ItemCost& first_sum) {
+    Below sum;
+    sum.weight = weights[candidate.first_child];
+    for (Index c = candidate.first_child; c < candidate.first_child + candidate.child_count; ++c) {
+        const Candidate& child = frame.candidates[c];
+        const Choice& first = frame.choices[child.first_choice];
+        sum.weight.weight = std::max(sum.weight.weight, weights[c].weight);
+        sum.weight.distance_m = std::min(sum.weight.distance_m, weights[c].distance_m);
+        sum.benefit = std::max(sum.benefit, first.subtree_benefit);
+        sum.floor.submit_us += child.floor_cost.submit_us;
+        sum.floor.raster_us += child.floor_cost.raster_us;
+        first_sum.submit_us += first.cost.submit_us;
+        first_sum.raster_us += first.cost.raster_us;
+    }
+    return sum;
+}
+
+}  // namespace
+
+void gather_up(const model::FrameCombine& combine, float pixel_angle_rad, std::span<Weight> weights, PreparedFrame& frame) {
+    for (std::size_t i = frame.candidates.size(); i-- > 0;) {
+        Candidate& candidate = frame.candidates[i];
+        const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
+        candidate.floor_cost = choices[0].cost;
+        if (candidate.child_count == 0) continue;
+        const Below sum = below(candidate, weights, frame, candidate.children_cost);
+        if (cost_metric(combine, sum.floor) <= cost_metric(combine, candidate.floor_cost)) {
+            candidate.floor_cost = sum.floor;  // no dearer and finer
+            candidate.floor_open = true;
+        }
+        float least = sum.benefit;
+        for (std::size_t c = choices.size(); c-- > 0;) {
+            const float error_m = choices[c].error_rad * weights[i].distance_m;
+            const float gain = sum.weight.weight * accuracy_gain(error_m / sum.weight.distance_m, pixel_angle_rad);
+            least = std::max(least, gain);
+            choices[c].subtree_benefit = least;
+        }
+        weights[i] = sum.weight;
+    }
+}
+
+void hold_down(PreparedFrame& frame) {
+    for (Candidate& candidate : frame.candidates) {
+        float most = 1.0F;
+        if (candidate.parent != none) {
+            const Candidate& parent = frame.candidates[candidate.parent];
+            most = frame.choices[parent.first_choice + parent.choice_count - 1].benefit;
+        }
+        for (std::uint32_t c = 0; c < candidate.choice_count; ++c) {
+            float& benefit = frame.choices[candidate.first_choice + c].benefit;
+            most = std::min(most, benefit);
+            benefit = most;
+        }
+    }
+}
+
+}  // namespace surefoot::prepare

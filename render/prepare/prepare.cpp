@@ -1,0 +1,337 @@
+// The Preparer: breadth-first by levels, then evaluation, then the passes up and down the tree. Whatever runs on workers runs
+// in chunks of fixed size that write to places of their own, so that the arrays do not depend on the number of workers.
+#include <time.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "render/prepare/evaluate.hpp"
+#include "render/prepare/passes.hpp"
+#include "render/prepare/prepared.hpp"
+#include "render/prepare/visibility.hpp"
+
+namespace surefoot::prepare {
+
+namespace {
+
+/// A node that the frustum did not cull. Children are contiguous visits.
+struct Visit {
+    Index node = 0;
+    Index parent = none;
+    Index first_child = 0;
+    std::uint32_t child_count = 0;
+    std::uint32_t rep_count = 0;
+    float nearest_m = 0;
+    PlaneMask mask = all_planes;
+    bool open = false;  ///< worth refining and has children
+    bool live = true;   ///< false: none of its children is visible (Maciel figure 3.16)
+};
+
+constexpr std::uint32_t parents_a_chunk = 64, visits_a_chunk = 512;
+constexpr std::uint32_t least_slots = 1U << 15U;  // children looked at before they are closed up: bounds the room for them
+
+double seconds(clockid_t clock) {
+    timespec t{};
+    clock_gettime(clock, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
+
+Region cleaned(const Region& region, const Box& root) {
+    Region r = region;
+    const dvec3& p = r.centre.position;
+    if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
+        r.centre.position = root.empty() ? dvec3(0.0) : root.centre();
+    const dquat& q = r.centre.orientation;
+    const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    r.centre.orientation = std::isfinite(length) && length > 1e-9 ? q / length : dquat(1.0, 0.0, 0.0, 0.0);
+    r.centre.fov_y_rad = finite_or(r.centre.fov_y_rad, Pose{}.fov_y_rad);
+    r.radius_m = std::clamp(finite_or(r.radius_m, 0.0), 0.0, 1e9);
+    r.angle_rad = std::clamp(finite_or(r.angle_rad, 0.0), 0.0, 3.2);
+    return r;
+}
+
+}  // namespace
+
+struct Preparer::Impl {
+    const model::Model& model;
+    const model::CostModel& costs;
+    PrepareOptions options;
+    Evaluator evaluator;
+    std::unique_ptr<tbb::task_arena> arena;  ///< none: one worker, the caller
+
+    std::vector<Visit> visits;
+    std::vector<Visit> slots;  ///< children of a block of parents, before they are closed up
+    std::vector<Index> block;  ///< the block's parents that are opened
+    std::vector<std::uint32_t> slot_first, slot_count;
+    std::vector<Index> candidate_of;  ///< a visit
+    std::vector<std::uint32_t> chunk_choice, chunk_candidate, chunk_count;
+    std::vector<Weight> weights;     ///< a candidate
+    std::uint32_t choice_bound = 0;  ///< choices that the visits may need
+    float target_factor = 1;         ///< of the error target, raised while frames look at too many nodes
+    std::atomic<std::int64_t> worker_cpu_ns{0};
+
+    Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o);
+    template <class Body>
+    void for_chunks(std::uint32_t count, const Body& body);
+    Visit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
+    void look_at_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
+    void expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end, PreparedFrame& out);
+    void close_up_block(PreparedFrame& out);
+    void drop_false_positives(PreparedFrame& out);
+    void evaluate_all(const RegionView& view, PreparedFrame& out);
+    void adapt(const PreparedFrame& out);
+};
+
+Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o)
+    : model(m), costs(c), options(o), evaluator(m, c) {
+    options.max_candidates = std::max(1U, options.max_candidates);
+    std::uint32_t most_children = 0, most_reps = 1;
+    for (const model::Node& node : m.nodes) {
+        most_children = std::max(most_children, node.child_count);
+        most_reps = std::max(most_reps, node.rep_count);
+    }
+    options.max_choices = std::max(options.max_choices, most_reps);
+    const std::size_t most = std::min<std::size_t>(options.max_candidates, std::max<std::size_t>(m.nodes.size(), 1));
+    visits.reserve(most);
+    slots.resize(std::max<std::size_t>(std::min<std::size_t>(least_slots, m.nodes.size()), most_children));
+    block.reserve(slots.size());
+    slot_first.resize(slots.size());
+    slot_count.resize(slots.size());
+    candidate_of.resize(most);
+    const std::size_t chunks = most / visits_a_chunk + 2;
+    chunk_choice.resize(chunks);
+    chunk_candidate.resize(chunks);
+    chunk_count.resize(chunks);
+    weights.resize(most);
+    if (options.workers > 1) arena = std::make_unique<tbb::task_arena>(options.workers);
+}
+
+template <class Body>
+void Preparer::Impl::for_chunks(std::uint32_t count, const Body& body) {
+    if (arena == nullptr || count < 2) {
+        for (std::uint32_t i = 0; i < count; ++i) body(i);
+        return;
+    }
+    const auto caller = pthread_self();
+    arena->execute([&] {
+        tbb::parallel_for(
+            tbb::blocked_range<std::uint32_t>(0, count, 1),
+            [&](const tbb::blocked_range<std::uint32_t>& range) {
+                const bool own = pthread_equal(pthread_self(), caller) != 0;
+                const double start = own ? 0.0 : seconds(CLOCK_THREAD_CPUTIME_ID);
+                for (std::uint32_t i = range.begin(); i < range.end(); ++i) body(i);
+                if (!own) {
+                    const double used = seconds(CLOCK_THREAD_CPUTIME_ID) - start;
+                    worker_cpu_ns.fetch_add(static_cast<std::int64_t>(used * 1e9), std::memory_order_relaxed);
+                }
+            },
+            tbb::simple_partitioner());
+    });
+}
+
+Visit Preparer::Impl::visit_of(const RegionView& view, Index index, Index parent, PlaneMask mask) const {
+    const model::Node& node = model.nodes[index];
+    Visit visit;
+    visit.node = index;
+    visit.parent = parent;
+    visit.rep_count = node.rep_count;
+    visit.nearest_m = nearest_distance(view, node.box);
+    visit.mask = mask;
+    visit.open = node.child_count > 0 && (view.full_depth || finest_error(model, node, visit.nearest_m) >
+                                                                 view.target_error_rad * error_distance(visit.nearest_m));
+    return visit;
+}
+
+void Preparer::Impl::look_at_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j) {
+    const Visit& parent = visits[block[j]];
+    const model::Node& node = model.nodes[parent.node];
+    std::uint32_t at = slot_first[j];
+    for (Index child = node.first_child; child < node.first_child + node.child_count; ++child) {
+        const PlaneMask mask = narrow(frustum, model.nodes[child].box, parent.mask);
+        if (mask != culled) slots[at++] = visit_of(view, child, block[j], mask);
+    }
+    slot_count[j] = at - slot_first[j];
+}
+
+// Children of the block are appended in order; a parent whose children no longer fit keeps its own choices.
+void Preparer::Impl::close_up_block(PreparedFrame& out) {
+    for (std::uint32_t j = 0; j < block.size(); ++j) {
+        Visit& parent = visits[block[j]];
+        std::uint32_t reps = 0;
+        for (std::uint32_t k = 0; k < slot_count[j]; ++k) reps += slots[slot_first[j] + k].rep_count;
+        if (visits.size() + slot_count[j] > candidate_of.size() || choice_bound + reps > options.max_choices) {
+            out.truncated = true;
+            parent.open = false;
+            continue;
+        }
+        choice_bound += reps;
+        parent.first_child = static_cast<Index>(visits.size());
+        parent.child_count = slot_count[j];
+        const auto first = slots.begin() + slot_first[j];
+        visits.insert(visits.end(), first, first + slot_count[j]);
+    }
+}
+
+void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end,
+                                  PreparedFrame& out) {
+    for (Index at = begin; at < end;) {
+        block.clear();
+        std::uint32_t used = 0;
+        for (; at < end; ++at) {
+            if (!visits[at].open) continue;
+            const std::uint32_t children = model.nodes[visits[at].node].child_count;
+            if (used + children > slots.size()) break;
+            slot_first[block.size()] = used;
+            used += children;
+            block.push_back(at);
+        }
+        out.visits += used;
+        const auto parents = static_cast<std::uint32_t>(block.size());
+        for_chunks((parents + parents_a_chunk - 1) / parents_a_chunk, [&](std::uint32_t chunk) {
+            const std::uint32_t last = std::min(parents, (chunk + 1) * parents_a_chunk);
+            for (std::uint32_t j = chunk * parents_a_chunk; j < last; ++j) look_at_children(view, frustum, j);
+        });
+        close_up_block(out);
+    }
+}
+
+// Upwards: an opened node is visible if one of its children is (Maciel 3.5.3). Then places for the live ones.
+void Preparer::Impl::drop_false_positives(PreparedFrame& out) {
+    for (std::size_t i = visits.size(); i-- > 0;) {
+        Visit& visit = visits[i];
+        if (!visit.open) continue;
+        visit.live = false;
+        for (std::uint32_t k = 0; k < visit.child_count && !visit.live; ++k) visit.live = visits[visit.first_child + k].live;
+    }
+    Index candidate = 0;
+    std::uint32_t choice = 0;
+    for (std::size_t i = 0; i < visits.size(); ++i) {
+        if (i % visits_a_chunk == 0) {
+            chunk_candidate[i / visits_a_chunk] = candidate;
+            chunk_choice[i / visits_a_chunk] = choice;
+        }
+        candidate_of[i] = candidate;
+        if (visits[i].live) {
+            ++candidate;
+            choice += visits[i].rep_count;
+        }
+    }
+    out.candidates.resize(candidate);
+    out.choices.resize(choice);
+}
+
+void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
+    const auto count = static_cast<std::uint32_t>(visits.size());
+    const std::uint32_t chunks = (count + visits_a_chunk - 1) / visits_a_chunk;
+    for_chunks(chunks, [&](std::uint32_t chunk) {
+        std::uint32_t choice = chunk_choice[chunk];
+        const std::uint32_t last = std::min(count, (chunk + 1) * visits_a_chunk);
+        for (std::uint32_t i = chunk * visits_a_chunk; i < last; ++i) {
+            const Visit& visit = visits[i];
+            if (!visit.live) continue;
+            Candidate candidate;
+            candidate.node = visit.node;
+            candidate.parent = visit.parent == none ? none : candidate_of[visit.parent];
+            if (visit.open) {
+                const Index end = visit.first_child + visit.child_count;
+                candidate.first_child = candidate_of[visit.first_child];
+                for (Index k = visit.first_child; k < end; ++k) candidate.child_count += visits[k].live ? 1U : 0U;
+            }
+            candidate.first_choice = choice;
+            choice += evaluator.evaluate(view, visit.nearest_m, candidate, &out.choices[choice], weights[candidate_of[i]]);
+            out.candidates[candidate_of[i]] = candidate;
+        }
+        chunk_count[chunk] = choice - chunk_choice[chunk];
+    });
+    std::uint32_t to = 0;
+    for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {  // close the gaps that illegal and dominated forms left
+        const std::uint32_t from = chunk_choice[chunk], gap = from - to;
+        if (gap > 0) {
+            std::copy_n(out.choices.begin() + from, chunk_count[chunk], out.choices.begin() + to);
+            const std::size_t end = chunk + 1 < chunks ? chunk_candidate[chunk + 1] : out.candidates.size();
+            for (std::size_t c = chunk_candidate[chunk]; c < end; ++c) out.candidates[c].first_choice -= gap;
+        }
+        to += chunk_count[chunk];
+    }
+    out.choices.resize(to);
+}
+
+// A band between raising and lowering, so that the target does not swing while the eye stands still.
+void Preparer::Impl::adapt(const PreparedFrame& out) {
+    if (options.max_visits == 0 || options.full_depth) return;
+    const float use = static_cast<float>(out.visits) / static_cast<float>(options.max_visits);
+    if (use > 1.0F)
+        target_factor = std::min(1e6F, target_factor * std::clamp(std::sqrt(use), 1.1F, 2.0F));
+    else if (use < 0.75F)
+        target_factor = std::max(1.0F, target_factor / 1.1F);
+}
+
+Preparer::Preparer(const model::Model& model, const model::CostModel& costs, const PrepareOptions& options)
+    : impl_(new Impl(model, costs, options)) {}
+Preparer::~Preparer() { delete impl_; }
+
+void Preparer::reserve(PreparedFrame& frame) const {
+    frame.candidates.reserve(impl_->visits.capacity());
+    frame.choices.reserve(std::min<std::size_t>(impl_->options.max_choices, std::max<std::size_t>(impl_->model.reps.size(), 1)));
+}
+
+void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
+                   PreparedFrame& out) {
+    Impl& s = *impl_;
+    const double cpu_start = seconds(CLOCK_THREAD_CPUTIME_ID), wall_start = seconds(CLOCK_MONOTONIC);
+    s.worker_cpu_ns.store(0, std::memory_order_relaxed);
+    s.visits.clear();
+    out.frame = frame;
+    out.viewport = viewport;
+    out.candidates.clear();
+    out.choices.clear();
+    out.truncated = false;
+    out.visits = 0;
+    if (s.model.nodes.empty()) return;
+
+    const model::Node& root = s.model.nodes[0];
+    out.region = cleaned(region, root.box);
+    const Pose& pose = out.region.centre;
+    RegionView view;
+    view.eye = pose.position;
+    view.radius_m = out.region.radius_m;
+    view.scale = model::make_view_scale(pose, viewport);
+    view.wide = model::make_view_scale(pose, viewport, out.region.angle_rad);
+    view.pixel_angle_rad = static_cast<float>(model::pixel_angle(pose, viewport));
+    const double target = s.options.target_error_rad > 0.0 ? s.options.target_error_rad : 0.5 * view.pixel_angle_rad;
+    view.target_error_rad = static_cast<float>(target) * s.target_factor;
+    view.full_depth = s.options.full_depth;
+    view.focus_strength = static_cast<float>(std::clamp(finite_or(s.options.focus_strength, 0.0), 0.0, 1.0));
+    view.speed_mps = static_cast<float>(std::clamp(finite_or(speed_mps, 0.0), 0.0, 1e4));
+    view.turn_rps = static_cast<float>(std::clamp(finite_or(turn_rps, 0.0), 0.0, 1e3));
+    out.target_error_rad = view.full_depth ? 0.0F : view.target_error_rad;
+
+    const double far_m = 2.0 * root.box.diagonal() + 1000.0;
+    const model::Frustum frustum = model::make_frustum(pose, viewport, far_m, view.radius_m, out.region.angle_rad);
+    const PlaneMask mask = narrow(frustum, root.box, all_planes);
+    out.visits = 1;
+    s.choice_bound = root.rep_count;
+    if (mask != culled) s.visits.push_back(s.visit_of(view, 0, none, mask));
+    for (Index begin = 0, end = static_cast<Index>(s.visits.size()); begin < end;) {
+        s.expand_level(view, frustum, begin, end, out);
+        begin = end;
+        end = static_cast<Index>(s.visits.size());
+    }
+    s.drop_false_positives(out);
+    s.evaluate_all(view, out);
+    gather_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
+    hold_down(out);
+    s.adapt(out);
+    out.cpu_us = (seconds(CLOCK_THREAD_CPUTIME_ID) - cpu_start) * 1e6 + 1e-3 * static_cast<double>(s.worker_cpu_ns.load());
+    out.wall_us = (seconds(CLOCK_MONOTONIC) - wall_start) * 1e6;
+}
+
+}  // namespace surefoot::prepare

@@ -1,0 +1,53 @@
+// The budget test: predicted time of a frame from the two sums over its items.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/select/select.hpp"
+
+namespace surefoot::select {
+
+/// Sums over items in double: upgrades add and take away thousands of times a frame.
+struct Sum {
+    double submit_us = 0, raster_us = 0;
+    void add(const model::ItemCost& cost) {
+        submit_us += static_cast<double>(cost.submit_us);
+        raster_us += static_cast<double>(cost.raster_us);
+    }
+    [[nodiscard]] Sum changed(const model::ItemCost& away, const model::ItemCost& in) const {
+        return {submit_us + (static_cast<double>(in.submit_us) - static_cast<double>(away.submit_us)),
+                raster_us + (static_cast<double>(in.raster_us) - static_cast<double>(away.raster_us))};
+    }
+};
+
+/// Whole-frame prediction: FrameCombine over the sums, what ending the slices costs, times correction and upper quantile.
+class Budget {
+public:
+    explicit Budget(const SelectInput& input) {
+        const model::CostModel& costs = *input.costs;
+        combine_ = costs.combine;
+        const double correction = input.correction > 0.0 && std::isfinite(input.correction) ? input.correction : 1.0;
+        factor_ = correction * static_cast<double>(costs.upper_factor);
+        // 1 + items / slice_us is never less than the number of slices that plan_slices makes.
+        const double slice_end_us = static_cast<double>(costs.combine.submit_weight) * static_cast<double>(costs.slice_us);
+        fixed_us_ = static_cast<double>(combine_.fixed_us) + slice_end_us;
+        per_item_us_ = 1.0 + (input.slice_us > 0.0 ? slice_end_us / input.slice_us : 0.0);
+        budget_us_ = input.budget_us > 0.0 ? input.budget_us : 0.0;  // NaN too: then the floor is drawn
+    }
+    [[nodiscard]] double items_us(const Sum& sum) const {
+        return static_cast<double>(combine_.submit_weight) * sum.submit_us +
+               static_cast<double>(combine_.raster_weight) * sum.raster_us +
+               static_cast<double>(combine_.max_weight) * std::max(sum.submit_us, sum.raster_us);
+    }
+    [[nodiscard]] double predicted_us(const Sum& sum) const { return (fixed_us_ + items_us(sum) * per_item_us_) * factor_; }
+    /// The margin of a millionth covers rounding: the cut's own sum, taken afresh and in float, is still within the budget.
+    [[nodiscard]] bool fits(const Sum& sum) const { return predicted_us(sum) * (1.0 + 1e-6) <= budget_us_; }
+    [[nodiscard]] double budget_us() const { return budget_us_; }
+
+private:
+    model::FrameCombine combine_;
+    double factor_ = 1, fixed_us_ = 0, per_item_us_ = 1, budget_us_ = 0;
+};
+
+}  // namespace surefoot::select

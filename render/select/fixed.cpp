@@ -1,0 +1,92 @@
+// The selectors that know no budget, and the table of all names.
+#include <array>
+
+#include "render/model/view.hpp"
+#include "render/select/cover.hpp"
+#include "render/select/search.hpp"
+
+namespace surefoot::select {
+
+namespace {
+
+constexpr double distance_threshold_px = 2.0;  // of `distance`, where no accuracy is asked for
+
+/// Walks from the root; opens what `stops` does not stop, and draws the rest in the form that it says.
+template <class Stops>
+void walk(const SelectInput& input, SelectState& state, Cut& cut, const Stops& stops) {
+    clear(cut);
+    if (!has_room(input, state, cut)) return;
+    const Budget budget(input);
+    Cover cover(input, state);
+    cover.take_root(0);
+    std::uint32_t refinements = 0;
+    for (Index c = 0; c < cover.size(); ++c) {  // breadth-first order: a child comes after its parent opened it
+        if (cover.chosen(c) == none) continue;
+        const std::uint32_t form = stops(cover, c);
+        if (form != none) {
+            cover.choose(c, form);
+            continue;
+        }
+        const prepare::Candidate& candidate = cover.candidate(c);
+        cover.open(c);
+        ++refinements;
+        for (Index k = 0; k < candidate.child_count; ++k) cover.choose(candidate.first_child + k, 0);
+    }
+    cover.finish(budget, refinements, cut);
+}
+
+class Flat final : public Selector {
+public:
+    [[nodiscard]] std::string_view name() const override { return "flat"; }
+    void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
+        walk(input, state, cut, [](const Cover& cover, Index c) {
+            const prepare::Candidate& candidate = cover.candidate(c);
+            return candidate.child_count > 0 ? none : candidate.choice_count - 1;
+        });
+    }
+};
+
+class ByDistance final : public Selector {
+public:
+    [[nodiscard]] std::string_view name() const override { return "distance"; }
+    void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
+        const double pixel = model::pixel_angle(input.prepared->region.centre, input.prepared->viewport);
+        const auto threshold =
+            static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : distance_threshold_px * pixel);
+        walk(input, state, cut, [threshold](const Cover& cover, Index c) {
+            const auto choices = cover.choices(c);
+            for (std::uint32_t k = 0; k < choices.size(); ++k) {
+                if (choices[k].error_rad <= threshold) return k;
+            }
+            return cover.candidate(c).child_count > 0 ? none : static_cast<Index>(choices.size() - 1);
+        });
+    }
+};
+
+constexpr std::array<std::string_view, 8> names = {"flat",      "distance",         "depth-first",     "best-first",
+                                                   "two-stage", "depth-first-1994", "best-first-1994", "two-stage-1994"};
+
+}  // namespace
+
+const Selector& flat() {
+    static const Flat selector;
+    return selector;
+}
+const Selector& by_distance() {
+    static const ByDistance selector;
+    return selector;
+}
+
+const Selector* find_selector(std::string_view name) {
+    const std::array<const Selector*, names.size()> all = {
+        &flat(),      &by_distance(),      &depth_first(),     &best_first(),
+        &two_stage(), &depth_first_1994(), &best_first_1994(), &two_stage_1994()};
+    for (const Selector* selector : all) {
+        if (selector->name() == name) return selector;
+    }
+    return nullptr;
+}
+
+std::span<const std::string_view> selector_names() { return names; }
+
+}  // namespace surefoot::select

@@ -1,0 +1,161 @@
+// The slice plan: subtrees of the cut, most beneficial first, in groups of about one slice's time, each with a coarser stand-in
+// that covers exactly the same leaves.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "render/select/budget.hpp"
+#include "render/select/select.hpp"
+
+namespace surefoot::select {
+
+namespace {
+
+constexpr std::size_t most_slices = 4096;
+
+/// Predicted time as a linear measure, so that parts add up to the whole: the larger sum carries the max term.
+struct Measure {
+    float submit = 1, raster = 1;
+    [[nodiscard]] float of(const model::ItemCost& cost) const { return submit * cost.submit_us + raster * cost.raster_us; }
+};
+
+Measure measure_of(const model::FrameCombine& combine, const model::ItemCost& sum) {
+    Measure m{combine.submit_weight, combine.raster_weight};
+    (sum.submit_us > sum.raster_us ? m.submit : m.raster) += combine.max_weight;
+    return m;
+}
+
+void add(model::ItemCost& sum, const model::ItemCost& cost) {
+    sum.submit_us += cost.submit_us;
+    sum.raster_us += cost.raster_us;
+}
+
+/// The cut as a tree: what lies below every candidate. Arrays live in the plan's scratch.
+class CutTree {
+public:
+    CutTree(const prepare::PreparedFrame& prepared, const Cut& cut, const Measure& measure, SlicePlan& plan)
+        : prepared_(prepared), cut_(cut) {
+        // Nothing of the cut lies after its last item: deeper candidates need no room.
+        const std::size_t n = cut.items.empty() ? 0 : static_cast<std::size_t>(cut.items.back().candidate) + 1;
+        below_us_ = std::span(plan.scratch_a).first(n);
+        item_ = std::span(plan.scratch_b).first(n);
+        std::fill(below_us_.begin(), below_us_.end(), std::bit_cast<std::uint32_t>(-1.0F));
+        std::fill(item_.begin(), item_.end(), none);
+        for (std::uint32_t i = 0; i < cut.items.size(); ++i) {
+            item_[cut.items[i].candidate] = i;
+            set(cut.items[i].candidate, measure.of(prepared.choices[cut.items[i].choice].cost));
+        }
+        for (std::size_t c = n; c-- > 1;) {
+            const Index parent = prepared.candidates[c].parent;
+            if (below_us(static_cast<Index>(c)) >= 0.0F)
+                set(parent, std::max(0.0F, below_us(parent)) + below_us(static_cast<Index>(c)));
+        }
+    }
+    [[nodiscard]] std::size_t size() const { return item_.size(); }
+    [[nodiscard]] float below_us(Index c) const { return std::bit_cast<float>(below_us_[c]); }
+    [[nodiscard]] bool in_cut(Index c) const { return c < item_.size() && below_us(c) >= 0.0F; }
+    [[nodiscard]] bool is_item(Index c) const { return item_[c] != none; }
+    [[nodiscard]] const CutItem& item(Index c) const { return cut_.items[item_[c]]; }
+    [[nodiscard]] const prepare::Candidate& candidate(Index c) const { return prepared_.candidates[c]; }
+    [[nodiscard]] const prepare::Choice& choice(const CutItem& item) const { return prepared_.choices[item.choice]; }
+    [[nodiscard]] CutItem coarsest(Index c) const {
+        const prepare::Candidate& candidate = prepared_.candidates[c];
+        return {c, candidate.node, prepared_.choices[candidate.first_choice].rep, candidate.first_choice};
+    }
+    [[nodiscard]] float benefit(Index c) const { return prepared_.choices[candidate(c).first_choice].subtree_benefit; }
+
+private:
+    void set(Index c, float us) { below_us_[c] = std::bit_cast<std::uint32_t>(us); }
+    const prepare::PreparedFrame& prepared_;
+    const Cut& cut_;
+    std::span<std::uint32_t> below_us_, item_;
+};
+
+/// Subtrees that fit a slice, or single items: an antichain that covers the cut. Written to the front of `room`, whose rest
+/// serves as the walk's stack; most beneficial first, ties by number.
+std::span<std::uint32_t> find_units(const CutTree& tree, float slice_us, std::span<std::uint32_t> room) {
+    std::size_t units = 0, bottom = room.size();
+    if (tree.size() > 0) room[--bottom] = 0;
+    while (bottom < room.size()) {
+        const Index c = room[bottom++];
+        if (tree.is_item(c) || tree.below_us(c) <= slice_us) {
+            room[units++] = c;
+            continue;
+        }
+        const prepare::Candidate& candidate = tree.candidate(c);
+        for (Index k = candidate.child_count; k-- > 0;) room[--bottom] = candidate.first_child + k;
+    }
+    const auto found = room.first(units);
+    std::sort(found.begin(), found.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const float ba = tree.benefit(a), bb = tree.benefit(b);
+        return ba != bb ? ba > bb : a < b;
+    });
+    return found;
+}
+
+/// Appends the items below `unit`, and the cheapest cover of their leaves that is no finer than they are.
+void append_unit(const CutTree& tree, Index unit, std::span<std::uint32_t> stack, Slice& slice, SlicePlan& plan) {
+    std::size_t top = 0;
+    stack[top++] = unit;
+    while (top > 0) {
+        const Index c = stack[--top];
+        if (tree.is_item(c)) {
+            plan.order.push_back(tree.item(c));
+            add(slice.cost, tree.choice(tree.item(c)).cost);
+            continue;
+        }
+        const prepare::Candidate& candidate = tree.candidate(c);
+        for (Index k = candidate.child_count; k-- > 0;) stack[top++] = candidate.first_child + k;
+    }
+    stack[top++] = unit;
+    while (top > 0) {
+        const Index c = stack[--top];
+        const prepare::Candidate& candidate = tree.candidate(c);
+        if (!tree.is_item(c) && candidate.floor_open) {  // the children are no dearer than the node
+            for (Index k = candidate.child_count; k-- > 0;) stack[top++] = candidate.first_child + k;
+            continue;
+        }
+        plan.stand_ins.push_back(tree.coarsest(c));
+        add(slice.stand_in_cost, tree.choice(plan.stand_ins.back()).cost);
+    }
+}
+
+}  // namespace
+
+void SlicePlan::reserve(std::uint32_t max_candidates) {
+    slices.reserve(std::min<std::size_t>(max_candidates, most_slices));
+    order.reserve(max_candidates);
+    stand_ins.reserve(max_candidates);
+    scratch_a.resize(max_candidates);
+    scratch_b.resize(max_candidates);
+    scratch_c.resize(max_candidates);
+    scratch_d.resize(max_candidates);
+}
+
+void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, SlicePlan& plan) {
+    plan.slices.clear();
+    plan.order.clear();
+    plan.stand_ins.clear();
+    if (cut.items.empty() || cut.items.back().candidate >= plan.scratch_a.size()) return;
+    const Measure measure = measure_of(input.costs->combine, cut.sum);
+    const float target_us = slice_us > 0.0 ? static_cast<float>(slice_us) : 1000.0F;
+    const CutTree tree(*input.prepared, cut, measure, plan);
+    const auto units = find_units(tree, target_us, plan.scratch_c);
+    Slice slice;
+    const auto close = [&] {
+        slice.item_count = static_cast<std::uint32_t>(plan.order.size()) - slice.first_item;
+        slice.stand_in_count = static_cast<std::uint32_t>(plan.stand_ins.size()) - slice.first_stand_in;
+        plan.slices.push_back(slice);
+        slice = {};
+        slice.first_item = static_cast<std::uint32_t>(plan.order.size());
+        slice.first_stand_in = static_cast<std::uint32_t>(plan.stand_ins.size());
+    };
+    for (std::size_t i = 0; i < units.size(); ++i) {
+        append_unit(tree, units[i], plan.scratch_d, slice, plan);
+        // Every slice but the last reaches its time, so their number is at most 1 + total / slice_us, as the budget counts.
+        const bool full = measure.of(slice.cost) >= target_us && plan.slices.size() + 1 < plan.slices.capacity();
+        if (full || i + 1 == units.size()) close();
+    }
+}
+
+}  // namespace surefoot::select
