@@ -41,8 +41,11 @@ public:
                static_cast<double>(combine_.max_weight) * std::max(sum.submit_us, sum.raster_us);
     }
     [[nodiscard]] double predicted_us(const Sum& sum) const { return (fixed_us_ + items_us(sum) * per_item_us_) * factor_; }
-    /// The margin of a millionth covers rounding: the cut's own sum, taken afresh and in float, is still within the budget.
-    [[nodiscard]] bool fits(const Sum& sum) const { return predicted_us(sum) * (1.0 + 1e-6) <= budget_us_; }
+    /// Within `share` of the budget. The margin of a millionth covers rounding: the cut's own sum, taken afresh and in float,
+    /// is still within it.
+    [[nodiscard]] bool fits(const Sum& sum, double share = 1.0) const {
+        return predicted_us(sum) * (1.0 + 1e-6) <= budget_us_ * share;
+    }
     [[nodiscard]] double budget_us() const { return budget_us_; }
 
 private:

@@ -44,23 +44,53 @@ private:
     bool subtree_;
 };
 
-/// Takes the next step of `c` if it fits. Returns false when it does not.
-bool take_step(Cover& cover, const Budget& budget, Index c, Sum& sum) {
-    const prepare::Candidate& candidate = cover.candidate(c);
-    const std::uint32_t k = cover.chosen(c);
-    const auto choices = cover.choices(c);
-    const bool finer = k + 1 < candidate.choice_count;
-    const Sum next = sum.changed(choices[k].cost, finer ? choices[k + 1].cost : candidate.children_cost);
-    if (!budget.fits(next)) return false;
-    sum = next;
-    if (finer) {
-        cover.choose(c, k + 1);
-        return true;
+/// Buys steps until one does not fit. With memory (hysteresis above 1) the budget has two edges, as a Schmitt trigger: what was
+/// shown in the last frame may use all of it, what is new only 1 - fresh_margin; costs that tremble by less flip nothing.
+class Buyer {
+public:
+    enum class Answer { taken, left, stop };
+
+    Buyer(Cover& cover, const Budget& budget, const Steps& steps, double fresh_share, const Sum& floor)
+        : cover_(cover), budget_(budget), steps_(steps), fresh_share_(fresh_share), sum_(floor) {}
+
+    Answer buy(Index c) {
+        const prepare::Candidate& candidate = cover_.candidate(c);
+        const std::uint32_t k = cover_.chosen(c);
+        const auto choices = cover_.choices(c);
+        const bool fresh = fresh_share_ < 1.0 && !steps_.was_refined(c, choices[k]);
+        if (fresh && fresh_closed_) return Answer::left;
+        const bool finer = k + 1 < candidate.choice_count;
+        const Sum next = sum_.changed(choices[k].cost, finer ? choices[k + 1].cost : candidate.children_cost);
+        if (!budget_.fits(next, fresh ? fresh_share_ : 1.0)) {
+            if (!fresh) return Answer::stop;
+            fresh_closed_ = true;  // from here on only what was shown before
+            return Answer::left;
+        }
+        sum_ = next;
+        ++steps_taken_;
+        if (finer) {
+            cover_.choose(c, k + 1);
+        } else {
+            cover_.open(c);
+            for (Index child = 0; child < candidate.child_count; ++child) cover_.choose(candidate.first_child + child, 0);
+        }
+        return Answer::taken;
     }
-    cover.open(c);
-    for (Index child = candidate.first_child; child < candidate.first_child + candidate.child_count; ++child)
-        cover.choose(child, 0);
-    return true;
+    [[nodiscard]] std::uint32_t steps_taken() const { return steps_taken_; }
+
+private:
+    Cover& cover_;
+    const Budget& budget_;
+    const Steps& steps_;
+    double fresh_share_;
+    Sum sum_;
+    bool fresh_closed_ = false;
+    std::uint32_t steps_taken_ = 0;
+};
+
+double fresh_share(const SelectState& state) {
+    constexpr double fresh_margin = 0.03;
+    return state.hysteresis > 1.0F ? 1.0 - fresh_margin : 1.0;
 }
 
 Sum sum_of(const Cover& cover, std::span<const std::uint32_t> items) {
@@ -82,15 +112,15 @@ public:
         const Steps steps(input, state, cover, subtree_);
         BucketQueue queue(state.scratch_head, state.scratch_next);
         const auto floor = cover.take_floor();
-        Sum sum = sum_of(cover, floor);
-        std::uint32_t refinements = 0;
+        Buyer buyer(cover, budget, steps, fresh_share(state), sum_of(cover, floor));
         for (const Index c : floor) {
             if (steps.wanted(c)) queue.push(steps.key(c), c);
         }
         while (!queue.empty()) {
             const Index c = queue.pop();
-            if (!take_step(cover, budget, c, sum)) break;
-            ++refinements;
+            const Buyer::Answer answer = buyer.buy(c);
+            if (answer == Buyer::Answer::stop) break;
+            if (answer == Buyer::Answer::left) continue;
             if (cover.chosen(c) != SelectState::opened) {
                 if (steps.wanted(c)) queue.push(steps.key(c), c);
                 continue;
@@ -100,7 +130,7 @@ public:
                 if (steps.wanted(child)) queue.push(steps.key(child), child);
             }
         }
-        cover.finish(budget, refinements, cut);
+        cover.finish(budget, buyer.steps_taken(), cut);
     }
 
 private:
@@ -124,20 +154,20 @@ public:
             return ka != kb ? ka < kb : a > b;
         };
         const auto floor = cover.take_floor();
-        Sum sum = sum_of(cover, floor);
+        Buyer buyer(cover, budget, steps, fresh_share(state), sum_of(cover, floor));
         const auto stack = cover.scratch();
         std::size_t top = floor.size();
         std::sort(stack.begin(), stack.begin() + static_cast<std::ptrdiff_t>(top), better_last);
-        std::uint32_t refinements = 0;
         while (top > 0) {
             const Index c = stack[top - 1];
             if (!steps.wanted(c)) {
                 --top;
                 continue;
             }
-            if (!take_step(cover, budget, c, sum)) break;
-            ++refinements;
-            if (cover.chosen(c) != SelectState::opened) continue;
+            const Buyer::Answer answer = buyer.buy(c);
+            if (answer == Buyer::Answer::stop) break;
+            if (answer == Buyer::Answer::left) --top;
+            if (answer == Buyer::Answer::left || cover.chosen(c) != SelectState::opened) continue;
             const prepare::Candidate& candidate = cover.candidate(c);
             --top;
             for (Index k = 0; k < candidate.child_count; ++k) stack[top + k] = candidate.first_child + k;
@@ -145,7 +175,7 @@ public:
             top += candidate.child_count;
             std::sort(first, first + candidate.child_count, better_last);
         }
-        cover.finish(budget, refinements, cut);
+        cover.finish(budget, buyer.steps_taken(), cut);
     }
 };
 
