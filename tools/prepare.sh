@@ -1,0 +1,66 @@
+# Read by tools/test and tools/demo: installs what is missing (Debian 12 or 13), configures and builds. Not run by itself.
+# shellcheck shell=bash
+
+build_packages=(
+  g++ cmake ninja-build ccache pkg-config libglm-dev libtbb-dev libfmt-dev libpng-dev libjpeg-dev libmeshoptimizer-dev
+  nlohmann-json3-dev libzstd-dev libtomlplusplus-dev libtinygltf-dev libcli11-dev libgtest-dev libegl1 libegl-dev libgl-dev
+  libgl1-mesa-dri git
+)
+# Opened at run time, or used by single tests only: their absence is told, and is no failure.
+optional_packages=(libosmesa6)
+
+say() { printf '\n\033[1m%s\033[0m\n' "$*" | if [[ -t 1 ]]; then cat; else sed 's/\x1b\[[0-9;]*m//g'; fi; }
+fail() { printf 'surefoot: %s\n' "$*" >&2; exit 1; }
+
+installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }
+
+# Prints those of the named packages that are not installed.
+missing_of() {
+  local package
+  for package in "$@"; do installed "$package" || printf '%s\n' "$package"; done
+}
+
+as_root() {
+  if [[ "$(id -u)" == 0 ]]; then "$@"
+  elif command -v sudo >/dev/null; then sudo "$@"
+  else fail "root is needed to install packages, and there is no sudo: run as root:  apt-get install ${missing[*]}"
+  fi
+}
+
+apt_install() { as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "$@"; }
+
+# install_missing: build_packages must be there in the end; optional_packages where the archive has them.
+install_missing() {
+  command -v dpkg-query >/dev/null || fail "this script installs Debian packages; elsewhere, install by hand: ${build_packages[*]}"
+  local missing optional wanted=() package
+  mapfile -t missing < <(missing_of "${build_packages[@]}")
+  mapfile -t optional < <(missing_of "${optional_packages[@]}")
+  if (( ${#missing[@]} + ${#optional[@]} == 0 )); then return; fi
+  say "Missing Debian packages: ${missing[*]} ${optional[*]}"
+  if [[ "$(id -u)" != 0 ]]; then
+    echo "They are installed with apt-get, which writes to the system: it needs root, so sudo may ask for your password."
+  fi
+  if ! as_root apt-get update -q; then
+    if (( ${#missing[@]} == 0 )); then return; fi
+    fail "apt-get update failed: is the network there?"
+  fi
+  if (( ${#missing[@]} > 0 )); then
+    apt_install "${missing[@]}" || fail "these packages could not be installed: ${missing[*]}"
+  fi
+  for package in "${optional[@]}"; do
+    if apt-cache show "$package" >/dev/null 2>&1; then wanted+=("$package"); else echo "$package is not in this Debian: done without."; fi
+  done
+  if (( ${#wanted[@]} > 0 )); then
+    apt_install "${wanted[@]}" || echo "Done without: ${wanted[*]}"
+  fi
+}
+
+jobs() { echo "${SUREFOOT_JOBS:-2}"; }
+
+# build PRESET [TARGET…]
+build() {
+  local preset=$1
+  shift
+  cmake --preset "$preset" --log-level=WARNING
+  cmake --build --preset "$preset" --parallel "$(jobs)" ${1:+--target "$@"}
+}
