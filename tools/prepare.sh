@@ -55,12 +55,13 @@ install_missing() {
   fi
 }
 
-jobs() { echo "${SUREFOOT_JOBS:-2}"; }
+parallel_jobs() { echo "${SUREFOOT_JOBS:-2}"; }
 
 # build PRESET [TARGET…]
 build() {
-  local preset=$1
+  local preset=$1 targets=()
   shift
-  cmake --preset "$preset" --log-level=WARNING
-  cmake --build --preset "$preset" --parallel "$(jobs)" ${1:+--target "$@"}
+  if (( $# > 0 )); then targets=(--target "$@"); fi
+  cmake --preset "$preset" --log-level=WARNING &&
+    cmake --build --preset "$preset" --parallel "$(parallel_jobs)" "${targets[@]}"
 }
