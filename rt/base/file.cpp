@@ -19,14 +19,20 @@ namespace {
 /// What a system error means to the person at the keyboard.
 std::string remedy_for(int error) {
     switch (error) {
-        case ENOENT: return "check the path";
+        case ENOENT:
+            return "check the path";
         case EACCES:
-        case EPERM: return "check who may read and write there";
-        case EROFS: return "the file system is mounted read-only: choose another place";
+        case EPERM:
+            return "check who may read and write there";
+        case EROFS:
+            return "the file system is mounted read-only: choose another place";
         case ENOSPC:
-        case EDQUOT: return "free some space or choose another disk";
-        case ENOTDIR: return "a part of the path is a file, not a folder";
-        default: return {};
+        case EDQUOT:
+            return "free some space or choose another disk";
+        case ENOTDIR:
+            return "a part of the path is a file, not a folder";
+        default:
+            return {};
     }
 }
 
@@ -92,9 +98,7 @@ Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t 
     return read_all<std::vector<std::byte>>(path, max_bytes);
 }
 
-Result<std::string> read_text(const std::string& path, std::uint64_t max_bytes) {
-    return read_all<std::string>(path, max_bytes);
-}
+Result<std::string> read_text(const std::string& path, std::uint64_t max_bytes) { return read_all<std::string>(path, max_bytes); }
 
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
     if (path.empty()) return Error{"output", "the file name is empty", "name a file"};

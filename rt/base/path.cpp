@@ -130,8 +130,8 @@ Pose sample_path(const Path& path, double time_s) {
     if (path.samples.empty()) return {};
     const auto& samples = path.samples;
     const double wanted_s = samples.front().time_s + time_s;
-    const auto after = std::upper_bound(samples.begin(), samples.end(), wanted_s,
-                                        [](double t, const PathSample& s) { return t < s.time_s; });
+    const auto after =
+        std::upper_bound(samples.begin(), samples.end(), wanted_s, [](double t, const PathSample& s) { return t < s.time_s; });
     if (after == samples.begin()) return samples.front().pose;
     if (after == samples.end()) return std::isfinite(time_s) || time_s > 0 ? samples.back().pose : samples.front().pose;
     const PathSample& a = *(after - 1);
