@@ -1,0 +1,85 @@
+// Taking, replaying and comparing captured frames.
+#include "render/capture/capture.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace surefoot::capture {
+
+std::vector<Memory> remember(const select::SelectState& state) {
+    std::vector<Memory> memory;
+    memory.reserve(state.touched.size());
+    for (const model::Index node : state.touched) memory.push_back({node, state.shown[node]});
+    return memory;
+}
+
+Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<Memory> memory,
+             const select::Cut& cut) {
+    Capture c;
+    c.prepared = *input.prepared;
+    c.selector = selector;
+    c.budget_us = input.budget_us;
+    c.correction = input.correction;
+    c.target_error_rad = input.target_error_rad;
+    c.slice_us = input.slice_us;
+    c.combine = input.costs->combine;
+    c.upper_factor = input.costs->upper_factor;
+    c.slice_end_us = input.costs->slice_us;
+    c.hysteresis = hysteresis;
+    c.node_count = static_cast<std::uint32_t>(input.model->nodes.size());
+    c.memory = std::move(memory);
+    c.items = cut.items;
+    c.hash = cut.hash;
+    c.predicted_us = cut.predicted_us;
+    return c;
+}
+
+Result<select::Cut> replay(const Capture& capture, std::string_view selector_name) {
+    const std::string_view name = selector_name.empty() ? std::string_view(capture.selector) : selector_name;
+    const select::Selector* selector = select::find_selector(name);
+    if (selector == nullptr) {
+        return Error{"selector '" + std::string(name) + "'", "there is no such selector", "use one that this version knows"};
+    }
+    const auto candidates = static_cast<std::uint32_t>(std::max(capture.prepared.candidates.size(), capture.memory.size()));
+    model::Model nodes_only;  // selection asks the model for nothing but its size
+    nodes_only.nodes.resize(capture.node_count);
+    select::SelectState state;
+    state.reserve(nodes_only, candidates);
+    state.hysteresis = capture.hysteresis;
+    for (const Memory& m : capture.memory) {
+        state.shown[m.node] = m.shown;
+        state.touched.push_back(m.node);
+    }
+    model::CostModel costs;
+    costs.combine = capture.combine;
+    costs.upper_factor = capture.upper_factor;
+    costs.slice_us = capture.slice_end_us;
+    select::SelectInput input{&nodes_only,        &capture.prepared,        &costs,          capture.budget_us,
+                              capture.correction, capture.target_error_rad, capture.slice_us};
+    select::Cut cut;
+    select::reserve(cut, candidates);
+    selector->run(input, state, cut);
+    return cut;
+}
+
+Result<void> verify(const Capture& capture) {
+    auto cut = replay(capture);
+    if (!cut) return cut.error();
+    const std::size_t n = std::min(cut->items.size(), capture.items.size());
+    for (std::size_t i = 0; i < n; ++i) {
+        const select::CutItem &a = capture.items[i], &b = cut->items[i];
+        if (a.node != b.node || a.rep != b.rep) {
+            return Error{fmt::format("item {}", i),
+                         fmt::format("captured node {} by form {}, replayed node {} by form {}", a.node, a.rep, b.node, b.rep),
+                         "the selectors of the two versions differ"};
+        }
+    }
+    if (cut->hash != capture.hash || cut->items.size() != capture.items.size()) {
+        return Error{"cut", fmt::format("captured {} items, replayed {}", capture.items.size(), cut->items.size()),
+                     "the selectors of the two versions differ"};
+    }
+    return {};
+}
+
+}  // namespace surefoot::capture

@@ -1,0 +1,57 @@
+// One frame's decision in a file: prepared arrays, what the selector was asked and remembered, and the cut it made. Read back,
+// the selection is repeated off line, without model or device, and must give the same cut.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/prepare/prepared.hpp"
+#include "render/select/select.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::capture {
+
+/// What the selector remembered of one node (SelectState::shown).
+struct Memory {
+    model::Index node = 0;
+    model::Index shown = 0;
+};
+
+struct Capture {
+    prepare::PreparedFrame prepared;
+    std::string selector;
+    double budget_us = 0, correction = 1, target_error_rad = 0, slice_us = 1000;
+    model::FrameCombine combine;
+    float upper_factor = 1, slice_end_us = 0;  ///< of the cost model: all of it that selection uses
+    float hysteresis = 1;
+    std::uint32_t node_count = 0;        ///< of the model
+    std::vector<Memory> memory;          ///< before the selection
+    std::vector<select::CutItem> items;  ///< the cut
+    std::uint64_t hash = 0;              ///< of the cut
+    float predicted_us = 0;
+};
+
+/// What the selector remembers now. Call before the selection that is to be captured: it changes the state. Allocates.
+std::vector<Memory> remember(const select::SelectState& state);
+
+/// Puts a frame together; `memory` from remember() before `cut` was made. Allocates: not for the frame thread's every frame.
+Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<Memory> memory,
+             const select::Cut& cut);
+
+/// Little-endian; magic, version, sizes and a checksum, then one zstd frame. Replaces the file only when complete.
+Result<void> write_capture(const std::string& file, const Capture& capture);
+
+/// Refuses what is truncated, changed in any byte, or inconsistent in any index.
+Result<Capture> read_capture(const std::string& file);
+Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::string& place);
+
+/// Repeats the selection, by the captured selector or by another one.
+Result<select::Cut> replay(const Capture& capture, std::string_view selector = {});
+
+/// replay() by the captured selector, and an error that names the first difference if the cut is another.
+Result<void> verify(const Capture& capture);
+
+}  // namespace surefoot::capture

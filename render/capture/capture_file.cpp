@@ -1,0 +1,218 @@
+// The file form of a captured frame: written field by field, read by a bounded reader that trusts no count and no index.
+#include <zstd.h>
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "render/capture/capture.hpp"
+#include "rt/base/file.hpp"
+#include "rt/base/hash.hpp"
+#include "rt/base/reader.hpp"
+
+namespace surefoot::capture {
+
+namespace {
+
+using model::Index;
+using model::none;
+
+constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
+constexpr std::uint32_t version = 1;
+constexpr std::uint64_t most_bytes = 1ULL << 31U;  // unpacked
+constexpr std::uint32_t most_nodes = 1U << 26U;    // replay makes room for them
+constexpr std::size_t header_bytes = 40;
+constexpr const char* remedy = "capture the frame again";
+
+// One list of fields for both directions: what is written is what is read.
+template <class Io, class Frame>
+void each_field(Io& io, Frame& f) {
+    io(f.frame, f.region.centre.position.x, f.region.centre.position.y, f.region.centre.position.z, f.region.centre.orientation.w,
+       f.region.centre.orientation.x, f.region.centre.orientation.y, f.region.centre.orientation.z, f.region.centre.fov_y_rad,
+       f.region.radius_m, f.region.angle_rad, f.viewport.width, f.viewport.height, f.visits, f.truncated, f.target_error_rad,
+       f.cpu_us, f.wall_us);
+}
+template <class Io, class C>
+void each_setting(Io& io, C& c) {
+    io(c.budget_us, c.correction, c.target_error_rad, c.slice_us, c.combine.fixed_us, c.combine.submit_weight,
+       c.combine.raster_weight, c.combine.max_weight, c.upper_factor, c.slice_end_us, c.hysteresis, c.node_count, c.hash,
+       c.predicted_us);
+}
+template <class Io, class C>
+void each(Io& io, C& c) requires std::is_same_v<std::remove_const_t<C>, prepare::Candidate> {
+    io(c.node, c.parent, c.first_child, c.child_count, c.first_choice, c.choice_count, c.children_cost.submit_us,
+       c.children_cost.raster_us, c.floor_cost.submit_us, c.floor_cost.raster_us, c.pixels, c.floor_open);
+}
+template <class Io, class C>
+void each(Io& io, C& c) requires std::is_same_v<std::remove_const_t<C>, prepare::Choice> {
+    io(c.rep, c.cost.submit_us, c.cost.raster_us, c.error_rad, c.benefit, c.subtree_benefit, c.triangles);
+}
+template <class Io, class M>
+void each(Io& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Memory> {
+    io(m.node, m.shown);
+}
+template <class Io, class I>
+void each(Io& io, I& i) requires std::is_same_v<std::remove_const_t<I>, select::CutItem> {
+    io(i.candidate, i.node, i.rep, i.choice);
+}
+
+class Writer {
+public:
+    template <class... T>
+    void operator()(const T&... values) {
+        (put(values), ...);
+    }
+    template <class T>
+    void list(const std::vector<T>& items) {
+        put(static_cast<std::uint32_t>(items.size()));
+        for (const T& item : items) each(*this, item);
+    }
+    void text(const std::string& s) {
+        put(static_cast<std::uint32_t>(s.size()));
+        const auto bytes = std::as_bytes(std::span(s));
+        out.insert(out.end(), bytes.begin(), bytes.end());
+    }
+    std::vector<std::byte> out;
+
+private:
+    void put(bool value) { put(static_cast<std::uint8_t>(value)); }
+    template <class T>
+    void put(const T& value) {
+        const auto bytes = std::as_bytes(std::span(&value, 1));
+        out.insert(out.end(), bytes.begin(), bytes.end());
+    }
+};
+
+class Reader {
+public:
+    explicit Reader(std::span<const std::byte> bytes) : in(bytes) {}
+    template <class... T>
+    void operator()(T&... values) {
+        (get(values), ...);
+    }
+    // Every item takes at least four bytes: a count beyond what is left is refused before anything is allocated.
+    template <class T>
+    void list(std::vector<T>& items) {
+        const auto count = in.read<std::uint32_t>();
+        if (in.failed() || count > in.left() / 4) {
+            in.skip(in.left() + 1);
+            return;
+        }
+        items.resize(count);
+        for (T& item : items) each(*this, item);
+    }
+    void text(std::string& s) {
+        const auto bytes = in.bytes(in.read<std::uint32_t>());
+        s.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    }
+    ByteReader in;
+
+private:
+    void get(bool& value) { value = in.read<std::uint8_t>() != 0; }
+    template <class T>
+    void get(T& value) {
+        value = in.read<T>();
+    }
+};
+
+template <class Io, class C>
+void whole(Io& io, C& c) {
+    each_field(io, c.prepared);
+    each_setting(io, c);
+    io.text(c.selector);
+    io.list(c.prepared.candidates);
+    io.list(c.prepared.choices);
+    io.list(c.memory);
+    io.list(c.items);
+}
+
+bool finite(const model::ItemCost& cost) { return std::isfinite(cost.submit_us) && std::isfinite(cost.raster_us); }
+
+const char* wrong_in(const prepare::Candidate& c, std::size_t at, std::size_t& next_child, const Capture& capture) {
+    const auto& f = capture.prepared;
+    if (c.node >= capture.node_count) return "node out of range";
+    if (c.choice_count == 0 || c.first_choice > f.choices.size() || c.choice_count > f.choices.size() - c.first_choice) {
+        return "choices out of range";
+    }
+    if (at == 0 ? c.parent != none : c.parent >= at) return "parent is not before it";
+    if (c.child_count == 0) return c.first_child == none && !c.floor_open ? nullptr : "a leaf with children";
+    // Breadth-first: children follow those of the candidate before, so no candidate has two parents and none is left out.
+    if (c.first_child != next_child || c.child_count > f.candidates.size() - next_child) return "children out of order";
+    next_child += c.child_count;
+    for (Index k = c.first_child; k < next_child; ++k) {
+        if (f.candidates[k].parent != at) return "a child has another parent";
+    }
+    return finite(c.children_cost) && finite(c.floor_cost) ? nullptr : "cost is not finite";
+}
+
+Result<void> check(const Capture& c, const std::string& place) {
+    const auto bad = [&](std::string_view what) { return Error{place, std::string(what), remedy}; };
+    if (c.node_count == 0 || c.node_count > most_nodes) return bad("number of nodes out of range");
+    if (!(c.hysteresis >= 1.0F && c.hysteresis <= 16.0F)) return bad("hysteresis out of range");
+    const auto& f = c.prepared;
+    std::size_t next_child = 1;
+    for (std::size_t i = 0; i < f.candidates.size(); ++i) {
+        if (next_child <= i) return bad(fmt::format("candidates[{}] has no parent", i));
+        if (const char* what = wrong_in(f.candidates[i], i, next_child, c))
+            return bad(fmt::format("candidates[{}]: {}", i, what));
+    }
+    for (std::size_t i = 0; i < f.choices.size(); ++i) {
+        if (!finite(f.choices[i].cost)) return bad(fmt::format("choices[{}]: cost is not finite", i));
+    }
+    for (const Memory& m : c.memory) {
+        if (m.node >= c.node_count) return bad("a remembered node is out of range");
+    }
+    for (const select::CutItem& item : c.items) {
+        if (item.candidate >= f.candidates.size() || item.choice >= f.choices.size()) return bad("the cut is out of range");
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<void> write_capture(const std::string& file, const Capture& capture) {
+    Writer body;
+    whole(body, capture);
+    std::vector<std::byte> packed(ZSTD_compressBound(body.out.size()));
+    const std::size_t size = ZSTD_compress(packed.data(), packed.size(), body.out.data(), body.out.size(), 3);
+    if (ZSTD_isError(size) != 0) return Error{file, ZSTD_getErrorName(size), "free some memory"};
+    packed.resize(size);
+    Writer out;
+    out(magic, version, static_cast<std::uint64_t>(body.out.size()), static_cast<std::uint64_t>(size), hash_bytes(packed));
+    out(hash_bytes(out.out));
+    out.out.insert(out.out.end(), packed.begin(), packed.end());
+    return write_file(file, out.out);
+}
+
+Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::string& place) {
+    ByteReader header(bytes);
+    if (header.read<std::uint32_t>() != magic) return Error{place, "is no captured frame", "name a file that a capture wrote"};
+    if (header.read<std::uint32_t>() != version) return Error{place, "is of another version", remedy};
+    const auto unpacked = header.read<std::uint64_t>(), packed = header.read<std::uint64_t>(), sum = header.read<std::uint64_t>();
+    const auto header_sum = header.read<std::uint64_t>();
+    if (header.failed() || hash_bytes(bytes.first(header_bytes - 8)) != header_sum)
+        return Error{place, "header is damaged", remedy};
+    if (header.left() != packed) return Error{place, "is truncated, or has bytes after its end", remedy};
+    const auto payload = header.bytes(packed);
+    if (hash_bytes(payload) != sum) return Error{place, "checksum does not match", remedy};
+    if (unpacked > most_bytes) return Error{place, "is too large", remedy};
+    std::vector<std::byte> body(unpacked);
+    const std::size_t got = ZSTD_decompress(body.data(), body.size(), payload.data(), payload.size());
+    if (ZSTD_isError(got) != 0 || got != unpacked) return Error{place, "does not unpack", remedy};
+    Capture capture;
+    Reader reader(body);
+    whole(reader, capture);
+    if (reader.in.failed() || reader.in.left() != 0) return Error{place, "lists do not add up to its size", remedy};
+    if (auto sound = check(capture, place); !sound) return sound.error();
+    return capture;
+}
+
+Result<Capture> read_capture(const std::string& file) {
+    auto bytes = read_file(file, most_bytes);
+    if (!bytes) return bytes.error();
+    return parse_capture(*bytes, file);
+}
+
+}  // namespace surefoot::capture

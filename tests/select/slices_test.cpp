@@ -1,0 +1,183 @@
+// Slices: exactly the cut, legal stand-ins, and the in-frame check that keeps a frame when its costs were under-predicted.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "tests/select/scene.hpp"
+
+namespace surefoot::select {
+namespace {
+
+using test::infinity;
+using test::Scene;
+
+/// Leaf candidates below `c`.
+void leaves_of(const prepare::PreparedFrame& f, Index c, std::multiset<Index>& leaves) {
+    std::vector<Index> stack{c};
+    while (!stack.empty()) {
+        const auto& candidate = f.candidates[stack.back()];
+        const Index at = stack.back();
+        stack.pop_back();
+        if (candidate.child_count == 0) leaves.insert(at);
+        for (Index k = 0; k < candidate.child_count; ++k) stack.push_back(candidate.first_child + k);
+    }
+}
+
+model::ItemCost sum_of(const prepare::PreparedFrame& f, std::span<const CutItem> items) {
+    model::ItemCost sum;
+    for (const CutItem& item : items) {
+        sum.submit_us += f.choices[item.choice].cost.submit_us;
+        sum.raster_us += f.choices[item.choice].cost.raster_us;
+    }
+    return sum;
+}
+
+void expect_plan_covers_cut(const Scene& s, double slice_us) {
+    const SlicePlan& plan = s.plan;
+    std::set<std::pair<Index, Index>> cut, order;
+    for (const CutItem& item : s.cut.items) cut.emplace(item.candidate, item.choice);
+    for (const CutItem& item : plan.order) order.emplace(item.candidate, item.choice);
+    EXPECT_EQ(order, cut);
+    EXPECT_EQ(plan.order.size(), s.cut.items.size());
+    std::uint32_t item = 0, stand_in = 0;
+    double total = 0;
+    for (const Slice& slice : plan.slices) {
+        EXPECT_EQ(slice.first_item, item);
+        EXPECT_EQ(slice.first_stand_in, stand_in);
+        ASSERT_GT(slice.item_count, 0U);
+        item += slice.item_count;
+        stand_in += slice.stand_in_count;
+        const auto items = std::span(plan.order).subspan(slice.first_item, slice.item_count);
+        const auto stand_ins = std::span(plan.stand_ins).subspan(slice.first_stand_in, slice.stand_in_count);
+        std::multiset<Index> full, coarse;
+        for (const CutItem& i : items) leaves_of(s.frame, i.candidate, full);
+        for (const CutItem& i : stand_ins) leaves_of(s.frame, i.candidate, coarse);
+        EXPECT_EQ(full, coarse);  // the same leaves, each once
+        const auto cost = sum_of(s.frame, items), stand_in_cost = sum_of(s.frame, stand_ins);
+        EXPECT_NEAR(slice.cost.submit_us, cost.submit_us, 1e-3F * (1 + cost.submit_us));
+        EXPECT_NEAR(slice.stand_in_cost.raster_us, stand_in_cost.raster_us, 1e-3F * (1 + stand_in_cost.raster_us));
+        const auto& w = s.costs.combine;
+        const auto metric = [&](const model::ItemCost& c) { return w.frame_us(c.submit_us, c.raster_us) - w.fixed_us; };
+        EXPECT_LE(metric(stand_in_cost), metric(cost) * 1.001F + 1e-3F);
+        total += static_cast<double>(metric(cost));
+    }
+    EXPECT_EQ(item, plan.order.size());
+    EXPECT_EQ(stand_in, plan.stand_ins.size());
+    EXPECT_LE(static_cast<double>(plan.slices.size()), 1.001 + total / slice_us);
+    Cut mixed;  // any prefix of full slices followed by stand-ins is a legal cut
+    for (std::size_t k = 0; k < plan.slices.size(); ++k) {
+        const Slice& slice = plan.slices[k];
+        const bool full = k < plan.slices.size() / 2;
+        const auto part = full ? std::span(plan.order).subspan(slice.first_item, slice.item_count)
+                               : std::span(plan.stand_ins).subspan(slice.first_stand_in, slice.stand_in_count);
+        mixed.items.insert(mixed.items.end(), part.begin(), part.end());
+    }
+    EXPECT_EQ(check_legal(s.frame, mixed), "");
+}
+
+TEST(Slices, HoldExactlyTheCutAndStandInsForTheSameLeaves) {
+    Random random(31);
+    for (std::uint64_t seed = 0; seed < 600; ++seed) {
+        Scene s(test::random_model(seed, 80));
+        s.look({test::random_pose(random, 30), 0.1, 0.02});
+        if (s.frame.candidates.empty()) continue;
+        const auto names = selector_names();
+        s.run(names[seed % names.size()], random.range(0, 20000));
+        const double slice_us = std::exp(random.range(2, 9));
+        plan_slices(s.input(infinity), s.cut, slice_us, s.plan);
+        expect_plan_covers_cut(s, slice_us);
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST(Slices, MostBeneficialSubtreesComeFirst) {
+    Scene s(test::town(6));
+    prepare::Region region;
+    region.centre.position = dvec3(0, 3, 100);
+    s.look(region);
+    s.run("two-stage", 20000);
+    plan_slices(s.input(20000), s.cut, 500, s.plan);
+    ASSERT_GT(s.plan.slices.size(), 4U);
+    const auto nearest = [&](const Slice& slice) {
+        double d = infinity;
+        for (std::uint32_t i = 0; i < slice.item_count; ++i) {
+            d = std::min(d, s.model.nodes[s.plan.order[slice.first_item + i].node].box.distance(region.centre.position));
+        }
+        return d;
+    };
+    EXPECT_LT(nearest(s.plan.slices.front()), nearest(s.plan.slices.back()));
+}
+
+TEST(StillFits, ZeroCasesAreDefined) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(still_fits({.elapsed_us = 9e9, .rest_us = 0}));
+    EXPECT_TRUE(
+        still_fits({.elapsed_us = 0, .predicted_so_far_us = 0, .rest_us = 800, .rest_stand_in_us = 10, .limit_us = 1000}));
+    EXPECT_FALSE(
+        still_fits({.elapsed_us = nan, .predicted_so_far_us = 1, .rest_us = 800, .rest_stand_in_us = 10, .limit_us = 1000}));
+    EXPECT_FALSE(
+        still_fits({.elapsed_us = 10, .predicted_so_far_us = 10, .rest_us = 100, .rest_stand_in_us = 10, .limit_us = nan}));
+    EXPECT_TRUE(
+        still_fits({.elapsed_us = 999, .predicted_so_far_us = 1, .rest_us = 500, .rest_stand_in_us = 500, .limit_us = 1000}));
+}
+
+TEST(StillFits, ScalesTheRestByHowWrongTheFrameHasBeen) {
+    CheckInput in{.elapsed_us = 400, .predicted_so_far_us = 400, .rest_us = 500, .rest_stand_in_us = 50, .limit_us = 1000};
+    EXPECT_TRUE(still_fits(in));
+    in.predicted_so_far_us = 200;  // twice as slow as said
+    EXPECT_FALSE(still_fits(in));
+    in.predicted_so_far_us = 4000;  // faster than said: no more than said is hoped for
+    EXPECT_TRUE(still_fits(in));
+    in.rest_us = 530;
+    EXPECT_FALSE(still_fits(in));
+}
+
+/// One frame on a virtual clock whose true costs are `wrong` times the predicted ones. Returns its time, us.
+double frame_us(Scene& s, double limit_us, double wrong, bool check) {
+    const model::FrameCombine& w = s.costs.combine;
+    const auto us = [&](const model::ItemCost& c) {
+        return static_cast<double>(w.frame_us(c.submit_us, c.raster_us) - w.fixed_us);
+    };
+    const double upper = static_cast<double>(s.costs.upper_factor), end = static_cast<double>(s.costs.slice_us);
+    CheckInput in;
+    in.elapsed_us = in.predicted_so_far_us = static_cast<double>(w.fixed_us);
+    in.limit_us = limit_us;
+    for (const Slice& slice : s.plan.slices) {
+        in.rest_us += us(slice.cost) * upper + end;
+        in.rest_stand_in_us += us(slice.stand_in_cost) * upper + end;
+    }
+    bool full = true;
+    for (const Slice& slice : s.plan.slices) {
+        if (full && check) full = still_fits(in);
+        in.rest_us -= us(slice.cost) * upper + end;
+        in.rest_stand_in_us -= us(slice.stand_in_cost) * upper + end;
+        const double predicted = us(full ? slice.cost : slice.stand_in_cost) + end;
+        in.predicted_so_far_us += predicted;
+        in.elapsed_us += predicted * wrong;
+    }
+    return in.elapsed_us;
+}
+
+TEST(StillFits, CostsUnderPredictedTwofoldMissNoFrameOfSixHundred) {
+    Scene s(test::town(7));
+    constexpr double limit_us = 33333;
+    int late_with = 0, late_without = 0;
+    for (int i = 0; i < 600; ++i) {
+        prepare::Region region;
+        region.centre.position = dvec3(150 * std::sin(0.01 * i), 3 + 2 * std::sin(0.03 * i), 200 - 0.6 * i);
+        region.centre.orientation = glm::angleAxis(0.5 * std::sin(0.02 * i), dvec3(0, 1, 0));
+        s.look(region);
+        s.run("two-stage", 0.9 * limit_us);
+        plan_slices(s.input(0.9 * limit_us), s.cut, 1000, s.plan);
+        late_with += frame_us(s, limit_us, 2.0, true) > limit_us ? 1 : 0;
+        late_without += frame_us(s, limit_us, 2.0, false) > limit_us ? 1 : 0;
+    }
+    EXPECT_EQ(late_with, 0);
+    EXPECT_GT(late_without, 300);
+}
+
+}  // namespace
+}  // namespace surefoot::select
