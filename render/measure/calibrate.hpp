@@ -34,16 +34,17 @@ struct Calibration {
 
 struct CalibrateOptions {
     gl::DeviceOptions device;
-    bool quick = false;       ///< fewer classes and repeats: under 20 s; else under 2 min
+    bool quick = false;  ///< fewer classes and repeats: under 20 s; else under 2 min
     std::uint64_t seed = 1;
 };
 
 Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& progress);
 
-/// The table as a file: TOML text with a checksum. read refuses another machine's table unless any_machine.
+/// The table as a file: TOML text with a checksum in its first line. read refuses a file of which a byte was changed, and the
+/// table of another machine than `machine` (empty: any machine's), by name.
 Result<void> write_costs(const std::string& file, const model::CostModel& costs);
 Result<model::CostModel> read_costs(const std::string& file, const std::string& machine);
-/// CPU model, core count, GL renderer, rasterisers: what a table is valid for.
+/// CPU model, core count, GL renderer, rasterisers (0: as many as the device takes): what a table is valid for.
 std::string machine_identity(const std::string& gl_renderer, int rasterisers);
 
 }  // namespace surefoot::measure

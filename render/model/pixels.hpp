@@ -20,9 +20,9 @@ struct ViewScale {
 ViewScale make_view_scale(const Pose& pose, Viewport viewport, double angle_rad = 0.0);
 
 /// Rasterised pixels, overdraw included, of `rep` of a node with box `node_box` seen from `eye`; 0 where the box is outside
-/// the view. The areas of the representation are taken as spread evenly over the box; the integral over the part of the box
-/// in the view is a three-point rule in reciprocal depth. Finite and >= 0 for all input; falls with distance for a box that
-/// stays wholly in view. About 30 ns.
+/// the view. The areas of the representation are taken as spread evenly over the box. Wholly in view and far: closed form at
+/// the box's centre, about 10 ns; else 16 rays through what is seen of the box, about 90 ns. Finite and >= 0 for all input;
+/// falls with distance for a box that stays in view.
 float rasterised_pixels(const Representation& rep, const Box& node_box, const dvec3& eye, const ViewScale& scale);
 
 }  // namespace surefoot::model

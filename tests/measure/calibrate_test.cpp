@@ -1,0 +1,260 @@
+// The cost table: fits recover what is known, the file refuses what is not this machine's or was changed, queries are judged.
+#include "render/measure/calibrate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "render/measure/calibrate_fit.hpp"
+#include "render/measure/calibrate_run.hpp"
+#include "rt/base/file.hpp"
+#include "rt/base/random.hpp"
+
+namespace surefoot {
+namespace {
+
+std::vector<measure::FrameSample> frames_by(const model::FrameCombine& truth, double noise, std::uint64_t seed, int count = 200) {
+    Random random(seed);
+    std::vector<measure::FrameSample> samples;
+    for (int i = 0; i < count; ++i) {
+        measure::FrameSample s;
+        s.submit_us = 100 * std::exp(4 * random.unit());
+        s.raster_us = 100 * std::exp(5 * random.unit());
+        const double frame =
+            static_cast<double>(truth.frame_us(static_cast<float>(s.submit_us), static_cast<float>(s.raster_us)));
+        s.actual_us = frame * (1 + noise * (2 * random.unit() - 1));
+        samples.push_back(s);
+    }
+    return samples;
+}
+
+TEST(FrameFit, recovers_known_weights) {
+    const model::FrameCombine truth{300, 0.2F, 0.1F, 0.8F};
+    const auto fitted = measure::fit_combine(frames_by(truth, 0, 1));
+    EXPECT_NEAR(fitted.fixed_us, 300, 3);
+    EXPECT_NEAR(fitted.submit_weight, 0.2, 0.01);
+    EXPECT_NEAR(fitted.raster_weight, 0.1, 0.01);
+    EXPECT_NEAR(fitted.max_weight, 0.8, 0.01);
+}
+
+TEST(FrameFit, is_never_negative_and_deaf_to_outliers) {
+    const model::FrameCombine truth{300, 0.7F, 0.9F, 0};
+    auto samples = frames_by(truth, 0.05, 2);
+    for (std::size_t i = 0; i < samples.size(); i += 20) samples[i].actual_us *= 8;  // stolen time
+    const auto fitted = measure::fit_combine(samples);
+    EXPECT_GE(fitted.max_weight, 0);
+    const auto clean = frames_by(truth, 0, 3);
+    EXPECT_LT(measure::relative_error(clean, fitted, 0.9), 0.1);
+}
+
+TEST(FrameFit, of_nothing_is_nothing) {
+    const auto fitted = measure::fit_combine({});
+    EXPECT_EQ(fitted.fixed_us, 0);
+    EXPECT_EQ(measure::relative_error({}, fitted, 0.5), 0);
+}
+
+std::vector<measure::CalibrationPoint> affine_points() {
+    std::vector<measure::CalibrationPoint> points;
+    for (const double t : {6.0, 64.0, 1000.0, 60000.0}) {
+        for (const double p : {20.0, 900.0, 30000.0}) {
+            const double pixels = p * (1 - 1 / t);  // every mesh covers a little less than its sphere
+            points.push_back({0, t, pixels, 2 + 0.05 * t, 1 + 0.003 * pixels + 0.01 * t, 0, 0});
+        }
+    }
+    return points;
+}
+
+TEST(GridFill, follows_affine_costs_between_and_beyond_the_points) {
+    model::CostModel costs;
+    costs.grids.push_back(measure::fill_grid(0, affine_points()));
+    for (const float t : {6.0F, 12.0F, 100.0F, 5000.0F, 200000.0F}) {
+        for (const float p : {40.0F, 1000.0F, 500000.0F}) {
+            const auto cost = costs.item(t, p, costs.grids[0]);
+            EXPECT_NEAR(cost.submit_us, 2 + 0.05F * t, 0.04F * (2 + 0.05F * t));
+            EXPECT_NEAR(cost.raster_us, 1 + 0.003F * p + 0.01F * t, 0.04F * (1 + 0.003F * p + 0.01F * t));
+        }
+    }
+}
+
+TEST(GridFill, never_makes_more_work_cheaper) {
+    auto points = affine_points();
+    Random random(4);
+    for (auto& p : points) {
+        p.submit_us *= random.range(0.5, 1.5);
+        p.raster_us *= random.range(0.5, 1.5);
+    }
+    const auto grid = measure::fill_grid(0, points);
+    for (std::uint32_t t = 0; t < grid.triangle_steps; ++t) {
+        for (std::uint32_t p = 0; p < grid.pixel_steps; ++p) {
+            const auto& c = grid.cells[t * grid.pixel_steps + p];
+            ASSERT_TRUE(std::isfinite(c.submit_us) && std::isfinite(c.raster_us) && c.submit_us >= 0 && c.raster_us >= 0);
+            if (t > 0) {
+                EXPECT_GE(c.raster_us, grid.cells[(t - 1) * grid.pixel_steps + p].raster_us);
+            }
+        }
+    }
+}
+
+class CostFile : public ::testing::Test {
+protected:
+    void SetUp() override {
+        file_ = (std::filesystem::temp_directory_path() / "surefoot_costs_test.toml").string();
+        costs_ = model::default_costs();
+        costs_.machine = "a \"machine\" \\ of tests";
+        costs_.calibrated = true;
+        costs_.combine = {123.456F, 0.1F, 0.3333333F, 1e-7F};
+        ASSERT_TRUE(measure::write_costs(file_, costs_).ok());
+    }
+    void TearDown() override { std::filesystem::remove(file_); }
+    std::string file_;
+    model::CostModel costs_;
+};
+
+TEST_F(CostFile, comes_back_bit_for_bit) {
+    const auto read = measure::read_costs(file_, costs_.machine);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_EQ(read->combine.raster_weight, costs_.combine.raster_weight);
+    EXPECT_EQ(read->combine.max_weight, costs_.combine.max_weight);
+    EXPECT_EQ(read->upper_factor, costs_.upper_factor);
+    ASSERT_EQ(read->grids.size(), costs_.grids.size());
+    for (std::size_t g = 0; g < costs_.grids.size(); ++g) {
+        EXPECT_EQ(read->grids[g].effects, costs_.grids[g].effects);
+        ASSERT_EQ(read->grids[g].cells.size(), costs_.grids[g].cells.size());
+        for (std::size_t i = 0; i < costs_.grids[g].cells.size(); ++i) {
+            ASSERT_EQ(read->grids[g].cells[i].submit_us, costs_.grids[g].cells[i].submit_us);
+            ASSERT_EQ(read->grids[g].cells[i].raster_us, costs_.grids[g].cells[i].raster_us);
+        }
+    }
+}
+
+TEST_F(CostFile, of_another_machine_is_refused_by_name_unless_any_will_do) {
+    const auto read = measure::read_costs(file_, "this one");
+    ASSERT_FALSE(read.ok());
+    EXPECT_NE(read.error().what.find("this one"), std::string::npos);
+    EXPECT_NE(read.error().what.find("another machine"), std::string::npos);
+    EXPECT_TRUE(measure::read_costs(file_, "").ok());
+}
+
+TEST_F(CostFile, with_any_byte_changed_is_refused) {
+    const std::string good = read_text(file_).value();
+    Random random(9);
+    for (int i = 0; i < 300; ++i) {
+        std::string bad = good;
+        const std::size_t at = i < 40 ? static_cast<std::size_t>(i) : random.below(static_cast<std::uint32_t>(good.size()));
+        bad[at] = static_cast<char>(bad[at] ^ (1 << random.below(7)));
+        ASSERT_TRUE(write_text(file_, bad).ok());
+        const auto read = measure::read_costs(file_, costs_.machine);
+        ASSERT_FALSE(read.ok()) << at;
+        EXPECT_FALSE(read.error().remedy.empty());
+    }
+    ASSERT_TRUE(write_text(file_, good.substr(0, good.size() / 2)).ok());
+    EXPECT_FALSE(measure::read_costs(file_, costs_.machine).ok());
+    EXPECT_FALSE(measure::read_costs(file_ + ".absent", costs_.machine).ok());
+}
+
+TEST(MachineIdentity, names_renderer_and_rasterisers) {
+    EXPECT_NE(measure::machine_identity("llvmpipe", 1), measure::machine_identity("llvmpipe", 2));
+    EXPECT_NE(measure::machine_identity("llvmpipe", 1), measure::machine_identity("other", 1));
+    EXPECT_EQ(measure::machine_identity("llvmpipe", 0), measure::machine_identity("llvmpipe", gl::effective_rasterisers(0)));
+}
+
+/// A device whose drawing takes real time and whose timer says what it is told to.
+class MockDevice final : public gl::Device {
+public:
+    explicit MockDevice(double share) : share_(share) {}
+    std::string renderer() const override { return "mock"; }
+    bool software() const override { return true; }
+    Result<void> load(const model::Model&, const gl::ProgramFactory&) override { return {}; }
+    std::vector<std::string> program_listing() const override { return {}; }
+    std::string program_text(model::EffectMask) const override { return {}; }
+    void bind() override {}
+    void release() override {}
+    void begin_frame(const Pose&) override {}
+    void draw(std::span<const gl::DrawItem>) override {
+        const auto now = [] { return std::chrono::steady_clock::now(); };
+        const auto start = now();
+        while (now() - start < std::chrono::milliseconds(5)) {
+        }
+        drawn_ms_ = std::chrono::duration<double, std::milli>(now() - start).count();
+    }
+    std::uint32_t end_slice() override { return 1; }
+    void wait_slices(std::uint32_t) override {}
+    void end_items() override {}
+    void finish_frame() override {}
+    gl::FrameStats stats() const override { return {}; }
+    Result<gl::PixelImage> read_pixels() override { return gl::PixelImage{}; }
+    bool begin_timer() override { return share_ >= 0; }
+    double end_timer_ms() override { return share_ * drawn_ms_; }
+
+private:
+    double share_;
+    double drawn_ms_ = 0;
+};
+
+TEST(TimerQuery, that_says_almost_nothing_is_called_dishonest) {
+    MockDevice liar(0.001);
+    const auto check = measure::check_timer(liar, Pose{}, {});
+    EXPECT_TRUE(check.available);
+    EXPECT_FALSE(check.honest);
+    EXPECT_GE(check.wall_ms, 5);
+}
+
+TEST(TimerQuery, that_is_absent_is_not_trusted) {
+    MockDevice none(-1);
+    const auto check = measure::check_timer(none, Pose{}, {});
+    EXPECT_FALSE(check.available);
+    EXPECT_FALSE(check.honest);
+}
+
+TEST(TimerQuery, is_honest_within_a_fifth_of_the_wall) {
+    EXPECT_TRUE(measure::judge_timer(true, 9, 10).honest);
+    EXPECT_TRUE(measure::judge_timer(true, 11.9, 10).honest);
+    EXPECT_FALSE(measure::judge_timer(true, 7.9, 10).honest);
+    EXPECT_FALSE(measure::judge_timer(true, 12.1, 10).honest);
+    EXPECT_FALSE(measure::judge_timer(true, 0, 0).honest);
+}
+
+TEST(Calibrate, measures_a_table_that_predicts_more_for_more) {
+    measure::CalibrateOptions options;
+    options.quick = true;
+    options.device.viewport = {320, 180};
+    const auto probe = gl::open_device(options.device);
+    if (!probe) GTEST_SKIP() << probe.error().text();
+    const auto c = measure::calibrate(options, {});
+    ASSERT_TRUE(c.ok()) << c.error().text();
+    EXPECT_TRUE(c->costs.calibrated);
+    EXPECT_EQ(c->costs.grids.size(), 4U);
+    EXPECT_EQ(c->points.size(), 4U * 4U * 6U);
+    EXPECT_GE(c->costs.upper_factor, 1);
+    EXPECT_TRUE(std::isfinite(c->frame_error_p99));
+    const auto& grid = c->costs.grid_for(0);
+    const auto less = c->costs.item(10, 100, grid);
+    const auto more = c->costs.item(10000, 100000, grid);
+    EXPECT_GT(more.submit_us, less.submit_us);
+    EXPECT_GT(more.raster_us, less.raster_us);
+}
+
+TEST(Calibrate, of_the_null_device_is_refused) {
+    measure::CalibrateOptions options;
+    options.device.kind = gl::BackendKind::null;
+    EXPECT_FALSE(measure::calibrate(options, {}).ok());
+}
+
+TEST(Calibrate, stops_when_asked) {
+    measure::CalibrateOptions options;
+    options.device.viewport = {64, 64};
+    std::atomic<bool> stop{true};
+    Progress progress;
+    progress.stop = &stop;
+    if (!gl::open_device(options.device)) GTEST_SKIP() << "no EGL";
+    const auto c = measure::calibrate(options, progress);
+    ASSERT_FALSE(c.ok());
+    EXPECT_NE(c.error().text().find("stopped"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace surefoot
