@@ -1,0 +1,22 @@
+// Collects a scene: pictures, materials, shared meshes, placed nodes.
+#pragma once
+
+#include <string>
+
+#include "tools/scenes/mesh_maker.hpp"
+
+namespace surefoot::scenes {
+
+struct SceneMaker {
+    importer::Scene scene;
+
+    Index image(importer::Image picture);
+    /// Plain: coloured by the vertices alone.
+    Index material(const std::string& name, const Colour& colour = {255, 255, 255, 255}, Index picture = importer::none,
+                   model::AlphaMode alpha = model::AlphaMode::opaque, bool two_sided = false);
+    Index mesh(importer::Mesh made);
+    /// `local` is relative to the parent.
+    Index node(const std::string& name, Index parent, Index mesh_index, const dmat4& local, float importance = 1.0F);
+};
+
+}  // namespace surefoot::scenes
