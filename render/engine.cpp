@@ -154,6 +154,8 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     return e.cut;
 }
 
+const select::SelectState& Engine::selection_memory() const { return impl_->state; }
+
 void Engine::select_coarse() { impl_->use_coarse = true; }
 
 /// Draws what of a slice the pose really sees; returns what that was predicted to cost.

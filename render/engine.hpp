@@ -76,6 +76,8 @@ public:
 
     /// budget_us: of the whole frame; correction: online factor on predictions; target_error_rad 0: as far as the budget goes.
     const select::Cut& select(const prepare::PreparedFrame& prepared, double budget_us, double correction, double target_error_rad);
+    /// What the selector remembers between frames; copied before a select() that is to be captured.
+    [[nodiscard]] const select::SelectState& selection_memory() const;
     /// Draws the cut of the last select(), or the coarse levels of the last select_coarse().
     SubmitReport submit(const Pose& pose, const SubmitLimits& limits);
     /// In place of select() when no prepared frame may be used: the top levels' meshes, valid from everywhere, no culling.

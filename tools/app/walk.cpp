@@ -7,7 +7,6 @@
 #include <cmath>
 #include <thread>
 
-#include "render/capture/capture.hpp"
 #include "render/engine.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
@@ -140,6 +139,7 @@ Result<void> open_session(Session& s, const Progress& progress) {
     if (r.capture_file.empty()) return {};
     s.engine->reserve(s.kept.prepared);
     select::reserve(s.kept.cut, s.engine->options().prepare.max_candidates);
+    s.kept.memory.reserve(s.engine->model().nodes.size());
     return {};
 }
 

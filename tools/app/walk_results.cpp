@@ -25,6 +25,7 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
     s.height = request.height;
     s.rate_hz = request.rate_hz;
     s.model_triangles = engine.model().triangles();
+    s.rasterisers = static_cast<std::uint32_t>(std::max(1, plan.rasterisers));
     s.fifo = plan.fifo;
     s.pinned = facts.pinned;
     s.isolated = facts.isolated;
@@ -46,7 +47,8 @@ Result<void> write_capture(const WalkRequest& request, const KeptFrame& kept, co
                      "choose a frame within the walk with --capture-frame"};
     }
     const select::SelectInput input{&engine.model(), &kept.prepared, &engine.costs(), kept.budget_us, kept.correction, kept.target_error_rad, request.slice_us};
-    return capture::write_capture(request.capture_file, request.model_file, request.selector, input, kept.cut);
+    return capture::write_capture(request.capture_file,
+                                  capture::take(input, request.selector, static_cast<float>(request.hysteresis), kept.memory, kept.cut));
 }
 
 Result<void> write_report_pages(const WalkRequest& request, Engine& engine, const ShotStore& shots, WalkOutcome& outcome, const Progress& progress) {

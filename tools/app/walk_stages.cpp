@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "rt/threads/guard.hpp"
 
@@ -69,6 +70,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
     const double budget_us = std::max(0.0, options_.budget_us - spent_us);
+    if (record.frame == options_.capture_frame) keep_memory();
     const select::Cut& cut = engine_.select(set, budget_us, record.correction, options_.target_error_rad);
     record.floor_us = cut.floor_us;
     record.floor_binds = cut.floor_binds;
@@ -78,6 +80,14 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.candidates = static_cast<std::uint32_t>(set.candidates.size());
     record.prepare_cpu_us = static_cast<float>(set.cpu_us);
     if (record.frame == options_.capture_frame) keep(cut, budget_us);
+}
+
+void WalkStages::keep_memory() {
+    const select::SelectState& state = engine_.selection_memory();
+    kept_.memory.clear();
+    for (const model::Index node : state.touched) {
+        if (kept_.memory.size() < kept_.memory.capacity()) kept_.memory.push_back({node, state.shown[node]});
+    }
 }
 
 void WalkStages::keep(const select::Cut& cut, double budget_us) {
@@ -118,7 +128,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.items = report_.items;
     record.draws = report_.draws;
     record.triangles = report_.triangles;
-    record.accuracy = report_.worst_error_rad > 0 ? 1.0F / report_.worst_error_rad : 1e6F;
+    record.accuracy = report_.worst_error_rad > 0 ? 1.0F / report_.worst_error_rad : std::numeric_limits<float>::infinity();
     record.benefit = static_cast<float>(report_.benefit_mean);
     record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);
     const double actual_us = report_.finished_us - static_cast<double>(record.stolen_ns) * 1e-3;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "render/capture/capture.hpp"
 #include "render/engine.hpp"
 #include "rt/base/path.hpp"
 #include "rt/clock/clock.hpp"
@@ -30,6 +32,7 @@ struct KeptFrame {
     bool kept = false;
     prepare::PreparedFrame prepared;
     select::Cut cut;
+    std::vector<capture::Memory> memory;  ///< before the selection
     double budget_us = 0, correction = 1, target_error_rad = 0;
 };
 
@@ -50,6 +53,7 @@ public:
 
 private:
     void prepare_inline();
+    void keep_memory();
     void keep(const select::Cut& cut, double budget_us);
 
     Engine& engine_;

@@ -1,0 +1,70 @@
+// Bench: selecting among 10^5 candidates, and preparing on a model of 10^6 nodes. bench_selection -> one JSON object.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+#include <vector>
+
+#include "tests/select/scene.hpp"
+
+namespace {
+
+using namespace surefoot;
+
+double quantile(std::vector<double> v, double q) {
+    std::sort(v.begin(), v.end());
+    return v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
+}
+
+template <class Work>
+double milliseconds(Work work) {
+    const auto begun = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
+}
+
+/// ms of one selection with an infinite budget (every upgrade is bought), median of 31.
+double select_ms(test::Scene& scene, const char* selector) {
+    std::vector<double> ms;
+    for (int i = 0; i < 31; ++i) ms.push_back(milliseconds([&] { scene.run(selector, test::infinity); }));
+    return quantile(ms, 0.5);
+}
+
+Pose street_pose(double t) {
+    Pose pose;
+    pose.position = dvec3(400 * t - 200, 1.7, 37.0);
+    pose.orientation = glm::angleAxis(std::numbers::pi * 2 * t, dvec3(0, 1, 0));
+    return pose;
+}
+
+}  // namespace
+
+int main() {
+    // A town seen from above its edge, to the leaves: about 10^5 visible nodes.
+    prepare::PrepareOptions deep;
+    deep.full_depth = true;
+    test::Scene wide(test::town(8, 6.0), deep);
+    Pose above;
+    above.position = dvec3(0, 400, 900);
+    above.orientation = glm::angleAxis(-0.45, dvec3(1, 0, 0));
+    wide.look({above, 0, 0});
+    const std::size_t candidates = wide.frame.candidates.size();
+    fmt::print("{{\"candidates\": {}, \"select_ms\": {{", candidates);
+    const char* comma = "";
+    for (const char* selector : {"depth-first", "best-first", "two-stage"}) {
+        fmt::print("{}\"{}\": {:.3f}", comma, selector, select_ms(wide, selector));
+        comma = ", ";
+    }
+    // Walking through 1.4 million nodes.
+    test::Scene town(test::town(10, 6.0));
+    std::vector<double> visits, cpu_ms;
+    for (int i = 0; i < 200; ++i) {
+        town.look({street_pose(i / 200.0), 0.2, 0.02});
+        visits.push_back(town.frame.visits);
+        cpu_ms.push_back(town.frame.cpu_us * 1e-3);
+    }
+    fmt::print("}}, \"prepare\": {{\"nodes\": {}, \"visits\": {{\"p50\": {:.0f}, \"p99\": {:.0f}}}, \"cpu_ms\": {{\"p50\": {:.3f}, \"p99\": {:.3f}}}}}}}\n",
+               town.model.nodes.size(), quantile(visits, 0.5), quantile(visits, 0.99), quantile(cpu_ms, 0.5), quantile(cpu_ms, 0.99));
+    return 0;
+}
