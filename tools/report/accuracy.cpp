@@ -45,7 +45,7 @@ std::string body_of(const AccuracyRun& run) {
                        escaped(run.renderer));
     if (run.full_frame_ms > 0) out += fmt::format(" Full detail takes {:.1f} ms a frame.", run.full_frame_ms);
     out += "</p>\n</header>\n";
-    out += fmt::format("<div class=\"card\">{}</div>\n", accuracy_chart(run));
+    out += fmt::format("<div class=\"card wide\">{}</div>\n", accuracy_chart(run));
     out +=
         "<p class=\"sub\">Each line is one way to choose what to draw, each point a budget. <b>Accuracy</b>: one over the "
         "largest angular error on "

@@ -122,17 +122,20 @@ std::string phases_chart(const WalkFrames& walk) {
     out += y_axis(area, y, nice_ticks(0, y.to, 4), "ms") + x_axis(area, x, nice_ticks(0, end_s, 5), "s");
     const double step = (area.right - area.left) / columns;
     for (std::size_t c = 0; c < columns; ++c) {
-        double base = 0;
-        for (std::size_t p = 0; p < phases.size() && counts[c] > 0; ++p) {
+        if (counts[c] == 0) continue;
+        double top = 0;
+        for (const double sum : sums[c]) top += sum / counts[c];
+        // From the last phase to the first, each down to the axis: no seams between them.
+        for (std::size_t p = phases.size(); p-- > 0;) {
             const double mean = sums[c][p] / counts[c];
-            const double low = y(base);
-            const double high = y(std::min(base + mean, y.to));
-            base = std::min(base + mean, y.to);
-            if (low - high < 0.05) continue;
+            const double high = y(std::min(top, y.to));
+            top -= mean;
+            if (mean <= 0) continue;
             out += fmt::format(
-                "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"p{}\"><title>{}: {:.2f} "
+                "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"stack p{}\"><title>{}: {:.2f} "
                 "ms</title></rect>",
-                area.left + step * static_cast<double>(c), high, step + 0.2, low - high, p, phases[p].name, mean);
+                area.left + step * static_cast<double>(c), high, step + 0.2, std::max(0.0, area.bottom - high), p, phases[p].name,
+                mean);
         }
     }
     out += line_between(area.left, y(deadline_ms(walk)), area.right, y(deadline_ms(walk)), "deadline");

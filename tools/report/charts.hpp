@@ -10,7 +10,7 @@
 
 namespace surefoot::report {
 
-/// Values over time, at most one column a pixel: the band is lowest to highest, the line the median of each column.
+/// Values over time, one column in two pixels: the band is lowest to highest, the line the median of each column.
 struct TimeChart {
     std::string label;  ///< read aloud, and the start of tooltips
     std::string unit;

@@ -55,15 +55,15 @@ std::string time_section(const WalkSummary& s, const WalkFrames& walk) {
         "<h2>Time</h2>\n<p class=\"sub\">Every frame, from when it was due to when it was done. The band runs from the fastest "
         "to the "
         "slowest frame of each column, so no slow frame is hidden; numbers on top are the pictures below.</p>\n";
-    out += fmt::format("<div class=\"card\">{}</div>\n", frame_time_chart(walk, s.budget_ms));
+    out += fmt::format("<div class=\"card wide\">{}</div>\n", frame_time_chart(walk, s.budget_ms));
     out += "<div class=\"two\">\n";
     out += card("How long frames took", "Counted on a logarithmic scale: a single slow frame shows.",
                 frame_histogram(walk, s.budget_ms));
     out += fmt::format("<div class=\"card\"><h3>Where the time goes</h3>{}{}</div>\n",
                        legend({{"c7", "wake"}, {"c2", "select"}, {"c0", "submit"}, {"c3", "raster"}, {"c5", "present"}}),
                        phases_chart(walk));
-    out += card("Budget spent", "Time spent over time allowed: close to full, never beyond.", budget_chart(walk));
-    out += card("Wake lateness", "How late the machine woke the frame thread, before any work of its own.", wake_chart(walk));
+    out += card("Budget spent", "Time spent over time allowed: close to full is the aim.", budget_chart(walk));
+    out += card("Wake lateness", "How late the frame thread was woken, before any work.", wake_chart(walk));
     return out + "</div>\n";
 }
 

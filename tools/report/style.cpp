@@ -26,6 +26,7 @@ constexpr std::string_view chart_rules = R"css(
 .chart .grid{stroke:var(--rule);stroke-width:1}
 .chart .axis{stroke:var(--soft);stroke-width:1;opacity:.55}
 .chart .line{fill:none;stroke:var(--accent);stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}
+.chart .peaks{fill:none;stroke:var(--band);stroke-width:.8;opacity:.55}
 .chart .band{fill:var(--band);opacity:.22}
 .chart .bar{fill:var(--accent)}.chart .bar.late{fill:var(--bad)}.chart .bar.other{fill:var(--soft);opacity:.55}
 .chart .deadline{stroke:var(--bad);stroke-width:1.4}
@@ -41,6 +42,7 @@ constexpr std::string_view chart_rules = R"css(
 .chart .world{fill:none;stroke:var(--rule);stroke-width:1}
 .chart .k0{fill:var(--s1);stroke:var(--s1)}.chart .k1{fill:var(--s0);stroke:var(--s0)}.chart .k2{fill:var(--s2);stroke:var(--s2)}
 .chart .node{stroke-width:.7;stroke-opacity:.75}
+.chart .stack{shape-rendering:crispEdges}
 .chart .p0{fill:var(--s7)}.chart .p1{fill:var(--s2)}.chart .p2{fill:var(--s0)}.chart .p3{fill:var(--s3)}.chart .p4{fill:var(--s5)}
 )css";
 
@@ -70,6 +72,7 @@ p{margin:0 0 12px;max-width:76ch}
 .card{background:var(--panel);border:1px solid var(--rule);border-radius:14px;padding:18px 20px 12px;margin:14px 0;min-width:0}
 .card p{font-size:13.5px;color:var(--soft);margin:0 0 8px}
 .two{display:grid;grid-template-columns:1fr 1fr;gap:14px}.two .card{margin:0}.two{margin:14px 0}
+.wide{overflow-x:auto}
 svg.chart{display:block;width:100%;height:auto;overflow:visible}
 .shot{background:var(--panel);border:1px solid var(--rule);border-radius:14px;padding:18px 20px 20px;margin:16px 0}
 .shot .head{display:flex;flex-wrap:wrap;gap:6px 14px;align-items:baseline;margin-bottom:12px}
@@ -102,7 +105,7 @@ tr:last-child td{border-bottom:0}
 details summary{cursor:pointer;color:var(--soft);font-size:14px;padding:6px 0}
 footer{margin-top:56px;padding-top:18px;border-top:1px solid var(--rule);color:var(--soft);font-size:13.5px}
 footer a{color:var(--accent)}
-@media (max-width:760px){.two,.views{grid-template-columns:1fr}main{padding:26px 14px 56px}.card,.shot{padding:14px 14px 12px}}
+@media (max-width:760px){.two,.views{grid-template-columns:1fr}main{padding:26px 14px 56px}.wide svg.chart{min-width:680px}.card,.shot{padding:14px 14px 12px}}
 @media print{body{background:#fff}.card,.shot,.tile{break-inside:avoid}}
 )css";
 

@@ -15,6 +15,8 @@ namespace surefoot::report {
 
 namespace {
 
+constexpr double column_px = 2;
+
 struct Column {
     double time_s = 0, low = 0, middle = 0, high = 0;
     bool gap_before = false;
@@ -74,17 +76,22 @@ std::string tips_of(const TimeChart& c, const PlotArea& area, const Scale& x, do
     return out;
 }
 
-/// Labels stand above their line; one that would run into the label before goes below its own.
+/// Labels stand above their line, at the right; one that would run into the label before moves left of it, on its row.
 std::string lines_of(const TimeChart& c, const PlotArea& area, const Scale& y) {
+    constexpr double letter_px = 6.6;
     std::string out;
-    double last_label = -1e9;
+    double row = -1e9;
+    double right = area.right;
     for (const auto& line : c.lines) {
         if (!(line.value > 0) || line.value > y.to) continue;
         const double at = y(line.value);
-        const bool crowded = std::abs(at - 5 - last_label) < 14;
-        last_label = crowded ? at + 14 : at - 5;
+        if (std::abs(at - 5 - row) >= 14) {
+            row = at - 5;
+            right = area.right;
+        }
         out += line_between(area.left, at, area.right, at, line.css);
-        out += text_at(area.right, last_label, "note end " + line.css + "-text", line.text);
+        out += text_at(right, row, "note end " + line.css + "-text", line.text);
+        right -= 16 + letter_px * static_cast<double>(line.text.size());
     }
     return out;
 }
@@ -138,7 +145,7 @@ std::string time_chart(const TimeChart& c) {
     std::string out = open_chart(c.width, c.height, c.label);
     out += y_axis(area, y, ticks, c.unit);
     out += x_axis(area, x, nice_ticks(from_s, to_s, c.width > 700 ? 10 : 5), "s");
-    const auto columns = columns_of(c, from_s, to_s, static_cast<std::size_t>(area.right - area.left));
+    const auto columns = columns_of(c, from_s, to_s, static_cast<std::size_t>((area.right - area.left) / column_px));
     auto within = columns;
     for (Column& column : within) {
         column.high = std::min(column.high, y.to);
@@ -147,8 +154,12 @@ std::string time_chart(const TimeChart& c) {
     }
     out += band_of(within, x, y);
     std::vector<Point> middle;
-    for (const Column& column : within) middle.push_back({x(column.time_s), y(column.middle), column.gap_before});
-    out += polyline(middle, "line");
+    std::vector<Point> highest;
+    for (const Column& column : within) {
+        middle.push_back({x(column.time_s), y(column.middle), column.gap_before});
+        highest.push_back({x(column.time_s), y(column.high), column.gap_before});
+    }
+    out += polyline(highest, "peaks") + polyline(middle, "line");
     out += lines_of(c, area, y);
     if (!empty) out += tips_of(c, area, x, from_s, to_s);
     out += markers_of(c, area, x, y);
