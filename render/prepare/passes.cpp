@@ -33,11 +33,16 @@ Below below(const Candidate& candidate, std::span<const Weight> weights, const P
 }  // namespace
 
 void gather_up(const model::FrameCombine& combine, float pixel_angle_rad, std::span<Weight> weights, PreparedFrame& frame) {
+    double full_submit_us = 0, full_raster_us = 0;  // double: a hundred thousand small costs
     for (std::size_t i = frame.candidates.size(); i-- > 0;) {
         Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
         candidate.floor_cost = choices[0].cost;
-        if (candidate.child_count == 0) continue;
+        if (candidate.child_count == 0) {
+            full_submit_us += static_cast<double>(choices.back().cost.submit_us);
+            full_raster_us += static_cast<double>(choices.back().cost.raster_us);
+            continue;
+        }
         const Below sum = below(candidate, weights, frame, candidate.children_cost);
         if (cost_metric(combine, sum.floor) <= cost_metric(combine, candidate.floor_cost)) {
             candidate.floor_cost = sum.floor;  // no dearer and finer
@@ -52,6 +57,7 @@ void gather_up(const model::FrameCombine& combine, float pixel_angle_rad, std::s
         }
         weights[i] = sum.weight;
     }
+    frame.full_cost = {static_cast<float>(full_submit_us), static_cast<float>(full_raster_us)};
 }
 
 void hold_down(PreparedFrame& frame) {

@@ -294,6 +294,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     out.candidates.clear();
     out.choices.clear();
     out.truncated = false;
+    out.full_cost = {};
     out.visits = 0;
     if (s.model.nodes.empty()) return;
 

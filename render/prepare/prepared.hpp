@@ -56,6 +56,7 @@ struct PreparedFrame {
     model::Viewport viewport;
     std::vector<Candidate> candidates;  ///< reserved at start; never grows after; empty: nothing is visible
     std::vector<Choice> choices;
+    model::ItemCost full_cost;   ///< of every visible leaf's finest choice: full detail
     std::uint32_t visits = 0;    ///< nodes looked at, invisible ones included
     bool truncated = false;      ///< capacity reached: deeper detail left out, still a complete legal tree
     float target_error_rad = 0;  ///< nodes below it were not opened and their finer forms left out

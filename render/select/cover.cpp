@@ -63,6 +63,17 @@ std::span<std::uint32_t> Cover::take_floor() {
     return scratch_.first(items);
 }
 
+std::uint32_t Cover::take_finest() {
+    std::uint32_t steps = 0;
+    for (Index c = 0; c < chosen_.size(); ++c) {
+        const prepare::Candidate& candidate = prepared_.candidates[c];
+        const bool leaf = candidate.child_count == 0;
+        if (chosen_[c] != SelectState::opened) steps += candidate.choice_count - (leaf ? 1U : 0U);  // else the floor did
+        chosen_[c] = leaf ? candidate.choice_count - 1 : SelectState::opened;
+    }
+    return steps;
+}
+
 void Cover::take_root(std::uint32_t offset) {
     take_floor();  // for its cost
     std::fill(chosen_.begin(), chosen_.end(), none);

@@ -15,6 +15,8 @@ public:
 
     /// Starts from the cheapest legal cut (PreparedFrame's floor). Returns its items, ascending, in scratch_b.
     std::span<std::uint32_t> take_floor();
+    /// From the floor to full detail: every leaf's finest choice. Returns the number of steps that a search would have taken.
+    std::uint32_t take_finest();
     /// Starts with the root alone at choice `offset`.
     void take_root(std::uint32_t offset);
 
@@ -37,7 +39,6 @@ public:
 
 private:
     [[nodiscard]] bool switched(Index c, Index rep) const;
-    [[nodiscard]] Sum floor_sum() const { return floor_; }
     void list_items(const Budget& budget, Cut& cut);
     void remember();
 

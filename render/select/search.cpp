@@ -99,6 +99,13 @@ Sum sum_of(const Cover& cover, std::span<const std::uint32_t> items) {
     return sum;
 }
 
+/// Where full detail fits there is nothing to search: the same cut, without the queue.
+bool full_detail_fits(const SelectInput& input, const SelectState& state, const Budget& budget) {
+    Sum full;
+    full.add(input.prepared->full_cost);
+    return !(input.target_error_rad > 0.0) && budget.fits(full, fresh_share(state));
+}
+
 class BenefitSearch final : public Selector {
 public:
     BenefitSearch(std::string_view name, bool subtree) : name_(name), subtree_(subtree) {}
@@ -110,8 +117,9 @@ public:
         const Budget budget(input);
         Cover cover(input, state);
         const Steps steps(input, state, cover, subtree_);
-        BucketQueue queue(state.scratch_head, state.scratch_next);
         const auto floor = cover.take_floor();
+        if (full_detail_fits(input, state, budget)) return cover.finish(budget, cover.take_finest(), cut);
+        BucketQueue queue(state.scratch_head, state.scratch_next);
         Buyer buyer(cover, budget, steps, fresh_share(state), sum_of(cover, floor));
         for (const Index c : floor) {
             if (steps.wanted(c)) queue.push(steps.key(c), c);
@@ -149,11 +157,12 @@ public:
         const Budget budget(input);
         Cover cover(input, state);
         const Steps steps(input, state, cover, false);
+        const auto floor = cover.take_floor();
+        if (full_detail_fits(input, state, budget)) return cover.finish(budget, cover.take_finest(), cut);
         const auto better_last = [&](Index a, Index b) {
             const float ka = steps.key(a), kb = steps.key(b);
             return ka != kb ? ka < kb : a > b;
         };
-        const auto floor = cover.take_floor();
         Buyer buyer(cover, budget, steps, fresh_share(state), sum_of(cover, floor));
         const auto stack = cover.scratch();
         std::size_t top = floor.size();
