@@ -106,6 +106,18 @@ TEST(Summary, SecondCallStartsAnew) {
     EXPECT_EQ(to_json(s), first);
 }
 
+TEST(Summary, StealOfTheHostIsKeptUnlessTheFramesLostMore) {
+    auto records = good_frames(2);
+    records[0].stolen_ns = 3'000'000;
+    WalkSummary s;
+    s.steal_ms = 40;
+    summarize(records, period_ns, s);
+    EXPECT_EQ(s.steal_ms, 40);
+    s.steal_ms = 0;
+    summarize(records, period_ns, s);
+    EXPECT_EQ(s.steal_ms, 3);
+}
+
 TEST(Summary, NoFramesAreNoFigures) {
     WalkSummary s;
     summarize({}, period_ns, s);

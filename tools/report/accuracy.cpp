@@ -56,7 +56,7 @@ std::string body_of(const AccuracyRun& run) {
     return out + fmt::format(
                      "<footer><p>{}</p><p>Beside this page: <a href=\"accuracy.csv\">accuracy.csv</a>, <a "
                      "href=\"accuracy.json\">accuracy.json</a>, "
-                     "<a href=\"accuracy-light.svg\">accuracy-light.svg</a>, <a "
+                     "<a href=\"accuracy.svg\">accuracy.svg</a>, <a "
                      "href=\"accuracy-dark.svg\">accuracy-dark.svg</a>.</p></footer>\n",
                      escaped(run.machine));
 }
@@ -110,7 +110,7 @@ Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run)
     const std::array<std::pair<std::string_view, std::string>, 5> files = {{
         {"accuracy.csv", accuracy_csv(run)},
         {"accuracy.json", accuracy_json(run)},
-        {"accuracy-light.svg", accuracy_svg(run, false)},
+        {"accuracy.svg", accuracy_svg(run, false)},
         {"accuracy-dark.svg", accuracy_svg(run, true)},
         {"index.html", page("Surefoot: what accuracy costs in time", body_of(run))},
     }};

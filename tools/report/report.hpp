@@ -48,7 +48,7 @@ struct WalkSummary {
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
     std::uint64_t triangles_max = 0, downgrades = 0, floor_bound_frames = 0, model_triangles = 0;
     std::string cut_hash;  ///< 16 hex digits over all frames
-    double steal_ms = 0;
+    double steal_ms = 0;             ///< as the host says, set before summarize; at least what the frames lost
     bool fifo = false, pinned = false, isolated = false, locked = false;
     std::uint64_t page_faults = 0, guard_violations = 0, driver_faults = 0, driver_allocations = 0;
     std::vector<std::string> census_problems;

@@ -34,6 +34,7 @@ Quantiles quantiles_of(std::span<const FrameRecord* const> frames, Value value) 
 
 void count_frames(std::span<const FrameRecord* const> frames, WalkSummary& s) {
     std::uint64_t hash = fnv_start;
+    std::int64_t stolen_ns = 0;
     for (const FrameRecord* f : frames) {
         s.skipped += f->skipped_before;
         s.misses += f->missed ? 1 : 0;
@@ -45,10 +46,11 @@ void count_frames(std::span<const FrameRecord* const> frames, WalkSummary& s) {
         s.guard_violations += f->guard_violations;
         s.driver_faults += f->driver_faults;
         s.driver_allocations += f->driver_allocations;
-        s.steal_ms += static_cast<double>(f->stolen_ns) * 1e-6;
+        stolen_ns += f->stolen_ns;
         s.triangles_max = std::max(s.triangles_max, f->triangles);
         hash = fnv1a(hash, f->cut_hash);
     }
+    s.steal_ms = std::max(s.steal_ms, static_cast<double>(stolen_ns) * 1e-6);
     s.frames = frames.size();
     s.slots = s.frames + s.skipped;
     s.cut_hash = fmt::format("{:016x}", hash);
@@ -88,7 +90,6 @@ void clear_counts(WalkSummary& s) {
     s.frames = s.slots = s.skipped = s.misses = s.own_misses = 0;
     s.miss_causes.clear();
     s.downgrades = s.floor_bound_frames = s.page_faults = s.guard_violations = s.driver_faults = s.driver_allocations = 0;
-    s.steal_ms = 0;
     s.triangles_max = 0;
 }
 
