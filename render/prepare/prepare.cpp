@@ -6,8 +6,11 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -65,7 +68,8 @@ struct Preparer::Impl {
     const model::CostModel& costs;
     PrepareOptions options;
     Evaluator evaluator;
-    std::unique_ptr<tbb::task_arena> arena;  ///< none: one worker, the caller
+    std::optional<tbb::global_control> more_than_cores;  ///< else the library caps its threads, and says so on stderr
+    std::unique_ptr<tbb::task_arena> arena;              ///< none: one worker, the caller
 
     std::vector<Visit> visits;
     std::vector<Visit> slots;  ///< children of a block of parents, before they are closed up
@@ -81,6 +85,7 @@ struct Preparer::Impl {
     Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o);
     template <class Body>
     void for_chunks(std::uint32_t count, const Body& body);
+    RegionView view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps) const;
     Visit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
     void look_at_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
     void expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end, PreparedFrame& out);
@@ -111,6 +116,9 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     chunk_candidate.resize(chunks);
     chunk_count.resize(chunks);
     weights.resize(most);
+    if (options.workers > tbb::info::default_concurrency()) {
+        more_than_cores.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.workers));
+    }
     if (options.workers > 1) arena = std::make_unique<tbb::task_arena>(options.workers);
 }
 
@@ -135,6 +143,23 @@ void Preparer::Impl::for_chunks(std::uint32_t count, const Body& body) {
             },
             tbb::simple_partitioner());
     });
+}
+
+RegionView Preparer::Impl::view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps) const {
+    const Pose& pose = region.centre;
+    RegionView view;
+    view.eye = pose.position;
+    view.radius_m = region.radius_m;
+    view.scale = model::make_view_scale(pose, viewport);
+    view.wide = model::make_view_scale(pose, viewport, region.angle_rad);
+    view.pixel_angle_rad = static_cast<float>(model::pixel_angle(pose, viewport));
+    const double target = options.target_error_rad > 0.0 ? options.target_error_rad : 0.5 * view.pixel_angle_rad;
+    view.target_error_rad = static_cast<float>(target) * target_factor;
+    view.full_depth = options.full_depth;
+    view.focus_strength = static_cast<float>(std::clamp(finite_or(options.focus_strength, 0.0), 0.0, 1.0));
+    view.speed_mps = static_cast<float>(std::clamp(finite_or(speed_mps, 0.0), 0.0, 1e4));
+    view.turn_rps = static_cast<float>(std::clamp(finite_or(turn_rps, 0.0), 0.0, 1e3));
+    return view;
 }
 
 Visit Preparer::Impl::visit_of(const RegionView& view, Index index, Index parent, PlaneMask mask) const {
@@ -301,18 +326,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     const model::Node& root = s.model.nodes[0];
     out.region = cleaned(region, root.box);
     const Pose& pose = out.region.centre;
-    RegionView view;
-    view.eye = pose.position;
-    view.radius_m = out.region.radius_m;
-    view.scale = model::make_view_scale(pose, viewport);
-    view.wide = model::make_view_scale(pose, viewport, out.region.angle_rad);
-    view.pixel_angle_rad = static_cast<float>(model::pixel_angle(pose, viewport));
-    const double target = s.options.target_error_rad > 0.0 ? s.options.target_error_rad : 0.5 * view.pixel_angle_rad;
-    view.target_error_rad = static_cast<float>(target) * s.target_factor;
-    view.full_depth = s.options.full_depth;
-    view.focus_strength = static_cast<float>(std::clamp(finite_or(s.options.focus_strength, 0.0), 0.0, 1.0));
-    view.speed_mps = static_cast<float>(std::clamp(finite_or(speed_mps, 0.0), 0.0, 1e4));
-    view.turn_rps = static_cast<float>(std::clamp(finite_or(turn_rps, 0.0), 0.0, 1e3));
+    const RegionView view = s.view_of(out.region, viewport, speed_mps, turn_rps);
     out.target_error_rad = view.full_depth ? 0.0F : view.target_error_rad;
 
     const double far_m = 2.0 * root.box.diagonal() + 1000.0;

@@ -6,8 +6,6 @@
 #include <limits>
 #include <memory>
 
-#include <tbb/global_control.h>
-
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/prepared.hpp"
 #include "render/prepare/visibility.hpp"
@@ -105,7 +103,6 @@ bool same(const PreparedFrame& a, const PreparedFrame& b) {
 }
 
 TEST(Prepare, ArraysAreEqualWithOneTwoAndFourWorkers) {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 5);  // more than cores: order is what counts
     const model::Model m = test::town(7);
     Random random(5);
     PrepareOptions options;
