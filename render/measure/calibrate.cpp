@@ -60,6 +60,7 @@ private:
     }
     [[nodiscard]] int repeats() const { return options_.quick ? 3 : 5; }
     FrameSample predict(const TownView& view, const model::CostModel& costs) const;
+    double undisturbed_us(const TownView& view, std::size_t slice_items);
 
     gl::Device& device_;
     const CalibrateOptions& options_;
@@ -153,6 +154,19 @@ FrameSample Run::predict(const TownView& view, const model::CostModel& costs) co
     return sample;
 }
 
+/// The median wall time of three frames in which neither thread was kept from its core: wall time may not exceed the CPU time
+/// of both together. Where nine tries bring none, the shortest.
+double Run::undisturbed_us(const TownView& view, std::size_t slice_items) {
+    std::vector<double> good;
+    double shortest = run_frame(device_, clocks_, view.pose, view.items, slice_items).wall_us;
+    for (int tries = 0; tries < 9 && good.size() < 3; ++tries) {
+        const FrameTiming t = run_frame(device_, clocks_, view.pose, view.items, slice_items);
+        shortest = std::min(shortest, t.wall_us);
+        if (!clocks_.any() || t.wall_us <= 1.05 * (t.submit_us + t.raster_us) + 100) good.push_back(t.wall_us);
+    }
+    return good.empty() ? shortest : median(good);
+}
+
 /// Random views of the town: every other one teaches the weights, the rest judge them.
 Result<void> Run::frames(Calibration& out) {
     const int wanted = options_.quick ? 80 : 240;
@@ -165,14 +179,12 @@ Result<void> Run::frames(Calibration& out) {
         const double slices = std::max(1.0, std::round((sample.submit_us + sample.raster_us) / slice_target_us));
         const auto slice_items = static_cast<std::size_t>(std::ceil(static_cast<double>(view.items.size()) / slices));
         sample.submit_us += slices * static_cast<double>(out.costs.slice_us);
-        std::vector<double> walls;
-        run_frame(device_, clocks_, view.pose, view.items, slice_items);
-        for (int k = 0; k < 3; ++k) walls.push_back(run_frame(device_, clocks_, view.pose, view.items, slice_items).wall_us);
-        sample.actual_us = median(walls);
+        sample.actual_us = undisturbed_us(view, slice_items);
         (i % 2 == 0 ? taught : held_out).push_back(sample);
         progress_.say("frames", static_cast<double>(i) / wanted);
     }
-    out.costs.combine = fit_combine(taught);
+    out.costs.combine =
+        fit_combine(taught, {static_cast<float>(empty_.wall_us), 0.5F, 0.5F, 0.5F});  // half way from sum to larger
     out.costs.upper_factor = static_cast<float>(std::max(1.0, ratio(held_out, out.costs.combine, 0.9)));
     out.frame_error_p50 = relative_error(held_out, out.costs.combine, 0.5);
     out.frame_error_p90 = relative_error(held_out, out.costs.combine, 0.9);
@@ -192,6 +204,7 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     if (!device) return device.error();
     Run run(**device, options, progress);
     if (auto loaded = run.load(); !loaded) return loaded.error();
+    if (options.opened) options.opened();
     Calibration out;
     out.costs.machine = machine_identity((*device)->renderer(), options.device.rasterisers);
     out.costs.calibrated = true;

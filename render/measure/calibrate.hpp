@@ -1,6 +1,7 @@
 // Measures this machine's cost table and how items add up to a frame, and whether a timer query is honest.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ struct CalibrateOptions {
     gl::DeviceOptions device;
     bool quick = false;  ///< fewer classes and repeats: under 20 s; else under 2 min
     std::uint64_t seed = 1;
+    /// Called once, on the calling thread, when the driver's threads exist: the place to give them the priorities and cores
+    /// that a walk gives them. May be empty.
+    std::function<void()> opened;
 };
 
 Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& progress);

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint32_t triangle_steps = 21, pixel_steps = 25;  // to 2^20 triangles and 2^24 pixels
 constexpr int terms = 4;                                        // fixed, S, R, max
+constexpr double prior_share = 5e-4;                            // of the samples' own weight
 
 using Row = std::array<double, terms>;
 
@@ -55,7 +56,7 @@ bool solve(const std::array<Row, terms>& normal, const Row& right, unsigned acti
 }
 
 /// Non-negative weighted least squares over at most four terms: the best of all subsets whose solution is non-negative.
-Row non_negative(std::span<const FrameSample> samples, std::span<const double> weights) {
+Row non_negative(std::span<const FrameSample> samples, std::span<const double> weights, const Row& prior) {
     std::array<Row, terms> normal{};
     Row right{};
     for (std::size_t s = 0; s < samples.size(); ++s) {
@@ -64,6 +65,10 @@ Row non_negative(std::span<const FrameSample> samples, std::span<const double> w
             for (std::size_t j = 0; j < terms; ++j) normal[i][j] += weights[s] * x[i] * x[j];
             right[i] += weights[s] * x[i] * samples[s].actual_us;
         }
+    }
+    for (std::size_t i = 0; i < terms; ++i) {
+        right[i] += prior_share * normal[i][i] * prior[i];
+        normal[i][i] *= 1 + prior_share;
     }
     Row best{};
     double least = std::numeric_limits<double>::infinity();
@@ -74,6 +79,7 @@ Row non_negative(std::span<const FrameSample> samples, std::span<const double> w
         for (std::size_t s = 0; s < samples.size(); ++s) {
             residual += weights[s] * std::pow(samples[s].actual_us - predicted(samples[s], w), 2);
         }
+        for (std::size_t i = 0; i < terms; ++i) residual += prior_share * normal[i][i] * std::pow(w[i] - prior[i], 2);
         if (residual < least) {
             least = residual;
             best = w;
@@ -162,7 +168,10 @@ model::CostGrid fill_grid(model::EffectMask effects, std::span<const Calibration
     return grid;
 }
 
-model::FrameCombine fit_combine(std::span<const FrameSample> samples) {
+model::FrameCombine fit_combine(std::span<const FrameSample> samples, const model::FrameCombine& prior) {
+    const Row start{static_cast<double>(prior.fixed_us), static_cast<double>(prior.submit_weight),
+                    static_cast<double>(prior.raster_weight), static_cast<double>(prior.max_weight)};
+    if (samples.empty()) return prior;
     std::vector<double> weights(samples.size());
     Row w{};
     constexpr double tolerated = 0.15;  // relative error up to which a sample counts in full
@@ -172,7 +181,7 @@ model::FrameCombine fit_combine(std::span<const FrameSample> samples) {
             const double error = round == 0 ? 0.0 : std::abs(predicted(samples[s], w) - actual) / actual;
             weights[s] = (error <= tolerated ? 1.0 : tolerated / error) / (actual * actual);
         }
-        w = non_negative(samples, weights);
+        w = non_negative(samples, weights, start);
     }
     model::FrameCombine combine;
     combine.fixed_us = static_cast<float>(w[0]);

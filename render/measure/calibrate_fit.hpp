@@ -19,8 +19,9 @@ struct FrameSample {
     double actual_us = 0;
 };
 
-/// Weights >= 0 of fixed, S, R and max(S, R) with the least relative error; outliers count less (Huber).
-model::FrameCombine fit_combine(std::span<const FrameSample> samples);
+/// Weights >= 0 of fixed, S, R and max(S, R) with the least relative error; outliers count less (Huber). Where the samples
+/// cannot tell weights apart (rasterising dominates all of them), those nearest to `prior` are taken.
+model::FrameCombine fit_combine(std::span<const FrameSample> samples, const model::FrameCombine& prior);
 
 /// |actual - predicted| / actual at a quantile, 0..1.
 double relative_error(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile);

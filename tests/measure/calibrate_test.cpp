@@ -17,6 +17,8 @@
 namespace surefoot {
 namespace {
 
+constexpr model::FrameCombine prior{100, 0.5F, 0.5F, 0.5F};
+
 std::vector<measure::FrameSample> frames_by(const model::FrameCombine& truth, double noise, std::uint64_t seed, int count = 200) {
     Random random(seed);
     std::vector<measure::FrameSample> samples;
@@ -34,26 +36,37 @@ std::vector<measure::FrameSample> frames_by(const model::FrameCombine& truth, do
 
 TEST(FrameFit, recovers_known_weights) {
     const model::FrameCombine truth{300, 0.2F, 0.1F, 0.8F};
-    const auto fitted = measure::fit_combine(frames_by(truth, 0, 1));
-    EXPECT_NEAR(fitted.fixed_us, 300, 3);
-    EXPECT_NEAR(fitted.submit_weight, 0.2, 0.01);
-    EXPECT_NEAR(fitted.raster_weight, 0.1, 0.01);
-    EXPECT_NEAR(fitted.max_weight, 0.8, 0.01);
+    const auto fitted = measure::fit_combine(frames_by(truth, 0, 1), prior);
+    EXPECT_NEAR(fitted.fixed_us, 300, 6);
+    EXPECT_NEAR(fitted.submit_weight, 0.2, 0.02);
+    EXPECT_NEAR(fitted.raster_weight, 0.1, 0.02);
+    EXPECT_NEAR(fitted.max_weight, 0.8, 0.02);
 }
 
 TEST(FrameFit, is_never_negative_and_deaf_to_outliers) {
     const model::FrameCombine truth{300, 0.7F, 0.9F, 0};
     auto samples = frames_by(truth, 0.05, 2);
     for (std::size_t i = 0; i < samples.size(); i += 20) samples[i].actual_us *= 8;  // stolen time
-    const auto fitted = measure::fit_combine(samples);
+    const auto fitted = measure::fit_combine(samples, prior);
     EXPECT_GE(fitted.max_weight, 0);
     const auto clean = frames_by(truth, 0, 3);
     EXPECT_LT(measure::relative_error(clean, fitted, 0.9), 0.1);
 }
 
-TEST(FrameFit, of_nothing_is_nothing) {
-    const auto fitted = measure::fit_combine({});
-    EXPECT_EQ(fitted.fixed_us, 0);
+TEST(FrameFit, takes_the_prior_where_samples_cannot_tell) {
+    std::vector<measure::FrameSample> samples;
+    for (int i = 1; i < 100; ++i) {
+        const double raster = 50.0 * i;
+        samples.push_back({0, raster, 100 + raster});  // max(S, R) is R
+    }
+    const auto fitted = measure::fit_combine(samples, prior);
+    EXPECT_NEAR(fitted.raster_weight, fitted.max_weight, 0.02);
+    EXPECT_NEAR(fitted.raster_weight + fitted.max_weight, 1, 0.01);
+}
+
+TEST(FrameFit, of_nothing_is_the_prior) {
+    const auto fitted = measure::fit_combine({}, prior);
+    EXPECT_EQ(fitted.fixed_us, prior.fixed_us);
     EXPECT_EQ(measure::relative_error({}, fitted, 0.5), 0);
 }
 
