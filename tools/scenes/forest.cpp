@@ -21,7 +21,7 @@ using importer::none;
 constexpr double side_at_scale_1_m = 80.0;
 constexpr double cell_m = 2.0;
 constexpr int tile_cells = 8;
-constexpr std::size_t triangles_a_tree = 1000, triangles_in_all_a_tree = 1050;
+constexpr std::size_t triangles_a_tree = 960, triangles_in_all_a_tree = 1050;
 constexpr double eye_height_m = 1.7;
 
 /// Everything that trees, undergrowth and path agree on.
@@ -220,7 +220,7 @@ Path walk_through(const Land& land, double scale) {
         const double x = way[i].eye.x + dx, z = way[i].eye.z + dz;
         return dvec3(x, land.height(x, z) + up, z);
     };
-    glance(2, beside(2, 5, 6.0, -4), 0);
+    glance(2, beside(2, 8, 4.0, -5), 0);
     glance(4, beside(4, -2.5, 0.2, 2.5), 1.0);
     const std::size_t last = way.size() - 1;
     glance(last - 1, {0.5 * land.side, 6.0, 0.9 * land.side}, 0);

@@ -5,7 +5,7 @@
 
 namespace surefoot::scenes {
 
-/// 1050 triangles a tree in all: 1000 of the tree itself, the rest ground and undergrowth; 100 * scale trees.
+/// 1050 triangles a tree in all: 960 of the tree itself, the rest ground and undergrowth; 100 * scale trees.
 GeneratedScene make_forest(double scale, std::uint64_t seed);
 
 }  // namespace surefoot::scenes

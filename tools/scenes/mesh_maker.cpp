@@ -82,7 +82,7 @@ void MeshMaker::emit_grid(std::span<const std::uint32_t> vertices, int columns, 
 void MeshMaker::quad(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
     const dvec3 n = unit_or(glm::cross(b - a, d - a), dvec3(0, 1, 0));
     const dvec3 along = unit_or(b - a, dvec3(1, 0, 0)), across = glm::cross(along, n);  // v runs downwards: against ad
-    const auto uv = [&](const dvec3& p) { return brush.uv_per_m * dvec2(glm::dot(p - a, along), glm::dot(p - a, across)); };
+    const auto uv = [&](const dvec3& p) { return brush.uv_per_m * dvec2(glm::dot(p, along), glm::dot(p, across)); };
     const std::array<std::uint32_t, 4> v{vertex(a, n, uv(a)), vertex(b, n, uv(b)), vertex(d, n, uv(d)), vertex(c, n, uv(c))};
     emit_grid(v, 1, 1);
 }
@@ -96,7 +96,7 @@ void MeshMaker::picture(const dvec3& a, const dvec3& b, const dvec3& c, const dv
 void MeshMaker::triangle(const dvec3& a, const dvec3& b, const dvec3& c) {
     const dvec3 n = unit_or(glm::cross(b - a, c - a), dvec3(0, 1, 0));
     const dvec3 along = unit_or(b - a, dvec3(1, 0, 0)), across = glm::cross(along, n);
-    const auto uv = [&](const dvec3& p) { return brush.uv_per_m * dvec2(glm::dot(p - a, along), glm::dot(p - a, across)); };
+    const auto uv = [&](const dvec3& p) { return brush.uv_per_m * dvec2(glm::dot(p, along), glm::dot(p, across)); };
     const std::uint32_t i = vertex(a, n, uv(a)), j = vertex(b, n, uv(b)), k = vertex(c, n, uv(c));
     emit(i, j, k);
 }

@@ -44,7 +44,7 @@ public:
 
     Brush brush;
 
-    /// Corners in order around; texture coordinates in metres along ab and ad.
+    /// Corners in order around; texture coordinates in metres along ab and across, so that neighbours in a plane agree.
     void quad(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);
     /// The same with texture 0..1 across it.
     void picture(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);
