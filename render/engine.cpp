@@ -109,6 +109,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->options.prepare.max_candidates = candidates;
     impl->options.prepare.max_choices = static_cast<std::uint32_t>(
         std::min<std::size_t>(options.prepare.max_choices, impl->model.reps.size()));
+    impl->options.prepare.full_depth |= options.selector == "flat";  // full detail needs the leaves
     impl->preparer = std::make_unique<prepare::Preparer>(impl->model, impl->costs, impl->options.prepare);
     impl->state.reserve(impl->model, candidates);
     impl->state.hysteresis = options.hysteresis;

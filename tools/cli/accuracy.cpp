@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "rt/base/file.hpp"
 #include "tools/app/accuracy.hpp"
 #include "tools/cli/command.hpp"
 
@@ -38,11 +37,6 @@ int run_accuracy_command(AccuracyArguments& a, const Context& context) {
     std::filesystem::create_directories(a.out, error);
     if (error) return fail({a.out, "cannot be made: " + error.message(), "name another folder with --out"});
     if (auto w = report::write_accuracy_page(a.out, *run); !w) return fail(w.error());
-    for (const auto& [name, text] : {std::pair<std::string, std::string>{"accuracy.csv", report::accuracy_csv(*run)},
-                                     {"accuracy.svg", report::accuracy_svg(*run, false)},
-                                     {"accuracy-dark.svg", report::accuracy_svg(*run, true)}}) {
-        if (auto w = write_text(a.out + "/" + name, text); !w) return fail(w.error());
-    }
     if (a.json) {
         fmt::print("{}\n", report::accuracy_json(*run));
     } else {
