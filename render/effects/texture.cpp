@@ -1,4 +1,5 @@
-// Effect: base colour texture. Sampled as stored (sRGB bytes, no decoding): on software GL decoding costs more than it shows.
+// Effect: base colour texture, a layer of an array: images of one size are one state, and so one batch. Sampled as stored (sRGB
+// bytes, no decoding): on software GL decoding costs more than it shows.
 #include "render/effects/modules.hpp"
 
 namespace surefoot::effects {
@@ -8,10 +9,10 @@ constexpr EffectModule texture{
     .name = "texture",
     .what = "base colour from an image, mipmapped",
     .asked_by = "a material with a texture",
-    .vertex_declarations = "in vec2 uv;\nout vec2 v_uv;\n",
-    .vertex_code = "    v_uv = uv;\n",
-    .fragment_declarations = "in vec2 v_uv;\nuniform sampler2D base_colour;\n",
-    .fragment_code = "    colour *= texture(base_colour, v_uv);\n",
+    .vertex_declarations = "in vec2 uv;\nin float texture_layer;\nout vec2 v_uv;\nflat out float v_layer;\n",
+    .vertex_code = "    v_uv = uv;\n    v_layer = texture_layer;\n",
+    .fragment_declarations = "in vec2 v_uv;\nflat in float v_layer;\nuniform sampler2DArray base_colour;\n",
+    .fragment_code = "    colour *= texture(base_colour, vec3(v_uv, v_layer));\n",
 };
 const EffectModule texture_module = texture;
 

@@ -79,8 +79,8 @@ namespace surefoot::gl {
     X(RenderbufferStorage, PFNGLRENDERBUFFERSTORAGEPROC)                                                 \
     X(ShaderSource, PFNGLSHADERSOURCEPROC)                                                               \
     X(TexParameteri, PFNGLTEXPARAMETERIPROC)                                                             \
-    X(TexStorage2D, PFNGLTEXSTORAGE2DPROC)                                                               \
-    X(TexSubImage2D, PFNGLTEXSUBIMAGE2DPROC)                                                             \
+    X(TexStorage3D, PFNGLTEXSTORAGE3DPROC)                                                               \
+    X(TexSubImage3D, PFNGLTEXSUBIMAGE3DPROC)                                                             \
     X(Uniform1i, PFNGLUNIFORM1IPROC)                                                                     \
     X(Uniform3f, PFNGLUNIFORM3FPROC)                                                                     \
     X(UniformMatrix4fv, PFNGLUNIFORMMATRIX4FVPROC)                                                       \

@@ -55,7 +55,7 @@ Result<void> GlDevice::set_up() {
 Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
     free_resources(gl_, resources_);
     tables_ = make_tables(model);
-    auto resources = load_resources(gl_, model, tables_.masks, programs, frame_, software_);
+    auto resources = load_resources(gl_, model, tables_.masks, tables_.textures, programs, frame_, software_);
     if (!resources) return resources.error();
     resources_ = std::move(*resources);
     sun_direction_ = vec3(glm::normalize(model.sun_direction));

@@ -136,7 +136,7 @@ void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
     instance.colour = part.colour;
     instance.alpha_cutoff = part.alpha_cutoff;
     instance.two_sided = part.two_sided ? 1.0F : 0.0F;
-    instance.spare = 0;
+    instance.texture_layer = part.texture_layer;
     frame_.instances[at] = instance;
 }
 
@@ -169,7 +169,7 @@ void GlDevice::apply(const State& state) {
         program.frame = frame_number_;
     }
     if (state.texture != model::none && (all || state.texture != current_.texture)) {
-        gl_.BindTexture(GL_TEXTURE_2D, resources_.textures[state.texture]);
+        gl_.BindTexture(GL_TEXTURE_2D_ARRAY, resources_.textures[state.texture]);
         ++stats_.state_changes;
     }
     if (all || state.culling != current_.culling) {

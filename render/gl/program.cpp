@@ -24,7 +24,7 @@ struct Attribute {
     int locations;  ///< an array takes several
 };
 
-constexpr std::array<Attribute, 8> attributes{{
+constexpr std::array<Attribute, 9> attributes{{
     {"position", vertex_binding, 3, GL_FLOAT, GL_FALSE, offsetof(model::Vertex, position), 1},
     {"normal", vertex_binding, 3, GL_BYTE, GL_TRUE, offsetof(model::Vertex, normal), 1},
     {"vertex_colour", vertex_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(model::Vertex, colour), 1},
@@ -33,6 +33,7 @@ constexpr std::array<Attribute, 8> attributes{{
     {"material_colour", instance_binding, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Instance, colour), 1},
     {"alpha_cutoff", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, alpha_cutoff), 1},
     {"two_sided", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, two_sided), 1},
+    {"texture_layer", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, texture_layer), 1},
 }};
 
 Result<GLuint> compile(const Api& gl, GLenum kind, const std::string& text, const std::string& place) {

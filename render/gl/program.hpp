@@ -17,7 +17,7 @@ struct Instance {
     std::array<std::uint8_t, 4> colour;  ///< material colour
     float alpha_cutoff;
     float two_sided;  ///< 1: normals turn towards the eye
-    float spare;
+    float texture_layer;
 };
 static_assert(sizeof(Instance) == 64);
 

@@ -32,36 +32,6 @@ GLuint make_static(const Api& gl, GLenum target, const void* data, std::size_t b
     return buffer;
 }
 
-Result<GLuint> make_texture(const Api& gl, const model::Model& model, const model::Texture& texture, bool soft) {
-    GLint largest = 0;
-    gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    if (texture.width > static_cast<std::uint32_t>(largest) || texture.height > static_cast<std::uint32_t>(largest)) {
-        return Error{"texture",
-                     std::to_string(texture.width) + " x " + std::to_string(texture.height) + " is larger than the device takes",
-                     "scale the image down to " + std::to_string(largest)};
-    }
-    GLuint id = 0;
-    gl.GenTextures(1, &id);
-    gl.BindTexture(GL_TEXTURE_2D, id);
-    const auto levels = static_cast<GLsizei>(std::max(1U, texture.levels));
-    gl.TexStorage2D(GL_TEXTURE_2D, levels, GL_RGBA8, static_cast<GLsizei>(texture.width), static_cast<GLsizei>(texture.height));
-    std::uint64_t byte = texture.first_byte;
-    for (GLsizei level = 0; level < levels; ++level) {
-        const std::uint32_t w = std::max(1U, texture.width >> static_cast<unsigned>(level));
-        const std::uint32_t h = std::max(1U, texture.height >> static_cast<unsigned>(level));
-        gl.TexSubImage2D(GL_TEXTURE_2D, level, 0, 0, static_cast<GLsizei>(w), static_cast<GLsizei>(h), GL_RGBA, GL_UNSIGNED_BYTE,
-                         model.texels.data() + byte);
-        byte += 4ULL * w * h;
-    }
-    const GLint smaller = levels == 1 ? GL_LINEAR : soft ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
-    const GLint wrap = texture.clamp ? GL_CLAMP_TO_EDGE : GL_REPEAT;
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, smaller);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
-    return id;
-}
-
 }  // namespace
 
 Result<void> check_errors(const Api& gl, const std::string& place, const std::string& remedy) {
@@ -106,15 +76,16 @@ Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items) 
 }
 
 Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
-                                 const ProgramFactory& programs, const FrameBuffers& frame, bool soft) {
+                                 const TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
+                                 bool soft) {
     Resources resources;
     gl.BindVertexArray(0);  // the index buffer's binding belongs to the vertex array
     resources.vertices = make_static(gl, GL_ARRAY_BUFFER, model.vertices.data(), model.vertices.size() * sizeof(model::Vertex));
     resources.indices = make_static(gl, GL_ARRAY_BUFFER, model.indices.data(), model.indices.size() * sizeof(std::uint32_t));
     const std::string remedy = "the model's geometry does not fit the device: bake a smaller part of it";
     if (auto fine = check_errors(gl, "uploading geometry", remedy); !fine) return fine.error();
-    for (const model::Texture& texture : model.textures) {
-        auto made = make_texture(gl, model, texture, soft);
+    for (const TextureArray& array : layout.arrays) {
+        auto made = upload_array(gl, model, array, soft);
         if (!made) return made.error();
         resources.textures.push_back(*made);
     }

@@ -7,6 +7,7 @@
 
 #include "render/gl/api.hpp"
 #include "render/gl/program.hpp"
+#include "render/gl/texture_arrays.hpp"
 #include "render/model/model.hpp"
 #include "rt/base/result.hpp"
 
@@ -36,12 +37,13 @@ Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items);
 
 struct Resources {
     GLuint vertices = 0, indices = 0;
-    std::vector<GLuint> textures;
+    std::vector<GLuint> textures;   ///< in the order of TextureLayout::arrays
     std::vector<Program> programs;  ///< in the order of DrawTables::masks
 };
 /// soft: nearest mip level instead of trilinear, which software pays for a pixel.
 Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
-                                 const ProgramFactory& programs, const FrameBuffers& frame, bool soft);
+                                 const TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
+                                 bool soft);
 void free_resources(const Api& gl, Resources& resources);
 
 /// An Error naming `place` if GL has recorded an error since the last check.

@@ -10,14 +10,19 @@ namespace {
 
 std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F))); }
 
-DrawPart make_part(const model::Model& model, const model::Part& part, const std::vector<model::EffectMask>& masks) {
+DrawPart make_part(const model::Model& model, const model::Part& part, const std::vector<model::EffectMask>& masks,
+                   const TextureLayout& textures) {
     const model::Material& material = model.materials[part.material];
     DrawPart out{};
     out.first_index = part.first_index;
     out.index_count = part.index_count;
     out.base_vertex = static_cast<std::int32_t>(part.first_vertex);
-    const bool textured = (material.effects & model::effect_texture) != 0;
-    out.texture = textured ? material.texture : model::none;
+    out.texture = model::none;
+    if ((material.effects & model::effect_texture) != 0 && material.texture != model::none) {
+        const TextureSlot slot = textures.slots[material.texture];
+        out.texture = slot.array;
+        out.texture_layer = static_cast<float>(slot.layer);
+    }
     for (std::size_t i = 0; i < 4; ++i) out.colour[i] = to_byte(material.colour[i]);
     out.alpha_cutoff = material.alpha_cutoff;
     const auto found = std::lower_bound(masks.begin(), masks.end(), material.effects);
@@ -31,12 +36,13 @@ DrawPart make_part(const model::Model& model, const model::Part& part, const std
 
 DrawTables make_tables(const model::Model& model) {
     DrawTables tables;
+    tables.textures = lay_out_textures(model);
     for (const model::Part& part : model.parts) tables.masks.push_back(model.materials[part.material].effects);
     std::sort(tables.masks.begin(), tables.masks.end());
     tables.masks.erase(std::unique(tables.masks.begin(), tables.masks.end()), tables.masks.end());
 
     tables.parts.reserve(model.parts.size());
-    for (const model::Part& part : model.parts) tables.parts.push_back(make_part(model, part, tables.masks));
+    for (const model::Part& part : model.parts) tables.parts.push_back(make_part(model, part, tables.masks, tables.textures));
     tables.reps.reserve(model.reps.size());
     for (const model::Representation& rep : model.reps) {
         tables.reps.push_back({rep.placement, rep.first_part, rep.part_count, rep.triangles});

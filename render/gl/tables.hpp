@@ -7,6 +7,7 @@
 
 #include "render/gl/device.hpp"
 #include "render/gl/program.hpp"
+#include "render/gl/texture_arrays.hpp"
 
 namespace surefoot::gl {
 
@@ -15,9 +16,10 @@ enum class Culling : std::uint8_t { back, front_flipped, none };
 struct DrawPart {
     std::uint32_t first_index, index_count;
     std::int32_t base_vertex;
-    std::uint32_t texture;  ///< in Model::textures, or none
+    std::uint32_t texture;  ///< array of TextureLayout, or none
     std::array<std::uint8_t, 4> colour;
     float alpha_cutoff;
+    float texture_layer;
     std::uint16_t program;  ///< in the list of masks
     bool two_sided, blended;
 };
@@ -33,6 +35,7 @@ struct Placed {
 };
 
 struct DrawTables {
+    TextureLayout textures;
     std::vector<model::EffectMask> masks;  ///< state classes that the model's parts call for, ascending
     std::vector<DrawPart> parts;
     std::vector<DrawRep> reps;

@@ -21,9 +21,10 @@ constexpr std::array<model::EffectMask, 7> all_classes{
     0, colours | sun, texture, texture | sun, texture | sun | colours, texture | sun | mask, texture | sun | blend};
 constexpr std::array<int, 8> triangle_levels{4, 16, 64, 256, 1024, 4096, 16384, 65536};
 constexpr std::array<double, 6> pixel_levels{16, 128, 1024, 8192, 65536, 262144};
-constexpr int copies_of_small = 8;       // of each mesh: equal neighbours would merge into one instanced draw
-constexpr double cell_us = 2500;         // aim for this long a measurement
-constexpr std::size_t most_items = 300;  // in a cell
+constexpr int copies_of_small = 8;           // of each mesh: equal neighbours would merge into one instanced draw
+constexpr std::uint32_t texture_count = 16;  // equal images, but each a state of its own, as in real scenes
+constexpr double cell_us = 2500;             // aim for this long a measurement
+constexpr std::size_t most_items = 300;      // in a cell
 
 /// A mesh in the model, to be referenced by parts of any class.
 struct Mesh {
@@ -38,14 +39,20 @@ public:
         model_.names = std::string(1, '\0');
         model_.nodes.emplace_back();
         model_.sun_direction = glm::normalize(dvec3(0.36, 0.80, 0.48));
-        add_texture();
+        for (std::uint32_t i = 0; i < texture_count; ++i) add_texture();
     }
 
-    Index material(model::EffectMask effects) {
+    /// Materials of one class that differ in their texture; one where there is none.
+    std::vector<Index> materials(model::EffectMask effects) {
+        std::vector<Index> list;
+        for (Index t = 0; t < ((effects & texture) != 0 ? texture_count : 1U); ++t) list.push_back(material(effects, t));
+        return list;
+    }
+    Index material(model::EffectMask effects, Index image) {
         model::Material m;
         m.colour = {0.8F, 0.75F, 0.7F, (effects & blend) != 0 ? 0.6F : 1.0F};
         m.effects = effects;
-        if ((effects & texture) != 0) m.texture = 0;
+        if ((effects & texture) != 0) m.texture = image;
         m.alpha = (effects & mask) != 0    ? model::AlphaMode::mask
                   : (effects & blend) != 0 ? model::AlphaMode::blend
                                            : model::AlphaMode::opaque;
@@ -81,24 +88,24 @@ public:
         return mesh;
     }
 
-    /// A node at a place, without representations yet.
-    Index node(const dvec3& centre, double radius) {
+    /// A node at a place, without representations yet; meshes are stretched to the radii.
+    Index node(const dvec3& centre, const dvec3& radii) {
         model::Node n;
-        n.box.grow(centre - dvec3(radius));
-        n.box.grow(centre + dvec3(radius));
+        n.box.grow(centre - radii);
+        n.box.grow(centre + radii);
         n.parent = 0;
         n.kind = model::NodeKind::object;
         n.first_rep = static_cast<Index>(model_.reps.size());
         model_.nodes.push_back(n);
         model::Placement placement;
         placement.origin = centre;
-        placement.linear = mat3(static_cast<float>(radius));
+        for (int i = 0; i < 3; ++i) placement.linear[i][i] = static_cast<float>(radii[i]);
         model_.placements.push_back(placement);
         return static_cast<Index>(model_.nodes.size() - 1);
     }
 
     /// One more representation of the node made last.
-    Index rep(const Mesh& mesh, Index material, double radius) {
+    Index rep(const Mesh& mesh, Index material, const dvec3& radii) {
         model::Part part = mesh.part;
         part.material = material;
         model_.parts.push_back(part);
@@ -108,7 +115,9 @@ public:
         r.part_count = 1;
         r.triangles = mesh.triangles;
         r.effects = model_.materials[material].effects;
-        for (std::size_t i = 0; i < 3; ++i) r.area_m2[i] = mesh.area[i] * static_cast<float>(radius * radius);
+        const dvec3 sides(radii.y * radii.z, radii.z * radii.x, radii.x * radii.y);
+        for (int i = 0; i < 3; ++i)
+            r.area_m2[static_cast<std::size_t>(i)] = mesh.area[static_cast<std::size_t>(i)] * static_cast<float>(sides[i]);
         model_.reps.push_back(r);
         ++model_.nodes.back().rep_count;
         model_.nodes.back().triangles = mesh.triangles;
@@ -184,27 +193,28 @@ Meshes make_meshes(Builder& builder) {
 }
 
 /// Items of about `pixels` each over the view of Pose{}, at rising depth so that equal meshes are never sorted side by side.
-CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, Index material, double pixels,
+CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std::span<const Index> materials, double pixels,
                           model::Viewport viewport) {
+    const model::EffectMask effects = builder.model().materials[materials.front()].effects;
     const model::ViewScale scale = model::make_view_scale(Pose{}, viewport);
     const double f = static_cast<double>(scale.pixels_per_radian);
     const double angular = std::sqrt(pixels / std::numbers::pi) / f;  // radius over depth
     const model::CostModel guess = model::default_costs();
-    const model::ItemCost cost = guess.item(static_cast<float>(meshes[0].triangles), static_cast<float>(pixels),
-                                            guess.grid_for(builder.model().materials[material].effects));
+    const model::ItemCost cost =
+        guess.item(static_cast<float>(meshes[0].triangles), static_cast<float>(pixels), guess.grid_for(effects));
     const double each_us = static_cast<double>(cost.submit_us + cost.raster_us);
     const auto count = static_cast<std::size_t>(std::clamp(cell_us / each_us, 1.0, static_cast<double>(most_items)));
     CalibrationCell cell;
-    cell.effects = builder.model().materials[material].effects;
+    cell.effects = effects;
     for (std::size_t i = 0; i < count; ++i) {
         const double depth = 20.0 * (1.0 + 0.002 * static_cast<double>(i));
         const double reach_x = std::max(0.0, static_cast<double>(scale.tan_half_x) - angular);
         const double reach_y = std::max(0.0, static_cast<double>(scale.tan_half_y) - angular);
         const dvec3 centre(depth * builder.random().range(-reach_x, reach_x), depth * builder.random().range(-reach_y, reach_y),
                            -depth);
-        const double radius = angular * depth;
-        const Index node = builder.node(centre, radius);
-        const Index rep = builder.rep(meshes[i % meshes.size()], material, radius);
+        const dvec3 radii(angular * depth);
+        const Index node = builder.node(centre, radii);
+        const Index rep = builder.rep(meshes[i % meshes.size()], materials[i % materials.size()], radii);
         cell.items.push_back({node, rep});
         const model::Model& m = builder.model();
         cell.pixels += static_cast<double>(model::rasterised_pixels(m.reps[rep], m.nodes[node].box, dvec3(0.0), scale));
@@ -219,25 +229,39 @@ constexpr double town_side_m = 400;
 constexpr int blocks = 12;  // a side
 constexpr int objects_a_block = 16;
 
-void make_town(Builder& builder, const Meshes& meshes, std::span<const Index> materials, CalibrationScene& scene) {
+/// An object at several levels of detail, the finest of triangle_levels[finest].
+void add_town_object(Builder& builder, const Meshes& meshes, Index material, const dvec3& centre, const dvec3& radii,
+                     std::uint32_t finest, CalibrationScene& scene) {
+    TownObject object;
+    object.node = builder.node(centre, radii);
+    object.effects = builder.model().materials[material].effects;
+    object.first_rep = static_cast<Index>(builder.model().reps.size());
+    for (std::uint32_t level = 0; level <= finest; ++level, ++object.levels) {
+        const auto copies = static_cast<std::uint32_t>(meshes[level].size());
+        builder.rep(meshes[level][builder.random().below(copies)], material, radii);
+    }
+    scene.town.push_back(object);
+    scene.town_box.grow(builder.model().nodes[object.node].box);
+}
+
+/// Blocks of ground, with things of 0.4 to 5 m on them, some flat, some tall.
+void make_town(Builder& builder, const Meshes& meshes, const std::vector<std::vector<Index>>& materials,
+               CalibrationScene& scene) {
     Random& random = builder.random();
     const double block = town_side_m / blocks;
+    const auto any = [&](const std::vector<Index>& list) { return list[random.below(static_cast<std::uint32_t>(list.size()))]; };
     for (int b = 0; b < blocks * blocks; ++b) {
         const dvec3 corner(block * (b % blocks) - 0.5 * town_side_m, 0, block * (b / blocks) - 0.5 * town_side_m + 1000);
+        // Ground is never see-through or full of holes.
+        const std::size_t ground = random.below(static_cast<std::uint32_t>(std::min<std::size_t>(4, materials.size())));
+        add_town_object(builder, meshes, any(materials[ground]), corner + dvec3(0.5 * block, -0.3, 0.5 * block),
+                        dvec3(0.6 * block, 0.3, 0.6 * block), 3, scene);
         for (int i = 0; i < objects_a_block; ++i) {
-            const double radius = 0.4 * std::exp(2.6 * random.unit());  // 0.4 to 5.4 m
-            const dvec3 centre = corner + dvec3(block * random.unit(), radius * random.range(0.2, 1.0), block * random.unit());
-            TownObject object;
-            object.node = builder.node(centre, radius);
-            const Index material = materials[random.below(static_cast<std::uint32_t>(materials.size()))];
-            object.effects = builder.model().materials[material].effects;
-            const std::uint32_t finest = 2 + random.below(4);  // 64 to 4096 triangles
-            object.first_rep = static_cast<Index>(builder.model().reps.size());
-            for (std::uint32_t level = 0; level <= finest; ++level, ++object.levels) {
-                builder.rep(meshes[level][random.below(static_cast<std::uint32_t>(meshes[level].size()))], material, radius);
-            }
-            scene.town.push_back(object);
-            scene.town_box.grow(builder.model().nodes[object.node].box);
+            const double radius = 0.4 * std::exp(2.5 * random.unit());
+            const dvec3 radii = radius * dvec3(random.range(0.4, 1.0), random.range(0.3, 1.5), random.range(0.4, 1.0));
+            const dvec3 centre = corner + dvec3(block * random.unit(), radii.y * random.range(0.4, 1.0), block * random.unit());
+            const auto& list = materials[random.below(static_cast<std::uint32_t>(materials.size()))];
+            add_town_object(builder, meshes, any(list), centre, radii, 2 + random.below(4), scene);
         }
     }
 }
@@ -252,12 +276,12 @@ CalibrationScene make_calibration_scene(model::Viewport viewport, bool quick, st
     Builder builder(seed);
     CalibrationScene scene;
     const Meshes meshes = make_meshes(builder);
-    std::vector<Index> materials;
-    for (const model::EffectMask effects : calibration_classes(quick)) materials.push_back(builder.material(effects));
-    for (const Index material : materials) {
+    std::vector<std::vector<Index>> materials;  // [class]
+    for (const model::EffectMask effects : calibration_classes(quick)) materials.push_back(builder.materials(effects));
+    for (const std::vector<Index>& of_class : materials) {
         for (std::size_t t = 0; t < meshes.size(); t += quick ? 2 : 1) {
             for (std::size_t p = 0; p < pixel_levels.size(); ++p) {
-                scene.cells.push_back(make_cell(builder, meshes[t], material, pixel_levels[p], viewport));
+                scene.cells.push_back(make_cell(builder, meshes[t], of_class, pixel_levels[p], viewport));
             }
         }
     }
@@ -282,7 +306,7 @@ TownView random_town_view(const CalibrationScene& scene, model::Viewport viewpor
         if (pure && object.effects != only) continue;
         const model::Node& node = scene.model.nodes[object.node];
         const double distance = node.box.distance(view.pose.position);
-        if (distance > reach || distance < 0.5 || !model::visible(frustum, node.box)) continue;
+        if (distance > reach || !model::visible(frustum, node.box)) continue;
         const double level = detail + 1.0 - std::log2(1.0 + distance / 25.0);
         const auto chosen = static_cast<std::uint32_t>(std::clamp(level, 0.0, static_cast<double>(object.levels - 1)));
         view.items.push_back({object.node, object.first_rep + chosen});

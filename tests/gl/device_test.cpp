@@ -217,6 +217,22 @@ TEST_F(DeviceTest, equal_state_goes_out_in_one_batch) {
     EXPECT_EQ(device_->stats().triangles, 20U);
 }
 
+TEST_F(DeviceTest, images_of_one_form_share_a_batch_and_show_their_own_texels) {
+    SmallModel scene;
+    std::vector<model::Index> nodes;
+    const std::array<std::array<std::uint8_t, 4>, 3> colours{{{255, 0, 0, 255}, {0, 255, 0, 255}, {255, 0, 255, 255}}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        auto material = plain(1, 1, 1, 1, model::effect_texture);
+        material.texture = scene.texture(colours[i], colours[i], i == 2 ? 16 : 8);
+        nodes.push_back(scene.square(scene.material(material), at(-0.6 + 0.6 * static_cast<double>(i), 0, -1), 0.2F));
+    }
+    const auto image = picture(scene.finish(), nodes);
+    EXPECT_EQ(pixel(image, 20, 50), red);
+    EXPECT_EQ(pixel(image, 50, 50), green);
+    EXPECT_EQ(pixel(image, 80, 50), (Pixel{255, 0, 255}));
+    EXPECT_EQ(device_->stats().batches, 2U);  // the third is of another size
+}
+
 TEST_F(DeviceTest, only_the_scenes_programs_are_compiled) {
     SmallModel scene;
     const auto node = scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1));

@@ -1,0 +1,34 @@
+// Images of one form (size, levels, wrap) are layers of one array texture: changing between them is data of the draw, not
+// state. A change of texture costs a software driver about 8 us; a layer costs nothing.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/gl/api.hpp"
+#include "render/model/model.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::gl {
+
+struct TextureArray {
+    std::uint32_t width = 0, height = 0, levels = 1;
+    bool clamp = false;
+    std::vector<std::uint32_t> layers;  ///< indices in Model::textures
+};
+/// Where a texture of the model lies.
+struct TextureSlot {
+    std::uint32_t array = 0, layer = 0;
+};
+struct TextureLayout {
+    std::vector<TextureArray> arrays;
+    std::vector<TextureSlot> slots;  ///< one a texture of the model
+};
+
+/// Arrays in order of first use; none has more than 256 layers (OpenGL 4.3 promises 2048).
+TextureLayout lay_out_textures(const model::Model& model);
+
+/// soft: nearest mip level instead of trilinear, which software pays for a pixel.
+Result<GLuint> upload_array(const Api& gl, const model::Model& model, const TextureArray& array, bool soft);
+
+}  // namespace surefoot::gl
