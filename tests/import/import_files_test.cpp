@@ -1,0 +1,55 @@
+// import_files: what a person gets wrong on the command line, and several files in one scene.
+#include <gtest/gtest.h>
+
+#include "fixtures.hpp"
+
+namespace surefoot::importer::test {
+namespace {
+
+std::string error_of(const std::vector<std::string>& files) {
+    const auto scene = import_files(files, {});
+    EXPECT_FALSE(scene.ok());
+    if (scene.ok()) return "";
+    EXPECT_FALSE(scene.error().place.empty());
+    EXPECT_FALSE(scene.error().remedy.empty());
+    return scene.error().text();
+}
+
+TEST(ImportFiles, EachMistakeHasItsWords) {
+    const Folder folder;
+    EXPECT_NE(error_of({}).find("no file given"), std::string::npos);
+    EXPECT_NE(error_of({folder.file("none.glb")}).find("no such file"), std::string::npos);
+    EXPECT_NE(error_of({folder.file("")}).find("is a directory"), std::string::npos);
+    EXPECT_NE(error_of({folder.write("a.glb", "")}).find("is empty"), std::string::npos);
+    EXPECT_NE(error_of({folder.write("a.xyz", "x")}).find("unknown ending '.xyz'"), std::string::npos);
+    EXPECT_NE(error_of({folder.write("a", "x")}).find("has no ending"), std::string::npos);
+    EXPECT_NE(error_of({folder.write("a.glb", "not a model at all, but long enough")}).find("JSON"), std::string::npos);
+}
+
+TEST(ImportFiles, SeveralFilesBecomeOneScene) {
+    const Folder folder;
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+    TriangleGltf gltf;
+    gltf.nodes = R"([{"children":[1]},{"mesh":0}])";
+    const auto scene = import_files({folder.write("a.OBJ", obj), folder.write("b.glb", gltf.file()), folder.write("c.obj", obj)}, {});
+    ASSERT_TRUE(scene.ok()) << scene.error().text();
+    EXPECT_EQ(scene->triangles(), 3U);
+    EXPECT_EQ(scene->sources.size(), 3U);
+    ASSERT_EQ(scene->nodes.size(), 4U);
+    EXPECT_EQ(scene->nodes[2].parent, 1U);
+    EXPECT_EQ(scene->nodes[2].mesh, 1U);
+    for (std::size_t i = 0; i < scene->nodes.size(); ++i) EXPECT_TRUE(scene->nodes[i].parent == none || scene->nodes[i].parent < i);
+    EXPECT_EQ(scene->materials[scene->meshes[2].primitives[0].material].name, "red");
+    EXPECT_EQ(scene->meshes[2].primitives[0].material, 2U);
+}
+
+TEST(ImportFiles, StopIsHeeded) {
+    const Folder folder;
+    std::atomic<bool> stop{true};
+    Progress progress;
+    progress.stop = &stop;
+    EXPECT_FALSE(import_files({folder.write("a.glb", TriangleGltf{}.file())}, progress).ok());
+}
+
+}  // namespace
+}  // namespace surefoot::importer::test

@@ -1,0 +1,166 @@
+// OSTF: the thesis' own cube, leaves by offset, what is truncated or lies, and there and back.
+#include <gtest/gtest.h>
+
+
+#include "fixtures.hpp"
+#include "render/import/ostf.hpp"
+
+namespace surefoot::importer::test {
+namespace {
+
+const std::string triangle =
+    "0 0 1\n0 0 0\n1 0 0\n0 0\n\n"
+    "0 0 1\n1 0 0\n1 0 0\n1 0\n\n"
+    "0 0 1\n0 1 0\n1 0 0\n0 1\n\n";
+
+std::string leaf(const std::string& name, int count, const std::string& texture, const std::string& triangles) {
+    return "START_TAG\n" + name + "\n" + std::to_string(count) + "\n" + texture + "\n" + triangles + "END_TAG\n";
+}
+
+/// Figure A.3: a container without a texture's line, blank lines anywhere.
+std::string cube() { return "START_TAG\nCube\n0\n\n" + leaf("face#1", 2, "", triangle + triangle) + leaf("face#2", 1, "", triangle) + "END_TAG\n"; }
+
+Result<OstfIndex> index_of(const std::string& text) {
+    const Folder folder;
+    return index_ostf(folder.write("a.ostf", text), {});
+}
+
+TEST(Ostf, IndexHoldsTheTreeAndItsLines) {
+    const auto index = index_of(cube());
+    ASSERT_TRUE(index.ok()) << index.error().text();
+    ASSERT_EQ(index->objects.size(), 3U);
+    EXPECT_EQ(index->objects[0].name, "Cube");
+    EXPECT_EQ(index->objects[0].parent, none);
+    EXPECT_EQ(index->objects[0].triangles, 0U);
+    EXPECT_EQ(index->objects[1].name, "face#1");
+    EXPECT_EQ(index->objects[1].parent, 0U);
+    EXPECT_EQ(index->objects[1].triangles, 2U);
+    EXPECT_EQ(index->objects[1].line, 5U);
+    EXPECT_EQ(index->objects[2].parent, 0U);
+}
+
+TEST(Ostf, OneLeafIsReadByItsOffset) {
+    const Folder folder;
+    const auto index = index_ostf(folder.write("a.ostf", cube()), {});
+    ASSERT_TRUE(index.ok());
+    const auto vertices = read_ostf_leaf(*index, 2);
+    ASSERT_TRUE(vertices.ok()) << vertices.error().text();
+    ASSERT_EQ(vertices->size(), 3U);
+    EXPECT_EQ((*vertices)[1].position, vec3(1, 0, 0));
+    EXPECT_EQ((*vertices)[2].normal, vec3(0, 0, 1));
+    EXPECT_EQ((*vertices)[2].uv, vec2(0, 1));
+    EXPECT_EQ((*vertices)[0].colour, vec3(1, 0, 0));
+    EXPECT_FALSE(read_ostf_leaf(*index, 0).ok());
+    EXPECT_FALSE(read_ostf_leaf(*index, 9).ok());
+}
+
+TEST(Ostf, TextureNamesAndTheirAbsence) {
+    const auto index = index_of(leaf("a", 1, "line.tex", triangle) + leaf("b", 1, "", triangle) + "START_TAG\nc\n0\nsome.tex\n" + leaf("d", 1, "x y.png", triangle) + "END_TAG\n");
+    ASSERT_TRUE(index.ok()) << index.error().text();
+    EXPECT_EQ(index->objects[0].texture, "line.tex");
+    EXPECT_EQ(index->objects[1].texture, "");
+    EXPECT_EQ(index->objects[3].texture, "x y.png");
+}
+
+TEST(Ostf, ImportWeldsVerticesAndWarnsOfMissingTextures) {
+    const Folder folder;
+    const auto scene = import_files({folder.write("a.ostf", leaf("sign", 2, "gone.tex", triangle + triangle))}, {});
+    ASSERT_TRUE(scene.ok()) << scene.error().text();
+    EXPECT_EQ(scene->triangles(), 2U);
+    EXPECT_EQ(scene->meshes[0].primitives[0].positions.size(), 3U);
+    EXPECT_EQ(scene->meshes[0].primitives[0].colours[0], (std::array<std::uint8_t, 4>{255, 0, 0, 255}));
+    EXPECT_EQ(scene->meshes[0].primitives[0].uvs[0], vec2(0, 1));
+    EXPECT_TRUE(warns(*scene, "texture 'gone.tex' left white"));
+}
+
+TEST(Ostf, ErrorsCarryTheLine) {
+    const auto what = [](const std::string& text) {
+        const auto index = index_of(text);
+        EXPECT_FALSE(index.ok()) << text;
+        return index.ok() ? "" : index.error().text();
+    };
+    EXPECT_NE(what("BEGIN\n").find(":1: 'BEGIN' where START_TAG"), std::string::npos);
+    EXPECT_NE(what("START_TAG\na\nmany\n").find(":3: 'many' is not the number"), std::string::npos);
+    EXPECT_NE(what(leaf("a", 4, "", triangle + triangle + triangle)).find("'END_TAG' in the triangles of 'a'"), std::string::npos);
+    EXPECT_NE(what(leaf("a", 1, "", triangle + triangle)).find("where START_TAG or END_TAG belongs"), std::string::npos);
+    EXPECT_NE(what(leaf("a", 2000000000, "", triangle)).find("more than the file can hold"), std::string::npos);
+    EXPECT_NE(what("START_TAG\na\n0\n").find("'a' has no END_TAG"), std::string::npos);
+    EXPECT_NE(what("END_TAG\n").find("without START_TAG"), std::string::npos);
+    EXPECT_NE(what("\n \n").find("holds no object"), std::string::npos);
+    EXPECT_NE(what(std::string(200000, 'x')).find("longer than 64 KiB"), std::string::npos);
+    std::string deep;
+    for (int i = 0; i < 5000; ++i) deep += "START_TAG\nn\n0\n";
+    EXPECT_NE(what(deep).find("nested deeper"), std::string::npos);
+}
+
+TEST(Ostf, EveryTruncationIsAnError) {
+    const std::string whole = cube();
+    for (std::size_t length = 0; length + 1 < whole.size(); ++length) EXPECT_FALSE(index_of(whole.substr(0, length)).ok()) << length;
+}
+
+TEST(Ostf, LeafWithWordsInItIsAnErrorWhenRead) {
+    const Folder folder;
+    std::string text = leaf("a", 1, "", triangle);
+    text.replace(text.find("1 0 0"), 5, "1 x 0");
+    const auto index = index_ostf(folder.write("a.ostf", text), {});
+    ASSERT_TRUE(index.ok());
+    const auto vertices = read_ostf_leaf(*index, 0);
+    ASSERT_FALSE(vertices.ok());
+    EXPECT_NE(vertices.error().text().find("'a' from line 1"), std::string::npos);
+}
+
+Scene two_instances() {
+    Scene scene;
+    Primitive p;
+    p.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    p.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    p.uvs = {{0, 0}, {1, 0}, {0, 0.75F}};
+    p.indices = {0, 1, 2};
+    scene.meshes.push_back({"leaf", {p}});
+    scene.images.push_back({"red", 1, 1, {255, 0, 0, 255}, false});
+    scene.materials.push_back(Material{.name = "m", .colour = {0.5F, 0.5F, 0.5F, 1}, .image = 0});
+    dmat4 mirrored(1.0);
+    mirrored[0][0] = -1;
+    mirrored[3] = dvec4(10, 0, 0, 1);
+    scene.nodes = {Node{"root", none, none, dmat4(1.0), 1}, Node{"plain", 0, 0, dmat4(1.0), 1}, Node{"mirrored", 0, 0, mirrored, 1}, Node{"empty", none, none, dmat4(1.0), 1}};
+    return scene;
+}
+
+TEST(Ostf, WrittenAndReadBack) {
+    const Folder folder;
+    const std::string file = folder.file("out.ostf");
+    ASSERT_TRUE(write_ostf(file, two_instances(), {}).ok());
+    const auto scene = import_files({file}, {});
+    ASSERT_TRUE(scene.ok()) << scene.error().text();
+    EXPECT_TRUE(scene->warnings.empty());
+    EXPECT_EQ(scene->triangles(), 2U);
+    ASSERT_EQ(scene->nodes.size(), 5U);  // root, plain, plain.0, mirrored, mirrored.0: the empty one is left out
+    EXPECT_EQ(scene->nodes[4].name, "mirrored.0");
+    EXPECT_EQ(scene->nodes[4].parent, 3U);
+    ASSERT_EQ(scene->images.size(), 1U);
+    EXPECT_EQ(scene->images[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255}));
+    const Primitive& p = scene->meshes[1].primitives[0];
+    const dvec3 a(p.positions[p.indices[0]]), b(p.positions[p.indices[1]]), c(p.positions[p.indices[2]]);
+    EXPECT_GT(glm::cross(b - a, c - a).z, 0) << "a mirrored instance keeps its front";
+    EXPECT_EQ(p.colours[0], (std::array<std::uint8_t, 4>{128, 128, 128, 255}));
+    EXPECT_NEAR(scene->meshes[0].primitives[0].uvs[2].y, 0.75F, 1e-6F);
+}
+
+TEST(Ostf, WritingToAnImpossiblePlaceIsAnErrorAndKeepsTheOldFile) {
+    const Folder folder;
+    EXPECT_FALSE(write_ostf(folder.file("no/such/place.ostf"), two_instances(), {}).ok());
+    const std::string old = folder.write("old.ostf", "as it was");
+    std::atomic<bool> stop{true};
+    Progress progress;
+    progress.stop = &stop;
+    Scene large = two_instances();
+    for (int i = 0; i < 20000; ++i) large.meshes[0].primitives[0].indices.insert(large.meshes[0].primitives[0].indices.end(), {0, 1, 2});
+    EXPECT_FALSE(write_ostf(old, large, progress).ok());
+    std::ifstream in(old);
+    std::string line;
+    std::getline(in, line);
+    EXPECT_EQ(line, "as it was");
+}
+
+}  // namespace
+}  // namespace surefoot::importer::test
