@@ -69,7 +69,6 @@ private:
     Api gl_;
     std::string renderer_;
     bool software_ = false;
-    bool multi_draw_ = true;
     Target target_;
     FrameBuffers frame_;
     Resources resources_;

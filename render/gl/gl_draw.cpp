@@ -190,18 +190,8 @@ void GlDevice::issue(const State& state, std::uint32_t first, std::uint32_t coun
     apply(state);
     ++stats_.batches;
     stats_.draws += count;
-    if (multi_draw_) {
-        const auto offset = reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * sizeof(DrawCommand));
-        gl_.MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset, static_cast<GLsizei>(count), sizeof(DrawCommand));
-        return;
-    }
-    for (std::uint32_t i = first; i < first + count; ++i) {
-        const DrawCommand& c = frame_.commands[i];
-        const auto offset = reinterpret_cast<const void*>(static_cast<std::uintptr_t>(c.first_index) * sizeof(std::uint32_t));
-        gl_.DrawElementsInstancedBaseVertexBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(c.index_count), GL_UNSIGNED_INT,
-                                                        offset, static_cast<GLsizei>(c.instances), c.base_vertex,
-                                                        c.first_instance);
-    }
+    const auto offset = reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * sizeof(DrawCommand));
+    gl_.MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset, static_cast<GLsizei>(count), sizeof(DrawCommand));
 }
 
 }  // namespace surefoot::gl

@@ -19,7 +19,7 @@ constexpr model::EffectMask texture = model::effect_texture, colours = model::ef
                             mask = model::effect_alpha_mask, blend = model::effect_blend;
 constexpr std::array<model::EffectMask, 7> all_classes{
     0, colours | sun, texture, texture | sun, texture | sun | colours, texture | sun | mask, texture | sun | blend};
-constexpr std::array<int, 8> triangle_levels{4, 16, 64, 256, 1024, 4096, 16384, 65536};
+constexpr std::array<int, 8> triangle_levels{12, 24, 64, 256, 1024, 4096, 16384, 65536};  // the first is a box
 constexpr std::array<double, 6> pixel_levels{16, 128, 1024, 8192, 65536, 262144};
 constexpr int copies_of_small = 8;           // of each mesh: equal neighbours would merge into one instanced draw
 constexpr std::uint32_t texture_count = 16;  // equal images, but each a state of its own, as in real scenes
@@ -30,7 +30,6 @@ constexpr std::size_t most_items = 300;      // in a cell
 struct Mesh {
     model::Part part;  ///< material to be filled in
     std::uint32_t triangles = 0;
-    std::array<float, 3> area{};  ///< at radius 1, culled back faces
 };
 
 class Builder {
@@ -60,6 +59,28 @@ public:
         return static_cast<Index>(model_.materials.size() - 1);
     }
 
+    /// A box of 12 triangles.
+    Mesh box() {
+        Mesh mesh;
+        begin(mesh);
+        for (int side = 0; side < 6; ++side) {
+            dvec3 out(0.0);
+            out[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
+            add_sheet(1, out, out);
+        }
+        finish(mesh);
+        return mesh;
+    }
+
+    /// A level sheet of 2 * cells^2 triangles that shows from above.
+    Mesh ground(int cells) {
+        Mesh mesh;
+        begin(mesh);
+        add_sheet(cells, dvec3(0, 1, 0), dvec3(0.0));
+        finish(mesh);
+        return mesh;
+    }
+
     /// A bumpy sphere of radius about 1 with about `triangles` triangles.
     Mesh sphere(int triangles) {
         const int segments = std::max(3, static_cast<int>(std::lround(std::sqrt(triangles))));
@@ -72,8 +93,8 @@ public:
                 const double b = 2 * std::numbers::pi * (j % segments) / segments;
                 const bool seam = i == 0 || i == rings || j % segments == 0;
                 const double r = seam ? 1.0 : random_.range(0.93, 1.0);
-                add_vertex(dvec3(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)), r,
-                           vec2(2.0 * j / segments, 1.0 * i / rings));
+                const dvec3 out(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b));
+                add_vertex(r * out, out, vec2(2.0 * j / segments, 1.0 * i / rings));
             }
         }
         for (int i = 0; i < rings; ++i) {
@@ -105,7 +126,7 @@ public:
     }
 
     /// One more representation of the node made last.
-    Index rep(const Mesh& mesh, Index material, const dvec3& radii) {
+    Index rep(const Mesh& mesh, Index material) {
         model::Part part = mesh.part;
         part.material = material;
         model_.parts.push_back(part);
@@ -115,9 +136,7 @@ public:
         r.part_count = 1;
         r.triangles = mesh.triangles;
         r.effects = model_.materials[material].effects;
-        const dvec3 sides(radii.y * radii.z, radii.z * radii.x, radii.x * radii.y);
-        for (int i = 0; i < 3; ++i)
-            r.area_m2[static_cast<std::size_t>(i)] = mesh.area[static_cast<std::size_t>(i)] * static_cast<float>(sides[i]);
+        r.area_m2 = model::rasterised_area(model_, r);
         model_.reps.push_back(r);
         ++model_.nodes.back().rep_count;
         model_.nodes.back().triangles = mesh.triangles;
@@ -143,15 +162,38 @@ private:
         }
         model_.textures.push_back(t);
     }
-    void begin(Mesh& mesh) const {
+    /// A square of half size 1 around `centre`, facing along the axis `out`.
+    void add_sheet(int cells, const dvec3& out, const dvec3& centre) {
+        const dvec3 u(out.y, out.z, out.x);
+        const dvec3 v = glm::cross(out, u);
+        const std::uint32_t first = next_vertex();
+        for (int i = 0; i <= cells; ++i) {
+            for (int j = 0; j <= cells; ++j) {
+                const double a = 2.0 * i / cells - 1;
+                const double b = 2.0 * j / cells - 1;
+                add_vertex(centre + a * u + b * v, out, vec2(2 * a, 2 * b));
+            }
+        }
+        const auto row = static_cast<std::uint32_t>(cells) + 1;
+        for (std::uint32_t i = 0; i + 1 < row; ++i) {
+            for (std::uint32_t j = 0; j + 1 < row; ++j) {
+                const std::uint32_t a = first + i * row + j;
+                add_triangle({a, a + row, a + row + 1});
+                add_triangle({a, a + row + 1, a + 1});
+            }
+        }
+    }
+    [[nodiscard]] std::uint32_t next_vertex() const { return static_cast<std::uint32_t>(model_.vertices.size()) - first_vertex_; }
+    void begin(Mesh& mesh) {
+        first_vertex_ = static_cast<std::uint32_t>(model_.vertices.size());
         mesh.part.first_index = static_cast<std::uint32_t>(model_.indices.size());
         mesh.part.first_vertex = static_cast<std::uint32_t>(model_.vertices.size());
     }
-    void add_vertex(const dvec3& direction, double radius, const vec2& uv) {
+    void add_vertex(const dvec3& position, const dvec3& normal, const vec2& uv) {
         model::Vertex v{};
         for (int i = 0; i < 3; ++i) {
-            v.position[i] = static_cast<float>(direction[i] * radius);
-            v.normal[i] = static_cast<std::int8_t>(std::lround(127 * direction[i]));
+            v.position[i] = static_cast<float>(position[i]);
+            v.normal[i] = static_cast<std::int8_t>(std::lround(127 * normal[i]));
             v.colour[i] = static_cast<std::uint8_t>(160 + random_.below(90));
         }
         v.colour[3] = 255;
@@ -166,18 +208,11 @@ private:
         mesh.part.index_count = static_cast<std::uint32_t>(model_.indices.size()) - mesh.part.first_index;
         mesh.part.vertex_count = static_cast<std::uint32_t>(model_.vertices.size()) - mesh.part.first_vertex;
         mesh.triangles = mesh.part.index_count / 3;
-        const auto at = [&](std::uint32_t i) {
-            const float* p = model_.vertices[mesh.part.first_vertex + model_.indices[mesh.part.first_index + i]].position;
-            return vec3(p[0], p[1], p[2]);
-        };
-        for (std::uint32_t i = 0; i < mesh.part.index_count; i += 3) {
-            const vec3 normal = glm::cross(at(i + 1) - at(i), at(i + 2) - at(i));  // twice the area
-            for (int k = 0; k < 3; ++k) mesh.area[static_cast<std::size_t>(k)] += 0.25F * std::abs(normal[k]);
-        }
     }
 
     model::Model model_;
     Random random_;
+    std::uint32_t first_vertex_ = 0;  ///< of the mesh being made
 };
 
 using Meshes = std::vector<std::vector<Mesh>>;  ///< [level][copy]
@@ -187,7 +222,7 @@ Meshes make_meshes(Builder& builder) {
     for (const int level : triangle_levels) {
         auto& copies = meshes.emplace_back();
         const int count = level <= 4096 ? copies_of_small : 2;
-        for (int i = 0; i < count; ++i) copies.push_back(builder.sphere(level));
+        for (int i = 0; i < count; ++i) copies.push_back(level == triangle_levels[0] ? builder.box() : builder.sphere(level));
     }
     return meshes;
 }
@@ -214,7 +249,7 @@ CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std
                            -depth);
         const dvec3 radii(angular * depth);
         const Index node = builder.node(centre, radii);
-        const Index rep = builder.rep(meshes[i % meshes.size()], materials[i % materials.size()], radii);
+        const Index rep = builder.rep(meshes[i % meshes.size()], materials[i % materials.size()]);
         cell.items.push_back({node, rep});
         const model::Model& m = builder.model();
         cell.pixels += static_cast<double>(model::rasterised_pixels(m.reps[rep], m.nodes[node].box, dvec3(0.0), scale));
@@ -229,16 +264,16 @@ constexpr double town_side_m = 400;
 constexpr int blocks = 12;  // a side
 constexpr int objects_a_block = 16;
 
-/// An object at several levels of detail, the finest of triangle_levels[finest].
+/// An object at several levels of detail, the first of `meshes`.
 void add_town_object(Builder& builder, const Meshes& meshes, Index material, const dvec3& centre, const dvec3& radii,
-                     std::uint32_t finest, CalibrationScene& scene) {
+                     std::size_t levels, CalibrationScene& scene) {
     TownObject object;
     object.node = builder.node(centre, radii);
     object.effects = builder.model().materials[material].effects;
     object.first_rep = static_cast<Index>(builder.model().reps.size());
-    for (std::uint32_t level = 0; level <= finest; ++level, ++object.levels) {
+    for (std::size_t level = 0; level < levels; ++level, ++object.levels) {
         const auto copies = static_cast<std::uint32_t>(meshes[level].size());
-        builder.rep(meshes[level][builder.random().below(copies)], material, radii);
+        builder.rep(meshes[level][builder.random().below(copies)], material);
     }
     scene.town.push_back(object);
     scene.town_box.grow(builder.model().nodes[object.node].box);
@@ -249,19 +284,21 @@ void make_town(Builder& builder, const Meshes& meshes, const std::vector<std::ve
                CalibrationScene& scene) {
     Random& random = builder.random();
     const double block = town_side_m / blocks;
+    Meshes grounds;
+    for (const int cells : {1, 4, 12}) grounds.push_back({builder.ground(cells)});
     const auto any = [&](const std::vector<Index>& list) { return list[random.below(static_cast<std::uint32_t>(list.size()))]; };
     for (int b = 0; b < blocks * blocks; ++b) {
         const dvec3 corner(block * (b % blocks) - 0.5 * town_side_m, 0, block * (b / blocks) - 0.5 * town_side_m + 1000);
         // Ground is never see-through or full of holes.
         const std::size_t ground = random.below(static_cast<std::uint32_t>(std::min<std::size_t>(4, materials.size())));
-        add_town_object(builder, meshes, any(materials[ground]), corner + dvec3(0.5 * block, -0.3, 0.5 * block),
-                        dvec3(0.6 * block, 0.3, 0.6 * block), 3, scene);
+        add_town_object(builder, grounds, any(materials[ground]), corner + dvec3(0.5 * block, 0.0, 0.5 * block),
+                        dvec3(0.5 * block, 0.01, 0.5 * block), grounds.size(), scene);
         for (int i = 0; i < objects_a_block; ++i) {
             const double radius = 0.4 * std::exp(2.5 * random.unit());
             const dvec3 radii = radius * dvec3(random.range(0.4, 1.0), random.range(0.3, 1.5), random.range(0.4, 1.0));
             const dvec3 centre = corner + dvec3(block * random.unit(), radii.y * random.range(0.4, 1.0), block * random.unit());
             const auto& list = materials[random.below(static_cast<std::uint32_t>(materials.size()))];
-            add_town_object(builder, meshes, any(list), centre, radii, 2 + random.below(4), scene);
+            add_town_object(builder, meshes, any(list), centre, radii, 3 + random.below(4), scene);
         }
     }
 }

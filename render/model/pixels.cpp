@@ -33,8 +33,10 @@ float facing_area(const vec3& area, const vec3& m) {
     return 0.5F * (each.x + each.y + each.z + std::sqrt(glm::dot(each, each)));
 }
 
-constexpr int side = 4;
-constexpr int rays = side * side;
+constexpr int rays = 16;
+// A lattice with every column and every row once: a strip, however it lies, is hit in proportion to its width.
+constexpr std::array<float, rays> column_of_ray{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+constexpr std::array<float, rays> row_of_ray{0, 7, 14, 5, 12, 3, 10, 1, 8, 15, 6, 13, 4, 11, 2, 9};
 
 /// Mean number of surfaces that a ray through the rectangle of slopes crosses in the box [low, high] (relative to the eye):
 /// with areas spread evenly over the volume V, a ray that moves by m inside crosses facing_area(m) / V of them. The loops are
@@ -46,30 +48,26 @@ float mean_crossings(const vec3& low, const vec3& high, const vec3& area, Slopes
         leave[i] = std::numeric_limits<float>::max();
         sum[i] = squares[i] = 0;
     }
-    const float step_x = (across.high - across.low) / side;
-    const float step_y = (up_down.high - up_down.low) / side;
+    const float step_x = (across.high - across.low) / rays;
+    const float step_y = (up_down.high - up_down.low) / rays;
     for (int axis = 0; axis < 3; ++axis) {
-        const float first = scale.forward[axis] + scale.right[axis] * (across.low + 0.5F * step_x) +
-                            scale.up[axis] * (up_down.low + 0.5F * step_y);
-        const std::array<float, side> by_column{0, scale.right[axis] * step_x, 2 * scale.right[axis] * step_x,
-                                                3 * scale.right[axis] * step_x};
+        const float by_column = scale.right[axis] * step_x;
+        const float by_row = scale.up[axis] * step_y;
+        const float first =
+            scale.forward[axis] + scale.right[axis] * across.low + scale.up[axis] * up_down.low + 0.5F * (by_column + by_row);
         const float l = low[axis];
         const float h = high[axis];
         const float a = area[axis];
-        for (std::size_t row = 0; row < side; ++row) {
-            const float start = first + static_cast<float>(row) * scale.up[axis] * step_y;
-            for (std::size_t column = 0; column < side; ++column) {
-                const std::size_t i = row * side + column;
-                const float d = start + by_column[column];
-                const float inverse = 1.0F / (d + std::copysign(1e-12F, d));
-                const float t = l * inverse;
-                const float u = h * inverse;
-                enter[i] = std::max(enter[i], std::min(t, u));
-                leave[i] = std::min(leave[i], std::max(t, u));
-                const float each = a * std::abs(d);
-                sum[i] += each;
-                squares[i] += each * each;
-            }
+        for (std::size_t i = 0; i < rays; ++i) {
+            const float d = first + column_of_ray[i] * by_column + row_of_ray[i] * by_row;
+            const float inverse = 1.0F / (d + std::copysign(1e-12F, d));
+            const float t = l * inverse;
+            const float u = h * inverse;
+            enter[i] = std::max(enter[i], std::min(t, u));
+            leave[i] = std::min(leave[i], std::max(t, u));
+            const float each = a * std::abs(d);
+            sum[i] += each;
+            squares[i] += each * each;
         }
     }
     float crossed = 0;
@@ -131,6 +129,29 @@ float rasterised_pixels(const Representation& rep, const Box& node_box, const dv
         pixels = f * f * rectangle * mean_crossings(centre - half, centre + half, area, across, up_down, scale);
     }
     return pixels > 0 ? std::min(pixels, most_pixels) : (pixels <= 0 ? 0.0F : most_pixels);
+}
+
+std::array<float, 3> rasterised_area(const Model& model, const Representation& rep) {
+    const mat3& linear = model.placements[rep.placement].linear;
+    dvec3 total(0.0);
+    dvec3 forth(0.0);
+    dvec3 back(0.0);
+    for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+        const Part& part = model.parts[p];
+        const auto corner = [&](std::uint32_t i) {
+            const float* v = model.vertices[part.first_vertex + model.indices[part.first_index + i]].position;
+            return dvec3(linear * vec3(v[0], v[1], v[2]));
+        };
+        const bool both = model.materials[part.material].two_sided;
+        for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) {
+            const dvec3 a = corner(i);
+            const dvec3 area = 0.5 * glm::cross(corner(i + 1) - a, corner(i + 2) - a);
+            (both ? total : forth) += both ? glm::abs(area) : glm::max(area, dvec3(0.0));
+            if (!both) back += glm::max(-area, dvec3(0.0));
+        }
+    }
+    const dvec3 sum = total + glm::max(forth, back);
+    return {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)};
 }
 
 }  // namespace surefoot::model
