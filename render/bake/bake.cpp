@@ -1,0 +1,360 @@
+// The bake: forms of every mesh, the growing grid, a mesh for every cluster, boxes; then the flat model.
+#include "render/bake/bake.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <thread>
+
+#include "render/bake/materials.hpp"
+#include "render/bake/proxies.hpp"
+
+namespace surefoot::bake {
+
+namespace {
+
+Error stopped_by_user(const importer::Scene& scene) {
+    return {scene.sources.empty() ? "bake" : scene.sources.front(), "stopped by the user", "nothing was written"};
+}
+
+/// Progress from many threads, told about ten times a second; and the wish to stop.
+class Stage {
+public:
+    Stage(const Progress& progress, std::string_view name, std::size_t total) : progress_(progress), name_(name), total_(total) {}
+    /// False: stop.
+    bool step() {
+        const std::size_t done = done_.fetch_add(1) + 1;
+        const auto now = std::chrono::steady_clock::now();
+        if (mutex_.try_lock()) {
+            if (now - said_ > std::chrono::milliseconds(100) || done == total_) {
+                said_ = now;
+                progress_.say(name_, static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total_)));
+            }
+            mutex_.unlock();
+        }
+        return !progress_.stopped();
+    }
+
+private:
+    const Progress& progress_;
+    std::string_view name_;
+    std::size_t total_;
+    std::atomic<std::size_t> done_{0};
+    std::mutex mutex_;
+    std::chrono::steady_clock::time_point said_{};
+};
+
+struct Bakery {
+    const importer::Scene& scene;
+    const BakeOptions& options;
+    const Progress& progress;
+    model::Model model;
+    model::Index proxy = 0;          ///< a material with vertex colours
+    model::Index proxy_or_none = 0;  ///< the same, or none where every colour is a material's own
+    std::vector<PlacedObject> objects;
+    std::vector<MeshForm> forms;
+    ClusterTree tree;
+    std::vector<ClusterForm> clusters;
+    std::vector<BoxForm> object_boxes;
+
+    ProxyInput proxy_input() const;
+    void place_objects();
+    bool make_forms();
+    bool make_clusters();
+    bool make_object_boxes();
+    void emit();
+    void emit_node(model::Index node, std::uint32_t entity, const std::vector<EmittedChain>& chains,
+                   const std::vector<std::vector<EmittedChain>>& pieces, std::vector<std::pair<model::Index, std::uint32_t>>& open);
+    void emit_pieces(model::Index node, std::uint32_t object, const std::vector<EmittedChain>& pieces);
+    model::Index add_name(const std::string& name);
+};
+
+ChainOptions chain_options(const BakeOptions& options, model::Index proxy) {
+    ChainOptions chain;
+    chain.slack = options.quality == Quality::full ? 1.1F : 1.3F;
+    chain.ratio = options.quality == Quality::full ? 0.6 : 0.45;
+    chain.proxy_material = proxy;
+    return chain;
+}
+
+/// The 1/16-frame rule: as many triangles as fit, seen near and over a quarter of the picture.
+std::uint32_t most_triangles(const BakeOptions& options) {
+    const model::CostModel fallback = model::default_costs();
+    const model::CostModel& costs = options.costs != nullptr && !options.costs->grids.empty() ? *options.costs : fallback;
+    const double limit_us = options.frame_us / 16.0;
+    const model::CostGrid& grid = costs.grid_for(model::effect_texture | model::effect_sun);
+    std::uint32_t most = 256;
+    for (std::uint32_t n = 512; n <= 65536; n *= 2) {
+        const model::ItemCost cost = costs.item(static_cast<float>(n), 60000.0F, grid);
+        if (cost.submit_us + cost.raster_us > limit_us) break;
+        most = n;
+    }
+    return most;
+}
+
+ProxyInput Bakery::proxy_input() const {
+    ProxyInput input;
+    input.objects = objects;
+    input.forms = forms;
+    input.tree = &tree;
+    input.proxy_material = proxy_or_none;
+    for (const importer::Material& m : scene.materials) input.textured_boxes |= m.image != importer::none;
+    input.chain = chain_options(options, proxy_or_none);
+    return input;
+}
+
+void Bakery::place_objects() {
+    for (const importer::Node& node : scene.nodes) {
+        if (node.mesh == importer::none) continue;
+        PlacedObject object;
+        object.mesh = node.mesh;
+        object.world = node.world;
+        object.name = node.name;
+        object.importance = node.importance;
+        objects.push_back(std::move(object));
+    }
+}
+
+bool Bakery::make_forms() {
+    forms.resize(scene.meshes.size());
+    std::vector<double> stretch(scene.meshes.size(), 0.0);
+    Box world;
+    std::vector<Box> mesh_boxes(scene.meshes.size());
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        for (const importer::Primitive& p : scene.meshes[m].primitives) {
+            for (const vec3& v : p.positions) mesh_boxes[m].grow(dvec3(v));
+        }
+    }
+    const auto grow_placed = [&](Box& box, const PlacedObject& object) {
+        const Box& mesh = mesh_boxes[object.mesh];
+        for (unsigned c = 0; c < 8; ++c) {
+            const dvec3 corner((c & 1U) != 0 ? mesh.max.x : mesh.min.x, (c & 2U) != 0 ? mesh.max.y : mesh.min.y, (c & 4U) != 0 ? mesh.max.z : mesh.min.z);
+            box.grow(dvec3(object.world * dvec4(corner, 1.0)));
+        }
+    };
+    std::erase_if(objects, [&](const PlacedObject& o) { return mesh_boxes[o.mesh].empty(); });
+    for (PlacedObject& object : objects) {
+        grow_placed(object.box, object);
+        world.grow(object.box);
+        stretch[object.mesh] = std::max(stretch[object.mesh], largest_stretch(dmat3(object.world)));
+    }
+    const dvec3 extent = world.max - world.min;
+    const double longest_m = std::max({extent.x, extent.y, extent.z}) / 8.0;
+    const std::uint32_t most = most_triangles(options);
+    Stage stage(progress, "levels of detail", scene.meshes.size());
+    std::atomic<bool> go{true};
+    tbb::parallel_for(std::size_t{0}, scene.meshes.size(), [&](std::size_t m) {
+        if (!go || stretch[m] == 0) return;
+        CutLimits limits;
+        limits.most_triangles = most;
+        limits.longest_m = longest_m / stretch[m];
+        forms[m] = make_form(mesh_geometry(scene.meshes[m], model), limits, chain_options(options, proxy_or_none));
+        if (!stage.step()) go = false;
+    });
+    return go;
+}
+
+bool Bakery::make_clusters() {
+    std::vector<Box> boxes;
+    for (const PlacedObject& object : objects) boxes.push_back(object.box);
+    tree = grow_clusters(boxes, 8);
+    clusters.resize(tree.clusters.size());
+    const auto n = static_cast<std::uint32_t>(objects.size());
+    std::vector<std::vector<std::uint32_t>> members(tree.clusters.size()), by_height;
+    std::vector<std::uint32_t> height(tree.clusters.size(), 0);
+    for (std::uint32_t c = 0; c < tree.clusters.size(); ++c) {  // children come first
+        for (const std::uint32_t e : tree.clusters[c].children) {
+            if (e < n) {
+                members[c].push_back(e);
+            } else {
+                members[c].insert(members[c].end(), members[e - n].begin(), members[e - n].end());
+                height[c] = std::max(height[c], height[e - n] + 1);
+            }
+        }
+        if (by_height.size() <= height[c]) by_height.resize(height[c] + 1);
+        by_height[height[c]].push_back(c);
+    }
+    const ProxyInput input = proxy_input();
+    Stage stage(progress, "clusters", tree.clusters.size());
+    std::atomic<bool> go{true};
+    for (const auto& same : by_height) {
+        tbb::parallel_for(std::size_t{0}, same.size(), [&](std::size_t i) {
+            if (!go) return;
+            const std::uint32_t c = same[i];
+            std::uint32_t coarsest = 0;
+            for (const std::uint32_t e : tree.clusters[c].children) {
+                const LodChain& chain = e < n ? forms[objects[e].mesh].chain : clusters[e - n].chain;
+                coarsest += chain.levels.front().triangles;
+            }
+            clusters[c] = make_cluster(input, tree.clusters[c].box, members[c], coarsest);
+            if (!stage.step()) go = false;
+        });
+    }
+    return go;
+}
+
+bool Bakery::make_object_boxes() {
+    object_boxes.resize(objects.size());
+    const ProxyInput input = proxy_input();
+    Stage stage(progress, "boxes", objects.size());
+    std::atomic<bool> go{true};
+    tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
+        if (!go) return;
+        const MeshForm& form = forms[objects[i].mesh];
+        if (form.triangles > 500 && form.chain.levels.front().triangles > 12) object_boxes[i] = make_object_box(input, objects[i], 16);
+        if (!stage.step()) go = false;
+    });
+    return go;
+}
+
+model::Index Bakery::add_name(const std::string& name) {
+    if (name.empty()) return 0;
+    const auto at = static_cast<model::Index>(model.names.size());
+    model.names += name;
+    model.names.push_back('\0');
+    return at;
+}
+
+void Bakery::emit_pieces(model::Index node, std::uint32_t object, const std::vector<EmittedChain>& pieces) {
+    const auto first = static_cast<model::Index>(model.nodes.size());
+    model.nodes[node].first_child = first;
+    model.nodes[node].child_count = static_cast<std::uint32_t>(pieces.size());
+    model.nodes.resize(first + pieces.size());
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        model::Node& piece = model.nodes[first + p];
+        piece.parent = node;
+        piece.kind = model::NodeKind::piece;
+        piece.object = object;
+        piece.name = model.nodes[node].name;
+        piece.importance = objects[object].importance;
+        piece.triangles = pieces[p].levels.back().triangles;
+        for (const GeometryPart& part : pieces[p].chain->levels.back().parts) {
+            for (const std::uint32_t index : part.indices) {
+                const dvec3 at = pieces[p].centre + dvec3(position_of(pieces[p].chain->full.vertices[index]));
+                piece.box.grow(dvec3(objects[object].world * dvec4(at, 1.0)));
+            }
+        }
+        piece.first_rep = static_cast<model::Index>(model.reps.size());
+        emit_representations(pieces[p], objects[object].world, model);
+        piece.rep_count = static_cast<std::uint32_t>(model.reps.size()) - piece.first_rep;
+    }
+}
+
+void Bakery::emit_node(model::Index index, std::uint32_t entity, const std::vector<EmittedChain>& chains,
+                       const std::vector<std::vector<EmittedChain>>& pieces, std::vector<std::pair<model::Index, std::uint32_t>>& open) {
+    const auto n = static_cast<std::uint32_t>(objects.size());
+    model.nodes[index].first_rep = static_cast<model::Index>(model.reps.size());
+    const auto close_reps = [&] { model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep; };
+    if (entity < n) {
+        const PlacedObject& object = objects[entity];
+        const MeshForm& form = forms[object.mesh];
+        model::Node& node = model.nodes[index];
+        node.kind = model::NodeKind::object;
+        node.object = entity;
+        node.importance = object.importance;
+        node.box = object.box;
+        node.triangles = form.triangles;
+        node.name = add_name(object.name);
+        const double stretch = largest_stretch(dmat3(object.world));
+        const Level& coarsest = form.chain.levels.front();
+        const BoxForm& box = object_boxes[entity];
+        std::uint32_t faces = 0;
+        for (const FaceCapture& face : box.faces) faces += face.covered > 0 ? 1 : 0;
+        if (faces > 0 && 2 * faces < coarsest.triangles && box.error_m > coarsest.error_m * stretch) emit_box(box, proxy, model);
+        emit_representations(chains[object.mesh], object.world, model);
+        close_reps();
+        if (!form.pieces.empty()) emit_pieces(index, entity, pieces[object.mesh]);
+        return;
+    }
+    const ClusterTree::Cluster& cluster = tree.clusters[entity - n];
+    const ClusterForm& form = clusters[entity - n];
+    model.nodes[index].box = cluster.box;
+    if (form.has_box) {
+        std::uint32_t faces = 0;
+        for (const FaceCapture& face : form.box.faces) faces += face.covered > 0 ? 1 : 0;
+        if (faces > 0 && 2 * faces < form.chain.levels.front().triangles) emit_box(form.box, proxy, model);
+    }
+    emit_representations(emit_chain(form.chain, model), dmat4(1.0), model);
+    close_reps();
+    const auto first = static_cast<model::Index>(model.nodes.size());
+    model.nodes[index].first_child = first;
+    model.nodes[index].child_count = static_cast<std::uint32_t>(cluster.children.size());
+    model.nodes.resize(first + cluster.children.size());
+    for (std::size_t c = 0; c < cluster.children.size(); ++c) {
+        model.nodes[first + c].parent = index;
+        open.emplace_back(first + static_cast<model::Index>(c), cluster.children[c]);
+    }
+}
+
+void Bakery::emit() {
+    model.names.assign(1, '\0');
+    std::vector<EmittedChain> chains(forms.size());
+    std::vector<std::vector<EmittedChain>> pieces(forms.size());
+    std::vector<std::uint64_t> material_triangles(scene.materials.size(), 0);
+    for (std::size_t m = 0; m < forms.size(); ++m) {
+        if (forms[m].triangles == 0) continue;
+        chains[m] = emit_chain(forms[m].chain, model);
+        for (const LodChain& piece : forms[m].pieces) pieces[m].push_back(emit_chain(piece, model));
+    }
+    for (const PlacedObject& object : objects) {
+        for (const importer::Primitive& p : scene.meshes[object.mesh].primitives) material_triangles[p.material] += p.indices.size() / 3;
+    }
+    model.object_count = static_cast<std::uint32_t>(objects.size());
+    model.nodes.resize(1);
+    std::vector<std::pair<model::Index, std::uint32_t>> open{{0, tree.root}};
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        const auto [node, entity] = open[i];
+        emit_node(node, entity, chains, pieces, open);
+    }
+    for (std::size_t i = model.nodes.size(); i-- > 1;) {  // children come after their parents
+        model::Node& node = model.nodes[i];
+        model::Node& parent = model.nodes[node.parent];
+        if (parent.kind == model::NodeKind::cluster) parent.triangles += node.triangles;
+        parent.box.grow(node.box);
+    }
+    model.effects = find_effects(model, material_triangles);
+}
+
+}  // namespace
+
+Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
+    const auto begun = std::chrono::steady_clock::now();
+    Bakery bakery{scene, options, progress, {}, 0, 0, {}, {}, {}, {}, {}};
+    bakery.proxy = add_materials(scene, bakery.model);
+    mark_vertex_colours(scene, bakery.model);
+    bool coloured = false;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        coloured |= (bakery.model.materials[m].effects & (model::effect_texture | model::effect_vertex_colour)) != 0;
+    }
+    bakery.proxy_or_none = coloured ? bakery.proxy : model::none;
+    bakery.place_objects();
+    bool done = true;
+    const int workers = options.workers > 0 ? options.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    tbb::task_arena arena(workers);
+    arena.execute([&] {
+        done = bakery.make_forms();
+        if (done && !bakery.objects.empty()) done = bakery.make_clusters() && bakery.make_object_boxes();
+    });
+    if (!done) return stopped_by_user(scene);
+    if (bakery.objects.empty()) {
+        return Error{scene.sources.empty() ? "bake" : scene.sources.front(), "there is nothing to draw in it", "check that its nodes have meshes with triangles"};
+    }
+    progress.say("write", 0.0);
+    bakery.emit();
+    model::Model& model = bakery.model;
+    model.provenance.sources = scene.sources;
+    model.provenance.warnings = scene.warnings;
+    model.provenance.quality = options.quality == Quality::full ? "full" : "draft";
+    model.provenance.bake_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    if (auto valid = model::validate(model); !valid) return valid.error();
+    return std::move(model);
+}
+
+}  // namespace surefoot::bake

@@ -1,0 +1,29 @@
+// Boxes with pictures of the actual objects on their faces: six orthographic captures (Maciel 3.4.2, 3.6).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rt/base/geometry.hpp"
+
+namespace surefoot::bake {
+
+struct ColouredTriangle {
+    std::array<vec3, 3> corners;  ///< relative to the box's centre
+    std::array<std::array<std::uint8_t, 4>, 3> colours;
+};
+
+/// One face: what an eye far out along the axis sees, row 0 at the low end of the second in-plane axis.
+struct FaceCapture {
+    std::vector<std::uint8_t> rgba;            ///< pixels x pixels; alpha 0 where nothing is
+    std::array<std::uint8_t, 4> mean{};        ///< of what is covered
+    float depth_m = 0;                         ///< the deepest captured point behind the face
+    float covered = 0;                         ///< share of the face
+};
+
+/// Faces in the order -x, +x, -y, +y, -z, +z; in-plane axes are (axis + 1) % 3 and (axis + 2) % 3.
+std::array<FaceCapture, 6> capture_faces(std::span<const ColouredTriangle> triangles, const vec3& half, std::uint32_t pixels);
+
+}  // namespace surefoot::bake

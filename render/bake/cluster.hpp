@@ -1,0 +1,26 @@
+// Clusters by Maciel's growing grid (3.4.3), from the actual objects' boxes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rt/base/geometry.hpp"
+
+namespace surefoot::bake {
+
+/// An entity is an object (index below the number of boxes) or a cluster.
+struct ClusterTree {
+    struct Cluster {
+        Box box;
+        std::vector<std::uint32_t> children;  ///< entities; n + i is clusters[i]
+    };
+    std::vector<Cluster> clusters;
+    std::uint32_t root = 0;  ///< entity
+};
+
+/// Cells double from the smallest object's size to the whole; in each, what fits (loosely: centre inside, size at most the
+/// cell's) and is not alone becomes a cluster. No cluster has more than `most` children: crowds are cut at medians first.
+ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t most);
+
+}  // namespace surefoot::bake

@@ -1,0 +1,42 @@
+// Geometry and representations into the model's flat arrays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "render/bake/capture_box.hpp"
+#include "render/bake/geometry.hpp"
+
+namespace surefoot::bake {
+
+/// Where a chain's levels lie in the model: parts a level, shared by every placement of it.
+struct EmittedChain {
+    struct Level {
+        model::Index first_part = 0;
+        std::uint32_t part_count = 0, triangles = 0;
+        float error_m = 0;
+        model::EffectMask effects = 0;
+    };
+    std::vector<Level> levels;
+    dvec3 centre{0};
+    const LodChain* chain = nullptr;
+};
+
+EmittedChain emit_chain(const LodChain& chain, model::Model& model);
+
+/// Adds one representation a level, placed by `world` (mesh frame to world): errors grow by its stretch.
+void emit_representations(const EmittedChain& emitted, const dmat4& world, model::Model& model);
+
+/// A box with captured faces, for a node with box `box`; null if no face holds anything. In the world frame.
+struct BoxForm {
+    std::array<FaceCapture, 6> faces;
+    Box box;
+    float error_m = 0;
+    bool textured = false;
+    std::uint32_t pixels = 0;
+};
+/// Adds the box's representation; proxy: the material for plain boxes.
+void emit_box(const BoxForm& form, model::Index proxy, model::Model& model);
+
+}  // namespace surefoot::bake

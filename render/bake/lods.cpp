@@ -1,0 +1,195 @@
+// Levels of detail of one geometry: meshoptimizer proposes, our own distance bounds.
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/bake/geometry.hpp"
+
+namespace surefoot::bake {
+
+std::size_t Geometry::triangles() const {
+    std::size_t n = 0;
+    for (const GeometryPart& part : parts) n += part.indices.size() / 3;
+    return n;
+}
+
+Box Geometry::box() const {
+    Box box;
+    for (const model::Vertex& v : vertices) box.grow(dvec3(position_of(v)));
+    return box;
+}
+
+std::vector<measure::TriangleTree::Triangle> triangles_of(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts) {
+    std::vector<measure::TriangleTree::Triangle> out;
+    for (const GeometryPart& part : parts) {
+        for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+            out.push_back({position_of(vertices[part.indices[i]]), position_of(vertices[part.indices[i + 1]]),
+                           position_of(vertices[part.indices[i + 2]])});
+        }
+    }
+    return out;
+}
+
+void optimise(Geometry& geometry) {
+    for (GeometryPart& part : geometry.parts) {
+        meshopt_optimizeVertexCache(part.indices.data(), part.indices.data(), part.indices.size(), geometry.vertices.size());
+    }
+    std::vector<std::uint32_t> map(geometry.vertices.size(), model::none);
+    std::vector<model::Vertex> kept;
+    std::vector<std::array<std::uint8_t, 4>> baked;
+    kept.reserve(geometry.vertices.size());
+    baked.reserve(geometry.vertices.size());
+    for (GeometryPart& part : geometry.parts) {
+        for (std::uint32_t& index : part.indices) {
+            if (map[index] == model::none) {
+                map[index] = static_cast<std::uint32_t>(kept.size());
+                kept.push_back(geometry.vertices[index]);
+                baked.push_back(geometry.baked[index]);
+            }
+            index = map[index];
+        }
+    }
+    geometry.vertices = std::move(kept);
+    geometry.baked = std::move(baked);
+}
+
+namespace {
+
+/// One material's triangles at about `share` of their number. The simplifier sees a mesh that was recentred in double.
+std::vector<std::uint32_t> simplify_part(const Geometry& g, const GeometryPart& part, double share, bool lock, bool sloppy) {
+    const std::size_t target = std::max<std::size_t>(2, static_cast<std::size_t>(static_cast<double>(part.indices.size() / 3) * share)) * 3;
+    if (target >= part.indices.size()) return part.indices;
+    std::vector<std::uint32_t> out(part.indices.size());
+    float unused = 0;  // its own error is no bound
+    const float* positions = g.vertices[0].position;
+    const std::size_t n =
+        sloppy ? meshopt_simplifySloppy(out.data(), part.indices.data(), part.indices.size(), positions, g.vertices.size(),
+                                        sizeof(model::Vertex), target, 1.0F, &unused)
+               : meshopt_simplify(out.data(), part.indices.data(), part.indices.size(), positions, g.vertices.size(),
+                                  sizeof(model::Vertex), target, 1.0F, lock ? static_cast<unsigned>(meshopt_SimplifyLockBorder) : 0U, &unused);
+    out.resize(n);
+    return out;
+}
+
+Level simplify(const Geometry& g, const std::vector<GeometryPart>& from, double share, bool lock, bool sloppy) {
+    Level level;
+    for (const GeometryPart& part : from) {
+        GeometryPart smaller{part.material, simplify_part(g, part, share, lock, sloppy)};
+        if (smaller.indices.empty()) continue;
+        meshopt_optimizeVertexCache(smaller.indices.data(), smaller.indices.data(), smaller.indices.size(), g.vertices.size());
+        level.triangles += static_cast<std::uint32_t>(smaller.indices.size() / 3);
+        level.parts.push_back(std::move(smaller));
+    }
+    return level;
+}
+
+/// What a box stands for: the mean of the baked colours, weighted by nothing (vertices are dense where detail is).
+std::array<std::uint8_t, 4> mean_colour(const Geometry& g, std::size_t count) {
+    std::array<std::uint64_t, 4> sum{};
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t c = 0; c < 4; ++c) sum[c] += g.baked[i][c];
+    }
+    std::array<std::uint8_t, 4> mean{};
+    for (std::size_t c = 0; c < 3; ++c) mean[c] = static_cast<std::uint8_t>(sum[c] / std::max<std::size_t>(1, count));
+    mean[3] = 255;
+    return mean;
+}
+
+/// The level again in the proxy material: one part, its own vertices with the baked colours, no texture to bind.
+void to_proxy(Geometry& g, Level& level, model::Index material) {
+    GeometryPart part{material, {}};
+    std::vector<std::uint32_t> map(g.vertices.size(), model::none);
+    for (const GeometryPart& p : level.parts) {
+        for (const std::uint32_t index : p.indices) {
+            if (map[index] == model::none) {
+                map[index] = static_cast<std::uint32_t>(g.vertices.size());
+                model::Vertex v = g.vertices[index];
+                for (std::size_t c = 0; c < 3; ++c) v.colour[c] = g.baked[index][c];
+                v.colour[3] = 255;
+                g.vertices.push_back(v);
+                g.baked.push_back(g.baked[index]);
+            }
+            part.indices.push_back(map[index]);
+        }
+    }
+    level.parts = {std::move(part)};
+}
+
+/// Twelve triangles round everything: valid from everywhere, whatever the shape.
+Level box_level(Geometry& g, const Box& box, std::size_t own_vertices, model::Index proxy_material) {
+    const auto most = std::max_element(g.parts.begin(), g.parts.end(),
+                                       [](const GeometryPart& a, const GeometryPart& b) { return a.indices.size() < b.indices.size(); });
+    const model::Index material = proxy_material != model::none ? proxy_material : most->material;
+    const std::array<std::uint8_t, 4> mean = mean_colour(g, own_vertices);
+    Level level;
+    GeometryPart part{material, {}};
+    for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2, u = (axis + 1) % 3, w = (axis + 2) % 3;
+        const bool high = face % 2 == 1;
+        const auto base = static_cast<std::uint32_t>(g.vertices.size());
+        for (int corner = 0; corner < 4; ++corner) {
+            model::Vertex v{};
+            std::copy(mean.begin(), mean.end(), v.colour);
+            const bool cu = corner == 1 || corner == 2, cw = corner >= 2;
+            v.position[axis] = static_cast<float>(high ? box.max[axis] : box.min[axis]);
+            v.position[u] = static_cast<float>(cu == high ? box.max[u] : box.min[u]);  // counter-clockwise from outside
+            v.position[w] = static_cast<float>(cw ? box.max[w] : box.min[w]);
+            v.normal[axis] = high ? 127 : -127;
+            g.vertices.push_back(v);
+            g.baked.push_back(mean);
+        }
+        for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) part.indices.push_back(base + i);
+    }
+    level.triangles = 12;
+    level.parts.push_back(std::move(part));
+    return level;
+}
+
+}  // namespace
+
+LodChain make_chain(Geometry full, const ChainOptions& options) {
+    LodChain chain;
+    const auto total = static_cast<std::uint32_t>(full.triangles());
+    Level finest;
+    finest.parts = full.parts;
+    finest.triangles = total;
+    std::vector<Level> levels{finest};
+    const measure::TriangleTree reference(triangles_of(full.vertices, full.parts));
+    const Box box = full.box();
+    const std::size_t own_vertices = full.vertices.size();
+    const float floor_m = static_cast<float>(box.diagonal()) * 0.002F;
+    const auto bound = [&](const Level& level) {
+        return measure::two_sided_bound(reference, measure::TriangleTree(triangles_of(full.vertices, level.parts)), options.slack, floor_m);
+    };
+    while (levels.back().triangles > options.smallest) {
+        const Level& before = levels.back();
+        const double share = levels.size() == 1 ? std::min(options.ratio, options.first_share) : options.ratio;
+        Level next = simplify(full, before.parts, share, options.lock_border, false);
+        if (next.triangles == 0 || next.triangles > before.triangles * std::max(share * 1.5, share + 0.02)) {
+            if (options.lock_border) break;
+            next = simplify(full, finest.parts, share * before.triangles / total, false, true);
+        }
+        if (next.triangles == 0 || next.triangles > before.triangles * 0.8) break;
+        next.error_m = bound(next);
+        if (next.error_m <= before.error_m) {  // coarser for nothing lost: the finer one has no use
+            if (levels.size() == 1) next.error_m = std::nextafter(before.error_m, 1.0F) + floor_m * 1e-3F;
+            else { next.error_m = before.error_m; levels.pop_back(); }
+        }
+        levels.push_back(std::move(next));
+    }
+    if (levels.back().triangles > 48 && !options.lock_border) {
+        Level round = box_level(full, box, own_vertices, options.proxy_material);
+        round.error_m = std::max(bound(round), std::nextafter(levels.back().error_m, 1e30F));
+        levels.push_back(std::move(round));
+    }
+    for (std::size_t i = 1; i < levels.size(); ++i) {  // never the full detail
+        if (options.proxy_material != model::none && levels[i].triangles < options.proxy_below) to_proxy(full, levels[i], options.proxy_material);
+    }
+    std::reverse(levels.begin(), levels.end());
+    chain.full = std::move(full);
+    chain.levels = std::move(levels);
+    return chain;
+}
+
+}  // namespace surefoot::bake

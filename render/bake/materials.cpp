@@ -1,0 +1,157 @@
+// Materials, textures with mip levels, baked colours, and what the scene calls for.
+#include "render/bake/materials.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::bake {
+
+namespace {
+
+std::vector<std::uint8_t> halve(std::span<const std::uint8_t> rgba, std::uint32_t w, std::uint32_t h) {
+    const std::uint32_t nw = std::max(1U, w / 2), nh = std::max(1U, h / 2);
+    std::vector<std::uint8_t> out(static_cast<std::size_t>(nw) * nh * 4);
+    for (std::uint32_t y = 0; y < nh; ++y) {
+        for (std::uint32_t x = 0; x < nw; ++x) {
+            std::uint32_t alpha = 0;
+            std::array<std::uint32_t, 3> sum{}, plain{};
+            for (std::uint32_t k = 0; k < 4; ++k) {
+                const std::uint32_t sx = std::min(w - 1, 2 * x + (k & 1U)), sy = std::min(h - 1, 2 * y + (k >> 1U));
+                const std::uint8_t* texel = rgba.data() + (static_cast<std::size_t>(sy) * w + sx) * 4;
+                alpha += texel[3];
+                for (std::size_t c = 0; c < 3; ++c) {
+                    sum[c] += static_cast<std::uint32_t>(texel[c]) * texel[3];
+                    plain[c] += texel[c];
+                }
+            }
+            std::uint8_t* to = out.data() + (static_cast<std::size_t>(y) * nw + x) * 4;
+            // Weighted by alpha: what is transparent must not bleed its colour into what is not.
+            for (std::size_t c = 0; c < 3; ++c) to[c] = static_cast<std::uint8_t>(alpha > 0 ? sum[c] / alpha : plain[c] / 4);
+            to[3] = static_cast<std::uint8_t>((alpha + 2) / 4);
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height, bool clamp,
+                         std::uint32_t most_levels) {
+    model::Texture texture;
+    texture.width = width;
+    texture.height = height;
+    texture.clamp = clamp;
+    texture.first_byte = model.texels.size();
+    std::vector<std::uint8_t> level(rgba.begin(), rgba.end());
+    std::uint32_t w = width, h = height;
+    while (true) {
+        const auto* bytes = reinterpret_cast<const std::byte*>(level.data());
+        model.texels.insert(model.texels.end(), bytes, bytes + level.size());
+        ++texture.levels;
+        if ((w == 1 && h == 1) || texture.levels == most_levels) break;
+        level = halve(level, w, h);
+        w = std::max(1U, w / 2);
+        h = std::max(1U, h / 2);
+    }
+    model.textures.push_back(texture);
+    return static_cast<model::Index>(model.textures.size() - 1);
+}
+
+model::Index add_materials(const importer::Scene& scene, model::Model& model) {
+    for (const importer::Image& image : scene.images) {
+        add_texture(model, image.rgba, image.width, image.height, image.clamp, 32);
+    }
+    for (const importer::Material& from : scene.materials) {
+        model::Material to;
+        to.colour = from.colour;
+        to.texture = from.image;
+        to.alpha = from.alpha;
+        to.alpha_cutoff = from.alpha_cutoff;
+        to.two_sided = from.two_sided;
+        if (from.image != importer::none) to.effects |= model::effect_texture;
+        if (from.alpha == model::AlphaMode::mask) to.effects |= model::effect_alpha_mask;
+        if (from.alpha == model::AlphaMode::blend) to.effects |= model::effect_blend;
+        if (!from.unlit) to.effects |= model::effect_sun;
+        model.materials.push_back(to);
+    }
+    model::Material proxy;
+    proxy.two_sided = true;  // a simplified crowd has no inside to hide
+    proxy.effects = model::effect_vertex_colour;
+    const bool lit = std::any_of(scene.materials.begin(), scene.materials.end(), [](const importer::Material& m) { return !m.unlit; });
+    if (lit) proxy.effects |= model::effect_sun;
+    model.materials.push_back(proxy);
+    return static_cast<model::Index>(model.materials.size() - 1);
+}
+
+void mark_vertex_colours(const importer::Scene& scene, model::Model& model) {
+    for (const importer::Mesh& mesh : scene.meshes) {
+        for (const importer::Primitive& p : mesh.primitives) {
+            const bool coloured = std::any_of(p.colours.begin(), p.colours.end(), [](const auto& c) {
+                return c[0] != 255 || c[1] != 255 || c[2] != 255 || c[3] != 255;
+            });
+            if (coloured) model.materials[p.material].effects |= model::effect_vertex_colour;
+        }
+    }
+}
+
+std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material, const model::Vertex& vertex) {
+    std::array<float, 4> colour{};
+    for (std::size_t c = 0; c < 4; ++c) {
+        const float own = (material.effects & model::effect_vertex_colour) != 0 ? static_cast<float>(vertex.colour[c]) / 255.0F : 1.0F;
+        colour[c] = own * material.colour[c];
+    }
+    if (material.texture != model::none) {
+        const model::Texture& t = model.textures[material.texture];
+        // The level of about 8 texels across: an average about the place, not the texel there.
+        std::uint32_t level = 0, w = t.width, h = t.height;
+        std::uint64_t at = t.first_byte;
+        while (level + 1 < t.levels && std::max(w, h) > 8) {
+            at += static_cast<std::uint64_t>(w) * h * 4;
+            w = std::max(1U, w / 2);
+            h = std::max(1U, h / 2);
+            ++level;
+        }
+        const float u = vertex.uv[0] - std::floor(vertex.uv[0]), v = vertex.uv[1] - std::floor(vertex.uv[1]);
+        const std::uint32_t x = std::min(w - 1, static_cast<std::uint32_t>(u * static_cast<float>(w)));
+        const std::uint32_t y = std::min(h - 1, static_cast<std::uint32_t>(v * static_cast<float>(h)));
+        for (std::size_t c = 0; c < 3; ++c) {
+            colour[c] *= static_cast<float>(std::to_integer<std::uint8_t>(model.texels[at + (static_cast<std::uint64_t>(y) * w + x) * 4 + c])) / 255.0F;
+        }
+    }
+    std::array<std::uint8_t, 4> out{};
+    for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(colour[c], 0.0F, 1.0F)));
+    out[3] = 255;
+    return out;
+}
+
+std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material) {
+    constexpr std::array<const char*, model::effect_count> absent = {
+        "no material has an image", "all vertex colours are white or absent", "every material is unlit", "no material has alpha mode MASK",
+        "no material has alpha mode BLEND"};
+    constexpr std::array<const char*, model::effect_count> what = {"have an image", "have vertex colours", "are lit",
+                                                                  "are cut out by alpha", "are transparent"};
+    std::vector<model::EffectFinding> findings;
+    for (std::size_t e = 0; e < model::effect_count; ++e) {
+        model::EffectFinding f;
+        f.bit = 1U << e;
+        std::size_t materials = 0;
+        for (std::size_t m = 0; m < triangles_of_material.size(); ++m) {
+            if ((model.materials[m].effects & f.bit) == 0 || triangles_of_material[m] == 0) continue;
+            ++materials;
+            f.triangles += triangles_of_material[m];
+        }
+        // Coarse forms carry their colours in the vertices, and boxes carry pictures: the bake's own representations call too.
+        std::uint64_t own = 0;
+        for (const model::Representation& rep : model.reps) own += (rep.effects & f.bit) != 0 ? 1 : 0;
+        f.called_for = materials > 0 || own > 0;
+        f.reason = materials > 0 ? fmt::format("{} of {} materials {}", materials, triangles_of_material.size(), what[e])
+                   : own > 0     ? fmt::format("{}; {} baked representations need it", absent[e], own)
+                                 : absent[e];
+        findings.push_back(std::move(f));
+    }
+    return findings;
+}
+
+}  // namespace surefoot::bake

@@ -1,0 +1,155 @@
+// Conceptual objects with their geometry.
+#include "render/bake/objects.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/bake/materials.hpp"
+
+namespace surefoot::bake {
+
+double largest_stretch(const dmat3& linear) {
+    // Power iteration on the symmetric product; its largest eigenvalue is also at most the trace, which bounds a failure.
+    const dmat3 s = glm::transpose(linear) * linear;
+    dvec3 v(0.61, 0.53, 0.59);
+    double eigen = 0;
+    for (int i = 0; i < 64; ++i) {
+        const dvec3 w = s * v;
+        const double length = glm::length(w);
+        if (!(length > 0)) break;
+        eigen = length / glm::length(v);
+        v = w / length;
+    }
+    const double trace = s[0][0] + s[1][1] + s[2][2];
+    return std::min(std::sqrt(trace), std::sqrt(eigen) * 1.001);
+}
+
+Geometry mesh_geometry(const importer::Mesh& mesh, const model::Model& model) {
+    Geometry g;
+    Box box;
+    for (const importer::Primitive& p : mesh.primitives) {
+        for (const vec3& v : p.positions) box.grow(dvec3(v));
+    }
+    if (box.empty()) return g;
+    g.centre = box.centre();
+    for (const importer::Primitive& p : mesh.primitives) {
+        if (p.indices.empty()) continue;
+        const auto base = static_cast<std::uint32_t>(g.vertices.size());
+        for (std::size_t i = 0; i < p.positions.size(); ++i) {
+            model::Vertex v{};
+            const dvec3 at = dvec3(p.positions[i]) - g.centre;
+            const vec3 n = p.normals.empty() ? vec3(0, 1, 0) : p.normals[i];
+            for (int k = 0; k < 3; ++k) {
+                v.position[k] = static_cast<float>(at[k]);
+                v.normal[k] = static_cast<std::int8_t>(std::lround(127.0F * std::clamp(n[k], -1.0F, 1.0F)));
+            }
+            for (std::size_t k = 0; k < 4; ++k) v.colour[k] = p.colours.empty() ? 255 : p.colours[i][k];
+            if (!p.uvs.empty()) {
+                v.uv[0] = p.uvs[i].x;
+                v.uv[1] = p.uvs[i].y;
+            }
+            g.baked.push_back(baked_colour(model, model.materials[p.material], v));
+            g.vertices.push_back(v);
+        }
+        GeometryPart part{p.material, p.indices};
+        for (std::uint32_t& index : part.indices) index += base;
+        const auto same = std::find_if(g.parts.begin(), g.parts.end(), [&](const GeometryPart& q) { return q.material == p.material; });
+        if (same != g.parts.end()) {
+            same->indices.insert(same->indices.end(), part.indices.begin(), part.indices.end());
+        } else {
+            g.parts.push_back(std::move(part));
+        }
+    }
+    optimise(g);
+    return g;
+}
+
+namespace {
+
+struct Loose {
+    std::uint32_t part, corner[3];
+    vec3 centre;
+};
+
+Geometry gather(const Geometry& whole, std::span<const Loose> triangles) {
+    Geometry piece;
+    piece.centre = whole.centre;
+    piece.vertices = whole.vertices;  // optimise() drops what is not used
+    piece.baked = whole.baked;
+    for (std::uint32_t p = 0; p < whole.parts.size(); ++p) {
+        GeometryPart part{whole.parts[p].material, {}};
+        for (const Loose& t : triangles) {
+            if (t.part == p) part.indices.insert(part.indices.end(), t.corner, t.corner + 3);
+        }
+        if (!part.indices.empty()) piece.parts.push_back(std::move(part));
+    }
+    optimise(piece);
+    return piece;
+}
+
+void cut_range(const Geometry& whole, std::span<Loose> triangles, const CutLimits& limits, std::vector<Geometry>& out) {
+    Box box;
+    for (const Loose& t : triangles) {
+        for (const std::uint32_t c : t.corner) box.grow(dvec3(position_of(whole.vertices[c])));
+    }
+    const dvec3 size = box.max - box.min;
+    const bool small = triangles.size() <= limits.most_triangles && std::max({size.x, size.y, size.z}) <= limits.longest_m;
+    if (small || triangles.size() <= 32) {
+        out.push_back(gather(whole, triangles));
+        return;
+    }
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.z >= size.y ? 2 : 1;
+    const auto half = static_cast<std::ptrdiff_t>(triangles.size() / 2);
+    std::nth_element(triangles.begin(), triangles.begin() + half, triangles.end(), [axis](const Loose& a, const Loose& b) {
+        if (a.centre[axis] != b.centre[axis]) return a.centre[axis] < b.centre[axis];
+        return std::lexicographical_compare(a.corner, a.corner + 3, b.corner, b.corner + 3);
+    });
+    cut_range(whole, triangles.first(static_cast<std::size_t>(half)), limits, out);
+    cut_range(whole, triangles.subspan(static_cast<std::size_t>(half)), limits, out);
+}
+
+}  // namespace
+
+std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
+    std::vector<Loose> triangles;
+    for (std::uint32_t p = 0; p < whole.parts.size(); ++p) {
+        const auto& indices = whole.parts[p].indices;
+        for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+            Loose t{p, {indices[i], indices[i + 1], indices[i + 2]}, {}};
+            t.centre = position_of(whole.vertices[t.corner[0]]) + position_of(whole.vertices[t.corner[1]]) + position_of(whole.vertices[t.corner[2]]);
+            triangles.push_back(t);
+        }
+    }
+    std::vector<Geometry> pieces;
+    cut_range(whole, triangles, limits, pieces);
+    return pieces;
+}
+
+MeshForm make_form(Geometry geometry, const CutLimits& limits, const ChainOptions& options) {
+    MeshForm form;
+    form.triangles = geometry.triangles();
+    const Box local = geometry.box();
+    form.box.min = local.min + geometry.centre;
+    form.box.max = local.max + geometry.centre;
+    const dvec3 size = local.max - local.min;
+    const double longest = std::max({size.x, size.y, size.z});
+    if (form.triangles > limits.most_triangles || (longest > limits.longest_m && form.triangles > 64)) {
+        ChainOptions locked = options;
+        locked.lock_border = true;
+        std::vector<Geometry> pieces = cut(geometry, limits);
+        if (pieces.size() > 1) {
+            for (Geometry& piece : pieces) form.pieces.push_back(make_chain(std::move(piece), locked));
+        }
+    }
+    form.chain = make_chain(std::move(geometry), options);
+    if (!form.pieces.empty()) {
+        // The whole object's coarse forms: no more than an eighth of it, and never the full detail.
+        const std::uint64_t most = std::max<std::uint64_t>(form.triangles / 8, 64);
+        auto& levels = form.chain.levels;
+        while (levels.size() > 1 && (levels.back().triangles > most || levels.back().error_m == 0)) levels.pop_back();
+        if (levels.back().error_m == 0) form.pieces.clear();  // nothing coarser exists: it stays whole
+    }
+    return form;
+}
+
+}  // namespace surefoot::bake

@@ -1,0 +1,42 @@
+// Conceptual objects with their geometry: meshes turned into geometry once, large ones cut into pieces, chains for all.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/bake/bake.hpp"
+#include "render/bake/geometry.hpp"
+
+namespace surefoot::bake {
+
+/// A mesh's chain; or, of one too large to draw whole, the chain of its coarse forms and the pieces it opens into.
+struct MeshForm {
+    LodChain chain;                ///< whole: its last level is the full detail; cut: coarse levels only
+    std::vector<LodChain> pieces;  ///< empty: whole
+    std::uint64_t triangles = 0;
+    Box box;                       ///< in the mesh's frame
+};
+
+struct PlacedObject {
+    std::uint32_t mesh = 0;        ///< in the list of forms
+    dmat4 world{1};
+    std::string name;
+    float importance = 1;
+    Box box;                       ///< world
+};
+
+struct CutLimits {
+    std::uint32_t most_triangles = 8192;  ///< of a piece: the 1/16-frame rule
+    double longest_m = 1e30;              ///< of a piece, mesh frame: no piece is drawn whole for one corner in view
+};
+
+/// Largest factor by which `linear` stretches a length: what errors grow by. An upper bound, within 0.1 %.
+double largest_stretch(const dmat3& linear);
+
+Geometry mesh_geometry(const importer::Mesh& mesh, const model::Model& model);
+/// Cut at medians of the triangles' centres until every piece is within the limits.
+std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
+MeshForm make_form(Geometry geometry, const CutLimits& limits, const ChainOptions& options);
+
+}  // namespace surefoot::bake
