@@ -14,6 +14,7 @@ constexpr Colour oak = rgb(214, 178, 132), walnut = rgb(150, 104, 70), white = r
 
 /// A leg turned on a lathe: foot, bulb, ring and square shoulder.
 void turned_leg(MeshMaker& maker, const dvec3& at, double height, double radius, const Detail& detail) {
+    if (detail.coarse()) return maker.box(at + dvec3(-0.7 * radius, 0, -0.7 * radius), at + dvec3(0.7 * radius, height, 0.7 * radius));
     const dmat4 frame = maker.brush.frame;
     maker.brush.frame = frame * move(at);
     std::vector<dvec2> profile{{0, 0}, {0.7 * radius, 0}, {0.7 * radius, 0}};
@@ -30,6 +31,7 @@ void turned_leg(MeshMaker& maker, const dvec3& at, double height, double radius,
 
 /// A board with round edges.
 void board(MeshMaker& maker, const dvec3& centre, const dvec3& half, const Detail& detail) {
+    if (detail.coarse()) return maker.box(centre - half, centre + half);
     maker.cushion(centre, half, 0.12, detail.cut(24, 8), detail.cut(8, 4));
 }
 
@@ -110,7 +112,7 @@ importer::Mesh chair(const Stuff& stuff, const Detail& detail, const Colour& sea
     maker.surface(detail.cut(14, 6), detail.cut(5, 2), [](double u, double v) {
         return dvec3((0.5 - u) * 0.4, 0.84 + 0.13 * v, -0.255 - 0.035 * v - 0.05 * std::cos((u - 0.5) * pi));
     });
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < 5; i += detail.coarse() ? 2 : 1) {
         const double x = -0.12 + 0.06 * i;
         maker.tube(std::array{dvec3(x, 0.45, -0.185), dvec3(x, 0.66, -0.235), dvec3(x, 0.88, -0.29)}, std::array{0.008, 0.011, 0.008}, detail.cut(8), false);
     }
@@ -161,7 +163,7 @@ importer::Mesh bookshelf(const Stuff& stuff, double width, double height, int sh
     return maker.take();
 }
 
-importer::Mesh row_of_books(const Stuff& stuff, double width, std::uint64_t seed) {
+importer::Mesh row_of_books(const Stuff& stuff, double width, bool fine, std::uint64_t seed) {
     static constexpr std::array<Colour, 9> covers{rgb(120, 34, 30), rgb(28, 58, 92), rgb(40, 84, 52), rgb(196, 160, 84), rgb(82, 52, 38), rgb(200, 190, 170), rgb(96, 40, 84), rgb(40, 40, 44), rgb(188, 92, 40)};
     Random random(seed);
     MeshMaker maker("books");
@@ -172,12 +174,16 @@ importer::Mesh row_of_books(const Stuff& stuff, double width, std::uint64_t seed
         maker.brush.frame = move({x + tall * std::sin(lean), -0.002, 0.25}) * turn(lean, dvec3(0, 0, 1));  // sunk by 2 mm: books press into the board
         maker.brush.material = stuff.spines;
         maker.brush.colour = covers[random.below(static_cast<std::uint32_t>(covers.size()))];
-        maker.surface(4, 1, [&](double u, double v) { return dvec3(thick * u, tall * v, 0.012 * std::sin(pi * std::clamp(u, 0.0, 1.0))); });
+        maker.surface(fine ? 4 : 1, 1, [&](double u, double v) { return dvec3(thick * u, tall * v, 0.012 * std::sin(pi * std::clamp(u, 0.0, 1.0))); });
         maker.brush.material = stuff.plain;
-        maker.box({0, 0, -deep}, {0.0025, tall, 0});
-        maker.box({thick - 0.0025, 0, -deep}, {thick, tall, 0});
-        maker.brush.colour = rgb(232, 224, 204);
-        maker.box({0.0025, 0.003, 0.004 - deep}, {thick - 0.0025, tall - 0.004, -0.002});
+        if (fine) {
+            maker.box({0, 0, -deep}, {0.0025, tall, 0});
+            maker.box({thick - 0.0025, 0, -deep}, {thick, tall, 0});
+            maker.brush.colour = rgb(232, 224, 204);
+            maker.box({0.0025, 0.003, 0.004 - deep}, {thick - 0.0025, tall - 0.004, -0.002});
+        } else {
+            maker.box({0, 0, -deep}, {thick, tall, -0.001});
+        }
         x += thick * 0.985 + tall * std::sin(lean) * 1.1;  // covers touch and a little more
         if (random.unit() < 0.05) x += random.range(0.04, 0.12);
     }
@@ -194,6 +200,7 @@ importer::Mesh sideboard(const Stuff& stuff, const Detail& detail) {
         for (const auto& [low, high] : {std::pair{0.16, 0.58}, std::pair{0.61, 0.79}}) {
             maker.brush.colour = shade(walnut, 1.12);
             maker.box({x - 0.25, low, 0.42}, {x + 0.25, high, 0.445});
+            if (detail.coarse()) continue;
             maker.brush.colour = rgb(196, 164, 92);
             maker.ellipsoid({x, 0.5 * (low + high), 0.46}, dvec3(0.016), detail.cut(12, 6), detail.cut(8, 4));
         }

@@ -19,6 +19,8 @@ struct Detail {
     double factor = 1.0;
     /// `n` sides or rings at factor 1, at least `least`.
     [[nodiscard]] int cut(int n, int least = 5) const;
+    /// Seen from the street through a window: legs are square and knobs are left out.
+    [[nodiscard]] bool coarse() const { return factor < 0.3; }
 };
 
 Stuff make_stuff(SceneMaker& maker, std::uint64_t seed);
@@ -29,7 +31,8 @@ importer::Mesh sofa(const Stuff& stuff, const Detail& detail, const Colour& clot
 importer::Mesh armchair(const Stuff& stuff, const Detail& detail, const Colour& cloth);  ///< 0.95 wide
 importer::Mesh coffee_table(const Stuff& stuff, const Detail& detail);   ///< 1.1 x 0.6, oval
 importer::Mesh bookshelf(const Stuff& stuff, double width, double height, int shelves);  ///< 0.3 deep, back at z = 0
-importer::Mesh row_of_books(const Stuff& stuff, double width, std::uint64_t seed);       ///< stands on y = 0, spines to +z
+/// Stands on y = 0, spines to +z. `fine`: covers and pages apart, else plain blocks.
+importer::Mesh row_of_books(const Stuff& stuff, double width, bool fine, std::uint64_t seed);
 importer::Mesh sideboard(const Stuff& stuff, const Detail& detail);      ///< 1.6 x 0.45, 0.85 high, back at z = 0
 importer::Mesh bed(const Stuff& stuff, const Detail& detail, const Colour& blanket);     ///< 1.4 x 2.05, head at z = 0
 importer::Mesh wardrobe(const Stuff& stuff, const Detail& detail);       ///< 1.5 x 0.6, 2.1 high, back at z = 0

@@ -55,7 +55,7 @@ Pieces make_pieces(SceneMaker& maker, const Stuff& stuff, const Detail& detail, 
     p.candle = maker.mesh(candlestick(stuff, detail));
     p.curtain = maker.mesh(curtain(stuff, detail, 0.7, 2.2, rgb(120, 58, 50)));
     p.door = maker.mesh(door_leaf(stuff, door_to - door_from - 0.04, door_height - 0.03, rgb(236, 232, 222), detail));
-    for (std::size_t i = 0; i < p.books.size(); ++i) p.books[i] = maker.mesh(row_of_books(stuff, 1.12, seed + 20 + i));
+    for (std::size_t i = 0; i < p.books.size(); ++i) p.books[i] = maker.mesh(row_of_books(stuff, 1.12, true, seed + 20 + i));
     for (int i = 0; i < 4; ++i) p.pictures[static_cast<std::size_t>(i)] = maker.mesh(picture(stuff, i, i % 2 == 0 ? 0.8 : 0.56, i % 2 == 0 ? 0.6 : 0.42));
     return p;
 }

@@ -11,6 +11,7 @@
 #include "render/import/ostf.hpp"
 #include "tools/scenes/forest.hpp"
 #include "tools/scenes/room.hpp"
+#include "tools/scenes/town.hpp"
 #include "tools/scenes/writers.hpp"
 
 namespace surefoot::scenes {
@@ -21,7 +22,7 @@ struct Maker {
     GeneratedScene (*make)(double scale, std::uint64_t seed);
 };
 
-constexpr std::array makers{Maker{"forest", make_forest}, Maker{"room", make_room}};
+constexpr std::array makers{Maker{"forest", make_forest}, Maker{"room", make_room}, Maker{"town", make_town}};
 
 std::string names_in_words() {
     std::string out;

@@ -1,0 +1,47 @@
+// The town: blocks of furnished houses on a grid of streets, trees and lamps, a square with a fountain and a town hall.
+#pragma once
+
+#include "tools/scenes/building.hpp"
+#include "tools/scenes/plants.hpp"
+#include "tools/scenes/scenes.hpp"
+
+namespace surefoot::scenes {
+
+/// 9 * scale blocks, each 38 m wide with 6 m of road between; the square is the block at 44, 44 m.
+GeneratedScene make_town(double scale, std::uint64_t seed);
+
+/// Outdoor materials beside a Stuff's; plaster and tiles are tinted by the vertices.
+struct TownStuff {
+    Stuff stuff;
+    PlantMaterials plants;  ///< leaves are masked sprays
+    Index brick = 0, plaster = 0, tiles = 0, floor = 0, paving = 0, cobbles = 0, asphalt = 0, grass = 0, water = 0;
+};
+
+/// One kind of house, its furniture included: a group of meshes to be placed again and again. Its front is the plane
+/// z = 0 looking to +z, its west corner x = 0; door at house_door_m; ground floor at y = 0.
+struct House {
+    struct Thing {
+        const char* name;
+        Index mesh;
+        dmat4 where;
+    };
+    std::vector<Thing> things;
+};
+
+constexpr double house_width_m = 8.5, house_depth_m = 9.0;
+constexpr double house_door_m = 1.5;       ///< middle of the front door
+constexpr int house_kinds = 4;
+/// `detail` cuts the furniture; kinds differ in storeys, walls, shutters and furniture.
+House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail, int kind, std::uint64_t seed);
+
+constexpr double balcony_m = 4.5;          ///< height of the town hall's balcony
+/// Front in the plane z = 0 looking to +z; x -13..13; outer stair from x = 11 down at the ground to x = 3 up on the balcony
+/// (x -7..3, z 0..2.4).
+importer::Mesh town_hall(const TownStuff& stuff, const Detail& detail);
+importer::Mesh fountain(const TownStuff& stuff, const Detail& detail);      ///< basin of 4 m radius
+importer::Mesh street_lamp(const TownStuff& stuff, const Detail& detail);   ///< arm towards +z
+importer::Mesh bench(const TownStuff& stuff, const Detail& detail);
+importer::Mesh market_stall(const TownStuff& stuff, const Detail& detail, const Colour& stripe);
+importer::Mesh hedge(const TownStuff& stuff, double length, std::uint64_t seed);
+
+}  // namespace surefoot::scenes
