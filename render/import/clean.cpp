@@ -19,7 +19,8 @@ enum class Verdict { good, non_finite, enormous };
 Verdict judge(const vec3& p) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return Verdict::non_finite;
     const vec3 a = glm::abs(p);
-    return a.x > largest_coordinate_m || a.y > largest_coordinate_m || a.z > largest_coordinate_m ? Verdict::enormous : Verdict::good;
+    return a.x > largest_coordinate_m || a.y > largest_coordinate_m || a.z > largest_coordinate_m ? Verdict::enormous
+                                                                                                  : Verdict::good;
 }
 
 /// Twice the area as a vector; zero to rounding means no area.
@@ -49,7 +50,8 @@ void keep_good_triangles(Primitive& p, Mended& dropped) {
             continue;
         }
         const Verdict worst = std::max({verdicts[t[0]], verdicts[t[1]], verdicts[t[2]]});
-        if (verdicts[t[0]] == Verdict::non_finite || verdicts[t[1]] == Verdict::non_finite || verdicts[t[2]] == Verdict::non_finite) {
+        if (verdicts[t[0]] == Verdict::non_finite || verdicts[t[1]] == Verdict::non_finite ||
+            verdicts[t[2]] == Verdict::non_finite) {
             ++dropped.non_finite;
         } else if (worst == Verdict::enormous) {
             ++dropped.enormous;

@@ -1,4 +1,5 @@
-// Finds the vertex that a face's corner (position, texture coordinate, normal) already has: open addressing, no allocation a look-up.
+// Finds the vertex that a face's corner (position, texture coordinate, normal) already has: open addressing, no allocation a
+// look-up.
 #pragma once
 
 #include <cstdint>

@@ -60,7 +60,8 @@ Result<void> finish(Scene& scene, const std::string& file, const Progress& progr
     scene.sources.push_back(file);
     if (scene.triangles() > 0) return {};
     std::string why;
-    for (std::size_t i = 0; i < std::min<std::size_t>(scene.warnings.size(), 3); ++i) why += (i == 0 ? ": " : "; ") + scene.warnings[i];
+    for (std::size_t i = 0; i < std::min<std::size_t>(scene.warnings.size(), 3); ++i)
+        why += (i == 0 ? ": " : "; ") + scene.warnings[i];
     return Error{file, "nothing drawable in it" + why, "export the model with its triangles"};
 }
 

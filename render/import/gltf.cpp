@@ -34,24 +34,30 @@ std::vector<std::uint32_t> expand(const std::vector<std::uint32_t>& in, int mode
 }
 
 template <class Vector>
-Result<std::vector<Vector>> read_vectors(const tinygltf::Model& model, int accessor, std::size_t components, const std::string& place) {
+Result<std::vector<Vector>> read_vectors(const tinygltf::Model& model, int accessor, std::size_t components,
+                                         const std::string& place) {
     auto floats = read_floats(model, accessor, place);
     if (!floats) return floats.error();
-    if (floats->components != components) return Error{place, fmt::format("accessor {}: {} components where {} belong", accessor, floats->components, components), export_again};
+    if (floats->components != components)
+        return Error{place, fmt::format("accessor {}: {} components where {} belong", accessor, floats->components, components),
+                     export_again};
     std::vector<Vector> out(floats->count());
     static_assert(sizeof(Vector) % sizeof(float) == 0);
     std::copy(floats->values.begin(), floats->values.end(), out.empty() ? nullptr : &out[0][0]);
     return out;
 }
 
-Result<std::vector<std::array<std::uint8_t, 4>>> read_colours(const tinygltf::Model& model, int accessor, const std::string& place) {
+Result<std::vector<std::array<std::uint8_t, 4>>> read_colours(const tinygltf::Model& model, int accessor,
+                                                              const std::string& place) {
     auto floats = read_floats(model, accessor, place);
     if (!floats) return floats.error();
-    if (floats->components < 3) return Error{place, fmt::format("accessor {}: colours of {} components", accessor, floats->components), export_again};
+    if (floats->components < 3)
+        return Error{place, fmt::format("accessor {}: colours of {} components", accessor, floats->components), export_again};
     std::vector<std::array<std::uint8_t, 4>> out(floats->count());
     for (std::size_t i = 0; i < out.size(); ++i) {
         const float* c = floats->values.data() + i * floats->components;
-        out[i] = {to_byte(encode_srgb(c[0])), to_byte(encode_srgb(c[1])), to_byte(encode_srgb(c[2])), floats->components > 3 ? to_byte(c[3]) : std::uint8_t{255}};
+        out[i] = {to_byte(encode_srgb(c[0])), to_byte(encode_srgb(c[1])), to_byte(encode_srgb(c[2])),
+                  floats->components > 3 ? to_byte(c[3]) : std::uint8_t{255}};
     }
     return out;
 }
@@ -73,17 +79,26 @@ void read_attributes(const Context& context, const tinygltf::Primitive& from, co
     auto& warnings = context.scene.warnings;
     if (const int at = attribute(from, "NORMAL"); at >= 0) {
         auto normals = read_vectors<vec3>(context.model, at, 3, place);
-        if (normals) to.normals = std::move(*normals); else warnings.push_back("normals left out: " + normals.error().text());
+        if (normals)
+            to.normals = std::move(*normals);
+        else
+            warnings.push_back("normals left out: " + normals.error().text());
     }
     const TextureUse& use = context.uses[to.material];
     if (const int at = attribute(from, fmt::format("TEXCOORD_{}", use.set)); at >= 0) {
         auto uvs = read_vectors<vec2>(context.model, at, 2, place);
-        if (uvs) to.uvs = std::move(*uvs); else warnings.push_back("texture coordinates left out: " + uvs.error().text());
+        if (uvs)
+            to.uvs = std::move(*uvs);
+        else
+            warnings.push_back("texture coordinates left out: " + uvs.error().text());
         if (!use.identity()) std::transform(to.uvs.begin(), to.uvs.end(), to.uvs.begin(), [&](vec2 uv) { return use.apply(uv); });
     }
     if (const int at = attribute(from, "COLOR_0"); at >= 0) {
         auto colours = read_colours(context.model, at, place);
-        if (colours) to.colours = std::move(*colours); else warnings.push_back("colours left out: " + colours.error().text());
+        if (colours)
+            to.colours = std::move(*colours);
+        else
+            warnings.push_back("colours left out: " + colours.error().text());
     }
 }
 
@@ -128,8 +143,10 @@ void read_mesh(const Context& context, const tinygltf::Mesh& from, Mesh& to) {
             warnings.push_back("primitive dropped: " + read.error().text());
         }
     }
-    if (not_triangles > 0) warnings.push_back(fmt::format("mesh '{}': {} primitives of points or lines dropped", to.name, not_triangles));
-    if (morphed > 0) warnings.push_back(fmt::format("mesh '{}': {} primitives taken in their rest shape (morph targets)", to.name, morphed));
+    if (not_triangles > 0)
+        warnings.push_back(fmt::format("mesh '{}': {} primitives of points or lines dropped", to.name, not_triangles));
+    if (morphed > 0)
+        warnings.push_back(fmt::format("mesh '{}': {} primitives taken in their rest shape (morph targets)", to.name, morphed));
 }
 
 }  // namespace

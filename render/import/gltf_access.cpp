@@ -19,22 +19,31 @@ Error bad_accessor(const std::string& place, int accessor, std::string what) {
 std::size_t component_bytes(int type) {
     switch (type) {
         case TINYGLTF_COMPONENT_TYPE_BYTE:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return 1;
         case TINYGLTF_COMPONENT_TYPE_SHORT:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return 2;
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-        default: return 0;
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            return 4;
+        default:
+            return 0;
     }
 }
 
 std::size_t components_of(int type) {
     switch (type) {
-        case TINYGLTF_TYPE_SCALAR: return 1;
-        case TINYGLTF_TYPE_VEC2: return 2;
-        case TINYGLTF_TYPE_VEC3: return 3;
-        case TINYGLTF_TYPE_VEC4: return 4;
-        default: return 0;
+        case TINYGLTF_TYPE_SCALAR:
+            return 1;
+        case TINYGLTF_TYPE_VEC2:
+            return 2;
+        case TINYGLTF_TYPE_VEC3:
+            return 3;
+        case TINYGLTF_TYPE_VEC4:
+            return 4;
+        default:
+            return 0;
     }
 }
 
@@ -51,22 +60,29 @@ float as_float(const unsigned char* from, int type, bool normalized) {
             const auto v = static_cast<float>(load<std::int8_t>(from));
             return normalized ? std::max(v / 127.0F, -1.0F) : v;
         }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return static_cast<float>(*from) / (normalized ? 255.0F : 1.0F);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return static_cast<float>(*from) / (normalized ? 255.0F : 1.0F);
         case TINYGLTF_COMPONENT_TYPE_SHORT: {
             const auto v = static_cast<float>(load<std::int16_t>(from));
             return normalized ? std::max(v / 32767.0F, -1.0F) : v;
         }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return static_cast<float>(load<std::uint16_t>(from)) / (normalized ? 65535.0F : 1.0F);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return static_cast<float>(load<std::uint32_t>(from));
-        default: return load<float>(from);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return static_cast<float>(load<std::uint16_t>(from)) / (normalized ? 65535.0F : 1.0F);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            return static_cast<float>(load<std::uint32_t>(from));
+        default:
+            return load<float>(from);
     }
 }
 
 std::uint32_t as_index(const unsigned char* from, int type) {
     switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return *from;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(from);
-        default: return load<std::uint32_t>(from);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return *from;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return load<std::uint16_t>(from);
+        default:
+            return load<std::uint32_t>(from);
     }
 }
 
@@ -76,17 +92,21 @@ struct Bytes {
 };
 
 /// `count` elements of `element` bytes at `offset` of a view lie inside the view, and the view inside its buffer.
-Result<Bytes> locate(const tinygltf::Model& model, int view_index, std::uint64_t offset, std::uint64_t count, std::uint64_t element,
-                     bool may_stride, const std::string& place, int accessor) {
-    if (view_index < 0 || static_cast<std::size_t>(view_index) >= model.bufferViews.size()) return bad_accessor(place, accessor, "no such buffer view");
+Result<Bytes> locate(const tinygltf::Model& model, int view_index, std::uint64_t offset, std::uint64_t count,
+                     std::uint64_t element, bool may_stride, const std::string& place, int accessor) {
+    if (view_index < 0 || static_cast<std::size_t>(view_index) >= model.bufferViews.size())
+        return bad_accessor(place, accessor, "no such buffer view");
     const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(view_index)];
-    if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size()) return bad_accessor(place, accessor, "no such buffer");
+    if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size())
+        return bad_accessor(place, accessor, "no such buffer");
     const std::vector<unsigned char>& buffer = model.buffers[static_cast<std::size_t>(view.buffer)].data;
     if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) {
-        return bad_accessor(place, accessor, fmt::format("buffer view {} reaches beyond its buffer of {} bytes", view_index, buffer.size()));
+        return bad_accessor(place, accessor,
+                            fmt::format("buffer view {} reaches beyond its buffer of {} bytes", view_index, buffer.size()));
     }
     const std::uint64_t stride = may_stride && view.byteStride != 0 ? view.byteStride : element;
-    if (stride < element) return bad_accessor(place, accessor, fmt::format("stride of {} bytes for elements of {}", stride, element));
+    if (stride < element)
+        return bad_accessor(place, accessor, fmt::format("stride of {} bytes for elements of {}", stride, element));
     const bool starts_inside = offset <= view.byteLength && element <= view.byteLength - offset;
     if (count > 0 && (!starts_inside || count - 1 > (view.byteLength - offset - element) / stride)) {
         return bad_accessor(place, accessor, fmt::format("{} elements reach beyond buffer view {}", count, view_index));
@@ -101,14 +121,16 @@ struct Located {
 };
 
 Result<Located> locate_accessor(const tinygltf::Model& model, int index, const std::string& place) {
-    if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size()) return bad_accessor(place, index, "does not exist");
+    if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size())
+        return bad_accessor(place, index, "does not exist");
     Located found;
     found.accessor = &model.accessors[static_cast<std::size_t>(index)];
     found.components = components_of(found.accessor->type);
     found.component_size = component_bytes(found.accessor->componentType);
     if (found.components == 0 || found.component_size == 0) return bad_accessor(place, index, "unsupported type");
     if (found.accessor->bufferView < 0) {
-        if (found.accessor->count > most_implicit_elements) return bad_accessor(place, index, fmt::format("{} elements without data", found.accessor->count));
+        if (found.accessor->count > most_implicit_elements)
+            return bad_accessor(place, index, fmt::format("{} elements without data", found.accessor->count));
         return found;
     }
     auto bytes = locate(model, found.accessor->bufferView, found.accessor->byteOffset, found.accessor->count,
@@ -120,25 +142,31 @@ Result<Located> locate_accessor(const tinygltf::Model& model, int index, const s
 
 /// Calls put(element, bytes) for each sparse element (glTF 2.0, 3.6.2.3).
 template <class Put>
-Result<void> apply_sparse(const tinygltf::Model& model, const Located& found, int index, const std::string& place, const Put& put) {
+Result<void> apply_sparse(const tinygltf::Model& model, const Located& found, int index, const std::string& place,
+                          const Put& put) {
     const auto& sparse = found.accessor->sparse;
     if (!sparse.isSparse) return {};
-    if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > found.accessor->count || sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
+    if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > found.accessor->count || sparse.indices.byteOffset < 0 ||
+        sparse.values.byteOffset < 0) {
         return bad_accessor(place, index, "sparse count or offset out of range");
     }
     const auto count = static_cast<std::uint64_t>(sparse.count);
     const int type = sparse.indices.componentType;
-    if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
         return bad_accessor(place, index, "sparse indices are not unsigned integers");
     }
-    auto where = locate(model, sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count, component_bytes(type), false, place, index);
+    auto where = locate(model, sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
+                        component_bytes(type), false, place, index);
     if (!where) return where.error();
     const std::size_t element = found.components * found.component_size;
-    auto values = locate(model, sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset), count, element, false, place, index);
+    auto values = locate(model, sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset), count, element,
+                         false, place, index);
     if (!values) return values.error();
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint32_t at = as_index(where->data + i * where->stride, type);
-        if (at >= found.accessor->count) return bad_accessor(place, index, fmt::format("sparse index {} of {} elements", at, found.accessor->count));
+        if (at >= found.accessor->count)
+            return bad_accessor(place, index, fmt::format("sparse index {} of {} elements", at, found.accessor->count));
         put(at, values->data + i * values->stride);
     }
     return {};
@@ -155,7 +183,8 @@ Result<FloatArray> read_floats(const tinygltf::Model& model, int accessor, const
     const int type = found->accessor->componentType;
     const auto put = [&](std::size_t element, const unsigned char* bytes) {
         float* to = out.values.data() + element * found->components;
-        for (std::size_t c = 0; c < found->components; ++c) to[c] = as_float(bytes + c * found->component_size, type, found->accessor->normalized);
+        for (std::size_t c = 0; c < found->components; ++c)
+            to[c] = as_float(bytes + c * found->component_size, type, found->accessor->normalized);
     };
     if (found->bytes.data != nullptr) {
         for (std::size_t i = 0; i < found->accessor->count; ++i) put(i, found->bytes.data + i * found->bytes.stride);
@@ -168,7 +197,8 @@ Result<std::vector<std::uint32_t>> read_indices(const tinygltf::Model& model, in
     auto found = locate_accessor(model, accessor, place);
     if (!found) return found.error();
     const int type = found->accessor->componentType;
-    const bool is_unsigned = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    const bool is_unsigned = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+                             type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     if (found->components != 1 || !is_unsigned) return bad_accessor(place, accessor, "indices are not unsigned scalars");
     std::vector<std::uint32_t> out(found->accessor->count, 0);
     const auto put = [&](std::size_t element, const unsigned char* bytes) { out[element] = as_index(bytes, type); };

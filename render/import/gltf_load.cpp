@@ -48,7 +48,8 @@ Result<Text> split_glb(std::span<const std::byte> bytes, const std::string& file
     Text text;
     text.binary = true;
     text.json = reader.bytes(json_bytes);
-    if (reader.failed() || json_kind != json_chunk || reader.at() > length) return Error{file, "first GLB chunk is not whole JSON", export_again};
+    if (reader.failed() || json_kind != json_chunk || reader.at() > length)
+        return Error{file, "first GLB chunk is not whole JSON", export_again};
     if (reader.at() == length) return text;
     text.bin_bytes = reader.read<std::uint32_t>();
     const auto bin_kind = reader.read<std::uint32_t>();
@@ -91,15 +92,17 @@ const json& array_in(const json& root, const char* key) {
 }
 
 Result<void> check_extensions(const json& root, const std::string& file, std::vector<std::string>& warnings) {
-    static constexpr std::array known{"KHR_materials_unlit", "KHR_texture_transform", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
-                                      "KHR_lights_punctual", "KHR_materials_pbrSpecularGlossiness"};
+    static constexpr std::array known{"KHR_materials_unlit",     "KHR_texture_transform", "KHR_mesh_quantization",
+                                      "EXT_mesh_gpu_instancing", "KHR_lights_punctual",   "KHR_materials_pbrSpecularGlossiness"};
     for (const json& entry : array_in(root, "extensionsRequired")) {
         if (!entry.is_string()) continue;
         const auto& name = entry.get_ref<const std::string&>();
         if (name.find("draco") != std::string::npos || name.find("meshopt") != std::string::npos) {
-            return Error{file, fmt::format("is compressed with {}", name), "decompress it (gltf-transform copy, or gltfpack -noq)"};
+            return Error{file, fmt::format("is compressed with {}", name),
+                         "decompress it (gltf-transform copy, or gltfpack -noq)"};
         }
-        if (std::find(known.begin(), known.end(), name) == known.end()) warnings.push_back(fmt::format("extension {} is required but ignored", name));
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            warnings.push_back(fmt::format("extension {} is required but ignored", name));
     }
     return {};
 }
@@ -117,7 +120,8 @@ Result<void> check_image_views(const json& root, const std::string& file) {
         const std::uint64_t size = buffer < buffers.size() ? number_in(buffers[buffer], "byteLength", 0) : 0;
         const std::uint64_t offset = buffer < buffers.size() ? number_in(views[view], "byteOffset", 0) : 0;
         const std::uint64_t length = buffer < buffers.size() ? number_in(views[view], "byteLength", absent) : absent;
-        if (offset >= size || length > size - offset) return Error{file, fmt::format("image {}: its bytes lie outside their buffer", at), export_again};
+        if (offset >= size || length > size - offset)
+            return Error{file, fmt::format("image {}: its bytes lie outside their buffer", at), export_again};
     }
     return {};
 }
@@ -164,7 +168,8 @@ bool read_wanted(std::vector<unsigned char>* out, std::string* error, const std:
     return true;
 }
 
-bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes, int size, void*) {
+bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
+                  void*) {
     image->as_is = true;
     if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
     return true;
@@ -189,8 +194,11 @@ Result<tinygltf::Model> run_tinygltf(std::span<const std::byte> bytes, bool bina
     tinygltf::Model model;
     std::string errors, notes;
     const auto size = static_cast<unsigned>(bytes.size());
-    const bool good = binary ? reader.LoadBinaryFromMemory(&model, &errors, &notes, reinterpret_cast<const unsigned char*>(bytes.data()), size, files.folder)
-                             : reader.LoadASCIIFromString(&model, &errors, &notes, reinterpret_cast<const char*>(bytes.data()), size, files.folder);
+    const bool good = binary
+                          ? reader.LoadBinaryFromMemory(&model, &errors, &notes,
+                                                        reinterpret_cast<const unsigned char*>(bytes.data()), size, files.folder)
+                          : reader.LoadASCIIFromString(&model, &errors, &notes, reinterpret_cast<const char*>(bytes.data()), size,
+                                                       files.folder);
     if (!good) return Error{file, errors.empty() ? "not a glTF file" : one_line(errors), export_again};
     if (!errors.empty()) warnings.push_back("dropped by the glTF reader: " + one_line(errors));
     return model;
@@ -199,14 +207,16 @@ Result<tinygltf::Model> run_tinygltf(std::span<const std::byte> bytes, bool bina
 Result<tinygltf::Model> load_checked(const std::string& file, std::vector<std::string>& warnings) {
     auto bytes = read_file(file);
     if (!bytes) return bytes.error();
-    if (bytes->size() >= std::numeric_limits<std::uint32_t>::max()) return Error{file, "larger than 4 GiB, the most that glTF can be", "split the model"};
+    if (bytes->size() >= std::numeric_limits<std::uint32_t>::max())
+        return Error{file, "larger than 4 GiB, the most that glTF can be", "split the model"};
     Text text{*bytes, 0, is_glb(*bytes)};
     if (text.binary) {
         auto split = split_glb(*bytes, file);
         if (!split) return split.error();
         text = *split;
     }
-    if (depth_of(text.json) > deepest_json) return Error{file, fmt::format("JSON nested deeper than {}", deepest_json), export_again};
+    if (depth_of(text.json) > deepest_json)
+        return Error{file, fmt::format("JSON nested deeper than {}", deepest_json), export_again};
     const auto* first = reinterpret_cast<const char*>(text.json.data());
     const json root = json::parse(first, first + text.json.size());
     if (!root.is_object()) return Error{file, "not a glTF file: its JSON is no object", export_again};

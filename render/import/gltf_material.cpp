@@ -36,7 +36,8 @@ struct Reference {
 
 Reference core_reference(const tinygltf::TextureInfo& info) {
     Reference reference{info.index, info.texCoord, {}};
-    if (const auto found = info.extensions.find("KHR_texture_transform"); found != info.extensions.end()) reference.transform = found->second;
+    if (const auto found = info.extensions.find("KHR_texture_transform"); found != info.extensions.end())
+        reference.transform = found->second;
     return reference;
 }
 
@@ -54,7 +55,8 @@ TextureUse use_of(const Reference& reference) {
     TextureUse use;
     use.set = static_cast<int>(number_of(reference.transform, "texCoord", reference.set));
     use.rotation_rad = static_cast<float>(number_of(reference.transform, "rotation", 0));
-    if (const auto offset = numbers_of(reference.transform, "offset"); offset.size() == 2) use.offset = vec2(offset[0], offset[1]);
+    if (const auto offset = numbers_of(reference.transform, "offset"); offset.size() == 2)
+        use.offset = vec2(offset[0], offset[1]);
     if (const auto scale = numbers_of(reference.transform, "scale"); scale.size() == 2) use.scale = vec2(scale[0], scale[1]);
     return use;
 }
@@ -66,7 +68,8 @@ public:
 
     Index of_texture(int texture, const std::string& material) {
         if (texture < 0) return none;
-        if (static_cast<std::size_t>(texture) >= model_.textures.size()) return missing(material, fmt::format("texture {} does not exist", texture));
+        if (static_cast<std::size_t>(texture) >= model_.textures.size())
+            return missing(material, fmt::format("texture {} does not exist", texture));
         const tinygltf::Texture& wanted = model_.textures[static_cast<std::size_t>(texture)];
         if (wanted.source < 0 || static_cast<std::size_t>(wanted.source) >= model_.images.size()) {
             return missing(material, fmt::format("texture {} has no picture that can be read", texture));
@@ -133,7 +136,8 @@ vec2 TextureUse::apply(vec2 uv) const {
     return offset + vec2(c * scaled.x + s * scaled.y, -s * scaled.x + c * scaled.y);
 }
 
-std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::string& file, Scene& scene, const Progress& progress) {
+std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::string& file, Scene& scene,
+                                       const Progress& progress) {
     std::vector<TextureUse> uses;
     Pictures pictures(model, file, scene);
     for (std::size_t i = 0; i < model.materials.size(); ++i) {
@@ -147,7 +151,9 @@ std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::
             if (old->second.Has("diffuseTexture")) reference = extension_reference(old->second.Get("diffuseTexture"));
         }
         material.image = pictures.of_texture(reference.texture, material.name);
-        material.alpha = from.alphaMode == "MASK" ? model::AlphaMode::mask : from.alphaMode == "BLEND" ? model::AlphaMode::blend : model::AlphaMode::opaque;
+        material.alpha = from.alphaMode == "MASK"    ? model::AlphaMode::mask
+                         : from.alphaMode == "BLEND" ? model::AlphaMode::blend
+                                                     : model::AlphaMode::opaque;
         material.alpha_cutoff = static_cast<float>(from.alphaCutoff);
         material.two_sided = from.doubleSided;
         material.unlit = from.extensions.contains("KHR_materials_unlit");

@@ -31,7 +31,8 @@ dmat4 local_matrix(const tinygltf::Node& node) {
         for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
         return m;
     }
-    const dvec3 t = node.translation.size() == 3 ? dvec3(node.translation[0], node.translation[1], node.translation[2]) : dvec3(0);
+    const dvec3 t =
+        node.translation.size() == 3 ? dvec3(node.translation[0], node.translation[1], node.translation[2]) : dvec3(0);
     const dvec3 s = node.scale.size() == 3 ? dvec3(node.scale[0], node.scale[1], node.scale[2]) : dvec3(1);
     const auto& q = node.rotation;
     return compose(t, q.size() == 4 ? unit(q[0], q[1], q[2], q[3]) : dquat(1, 0, 0, 0), s);
@@ -44,12 +45,14 @@ float importance_of(const tinygltf::Node& node) {
 }
 
 /// EXT_mesh_gpu_instancing: one matrix an instance.
-Result<std::vector<dmat4>> instances_of(const tinygltf::Model& model, const tinygltf::Value& extension, const std::string& place) {
+Result<std::vector<dmat4>> instances_of(const tinygltf::Model& model, const tinygltf::Value& extension,
+                                        const std::string& place) {
     const tinygltf::Value& attributes = extension.IsObject() ? extension.Get("attributes") : extension;
     const auto read = [&](const char* name, std::size_t components) -> Result<FloatArray> {
         if (!attributes.IsObject() || !attributes.Has(name)) return FloatArray{};
         auto floats = read_floats(model, attributes.Get(name).GetNumberAsInt(), place);
-        if (floats && floats->components != components) return Error{place, fmt::format("instance {} has {} components", name, floats->components), "export the model again"};
+        if (floats && floats->components != components)
+            return Error{place, fmt::format("instance {} has {} components", name, floats->components), "export the model again"};
         return floats;
     };
     auto t = read("TRANSLATION", 3), r = read("ROTATION", 4), s = read("SCALE", 3);
@@ -60,8 +63,10 @@ Result<std::vector<dmat4>> instances_of(const tinygltf::Model& model, const tiny
     std::vector<dmat4> out;
     out.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const float *ti = i < t->count() ? &t->values[i * 3] : nullptr, *ri = i < r->count() ? &r->values[i * 4] : nullptr, *si = i < s->count() ? &s->values[i * 3] : nullptr;
-        out.push_back(compose(ti != nullptr ? dvec3(ti[0], ti[1], ti[2]) : dvec3(0), ri != nullptr ? unit(ri[0], ri[1], ri[2], ri[3]) : dquat(1, 0, 0, 0),
+        const float *ti = i < t->count() ? &t->values[i * 3] : nullptr, *ri = i < r->count() ? &r->values[i * 4] : nullptr,
+                    *si = i < s->count() ? &s->values[i * 3] : nullptr;
+        out.push_back(compose(ti != nullptr ? dvec3(ti[0], ti[1], ti[2]) : dvec3(0),
+                              ri != nullptr ? unit(ri[0], ri[1], ri[2], ri[3]) : dquat(1, 0, 0, 0),
                               si != nullptr ? dvec3(si[0], si[1], si[2]) : dvec3(1)));
     }
     return out;
@@ -70,7 +75,8 @@ Result<std::vector<dmat4>> instances_of(const tinygltf::Model& model, const tiny
 /// Walks the graph depth first without recursion (files nest as deep as they like).
 class Walk {
 public:
-    Walk(const tinygltf::Model& model, const std::string& file, Scene& scene) : model_(model), file_(file), scene_(scene), state_(model.nodes.size(), State::fresh) {}
+    Walk(const tinygltf::Model& model, const std::string& file, Scene& scene)
+        : model_(model), file_(file), scene_(scene), state_(model.nodes.size(), State::fresh) {}
 
     Result<void> from(int root) {
         if (auto entered = enter(root, none); !entered) return entered;
@@ -103,11 +109,13 @@ private:
 
     Result<void> enter(int node, Index parent) {
         if (node < 0 || static_cast<std::size_t>(node) >= model_.nodes.size()) {
-            scene_.warnings.push_back(fmt::format("child {} of '{}' does not exist", node, parent == none ? "the scene" : scene_.nodes[parent].name));
+            scene_.warnings.push_back(
+                fmt::format("child {} of '{}' does not exist", node, parent == none ? "the scene" : scene_.nodes[parent].name));
             return {};
         }
         State& state = state_[static_cast<std::size_t>(node)];
-        if (state == State::open) return Error{file_, fmt::format("node '{}' is its own ancestor", name_of(node)), "break the cycle in the node graph"};
+        if (state == State::open)
+            return Error{file_, fmt::format("node '{}' is its own ancestor", name_of(node)), "break the cycle in the node graph"};
         if (state == State::done) {
             scene_.warnings.push_back(fmt::format("node '{}' has more than one parent: only the first is kept", name_of(node)));
             return {};
@@ -125,7 +133,8 @@ private:
         to.world = (parent == none ? dmat4(1.0) : scene_.nodes[parent].world) * local_matrix(from);
         to.importance = importance_of(from);
         if (from.mesh >= 0 && static_cast<std::size_t>(from.mesh) < scene_.meshes.size()) to.mesh = static_cast<Index>(from.mesh);
-        if (from.mesh >= 0 && to.mesh == none) scene_.warnings.push_back(fmt::format("node '{}': mesh {} does not exist", to.name, from.mesh));
+        if (from.mesh >= 0 && to.mesh == none)
+            scene_.warnings.push_back(fmt::format("node '{}': mesh {} does not exist", to.name, from.mesh));
         if (from.skin >= 0) scene_.warnings.push_back(fmt::format("node '{}': taken in its rest pose (skin)", to.name));
         const auto index = static_cast<Index>(scene_.nodes.size());
         const auto instancing = from.extensions.find("EXT_mesh_gpu_instancing");
@@ -143,7 +152,8 @@ private:
         const Node parent = scene_.nodes[node];
         scene_.nodes[node].mesh = none;
         for (std::size_t i = 0; i < matrices->size(); ++i) {
-            scene_.nodes.push_back(Node{fmt::format("{} #{}", parent.name, i), node, parent.mesh, parent.world * (*matrices)[i], parent.importance});
+            scene_.nodes.push_back(
+                Node{fmt::format("{} #{}", parent.name, i), node, parent.mesh, parent.world * (*matrices)[i], parent.importance});
         }
     }
 
@@ -174,7 +184,8 @@ std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
     if (model.scenes.empty()) return nodes_without_parent(model);
     const int wanted = model.defaultScene;
     const bool exists = wanted >= 0 && static_cast<std::size_t>(wanted) < model.scenes.size();
-    if (wanted >= 0 && !exists) scene.warnings.push_back(fmt::format("default scene {} does not exist: the first is taken", wanted));
+    if (wanted >= 0 && !exists)
+        scene.warnings.push_back(fmt::format("default scene {} does not exist: the first is taken", wanted));
     if (model.scenes.size() > 1) scene.warnings.push_back(fmt::format("{} scenes: only one is taken", model.scenes.size()));
     return model.scenes[exists ? static_cast<std::size_t>(wanted) : 0].nodes;
 }
@@ -184,7 +195,8 @@ std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
 Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, Scene& scene) {
     if (model.nodes.empty() && !scene.meshes.empty()) {
         scene.warnings.emplace_back("no nodes: each mesh is placed once, at the origin");
-        for (std::size_t i = 0; i < scene.meshes.size(); ++i) scene.nodes.push_back(Node{scene.meshes[i].name, none, static_cast<Index>(i), dmat4(1.0), 1.0F});
+        for (std::size_t i = 0; i < scene.meshes.size(); ++i)
+            scene.nodes.push_back(Node{scene.meshes[i].name, none, static_cast<Index>(i), dmat4(1.0), 1.0F});
         return {};
     }
     Walk walk(model, file, scene);

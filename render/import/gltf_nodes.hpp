@@ -8,7 +8,8 @@
 
 namespace surefoot::importer {
 
-/// The default scene (else the first, else every root). Errors: a cycle, by node name. Warnings: what is taken otherwise than written.
+/// The default scene (else the first, else every root). Errors: a cycle, by node name. Warnings: what is taken otherwise than
+/// written.
 Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, Scene& scene);
 
 }  // namespace surefoot::importer

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <cstring>
 
-#include <jpeglib.h>
 #include <jerror.h>
+#include <jpeglib.h>
 
 #include <fmt/format.h>
 
@@ -29,7 +29,8 @@ Error bad_image(const std::string& place, std::string what) {
 Result<void> check_size(const std::string& place, std::uint64_t width, std::uint64_t height) {
     if (width == 0 || height == 0) return bad_image(place, "picture of no size");
     if (width > largest_side || height > largest_side) {
-        return Error{place, fmt::format("picture of {} x {} texels is larger than {}", width, height, largest_side), "scale it down"};
+        return Error{place, fmt::format("picture of {} x {} texels is larger than {}", width, height, largest_side),
+                     "scale it down"};
     }
     return {};
 }
@@ -37,7 +38,8 @@ Result<void> check_size(const std::string& place, std::uint64_t width, std::uint
 Result<Image> decode_png(std::span<const std::byte> bytes, const std::string& place) {
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
-    if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) return bad_image(place, fmt::format("bad PNG: {}", png.message));
+    if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0)
+        return bad_image(place, fmt::format("bad PNG: {}", png.message));
     if (auto fits = check_size(place, png.width, png.height); !fits) {
         png_image_free(&png);
         return fits.error();
@@ -76,7 +78,8 @@ void jpeg_fatal(j_common_ptr state) {
 void jpeg_message(j_common_ptr state, int level) {
     auto* errors = reinterpret_cast<JpegErrors*>(state->err);
     if (level < 0) ++errors->base.num_warnings;
-    if (level < 0 && (errors->base.msg_code == JWRN_JPEG_EOF || errors->base.msg_code == JWRN_HIT_MARKER)) errors->truncated = true;
+    if (level < 0 && (errors->base.msg_code == JWRN_JPEG_EOF || errors->base.msg_code == JWRN_HIT_MARKER))
+        errors->truncated = true;
 }
 
 /// Reads the header; false on error. No object with a destructor may live in a function that setjmp returns to twice.
@@ -180,7 +183,9 @@ std::vector<std::uint8_t> encode_png(std::uint32_t width, std::uint32_t height, 
 
 Result<void> write_png(const std::string& file, std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba) {
     const std::vector<std::uint8_t> png = encode_png(width, height, rgba);
-    if (png.empty()) return Error{file, fmt::format("cannot encode {} bytes as a picture of {} x {} RGBA texels", rgba.size(), width, height), ""};
+    if (png.empty())
+        return Error{file, fmt::format("cannot encode {} bytes as a picture of {} x {} RGBA texels", rgba.size(), width, height),
+                     ""};
     return write_file(file, std::as_bytes(std::span(png)));
 }
 

@@ -11,10 +11,10 @@ namespace surefoot::importer {
 
 /// How many of what; sums over the primitives of a mesh.
 struct Mended {
-    std::uint64_t arrays = 0;                                                    ///< dropped: their length is not that of the positions
-    std::uint64_t partial = 0, out_of_range = 0, non_finite = 0, enormous = 0;   ///< triangles
-    std::uint64_t repeated = 0, zero_area = 0;                                   ///< triangles
-    std::uint64_t uvs = 0, normals = 0;                                          ///< mended
+    std::uint64_t arrays = 0;  ///< dropped: their length is not that of the positions
+    std::uint64_t partial = 0, out_of_range = 0, non_finite = 0, enormous = 0;  ///< triangles
+    std::uint64_t repeated = 0, zero_area = 0;                                  ///< triangles
+    std::uint64_t uvs = 0, normals = 0;                                         ///< mended
 };
 
 /// Cleans the primitive and adds to the counts.

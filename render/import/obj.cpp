@@ -55,7 +55,9 @@ public:
     }
 
 private:
-    Error wrong(std::uint64_t line, std::string what) const { return {fmt::format("{}:{}", file_, line), std::move(what), "export the model again"}; }
+    Error wrong(std::uint64_t line, std::string what) const {
+        return {fmt::format("{}:{}", file_, line), std::move(what), "export the model again"};
+    }
 
     Result<void> parse(const std::string& text) {
         std::uint64_t statements = 0;
@@ -108,7 +110,8 @@ private:
         if (count >= 6) {
             colours_.resize(positions_.size() - 1, {255, 255, 255, 255});
             const std::size_t c = count == 7 ? 4 : 3;
-            colours_.push_back({to_byte(static_cast<float>(n[c])), to_byte(static_cast<float>(n[c + 1])), to_byte(static_cast<float>(n[c + 2])), 255});
+            colours_.push_back({to_byte(static_cast<float>(n[c])), to_byte(static_cast<float>(n[c + 1])),
+                                to_byte(static_cast<float>(n[c + 2])), 255});
         }
         return {};
     }
@@ -202,7 +205,8 @@ private:
     void library(const std::string& names) {
         const std::size_t before = scene_.materials.size();
         read_mtl(file_, names, scene_);
-        for (std::size_t i = before; i < scene_.materials.size(); ++i) material_of_name_.try_emplace(scene_.materials[i].name, static_cast<Index>(i));
+        for (std::size_t i = before; i < scene_.materials.size(); ++i)
+            material_of_name_.try_emplace(scene_.materials[i].name, static_cast<Index>(i));
     }
 
     void use_material(const std::string& name) {
@@ -235,7 +239,8 @@ private:
                 if (const dvec3& p = positions_[c.position]; std::isfinite(p.x + p.y + p.z)) box.grow(p);
             }
         }
-        if (box.empty() || glm::length(box.centre()) < 1000.0 || glm::length(box.centre()) < 8.0 * box.diagonal()) return dvec3(0);
+        if (box.empty() || glm::length(box.centre()) < 1000.0 || glm::length(box.centre()) < 8.0 * box.diagonal())
+            return dvec3(0);
         return glm::round(box.centre());
     }
 
@@ -243,13 +248,17 @@ private:
         Primitive to;
         if (part.material == none) part.material = plain_material();
         to.material = part.material;
-        const auto any = [&](auto member) { return std::any_of(part.vertices.begin(), part.vertices.end(), [&](const Corner& c) { return c.*member != none; }); };
+        const auto any = [&](auto member) {
+            return std::any_of(part.vertices.begin(), part.vertices.end(), [&](const Corner& c) { return c.*member != none; });
+        };
         const bool with_uv = any(&Corner::uv), with_normal = any(&Corner::normal);
         for (const Corner& c : part.vertices) {
             to.positions.emplace_back(positions_[c.position] - origin);
             if (with_uv) to.uvs.push_back(c.uv == none ? vec2(0) : uvs_[c.uv]);
             if (with_normal) to.normals.push_back(c.normal == none ? vec3(0) : normals_[c.normal]);
-            if (!colours_.empty()) to.colours.push_back(c.position < colours_.size() ? colours_[c.position] : std::array<std::uint8_t, 4>{255, 255, 255, 255});
+            if (!colours_.empty())
+                to.colours.push_back(c.position < colours_.size() ? colours_[c.position]
+                                                                  : std::array<std::uint8_t, 4>{255, 255, 255, 255});
         }
         to.indices = std::move(part.indices);
         part = Collected{};
@@ -264,7 +273,8 @@ private:
 
     void say_skipped() {
         const auto say = [&](const Skipped& skipped, const char* what) {
-            if (skipped.count > 0) scene_.warnings.push_back(fmt::format("{} {} (first in line {})", skipped.count, what, skipped.first_line));
+            if (skipped.count > 0)
+                scene_.warnings.push_back(fmt::format("{} {} (first in line {})", skipped.count, what, skipped.first_line));
         };
         say(bad_faces_, "faces dropped: index out of range, or fewer than three corners");
         say(crossing_, "polygons that cross themselves: triangles may overlap");

@@ -31,7 +31,8 @@ std::string texture_name(TextCursor& cursor, bool& clamp) {
         if (option.size() < 2 || option[0] != '-') break;
         if (option == "-o" || option == "-s" || option == "-t" || option == "-mm") {
             double ignored = 0;
-            while (ahead.number(ignored)) {}
+            while (ahead.number(ignored)) {
+            }
         } else {
             const std::string_view value = ahead.word();
             if (option == "-clamp") clamp = value == "on";
@@ -67,7 +68,8 @@ void merge_opacity(Reading& reading, Material& material, const std::string& name
     for (std::size_t i = 3; i < merged.rgba.size() && !own_alpha; i += 4) own_alpha = merged.rgba[i] != 255;
     const Image* colours = material.image == none ? nullptr : &reading.scene.images[material.image];
     if (colours != nullptr && (colours->width != merged.width || colours->height != merged.height)) {
-        reading.scene.warnings.push_back(fmt::format("material '{}': map_d '{}' left out, its size is not that of map_Kd", material.name, name));
+        reading.scene.warnings.push_back(
+            fmt::format("material '{}': map_d '{}' left out, its size is not that of map_Kd", material.name, name));
         return;
     }
     for (std::size_t i = 0; i < merged.rgba.size(); i += 4) {

@@ -21,7 +21,9 @@ constexpr std::size_t chunk_bytes = 1U << 20U;
 /// Reads number after number from an open file, window by window: a leaf may be larger than memory likes.
 class NumberStream {
 public:
-    NumberStream(const std::string& file, std::uint64_t offset) : in_(file, std::ios::binary) { in_.seekg(static_cast<std::streamoff>(offset)); }
+    NumberStream(const std::string& file, std::uint64_t offset) : in_(file, std::ios::binary) {
+        in_.seekg(static_cast<std::streamoff>(offset));
+    }
 
     bool next(float& value) {
         while (true) {
@@ -55,9 +57,7 @@ private:
     std::size_t at_ = 0;
 };
 
-std::uint64_t hash_of(const OstfVertex& v) {
-    return hash_bytes(std::as_bytes(std::span(&v, 1)));
-}
+std::uint64_t hash_of(const OstfVertex& v) { return hash_bytes(std::as_bytes(std::span(&v, 1))); }
 
 bool same(const OstfVertex& a, const OstfVertex& b) { return std::memcmp(&a, &b, sizeof(OstfVertex)) == 0; }
 static_assert(sizeof(OstfVertex) == 11 * sizeof(float));
@@ -112,16 +112,19 @@ private:
 }  // namespace
 
 Result<std::vector<OstfVertex>> read_ostf_leaf(const OstfIndex& index, Index object) {
-    if (object >= index.objects.size() || index.objects[object].triangles == 0) return Error{index.file, fmt::format("object {} is no leaf", object), ""};
+    if (object >= index.objects.size() || index.objects[object].triangles == 0)
+        return Error{index.file, fmt::format("object {} is no leaf", object), ""};
     const OstfObject& leaf = index.objects[object];
     NumberStream numbers(index.file, leaf.offset);
     std::vector<OstfVertex> vertices;
     vertices.reserve(leaf.triangles * 3);
     for (std::uint64_t i = 0; i < leaf.triangles * 3; ++i) {
         OstfVertex v{};
-        for (float* to : {&v.normal.x, &v.normal.y, &v.normal.z, &v.position.x, &v.position.y, &v.position.z, &v.colour.x, &v.colour.y, &v.colour.z, &v.uv.x, &v.uv.y}) {
+        for (float* to : {&v.normal.x, &v.normal.y, &v.normal.z, &v.position.x, &v.position.y, &v.position.z, &v.colour.x,
+                          &v.colour.y, &v.colour.z, &v.uv.x, &v.uv.y}) {
             if (!numbers.next(*to)) {
-                return Error{fmt::format("{}: '{}' from line {}", index.file, leaf.name, leaf.line), fmt::format("vertex {} of {} is not whole", i, leaf.triangles * 3), "export the model again"};
+                return Error{fmt::format("{}: '{}' from line {}", index.file, leaf.name, leaf.line),
+                             fmt::format("vertex {} of {} is not whole", i, leaf.triangles * 3), "export the model again"};
             }
         }
         vertices.push_back(v);

@@ -138,7 +138,9 @@ public:
     }
 
 private:
-    Error wrong(std::string what) const { return {fmt::format("{}:{}", index_.file, lines_.line()), std::move(what), "export the model again"}; }
+    Error wrong(std::string what) const {
+        return {fmt::format("{}:{}", index_.file, lines_.line()), std::move(what), "export the model again"};
+    }
 
     Result<void> tag(std::string_view text) {
         if (text == "START_TAG") return object();
@@ -150,7 +152,8 @@ private:
 
     Result<void> object() {
         if (open_.size() >= deepest) return wrong(fmt::format("objects nested deeper than {}", deepest));
-        if (!open_.empty() && index_.objects[open_.back()].triangles > 0) return wrong(fmt::format("'{}' holds triangles and objects", index_.objects[open_.back()].name));
+        if (!open_.empty() && index_.objects[open_.back()].triangles > 0)
+            return wrong(fmt::format("'{}' holds triangles and objects", index_.objects[open_.back()].name));
         if (index_.objects.size() >= none) return wrong("too many objects");
         OstfObject object;
         object.line = lines_.line();
@@ -160,8 +163,10 @@ private:
         object.name = text;
         if (!lines_.next(text)) return wrong(fmt::format("truncated in '{}'", object.name));
         const auto [last, code] = std::from_chars(text.data(), text.data() + text.size(), object.triangles);
-        if (code != std::errc{} || last != text.data() + text.size()) return wrong(fmt::format("'{}' is not the number of triangles of '{}'", text.substr(0, 40), object.name));
-        if (object.triangles > total_ / (lines_a_triangle * 4)) return wrong(fmt::format("'{}' says {} triangles: more than the file can hold", object.name, object.triangles));
+        if (code != std::errc{} || last != text.data() + text.size())
+            return wrong(fmt::format("'{}' is not the number of triangles of '{}'", text.substr(0, 40), object.name));
+        if (object.triangles > total_ / (lines_a_triangle * 4))
+            return wrong(fmt::format("'{}' says {} triangles: more than the file can hold", object.name, object.triangles));
         open_.push_back(static_cast<Index>(index_.objects.size()));
         index_.objects.push_back(std::move(object));
         return index_.objects.back().triangles > 0 ? leaf(index_.objects.back()) : container();
@@ -189,7 +194,8 @@ private:
             object.offset = lines_.consumed();
         }
         for (std::uint64_t i = 0; i < skip; ++i) {
-            if (!lines_.next(text)) return wrong(fmt::format("truncated in '{}': {} lines of triangles missing", object.name, skip - i));
+            if (!lines_.next(text))
+                return wrong(fmt::format("truncated in '{}': {} lines of triangles missing", object.name, skip - i));
             if (!starts_number(text)) return wrong(fmt::format("'{}' in the triangles of '{}'", text.substr(0, 40), object.name));
             if ((i & 0xffffU) != 0) continue;
             if (progress_.stopped()) return Error{index_.file, "import stopped", ""};

@@ -17,7 +17,8 @@ constexpr int digits = 9;
 
 class Writer {
 public:
-    Writer(const std::string& file, const Scene& scene, const Progress& progress, AtomicFile& out) : file_(file), scene_(scene), progress_(progress), out_(out) {}
+    Writer(const std::string& file, const Scene& scene, const Progress& progress, AtomicFile& out)
+        : file_(file), scene_(scene), progress_(progress), out_(out) {}
 
     Result<void> run() {
         children_.resize(scene_.nodes.size());
@@ -100,7 +101,8 @@ private:
         textures_.resize(scene_.images.size());
         if (!textures_[image]) {
             const Image& from = scene_.images[image];
-            if (auto done = write_png((path.parent_path() / name).string(), from.width, from.height, from.rgba); !done) return done.error();
+            if (auto done = write_png((path.parent_path() / name).string(), from.width, from.height, from.rgba); !done)
+                return done.error();
             textures_[image] = true;
         }
         return name;
@@ -108,7 +110,9 @@ private:
 
     void number(double value, char after) {
         std::array<char, 40> buffer{};
-        const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value == 0.0 ? 0.0 : value, std::chars_format::general, digits).ptr;
+        const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value == 0.0 ? 0.0 : value,
+                                       std::chars_format::general, digits)
+                             .ptr;
         text_.append(buffer.data(), end);
         text_ += after;
     }
@@ -134,7 +138,8 @@ private:
         const bool mirrored = glm::determinant(linear) < 0;
         const dmat3 normals = glm::transpose(glm::inverse(linear));
         for (std::size_t i = 0; i + 3 <= p.indices.size(); i += 3) {
-            for (const std::size_t k : {std::size_t{0}, mirrored ? std::size_t{2} : std::size_t{1}, mirrored ? std::size_t{1} : std::size_t{2}}) {
+            for (const std::size_t k :
+                 {std::size_t{0}, mirrored ? std::size_t{2} : std::size_t{1}, mirrored ? std::size_t{1} : std::size_t{2}}) {
                 vertex(p, p.indices[i + k], world, normals);
             }
             if (text_.size() < flush_bytes) continue;

@@ -20,7 +20,8 @@ constexpr const char* endings = ".gltf .glb .obj .ostf";
 
 std::string ending_of(const std::string& file) {
     std::string ending = fs::path(file).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return ending;
 }
 
@@ -41,7 +42,8 @@ Result<Scene> import_one(const std::string& file, const Progress& progress) {
     if (ending == ".gltf" || ending == ".glb") return import_gltf(file, progress);
     if (ending == ".obj") return import_obj(file, progress);
     if (ending == ".ostf") return import_ostf(file, progress);
-    return Error{file, ending.empty() ? "has no ending" : fmt::format("unknown ending '{}'", ending), fmt::format("convert it to one of {}", endings)};
+    return Error{file, ending.empty() ? "has no ending" : fmt::format("unknown ending '{}'", ending),
+                 fmt::format("convert it to one of {}", endings)};
 }
 
 void shift(Index& index, std::size_t by) {

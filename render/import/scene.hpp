@@ -38,8 +38,8 @@ struct Material {
 /// Triangles of one material. Optional arrays are empty or as long as positions. Colours are sRGB-encoded, as a Material's
 /// and an Image's are (glTF's linear ones are encoded on import); v = 0 of a uv is the picture's top row.
 struct Primitive {
-    std::vector<vec3> positions;   ///< finite, metres in the mesh's frame
-    std::vector<vec3> normals;     ///< unit
+    std::vector<vec3> positions;  ///< finite, metres in the mesh's frame
+    std::vector<vec3> normals;    ///< unit
     std::vector<vec2> uvs;
     std::vector<std::array<std::uint8_t, 4>> colours;
     std::vector<std::uint32_t> indices;  ///< triples, each < positions.size(), no two equal, area > 0
@@ -66,7 +66,7 @@ struct Scene {
     std::vector<Material> materials;  ///< at least one
     std::vector<Image> images;
     std::vector<std::string> sources;
-    std::vector<std::string> warnings;  ///< what was repaired or dropped, one line each with counts
+    std::vector<std::string> warnings;              ///< what was repaired or dropped, one line each with counts
     [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
 };
 

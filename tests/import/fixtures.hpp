@@ -49,7 +49,8 @@ inline std::string word(std::uint32_t value) {
 inline std::string glb(std::string json, std::string bin) {
     while (json.size() % 4 != 0) json += ' ';
     while (bin.size() % 4 != 0) bin += '\0';
-    const std::string chunks = word(static_cast<std::uint32_t>(json.size())) + "JSON" + json + word(static_cast<std::uint32_t>(bin.size())) + std::string("BIN\0", 4) + bin;
+    const std::string chunks = word(static_cast<std::uint32_t>(json.size())) + "JSON" + json +
+                               word(static_cast<std::uint32_t>(bin.size())) + std::string("BIN\0", 4) + bin;
     return "glTF" + word(2) + word(static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
 }
 
@@ -59,17 +60,19 @@ struct TriangleGltf {
     std::string scenes = R"([{"nodes":[0]}])";
     std::string attributes = R"("POSITION":0)";
     std::string primitive = R"(,"indices":1)";
-    std::string accessors;     ///< after the two of the triangle
-    std::string views;         ///< after the two of the triangle
+    std::string accessors;  ///< after the two of the triangle
+    std::string views;      ///< after the two of the triangle
     std::string more;
     std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
     std::vector<std::uint16_t> indices{0, 1, 2};
-    std::string bytes;         ///< after the triangle's, from byte 44
+    std::string bytes;  ///< after the triangle's, from byte 44
 
     std::string json() const {
-        return R"({"asset":{"version":"2.0"},"scene":0,"scenes":)" + scenes + R"(,"nodes":)" + nodes + R"(,"meshes":[{"name":"mesh","primitives":[{"attributes":{)" + attributes + "}" +
-               primitive + R"(}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"})" + accessors +
-               R"(],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6})" + views + R"(],"buffers":[{"byteLength":)" + std::to_string(bin().size()) + "}]" + more + "}";
+        return R"({"asset":{"version":"2.0"},"scene":0,"scenes":)" + scenes + R"(,"nodes":)" + nodes +
+               R"(,"meshes":[{"name":"mesh","primitives":[{"attributes":{)" + attributes + "}" + primitive +
+               R"(}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"})" +
+               accessors + R"(],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6})" +
+               views + R"(],"buffers":[{"byteLength":)" + std::to_string(bin().size()) + "}]" + more + "}";
     }
     std::string bin() const {
         std::string out;

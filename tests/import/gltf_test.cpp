@@ -38,7 +38,8 @@ TEST(Gltf, SmallestTriangle) {
 
 TEST(Gltf, HierarchyMultipliesInDoubleAndInstancesShareTheirMesh) {
     TriangleGltf gltf;
-    gltf.nodes = R"([{"name":"root","translation":[6400000.25,0,0],"children":[1,2]},{"mesh":0,"translation":[0,0,0.125],"scale":[2,2,2]},
+    gltf.nodes =
+        R"([{"name":"root","translation":[6400000.25,0,0],"children":[1,2]},{"mesh":0,"translation":[0,0,0.125],"scale":[2,2,2]},
                     {"mesh":0,"rotation":[0,0.7071067811865476,0,0.7071067811865476],"extras":{"importance":0.5}}])";
     const Scene scene = import_good(gltf);
     EXPECT_EQ(scene.triangles(), 2U);
@@ -132,17 +133,32 @@ TEST(Gltf, AccessorsThatReachOutsideAreRefused) {
         gltf.views = "," + view;
         return error_of(gltf);
     };
-    const std::string view = R"({"buffer":0,"byteLength":36})", good = R"({"bufferView":2,"componentType":5126,"count":3,"type":"VEC3"})";
-    EXPECT_NE(with_positions(R"({"bufferView":2,"componentType":5126,"count":4,"type":"VEC3"})", view).find("reach beyond buffer view"), std::string::npos);
-    EXPECT_NE(with_positions(R"({"bufferView":2,"byteOffset":4,"componentType":5126,"count":3,"type":"VEC3"})", view).find("reach beyond buffer view"), std::string::npos);
-    EXPECT_NE(with_positions(R"({"bufferView":2,"componentType":5126,"count":4611686018427387904,"type":"VEC3"})", view).find("reach beyond buffer view"), std::string::npos);
-    EXPECT_NE(with_positions(good, R"({"buffer":0,"byteOffset":40,"byteLength":36})").find("beyond its buffer"), std::string::npos);
-    EXPECT_NE(with_positions(good, R"({"buffer":0,"byteOffset":18446744073709551612,"byteLength":36})").find("beyond its buffer"), std::string::npos);
+    const std::string view = R"({"buffer":0,"byteLength":36})",
+                      good = R"({"bufferView":2,"componentType":5126,"count":3,"type":"VEC3"})";
+    EXPECT_NE(
+        with_positions(R"({"bufferView":2,"componentType":5126,"count":4,"type":"VEC3"})", view).find("reach beyond buffer view"),
+        std::string::npos);
+    EXPECT_NE(with_positions(R"({"bufferView":2,"byteOffset":4,"componentType":5126,"count":3,"type":"VEC3"})", view)
+                  .find("reach beyond buffer view"),
+              std::string::npos);
+    EXPECT_NE(with_positions(R"({"bufferView":2,"componentType":5126,"count":4611686018427387904,"type":"VEC3"})", view)
+                  .find("reach beyond buffer view"),
+              std::string::npos);
+    EXPECT_NE(with_positions(good, R"({"buffer":0,"byteOffset":40,"byteLength":36})").find("beyond its buffer"),
+              std::string::npos);
+    EXPECT_NE(with_positions(good, R"({"buffer":0,"byteOffset":18446744073709551612,"byteLength":36})").find("beyond its buffer"),
+              std::string::npos);
     EXPECT_NE(with_positions(good, R"({"buffer":7,"byteLength":36})").find("no such buffer"), std::string::npos);
     EXPECT_NE(with_positions(good, R"({"buffer":0,"byteLength":36,"byteStride":8})").find("stride of 8"), std::string::npos);
-    EXPECT_NE(with_positions(R"({"bufferView":9,"componentType":5126,"count":3,"type":"VEC3"})", view).find("no such buffer view"), std::string::npos);
-    EXPECT_NE(with_positions(R"({"componentType":5126,"count":4000000000,"type":"VEC3"})", view).find("elements without data"), std::string::npos);
-    EXPECT_NE(with_positions(R"({"bufferView":2,"componentType":5126,"count":3,"type":"VEC4"})", R"({"buffer":0,"byteLength":44})").find("reach"), std::string::npos);
+    EXPECT_NE(
+        with_positions(R"({"bufferView":9,"componentType":5126,"count":3,"type":"VEC3"})", view).find("no such buffer view"),
+        std::string::npos);
+    EXPECT_NE(with_positions(R"({"componentType":5126,"count":4000000000,"type":"VEC3"})", view).find("elements without data"),
+              std::string::npos);
+    EXPECT_NE(
+        with_positions(R"({"bufferView":2,"componentType":5126,"count":3,"type":"VEC4"})", R"({"buffer":0,"byteLength":44})")
+            .find("reach"),
+        std::string::npos);
 }
 
 TEST(Gltf, StrideIsObeyed) {
@@ -159,7 +175,8 @@ TEST(Gltf, StrideIsObeyed) {
 TEST(Gltf, SparseValuesReplaceAndBadSparseIndicesAreRefused) {
     TriangleGltf gltf;
     gltf.attributes = R"("POSITION":2)";
-    gltf.accessors = R"(,{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}})";
+    gltf.accessors =
+        R"(,{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":3}}})";
     gltf.views = R"(,{"buffer":0,"byteOffset":44,"byteLength":2},{"buffer":0,"byteOffset":48,"byteLength":12})";
     put(gltf.bytes, std::vector<std::uint16_t>{1, 0});
     put(gltf.bytes, std::vector<float>{7, 0, 0});
@@ -199,7 +216,8 @@ TEST(Gltf, ColoursOfEveryTypeBecomeEncodedBytes) {
 TEST(Gltf, MaterialsAreRead) {
     TriangleGltf gltf;
     gltf.primitive = R"(,"indices":1,"material":0)";
-    gltf.more = R"(,"materials":[{"name":"leaf","alphaMode":"MASK","alphaCutoff":0.25,"doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.5,0,1,0.5]},
+    gltf.more =
+        R"(,"materials":[{"name":"leaf","alphaMode":"MASK","alphaCutoff":0.25,"doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.5,0,1,0.5]},
                     "extensions":{"KHR_materials_unlit":{}}},{"alphaMode":"BLEND"}],"extensionsUsed":["KHR_materials_unlit"])";
     const Scene scene = import_good(gltf);
     ASSERT_EQ(scene.materials.size(), 3U);  // and the default
@@ -228,10 +246,12 @@ TEST(Gltf, TextureFromBufferViewWithTransformAndClamp) {
     gltf.attributes = R"("POSITION":0,"TEXCOORD_1":2)";
     gltf.primitive = R"(,"indices":1,"material":0)";
     gltf.accessors = R"(,{"bufferView":2,"componentType":5126,"count":3,"type":"VEC2"})";
-    gltf.views = R"(,{"buffer":0,"byteOffset":44,"byteLength":24},{"buffer":0,"byteOffset":68,"byteLength":)" + std::to_string(png.size()) + "}";
+    gltf.views = R"(,{"buffer":0,"byteOffset":44,"byteLength":24},{"buffer":0,"byteOffset":68,"byteLength":)" +
+                 std::to_string(png.size()) + "}";
     put(gltf.bytes, std::vector<float>{0, 0, 1, 0, 0, 1});
     put(gltf.bytes, png);
-    gltf.more = R"(,"images":[{"bufferView":3,"mimeType":"image/png","name":"red"}],"samplers":[{"wrapS":33071,"wrapT":33071}],"textures":[{"source":0,"sampler":0}],
+    gltf.more =
+        R"(,"images":[{"bufferView":3,"mimeType":"image/png","name":"red"}],"samplers":[{"wrapS":33071,"wrapT":33071}],"textures":[{"source":0,"sampler":0}],
         "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1,"extensions":{"KHR_texture_transform":{"offset":[0.5,0.25],"scale":[2,3]}}}}}])";
     const Scene scene = import_good(gltf);
     ASSERT_EQ(scene.images.size(), 1U);
@@ -246,11 +266,13 @@ TEST(Gltf, TextureFromBufferViewWithTransformAndClamp) {
 TEST(Gltf, MissingAndBadTexturesAreWhiteWithAWarning) {
     TriangleGltf gltf;
     gltf.primitive = R"(,"indices":1,"material":0)";
-    gltf.more = R"(,"images":[{"uri":"not%20there.png"}],"textures":[{"source":0}],"materials":[{"name":"wall","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+    gltf.more =
+        R"(,"images":[{"uri":"not%20there.png"}],"textures":[{"source":0}],"materials":[{"name":"wall","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
     const Scene scene = import_good(gltf);
     EXPECT_EQ(scene.materials[0].image, none);
     EXPECT_TRUE(warns(scene, "texture 'not there.png' left white"));
-    gltf.more = R"(,"images":[{"uri":"data:image/png;base64,AAAA"}],"textures":[{"source":0}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+    gltf.more =
+        R"(,"images":[{"uri":"data:image/png;base64,AAAA"}],"textures":[{"source":0}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
     EXPECT_TRUE(warns(import_good(gltf), "neither PNG nor JPEG"));
     gltf.more = R"(,"materials":[{"name":"wall","pbrMetallicRoughness":{"baseColorTexture":{"index":4}}}])";
     EXPECT_TRUE(warns(import_good(gltf), "texture 4 does not exist"));
@@ -265,7 +287,8 @@ TEST(Gltf, ImageViewOutsideItsBufferIsRefused) {
 
 TEST(Gltf, GpuInstancesBecomeNodes) {
     TriangleGltf gltf;
-    gltf.nodes = R"([{"mesh":0,"name":"tree","translation":[10,0,0],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":2}}}}])";
+    gltf.nodes =
+        R"([{"mesh":0,"name":"tree","translation":[10,0,0],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":2}}}}])";
     gltf.accessors = R"(,{"bufferView":2,"componentType":5126,"count":2,"type":"VEC3"})";
     gltf.views = R"(,{"buffer":0,"byteOffset":44,"byteLength":24})";
     put(gltf.bytes, std::vector<float>{1, 0, 0, 2, 0, 0});

@@ -14,7 +14,8 @@ std::vector<std::uint8_t> gradient(std::uint32_t width, std::uint32_t height, bo
     std::vector<std::uint8_t> out;
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
-            out.insert(out.end(), {static_cast<std::uint8_t>(x * 9), static_cast<std::uint8_t>(y * 7), static_cast<std::uint8_t>(x * y), static_cast<std::uint8_t>(opaque ? 255 : x * 11)});
+            out.insert(out.end(), {static_cast<std::uint8_t>(x * 9), static_cast<std::uint8_t>(y * 7),
+                                   static_cast<std::uint8_t>(x * y), static_cast<std::uint8_t>(opaque ? 255 : x * 11)});
         }
     }
     return out;
@@ -78,14 +79,16 @@ TEST(Picture, JpegOfEveryKind) {
 
 TEST(Picture, TruncatedPngsAreErrors) {
     const auto whole = encode_png(64, 64, gradient(64, 64, false));
-    for (std::size_t length = 0; length + 12 < whole.size(); length += length < 100 ? 1 : 37) {  // the last 12 bytes only say "end"
+    for (std::size_t length = 0; length + 12 < whole.size();
+         length += length < 100 ? 1 : 37) {  // the last 12 bytes only say "end"
         EXPECT_FALSE(decode(std::span(whole).first(length)).ok()) << length;
     }
 }
 
 TEST(Picture, TruncatedJpegsAreErrors) {
     const auto whole = jpeg(64, 64, 3);
-    for (std::size_t length = 0; length + 2 < whole.size(); length += 5) EXPECT_FALSE(decode(std::span(whole).first(length)).ok()) << length;
+    for (std::size_t length = 0; length + 2 < whole.size(); length += 5)
+        EXPECT_FALSE(decode(std::span(whole).first(length)).ok()) << length;
 }
 
 TEST(Picture, SizesAreRefusedBeforeAllocation) {
@@ -101,7 +104,8 @@ TEST(Picture, SizesAreRefusedBeforeAllocation) {
 }
 
 TEST(Picture, OtherFormatsAndNothingAreNamed) {
-    EXPECT_NE(decode(std::vector<std::uint8_t>{'G', 'I', 'F', '8'}).error().text().find("neither PNG nor JPEG"), std::string::npos);
+    EXPECT_NE(decode(std::vector<std::uint8_t>{'G', 'I', 'F', '8'}).error().text().find("neither PNG nor JPEG"),
+              std::string::npos);
     EXPECT_NE(decode({}).error().text().find("empty"), std::string::npos);
 }
 

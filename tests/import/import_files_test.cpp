@@ -31,14 +31,16 @@ TEST(ImportFiles, SeveralFilesBecomeOneScene) {
     const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
     TriangleGltf gltf;
     gltf.nodes = R"([{"children":[1]},{"mesh":0}])";
-    const auto scene = import_files({folder.write("a.OBJ", obj), folder.write("b.glb", gltf.file()), folder.write("c.obj", obj)}, {});
+    const auto scene =
+        import_files({folder.write("a.OBJ", obj), folder.write("b.glb", gltf.file()), folder.write("c.obj", obj)}, {});
     ASSERT_TRUE(scene.ok()) << scene.error().text();
     EXPECT_EQ(scene->triangles(), 3U);
     EXPECT_EQ(scene->sources.size(), 3U);
     ASSERT_EQ(scene->nodes.size(), 4U);
     EXPECT_EQ(scene->nodes[2].parent, 1U);
     EXPECT_EQ(scene->nodes[2].mesh, 1U);
-    for (std::size_t i = 0; i < scene->nodes.size(); ++i) EXPECT_TRUE(scene->nodes[i].parent == none || scene->nodes[i].parent < i);
+    for (std::size_t i = 0; i < scene->nodes.size(); ++i)
+        EXPECT_TRUE(scene->nodes[i].parent == none || scene->nodes[i].parent < i);
     EXPECT_EQ(scene->materials[scene->meshes[2].primitives[0].material].name, "red");
     EXPECT_EQ(scene->meshes[2].primitives[0].material, 2U);
 }

@@ -41,7 +41,8 @@ TEST(Obj, CornersWithEveryMixOfIndicesAndNormalsOnlyWhereGiven) {
 
 TEST(Obj, ConcavePolygonKeepsItsArea) {
     // A C: its fan would cover the notch.
-    const Scene scene = import_text("v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 2 0\nv 3 2 0\nv 3 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8\n");
+    const Scene scene =
+        import_text("v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 2 0\nv 3 2 0\nv 3 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8\n");
     const Primitive& p = scene.meshes[0].primitives[0];
     double area = 0;
     for (std::size_t i = 0; i < p.indices.size(); i += 3) {
@@ -54,7 +55,9 @@ TEST(Obj, ConcavePolygonKeepsItsArea) {
 }
 
 TEST(Obj, ObjectsAndGroupsBecomeNodesAndMaterialsPrimitives) {
-    const Scene scene = import_text("mtllib m.mtl\n" + square + "o house\ng wall\nusemtl brick\nf 1 2 3\ng roof\nusemtl tile\nf 1 3 4\nusemtl brick\nf 1 2 4\ng wall\nusemtl brick\nf 2 3 4\n",
+    const Scene scene = import_text("mtllib m.mtl\n" + square +
+                                        "o house\ng wall\nusemtl brick\nf 1 2 3\ng roof\nusemtl tile\nf 1 3 4\nusemtl brick\nf 1 "
+                                        "2 4\ng wall\nusemtl brick\nf 2 3 4\n",
                                     "newmtl brick\nKd 0.5 0.25 0.125\nnewmtl tile\nd 0.5\n");
     ASSERT_EQ(scene.nodes.size(), 2U);
     EXPECT_EQ(scene.nodes[0].name, "house/wall");
@@ -73,7 +76,8 @@ TEST(Obj, TextureWithHolesIsMaskedAndMissingOnesAreWhite) {
     const std::vector<std::uint8_t> holes{255, 0, 0, 255, 0, 0, 0, 0};
     ASSERT_TRUE(write_png(folder.file("leaf one.png"), 2, 1, holes).ok());
     folder.write("m.mtl", "newmtl leaf\nmap_Kd -s 1 1 1 -clamp on leaf one.png\nnewmtl gone\nmap_Kd no.png\n");
-    const auto scene = import_files({folder.write("a.obj", "mtllib m.mtl\n" + square + "usemtl leaf\nf 1 2 3\nusemtl gone\nf 1 3 4\n")}, {});
+    const auto scene =
+        import_files({folder.write("a.obj", "mtllib m.mtl\n" + square + "usemtl leaf\nf 1 2 3\nusemtl gone\nf 1 3 4\n")}, {});
     ASSERT_TRUE(scene.ok()) << scene.error().text();
     ASSERT_EQ(scene->images.size(), 1U);
     EXPECT_TRUE(scene->images[0].clamp);

@@ -1,7 +1,6 @@
 // OSTF: the thesis' own cube, leaves by offset, what is truncated or lies, and there and back.
 #include <gtest/gtest.h>
 
-
 #include "fixtures.hpp"
 #include "render/import/ostf.hpp"
 
@@ -18,7 +17,9 @@ std::string leaf(const std::string& name, int count, const std::string& texture,
 }
 
 /// Figure A.3: a container without a texture's line, blank lines anywhere.
-std::string cube() { return "START_TAG\nCube\n0\n\n" + leaf("face#1", 2, "", triangle + triangle) + leaf("face#2", 1, "", triangle) + "END_TAG\n"; }
+std::string cube() {
+    return "START_TAG\nCube\n0\n\n" + leaf("face#1", 2, "", triangle + triangle) + leaf("face#2", 1, "", triangle) + "END_TAG\n";
+}
 
 Result<OstfIndex> index_of(const std::string& text) {
     const Folder folder;
@@ -55,7 +56,8 @@ TEST(Ostf, OneLeafIsReadByItsOffset) {
 }
 
 TEST(Ostf, TextureNamesAndTheirAbsence) {
-    const auto index = index_of(leaf("a", 1, "line.tex", triangle) + leaf("b", 1, "", triangle) + "START_TAG\nc\n0\nsome.tex\n" + leaf("d", 1, "x y.png", triangle) + "END_TAG\n");
+    const auto index = index_of(leaf("a", 1, "line.tex", triangle) + leaf("b", 1, "", triangle) + "START_TAG\nc\n0\nsome.tex\n" +
+                                leaf("d", 1, "x y.png", triangle) + "END_TAG\n");
     ASSERT_TRUE(index.ok()) << index.error().text();
     EXPECT_EQ(index->objects[0].texture, "line.tex");
     EXPECT_EQ(index->objects[1].texture, "");
@@ -81,7 +83,8 @@ TEST(Ostf, ErrorsCarryTheLine) {
     };
     EXPECT_NE(what("BEGIN\n").find(":1: 'BEGIN' where START_TAG"), std::string::npos);
     EXPECT_NE(what("START_TAG\na\nmany\n").find(":3: 'many' is not the number"), std::string::npos);
-    EXPECT_NE(what(leaf("a", 4, "", triangle + triangle + triangle)).find("'END_TAG' in the triangles of 'a'"), std::string::npos);
+    EXPECT_NE(what(leaf("a", 4, "", triangle + triangle + triangle)).find("'END_TAG' in the triangles of 'a'"),
+              std::string::npos);
     EXPECT_NE(what(leaf("a", 1, "", triangle + triangle)).find("where START_TAG or END_TAG belongs"), std::string::npos);
     EXPECT_NE(what(leaf("a", 2000000000, "", triangle)).find("more than the file can hold"), std::string::npos);
     EXPECT_NE(what("START_TAG\na\n0\n").find("'a' has no END_TAG"), std::string::npos);
@@ -95,7 +98,8 @@ TEST(Ostf, ErrorsCarryTheLine) {
 
 TEST(Ostf, EveryTruncationIsAnError) {
     const std::string whole = cube();
-    for (std::size_t length = 0; length + 1 < whole.size(); ++length) EXPECT_FALSE(index_of(whole.substr(0, length)).ok()) << length;
+    for (std::size_t length = 0; length + 1 < whole.size(); ++length)
+        EXPECT_FALSE(index_of(whole.substr(0, length)).ok()) << length;
 }
 
 TEST(Ostf, LeafWithWordsInItIsAnErrorWhenRead) {
@@ -122,7 +126,8 @@ Scene two_instances() {
     dmat4 mirrored(1.0);
     mirrored[0][0] = -1;
     mirrored[3] = dvec4(10, 0, 0, 1);
-    scene.nodes = {Node{"root", none, none, dmat4(1.0), 1}, Node{"plain", 0, 0, dmat4(1.0), 1}, Node{"mirrored", 0, 0, mirrored, 1}, Node{"empty", none, none, dmat4(1.0), 1}};
+    scene.nodes = {Node{"root", none, none, dmat4(1.0), 1}, Node{"plain", 0, 0, dmat4(1.0), 1},
+                   Node{"mirrored", 0, 0, mirrored, 1}, Node{"empty", none, none, dmat4(1.0), 1}};
     return scene;
 }
 
@@ -154,7 +159,8 @@ TEST(Ostf, WritingToAnImpossiblePlaceIsAnErrorAndKeepsTheOldFile) {
     Progress progress;
     progress.stop = &stop;
     Scene large = two_instances();
-    for (int i = 0; i < 20000; ++i) large.meshes[0].primitives[0].indices.insert(large.meshes[0].primitives[0].indices.end(), {0, 1, 2});
+    for (int i = 0; i < 20000; ++i)
+        large.meshes[0].primitives[0].indices.insert(large.meshes[0].primitives[0].indices.end(), {0, 1, 2});
     EXPECT_FALSE(write_ostf(old, large, progress).ok());
     std::ifstream in(old);
     std::string line;

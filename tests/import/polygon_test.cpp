@@ -17,7 +17,8 @@ dvec3 area_of(std::span<const dvec3> p, std::span<const std::uint32_t> t) {
 
 double total_area(std::span<const dvec3> p, std::span<const std::uint32_t> t) {
     double sum = 0;
-    for (std::size_t i = 0; i < t.size(); i += 3) sum += 0.5 * glm::length(glm::cross(p[t[i + 1]] - p[t[i]], p[t[i + 2]] - p[t[i]]));
+    for (std::size_t i = 0; i < t.size(); i += 3)
+        sum += 0.5 * glm::length(glm::cross(p[t[i + 1]] - p[t[i]], p[t[i + 2]] - p[t[i]]));
     return sum;
 }
 

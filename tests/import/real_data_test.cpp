@@ -49,12 +49,15 @@ TEST(RealData, GlbsHaveTheirTriangles) {
     if (!data) GTEST_SKIP() << "SUREFOOT_DATA does not name a folder";
     // Dropped: 16 of zero area in the mansion and 6 x 40 under nodes of scale 0; 12 x 40 such in the city; in keflavik
     // 9028 with repeated indices and 2441 of zero area (11 469 unique, 14 158 with instances); 16 of zero area in the kitchen.
-    for (const Known& known : {Known{"interior/hospital/hospital_three_floors.glb", 435855, 435855, 36}, Known{"interior/ravenbridge-mansion/ravenbridge_mansion.glb", 274668, 274924, 56},
-                               Known{"outdoor/candela-city/candela_city.glb", 444458, 444938, 67}, Known{"outdoor/flightgear-keflavik/keflavik.glb", 392299, 406457, 748},
+    for (const Known& known : {Known{"interior/hospital/hospital_three_floors.glb", 435855, 435855, 36},
+                               Known{"interior/ravenbridge-mansion/ravenbridge_mansion.glb", 274668, 274924, 56},
+                               Known{"outdoor/candela-city/candela_city.glb", 444458, 444938, 67},
+                               Known{"outdoor/flightgear-keflavik/keflavik.glb", 392299, 406457, 748},
                                Known{"interior/tum-kitchen/tum_kitchen.glb", 94900, 94916, 82}}) {
         const auto scene = import_files({(*data / known.file).string()}, {});
         ASSERT_TRUE(scene.ok()) << scene.error().text();
-        std::cout << known.file << ": " << scene->triangles() << " of " << known.in_origin << " triangles, " << unique_triangles(*scene) << " unique, " << scene->warnings.size() << " warnings\n";
+        std::cout << known.file << ": " << scene->triangles() << " of " << known.in_origin << " triangles, "
+                  << unique_triangles(*scene) << " unique, " << scene->warnings.size() << " warnings\n";
         EXPECT_EQ(scene->triangles(), known.triangles) << known.file;
         EXPECT_LE(scene->triangles(), known.in_origin);
         EXPECT_EQ(scene->meshes.size(), known.meshes);
@@ -65,8 +68,12 @@ TEST(RealData, GlbsHaveTheirTriangles) {
 TEST(RealData, ObjsHaveTheirTriangles) {
     const auto data = data_folder();
     if (!data) GTEST_SKIP() << "SUREFOOT_DATA does not name a folder";
-    for (const auto& [file, triangles] : {std::pair{"classic/cow/cow.obj", 5804U}, {"classic/stanford-bunny/stanford-bunny.obj", 69451U}, {"classic/armadillo/armadillo.obj", 86482U},
-                                          {"classic/utah-teapot/teapot.obj", 6320U}, {"classic/spot/spot.obj", 5856U}, {"outdoor/trees-sweethome3d/pine/pine.obj", 108810U}}) {
+    for (const auto& [file, triangles] : {std::pair{"classic/cow/cow.obj", 5804U},
+                                          {"classic/stanford-bunny/stanford-bunny.obj", 69451U},
+                                          {"classic/armadillo/armadillo.obj", 86482U},
+                                          {"classic/utah-teapot/teapot.obj", 6320U},
+                                          {"classic/spot/spot.obj", 5856U},
+                                          {"outdoor/trees-sweethome3d/pine/pine.obj", 108810U}}) {
         const auto scene = import_files({(*data / file).string()}, {});
         ASSERT_TRUE(scene.ok()) << scene.error().text();
         EXPECT_EQ(scene->triangles(), triangles) << file;
@@ -87,7 +94,8 @@ TEST(RealData, HardFilesEndInASceneOrANamedError) {
     for (const fs::path& file : files) {
         const auto scene = import_files({file.string()}, {});
         if (scene.ok()) {
-            std::cout << "read    " << fs::relative(file, *data / "hard").string() << ": " << scene->triangles() << " triangles, " << scene->warnings.size() << " warnings\n";
+            std::cout << "read    " << fs::relative(file, *data / "hard").string() << ": " << scene->triangles() << " triangles, "
+                      << scene->warnings.size() << " warnings\n";
             EXPECT_GT(scene->triangles(), 0U);
             expect_sound(*scene);
         } else {
@@ -118,7 +126,8 @@ TEST(RealData, EarthCentredTileKeepsItsPlace) {
     for (const Node& node : scene->nodes) {
         if (node.mesh != none) farthest = std::max(farthest, glm::length(dvec3(node.world[3])));
     }
-    for (const vec3& p : scene->meshes[0].primitives[0].positions) largest_local = std::max<double>(largest_local, glm::length(p));
+    for (const vec3& p : scene->meshes[0].primitives[0].positions)
+        largest_local = std::max<double>(largest_local, glm::length(p));
     EXPECT_GT(farthest, 6.0e6);
     EXPECT_LT(largest_local, 1.0e5);
 }

@@ -30,16 +30,23 @@ struct WallBuilder {
     /// The four inner faces of an opening (no threshold where it starts at the floor).
     void reveals(const Opening& o) const {
         use(style.reveal, style.reveal_colour, style.inner_uv);
-        maker.quad(frame.at(o.from, o.low, half), frame.at(o.from, o.low, -half), frame.at(o.from, o.high, -half), frame.at(o.from, o.high, half));
-        maker.quad(frame.at(o.to, o.low, -half), frame.at(o.to, o.low, half), frame.at(o.to, o.high, half), frame.at(o.to, o.high, -half));
-        maker.quad(frame.at(o.from, o.high, half), frame.at(o.from, o.high, -half), frame.at(o.to, o.high, -half), frame.at(o.to, o.high, half));
-        if (o.low > 0) maker.quad(frame.at(o.from, o.low, -half), frame.at(o.from, o.low, half), frame.at(o.to, o.low, half), frame.at(o.to, o.low, -half));
+        maker.quad(frame.at(o.from, o.low, half), frame.at(o.from, o.low, -half), frame.at(o.from, o.high, -half),
+                   frame.at(o.from, o.high, half));
+        maker.quad(frame.at(o.to, o.low, -half), frame.at(o.to, o.low, half), frame.at(o.to, o.high, half),
+                   frame.at(o.to, o.high, -half));
+        maker.quad(frame.at(o.from, o.high, half), frame.at(o.from, o.high, -half), frame.at(o.to, o.high, -half),
+                   frame.at(o.to, o.high, half));
+        if (o.low > 0)
+            maker.quad(frame.at(o.from, o.low, -half), frame.at(o.from, o.low, half), frame.at(o.to, o.low, half),
+                       frame.at(o.to, o.low, -half));
     }
     void ends(double length, double height) const {
         use(style.outer, style.outer_colour, style.outer_uv);
         maker.quad(frame.at(0, 0, -half), frame.at(0, 0, half), frame.at(0, height, half), frame.at(0, height, -half));
-        maker.quad(frame.at(length, 0, half), frame.at(length, 0, -half), frame.at(length, height, -half), frame.at(length, height, half));
-        maker.quad(frame.at(0, height, half), frame.at(length, height, half), frame.at(length, height, -half), frame.at(0, height, -half));
+        maker.quad(frame.at(length, 0, half), frame.at(length, 0, -half), frame.at(length, height, -half),
+                   frame.at(length, height, half));
+        maker.quad(frame.at(0, height, half), frame.at(length, height, half), frame.at(length, height, -half),
+                   frame.at(0, height, -half));
     }
     void use(Index material, const Colour& colour, double uv) const {
         maker.brush.material = material;
@@ -68,7 +75,8 @@ void wall(MeshMaker& maker, const WallRun& run, std::span<const Opening> opening
     builder.ends(length, run.height);
 }
 
-void window(MeshMaker& maker, const Stuff& stuff, double width, double height, int panes_across, int panes_up, const Colour& frame) {
+void window(MeshMaker& maker, const Stuff& stuff, double width, double height, int panes_across, int panes_up,
+            const Colour& frame) {
     constexpr double rim = 0.05, bar = 0.025;
     maker.brush.material = stuff.plain;
     maker.brush.colour = frame;
@@ -140,7 +148,8 @@ void balustrade(MeshMaker& maker, const dvec3& from, const dvec3& to, double hei
         maker.lathe(profile, detail.cut(10, 5));
     }
     maker.brush.frame = frame;
-    maker.tube(std::array{from + dvec3(0, height, 0), to + dvec3(0, height, 0)}, std::array{0.045, 0.045}, detail.cut(10, 6), true);
+    maker.tube(std::array{from + dvec3(0, height, 0), to + dvec3(0, height, 0)}, std::array{0.045, 0.045}, detail.cut(10, 6),
+               true);
     maker.tube(std::array{from, to}, std::array{0.03, 0.03}, detail.cut(8, 5), true);
 }
 

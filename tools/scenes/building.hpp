@@ -28,7 +28,8 @@ struct WallRun {
 void wall(MeshMaker& maker, const WallRun& run, std::span<const Opening> openings, const WallStyle& style);
 
 /// In the brush's frame: 0..width by 0..height in the plane z = 0, frame 0.1 deep; sill towards +z.
-void window(MeshMaker& maker, const Stuff& stuff, double width, double height, int panes_across, int panes_up, const Colour& frame);
+void window(MeshMaker& maker, const Stuff& stuff, double width, double height, int panes_across, int panes_up,
+            const Colour& frame);
 /// Lining of a doorway, and a leaf hinged at x = 0 that extends to x = width (give the brush's frame the swing).
 void door_lining(MeshMaker& maker, const Stuff& stuff, double width, double height, double depth, const Colour& colour);
 importer::Mesh door_leaf(const Stuff& stuff, double width, double height, const Colour& colour, const Detail& detail);

@@ -38,7 +38,8 @@ struct Land {
         hill_height *= grow;
         hill = dvec2(side - 0.62 * hill_radius, 0.46 * side);
         const auto at = [&](double x, double z) { footpath.push_back(Waypoint{{x, eye_height_m, z}, {}, true, 0}); };
-        for (const auto& [u, v] : {std::pair{0.035, 0.56}, {0.13, 0.50}, {0.24, 0.37}, {0.37, 0.40}, {0.46, 0.56}, {0.56, 0.65}}) at(u * side, v * side);
+        for (const auto& [u, v] : {std::pair{0.035, 0.56}, {0.13, 0.50}, {0.24, 0.37}, {0.37, 0.40}, {0.46, 0.56}, {0.56, 0.65}})
+            at(u * side, v * side);
         const double r = hill_radius;
         at(hill.x - 0.95 * r, hill.y + 0.35 * r);
         at(hill.x - 0.55 * r, hill.y + 0.42 * r);
@@ -71,7 +72,8 @@ struct Tile {
 };
 
 /// Coloured by the vertex; heights and normals agree across tiles because both come from the land.
-importer::Mesh ground_tile(const Tile& tile, const std::string& name, Index material, int column, int row, int columns, int rows, double step) {
+importer::Mesh ground_tile(const Tile& tile, const std::string& name, Index material, int column, int row, int columns, int rows,
+                           double step) {
     importer::Mesh mesh{name, {}};
     importer::Primitive p;
     p.material = material;
@@ -103,9 +105,17 @@ struct Kind {
 std::vector<Kind> tree_kinds(SceneMaker& maker, const PlantMaterials& plants, std::uint64_t seed) {
     std::vector<Kind> kinds;
     const auto broad = [&](const char* name, const TreeShape& shape, double clearance) {
-        kinds.push_back({maker.mesh(broad_tree(name, plants, shape, triangles_a_tree, seed + kinds.size() * 77)), name, clearance});
+        kinds.push_back(
+            {maker.mesh(broad_tree(name, plants, shape, triangles_a_tree, seed + kinds.size() * 77)), name, clearance});
     };
-    TreeShape oak{.height = 12, .crown_base = 3.6, .crown_radius = 4.0, .trunk_radius = 0.30, .branches = 10, .leaf_length = 1.25, .leaf_width = 0.40, .clump_radius = 1.45};
+    TreeShape oak{.height = 12,
+                  .crown_base = 3.6,
+                  .crown_radius = 4.0,
+                  .trunk_radius = 0.30,
+                  .branches = 10,
+                  .leaf_length = 1.25,
+                  .leaf_width = 0.40,
+                  .clump_radius = 1.45};
     broad("oak", oak, 1.6);
     oak.height = 10;
     oak.crown_base = 3.2;
@@ -113,12 +123,47 @@ std::vector<Kind> tree_kinds(SceneMaker& maker, const PlantMaterials& plants, st
     oak.dark = rgb(62, 92, 28);
     oak.light = rgb(150, 168, 58);
     broad("old oak", oak, 1.7);
-    broad("birch", {.height = 13, .crown_base = 4.4, .crown_radius = 2.5, .trunk_radius = 0.15, .branches = 10, .leaf_length = 0.95, .leaf_width = 0.30, .clump_radius = 1.1,
-                    .bark = rgb(222, 218, 206), .dark = rgb(84, 122, 44), .light = rgb(178, 196, 84), .bark_marks = true}, 1.4);
-    broad("beech", {.height = 15, .crown_base = 4.6, .crown_radius = 3.6, .trunk_radius = 0.27, .branches = 9, .leaf_length = 1.2, .leaf_width = 0.38, .clump_radius = 1.5,
-                    .bark = rgb(132, 126, 116), .dark = rgb(112, 68, 30), .light = rgb(206, 138, 56)}, 1.6);
-    broad("pine", {.height = 16, .crown_base = 8.5, .crown_radius = 2.6, .trunk_radius = 0.22, .branches = 8, .leaf_length = 1.05, .leaf_width = 0.17, .clump_radius = 0.9,
-                   .needles = true, .bark = rgb(150, 92, 58), .dark = rgb(30, 62, 40), .light = rgb(92, 128, 74)}, 1.4);
+    broad("birch",
+          {.height = 13,
+           .crown_base = 4.4,
+           .crown_radius = 2.5,
+           .trunk_radius = 0.15,
+           .branches = 10,
+           .leaf_length = 0.95,
+           .leaf_width = 0.30,
+           .clump_radius = 1.1,
+           .bark = rgb(222, 218, 206),
+           .dark = rgb(84, 122, 44),
+           .light = rgb(178, 196, 84),
+           .bark_marks = true},
+          1.4);
+    broad("beech",
+          {.height = 15,
+           .crown_base = 4.6,
+           .crown_radius = 3.6,
+           .trunk_radius = 0.27,
+           .branches = 9,
+           .leaf_length = 1.2,
+           .leaf_width = 0.38,
+           .clump_radius = 1.5,
+           .bark = rgb(132, 126, 116),
+           .dark = rgb(112, 68, 30),
+           .light = rgb(206, 138, 56)},
+          1.6);
+    broad("pine",
+          {.height = 16,
+           .crown_base = 8.5,
+           .crown_radius = 2.6,
+           .trunk_radius = 0.22,
+           .branches = 8,
+           .leaf_length = 1.05,
+           .leaf_width = 0.17,
+           .clump_radius = 0.9,
+           .needles = true,
+           .bark = rgb(150, 92, 58),
+           .dark = rgb(30, 62, 40),
+           .light = rgb(92, 128, 74)},
+          1.4);
     kinds.push_back({maker.mesh(spruce("spruce", plants, 14.0, 2.7, triangles_a_tree, seed + 900)), "spruce", 3.6});
     kinds.push_back({maker.mesh(spruce("young spruce", plants, 8.0, 2.0, triangles_a_tree, seed + 901)), "young spruce", 3.0});
     return kinds;
@@ -133,10 +178,12 @@ const Kind& kind_at(const std::vector<Kind>& kinds, const dvec2& p, std::uint64_
 
 dmat4 standing(const Land& land, const dvec2& p, double size, Random& random) {
     const dmat4 lean = turn(random.range(-0.035, 0.035), dvec3(1, 0, 0)) * turn(random.range(-0.035, 0.035), dvec3(0, 0, 1));
-    return move({p.x, land.height(p.x, p.y), p.y}) * lean * turn_y(random.range(0, 2 * pi)) * stretch(dvec3(size, size * random.range(0.92, 1.1), size));
+    return move({p.x, land.height(p.x, p.y), p.y}) * lean * turn_y(random.range(0, 2 * pi)) *
+           stretch(dvec3(size, size * random.range(0.92, 1.1), size));
 }
 
-void plant_trees(SceneMaker& maker, const Land& land, const PlantMaterials& plants, const Scatter& path, std::size_t count, Scatter& trees, Random& random) {
+void plant_trees(SceneMaker& maker, const Land& land, const PlantMaterials& plants, const Scatter& path, std::size_t count,
+                 Scatter& trees, Random& random) {
     const std::vector<Kind> kinds = tree_kinds(maker, plants, land.seed);
     const Index group = maker.node("trees", none, none, dmat4(1.0));
     double apart = 4.4;
@@ -156,15 +203,18 @@ void plant_trees(SceneMaker& maker, const Land& land, const PlantMaterials& plan
 }
 
 /// Ferns under trees, grass in the open, rocks and logs here and there: exactly as many triangles as are left.
-void plant_undergrowth(SceneMaker& maker, const Land& land, const PlantMaterials& plants, const Scatter& path, const Scatter& trees, std::size_t triangles, Random& random) {
+void plant_undergrowth(SceneMaker& maker, const Land& land, const PlantMaterials& plants, const Scatter& path,
+                       const Scatter& trees, std::size_t triangles, Random& random) {
     const Index group = maker.node("undergrowth", none, none, dmat4(1.0));
     const std::array<Index, 2> ferns{maker.mesh(fern(plants, land.seed + 31)), maker.mesh(fern(plants, land.seed + 32))};
-    const std::array<Index, 2> tufts{maker.mesh(grass_tuft(plants, land.seed + 33)), maker.mesh(grass_tuft(plants, land.seed + 34))};
+    const std::array<Index, 2> tufts{maker.mesh(grass_tuft(plants, land.seed + 33)),
+                                     maker.mesh(grass_tuft(plants, land.seed + 34))};
     const std::array<Index, 2> rocks{maker.mesh(rock(plants, land.seed + 35)), maker.mesh(rock(plants, land.seed + 36))};
     const Index log = maker.mesh(fallen_log(plants, land.seed + 37));
     std::size_t number = 0;
     const auto place = [&](const char* name, Index mesh, const dvec2& p, double size) {
-        const dmat4 where = move({p.x, land.height(p.x, p.y) - 0.02, p.y}) * turn_y(random.range(0, 2 * pi)) * stretch(dvec3(size));
+        const dmat4 where =
+            move({p.x, land.height(p.x, p.y) - 0.02, p.y}) * turn_y(random.range(0, 2 * pi)) * stretch(dvec3(size));
         maker.node(fmt::format("{} {}", name, number++), group, mesh, where);
     };
     while (triangles >= 10) {
@@ -236,7 +286,8 @@ GeneratedScene make_forest(double scale, std::uint64_t seed) {
     const Land land(scale, seed);
     SceneMaker maker;
     const Index earth = maker.material("earth");
-    const PlantMaterials plants{maker.material("bark"), maker.material("leaves", {255, 255, 255, 255}, none, model::AlphaMode::opaque, true)};
+    const PlantMaterials plants{maker.material("bark"),
+                                maker.material("leaves", {255, 255, 255, 255}, none, model::AlphaMode::opaque, true)};
     Scatter path(2.0), trees(5.0);
     for (const dvec3& p : curve_points(land.footpath, 0.4)) path.add({p.x, p.z});
     const auto count = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(100.0 * scale)));

@@ -14,7 +14,8 @@ constexpr Colour oak = rgb(214, 178, 132), walnut = rgb(150, 104, 70), white = r
 
 /// A leg turned on a lathe: foot, bulb, ring and square shoulder.
 void turned_leg(MeshMaker& maker, const dvec3& at, double height, double radius, const Detail& detail) {
-    if (detail.coarse()) return maker.box(at + dvec3(-0.7 * radius, 0, -0.7 * radius), at + dvec3(0.7 * radius, height, 0.7 * radius));
+    if (detail.coarse())
+        return maker.box(at + dvec3(-0.7 * radius, 0, -0.7 * radius), at + dvec3(0.7 * radius, height, 0.7 * radius));
     const dmat4 frame = maker.brush.frame;
     maker.brush.frame = frame * move(at);
     std::vector<dvec2> profile{{0, 0}, {0.7 * radius, 0}, {0.7 * radius, 0}};
@@ -35,7 +36,8 @@ void board(MeshMaker& maker, const dvec3& centre, const dvec3& half, const Detai
     maker.cushion(centre, half, 0.12, detail.cut(24, 8), detail.cut(8, 4));
 }
 
-void cushioned(MeshMaker& maker, const Stuff& stuff, const Colour& cloth, const dvec3& centre, const dvec3& half, const Detail& detail) {
+void cushioned(MeshMaker& maker, const Stuff& stuff, const Colour& cloth, const dvec3& centre, const dvec3& half,
+               const Detail& detail) {
     maker.brush.material = stuff.cloth;
     maker.brush.colour = cloth;
     maker.cushion(centre, half, 0.35, detail.cut(24, 8), detail.cut(12, 5));
@@ -45,11 +47,13 @@ void seat_body(MeshMaker& maker, const Stuff& stuff, const Detail& detail, const
     const double half = 0.5 * width;
     cushioned(maker, stuff, shade(cloth, 0.9), {0, 0.24, 0.42}, {half, 0.15, 0.40}, detail);
     cushioned(maker, stuff, shade(cloth, 0.95), {0, 0.5, 0.13}, {half - 0.02, 0.37, 0.13}, detail);
-    for (const double side : {-1.0, 1.0}) cushioned(maker, stuff, cloth, {side * (half - 0.1), 0.38, 0.42}, {0.12, 0.24, 0.41}, detail);
+    for (const double side : {-1.0, 1.0})
+        cushioned(maker, stuff, cloth, {side * (half - 0.1), 0.38, 0.42}, {0.12, 0.24, 0.41}, detail);
     const double place = (width - 0.4) / places;
     for (int i = 0; i < places; ++i) {
         const double x = -half + 0.2 + (i + 0.5) * place;
-        cushioned(maker, stuff, shade(cloth, 1.05), {x, 0.43, 0.47}, {0.51 * place, 0.1, 0.35}, detail);  // wider than its place: cushions press into each other
+        cushioned(maker, stuff, shade(cloth, 1.05), {x, 0.43, 0.47}, {0.51 * place, 0.1, 0.35},
+                  detail);  // wider than its place: cushions press into each other
         maker.brush.frame = move({x, 0.66, 0.25}) * turn(-0.22, dvec3(1, 0, 0));
         cushioned(maker, stuff, shade(cloth, 1.1), dvec3(0), {0.5 * place, 0.22, 0.1}, detail);
         maker.brush.frame = dmat4(1.0);
@@ -66,7 +70,8 @@ void seat_body(MeshMaker& maker, const Stuff& stuff, const Detail& detail, const
 int Detail::cut(int n, int least) const { return std::max(least, static_cast<int>(std::lround(n * factor))); }
 
 Stuff make_stuff(SceneMaker& maker, std::uint64_t seed) {
-    const auto textured = [&](const char* name, importer::Image image, model::AlphaMode alpha = model::AlphaMode::opaque, bool two_sided = false) {
+    const auto textured = [&](const char* name, importer::Image image, model::AlphaMode alpha = model::AlphaMode::opaque,
+                              bool two_sided = false) {
         return maker.material(name, {255, 255, 255, 255}, maker.image(std::move(image)), alpha, two_sided);
     };
     Stuff stuff;
@@ -78,7 +83,9 @@ Stuff make_stuff(SceneMaker& maker, std::uint64_t seed) {
     stuff.spines = textured("book spines", book_spines(seed + 3));
     stuff.leaves = textured("leaf spray", leaves(seed + 4, rgb(46, 88, 34), rgb(122, 168, 70)), model::AlphaMode::mask, true);
     stuff.rug = textured("rug", rug(seed + 5, rgb(142, 42, 40), rgb(34, 48, 92)));
-    for (int i = 0; i < 4; ++i) stuff.paintings[static_cast<std::size_t>(i)] = textured("painting", painting(seed + 10 + static_cast<std::uint64_t>(i), i));
+    for (int i = 0; i < 4; ++i)
+        stuff.paintings[static_cast<std::size_t>(i)] =
+            textured("painting", painting(seed + 10 + static_cast<std::uint64_t>(i), i));
     return stuff;
 }
 
@@ -101,7 +108,8 @@ importer::Mesh chair(const Stuff& stuff, const Detail& detail, const Colour& sea
     board(maker, {0, 0.44, 0}, {0.22, 0.02, 0.21}, detail);
     for (const double x : {-0.18, 0.18}) {
         turned_leg(maker, {x, 0, 0.17}, 0.43, 0.026, detail);
-        const std::array<dvec3, 5> post{dvec3(x, 0, -0.2), dvec3(x, 0.22, -0.185), dvec3(x, 0.44, -0.185), dvec3(x, 0.7, -0.21), dvec3(x, 0.97, -0.27)};
+        const std::array<dvec3, 5> post{dvec3(x, 0, -0.2), dvec3(x, 0.22, -0.185), dvec3(x, 0.44, -0.185), dvec3(x, 0.7, -0.21),
+                                        dvec3(x, 0.97, -0.27)};
         maker.tube(post, std::array{0.018, 0.022, 0.024, 0.02, 0.016}, detail.cut(12, 6), true);
         maker.rod({x, 0.17, -0.18}, {x, 0.17, 0.165}, 0.011, detail.cut(8));
     }
@@ -114,7 +122,8 @@ importer::Mesh chair(const Stuff& stuff, const Detail& detail, const Colour& sea
     });
     for (int i = 0; i < 5; i += detail.coarse() ? 2 : 1) {
         const double x = -0.12 + 0.06 * i;
-        maker.tube(std::array{dvec3(x, 0.45, -0.185), dvec3(x, 0.66, -0.235), dvec3(x, 0.88, -0.29)}, std::array{0.008, 0.011, 0.008}, detail.cut(8), false);
+        maker.tube(std::array{dvec3(x, 0.45, -0.185), dvec3(x, 0.66, -0.235), dvec3(x, 0.88, -0.29)},
+                   std::array{0.008, 0.011, 0.008}, detail.cut(8), false);
     }
     cushioned(maker, stuff, seat, {0, 0.475, 0.005}, {0.205, 0.03, 0.2}, detail);
     return maker.take();
@@ -126,7 +135,8 @@ importer::Mesh sofa(const Stuff& stuff, const Detail& detail, const Colour& clot
     seat_body(maker, stuff, detail, cloth, 2.1, 3);
     const std::array<Colour, 3> loose{rgb(206, 150, 52), rgb(60, 92, 108), rgb(180, 70, 52)};
     for (std::size_t i = 0; i < loose.size(); ++i) {
-        maker.brush.frame = move({-0.7 + 0.62 * static_cast<double>(i), 0.68, 0.42}) * turn(0.3 * static_cast<double>(i) - 0.3, dvec3(0, 0, 1)) * turn(-0.4, dvec3(1, 0, 0));
+        maker.brush.frame = move({-0.7 + 0.62 * static_cast<double>(i), 0.68, 0.42}) *
+                            turn(0.3 * static_cast<double>(i) - 0.3, dvec3(0, 0, 1)) * turn(-0.4, dvec3(1, 0, 0));
         cushioned(maker, stuff, loose[i], dvec3(0), {0.21, 0.21, 0.08}, detail);
     }
     return maker.take();
@@ -164,17 +174,22 @@ importer::Mesh bookshelf(const Stuff& stuff, double width, double height, int sh
 }
 
 importer::Mesh row_of_books(const Stuff& stuff, double width, bool fine, std::uint64_t seed) {
-    static constexpr std::array<Colour, 9> covers{rgb(120, 34, 30), rgb(28, 58, 92), rgb(40, 84, 52), rgb(196, 160, 84), rgb(82, 52, 38), rgb(200, 190, 170), rgb(96, 40, 84), rgb(40, 40, 44), rgb(188, 92, 40)};
+    static constexpr std::array<Colour, 9> covers{rgb(120, 34, 30),  rgb(28, 58, 92), rgb(40, 84, 52),
+                                                  rgb(196, 160, 84), rgb(82, 52, 38), rgb(200, 190, 170),
+                                                  rgb(96, 40, 84),   rgb(40, 40, 44), rgb(188, 92, 40)};
     Random random(seed);
     MeshMaker maker("books");
     maker.brush.uv_per_m = 1.0;
     for (double x = -0.5 * width; x < 0.5 * width - 0.05;) {
         const double thick = random.range(0.016, 0.05), tall = random.range(0.17, 0.26), deep = random.range(0.13, 0.21);
         const double lean = random.unit() < 0.12 ? random.range(0.05, 0.18) : 0.0;
-        maker.brush.frame = move({x + tall * std::sin(lean), -0.002, 0.25}) * turn(lean, dvec3(0, 0, 1));  // sunk by 2 mm: books press into the board
+        maker.brush.frame = move({x + tall * std::sin(lean), -0.002, 0.25}) *
+                            turn(lean, dvec3(0, 0, 1));  // sunk by 2 mm: books press into the board
         maker.brush.material = stuff.spines;
         maker.brush.colour = covers[random.below(static_cast<std::uint32_t>(covers.size()))];
-        maker.surface(fine ? 4 : 1, 1, [&](double u, double v) { return dvec3(thick * u, tall * v, 0.012 * std::sin(pi * std::clamp(u, 0.0, 1.0))); });
+        maker.surface(fine ? 4 : 1, 1, [&](double u, double v) {
+            return dvec3(thick * u, tall * v, 0.012 * std::sin(pi * std::clamp(u, 0.0, 1.0)));
+        });
         maker.brush.material = stuff.plain;
         if (fine) {
             maker.box({0, 0, -deep}, {0.0025, tall, 0});
@@ -233,7 +248,8 @@ importer::Mesh wardrobe(const Stuff& stuff, const Detail& detail) {
         maker.brush.colour = oak;
         maker.box({x - 0.36, 0.1, 0.56}, {x + 0.36, 2.02, 0.585});
         maker.brush.colour = shade(oak, 0.86);
-        for (const auto& [low, high] : {std::pair{0.2, 0.95}, std::pair{1.05, 1.92}}) maker.box({x - 0.27, low, 0.58}, {x + 0.27, high, 0.595});
+        for (const auto& [low, high] : {std::pair{0.2, 0.95}, std::pair{1.05, 1.92}})
+            maker.box({x - 0.27, low, 0.58}, {x + 0.27, high, 0.595});
         maker.brush.colour = rgb(180, 150, 90);
         maker.ellipsoid({x * 0.2, 1.05, 0.61}, dvec3(0.018), detail.cut(10, 6), detail.cut(8, 4));
     }
@@ -258,13 +274,15 @@ importer::Mesh kitchen(const Stuff& stuff, const Detail& detail) {
         maker.rod({x - 0.1, 1.54, 0.355}, {x + 0.1, 1.54, 0.355}, 0.008, detail.cut(8));
     }
     maker.brush.colour = rgb(188, 190, 194);
-    const std::array<dvec3, 5> tap{dvec3(-0.3, 0.9, 0.12), dvec3(-0.3, 1.12, 0.12), dvec3(-0.3, 1.18, 0.18), dvec3(-0.3, 1.18, 0.26), dvec3(-0.3, 1.12, 0.3)};
+    const std::array<dvec3, 5> tap{dvec3(-0.3, 0.9, 0.12), dvec3(-0.3, 1.12, 0.12), dvec3(-0.3, 1.18, 0.18),
+                                   dvec3(-0.3, 1.18, 0.26), dvec3(-0.3, 1.12, 0.3)};
     maker.tube(tap, std::array{0.014, 0.012, 0.012, 0.012, 0.011}, detail.cut(10, 6), true);
     for (const double x : {0.45, 0.75}) {
         for (const double z : {0.18, 0.42}) {
             maker.brush.frame = move({x, 0.9, z});
             maker.brush.colour = rgb(30, 30, 32);
-            maker.lathe(std::array{dvec2(0.1, 0), dvec2(0.1, 0.012), dvec2(0.1, 0.012), dvec2(0.075, 0.012), dvec2(0, 0.012)}, detail.cut(20, 8));
+            maker.lathe(std::array{dvec2(0.1, 0), dvec2(0.1, 0.012), dvec2(0.1, 0.012), dvec2(0.075, 0.012), dvec2(0, 0.012)},
+                        detail.cut(20, 8));
         }
     }
     return maker.take();

@@ -35,7 +35,8 @@ void shade_cone(MeshMaker& maker, const Stuff& stuff, double y, double low, doub
 }
 
 void stem(MeshMaker& maker, double height, double foot, double thin, const Detail& detail) {
-    maker.lathe(std::array{dvec2(0, 0), dvec2(foot, 0), dvec2(foot, 0), dvec2(foot, 0.02), dvec2(0.7 * foot, 0.035), dvec2(thin * 1.6, 0.06), dvec2(thin, 0.12), dvec2(thin, 0.5 * height),
+    maker.lathe(std::array{dvec2(0, 0), dvec2(foot, 0), dvec2(foot, 0), dvec2(foot, 0.02), dvec2(0.7 * foot, 0.035),
+                           dvec2(thin * 1.6, 0.06), dvec2(thin, 0.12), dvec2(thin, 0.5 * height),
                            dvec2(thin * 1.7, 0.53 * height), dvec2(thin, 0.56 * height), dvec2(thin, height)},
                 detail.cut(24, 8));
 }
@@ -43,7 +44,8 @@ void stem(MeshMaker& maker, double height, double foot, double thin, const Detai
 /// Inside and outside of a thin vessel of revolution.
 void vessel(MeshMaker& maker, const std::vector<dvec2>& outside, double wall, int sides) {
     std::vector<dvec2> profile = outside;
-    for (std::size_t i = outside.size(); i-- > 1;) profile.emplace_back(std::max(outside[i].x - wall, 0.0), outside[i].y + (i + 1 == outside.size() ? 0.0 : wall));
+    for (std::size_t i = outside.size(); i-- > 1;)
+        profile.emplace_back(std::max(outside[i].x - wall, 0.0), outside[i].y + (i + 1 == outside.size() ? 0.0 : wall));
     profile.emplace_back(0.0, outside[0].y + wall);
     maker.lathe(profile, sides);
 }
@@ -61,7 +63,9 @@ importer::Mesh floor_lamp(const Stuff& stuff, const Detail& detail) {
 importer::Mesh table_lamp(const Stuff& stuff, const Detail& detail) {
     MeshMaker maker("table lamp");
     maker.brush = {stuff.plain, rgb(62, 104, 112), dmat4(1.0), 1.0};
-    maker.lathe(curve(0.26, detail.cut(20, 7), [](double f) { return f >= 1 ? 0.0 : 0.02 + 0.06 * std::pow(std::sin(pi * (0.12 + 0.8 * f)), 2); }), detail.cut(28, 8));
+    maker.lathe(curve(0.26, detail.cut(20, 7),
+                      [](double f) { return f >= 1 ? 0.0 : 0.02 + 0.06 * std::pow(std::sin(pi * (0.12 + 0.8 * f)), 2); }),
+                detail.cut(28, 8));
     maker.brush.colour = brass;
     maker.rod({0, 0.24, 0}, {0, 0.36, 0}, 0.008, detail.cut(10));
     shade_cone(maker, stuff, 0.3, 0.15, 0.09, 0.19, detail);
@@ -77,7 +81,8 @@ importer::Mesh pendant_lamp(const Stuff& stuff, const Detail& detail) {
     maker.brush.frame = move({0, -1.0, 0});
     maker.brush.material = stuff.thin;
     maker.brush.colour = rgb(52, 78, 72);
-    maker.lathe(curve(0.24, detail.cut(12, 4), [](double f) { return 0.025 + 0.215 * std::sqrt(std::max(0.0, 1 - f * f)); }), detail.cut(36, 10));
+    maker.lathe(curve(0.24, detail.cut(12, 4), [](double f) { return 0.025 + 0.215 * std::sqrt(std::max(0.0, 1 - f * f)); }),
+                detail.cut(36, 10));
     maker.brush.material = stuff.plain;
     maker.brush.colour = rgb(255, 248, 220);
     maker.ellipsoid({0, 0.06, 0}, dvec3(0.05), detail.cut(16, 6), detail.cut(10, 4));
@@ -107,7 +112,8 @@ importer::Mesh curtain(const Stuff& stuff, const Detail& detail, double width, d
     });
     maker.brush = {stuff.plain, dark_wood, dmat4(1.0), 1.0};
     maker.rod({-0.55 * width, height + 0.02, 0}, {0.55 * width, height + 0.02, 0}, 0.014, detail.cut(10));
-    for (const double x : {-0.55 * width, 0.55 * width}) maker.ellipsoid({x, height + 0.02, 0}, dvec3(0.03), detail.cut(12, 6), detail.cut(8, 4));
+    for (const double x : {-0.55 * width, 0.55 * width})
+        maker.ellipsoid({x, height + 0.02, 0}, dvec3(0.03), detail.cut(12, 6), detail.cut(8, 4));
     return maker.take();
 }
 
@@ -115,7 +121,8 @@ importer::Mesh potted_plant(const Stuff& stuff, const Detail& detail, std::uint6
     Random random(seed);
     MeshMaker maker("potted plant");
     maker.brush = {stuff.plain, rgb(176, 96, 62), dmat4(1.0), 1.0};
-    vessel(maker, curve(0.32, detail.cut(8, 4), [](double f) { return 0.13 + 0.06 * f + (f > 0.85 ? 0.015 : 0.0); }), 0.012, detail.cut(32, 9));
+    vessel(maker, curve(0.32, detail.cut(8, 4), [](double f) { return 0.13 + 0.06 * f + (f > 0.85 ? 0.015 : 0.0); }), 0.012,
+           detail.cut(32, 9));
     maker.brush.colour = rgb(62, 46, 34);
     maker.brush.frame = move({0, 0.27, 0});
     maker.lathe(std::array{dvec2(0.17, 0), dvec2(0, 0.015)}, detail.cut(20, 8));
@@ -128,7 +135,8 @@ importer::Mesh potted_plant(const Stuff& stuff, const Detail& detail, std::uint6
         maker.brush.colour = mix(rgb(36, 84, 40), rgb(112, 158, 68), random.unit());
         maker.surface(detail.cut(4, 2), detail.cut(10, 3), [&](double u, double v) {
             const double w = 0.055 * std::sin(pi * std::clamp(0.08 + 0.92 * v, 0.0, 1.0)) * (u - 0.5) * 2;
-            return dvec3(0, 0.28, 0) + out * (reach * v) + dvec3(0, rise * v - 0.9 * rise * v * v * v * 0.6, 0) + side * w + dvec3(0, 0.3 * std::abs(w), 0);
+            return dvec3(0, 0.28, 0) + out * (reach * v) + dvec3(0, rise * v - 0.9 * rise * v * v * v * 0.6, 0) + side * w +
+                   dvec3(0, 0.3 * std::abs(w), 0);
         });
     }
     return maker.take();
@@ -139,14 +147,18 @@ importer::Mesh vase_of_flowers(const Stuff& stuff, const Detail& detail, std::ui
     Random random(seed);
     MeshMaker maker("vase of flowers");
     maker.brush = {stuff.plain, rgb(70, 110, 150), dmat4(1.0), 1.0};
-    vessel(maker, curve(0.24, detail.cut(18, 7), [](double f) { return 0.035 + 0.045 * std::pow(std::sin(pi * (0.1 + 0.75 * f)), 2) + 0.02 * f * f; }), 0.006, detail.cut(28, 8));
+    vessel(maker,
+           curve(0.24, detail.cut(18, 7),
+                 [](double f) { return 0.035 + 0.045 * std::pow(std::sin(pi * (0.1 + 0.75 * f)), 2) + 0.02 * f * f; }),
+           0.006, detail.cut(28, 8));
     const int flowers = detail.cut(14, 5);
     for (int i = 0; i < flowers; ++i) {
         const double angle = i * 2.39996;
         const dvec3 out(std::cos(angle), 0, std::sin(angle));
         const dvec3 tip = out * random.range(0.03, 0.16) + dvec3(0, random.range(0.34, 0.5), 0);
         maker.brush.colour = rgb(70, 116, 52);
-        maker.tube(std::array{dvec3(0, 0.12, 0), 0.5 * tip + dvec3(0, 0.1, 0) + out * 0.01, tip}, std::array{0.003, 0.003, 0.003}, 5, false);
+        maker.tube(std::array{dvec3(0, 0.12, 0), 0.5 * tip + dvec3(0, 0.1, 0) + out * 0.01, tip}, std::array{0.003, 0.003, 0.003},
+                   5, false);
         maker.brush.colour = petals[random.below(4)];
         maker.cushion(tip, {0.03, 0.022, 0.03}, 0.8, detail.cut(10, 6), detail.cut(6, 4));
         maker.brush.colour = rgb(236, 200, 60);
@@ -163,7 +175,8 @@ importer::Mesh bowl_of_fruit(const Stuff& stuff, const Detail& detail) {
     for (int i = 0; i < 7; ++i) {
         const double angle = i * 1.0472, ring = i == 6 ? 0.0 : 0.075;
         maker.brush.colour = skins[static_cast<std::size_t>(i) % 4];
-        maker.ellipsoid({ring * std::cos(angle), i == 6 ? 0.13 : 0.085, ring * std::sin(angle)}, {0.042, 0.039, 0.042}, detail.cut(20, 7), detail.cut(14, 5));
+        maker.ellipsoid({ring * std::cos(angle), i == 6 ? 0.13 : 0.085, ring * std::sin(angle)}, {0.042, 0.039, 0.042},
+                        detail.cut(20, 7), detail.cut(14, 5));
     }
     return maker.take();
 }
@@ -171,11 +184,14 @@ importer::Mesh bowl_of_fruit(const Stuff& stuff, const Detail& detail) {
 importer::Mesh teapot(const Stuff& stuff, const Detail& detail) {
     MeshMaker maker("teapot");
     maker.brush = {stuff.plain, china, dmat4(1.0), 1.0};
-    maker.lathe(curve(0.14, detail.cut(18, 7), [](double f) { return f >= 1 ? 0.0 : 0.04 + 0.055 * std::pow(std::sin(pi * (0.1 + 0.72 * f)), 1.0); }), detail.cut(32, 9));
+    maker.lathe(curve(0.14, detail.cut(18, 7),
+                      [](double f) { return f >= 1 ? 0.0 : 0.04 + 0.055 * std::pow(std::sin(pi * (0.1 + 0.72 * f)), 1.0); }),
+                detail.cut(32, 9));
     maker.brush.colour = rgb(60, 84, 140);
     maker.ellipsoid({0, 0.15, 0}, dvec3(0.014), detail.cut(12, 6), detail.cut(8, 4));
     maker.brush.colour = china;
-    maker.tube(std::array{dvec3(0.07, 0.05, 0), dvec3(0.12, 0.065, 0), dvec3(0.14, 0.1, 0), dvec3(0.165, 0.125, 0)}, std::array{0.024, 0.017, 0.013, 0.01}, detail.cut(14, 6), false);
+    maker.tube(std::array{dvec3(0.07, 0.05, 0), dvec3(0.12, 0.065, 0), dvec3(0.14, 0.1, 0), dvec3(0.165, 0.125, 0)},
+               std::array{0.024, 0.017, 0.013, 0.01}, detail.cut(14, 6), false);
     std::vector<dvec3> handle;
     std::vector<double> radii;
     for (int i = 0; i <= detail.cut(12, 5); ++i) {
@@ -190,17 +206,22 @@ importer::Mesh teapot(const Stuff& stuff, const Detail& detail) {
 importer::Mesh cup(const Stuff& stuff, const Detail& detail) {
     MeshMaker maker("cup");
     maker.brush = {stuff.plain, china, dmat4(1.0), 1.0};
-    maker.lathe(std::array{dvec2(0, 0), dvec2(0.04, 0), dvec2(0.075, 0.012), dvec2(0.075, 0.015), dvec2(0.04, 0.006), dvec2(0, 0.006)}, detail.cut(28, 8));
+    maker.lathe(
+        std::array{dvec2(0, 0), dvec2(0.04, 0), dvec2(0.075, 0.012), dvec2(0.075, 0.015), dvec2(0.04, 0.006), dvec2(0, 0.006)},
+        detail.cut(28, 8));
     maker.brush.frame = move({0, 0.006, 0});
     vessel(maker, curve(0.065, detail.cut(8, 4), [](double f) { return 0.022 + 0.02 * std::sqrt(f); }), 0.003, detail.cut(28, 8));
-    maker.tube(std::array{dvec3(0.036, 0.05, 0), dvec3(0.06, 0.05, 0), dvec3(0.06, 0.022, 0), dvec3(0.034, 0.018, 0)}, std::array{0.004, 0.004, 0.004, 0.004}, detail.cut(8, 4), false);
+    maker.tube(std::array{dvec3(0.036, 0.05, 0), dvec3(0.06, 0.05, 0), dvec3(0.06, 0.022, 0), dvec3(0.034, 0.018, 0)},
+               std::array{0.004, 0.004, 0.004, 0.004}, detail.cut(8, 4), false);
     return maker.take();
 }
 
 importer::Mesh plate(const Stuff& stuff, const Detail& detail) {
     MeshMaker maker("plate");
     maker.brush = {stuff.plain, china, dmat4(1.0), 1.0};
-    maker.lathe(std::array{dvec2(0, 0), dvec2(0.07, 0), dvec2(0.09, 0.006), dvec2(0.13, 0.018), dvec2(0.131, 0.021), dvec2(0.09, 0.01), dvec2(0.07, 0.005), dvec2(0, 0.005)}, detail.cut(36, 10));
+    maker.lathe(std::array{dvec2(0, 0), dvec2(0.07, 0), dvec2(0.09, 0.006), dvec2(0.13, 0.018), dvec2(0.131, 0.021),
+                           dvec2(0.09, 0.01), dvec2(0.07, 0.005), dvec2(0, 0.005)},
+                detail.cut(36, 10));
     maker.brush.colour = rgb(60, 84, 140);
     maker.lathe(std::array{dvec2(0.1, 0.0135), dvec2(0.112, 0.0165)}, detail.cut(36, 10));
     return maker.take();
@@ -220,7 +241,8 @@ importer::Mesh radiator(const Stuff& stuff, const Detail& detail) {
     maker.brush = {stuff.plain, rgb(236, 234, 228), dmat4(1.0), 1.0};
     for (int i = 0; i < 16; ++i) {
         const double x = -0.56 + 0.075 * i;
-        const std::array<dvec3, 6> rib{dvec3(x, 0.12, 0.06), dvec3(x, 0.1, 0.1), dvec3(x, 0.14, 0.13), dvec3(x, 0.62, 0.13), dvec3(x, 0.66, 0.1), dvec3(x, 0.64, 0.06)};
+        const std::array<dvec3, 6> rib{dvec3(x, 0.12, 0.06), dvec3(x, 0.1, 0.1),  dvec3(x, 0.14, 0.13),
+                                       dvec3(x, 0.62, 0.13), dvec3(x, 0.66, 0.1), dvec3(x, 0.64, 0.06)};
         maker.tube(rib, std::array{0.024, 0.028, 0.03, 0.03, 0.028, 0.024}, detail.cut(8, 4), true);
     }
     for (const double y : {0.14, 0.62}) maker.rod({-0.6, y, 0.1}, {0.62, y, 0.1}, 0.022, detail.cut(10));
@@ -231,7 +253,8 @@ importer::Mesh radiator(const Stuff& stuff, const Detail& detail) {
 importer::Mesh wall_clock(const Stuff& stuff, const Detail& detail) {
     MeshMaker maker("wall clock");
     maker.brush = {stuff.plain, dark_wood, turn(pi / 2, dvec3(1, 0, 0)), 1.0};
-    maker.lathe(std::array{dvec2(0.17, 0), dvec2(0.17, 0.03), dvec2(0.155, 0.045), dvec2(0.14, 0.04), dvec2(0.14, 0.03)}, detail.cut(40, 12));
+    maker.lathe(std::array{dvec2(0.17, 0), dvec2(0.17, 0.03), dvec2(0.155, 0.045), dvec2(0.14, 0.04), dvec2(0.14, 0.03)},
+                detail.cut(40, 12));
     maker.brush.colour = rgb(246, 242, 230);
     maker.lathe(std::array{dvec2(0.142, 0.03), dvec2(0, 0.03)}, detail.cut(40, 12));
     maker.brush = {stuff.plain, rgb(30, 28, 28), dmat4(1.0), 1.0};

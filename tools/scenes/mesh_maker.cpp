@@ -21,13 +21,15 @@ double power(double value, double exponent) { return std::copysign(std::pow(std:
 
 Colour shade(const Colour& colour, double factor) {
     Colour out = colour;
-    for (std::size_t i = 0; i < 3; ++i) out[i] = static_cast<std::uint8_t>(std::clamp(static_cast<double>(colour[i]) * factor, 0.0, 255.0));
+    for (std::size_t i = 0; i < 3; ++i)
+        out[i] = static_cast<std::uint8_t>(std::clamp(static_cast<double>(colour[i]) * factor, 0.0, 255.0));
     return out;
 }
 
 Colour mix(const Colour& a, const Colour& b, double t) {
     Colour out{};
-    for (std::size_t i = 0; i < 4; ++i) out[i] = static_cast<std::uint8_t>(std::clamp(a[i] + (b[i] - a[i]) * std::clamp(t, 0.0, 1.0), 0.0, 255.0));
+    for (std::size_t i = 0; i < 4; ++i)
+        out[i] = static_cast<std::uint8_t>(std::clamp(a[i] + (b[i] - a[i]) * std::clamp(t, 0.0, 1.0), 0.0, 255.0));
     return out;
 }
 
@@ -121,12 +123,14 @@ void MeshMaker::lathe(std::span<const dvec2> profile, int sides) {
         std::vector<std::uint32_t> v;
         for (int r = 0; r <= rows; ++r) {
             const dvec2& here = stretch_of[static_cast<std::size_t>(r)];
-            const dvec2 along = stretch_of[static_cast<std::size_t>(std::min(r + 1, rows))] - stretch_of[static_cast<std::size_t>(std::max(r - 1, 0))];
+            const dvec2 along = stretch_of[static_cast<std::size_t>(std::min(r + 1, rows))] -
+                                stretch_of[static_cast<std::size_t>(std::max(r - 1, 0))];
             for (int s = 0; s <= sides; ++s) {
                 const double angle = 2.0 * pi * s / sides;
                 const dvec3 out(std::cos(angle), 0, -std::sin(angle));
                 const dvec3 normal = out * along.y - dvec3(0, along.x, 0);
-                v.push_back(vertex(out * here.x + dvec3(0, here.y, 0), normal, {static_cast<double>(s) / sides, -here.y * brush.uv_per_m}));
+                v.push_back(vertex(out * here.x + dvec3(0, here.y, 0), normal,
+                                   {static_cast<double>(s) / sides, -here.y * brush.uv_per_m}));
             }
         }
         emit_grid(v, sides, rows);
@@ -135,7 +139,9 @@ void MeshMaker::lathe(std::span<const dvec2> profile, int sides) {
     }
 }
 
-void MeshMaker::ellipsoid(const dvec3& centre, const dvec3& radii, int sides, int rings) { cushion(centre, radii, 1.0, sides, rings); }
+void MeshMaker::ellipsoid(const dvec3& centre, const dvec3& radii, int sides, int rings) {
+    cushion(centre, radii, 1.0, sides, rings);
+}
 
 void MeshMaker::cushion(const dvec3& centre, const dvec3& half, double roundness, int sides, int rings) {
     const double e = std::max(roundness, 0.05);
@@ -162,7 +168,9 @@ void MeshMaker::tube(std::span<const dvec3> centres, std::span<const double> rad
     double length = 0;
     for (int r = 0; r <= rows; ++r) {
         const auto i = static_cast<std::size_t>(r);
-        const dvec3 along = unit_or(centres[static_cast<std::size_t>(std::min(r + 1, rows))] - centres[static_cast<std::size_t>(std::max(r - 1, 0))], dvec3(0, 1, 0));
+        const dvec3 along = unit_or(
+            centres[static_cast<std::size_t>(std::min(r + 1, rows))] - centres[static_cast<std::size_t>(std::max(r - 1, 0))],
+            dvec3(0, 1, 0));
         if (r == 0) side = std::abs(along.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
         side = unit_or(side - along * glm::dot(side, along), dvec3(0, 0, 1));
         const dvec3 other = glm::cross(along, side);
@@ -185,7 +193,8 @@ void MeshMaker::tube(std::span<const dvec3> centres, std::span<const double> rad
         brush.frame = dmat4(1.0);
         const dvec3 turned = unit_or(glm::transpose(glm::inverse(dmat3(frame))) * normal, normal);
         for (int s = 0; s <= sides; ++s) {
-            const std::size_t from = end == 0 ? static_cast<std::size_t>(s) : v.size() - static_cast<std::size_t>(sides) - 1 + static_cast<std::size_t>(s);
+            const std::size_t from = end == 0 ? static_cast<std::size_t>(s)
+                                              : v.size() - static_cast<std::size_t>(sides) - 1 + static_cast<std::size_t>(s);
             rim.push_back(vertex(dvec3(p.positions[v[from]]), turned, {0.5, 0.5}));
         }
         brush.frame = frame;
@@ -212,12 +221,14 @@ void MeshMaker::surface(int columns, int rows, const std::function<dvec3(double,
 
 void MeshMaker::leaf(const dvec3& base, const dvec3& tip, const dvec3& side, const dvec3& normal) {
     const dvec3 middle = 0.5 * (base + tip);
-    const std::array<std::uint32_t, 4> v{vertex(base, normal, {0, 1}), vertex(middle + side, normal, {1, 1}), vertex(middle - side, normal, {0, 0}), vertex(tip, normal, {1, 0})};
+    const std::array<std::uint32_t, 4> v{vertex(base, normal, {0, 1}), vertex(middle + side, normal, {1, 1}),
+                                         vertex(middle - side, normal, {0, 0}), vertex(tip, normal, {1, 0})};
     emit_grid(v, 1, 1);
 }
 
 void MeshMaker::blade(const dvec3& base, const dvec3& tip, const dvec3& side, const dvec3& normal) {
-    const std::uint32_t a = vertex(base - side, normal, {0, 1}), b = vertex(base + side, normal, {1, 1}), c = vertex(tip, normal, {0.5, 0});
+    const std::uint32_t a = vertex(base - side, normal, {0, 1}), b = vertex(base + side, normal, {1, 1}),
+                        c = vertex(tip, normal, {0.5, 0});
     emit(a, b, c);
 }
 

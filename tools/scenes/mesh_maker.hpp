@@ -34,8 +34,8 @@ dmat4 stretch(const dvec3& by);
 struct Brush {
     Index material = 0;
     Colour colour{255, 255, 255, 255};
-    dmat4 frame{1.0};         ///< shape to mesh; not mirrored
-    double uv_per_m = 1.0;    ///< repeats of the texture a metre
+    dmat4 frame{1.0};       ///< shape to mesh; not mirrored
+    double uv_per_m = 1.0;  ///< repeats of the texture a metre
 };
 
 class MeshMaker {

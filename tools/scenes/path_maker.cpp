@@ -7,7 +7,7 @@
 namespace surefoot::scenes {
 namespace {
 
-constexpr double samples_per_s = 30.0;
+constexpr double samples_per_s = 30.0, pi = 3.14159265358979323846;
 constexpr int steps_a_stretch = 64;
 
 struct Place {
@@ -20,7 +20,9 @@ dvec3 spline(const dvec3& p0, const dvec3& p1, const dvec3& p2, const dvec3& p3,
     const auto gap = [](const dvec3& a, const dvec3& b) { return std::max(std::sqrt(glm::length(b - a)), 1e-4); };
     const double t0 = 0, t1 = t0 + gap(p0, p1), t2 = t1 + gap(p1, p2), t3 = t2 + gap(p2, p3);
     const double t = t1 + (t2 - t1) * u;
-    const auto blend = [t](const dvec3& a, const dvec3& b, double ta, double tb) { return a * ((tb - t) / (tb - ta)) + b * ((t - ta) / (tb - ta)); };
+    const auto blend = [t](const dvec3& a, const dvec3& b, double ta, double tb) {
+        return a * ((tb - t) / (tb - ta)) + b * ((t - ta) / (tb - ta));
+    };
     const dvec3 a1 = blend(p0, p1, t0, t1), a2 = blend(p1, p2, t1, t2), a3 = blend(p2, p3, t2, t3);
     return blend(blend(a1, a2, t0, t2), blend(a2, a3, t1, t3), t1, t2);
 }
@@ -56,14 +58,15 @@ std::vector<double> times_of(const std::vector<Place>& curve, std::span<const Wa
 }
 
 /// Gaussian over time, reflected at the ends. Even steps: sums in a fixed order.
-std::vector<dvec3> smooth(const std::vector<dvec3>& in, double sigma_s) {
+template <class T>
+std::vector<T> smooth(const std::vector<T>& in, double sigma_s) {
     const int reach = static_cast<int>(std::ceil(2.5 * sigma_s * samples_per_s));
     std::vector<double> weights;
     for (int k = -reach; k <= reach; ++k) weights.push_back(std::exp(-0.5 * std::pow(k / (sigma_s * samples_per_s), 2)));
     const int last = static_cast<int>(in.size()) - 1;
-    std::vector<dvec3> out(in.size());
+    std::vector<T> out(in.size());
     for (int i = 0; i <= last; ++i) {
-        dvec3 sum(0);
+        T sum(0);
         double total = 0;
         for (int k = -reach; k <= reach; ++k) {
             const double weight = weights[static_cast<std::size_t>(k + reach)];
@@ -76,7 +79,8 @@ std::vector<dvec3> smooth(const std::vector<dvec3>& in, double sigma_s) {
 }
 
 /// Where the eye is at each sample, and between which waypoints.
-std::vector<Place> walk(const std::vector<Place>& curve, const std::vector<double>& times, std::span<const Waypoint> w, double duration_s) {
+std::vector<Place> walk(const std::vector<Place>& curve, const std::vector<double>& times, std::span<const Waypoint> w,
+                        double duration_s) {
     std::vector<Place> out;
     const auto count = static_cast<std::size_t>(std::lround(duration_s * samples_per_s)) + 1;
     std::size_t at = 0;
@@ -87,39 +91,39 @@ std::vector<Place> walk(const std::vector<Place>& curve, const std::vector<doubl
         const double start = waits ? times[at] + w[at / steps_a_stretch].pause_s : times[at];
         const double span = times[at + 1] - start;
         const double u = span > 0 ? std::clamp((t - start) / span, 0.0, 1.0) : 0.0;
-        out.push_back({curve[at].eye + (curve[at + 1].eye - curve[at].eye) * u, curve[at].waypoint + (curve[at + 1].waypoint - curve[at].waypoint) * u});
+        out.push_back({curve[at].eye + (curve[at + 1].eye - curve[at].eye) * u,
+                       curve[at].waypoint + (curve[at + 1].waypoint - curve[at].waypoint) * u});
     }
     return out;
 }
 
-/// One looks where one will be in a second or so.
-std::vector<dvec3> gazes_of(const std::vector<Place>& places, const std::vector<dvec3>& eyes, std::span<const Waypoint> w) {
+/// Heading (0: -z, grows to the left) and lift of a look, radians.
+dvec2 angles_of(const dvec3& look) { return {std::atan2(-look.x, -look.z), std::atan2(look.y, std::hypot(look.x, look.z))}; }
+
+double nearest_turn(double angle, double to) { return angle - 2 * pi * std::round((angle - to) / (2 * pi)); }
+
+/// One looks where one will be in a second or so, or at what the waypoint names; from one to the next the head turns the
+/// way that was shorter when it began. Headings are unwrapped, so that they can be smoothed.
+std::vector<dvec2> gazes_of(const std::vector<Place>& places, const std::vector<dvec3>& eyes, std::span<const Waypoint> w) {
     constexpr auto look_ahead = static_cast<std::size_t>(1.2 * samples_per_s);
-    std::vector<dvec3> out;
+    std::vector<dvec2> out;
     dvec3 ahead(0, 0, -1);
+    double turn = 0;
+    std::size_t between = w.size();
     for (std::size_t s = 0; s < eyes.size(); ++s) {
         const dvec3 step = eyes[std::min(s + look_ahead, eyes.size() - 1)] - eyes[s];
-        if (glm::length(step) > 0.2) ahead = glm::normalize(dvec3(step.x, 0.6 * step.y, step.z));
-        const auto gaze = [&](std::size_t i) {
-            const dvec3 to = w[i].look - eyes[s];
-            return w[i].ahead || glm::length(to) < 1e-6 ? ahead : glm::normalize(to);
-        };
+        if (glm::length(step) > 0.2) ahead = dvec3(step.x, 0.6 * step.y, step.z);
+        const auto gaze = [&](std::size_t i) { return angles_of(w[i].ahead ? ahead : w[i].look - eyes[s]); };
         const auto i = std::min(static_cast<std::size_t>(places[s].waypoint), w.size() - 2);
+        const dvec2 from = gaze(i), to = gaze(i + 1);
+        turn = nearest_turn(to.x - from.x, i == between ? turn : 0.0);
+        between = i;
         const double f = std::clamp(places[s].waypoint - static_cast<double>(i), 0.0, 1.0);
         const double eased = f * f * (3 - 2 * f);
-        out.push_back(gaze(i) * (1 - eased) + gaze(i + 1) * eased);
+        const double heading = from.x + turn * eased;
+        out.emplace_back(out.empty() ? heading : nearest_turn(heading, out.back().x), from.y + (to.y - from.y) * eased);
     }
     return out;
-}
-
-/// Looks along `gaze` with the horizon level; straight up or down keeps the heading before.
-dquat looking(const dvec3& gaze, const dquat& before) {
-    const dvec3 forward = glm::normalize(gaze);
-    const dvec3 right = glm::cross(forward, dvec3(0, 1, 0));
-    if (glm::length(right) < 1e-3) return before;
-    const dvec3 r = glm::normalize(right), u = glm::cross(r, forward);
-    dquat q = glm::normalize(glm::quat_cast(dmat3(r, u, -forward)));
-    return glm::dot(q, before) < 0 ? -q : q;
 }
 
 }  // namespace
@@ -129,13 +133,14 @@ Path make_path(std::span<const Waypoint> waypoints, double duration_s, const std
     const std::vector<Place> places = walk(curve, times_of(curve, waypoints, duration_s), waypoints, duration_s);
     std::vector<dvec3> eyes;
     for (const Place& place : places) eyes.push_back(place.eye + dvec3(0, ground ? ground(place.eye.x, place.eye.z) : 0.0, 0));
-    eyes = smooth(eyes, 0.15);
-    const std::vector<dvec3> gazes = smooth(gazes_of(places, eyes, waypoints), 0.55);
+    eyes = smooth(eyes, 0.3);
+    const std::vector<dvec2> gazes = smooth(gazes_of(places, eyes, waypoints), 0.9);
     Path path;
-    dquat orientation(1, 0, 0, 0);
+    dquat before(1, 0, 0, 0);
     for (std::size_t i = 0; i < eyes.size(); ++i) {
-        if (glm::length(gazes[i]) > 1e-6) orientation = looking(gazes[i], orientation);
-        path.samples.push_back({static_cast<double>(i) / samples_per_s, Pose{eyes[i], orientation, 60.0 * 3.14159265358979323846 / 180.0}});
+        const dquat q = glm::angleAxis(gazes[i].x, dvec3(0, 1, 0)) * glm::angleAxis(gazes[i].y, dvec3(1, 0, 0));
+        before = glm::dot(q, before) < 0 ? -q : q;
+        path.samples.push_back({static_cast<double>(i) / samples_per_s, Pose{eyes[i], before, pi / 3}});
     }
     return path;
 }

@@ -40,13 +40,15 @@ std::vector<Clump> grow_wood(MeshMaker& maker, const TreeShape& s, Random& rando
         const double f = (b + 0.5) / s.branches;
         const double from_y = s.crown_base + (0.8 * s.height - s.crown_base) * f;
         const double angle = b * 2.39996 + random.range(-0.3, 0.3);
-        const double reach = s.crown_radius * std::sqrt(std::max(0.1, 1 - std::pow(f - 0.25, 2))) * random.range(0.7, 1.0) * (1 - 0.45 * f);
+        const double reach =
+            s.crown_radius * std::sqrt(std::max(0.1, 1 - std::pow(f - 0.25, 2))) * random.range(0.7, 1.0) * (1 - 0.45 * f);
         const double at = std::clamp((from_y + 0.3) / (0.9 * s.height) * rings, 0.0, rings - 1e-3);
         const auto i = static_cast<std::size_t>(at);
         const dvec3 start = glm::mix(trunk[i], trunk[i + 1], at - static_cast<double>(i));
         const dvec3 out(std::cos(angle), 0, std::sin(angle));
         const double rise = random.range(0.25, 0.6) * reach;
-        const std::array<dvec3, 4> line{start, start + out * (0.35 * reach) + dvec3(0, 0.15 * rise, 0), start + out * (0.7 * reach) + dvec3(0, 0.5 * rise, 0),
+        const std::array<dvec3, 4> line{start, start + out * (0.35 * reach) + dvec3(0, 0.15 * rise, 0),
+                                        start + out * (0.7 * reach) + dvec3(0, 0.5 * rise, 0),
                                         start + out * reach + dvec3(0, rise, 0)};
         const double r = s.trunk_radius * (0.5 - 0.25 * f);
         maker.tube(line, std::array{r, 0.75 * r, 0.5 * r, 0.2 * r}, 4, false);
@@ -67,7 +69,8 @@ void grow_leaves(MeshMaker& maker, const std::vector<Clump>& clumps, const TreeS
         const dvec3 place = clump.centre + out * clump.radius * random.range(0.55, 1.0);
         const dvec3 crown_out = glm::normalize(place - middle + dvec3(0, 0.3, 0));
         const dvec3 normal = glm::normalize(0.6 * out + 0.8 * crown_out + dvec3(0, 0.35, 0));
-        const dvec3 hang = s.needles ? glm::normalize(out + 0.4 * on_sphere(random)) : glm::normalize(across(out, on_sphere(random)) + dvec3(0, -0.45, 0));
+        const dvec3 hang = s.needles ? glm::normalize(out + 0.4 * on_sphere(random))
+                                     : glm::normalize(across(out, on_sphere(random)) + dvec3(0, -0.45, 0));
         const dvec3 side = across(hang, s.needles ? on_sphere(random) : out) * s.leaf_width * random.range(0.8, 1.2);
         const double length = s.leaf_length * random.range(0.7, 1.25);
         const double light = 0.15 + 0.45 * (crown_out.y * 0.5 + 0.5) + 0.25 * (out.y * 0.5 + 0.5) + random.range(-0.12, 0.22);
@@ -90,7 +93,8 @@ void weather_bark(importer::Primitive& bark, const TreeShape& s, Random& random)
 
 }  // namespace
 
-importer::Mesh broad_tree(const std::string& name, const PlantMaterials& materials, const TreeShape& shape, std::size_t triangles, std::uint64_t seed) {
+importer::Mesh broad_tree(const std::string& name, const PlantMaterials& materials, const TreeShape& shape, std::size_t triangles,
+                          std::uint64_t seed) {
     Random random(seed);
     MeshMaker maker(name);
     maker.brush.material = materials.bark;
@@ -103,7 +107,8 @@ importer::Mesh broad_tree(const std::string& name, const PlantMaterials& materia
     return mesh;
 }
 
-importer::Mesh spruce(const std::string& name, const PlantMaterials& materials, double height, double radius, std::size_t triangles, std::uint64_t seed) {
+importer::Mesh spruce(const std::string& name, const PlantMaterials& materials, double height, double radius,
+                      std::size_t triangles, std::uint64_t seed) {
     Random random(seed);
     MeshMaker maker(name);
     maker.brush.material = materials.bark;
@@ -125,7 +130,8 @@ importer::Mesh spruce(const std::string& name, const PlantMaterials& materials, 
         maker.brush.colour = mix(rgb(22, 48, 30), rgb(74, 112, 62), 0.2 + 0.35 * level + random.range(-0.1, 0.35));
         maker.leaf(base, tip, side, normal);
         maker.brush.colour = shade(maker.brush.colour, 0.8);
-        maker.leaf(base + out * (0.1 * reach), tip + dvec3(0, -0.12 * reach, 0), dvec3(0, -0.16 * reach - 0.05, 0), glm::normalize(out + dvec3(0, 0.2, 0)));
+        maker.leaf(base + out * (0.1 * reach), tip + dvec3(0, -0.12 * reach, 0), dvec3(0, -0.16 * reach - 0.05, 0),
+                   glm::normalize(out + dvec3(0, 0.2, 0)));
     }
     return maker.take();
 }
@@ -137,7 +143,8 @@ importer::Mesh fern(const PlantMaterials& materials, std::uint64_t seed) {
     for (int i = 0; i < 10; ++i) {
         const double angle = i * 0.62832 + random.range(-0.2, 0.2), length = random.range(0.45, 0.7);
         const dvec3 out(std::cos(angle), 0, std::sin(angle));
-        const dvec3 bow = out * (0.5 * length) + dvec3(0, 0.75 * length, 0), tip = out * (1.15 * length) + dvec3(0, 0.55 * length, 0);
+        const dvec3 bow = out * (0.5 * length) + dvec3(0, 0.75 * length, 0),
+                    tip = out * (1.15 * length) + dvec3(0, 0.55 * length, 0);
         const dvec3 side = across(out, dvec3(0, 1, 0)) * 0.09;
         maker.brush.colour = mix(rgb(44, 86, 30), rgb(110, 156, 58), random.range(0.1, 0.9));
         maker.leaf(dvec3(0), bow, side * 0.7, glm::normalize(dvec3(0, 1, 0) - 0.4 * out));
@@ -154,7 +161,8 @@ importer::Mesh grass_tuft(const PlantMaterials& materials, std::uint64_t seed) {
         const double angle = random.range(0, 2 * pi), height = random.range(0.2, 0.5);
         const dvec3 out(std::cos(angle), 0, std::sin(angle));
         maker.brush.colour = mix(rgb(78, 110, 40), rgb(164, 178, 84), random.unit());
-        maker.blade(out * 0.05, out * random.range(0.1, 0.3) + dvec3(0, height, 0), across(out, dvec3(0, 1, 0)) * 0.018, dvec3(0, 1, 0));
+        maker.blade(out * 0.05, out * random.range(0.1, 0.3) + dvec3(0, height, 0), across(out, dvec3(0, 1, 0)) * 0.018,
+                    dvec3(0, 1, 0));
     }
     return maker.take();
 }
@@ -164,7 +172,8 @@ importer::Mesh rock(const PlantMaterials& materials, std::uint64_t seed) {
     MeshMaker maker("rock");
     maker.brush.material = materials.bark;
     maker.brush.colour = mix(rgb(112, 110, 104), rgb(140, 134, 122), random.unit());
-    maker.brush.frame = turn(random.range(-0.4, 0.4), dvec3(1, 0, 0)) * stretch({random.range(0.4, 0.8), random.range(0.25, 0.45), random.range(0.4, 0.7)});
+    maker.brush.frame = turn(random.range(-0.4, 0.4), dvec3(1, 0, 0)) *
+                        stretch({random.range(0.4, 0.8), random.range(0.25, 0.45), random.range(0.4, 0.7)});
     maker.lathe(std::array{dvec2(0, -0.6), dvec2(0.95, -0.2), dvec2(0.8, 0.55), dvec2(0, 0.9)}, 5);
     return maker.take();
 }
@@ -174,15 +183,18 @@ importer::Mesh fallen_log(const PlantMaterials& materials, std::uint64_t seed) {
     MeshMaker maker("fallen log");
     maker.brush.material = materials.bark;
     maker.brush.colour = rgb(98, 80, 60);
-    maker.tube(std::array{dvec3(-2.1, 0.18, 0), dvec3(0.1, 0.24, random.range(-0.15, 0.15)), dvec3(2.3, 0.2, 0)}, std::array{0.26, 0.23, 0.18}, 10, true);
+    maker.tube(std::array{dvec3(-2.1, 0.18, 0), dvec3(0.1, 0.24, random.range(-0.15, 0.15)), dvec3(2.3, 0.2, 0)},
+               std::array{0.26, 0.23, 0.18}, 10, true);
     importer::Mesh mesh = maker.take();
     for (std::size_t i = 0; i < mesh.primitives[0].positions.size(); ++i) {
-        if (mesh.primitives[0].normals[i].y > 0.4F) mesh.primitives[0].colours[i] = mix(mesh.primitives[0].colours[i], rgb(88, 112, 46), random.range(0.3, 0.8));
+        if (mesh.primitives[0].normals[i].y > 0.4F)
+            mesh.primitives[0].colours[i] = mix(mesh.primitives[0].colours[i], rgb(88, 112, 46), random.range(0.3, 0.8));
     }
     return mesh;
 }
 
-importer::Mesh bush(const std::string& name, const PlantMaterials& materials, double radius, std::size_t triangles, const Colour& dark, const Colour& light, std::uint64_t seed) {
+importer::Mesh bush(const std::string& name, const PlantMaterials& materials, double radius, std::size_t triangles,
+                    const Colour& dark, const Colour& light, std::uint64_t seed) {
     Random random(seed);
     MeshMaker maker(name);
     maker.brush.material = materials.leaf;
@@ -194,7 +206,9 @@ importer::Mesh bush(const std::string& name, const PlantMaterials& materials, do
     shape.dark = dark;
     shape.light = light;
     std::vector<Clump> clumps;
-    for (int i = 0; i < 7; ++i) clumps.push_back({dvec3(random.range(-0.4, 0.4), random.range(0.5, 0.95), random.range(-0.4, 0.4)) * radius, 0.5 * radius});
+    for (int i = 0; i < 7; ++i)
+        clumps.push_back(
+            {dvec3(random.range(-0.4, 0.4), random.range(0.5, 0.95), random.range(-0.4, 0.4)) * radius, 0.5 * radius});
     grow_leaves(maker, clumps, shape, triangles / 2, random);
     return maker.take();
 }

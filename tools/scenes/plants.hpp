@@ -23,15 +23,18 @@ struct TreeShape {
 };
 
 /// A broad-leaved tree or pine of exactly `triangles` (even, and more than its wood takes).
-importer::Mesh broad_tree(const std::string& name, const PlantMaterials& materials, const TreeShape& shape, std::size_t triangles, std::uint64_t seed);
+importer::Mesh broad_tree(const std::string& name, const PlantMaterials& materials, const TreeShape& shape, std::size_t triangles,
+                          std::uint64_t seed);
 /// A spruce of exactly `triangles` (a multiple of 4 above its trunk).
-importer::Mesh spruce(const std::string& name, const PlantMaterials& materials, double height, double radius, std::size_t triangles, std::uint64_t seed);
+importer::Mesh spruce(const std::string& name, const PlantMaterials& materials, double height, double radius,
+                      std::size_t triangles, std::uint64_t seed);
 
 importer::Mesh fern(const PlantMaterials& materials, std::uint64_t seed);        ///< 40 triangles
 importer::Mesh grass_tuft(const PlantMaterials& materials, std::uint64_t seed);  ///< 10
 importer::Mesh rock(const PlantMaterials& materials, std::uint64_t seed);        ///< 20
 importer::Mesh fallen_log(const PlantMaterials& materials, std::uint64_t seed);  ///< 60
 /// Leaves in a ball on the ground, `triangles` (even) of them.
-importer::Mesh bush(const std::string& name, const PlantMaterials& materials, double radius, std::size_t triangles, const Colour& dark, const Colour& light, std::uint64_t seed);
+importer::Mesh bush(const std::string& name, const PlantMaterials& materials, double radius, std::size_t triangles,
+                    const Colour& dark, const Colour& light, std::uint64_t seed);
 
 }  // namespace surefoot::scenes

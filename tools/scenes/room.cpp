@@ -56,7 +56,8 @@ Pieces make_pieces(SceneMaker& maker, const Stuff& stuff, const Detail& detail, 
     p.curtain = maker.mesh(curtain(stuff, detail, 0.7, 2.2, rgb(120, 58, 50)));
     p.door = maker.mesh(door_leaf(stuff, door_to - door_from - 0.04, door_height - 0.03, rgb(236, 232, 222), detail));
     for (std::size_t i = 0; i < p.books.size(); ++i) p.books[i] = maker.mesh(row_of_books(stuff, 1.12, true, seed + 20 + i));
-    for (int i = 0; i < 4; ++i) p.pictures[static_cast<std::size_t>(i)] = maker.mesh(picture(stuff, i, i % 2 == 0 ? 0.8 : 0.56, i % 2 == 0 ? 0.6 : 0.42));
+    for (int i = 0; i < 4; ++i)
+        p.pictures[static_cast<std::size_t>(i)] = maker.mesh(picture(stuff, i, i % 2 == 0 ? 0.8 : 0.56, i % 2 == 0 ? 0.6 : 0.42));
     return p;
 }
 
@@ -123,13 +124,15 @@ struct Placer {
 /// Six chairs pushed in so far that their seats and backs overlap the table's edge and apron; crockery for each.
 void lay_table(const Placer& place, const Pieces& p, const dvec3& at) {
     const Index table = place.put("dining table", p.table, at);
-    const std::array<std::array<double, 3>, 6> seats{{{-0.45, 0.46, pi}, {0.45, 0.46, pi}, {-0.45, -0.46, 0}, {0.45, -0.46, 0}, {-0.86, 0, pi / 2}, {0.86, 0, -pi / 2}}};
+    const std::array<std::array<double, 3>, 6> seats{
+        {{-0.45, 0.46, pi}, {0.45, 0.46, pi}, {-0.45, -0.46, 0}, {0.45, -0.46, 0}, {-0.86, 0, pi / 2}, {0.86, 0, -pi / 2}}};
     for (const auto& [x, z, angle] : seats) {
         place.put("chair", p.chair, {place.about(x, 0.03), 0, place.about(z, 0.03)}, place.about(angle, 0.12), table);
         const dvec3 inwards = glm::normalize(dvec3(-x * (std::abs(z) < 0.1 ? 1 : 0), 0, -z));
         const dvec3 setting = dvec3(x, 0.752, z) + inwards * (std::abs(z) < 0.1 ? 0.14 : 0.22);
         place.put("plate", p.plate, setting, 0, table);
-        place.put("cup", p.cup, setting + dvec3(place.about(0.19, 0.02), 0, place.about(0.02, 0.04)), place.random.range(0, 6), table);
+        place.put("cup", p.cup, setting + dvec3(place.about(0.19, 0.02), 0, place.about(0.02, 0.04)), place.random.range(0, 6),
+                  table);
     }
     place.put("bowl of fruit", p.fruit, {0.0, 0.752, 0}, 0.4, table);
     place.put("teapot", p.teapot, {0.36, 0.752, 0.04}, place.random.range(0, 6), table);
@@ -183,7 +186,9 @@ void furnish(SceneMaker& maker, const Pieces& p, Index room, Random& random) {
 /// In at the door, along the clutter of the table, the books, the seats, a look back over all, and out or to the window.
 void pass_room(std::vector<Waypoint>& way, double x0, bool last) {
     const auto go = [&](double x, double z, double y = eye) { way.push_back({{x0 + x, y, z}, {}, true, 0}); };
-    const auto look = [&](double x, double z, const dvec3& at, double pause_s, double y = eye) { way.push_back({{x0 + x, y, z}, at + dvec3(x0, 0, 0), false, pause_s}); };
+    const auto look = [&](double x, double z, const dvec3& at, double pause_s, double y = eye) {
+        way.push_back({{x0 + x, y, z}, at + dvec3(x0, 0, 0), false, pause_s});
+    };
     go(-0.9, lane);
     go(0.35, lane);
     look(1.3, 4.2, {2.4, 0.7, 2.2}, 0.5);
@@ -207,13 +212,15 @@ GeneratedScene make_room(double scale, std::uint64_t seed) {
     SceneMaker maker;
     Random random(seed);
     const Stuff stuff = make_stuff(maker, seed);
-    const Surfaces surfaces{maker.material("wallpaper", {255, 255, 255, 255}, maker.image(wallpaper(seed + 40, rgb(226, 214, 188), rgb(160, 150, 112)))),
+    const Surfaces surfaces{maker.material("wallpaper", {255, 255, 255, 255},
+                                           maker.image(wallpaper(seed + 40, rgb(226, 214, 188), rgb(160, 150, 112)))),
                             maker.material("parquet", {255, 255, 255, 255}, maker.image(planks(seed + 41, rgb(190, 146, 98)))),
                             maker.material("plaster", {255, 255, 255, 255}, maker.image(plaster(seed + 42, rgb(246, 243, 236))))};
     const Detail detail{0.69 * std::clamp(std::sqrt(scale), 0.1, 1.0)};
     const Pieces pieces = make_pieces(maker, stuff, detail, seed);
     const int rooms = std::max(1, static_cast<int>(std::lround(scale)));
-    const Index shell_open = rooms > 1 ? maker.mesh(shell(stuff, surfaces, true)) : none, shell_last = maker.mesh(shell(stuff, surfaces, false));
+    const Index shell_open = rooms > 1 ? maker.mesh(shell(stuff, surfaces, true)) : none,
+                shell_last = maker.mesh(shell(stuff, surfaces, false));
     const Index entry = maker.node("corridor", none, maker.mesh(corridor(surfaces)), dmat4(1.0));
     maker.node("door", entry, pieces.door, move({-0.02, 0, door_to}) * turn_y(-0.06));
     std::vector<Waypoint> way{{{-3.2, eye, lane}, {}, true, 0}};

@@ -11,7 +11,9 @@ Index last_of(std::size_t size) { return static_cast<Index>(size - 1); }
 /// Plain materials need no coordinates, white shapes no colours: a scene calls only for what it shows.
 void drop_needless(importer::Primitive& p, const importer::Material& material) {
     if (material.image == importer::none) p.uvs.clear();
-    const bool white = std::all_of(p.colours.begin(), p.colours.end(), [](const Colour& c) { return c == Colour{255, 255, 255, 255}; });
+    const bool white = std::all_of(p.colours.begin(), p.colours.end(), [](const Colour& c) {
+        return c == Colour{255, 255, 255, 255};
+    });
     if (white) p.colours.clear();
 }
 
@@ -34,7 +36,10 @@ Index SceneMaker::material(const std::string& name, const Colour& colour, Index 
 }
 
 Index SceneMaker::mesh(importer::Mesh made) {
-    for (importer::Primitive& p : made.primitives) drop_needless(p, scene.materials[p.material]);
+    for (importer::Primitive& p : made.primitives) {
+        drop_needless(p, scene.materials[p.material]);
+        importer::clean(p, made.name, scene.warnings);  // poles leave vertices that no triangle uses
+    }
     std::erase_if(made.primitives, [](const importer::Primitive& p) { return p.indices.empty(); });
     scene.meshes.push_back(std::move(made));
     return last_of(scene.meshes.size());

@@ -32,7 +32,8 @@ std::string names_in_words() {
 
 Result<void> write_model(const std::string& out, const importer::Scene& scene) {
     std::string ending = std::filesystem::path(out).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (ending == ".glb") return write_glb(out, scene);
     if (ending == ".obj") return write_obj(out, scene);
     if (ending == ".ostf") return importer::write_ostf(out, scene, {});
@@ -48,7 +49,8 @@ std::vector<std::string> scene_names() {
 }
 
 Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed) {
-    if (!(scale >= 0.01 && scale <= 200.0)) return Error{std::string(name), fmt::format("scale {} is out of range", scale), "choose 0.01 to 200"};
+    if (!(scale >= 0.01 && scale <= 200.0))
+        return Error{std::string(name), fmt::format("scale {} is out of range", scale), "choose 0.01 to 200"};
     for (const Maker& maker : makers) {
         if (name != maker.name) continue;
         GeneratedScene made = maker.make(scale, seed);

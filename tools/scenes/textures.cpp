@@ -33,12 +33,14 @@ double fraction(double v) { return v - std::floor(v); }
 double off_joint(double at, double width) { return std::clamp((std::min(at, 1 - at) - width) / width, 0.0, 1.0); }
 
 /// Rows of stones, each row shifted by half: bricks, tiles, slabs. Number of stone by row and column, each repeats.
-importer::Image courses(const char* name, std::uint64_t seed, const Colour& colour, const Colour& joint, int columns, int rows, double spread) {
+importer::Image courses(const char* name, std::uint64_t seed, const Colour& colour, const Colour& joint, int columns, int rows,
+                        double spread) {
     return paint(name, 256, 256, [&](double u, double v) {
         const auto row = static_cast<std::int64_t>(v * rows);
         const double along = u * columns + (row % 2 == 0 ? 0.0 : 0.5);
         const auto column = static_cast<std::int64_t>(std::floor(along)) % columns;
-        const double tone = 1 + spread * (lattice(column, row, seed) - 0.5) + 0.16 * (rough_noise(u * 24, v * 24, seed + 1, 24) - 0.5);
+        const double tone =
+            1 + spread * (lattice(column, row, seed) - 0.5) + 0.16 * (rough_noise(u * 24, v * 24, seed + 1, 24) - 0.5);
         const double solid = off_joint(fraction(along), 0.03 * columns / 4.0) * off_joint(fraction(v * rows), 0.03 * rows / 8.0);
         return mix(joint, shade(colour, tone), 0.15 + 0.85 * solid);
     });
@@ -46,11 +48,17 @@ importer::Image courses(const char* name, std::uint64_t seed, const Colour& colo
 
 }  // namespace
 
-importer::Image brick(std::uint64_t seed, const Colour& colour) { return courses("brick", seed, colour, rgb(176, 168, 156), 4, 12, 0.5); }
+importer::Image brick(std::uint64_t seed, const Colour& colour) {
+    return courses("brick", seed, colour, rgb(176, 168, 156), 4, 12, 0.5);
+}
 
-importer::Image paving(std::uint64_t seed, const Colour& colour) { return courses("paving", seed, colour, shade(colour, 0.62), 4, 4, 0.16); }
+importer::Image paving(std::uint64_t seed, const Colour& colour) {
+    return courses("paving", seed, colour, shade(colour, 0.62), 4, 4, 0.16);
+}
 
-importer::Image cobbles(std::uint64_t seed, const Colour& colour) { return courses("cobbles", seed, colour, shade(colour, 0.5), 12, 12, 0.35); }
+importer::Image cobbles(std::uint64_t seed, const Colour& colour) {
+    return courses("cobbles", seed, colour, shade(colour, 0.5), 12, 12, 0.35);
+}
 
 importer::Image plaster(std::uint64_t seed, const Colour& colour) {
     return paint("plaster", 128, 128, [&](double u, double v) {
@@ -131,13 +139,17 @@ importer::Image painting(std::uint64_t seed, int kind) {
             Colour c = mix(rgb(96, 140, 196), rgb(250, 206, 140), v * 1.5);
             if (std::hypot((u - sun_x) * 1.3, v - 0.3) < 0.07) c = rgb(255, 240, 190);
             for (int k = 0; k < 3; ++k) {
-                if (v > hills + 0.12 * k - 0.16 * noise(u * (3 + k) + k * 7, 0.5, s + 2)) c = mix(rgb(120, 140, 130), rgb(48, 92, 44), 0.35 * (k + 1));
+                if (v > hills + 0.12 * k - 0.16 * noise(u * (3 + k) + k * 7, 0.5, s + 2))
+                    c = mix(rgb(120, 140, 130), rgb(48, 92, 44), 0.35 * (k + 1));
             }
             return shade(c, stroke);
         }
         if (kind % 4 == 1) {  // patches of colour
             const double n = rough_noise(u * 4, v * 3, s + 4), m = rough_noise(u * 3 + 9, v * 4, s + 5);
-            const Colour c = n > 0.55 ? rgb(196, 62, 44) : m > 0.5 ? rgb(236, 190, 72) : n < 0.4 ? rgb(38, 70, 120) : rgb(232, 226, 208);
+            const Colour c = n > 0.55  ? rgb(196, 62, 44)
+                             : m > 0.5 ? rgb(236, 190, 72)
+                             : n < 0.4 ? rgb(38, 70, 120)
+                                       : rgb(232, 226, 208);
             return shade(c, stroke);
         }
         if (kind % 4 == 2) {  // a bowl of fruit
@@ -151,7 +163,8 @@ importer::Image painting(std::uint64_t seed, int kind) {
         }
         Colour c = mix(rgb(150, 190, 226), rgb(220, 230, 236), v);  // a house by a tree
         if (v > 0.66 + 0.04 * noise(u * 5, 0.3, s)) c = rgb(112, 146, 70);
-        if (u > 0.42 && u < 0.78 && v > 0.42 && v < 0.74) c = fraction(u * 14) < 0.3 && v > 0.5 && v < 0.6 ? rgb(70, 80, 96) : rgb(232, 214, 178);
+        if (u > 0.42 && u < 0.78 && v > 0.42 && v < 0.74)
+            c = fraction(u * 14) < 0.3 && v > 0.5 && v < 0.6 ? rgb(70, 80, 96) : rgb(232, 214, 178);
         if (v > 0.24 && v < 0.42 && std::abs(u - 0.6) < (v - 0.2)) c = rgb(168, 74, 52);
         if (std::hypot((u - 0.2) * 1.2, v - 0.4) < 0.17 * (0.8 + 0.4 * noise(u * 12, v * 12, s))) c = rgb(64, 106, 46);
         if (std::abs(u - 0.2) < 0.015 && v > 0.5 && v < 0.72) c = rgb(88, 64, 46);
@@ -176,14 +189,16 @@ importer::Image leaves(std::uint64_t seed, const Colour& dark, const Colour& lig
     std::vector<Leaf> spray;
     for (int i = 0; i < 46; ++i) {
         const double r = 0.38 * std::sqrt(random.unit()), a = random.range(0, 2 * pi);
-        spray.push_back({0.5 + r * std::cos(a), 0.5 + r * std::sin(a), a + random.range(-0.9, 0.9), random.range(0.07, 0.12), random.unit()});
+        spray.push_back(
+            {0.5 + r * std::cos(a), 0.5 + r * std::sin(a), a + random.range(-0.9, 0.9), random.range(0.07, 0.12), random.unit()});
     }
     return paint("leaves", 128, 128, [&](double u, double v) {
         Colour c = shade(light, 0.8);
         c[3] = 0;
         for (const Leaf& leaf : spray) {
             const double dx = u - leaf.x, dy = v - leaf.y;
-            const double along = dx * std::cos(leaf.angle) + dy * std::sin(leaf.angle), across = -dx * std::sin(leaf.angle) + dy * std::cos(leaf.angle);
+            const double along = dx * std::cos(leaf.angle) + dy * std::sin(leaf.angle),
+                         across = -dx * std::sin(leaf.angle) + dy * std::cos(leaf.angle);
             const double f = along / leaf.length;
             if (std::abs(f) > 1 || std::abs(across) > 0.42 * leaf.length * (1 - f * f)) continue;
             c = shade(mix(dark, light, leaf.tone), std::abs(across) < 0.006 ? 0.8 : 1.0);

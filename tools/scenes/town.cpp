@@ -16,14 +16,17 @@ namespace {
 using importer::none;
 
 constexpr double block = 38, road = 6, pitch = block + road, pavement = 2;
-constexpr double kerb = 0.12;          ///< height of pavements, squares and house floors
+constexpr double kerb = 0.12;  ///< height of pavements, squares and house floors
 constexpr int houses_a_row = 4;
 constexpr double eye = 1.7 + kerb;
+constexpr int visited_plot = 2;  ///< of the south row of the block at 0, 0: the house that the path enters
 
 TownStuff make_town_stuff(SceneMaker& maker, std::uint64_t seed) {
     TownStuff t;
     t.stuff = make_stuff(maker, seed);
-    const auto textured = [&](const char* name, importer::Image image) { return maker.material(name, {255, 255, 255, 255}, maker.image(std::move(image))); };
+    const auto textured = [&](const char* name, importer::Image image) {
+        return maker.material(name, {255, 255, 255, 255}, maker.image(std::move(image)));
+    };
     t.brick = textured("brick", brick(seed + 50, rgb(168, 92, 70)));
     t.plaster = textured("plaster", plaster(seed + 51, rgb(252, 250, 246)));
     t.tiles = textured("roof tiles", roof_tiles(seed + 52, rgb(250, 244, 240)));
@@ -39,7 +42,8 @@ TownStuff make_town_stuff(SceneMaker& maker, std::uint64_t seed) {
 
 /// Flat, at height y, cut into squares of about 10 m so that no triangle is huge.
 void lay(MeshMaker& maker, double x0, double z0, double x1, double z1, double y) {
-    const int columns = std::max(1, static_cast<int>(std::lround((x1 - x0) / 10))), rows = std::max(1, static_cast<int>(std::lround((z1 - z0) / 10)));
+    const int columns = std::max(1, static_cast<int>(std::lround((x1 - x0) / 10))),
+              rows = std::max(1, static_cast<int>(std::lround((z1 - z0) / 10)));
     for (int r = 0; r < rows; ++r) {
         for (int c = 0; c < columns; ++c) {
             const double a = x0 + (x1 - x0) * c / columns, b = x0 + (x1 - x0) * (c + 1) / columns;
@@ -88,12 +92,15 @@ importer::Mesh roads(const TownStuff& t) {
     lay(maker, block, 0, pitch, block, 0);
     maker.brush = {t.stuff.plain, rgb(226, 226, 220), dmat4(1.0), 1.0};
     for (double s = 2; s + 2 < block; s += 4) {
-        maker.quad({s, 0.012, block + 3.06}, {s + 2, 0.012, block + 3.06}, {s + 2, 0.012, block + 2.94}, {s, 0.012, block + 2.94});
-        maker.quad({block + 2.94, 0.012, s + 2}, {block + 3.06, 0.012, s + 2}, {block + 3.06, 0.012, s}, {block + 2.94, 0.012, s});
+        maker.quad({s, 0.012, block + 3.06}, {s + 2, 0.012, block + 3.06}, {s + 2, 0.012, block + 2.94},
+                   {s, 0.012, block + 2.94});
+        maker.quad({block + 2.94, 0.012, s + 2}, {block + 3.06, 0.012, s + 2}, {block + 3.06, 0.012, s},
+                   {block + 2.94, 0.012, s});
     }
     for (int i = 0; i < 5; ++i) {  // a crossing for those on foot
         const double z = block + 0.7 + 1.05 * i;
-        maker.quad({block - 2.6, 0.012, z + 0.5}, {block - 0.4, 0.012, z + 0.5}, {block - 0.4, 0.012, z}, {block - 2.6, 0.012, z});
+        maker.quad({block - 2.6, 0.012, z + 0.5}, {block - 0.4, 0.012, z + 0.5}, {block - 0.4, 0.012, z},
+                   {block - 2.6, 0.012, z});
     }
     return maker.take();
 }
@@ -104,6 +111,7 @@ struct Town {
     Detail detail;
     Random random;
     std::uint64_t seed;
+    double built = 1.0;  ///< share of the plots that have a house: below the smallest town of four blocks
     std::vector<House> houses{};
     std::vector<Index> trees{};
     Index lamp = none, bench = none, hedge = none, road = none, ground = none, bush = none;
@@ -112,9 +120,18 @@ struct Town {
 };
 
 void make_meshes(Town& town) {
-    for (int kind = 0; kind < house_kinds; ++kind) town.houses.push_back(make_house(town.maker, town.stuff, town.detail, kind, town.seed));
-    TreeShape shape{.height = 8.5, .crown_base = 3.0, .crown_radius = 2.6, .trunk_radius = 0.19, .branches = 9, .leaf_length = 1.25, .leaf_width = 0.55, .clump_radius = 1.05,
-                    .dark = rgb(190, 200, 180), .light = rgb(255, 255, 240)};
+    for (int kind = 0; kind < house_kinds; ++kind)
+        town.houses.push_back(make_house(town.maker, town.stuff, town.detail, kind, town.seed));
+    TreeShape shape{.height = 8.5,
+                    .crown_base = 3.0,
+                    .crown_radius = 2.6,
+                    .trunk_radius = 0.19,
+                    .branches = 9,
+                    .leaf_length = 1.25,
+                    .leaf_width = 0.55,
+                    .clump_radius = 1.05,
+                    .dark = rgb(190, 200, 180),
+                    .light = rgb(255, 255, 240)};
     town.trees.push_back(town.maker.mesh(broad_tree("lime tree", town.stuff.plants, shape, 840, town.seed + 1)));
     shape.height = 10.5;
     shape.crown_radius = 3.3;
@@ -129,18 +146,22 @@ void make_meshes(Town& town) {
     town.lamp = town.maker.mesh(street_lamp(town.stuff, town.detail));
     town.bench = town.maker.mesh(bench(town.stuff, town.detail));
     town.hedge = town.maker.mesh(hedge(town.stuff, 8.0, town.seed + 4));
-    town.bush = town.maker.mesh(bush("rose bush", town.stuff.plants, 0.9, 160, rgb(200, 205, 190), rgb(255, 250, 235), town.seed + 5));
+    town.bush =
+        town.maker.mesh(bush("rose bush", town.stuff.plants, 0.9, 160, rgb(200, 205, 190), rgb(255, 250, 235), town.seed + 5));
     town.road = town.maker.mesh(roads(town.stuff));
     town.ground = town.maker.mesh(block_ground(town.stuff));
 }
 
 void place_house(Town& town, Index parent, int kind, int number, const dmat4& where) {
     const Index group = town.maker.node(fmt::format("house {}", number), parent, none, where);
-    for (const House::Thing& thing : town.houses[static_cast<std::size_t>(kind)].things) town.maker.node(thing.name, group, thing.mesh, thing.where);
+    for (const House::Thing& thing : town.houses[static_cast<std::size_t>(kind)].things)
+        town.maker.node(thing.name, group, thing.mesh, thing.where);
 }
 
 void plant(Town& town, Index parent, std::size_t tree, double x, double z) {
-    town.maker.node("tree", parent, town.trees[tree], move({x, kerb - 0.05, z}) * turn_y(town.random.range(0, 2 * pi)) * stretch(dvec3(town.random.range(0.85, 1.15))));
+    town.maker.node(
+        "tree", parent, town.trees[tree],
+        move({x, kerb - 0.05, z}) * turn_y(town.random.range(0, 2 * pi)) * stretch(dvec3(town.random.range(0.85, 1.15))));
 }
 
 /// Lamps and trees along the kerbs, none in front of the doors' middle.
@@ -162,23 +183,34 @@ void garden(Town& town, Index parent) {
     const double low = pavement + house_depth_m + 1.5, high = block - low;
     for (int plot = 0; plot < houses_a_row; ++plot) {
         const double x = pavement + house_width_m * (plot + 0.5);
+        if (town.random.unit() >= town.built) continue;
         for (const double z : {town.about(low + 2.6, 0.8), town.about(high - 2.6, 0.8)}) {
             plant(town, parent, town.random.below(3) == 0 ? 1 : 2, town.about(x, 2), z);
-            for (int i = 0; i < 2; ++i) town.maker.node("rose bush", parent, town.bush, move({town.about(x, 3.2), kerb, town.about(z, 2.0)}) * turn_y(town.random.range(0, 6)));
+            for (int i = 0; i < 2; ++i)
+                town.maker.node("rose bush", parent, town.bush,
+                                move({town.about(x, 3.2), kerb, town.about(z, 2.0)}) * turn_y(town.random.range(0, 6)));
         }
         town.maker.node("hedge", parent, town.hedge, move({x - 4, kerb, 0.5 * block}));
-        if (plot > 0) town.maker.node("hedge", parent, town.hedge, move({x - 0.5 * house_width_m, kerb, 0.5 * block - 0.2}) * turn_y(pi / 2));
+        if (plot > 0)
+            town.maker.node("hedge", parent, town.hedge,
+                            move({x - 0.5 * house_width_m, kerb, 0.5 * block - 0.2}) * turn_y(pi / 2));
         if (plot > 0) town.maker.node("hedge", parent, town.hedge, move({x - 0.5 * house_width_m, kerb, high}) * turn_y(pi / 2));
     }
     town.maker.node("bench", parent, town.bench, move({town.about(0.5 * block, 6), kerb, low + 1}) * turn_y(town.about(pi, 0.4)));
 }
 
-void block_of_houses(Town& town, Index parent, int& number) {
+void block_of_houses(Town& town, Index parent, bool first_block, int& number) {
     town.maker.node("ground", parent, town.ground, dmat4(1.0));
     for (int i = 0; i < houses_a_row; ++i) {
         const double x = pavement + house_width_m * i;
-        place_house(town, parent, static_cast<int>(town.random.below(house_kinds)), number++, move({x, kerb, block - pavement}));
-        place_house(town, parent, static_cast<int>(town.random.below(house_kinds)), number++, move({x + house_width_m, kerb, pavement}) * turn_y(pi));
+        const std::array<dmat4, 2> plots{move({x, kerb, block - pavement}),
+                                         move({x + house_width_m, kerb, pavement}) * turn_y(pi)};
+        for (std::size_t side = 0; side < plots.size(); ++side) {
+            const bool visited = first_block && side == 0 && i == visited_plot;
+            if (visited || town.random.unit() < town.built)
+                place_house(town, parent, static_cast<int>(town.random.below(house_kinds)), number, plots[side]);
+            ++number;
+        }
     }
     garden(town, parent);
     line_streets(town, parent);
@@ -191,8 +223,11 @@ void square(Town& town, Index parent) {
     m.node("town hall", parent, m.mesh(town_hall(town.stuff, fine)), move({19, kerb, 26}) * turn_y(pi));
     const double cx = 19, cz = 13;
     m.node("fountain", parent, m.mesh(fountain(town.stuff, fine)), move({cx, kerb, cz}));
-    const std::array<Index, 2> stalls{m.mesh(market_stall(town.stuff, town.detail, rgb(190, 50, 46))), m.mesh(market_stall(town.stuff, town.detail, rgb(50, 96, 150)))};
-    for (int i = 0; i < 4; ++i) m.node("market stall", parent, stalls[static_cast<std::size_t>(i) % 2], move({30.5, kerb, 4.0 + 4.2 * i}) * turn_y(town.about(-pi / 2, 0.08)));
+    const std::array<Index, 2> stalls{m.mesh(market_stall(town.stuff, town.detail, rgb(190, 50, 46))),
+                                      m.mesh(market_stall(town.stuff, town.detail, rgb(50, 96, 150)))};
+    for (int i = 0; i < 4; ++i)
+        m.node("market stall", parent, stalls[static_cast<std::size_t>(i) % 2],
+               move({30.5, kerb, 4.0 + 4.2 * i}) * turn_y(town.about(-pi / 2, 0.08)));
     for (int i = 0; i < 8; ++i) {
         const double a = (i + 0.5) * pi / 4;
         m.node("bench", parent, town.bench, move({cx + 6.3 * std::cos(a), kerb, cz + 6.3 * std::sin(a)}) * turn_y(-a - pi / 2));
@@ -200,7 +235,8 @@ void square(Town& town, Index parent) {
     for (const double z : {5.0, 11.5, 18.0}) plant(town, parent, 1, 35.2, z);
     for (const double x : {9.0, 14.5, 24.0, 29.0}) plant(town, parent, 0, x, 2.6);
     for (const double z : {10.0, 16.5}) plant(town, parent, 0, 3.0, z);
-    for (const auto& [x, z] : {std::pair{11.5, 7.0}, {26.5, 7.0}, {11.5, 19.5}, {26.5, 19.5}}) m.node("street lamp", parent, town.lamp, move({x, kerb, z}) * turn_y(town.random.range(0, 6)));
+    for (const auto& [x, z] : {std::pair{11.5, 7.0}, {26.5, 7.0}, {11.5, 19.5}, {26.5, 19.5}})
+        m.node("street lamp", parent, town.lamp, move({x, kerb, z}) * turn_y(town.random.range(0, 6)));
 }
 
 /// Fields and trees around, so that streets do not end in nothing.
@@ -209,18 +245,20 @@ void outskirts(Town& town, int first, int count) {
     const double low = first * pitch - road, high = (first + count) * pitch, margin = 36;
     MeshMaker maker("fields");
     maker.brush = {town.stuff.grass, {255, 255, 255, 255}, dmat4(1.0), 0.2};
-    for (const auto& [x0, z0, x1, z1] : {std::array{low - margin, low - margin, high + margin, low}, std::array{low - margin, high, high + margin, high + margin}, std::array{low - margin, low, low, high},
-                                         std::array{high, low, high + margin, high}}) {
+    for (const auto& [x0, z0, x1, z1] : {std::array{low - margin, low - margin, high + margin, low},
+                                         std::array{low - margin, high, high + margin, high + margin},
+                                         std::array{low - margin, low, low, high}, std::array{high, low, high + margin, high}}) {
         lay(maker, x0, z0, x1, z1, -0.03);
     }
     maker.brush = {town.stuff.asphalt, {255, 255, 255, 255}, dmat4(1.0), 0.35};
     lay(maker, low, low, low + road, high, 0);
     lay(maker, low + road, low, high, low + road, 0);
     town.maker.node("fields", parent, town.maker.mesh(maker.take()), dmat4(1.0));
-    const int trees = 14 * count;
+    const int trees = static_cast<int>(14 * count * town.built);
     for (int i = 0; i < trees; ++i) {
         const double along = town.random.range(low - margin + 3, high + margin - 3), off = town.random.range(5, margin - 3);
-        const std::array<dvec2, 4> places{dvec2(along, low - off), dvec2(along, high + off), dvec2(low - off, along), dvec2(high + off, along)};
+        const std::array<dvec2, 4> places{dvec2(along, low - off), dvec2(along, high + off), dvec2(low - off, along),
+                                          dvec2(high + off, along)};
         const dvec2& p = places[static_cast<std::size_t>(i) % 4];
         plant(town, parent, town.random.below(2), p.x, p.y);
     }
@@ -228,11 +266,13 @@ void outskirts(Town& town, int first, int count) {
 
 /// Along the street, into a house and through its rooms, on to the square and round the fountain, up to the balcony.
 Path walk_through() {
-    const double street = block + 3, house_x = pavement + 2 * house_width_m, front = block - pavement;
+    const double street = block + 3, house_x = pavement + visited_plot * house_width_m, front = block - pavement;
     const double door = house_x + house_door_m;
     std::vector<Waypoint> way;
     const auto go = [&](double x, double z, double y = eye) { way.push_back({{x, y, z}, {}, true, 0}); };
-    const auto look = [&](double x, double z, const dvec3& at, double pause_s, double y = eye) { way.push_back({{x, y, z}, at, false, pause_s}); };
+    const auto look = [&](double x, double z, const dvec3& at, double pause_s, double y = eye) {
+        way.push_back({{x, y, z}, at, false, pause_s});
+    };
     go(5.0, street, 1.7);
     go(13.0, street - 0.4, 1.7);
     look(18.6, street - 1.8, {door, 1.6, front}, 0);
@@ -270,7 +310,7 @@ GeneratedScene make_town(double scale, std::uint64_t seed) {
     const int count = std::max(2, static_cast<int>(std::lround(3.0 * std::sqrt(scale))));
     const int first = -((count - 2) / 2);
     const Detail detail{0.2 * std::clamp(std::sqrt(scale), 0.3, 1.0)};
-    Town town{maker, make_town_stuff(maker, seed), detail, Random(seed), seed};
+    Town town{maker, make_town_stuff(maker, seed), detail, Random(seed), seed, std::min(1.0, 9.0 * scale / 4.0)};
     make_meshes(town);
     int number = 1;
     for (int j = first; j < first + count; ++j) {
@@ -280,7 +320,7 @@ GeneratedScene make_town(double scale, std::uint64_t seed) {
             if (i == 1 && j == 1) {
                 square(town, group);
             } else {
-                block_of_houses(town, group, number);
+                block_of_houses(town, group, i == 0 && j == 0, number);
             }
         }
     }

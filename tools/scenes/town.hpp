@@ -29,17 +29,17 @@ struct House {
 };
 
 constexpr double house_width_m = 8.5, house_depth_m = 9.0;
-constexpr double house_door_m = 1.5;       ///< middle of the front door
+constexpr double house_door_m = 1.5;  ///< middle of the front door
 constexpr int house_kinds = 4;
 /// `detail` cuts the furniture; kinds differ in storeys, walls, shutters and furniture.
 House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail, int kind, std::uint64_t seed);
 
-constexpr double balcony_m = 4.5;          ///< height of the town hall's balcony
+constexpr double balcony_m = 4.5;  ///< height of the town hall's balcony
 /// Front in the plane z = 0 looking to +z; x -13..13; outer stair from x = 11 down at the ground to x = 3 up on the balcony
 /// (x -7..3, z 0..2.4).
 importer::Mesh town_hall(const TownStuff& stuff, const Detail& detail);
-importer::Mesh fountain(const TownStuff& stuff, const Detail& detail);      ///< basin of 4 m radius
-importer::Mesh street_lamp(const TownStuff& stuff, const Detail& detail);   ///< arm towards +z
+importer::Mesh fountain(const TownStuff& stuff, const Detail& detail);     ///< basin of 4 m radius
+importer::Mesh street_lamp(const TownStuff& stuff, const Detail& detail);  ///< arm towards +z
 importer::Mesh bench(const TownStuff& stuff, const Detail& detail);
 importer::Mesh market_stall(const TownStuff& stuff, const Detail& detail, const Colour& stripe);
 importer::Mesh hedge(const TownStuff& stuff, double length, std::uint64_t seed);

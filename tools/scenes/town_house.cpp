@@ -13,7 +13,7 @@ namespace {
 
 constexpr double storey = 2.9, slab = 0.25, outer = 0.2, inner = 0.14;
 constexpr double w = house_width_m, d = house_depth_m;
-constexpr double hall_wall = 2.8, middle_wall = -4.7;             ///< between hall and rooms; between front and back room
+constexpr double hall_wall = 2.8, middle_wall = -4.7;  ///< between hall and rooms; between front and back room
 constexpr double stair_x0 = 0.2, stair_x1 = 1.15, stair_z0 = -3.0, stair_z1 = -7.2;
 
 struct Kind {
@@ -92,7 +92,8 @@ void storey_walls(MeshMaker& maker, const TownStuff& stuff, const Kind& kind, in
     const std::array<Opening, 2> doors{Opening{2.4, 3.3, 0, 2.1}, Opening{6.3, 7.2, 0, 2.1}};
     wall(maker, {{hall_wall, -d + outer}, {hall_wall, -outer}, base, inside_high, inner}, doors, partition);
     const std::array<Opening, 1> between{Opening{0.7, 2.5, 0, 2.2}};
-    wall(maker, {{hall_wall, middle_wall}, {w - outer, middle_wall}, base, inside_high, inner}, level == 0 ? std::span<const Opening>(between) : std::span<const Opening>(), partition);
+    wall(maker, {{hall_wall, middle_wall}, {w - outer, middle_wall}, base, inside_high, inner},
+         level == 0 ? std::span<const Opening>(between) : std::span<const Opening>(), partition);
 }
 
 void roof(MeshMaker& maker, const TownStuff& stuff, const Kind& kind) {
@@ -100,7 +101,8 @@ void roof(MeshMaker& maker, const TownStuff& stuff, const Kind& kind) {
     const double drop = over * 3.0 / (0.5 * d);
     maker.brush = {stuff.tiles, kind.roof, dmat4(1.0), 0.5};
     for (const double lift : {0.14, 0.0}) {
-        const dvec3 a(0, eaves - drop + lift, over), b(w, eaves - drop + lift, over), c(w, ridge + lift, mid), e(0, ridge + lift, mid);
+        const dvec3 a(0, eaves - drop + lift, over), b(w, eaves - drop + lift, over), c(w, ridge + lift, mid),
+            e(0, ridge + lift, mid);
         const dvec3 f(w, eaves - drop + lift, -d - over), g(0, eaves - drop + lift, -d - over);
         if (lift > 0) {
             maker.quad(a, b, c, e);
@@ -119,8 +121,10 @@ void roof(MeshMaker& maker, const TownStuff& stuff, const Kind& kind) {
     maker.brush = {stuff.stuff.plain, rgb(168, 96, 70), dmat4(1.0), 1.0};
     for (const double x : {6.6, 7.0}) maker.rod({x, ridge + 0.85, mid - 0.9}, {x, ridge + 1.25, mid - 0.9}, 0.1, 8);
     maker.brush.colour = rgb(96, 104, 104);
-    maker.tube(std::array{dvec3(0, eaves - drop, over + 0.05), dvec3(w, eaves - drop, over + 0.05)}, std::array{0.07, 0.07}, 7, true);
-    maker.tube(std::array{dvec3(8.3, eaves - drop, over), dvec3(8.3, eaves - 0.45, 0.06), dvec3(8.3, 0.1, 0.06)}, std::array{0.045, 0.045, 0.045}, 6, true);
+    maker.tube(std::array{dvec3(0, eaves - drop, over + 0.05), dvec3(w, eaves - drop, over + 0.05)}, std::array{0.07, 0.07}, 7,
+               true);
+    maker.tube(std::array{dvec3(8.3, eaves - drop, over), dvec3(8.3, eaves - 0.45, 0.06), dvec3(8.3, 0.1, 0.06)},
+               std::array{0.045, 0.045, 0.045}, 6, true);
 }
 
 importer::Mesh walls_mesh(const TownStuff& stuff, const Kind& kind, int number) {
@@ -129,7 +133,8 @@ importer::Mesh walls_mesh(const TownStuff& stuff, const Kind& kind, int number) 
         storey_walls(maker, stuff, kind, level);
         floor_slab(maker, stuff, level * storey, level > 0);
         if (level + 1 == kind.storeys) continue;
-        maker.brush = {stuff.floor, rgb(210, 170, 130), move({0.5 * (stair_x0 + stair_x1), level * storey, stair_z0}) * turn_y(pi), 1.0};
+        maker.brush = {stuff.floor, rgb(210, 170, 130),
+                       move({0.5 * (stair_x0 + stair_x1), level * storey, stair_z0}) * turn_y(pi), 1.0};
         stairs(maker, stair_x1 - stair_x0, storey / 16, 0.26, 16);
         maker.brush.frame = dmat4(1.0);
     }
@@ -158,7 +163,8 @@ void flower_box(MeshMaker& maker, const TownStuff& stuff, double x, double y, do
         const dvec3 base(x + width * (i + 0.5) / 14, y - 0.06, random.range(0.1, 0.22));
         maker.brush.material = stuff.plants.leaf;
         maker.brush.colour = {255, 255, 255, 255};
-        maker.leaf(base, base + dvec3(random.range(-0.1, 0.1), 0.24, random.range(0, 0.16)), {0.11, 0, 0.03}, glm::normalize(dvec3(0, 0.6, 1)));
+        maker.leaf(base, base + dvec3(random.range(-0.1, 0.1), 0.24, random.range(0, 0.16)), {0.11, 0, 0.03},
+                   glm::normalize(dvec3(0, 0.6, 1)));
         maker.brush.material = stuff.stuff.plain;
         maker.brush.colour = blossoms[random.below(3)];
         if (i % 2 == 0) maker.ellipsoid(base + dvec3(0, random.range(0.1, 0.2), 0.06), dvec3(0.035), 5, 3);
@@ -206,7 +212,8 @@ struct Furnisher {
     Index shared(importer::Mesh mesh) const {
         for (std::size_t i = 0; i < maker.scene.meshes.size(); ++i) {
             const importer::Mesh& have = maker.scene.meshes[i];
-            if (have.name == mesh.name && have.primitives[0].colours == mesh.primitives[0].colours && have.primitives.back().colours == mesh.primitives.back().colours &&
+            if (have.name == mesh.name && have.primitives[0].colours == mesh.primitives[0].colours &&
+                have.primitives.back().colours == mesh.primitives.back().colours &&
                 have.primitives[0].positions == mesh.primitives[0].positions) {
                 return static_cast<Index>(i);
             }
@@ -220,7 +227,8 @@ struct Furnisher {
 };
 
 void furnish_living_room(const Furnisher& f, int kind) {
-    static constexpr std::array<Colour, house_kinds> cloths{rgb(96, 116, 132), rgb(150, 88, 70), rgb(120, 132, 96), rgb(168, 140, 100)};
+    static constexpr std::array<Colour, house_kinds> cloths{rgb(96, 116, 132), rgb(150, 88, 70), rgb(120, 132, 96),
+                                                            rgb(168, 140, 100)};
     const Stuff& s = f.stuff.stuff;
     const auto k = static_cast<std::size_t>(kind);
     f.put("sofa", sofa(s, f.detail, cloths[k]), {w - 0.25, 0, -2.3}, -pi / 2);
@@ -231,18 +239,22 @@ void furnish_living_room(const Furnisher& f, int kind) {
     f.put("cup", cup(s, f.detail), {6.35, 0.43, -2.75}, 1.0);
     f.put("floor lamp", floor_lamp(s, f.detail), {8.0, 0, -0.6});
     f.put("bookshelf", bookshelf(s, 1.2, 2.0, 5), {7.4, 0, middle_wall + 0.075});
-    for (int row = 1; row < 4; ++row) f.put("books", row_of_books(s, 1.05, false, 400 + static_cast<std::uint64_t>((row + kind) % 3)), {7.4, 0.085 + (2.0 - 0.085) * row / 5, middle_wall + 0.075});
+    for (int row = 1; row < 4; ++row)
+        f.put("books", row_of_books(s, 1.05, false, 400 + static_cast<std::uint64_t>((row + kind) % 3)),
+              {7.4, 0.085 + (2.0 - 0.085) * row / 5, middle_wall + 0.075});
     f.put("potted plant", potted_plant(s, f.detail, 5), {3.3, 0, -0.6}, f.about(1, 1));
     f.put("picture", picture(s, kind, 0.8, 0.6), {w - 0.205, 1.6, -2.3}, -pi / 2);
     for (const double x : {3.85, 7.05}) f.put("curtain", curtain(s, f.detail, 0.5, 1.9, rgb(186, 150, 110)), {x, 0.5, -0.32});
 }
 
 void furnish_kitchen(const Furnisher& f, int kind) {
-    static constexpr std::array<Colour, house_kinds> seats{rgb(150, 60, 50), rgb(70, 100, 130), rgb(190, 150, 70), rgb(90, 120, 90)};
+    static constexpr std::array<Colour, house_kinds> seats{rgb(150, 60, 50), rgb(70, 100, 130), rgb(190, 150, 70),
+                                                           rgb(90, 120, 90)};
     const Stuff& s = f.stuff.stuff;
     f.put("kitchen", kitchen(s, f.detail), {7.0, 0, -d + 0.205});
     f.put("dining table", dining_table(s, f.detail), {6.6, 0, -6.4});
-    for (const auto& [x, z, angle] : {std::array{6.2, -5.95, pi}, std::array{7.05, -5.95, pi}, std::array{6.2, -6.85, 0.0}, std::array{7.05, -6.85, 0.0}}) {
+    for (const auto& [x, z, angle] :
+         {std::array{6.2, -5.95, pi}, std::array{7.05, -5.95, pi}, std::array{6.2, -6.85, 0.0}, std::array{7.05, -6.85, 0.0}}) {
         f.put("chair", chair(s, f.detail, seats[static_cast<std::size_t>(kind)]), {x, 0, z}, f.about(angle, 0.1));
         if (x > 6.5) f.put("plate", plate(s, f.detail), {x, 0.752, z < -6.4 ? z + 0.2 : z - 0.2});
     }
@@ -253,12 +265,14 @@ void furnish_kitchen(const Furnisher& f, int kind) {
 }
 
 void furnish_upstairs(const Furnisher& f, int kind, int level) {
-    static constexpr std::array<Colour, house_kinds> blankets{rgb(60, 90, 130), rgb(170, 70, 60), rgb(110, 140, 110), rgb(200, 170, 110)};
+    static constexpr std::array<Colour, house_kinds> blankets{rgb(60, 90, 130), rgb(170, 70, 60), rgb(110, 140, 110),
+                                                              rgb(200, 170, 110)};
     const Stuff& s = f.stuff.stuff;
     const double y = level * storey;
     for (const double z : {-0.35, middle_wall - 0.25}) {
         const bool front = z > middle_wall;
-        f.put("bed", bed(s, f.detail, blankets[static_cast<std::size_t>(kind + level + (front ? 0 : 1)) % house_kinds]), {w - 0.25, y, z - 1.6}, -pi / 2);
+        f.put("bed", bed(s, f.detail, blankets[static_cast<std::size_t>(kind + level + (front ? 0 : 1)) % house_kinds]),
+              {w - 0.25, y, z - 1.6}, -pi / 2);
         f.put("wardrobe", wardrobe(s, f.detail), {4.6, y, front ? middle_wall + 0.075 : middle_wall - 0.075}, front ? 0.0 : pi);
         if (front) f.put("table lamp", table_lamp(s, f.detail), {7.8, y + 0.857, z - 0.1});
         if (front) f.put("sideboard", sideboard(s, f.detail), {7.4, y, -0.2}, pi);
@@ -277,7 +291,8 @@ House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail
     house.things.push_back({"walls", maker.mesh(walls_mesh(stuff, k, kind)), dmat4(1.0)});
     house.things.push_back({"windows", maker.mesh(fittings_mesh(stuff, k, kind, random)), dmat4(1.0)});
     // Hinged in the doorway, standing wide open into the hall, along its west side.
-    house.things.push_back({"door", maker.mesh(door_leaf(stuff.stuff, 0.96, 2.12, k.door, detail)), move({house_door_m - 0.48, 0, -outer}) * turn_y(0.5 * pi - 0.08)});
+    house.things.push_back({"door", maker.mesh(door_leaf(stuff.stuff, 0.96, 2.12, k.door, detail)),
+                            move({house_door_m - 0.48, 0, -outer}) * turn_y(0.5 * pi - 0.08)});
     const Furnisher furnisher{maker, stuff, detail, house, random};
     furnish_living_room(furnisher, kind);
     furnish_kitchen(furnisher, kind);

@@ -14,7 +14,8 @@ constexpr Colour stone = rgb(206, 198, 182), iron = rgb(44, 50, 50);
 void arch(MeshMaker& maker, double x0, double width, double spring, double top, double z, int sides) {
     for (int i = 0; i < sides; ++i) {
         const double a0 = pi * i / sides, a1 = pi * (i + 1) / sides, r = 0.5 * width - 0.25, c = x0 + 0.5 * width;
-        const dvec3 p0(c - r * std::cos(a0), spring + r * std::sin(a0), z), p1(c - r * std::cos(a1), spring + r * std::sin(a1), z);
+        const dvec3 p0(c - r * std::cos(a0), spring + r * std::sin(a0), z),
+            p1(c - r * std::cos(a1), spring + r * std::sin(a1), z);
         maker.quad({p0.x, p0.y, z}, {p1.x, p1.y, z}, {p1.x, top, z}, {p0.x, top, z});
         maker.quad({p1.x, p1.y, z}, {p0.x, p0.y, z}, {p0.x, p0.y, z - 0.4}, {p1.x, p1.y, z - 0.4});
     }
@@ -97,11 +98,15 @@ importer::Mesh fountain(const TownStuff& stuff, const Detail& detail) {
     MeshMaker maker("fountain");
     const int sides = detail.cut(96, 24);
     maker.brush = {stuff.stuff.plain, stone, dmat4(1.0), 1.0};
-    maker.lathe(std::array{dvec2(4.3, 0), dvec2(4.3, 0.2), dvec2(4.3, 0.2), dvec2(4.0, 0.2), dvec2(4.0, 0.2), dvec2(3.95, 0.45), dvec2(4.1, 0.62), dvec2(4.1, 0.7), dvec2(4.1, 0.7), dvec2(3.7, 0.7),
-                           dvec2(3.7, 0.7), dvec2(3.7, 0.2)}, sides);
-    maker.lathe(std::array{dvec2(0.9, 0.1), dvec2(0.6, 0.3), dvec2(0.45, 0.9), dvec2(0.5, 1.4), dvec2(0.5, 1.4), dvec2(1.2, 1.55), dvec2(1.8, 1.85), dvec2(1.85, 1.95), dvec2(1.85, 1.95), dvec2(1.7, 1.92),
-                           dvec2(1.1, 1.68), dvec2(0.3, 1.62), dvec2(0.3, 1.62), dvec2(0.25, 2.4), dvec2(0.25, 2.4), dvec2(0.7, 2.5), dvec2(1.0, 2.7), dvec2(1.0, 2.74), dvec2(0.6, 2.62), dvec2(0.1, 2.55),
-                           dvec2(0.12, 2.9), dvec2(0.2, 3.0), dvec2(0.14, 3.2), dvec2(0, 3.25)}, detail.cut(64, 16));
+    maker.lathe(std::array{dvec2(4.3, 0), dvec2(4.3, 0.2), dvec2(4.3, 0.2), dvec2(4.0, 0.2), dvec2(4.0, 0.2), dvec2(3.95, 0.45),
+                           dvec2(4.1, 0.62), dvec2(4.1, 0.7), dvec2(4.1, 0.7), dvec2(3.7, 0.7), dvec2(3.7, 0.7), dvec2(3.7, 0.2)},
+                sides);
+    maker.lathe(
+        std::array{dvec2(0.9, 0.1),  dvec2(0.6, 0.3),   dvec2(0.45, 0.9),  dvec2(0.5, 1.4),  dvec2(0.5, 1.4),  dvec2(1.2, 1.55),
+                   dvec2(1.8, 1.85), dvec2(1.85, 1.95), dvec2(1.85, 1.95), dvec2(1.7, 1.92), dvec2(1.1, 1.68), dvec2(0.3, 1.62),
+                   dvec2(0.3, 1.62), dvec2(0.25, 2.4),  dvec2(0.25, 2.4),  dvec2(0.7, 2.5),  dvec2(1.0, 2.7),  dvec2(1.0, 2.74),
+                   dvec2(0.6, 2.62), dvec2(0.1, 2.55),  dvec2(0.12, 2.9),  dvec2(0.2, 3.0),  dvec2(0.14, 3.2), dvec2(0, 3.25)},
+        detail.cut(64, 16));
     maker.brush = {stuff.water, rgb(140, 190, 206), dmat4(1.0), 1.0};
     const auto pool = [&](double radius, double y) {
         maker.surface(detail.cut(40, 12), detail.cut(8, 3), [&](double u, double v) {
@@ -129,8 +134,10 @@ importer::Mesh fountain(const TownStuff& stuff, const Detail& detail) {
 importer::Mesh street_lamp(const TownStuff& stuff, const Detail& detail) {
     MeshMaker maker("street lamp");
     maker.brush = {stuff.stuff.plain, iron, dmat4(1.0), 1.0};
-    maker.lathe(std::array{dvec2(0.16, 0), dvec2(0.16, 0.1), dvec2(0.16, 0.1), dvec2(0.11, 0.16), dvec2(0.09, 0.5), dvec2(0.11, 0.62), dvec2(0.06, 0.72), dvec2(0.05, 2.4), dvec2(0.07, 2.45), dvec2(0.045, 2.5),
-                           dvec2(0.04, 3.9), dvec2(0.06, 3.95), dvec2(0, 4.02)}, detail.cut(24, 8));
+    maker.lathe(std::array{dvec2(0.16, 0), dvec2(0.16, 0.1), dvec2(0.16, 0.1), dvec2(0.11, 0.16), dvec2(0.09, 0.5),
+                           dvec2(0.11, 0.62), dvec2(0.06, 0.72), dvec2(0.05, 2.4), dvec2(0.07, 2.45), dvec2(0.045, 2.5),
+                           dvec2(0.04, 3.9), dvec2(0.06, 3.95), dvec2(0, 4.02)},
+                detail.cut(24, 8));
     std::vector<dvec3> arm;
     std::vector<double> radii;
     for (int i = 0; i <= detail.cut(14, 6); ++i) {
@@ -154,7 +161,8 @@ importer::Mesh bench(const TownStuff& stuff, const Detail& detail) {
     for (int i = 0; i < 3; ++i) maker.box({-0.85, 0.54 + 0.13 * i, -0.27 - 0.02 * i}, {0.85, 0.64 + 0.13 * i, -0.24 - 0.02 * i});
     maker.brush = {stuff.stuff.plain, iron, dmat4(1.0), 1.0};
     for (const double x : {-0.7, 0.7}) {
-        const std::array<dvec3, 5> side{dvec3(x, 0, 0.26), dvec3(x, 0.3, 0.2), dvec3(x, 0.42, 0.22), dvec3(x, 0.42, -0.22), dvec3(x, 0.9, -0.33)};
+        const std::array<dvec3, 5> side{dvec3(x, 0, 0.26), dvec3(x, 0.3, 0.2), dvec3(x, 0.42, 0.22), dvec3(x, 0.42, -0.22),
+                                        dvec3(x, 0.9, -0.33)};
         maker.tube(side, std::array{0.025, 0.022, 0.022, 0.022, 0.018}, detail.cut(10, 5), true);
         maker.rod({x, 0, -0.3}, {x, 0.43, -0.2}, 0.022, detail.cut(10, 5));
     }
@@ -162,7 +170,8 @@ importer::Mesh bench(const TownStuff& stuff, const Detail& detail) {
 }
 
 importer::Mesh market_stall(const TownStuff& stuff, const Detail& detail, const Colour& stripe) {
-    static constexpr std::array<Colour, 5> goods{rgb(200, 50, 40), rgb(236, 150, 40), rgb(130, 170, 60), rgb(240, 210, 80), rgb(120, 60, 110)};
+    static constexpr std::array<Colour, 5> goods{rgb(200, 50, 40), rgb(236, 150, 40), rgb(130, 170, 60), rgb(240, 210, 80),
+                                                 rgb(120, 60, 110)};
     MeshMaker maker("market stall");
     maker.brush = {stuff.stuff.wood, rgb(176, 134, 92), dmat4(1.0), 1.0};
     for (const double x : {-1.3, 1.3}) {
@@ -173,8 +182,12 @@ importer::Mesh market_stall(const TownStuff& stuff, const Detail& detail, const 
     for (int i = 0; i < 9; ++i) {
         maker.brush.colour = i % 2 == 0 ? stripe : rgb(246, 242, 232);
         const double x = -1.53 + 0.34 * i;
-        maker.surface(1, detail.cut(8, 3), [&](double u, double v) { return dvec3(x + 0.34 * u, 2.02 + 0.5 * v - 0.12 * std::sin(pi * v), 1.0 - 1.9 * v); });
-        maker.surface(2, 1, [&](double u, double v) { return dvec3(x + 0.34 * u, 1.84 + 0.18 * v - 0.05 * std::sin(pi * u) * (1 - v), 1.0); });
+        maker.surface(1, detail.cut(8, 3), [&](double u, double v) {
+            return dvec3(x + 0.34 * u, 2.02 + 0.5 * v - 0.12 * std::sin(pi * v), 1.0 - 1.9 * v);
+        });
+        maker.surface(2, 1, [&](double u, double v) {
+            return dvec3(x + 0.34 * u, 1.84 + 0.18 * v - 0.05 * std::sin(pi * u) * (1 - v), 1.0);
+        });
     }
     Random random(91);
     for (int crate = 0; crate < 6; ++crate) {
@@ -184,7 +197,8 @@ importer::Mesh market_stall(const TownStuff& stuff, const Detail& detail, const 
         maker.brush.material = stuff.stuff.plain;
         for (int i = 0; i < 18; ++i) {
             maker.brush.colour = shade(goods[static_cast<std::size_t>(crate) % goods.size()], random.range(0.85, 1.1));
-            maker.ellipsoid({x - 0.13 + 0.13 * (i % 3), 0.96, -0.12 + 0.125 * (i / 3)}, dvec3(0.065), detail.cut(10, 6), detail.cut(7, 4));
+            maker.ellipsoid({x - 0.13 + 0.13 * (i % 3), 0.96, -0.12 + 0.125 * (i / 3)}, dvec3(0.065), detail.cut(10, 6),
+                            detail.cut(7, 4));
         }
     }
     return maker.take();

@@ -44,8 +44,12 @@ private:
     }
 
     template <class T>
-    std::size_t accessor(const std::vector<T>& values, std::size_t count, int component, const char* type, bool normalized = false) {
-        json a{{"bufferView", view(std::as_bytes(std::span(values)))}, {"componentType", component}, {"count", count}, {"type", type}};
+    std::size_t accessor(const std::vector<T>& values, std::size_t count, int component, const char* type,
+                         bool normalized = false) {
+        json a{{"bufferView", view(std::as_bytes(std::span(values)))},
+               {"componentType", component},
+               {"count", count},
+               {"type", type}};
         if (normalized) a["normalized"] = true;
         root_["accessors"].push_back(std::move(a));
         return root_["accessors"].size() - 1;
@@ -58,7 +62,8 @@ private:
         for (std::size_t i = 0; i < scene_.images.size(); ++i) {
             const importer::Image& image = scene_.images[i];
             const std::vector<std::uint8_t> png = importer::encode_png(image.width, image.height, image.rgba);
-            root_["images"].push_back({{"bufferView", view(std::as_bytes(std::span(png)))}, {"mimeType", "image/png"}, {"name", image.name}});
+            root_["images"].push_back(
+                {{"bufferView", view(std::as_bytes(std::span(png)))}, {"mimeType", "image/png"}, {"name", image.name}});
             root_["textures"].push_back({{"source", i}, {"sampler", image.clamp ? 1 : 0}});
         }
     }
@@ -66,7 +71,8 @@ private:
     void materials() {
         for (const importer::Material& m : scene_.materials) {
             json pbr{{"metallicFactor", 0.0}, {"roughnessFactor", 1.0}};
-            pbr["baseColorFactor"] = {importer::decode_srgb(m.colour[0]), importer::decode_srgb(m.colour[1]), importer::decode_srgb(m.colour[2]), m.colour[3]};
+            pbr["baseColorFactor"] = {importer::decode_srgb(m.colour[0]), importer::decode_srgb(m.colour[1]),
+                                      importer::decode_srgb(m.colour[2]), m.colour[3]};
             if (m.image != none) pbr["baseColorTexture"] = {{"index", m.image}};
             json out{{"name", m.name}, {"pbrMetallicRoughness", std::move(pbr)}, {"doubleSided", m.two_sided}};
             if (m.alpha != model::AlphaMode::opaque) out["alphaMode"] = m.alpha == model::AlphaMode::mask ? "MASK" : "BLEND";
@@ -97,7 +103,9 @@ private:
         std::vector<std::uint16_t> linear;
         linear.reserve(count * 4);
         for (const auto& c : p.colours) {
-            for (std::size_t i = 0; i < 3; ++i) linear.push_back(static_cast<std::uint16_t>(importer::decode_srgb(static_cast<float>(c[i]) / 255.0F) * 65535.0F + 0.5F));
+            for (std::size_t i = 0; i < 3; ++i)
+                linear.push_back(
+                    static_cast<std::uint16_t>(importer::decode_srgb(static_cast<float>(c[i]) / 255.0F) * 65535.0F + 0.5F));
             linear.push_back(static_cast<std::uint16_t>(c[3] * 257));
         }
         out["COLOR_0"] = accessor(linear, count, ushort_type, "VEC4", true);
@@ -149,7 +157,8 @@ private:
         std::string text = root_.dump();
         text.resize((text.size() + 3) / 4 * 4, ' ');
         const std::uint64_t total = 12 + 8 + text.size() + 8 + binary_.size();
-        if (total > std::numeric_limits<std::uint32_t>::max()) return Error{file, "the scene needs more than the 4 GiB that a GLB may have", "choose a smaller --scale"};
+        if (total > std::numeric_limits<std::uint32_t>::max())
+            return Error{file, "the scene needs more than the 4 GiB that a GLB may have", "choose a smaller --scale"};
         std::vector<std::byte> out;
         out.reserve(total);
         const auto word = [&](std::uint64_t value) {

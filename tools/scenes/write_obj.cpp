@@ -43,19 +43,23 @@ private:
         std::string mtl;
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
             const importer::Material& m = scene_.materials[i];
-            fmt::format_to(std::back_inserter(mtl), "newmtl m{}_{}\nKd {} {} {}\nd {}\n", i, plain(m.name), m.colour[0], m.colour[1], m.colour[2], m.colour[3]);
+            fmt::format_to(std::back_inserter(mtl), "newmtl m{}_{}\nKd {} {} {}\nd {}\n", i, plain(m.name), m.colour[0],
+                           m.colour[1], m.colour[2], m.colour[3]);
             if (m.image != none) fmt::format_to(std::back_inserter(mtl), "map_Kd {}_{}.png\n", stem, m.image);
         }
         for (std::size_t i = 0; i < scene_.images.size(); ++i) {
             const importer::Image& image = scene_.images[i];
-            if (auto done = importer::write_png(fmt::format("{}_{}.png", base, i), image.width, image.height, image.rgba); !done) return done;
+            if (auto done = importer::write_png(fmt::format("{}_{}.png", base, i), image.width, image.height, image.rgba); !done)
+                return done;
         }
         return write_text(base + ".mtl", mtl);
     }
 
     void number(double value, char after) {
         std::array<char, 40> buffer{};
-        const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value == 0.0 ? 0.0 : value, std::chars_format::general, 7).ptr;
+        const auto end =
+            std::to_chars(buffer.data(), buffer.data() + buffer.size(), value == 0.0 ? 0.0 : value, std::chars_format::general, 9)
+                .ptr;
         text_.append(buffer.data(), end);
         text_ += after;
     }
@@ -89,7 +93,8 @@ private:
         vertices(p, world);
         const bool mirrored = glm::determinant(dmat3(world)) < 0;
         for (std::size_t i = 0; i + 3 <= p.indices.size(); i += 3) {
-            const std::uint64_t a = base_ + p.indices[i], b = base_ + p.indices[i + (mirrored ? 2 : 1)], c = base_ + p.indices[i + (mirrored ? 1 : 2)];
+            const std::uint64_t a = base_ + p.indices[i], b = base_ + p.indices[i + (mirrored ? 2 : 1)],
+                                c = base_ + p.indices[i + (mirrored ? 1 : 2)];
             fmt::format_to(std::back_inserter(text_), "f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", a, b, c);
         }
         base_ += p.positions.size();
