@@ -15,6 +15,7 @@
 
 #include "render/bake/materials.hpp"
 #include "render/bake/proxies.hpp"
+#include "render/model/pixels.hpp"
 
 namespace surefoot::bake {
 
@@ -319,6 +320,7 @@ void Bakery::emit() {
         if (parent.kind == model::NodeKind::cluster) parent.triangles += node.triangles;
         parent.box.grow(node.box);
     }
+    tbb::parallel_for(std::size_t{0}, model.reps.size(), [&](std::size_t r) { model.reps[r].area_m2 = model::rasterised_area(model, model.reps[r]); });
     model.effects = find_effects(model, material_triangles);
 }
 
@@ -347,7 +349,7 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         return Error{scene.sources.empty() ? "bake" : scene.sources.front(), "there is nothing to draw in it", "check that its nodes have meshes with triangles"};
     }
     progress.say("write", 0.0);
-    bakery.emit();
+    arena.execute([&] { bakery.emit(); });
     model::Model& model = bakery.model;
     model.provenance.sources = scene.sources;
     model.provenance.warnings = scene.warnings;

@@ -30,24 +30,6 @@ EmittedChain emit_chain(const LodChain& chain, model::Model& model) {
     return out;
 }
 
-namespace {
-
-/// Rasterised area along the world's axes, hidden layers included; halved where back faces are culled.
-std::array<float, 3> projected_area(const LodChain& chain, const Level& level, const mat3& linear, const model::Model& model) {
-    dvec3 sum(0);
-    for (const GeometryPart& part : level.parts) {
-        const double share = model.materials[part.material].two_sided ? 1.0 : 0.5;
-        for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
-            const vec3 a = position_of(chain.full.vertices[part.indices[i]]);
-            const vec3 b = position_of(chain.full.vertices[part.indices[i + 1]]), c = position_of(chain.full.vertices[part.indices[i + 2]]);
-            sum += share * 0.5 * dvec3(glm::abs(glm::cross(linear * (b - a), linear * (c - a))));
-        }
-    }
-    return {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)};
-}
-
-}  // namespace
-
 void emit_representations(const EmittedChain& emitted, const dmat4& world, model::Model& model) {
     model::Placement placement;
     const dmat3 linear(world);
@@ -56,8 +38,7 @@ void emit_representations(const EmittedChain& emitted, const dmat4& world, model
     const auto index = static_cast<model::Index>(model.placements.size());
     model.placements.push_back(placement);
     const double stretch = largest_stretch(linear);
-    for (std::size_t i = 0; i < emitted.levels.size(); ++i) {
-        const EmittedChain::Level& level = emitted.levels[i];
+    for (const EmittedChain::Level& level : emitted.levels) {
         model::Representation rep;
         rep.error_m = static_cast<float>(level.error_m * stretch);
         rep.placement = index;
@@ -65,7 +46,6 @@ void emit_representations(const EmittedChain& emitted, const dmat4& world, model
         rep.part_count = level.part_count;
         rep.triangles = level.triangles;
         rep.effects = level.effects;
-        rep.area_m2 = projected_area(*emitted.chain, emitted.chain->levels[i], placement.linear, model);
         model.reps.push_back(rep);
     }
 }
@@ -123,7 +103,6 @@ void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
         part.vertex_count += 4;
         for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) model.indices.push_back(base + i);
         part.index_count += 6;
-        rep.area_m2[static_cast<std::size_t>(axis)] += 4 * half[u] * half[w] * 0.5F;
     }
     rep.triangles = part.index_count / 3;
     model.parts.push_back(part);

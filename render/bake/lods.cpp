@@ -165,7 +165,9 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     while (levels.back().triangles > options.smallest) {
         const Level& before = levels.back();
         const double share = levels.size() == 1 ? std::min(options.ratio, options.first_share) : options.ratio;
-        Level next = simplify(full, before.parts, share, options.lock_border, false);
+        // Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives way.
+        Level next = simplify(full, before.parts, share, true, false);
+        if (!options.lock_border && next.triangles > before.triangles * share * 1.4) next = simplify(full, before.parts, share, false, false);
         if (next.triangles == 0 || next.triangles > before.triangles * std::max(share * 1.5, share + 0.02)) {
             if (options.lock_border) break;
             next = simplify(full, finest.parts, share * before.triangles / total, false, true);

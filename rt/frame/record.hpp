@@ -32,6 +32,7 @@ struct FrameRecord {
     std::uint64_t slot = 0;   ///< grid slot; skipped slots are the gaps
     std::uint64_t frame = 0;  ///< frames run, from 0
     std::int64_t due_ns = 0;  ///< t0 + slot * T
+    std::int64_t ready_ns = 0;  ///< earliest start: due_ns, or (late policy float, after a late frame) that frame's end
     std::int64_t woken_ns = 0;
     std::int64_t selected_ns = 0;    ///< sample, select and slice plan done
     std::int64_t submitted_ns = 0;   ///< last slice handed to the driver
@@ -39,7 +40,7 @@ struct FrameRecord {
     std::int64_t presented_ns = 0;   ///< end of the frame
     std::int64_t deadline_ns = 0;    ///< due + T
     std::int64_t cpu_ns = 0;         ///< frame thread's own CPU time
-    std::int64_t raster_cpu_ns = 0;  ///< of the driver's rasterisers (read by the monitor; 0 where unknown)
+    std::int64_t raster_cpu_ns = 0;  ///< of the driver's rasterisers; 0 where unknown
     std::int64_t stolen_ns = 0;      ///< wall minus CPU minus known waits, with no involuntary switch
     std::int64_t preempted_ns = 0;   ///< the same gap, where involuntary switches were seen
     std::int64_t waited_ns = 0;      ///< known waits: for the driver's rasterisers
