@@ -80,6 +80,7 @@ private:
         if (key == "vt") return coordinate(cursor, line);
         if (key == "o") {
             object_ = cursor.line_text();
+            group_of_name_.clear();  // two objects of one name are two objects; groups of one name within it are one
             group_name_.clear();
             group_ = none;
         } else if (key == "g") {

@@ -71,6 +71,28 @@ TEST(Obj, ObjectsAndGroupsBecomeNodesAndMaterialsPrimitives) {
     EXPECT_EQ(scene.materials[scene.meshes[1].primitives[0].material].alpha, model::AlphaMode::blend);
 }
 
+TEST(Obj, ObjectsOfOneNameStayApart) {
+    const Scene scene = import_text(square + "o chair\nf 1 2 3\no chair\nf 1 3 4\ng a\nf 1 2 4\ng b\nf 2 3 4\ng a\nf 1 2 3\n");
+    ASSERT_EQ(scene.nodes.size(), 4U);
+    EXPECT_EQ(scene.nodes[1].name, "chair");
+    EXPECT_EQ(scene.meshes[2].primitives[0].indices.size(), 6U);
+}
+
+TEST(Obj, AnyByteChangedNeverCrashes) {
+    const Folder folder;
+    const std::string whole = "mtllib m.mtl\n" + square + "vt 0 1\nvn 0 0 1\no a\nusemtl b\nf 1/1/1 2/1/1 3/1/1 -1/-1/-1\n";
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        for (const char bits : {'\x01', '\x08', '\x20', '\xff'}) {
+            std::string changed = whole;
+            changed[i] = static_cast<char>(changed[i] ^ bits);
+            const auto scene = import_files({folder.write("changed.obj", changed)}, {});
+            if (!scene.ok()) {
+                EXPECT_FALSE(scene.error().what.empty());
+            }
+        }
+    }
+}
+
 TEST(Obj, TextureWithHolesIsMaskedAndMissingOnesAreWhite) {
     const Folder folder;
     const std::vector<std::uint8_t> holes{255, 0, 0, 255, 0, 0, 0, 0};

@@ -102,6 +102,21 @@ TEST(Ostf, EveryTruncationIsAnError) {
         EXPECT_FALSE(index_of(whole.substr(0, length)).ok()) << length;
 }
 
+TEST(Ostf, AnyByteChangedNeverCrashes) {
+    const Folder folder;
+    const std::string whole = cube();
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        for (const char bits : {'\x01', '\x08', '\xff'}) {
+            std::string changed = whole;
+            changed[i] = static_cast<char>(changed[i] ^ bits);
+            const auto scene = import_files({folder.write("changed.ostf", changed)}, {});
+            if (!scene.ok()) {
+                EXPECT_FALSE(scene.error().what.empty());
+            }
+        }
+    }
+}
+
 TEST(Ostf, LeafWithWordsInItIsAnErrorWhenRead) {
     const Folder folder;
     std::string text = leaf("a", 1, "", triangle);

@@ -14,8 +14,11 @@ dvec3 unit_or(const dvec3& v, const dvec3& otherwise) {
     return length > 1e-12 ? v / length : otherwise;
 }
 
-/// |cos|^e and |sin|^e with their signs: superellipses.
-double power(double value, double exponent) { return std::copysign(std::pow(std::abs(value), exponent), value); }
+/// |cos|^e and |sin|^e with their signs: superellipses. The cosine of a pole is 6e-17, not 0: its root would make a
+/// ring of dust of it.
+double power(double value, double exponent) {
+    return std::abs(value) < 1e-12 ? 0.0 : std::copysign(std::pow(std::abs(value), exponent), value);
+}
 
 }  // namespace
 

@@ -43,14 +43,18 @@ std::vector<Place> dense_curve(std::span<const Waypoint> w) {
 
 /// Times at which the dense points are passed, pauses included.
 std::vector<double> times_of(const std::vector<Place>& curve, std::span<const Waypoint> w, double duration_s) {
-    double length = 0, pauses = 0;
-    for (std::size_t i = 1; i < curve.size(); ++i) length += glm::length(curve[i].eye - curve[i - 1].eye);
+    std::vector<double> efforts(curve.size(), 0.0);  // metres, longer where the pace is slower
+    double total = 0, pauses = 0;
+    for (std::size_t i = 1; i < curve.size(); ++i) {
+        efforts[i] = glm::length(curve[i].eye - curve[i - 1].eye) / w[(i - 1) / steps_a_stretch].pace;
+        total += efforts[i];
+    }
     for (const Waypoint& point : w) pauses += point.pause_s;
-    const double speed = length / std::max(duration_s - pauses, 0.1 * duration_s);
+    const double speed = total / std::max(duration_s - pauses, 0.1 * duration_s);
     std::vector<double> times(curve.size(), 0.0);
     double now = 0;
     for (std::size_t i = 0; i < curve.size(); ++i) {
-        if (i > 0) now += glm::length(curve[i].eye - curve[i - 1].eye) / speed;
+        now += efforts[i] / speed;
         times[i] = now;
         if (i % steps_a_stretch == 0) now += w[i / steps_a_stretch].pause_s;
     }

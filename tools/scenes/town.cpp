@@ -120,8 +120,9 @@ struct Town {
 };
 
 void make_meshes(Town& town) {
+    FurnitureMade made;
     for (int kind = 0; kind < house_kinds; ++kind)
-        town.houses.push_back(make_house(town.maker, town.stuff, town.detail, kind, town.seed));
+        town.houses.push_back(make_house(town.maker, town.stuff, town.detail, kind, town.seed, made));
     TreeShape shape{.height = 8.5,
                     .crown_base = 3.0,
                     .crown_radius = 2.6,
@@ -269,12 +270,14 @@ Path walk_through() {
     const double street = block + 3, house_x = pavement + visited_plot * house_width_m, front = block - pavement;
     const double door = house_x + house_door_m;
     std::vector<Waypoint> way;
-    const auto go = [&](double x, double z, double y = eye) { way.push_back({{x, y, z}, {}, true, 0}); };
+    double pace = 1.0;
+    const auto go = [&](double x, double z, double y = eye) { way.push_back({{x, y, z}, {}, true, 0, pace}); };
     const auto look = [&](double x, double z, const dvec3& at, double pause_s, double y = eye) {
-        way.push_back({{x, y, z}, at, false, pause_s});
+        way.push_back({{x, y, z}, at, false, pause_s, pace});
     };
-    go(5.0, street, 1.7);
+    go(7.0, street, 1.7);
     go(13.0, street - 0.4, 1.7);
+    pace = 0.62;  // rooms are small
     look(18.6, street - 1.8, {door, 1.6, front}, 0);
     go(door, front + 1.5);
     go(door + 0.08, front - 0.6);
@@ -289,6 +292,7 @@ Path walk_through() {
     go(door + 0.2, front - 1.4);
     go(door, front + 0.3);
     go(door + 1.3, front + 2.1);
+    pace = 1.0;
     go(31.5, street - 0.5, 1.7);
     look(42.5, street + 1.5, {63, 2.0, 57}, 0, 1.72);
     look(48.5, 47.0, {63, 2.2, 57}, 0);

@@ -1,6 +1,8 @@
 // The town: blocks of furnished houses on a grid of streets, trees and lamps, a square with a fountain and a town hall.
 #pragma once
 
+#include <unordered_map>
+
 #include "tools/scenes/building.hpp"
 #include "tools/scenes/plants.hpp"
 #include "tools/scenes/scenes.hpp"
@@ -31,8 +33,12 @@ struct House {
 constexpr double house_width_m = 8.5, house_depth_m = 9.0;
 constexpr double house_door_m = 1.5;  ///< middle of the front door
 constexpr int house_kinds = 4;
+/// Furniture made so far, by what it looks like: all houses share it.
+using FurnitureMade = std::unordered_map<std::uint64_t, Index>;
+
 /// `detail` cuts the furniture; kinds differ in storeys, walls, shutters and furniture.
-House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail, int kind, std::uint64_t seed);
+House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail, int kind, std::uint64_t seed,
+                 FurnitureMade& made);
 
 constexpr double balcony_m = 4.5;  ///< height of the town hall's balcony
 /// Front in the plane z = 0 looking to +z; x -13..13; outer stair from x = 11 down at the ground to x = 3 up on the balcony

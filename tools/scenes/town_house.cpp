@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "rt/base/hash.hpp"
 #include "rt/base/random.hpp"
 #include "tools/scenes/town.hpp"
 
@@ -208,17 +209,16 @@ struct Furnisher {
     Detail detail;
     House& house;
     Random& random;
+    FurnitureMade& made;
 
     Index shared(importer::Mesh mesh) const {
-        for (std::size_t i = 0; i < maker.scene.meshes.size(); ++i) {
-            const importer::Mesh& have = maker.scene.meshes[i];
-            if (have.name == mesh.name && have.primitives[0].colours == mesh.primitives[0].colours &&
-                have.primitives.back().colours == mesh.primitives.back().colours &&
-                have.primitives[0].positions == mesh.primitives[0].positions) {
-                return static_cast<Index>(i);
-            }
+        std::uint64_t key = fnv_start;
+        for (const importer::Primitive& p : mesh.primitives) {
+            key = hash_bytes(std::as_bytes(std::span(p.positions)), fnv1a(key, p.material));
+            key = hash_bytes(std::as_bytes(std::span(p.colours)), key);
         }
-        return maker.mesh(std::move(mesh));
+        const auto found = made.find(key);
+        return found != made.end() ? found->second : made[key] = maker.mesh(std::move(mesh));
     }
     void put(const char* name, importer::Mesh mesh, const dvec3& at, double angle = 0) const {
         house.things.push_back({name, shared(std::move(mesh)), move(at) * turn_y(angle)});
@@ -284,7 +284,8 @@ void furnish_upstairs(const Furnisher& f, int kind, int level) {
 
 }  // namespace
 
-House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail, int kind, std::uint64_t seed) {
+House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail, int kind, std::uint64_t seed,
+                 FurnitureMade& made) {
     const Kind& k = kinds[static_cast<std::size_t>(kind)];
     Random random(seed + static_cast<std::uint64_t>(kind));
     House house;
@@ -293,7 +294,7 @@ House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail
     // Hinged in the doorway, standing wide open into the hall, along its west side.
     house.things.push_back({"door", maker.mesh(door_leaf(stuff.stuff, 0.96, 2.12, k.door, detail)),
                             move({house_door_m - 0.48, 0, -outer}) * turn_y(0.5 * pi - 0.08)});
-    const Furnisher furnisher{maker, stuff, detail, house, random};
+    const Furnisher furnisher{maker, stuff, detail, house, random, made};
     furnish_living_room(furnisher, kind);
     furnish_kitchen(furnisher, kind);
     for (int level = 1; level < k.storeys; ++level) furnish_upstairs(furnisher, kind, level);
