@@ -185,11 +185,9 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
 
 void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) {
     const model::FrameCombine& combine = costs.combine;
-    model::ItemCost rest, rest_stand_in, so_far;
+    model::ItemCost rest_stand_in, so_far;
     for (const select::Slice& slice : plan.slices) {
-        rest.submit_us += slice.cost.submit_us;
-        rest.raster_us += slice.cost.raster_us;
-        rest_stand_in.submit_us += slice.stand_in_cost.submit_us;
+        rest_stand_in.submit_us += slice.stand_in_cost.submit_us + costs.slice_us;
         rest_stand_in.raster_us += slice.stand_in_cost.raster_us;
     }
     bool full = true;
@@ -201,19 +199,19 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
             return static_cast<double>(combine.frame_us(so_far.submit_us + more.submit_us, so_far.raster_us + more.raster_us) -
                                        predicted_so_far);
         };
+        rest_stand_in.submit_us -= slice.stand_in_cost.submit_us + costs.slice_us;
+        rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
         if (full && options.in_frame_check) {
+            const double upper = correction * costs.upper_factor;
             select::CheckInput check;
             check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + in_flight_us;
-            check.predicted_so_far_us = limits.elapsed_us + predicted_so_far;
-            check.rest_us = with(rest) * correction * costs.upper_factor;
-            check.rest_stand_in_us = with(rest_stand_in) * correction * costs.upper_factor;
+            check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction;
+            check.next_us = with(slice.cost) * upper;
+            check.next_stand_in_us = with(slice.stand_in_cost) * upper;
+            check.rest_stand_in_us = with(rest_stand_in) * upper;
             check.limit_us = limits.limit_us;
             full = select::still_fits(check);
         }
-        rest.submit_us -= slice.cost.submit_us;
-        rest.raster_us -= slice.cost.raster_us;
-        rest_stand_in.submit_us -= slice.stand_in_cost.submit_us;
-        rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
         const model::ItemCost cost = draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
                                                      : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count), report);
         so_far.submit_us += cost.submit_us + costs.slice_us;

@@ -102,14 +102,20 @@ struct SlicePlan {
 /// Groups the cut into slices of about slice_us predicted each. Allocates nothing.
 void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, SlicePlan& plan);
 
-/// In-frame check, a pure function: whether slices [next, n) still fit. elapsed_us: since the frame began, work in flight
-/// included; predicted_so_far_us: of the slices already submitted (full combine); limit_us: when the frame must be done.
-/// The prediction of the rest is scaled by how wrong the frame has been so far (1..8).
+/// In-frame check, a pure function: whether the next slice may still be drawn in full. It may while, after it, all that is
+/// left would fit as stand-ins: the frame then degrades from its least beneficial end, and no earlier than it must. (DESIGN
+/// 1.2 would stop as soon as the rest in full no longer fits: that drew most of a frame coarse for an error of a few per cent.)
 struct CheckInput {
-    double elapsed_us = 0, predicted_so_far_us = 0, rest_us = 0, rest_stand_in_us = 0, limit_us = 0;
-    double margin = 1.15;
+    double elapsed_us = 0;           ///< since the frame was due, work in flight included
+    double predicted_so_far_us = 0;  ///< for what was drawn in that time
+    double next_us = 0;              ///< the next slice in full, at the upper quantile
+    double next_stand_in_us = 0;     ///< the next slice as its stand-in
+    double rest_stand_in_us = 0;     ///< all slices after it as stand-ins, at the upper quantile
+    double limit_us = 0;             ///< when the frame must be done
+    double margin = 1.1;
 };
-/// true: go on with full slices; false: draw every unstarted slice by its stand-ins.
+/// true: draw it in full; false: draw this and every later slice by its stand-ins. The predictions are scaled by how wrong the
+/// frame has been so far (1..8; a twentieth of the limit is taken as seen and right, so that the first slices do not shout).
 bool still_fits(const CheckInput& input);
 
 }  // namespace surefoot::select

@@ -1,4 +1,4 @@
-// The in-frame check: whether the rest of the frame still fits, judged by how wrong it has been so far.
+// The in-frame check: whether the next slice still fits in full, judged by how wrong it has been so far.
 #include <algorithm>
 #include <cmath>
 
@@ -7,11 +7,11 @@
 namespace surefoot::select {
 
 bool still_fits(const CheckInput& input) {
-    if (!(input.rest_us > 0.0)) return true;                   // nothing left
-    if (input.rest_stand_in_us >= input.rest_us) return true;  // stand-ins would gain nothing
-    const double wrong = input.predicted_so_far_us > 0.0 ? input.elapsed_us / input.predicted_so_far_us : 1.0;
+    if (input.next_stand_in_us >= input.next_us) return true;  // the stand-in would gain nothing
+    const double prior_us = 0.05 * input.limit_us;
+    const double wrong = (input.elapsed_us + prior_us) / (input.predicted_so_far_us + prior_us);
     const double factor = std::clamp(std::isfinite(wrong) ? wrong : 8.0, 1.0, 8.0);
-    return input.elapsed_us + input.rest_us * factor * input.margin <= input.limit_us;  // NaN: does not fit
+    return input.elapsed_us + (input.next_us + input.rest_stand_in_us) * factor * input.margin <= input.limit_us;  // NaN: does not fit
 }
 
 }  // namespace surefoot::select

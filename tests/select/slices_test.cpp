@@ -113,25 +113,21 @@ TEST(Slices, MostBeneficialSubtreesComeFirst) {
 
 TEST(StillFits, ZeroCasesAreDefined) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_TRUE(still_fits({.elapsed_us = 9e9, .rest_us = 0}));
-    EXPECT_TRUE(
-        still_fits({.elapsed_us = 0, .predicted_so_far_us = 0, .rest_us = 800, .rest_stand_in_us = 10, .limit_us = 1000}));
-    EXPECT_FALSE(
-        still_fits({.elapsed_us = nan, .predicted_so_far_us = 1, .rest_us = 800, .rest_stand_in_us = 10, .limit_us = 1000}));
-    EXPECT_FALSE(
-        still_fits({.elapsed_us = 10, .predicted_so_far_us = 10, .rest_us = 100, .rest_stand_in_us = 10, .limit_us = nan}));
-    EXPECT_TRUE(
-        still_fits({.elapsed_us = 999, .predicted_so_far_us = 1, .rest_us = 500, .rest_stand_in_us = 500, .limit_us = 1000}));
+    EXPECT_TRUE(still_fits({.elapsed_us = 9e9, .next_us = 0, .next_stand_in_us = 0}));
+    EXPECT_TRUE(still_fits({.elapsed_us = 0, .predicted_so_far_us = 0, .next_us = 400, .next_stand_in_us = 10, .limit_us = 1000}));
+    EXPECT_FALSE(still_fits({.elapsed_us = nan, .predicted_so_far_us = 1, .next_us = 400, .next_stand_in_us = 10, .limit_us = 1000}));
+    EXPECT_FALSE(still_fits({.elapsed_us = 10, .predicted_so_far_us = 10, .next_us = 100, .next_stand_in_us = 10, .limit_us = nan}));
+    EXPECT_TRUE(still_fits({.elapsed_us = 999, .predicted_so_far_us = 1, .next_us = 500, .next_stand_in_us = 500, .limit_us = 1000}));
 }
 
 TEST(StillFits, ScalesTheRestByHowWrongTheFrameHasBeen) {
-    CheckInput in{.elapsed_us = 400, .predicted_so_far_us = 400, .rest_us = 500, .rest_stand_in_us = 50, .limit_us = 1000};
+    CheckInput in{.elapsed_us = 400, .predicted_so_far_us = 400, .next_us = 300, .next_stand_in_us = 5, .rest_stand_in_us = 200, .limit_us = 1000};
     EXPECT_TRUE(still_fits(in));
     in.predicted_so_far_us = 200;  // twice as slow as said
     EXPECT_FALSE(still_fits(in));
     in.predicted_so_far_us = 4000;  // faster than said: no more than said is hoped for
     EXPECT_TRUE(still_fits(in));
-    in.rest_us = 530;
+    in.next_us = 350;
     EXPECT_FALSE(still_fits(in));
 }
 
@@ -146,14 +142,14 @@ double frame_us(Scene& s, double limit_us, double wrong, bool check) {
     in.elapsed_us = in.predicted_so_far_us = static_cast<double>(w.fixed_us);
     in.limit_us = limit_us;
     for (const Slice& slice : s.plan.slices) {
-        in.rest_us += us(slice.cost) * upper + end;
         in.rest_stand_in_us += us(slice.stand_in_cost) * upper + end;
     }
     bool full = true;
     for (const Slice& slice : s.plan.slices) {
-        if (full && check) full = still_fits(in);
-        in.rest_us -= us(slice.cost) * upper + end;
         in.rest_stand_in_us -= us(slice.stand_in_cost) * upper + end;
+        in.next_us = us(slice.cost) * upper + end;
+        in.next_stand_in_us = us(slice.stand_in_cost) * upper + end;
+        if (full && check) full = still_fits(in);
         const double predicted = us(full ? slice.cost : slice.stand_in_cost) + end;
         in.predicted_so_far_us += predicted;
         in.elapsed_us += predicted * wrong;
