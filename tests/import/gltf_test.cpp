@@ -1,8 +1,8 @@
 // glTF: hierarchy, instances, attributes of every kind, materials, and the traps of each.
 #include <gtest/gtest.h>
 
-#include "fixtures.hpp"
 #include "render/import/srgb.hpp"
+#include "tests/import/fixtures.hpp"
 
 namespace surefoot::importer::test {
 namespace {

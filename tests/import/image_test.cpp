@@ -5,7 +5,7 @@
 
 #include <jpeglib.h>
 
-#include "fixtures.hpp"
+#include "tests/import/fixtures.hpp"
 
 namespace surefoot::importer::test {
 namespace {

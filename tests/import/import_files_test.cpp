@@ -1,7 +1,7 @@
 // import_files: what a person gets wrong on the command line, and several files in one scene.
 #include <gtest/gtest.h>
 
-#include "fixtures.hpp"
+#include "tests/import/fixtures.hpp"
 
 namespace surefoot::importer::test {
 namespace {

@@ -1,7 +1,7 @@
 // OBJ and MTL: indices of all forms, polygons, groups, colours, and errors with their line.
 #include <gtest/gtest.h>
 
-#include "fixtures.hpp"
+#include "tests/import/fixtures.hpp"
 
 namespace surefoot::importer::test {
 namespace {

@@ -1,8 +1,8 @@
 // OSTF: the thesis' own cube, leaves by offset, what is truncated or lies, and there and back.
 #include <gtest/gtest.h>
 
-#include "fixtures.hpp"
 #include "render/import/ostf.hpp"
+#include "tests/import/fixtures.hpp"
 
 namespace surefoot::importer::test {
 namespace {
