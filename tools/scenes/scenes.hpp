@@ -1,6 +1,6 @@
 // Generated scenes and the paths through them: the same bits from the same (name, scale, seed).
-// forest: the walk of the thesis' successors: 100 trees, 105 000 polygons at scale 1. room: furniture that interpenetrates.
-// town: streets, houses with rooms, furniture, trees, lamps; about a million triangles at scale 1.
+// forest: 100 trees, 105 000 polygons at scale 1 (the scene of Schaufler & Stuerzlinger 1996, figure 7). room: furniture
+// that interpenetrates, about 60 000. town: streets, houses with rooms, furniture, trees, lamps, about a million.
 #pragma once
 
 #include <cstdint>
