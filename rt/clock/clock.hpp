@@ -48,7 +48,7 @@ public:
     /// Time passes without CPU time, by the thread's own wish (a fence).
     void wait(std::int64_t ns);
     void fault(std::uint64_t minor, std::uint64_t major);
-    /// The next sleeps end this much late.
+    /// Every sleep from now on ends this much late.
     void set_wake_lateness(std::int64_t ns) { wake_lateness_ns_ = ns; }
 
 private:

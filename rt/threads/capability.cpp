@@ -1,0 +1,158 @@
+// What the machine grants, found by trying where trying is harmless, and by reading limits, /proc and /sys elsewhere.
+#include "rt/threads/capability.hpp"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <thread>
+
+#include "rt/base/file.hpp"
+
+namespace surefoot::rt {
+
+namespace {
+
+constexpr std::int64_t lock_enough_bytes = 1LL << 30;
+
+std::string first_line(const std::string& file) {
+    auto text = read_text(file, 1U << 20U);
+    return text ? text->substr(0, text->find('\n')) : std::string{};
+}
+
+std::int64_t number_in(const std::string& file, std::int64_t otherwise) {
+    const std::string line = first_line(file);
+    std::int64_t value = otherwise;
+    std::from_chars(line.data(), line.data() + line.size(), value);
+    return value;
+}
+
+/// On a thread of its own, so that the caller's placing is not touched.
+bool fifo_granted(int priority) {
+    bool granted = false;
+    std::thread([&] {
+        granted = place_thread(0, {.policy = Policy::fifo, .priority = priority, .cpus = {}, .name = {}}).ok();
+    }).join();
+    return granted;
+}
+
+int highest_fifo(int wanted) {
+    if (fifo_granted(wanted)) return wanted;
+    rlimit limit{};
+    getrlimit(RLIMIT_RTPRIO, &limit);
+    const int allowed = static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 99));
+    return allowed >= 1 && allowed < wanted && fifo_granted(allowed) ? allowed : 0;
+}
+
+std::int64_t soft_limit(__rlimit_resource_t resource) {
+    rlimit limit{};
+    getrlimit(resource, &limit);
+    return limit.rlim_cur == RLIM_INFINITY ? -1 : static_cast<std::int64_t>(limit.rlim_cur);
+}
+
+/// More than any limit without privilege would allow: refused at once where CAP_IPC_LOCK is missing, for address space alone
+/// is asked for and MCL_ONFAULT touches nothing.
+bool lock_unlimited() {
+    const std::int64_t limit = soft_limit(RLIMIT_MEMLOCK);
+    if (limit < 0) return true;
+    const std::size_t bytes = static_cast<std::size_t>(limit) + (1U << 20U);
+    void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED) return false;
+    const bool locked = mlock2(memory, bytes, MLOCK_ONFAULT) == 0;
+    munmap(memory, bytes);
+    return locked;
+}
+
+std::string fifo_remedy(int wanted) {
+    return fmt::format(
+        "grant CAP_SYS_NICE, or RLIMIT_RTPRIO of at least {} (LimitRTPRIO={} in the unit; "
+        "'rtprio' in /etc/security/limits.d); as root already: the cgroup's cpu.rt_runtime_us must not be 0",
+        wanted, wanted);
+}
+
+void raise(__rlimit_resource_t resource, rlim_t wanted) {
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur >= wanted) return;
+    const rlimit privileged{wanted, std::max(limit.rlim_max, wanted)};
+    if (setrlimit(resource, &privileged) == 0) return;
+    limit.rlim_cur = std::min(limit.rlim_max, wanted);
+    setrlimit(resource, &limit);
+}
+
+}  // namespace
+
+Capabilities probe_capabilities(int wanted_priority, const std::string& root) {
+    Capabilities c;
+    c.fifo_priority = highest_fifo(wanted_priority);
+    c.memlock_bytes = lock_unlimited() ? -1 : soft_limit(RLIMIT_MEMLOCK);
+    c.can_lock = c.memlock_bytes < 0 || c.memlock_bytes >= lock_enough_bytes;
+    c.rttime_us = soft_limit(RLIMIT_RTTIME);
+    c.allowed = allowed_cpus();
+    if (auto isolated = CpuMask::parse(first_line(root + "/sys/devices/system/cpu/isolated"))) {
+        for (const int cpu : isolated->cpus()) {
+            if (c.allowed.has(cpu)) c.isolated.add(cpu);
+        }
+    }
+    c.rt_runtime_us = number_in(root + "/proc/sys/kernel/sched_rt_runtime_us", -1);
+    c.rt_period_us = number_in(root + "/proc/sys/kernel/sched_rt_period_us", 1'000'000);
+    c.preempt_rt = number_in(root + "/sys/kernel/realtime", 0) == 1;
+    const auto processor = read_text(root + "/proc/cpuinfo", 1U << 24U);
+    c.virtual_machine = processor && processor->find(" hypervisor") != std::string::npos;
+    c.lacking = find_lacking(c, wanted_priority);
+    return c;
+}
+
+std::vector<Lack> find_lacking(const Capabilities& c, int wanted_priority) {
+    std::vector<Lack> lacking;
+    if (c.fifo_priority == 0) {
+        lacking.push_back({"SCHED_FIFO is refused", fifo_remedy(wanted_priority)});
+    } else if (c.fifo_priority < wanted_priority) {
+        lacking.push_back(
+            {fmt::format("SCHED_FIFO is granted up to priority {} only, {} is wanted", c.fifo_priority, wanted_priority),
+             fifo_remedy(wanted_priority)});
+    }
+    if (!c.can_lock) {
+        lacking.push_back({fmt::format("memory cannot be locked beyond {} MiB", c.memlock_bytes >> 20),
+                           "grant CAP_IPC_LOCK, or RLIMIT_MEMLOCK unlimited (LimitMEMLOCK=infinity in the unit)"});
+    }
+    if (c.isolated.empty()) {
+        lacking.push_back(
+            {"no isolated core among " + c.allowed.text(),
+             c.allowed.count() < 2
+                 ? "give this process a second core, and isolate one of them"
+                 : fmt::format("boot with isolcpus=managed_irq,domain,{0} nohz_full={0}, or make a cpuset partition",
+                               c.allowed.cpus().back())});
+    }
+    // All FIFO work together leaves 10 % of each core (DESIGN 1.4): throttling at 95 % never bites, below 90 % it does.
+    if (c.rt_runtime_us >= 0 && c.rt_runtime_us * 10 < c.rt_period_us * 9) {
+        lacking.push_back({fmt::format("real-time threads are throttled to {} of {} us", c.rt_runtime_us, c.rt_period_us),
+                           "sysctl kernel.sched_rt_runtime_us=950000"});
+    }
+    return lacking;
+}
+
+SavedLimits raise_limits(int wanted_priority) {
+    rlimit rtprio{}, rttime{}, memlock{};
+    getrlimit(RLIMIT_RTPRIO, &rtprio);
+    getrlimit(RLIMIT_RTTIME, &rttime);
+    getrlimit(RLIMIT_MEMLOCK, &memlock);
+    raise(RLIMIT_RTPRIO, static_cast<rlim_t>(std::clamp(wanted_priority, 0, 99)));
+    raise(RLIMIT_RTTIME, RLIM_INFINITY);
+    raise(RLIMIT_MEMLOCK, RLIM_INFINITY);
+    return {rtprio.rlim_cur, rtprio.rlim_max, rttime.rlim_cur, rttime.rlim_max, memlock.rlim_cur, memlock.rlim_max};
+}
+
+void restore_limits(const SavedLimits& limits) {
+    const auto put_back = [](__rlimit_resource_t resource, rlim_t soft, rlim_t hard) {
+        const rlimit limit{soft, hard};
+        setrlimit(resource, &limit);
+    };
+    put_back(RLIMIT_RTPRIO, limits.rtprio_soft, limits.rtprio_hard);
+    put_back(RLIMIT_RTTIME, limits.rttime_soft, limits.rttime_hard);
+    put_back(RLIMIT_MEMLOCK, limits.memlock_soft, limits.memlock_hard);
+}
+
+}  // namespace surefoot::rt

@@ -1,0 +1,116 @@
+// Memory made ready before the first frame: the allocator keeps what it has, pages are touched, then locked.
+#include "rt/threads/memory.hpp"
+
+#include <alloca.h>
+#include <fmt/format.h>
+#include <malloc.h>
+#include <pthread.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include "rt/base/file.hpp"
+
+namespace surefoot::rt {
+
+namespace {
+
+constexpr const char* lock_remedy = "grant CAP_IPC_LOCK, or RLIMIT_MEMLOCK unlimited (LimitMEMLOCK=infinity in the unit)";
+
+/// The number of kB behind `key` in /proc/self/status, in bytes; 0 when it is not there.
+std::uint64_t status_bytes(std::string_view key) {
+    const auto text = read_text("/proc/self/status", 1U << 16U);
+    if (!text) return 0;
+    const auto at = text->find(key);
+    if (at == std::string::npos) return 0;
+    const auto digit = text->find_first_of("0123456789", at + key.size());
+    if (digit == std::string::npos) return 0;
+    std::uint64_t kb = 0;
+    std::from_chars(text->data() + digit, text->data() + text->size(), kb);
+    return kb << 10U;
+}
+
+/// Many blocks, so that the heap grows by them whatever the allocator's bins do; given back to it touched.
+void prefault_heap(std::size_t bytes) {
+    constexpr std::size_t block = 64U << 10U;
+    struct Link {
+        Link* next;
+    };
+    Link* first = nullptr;
+    for (std::size_t done = 0; done < bytes; done += block) {
+        auto* memory = static_cast<Link*>(std::malloc(block));  // NOLINT: the allocator itself is what is being exercised
+        if (memory == nullptr) break;
+        std::memset(static_cast<void*>(memory), 0, block);
+        memory->next = first;
+        first = memory;
+    }
+    while (first != nullptr) {
+        Link* const next = first->next;
+        std::free(first);  // NOLINT
+        first = next;
+    }
+}
+
+Result<void> lock_all(std::uint64_t growth_bytes) {
+    rlimit limit{};
+    getrlimit(RLIMIT_MEMLOCK, &limit);
+    if (limit.rlim_cur < limit.rlim_max) {
+        limit.rlim_cur = limit.rlim_max;
+        setrlimit(RLIMIT_MEMLOCK, &limit);
+    }
+    const std::uint64_t mapped = status_bytes("VmSize:");
+    const bool privileged = geteuid() == 0;
+    if (!privileged && limit.rlim_cur != RLIM_INFINITY && limit.rlim_cur < mapped + growth_bytes)
+        return Error{"memory",
+                     fmt::format("cannot be locked: the limit is {} MiB, {} MiB are wanted", limit.rlim_cur >> 20U,
+                                 (mapped + growth_bytes) >> 20U),
+                     lock_remedy};
+    if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
+        return Error{"memory", fmt::format("cannot be locked: {}", std::strerror(errno)),
+                     lock_remedy};  // NOLINT(concurrency-mt-unsafe)
+    return {};
+}
+
+}  // namespace
+
+Result<void> prepare_memory(const MemoryOptions& options) {
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TOP_PAD, 1 << 20);  // a grown heap grows by a useful amount
+    prefault_heap(options.heap_bytes);
+    return options.lock ? lock_all(options.growth_bytes) : Result<void>{};
+}
+
+void release_memory() {
+    munlockall();
+    // glibc's defaults (mallopt(3)); they cannot be read back.
+    mallopt(M_TRIM_THRESHOLD, 128 << 10);
+    mallopt(M_TOP_PAD, 128 << 10);
+    mallopt(M_MMAP_MAX, 65536);
+    malloc_trim(0);
+}
+
+__attribute__((noinline)) void prefault_stack(std::size_t bytes) {
+    pthread_attr_t attributes;
+    std::size_t whole = 0;
+    if (pthread_getattr_np(pthread_self(), &attributes) == 0) {
+        pthread_attr_getstacksize(&attributes, &whole);
+        pthread_attr_destroy(&attributes);
+    }
+    const std::size_t size = std::min(bytes, whole / 2);
+    if (size == 0) return;
+    auto* const stack = static_cast<volatile char*>(alloca(size));
+    for (std::size_t at = 0; at < size; at += 1024) stack[at] = 1;
+    stack[size - 1] = 1;
+}
+
+std::uint64_t locked_bytes() { return status_bytes("VmLck:"); }
+
+}  // namespace surefoot::rt
