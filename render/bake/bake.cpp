@@ -79,7 +79,7 @@ struct Bakery {
 
 ChainOptions chain_options(const BakeOptions& options, model::Index proxy) {
     ChainOptions chain;
-    chain.slack = options.quality == Quality::full ? 1.1F : 1.3F;
+    chain.slack = options.quality == Quality::full ? 0.1F : 0.3F;
     chain.ratio = options.quality == Quality::full ? 0.6 : 0.45;
     chain.proxy_material = proxy;
     return chain;

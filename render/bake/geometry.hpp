@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/measure/mesh_distance.hpp"
 #include "render/model/model.hpp"
 #include "rt/base/geometry.hpp"
 
@@ -44,7 +43,7 @@ struct LodChain {
 struct ChainOptions {
     bool lock_border = false;      ///< pieces of one object: their common borders stay equal
     std::uint32_t smallest = 16;   ///< triangles at which the chain ends
-    float slack = 1.25F;           ///< how far the bound may lie over what a sample proves
+    float slack = 0.25F;           ///< how far, relative, the bound may lie over what is proven
     model::Index proxy_material = 0;  ///< vertex colours only: for the coarsest levels; none: they keep their materials
     std::uint32_t proxy_below = 40;  ///< triangles; coarser levels carry baked colours in one part
     double first_share = 1;        ///< share of the triangles that the finest simplified level may have (1: as ratio says)
@@ -53,9 +52,6 @@ struct ChainOptions {
 
 /// meshoptimizer proposes, mesh_distance bounds. A chain of one level where nothing coarser is worth keeping.
 LodChain make_chain(Geometry full, const ChainOptions& options);
-
-/// Triangles of some parts, for distances.
-std::vector<measure::TriangleTree::Triangle> triangles_of(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts);
 
 /// Drops vertices that no part uses, and orders triangles and vertices for the caches.
 void optimise(Geometry& geometry);

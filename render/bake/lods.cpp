@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/bake/geometry.hpp"
+#include "render/measure/mesh_distance.hpp"
 
 namespace surefoot::bake {
 
@@ -18,17 +19,6 @@ Box Geometry::box() const {
     Box box;
     for (const model::Vertex& v : vertices) box.grow(dvec3(position_of(v)));
     return box;
-}
-
-std::vector<measure::TriangleTree::Triangle> triangles_of(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts) {
-    std::vector<measure::TriangleTree::Triangle> out;
-    for (const GeometryPart& part : parts) {
-        for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
-            out.push_back({position_of(vertices[part.indices[i]]), position_of(vertices[part.indices[i + 1]]),
-                           position_of(vertices[part.indices[i + 2]])});
-        }
-    }
-    return out;
 }
 
 void optimise(Geometry& geometry) {
@@ -146,6 +136,38 @@ Level box_level(Geometry& g, const Box& box, std::size_t own_vertices, model::In
     return level;
 }
 
+/// Positions and indices of some parts, as the distance wants them.
+struct Surface {
+    std::vector<vec3> positions;
+    std::vector<std::uint32_t> indices;
+    Surface(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts) {
+        positions.reserve(vertices.size());
+        for (const model::Vertex& v : vertices) positions.push_back(position_of(v));
+        for (const GeometryPart& part : parts) indices.insert(indices.end(), part.indices.begin(), part.indices.end());
+    }
+    [[nodiscard]] measure::MeshView view() const { return {positions, indices}; }
+};
+
+/// The full detail, against which every level is bounded.
+struct Reference {
+    Surface surface;
+    measure::TriangleTree tree;
+    measure::DistanceLimits limits;
+
+    Reference(const Geometry& g, float slack) : surface(g.vertices, g.parts), tree(surface.view()) {
+        limits.relative = slack;
+        limits.absolute = 0.002F * tree.diagonal();
+    }
+    /// Upper bound of the two-sided distance.
+    [[nodiscard]] float bound(const Geometry& g, const Level& level) const {
+        const Surface coarse(g.vertices, level.parts);
+        const measure::DistanceBounds there = measure::directed_distance(surface.view(), measure::TriangleTree(coarse.view()), limits);
+        measure::DistanceLimits back = limits;
+        back.known_lower = there.lower;
+        return std::max(there.upper, measure::directed_distance(coarse.view(), tree, back).upper);
+    }
+};
+
 }  // namespace
 
 LodChain make_chain(Geometry full, const ChainOptions& options) {
@@ -155,13 +177,11 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     finest.parts = full.parts;
     finest.triangles = total;
     std::vector<Level> levels{finest};
-    const measure::TriangleTree reference(triangles_of(full.vertices, full.parts));
+    const Reference reference(full, options.slack);
     const Box box = full.box();
     const std::size_t own_vertices = full.vertices.size();
     const float floor_m = static_cast<float>(box.diagonal()) * 0.002F;
-    const auto bound = [&](const Level& level) {
-        return measure::two_sided_bound(reference, measure::TriangleTree(triangles_of(full.vertices, level.parts)), options.slack, floor_m);
-    };
+    const auto bound = [&](const Level& level) { return reference.bound(full, level); };
     while (levels.back().triangles > options.smallest) {
         const Level& before = levels.back();
         const double share = levels.size() == 1 ? std::min(options.ratio, options.first_share) : options.ratio;

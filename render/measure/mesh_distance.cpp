@@ -1,7 +1,8 @@
-// Two-sided distance of meshes: a box tree for nearest points, a convexity bound with subdivision on top.
+// Branch and bound of the distance between meshes (mesh_distance.hpp).
 #include "render/measure/mesh_distance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "rt/base/random.hpp"
@@ -10,173 +11,222 @@ namespace surefoot::measure {
 
 namespace {
 
-float box_distance2(const vec3& p, const vec3& lo, const vec3& hi) {
-    const vec3 d = glm::max(glm::max(lo - p, p - hi), vec3(0));
-    return glm::dot(d, d);
-}
+constexpr std::uint32_t no_triangle = 0xffffffffU;
 
-/// Closest point on a triangle, after Ericson, Real-Time Collision Detection, 5.1.5.
-vec3 closest_point(const vec3& p, const vec3& a, const vec3& b, const vec3& c) {
-    const vec3 ab = b - a, ac = c - a, ap = p - a;
-    const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return a;
-    const vec3 bp = p - b;
-    const float d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return b;
-    const float vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / std::max(d1 - d3, 1e-30F));
-    const vec3 cp = p - c;
-    const float d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return c;
-    const float vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / std::max(d2 - d6, 1e-30F));
-    const float va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-        return b + (c - b) * ((d4 - d3) / std::max((d4 - d3) + (d5 - d6), 1e-30F));
-    }
-    const float denominator = va + vb + vc;
-    if (denominator <= 0) return a;  // degenerate: its edges were tried above
-    return a + ab * (vb / denominator) + ac * (vc / denominator);
-}
-
-}  // namespace
-
-float point_triangle_distance(const vec3& p, const TriangleTree::Triangle& t) {
-    return glm::length(p - closest_point(p, t.a, t.b, t.c));
-}
-
-TriangleTree::TriangleTree(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
-    if (triangles_.empty()) return;
-    nodes_.reserve(triangles_.size());
-    nodes_.emplace_back();
-    build(0, 0, static_cast<std::uint32_t>(triangles_.size()), 0);
-}
-
-void TriangleTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t count, int depth) {
-    vec3 lo(1e30F), hi(-1e30F), centre_lo(1e30F), centre_hi(-1e30F);
-    for (std::uint32_t i = first; i < first + count; ++i) {
-        const Triangle& t = triangles_[i];
-        lo = glm::min(lo, glm::min(t.a, glm::min(t.b, t.c)));
-        hi = glm::max(hi, glm::max(t.a, glm::max(t.b, t.c)));
-        const vec3 centre = t.a + t.b + t.c;
-        centre_lo = glm::min(centre_lo, centre);
-        centre_hi = glm::max(centre_hi, centre);
-    }
-    nodes_[node].min = lo;
-    nodes_[node].max = hi;
-    if (count <= 4 || depth > 40) {
-        nodes_[node].first = first;
-        nodes_[node].count = count;
-        return;
-    }
-    const vec3 size = centre_hi - centre_lo;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto key = [axis](const Triangle& t) { return t.a[axis] + t.b[axis] + t.c[axis]; };
-    const std::uint32_t half = count / 2;
-    std::nth_element(triangles_.begin() + first, triangles_.begin() + first + half, triangles_.begin() + first + count,
-                     [&](const Triangle& a, const Triangle& b) { return key(a) < key(b); });
-    const auto children = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.resize(nodes_.size() + 2);
-    nodes_[node].first = children;
-    nodes_[node].count = 0;
-    build(children, first, half, depth + 1);
-    build(children + 1, first + half, count - half, depth + 1);
-}
-
-TriangleTree::Nearest TriangleTree::nearest(const vec3& p, float start) const {
-    float best2 = start * start;
-    Nearest found{start, 0};
-    struct Open {
-        std::uint32_t node;
-        float distance2;
-    };
-    std::array<Open, 96> stack;
-    std::size_t depth = 0;
-    stack[depth++] = {0, box_distance2(p, nodes_[0].min, nodes_[0].max)};
-    while (depth > 0) {
-        const Open open = stack[--depth];
-        if (open.distance2 >= best2) continue;
-        const Node& node = nodes_[open.node];
-        if (node.count > 0) {
-            for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-                const Triangle& t = triangles_[i];
-                const vec3 d = p - closest_point(p, t.a, t.b, t.c);
-                const float d2 = glm::dot(d, d);
-                if (d2 < best2) {
-                    best2 = d2;
-                    found = {std::sqrt(d2), i};
-                }
-            }
-            continue;
-        }
-        Open l{node.first, box_distance2(p, nodes_[node.first].min, nodes_[node.first].max)};
-        Open r{node.first + 1, box_distance2(p, nodes_[node.first + 1].min, nodes_[node.first + 1].max)};
-        if (l.distance2 < r.distance2) std::swap(l, r);
-        stack[depth++] = l;  // the nearer is looked at first
-        stack[depth++] = r;
-    }
-    return found;
-}
-
-namespace {
-
-struct BoundWalk {
-    const TriangleTree& to;
-    float slack, floor_m;
-    float proven = 0;  ///< largest distance of any point seen: a lower bound
-    float bound = 0;
-
-    void visit(const TriangleTree::Triangle& t, int depth);
+/// A corner of a (part of a) triangle, with the nearest triangle of the other mesh once that was asked for.
+struct Corner {
+    vec3 position;
+    TriangleTree::Hit hit;
 };
 
-void BoundWalk::visit(const TriangleTree::Triangle& t, int depth) {
-    constexpr float far = 1e15F;
-    const TriangleTree::Nearest near[4] = {to.nearest(t.a, far), to.nearest(t.b, far), to.nearest(t.c, far),
-                                           to.nearest((t.a + t.b + t.c) * (1.0F / 3.0F), far)};
-    for (const auto& n : near) proven = std::max(proven, n.distance);
-    float upper = far;
-    for (const auto& n : near) {
-        const TriangleTree::Triangle& s = to.triangles()[n.triangle];
-        upper = std::min(upper, std::max({point_triangle_distance(t.a, s), point_triangle_distance(t.b, s), point_triangle_distance(t.c, s)}));
+/// A triangle or a cut piece of one; `known` while its corners' hits are.
+struct Piece {
+    std::array<Corner, 3> corners;
+    float upper = 0;
+    bool known = false;
+};
+
+/// Worst piece first; ties by size of its numbers cannot differ between runs, since pieces are pushed in a fixed order.
+struct Entry {
+    float upper;
+    std::uint32_t piece;
+    bool operator<(const Entry& other) const { return upper < other.upper || (upper == other.upper && piece > other.piece); }
+};
+
+class BranchAndBound {
+public:
+    BranchAndBound(const MeshView& from, const TriangleTree& to, const DistanceLimits& limits, std::span<const float> initial)
+        : from_(from), to_(to), limits_(limits), lower_(limits.known_lower), hits_(from.positions.size()) {
+        queries_left_ = limits.max_queries != 0 ? limits.max_queries : 20000 + from.triangles() / 4;
+        if (initial.empty()) {
+            ask_all_corners();
+        } else {
+            for (std::uint32_t t = 0; t < from.triangles(); ++t) queue_.push_back({initial[t], t});
+            unknown_ = from.triangles();
+        }
+        std::make_heap(queue_.begin(), queue_.end());
     }
-    if (upper <= bound || upper <= floor_m || upper <= proven * slack || depth == 5) {
-        bound = std::max(bound, upper);
-        return;
+
+    DistanceBounds run() {
+        while (!queue_.empty() && queue_.front().upper > enough() && queries_left_ > 0) {
+            std::pop_heap(queue_.begin(), queue_.end());
+            const Entry worst = queue_.back();
+            queue_.pop_back();
+            if (worst.piece < unknown_) {
+                look_at(worst);
+            } else {
+                cut(worst.piece);
+            }
+        }
+        float upper = std::max(settled_, reached_);
+        if (!queue_.empty()) upper = std::max(upper, queue_.front().upper);
+        return {reached_, upper};
     }
-    const vec3 ab = 0.5F * (t.a + t.b), bc = 0.5F * (t.b + t.c), ca = 0.5F * (t.c + t.a);
-    visit({t.a, ab, ca}, depth + 1);
-    visit({ab, t.b, bc}, depth + 1);
-    visit({ca, bc, t.c}, depth + 1);
-    visit({ab, bc, ca}, depth + 1);
+
+private:
+    [[nodiscard]] float enough() const { return std::max(lower_ * (1.0F + limits_.relative), limits_.absolute); }
+
+    void found(float distance) {
+        reached_ = std::max(reached_, distance);
+        lower_ = std::max(lower_, distance);
+    }
+
+    const TriangleTree::Hit& ask(std::uint32_t vertex) {
+        TriangleTree::Hit& hit = hits_[vertex];
+        if (hit.triangle == no_triangle) {
+            hit = to_.nearest(from_.positions[vertex], last_hit_);
+            last_hit_ = hit.triangle;
+            found(hit.distance);
+            queries_left_ -= queries_left_ > 0 ? 1 : 0;
+        }
+        return hit;
+    }
+
+    Piece triangle(std::uint32_t t) {
+        Piece piece;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = from_.indices[3 * t + k];
+            piece.corners[k] = {from_.positions[vertex], ask(vertex)};
+        }
+        return piece;
+    }
+
+    // All corners first: the largest corner distance then rules most triangles out before any is kept.
+    void ask_all_corners() {
+        queries_left_ += from_.indices.size();
+        for (const std::uint32_t vertex : from_.indices) ask(vertex);
+        for (std::uint32_t t = 0; t < from_.triangles(); ++t) {
+            Piece piece = triangle(t);
+            piece.upper = bound(piece, std::numeric_limits<float>::infinity());
+            keep(piece, false);
+        }
+    }
+
+    /// Over the piece, no point is farther than this: the best of its corners' nearest triangles taken for all corners, and of
+    /// a corner's distance plus the way from it.
+    float bound(const Piece& piece, float at_most) const {
+        float best = at_most;
+        const auto& c = piece.corners;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float way = std::max(glm::length(c[i].position - c[(i + 1) % 3].position),
+                                       glm::length(c[i].position - c[(i + 2) % 3].position));
+            best = std::min(best, c[i].hit.distance + way);
+            if (i > 0 && c[i].hit.triangle == c[i - 1].hit.triangle) continue;
+            float worst = c[i].hit.distance;
+            for (std::size_t k = 1; k < 3; ++k)
+                worst = std::max(worst, to_.distance_to(c[i].hit.triangle, c[(i + k) % 3].position));
+            best = std::min(best, worst);
+        }
+        return best;
+    }
+
+    void keep(const Piece& piece, bool heap) {
+        if (piece.upper <= enough()) {
+            settled_ = std::max(settled_, piece.upper);
+            return;
+        }
+        queue_.push_back({piece.upper, static_cast<std::uint32_t>(unknown_ + pieces_.size())});
+        pieces_.push_back(piece);
+        if (heap) std::push_heap(queue_.begin(), queue_.end());
+    }
+
+    void look_at(const Entry& entry) {
+        Piece piece = triangle(entry.piece);
+        piece.upper = bound(piece, entry.upper);
+        keep(piece, true);
+    }
+
+    void cut(std::uint32_t number) {
+        const Piece piece = pieces_[number - unknown_];
+        std::size_t longest = 0;
+        float length = -1;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float edge = glm::length(piece.corners[i].position - piece.corners[(i + 1) % 3].position);
+            if (edge > length) {
+                length = edge;
+                longest = i;
+            }
+        }
+        const Corner &a = piece.corners[longest], &b = piece.corners[(longest + 1) % 3], &c = piece.corners[(longest + 2) % 3];
+        Corner middle{0.5F * (a.position + b.position), {}};
+        middle.hit = to_.nearest(middle.position, a.hit.triangle);
+        found(middle.hit.distance);
+        --queries_left_;
+        for (const auto& corners : {std::array{a, middle, c}, std::array{middle, b, c}}) {
+            Piece half{corners, 0, true};
+            half.upper = bound(half, piece.upper);
+            keep(half, true);
+        }
+    }
+
+    const MeshView& from_;
+    const TriangleTree& to_;
+    DistanceLimits limits_;
+    float lower_;        ///< known_lower included
+    float reached_ = 0;  ///< by a point of this mesh
+    float settled_ = 0;  ///< largest bound of what was ruled out
+    std::size_t queries_left_ = 0;
+    std::size_t unknown_ = 0;  ///< queue numbers below it are triangles not looked at yet
+    std::uint32_t last_hit_ = no_triangle;
+    std::vector<TriangleTree::Hit> hits_;
+    std::vector<Piece> pieces_;
+    std::vector<Entry> queue_;
+};
+
+// Float arithmetic on positions relative to the mesh: a few units in the last place of the largest coordinate.
+float rounding(const MeshView& from, const TriangleTree& to) {
+    vec3 largest(0.0F);
+    for (const vec3& p : from.positions) largest = glm::max(largest, glm::abs(p));
+    return 4e-7F * (glm::length(largest) + to.diagonal());
 }
 
 }  // namespace
 
-float directed_bound(const TriangleTree& from, const TriangleTree& to, float slack, float floor_m) {
-    if (from.empty() || to.empty()) return from.empty() ? 0.0F : 1e15F;
-    BoundWalk walk{to, slack, floor_m};
-    for (const TriangleTree::Triangle& t : from.triangles()) walk.visit(t, 0);
-    return walk.bound;
+DistanceBounds directed_distance(const MeshView& from, const TriangleTree& to, const DistanceLimits& limits,
+                                 std::span<const float> initial_upper) {
+    DistanceBounds bounds = BranchAndBound(from, to, limits, initial_upper).run();
+    bounds.upper += rounding(from, to);
+    return bounds;
 }
 
-float two_sided_bound(const TriangleTree& a, const TriangleTree& b, float slack, float floor_m) {
-    return std::max(directed_bound(a, b, slack, floor_m), directed_bound(b, a, slack, floor_m));
+DistanceBounds two_sided_distance(const MeshView& a, const MeshView& b, const DistanceLimits& limits) {
+    const TriangleTree tree_a(a), tree_b(b);
+    const DistanceBounds there = directed_distance(a, tree_b, limits);
+    DistanceLimits back_limits = limits;
+    back_limits.known_lower = std::max(limits.known_lower, there.lower);
+    const DistanceBounds back = directed_distance(b, tree_a, back_limits);
+    return {std::max(there.lower, back.lower), std::max(there.upper, back.upper)};
 }
 
-float sampled_distance(const TriangleTree& from, const TriangleTree& to, std::uint32_t n, std::uint64_t seed) {
-    if (from.empty() || to.empty()) return 0;
+SampledDistance sampled_distance(const MeshView& from, const TriangleTree& to, std::size_t count, std::uint64_t seed) {
     std::vector<double> sums;
-    double sum = 0;
-    for (const auto& t : from.triangles()) sums.push_back(sum += 0.5 * glm::length(glm::cross(t.b - t.a, t.c - t.a)));
-    Random random(seed);
-    float worst = 0;
-    for (std::uint32_t i = 0; i < n; ++i) {
-        const auto at = std::lower_bound(sums.begin(), sums.end(), random.unit() * sum) - sums.begin();
-        const auto& t = from.triangles()[std::min<std::size_t>(static_cast<std::size_t>(at), sums.size() - 1)];
-        const float r = std::sqrt(static_cast<float>(random.unit())), s = static_cast<float>(random.unit());
-        worst = std::max(worst, to.nearest(t.a * (1 - r) + t.b * (r * (1 - s)) + t.c * (r * s), 1e15F).distance);
+    double area = 0;
+    for (std::size_t t = 0; t < from.triangles(); ++t) {
+        const dvec3 a = from.positions[from.indices[3 * t]], b = from.positions[from.indices[3 * t + 1]],
+                    c = from.positions[from.indices[3 * t + 2]];
+        area += 0.5 * glm::length(glm::cross(b - a, c - a));
+        sums.push_back(area);
     }
-    return worst;
+    Random random(seed);
+    std::vector<float> distances;
+    double sum = 0;
+    std::uint32_t hint = no_triangle;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double at = area * (static_cast<double>(i) + random.unit()) / static_cast<double>(count);
+        const auto t = std::min<std::size_t>(
+            static_cast<std::size_t>(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin()), sums.size() - 1);
+        double u = random.unit(), v = random.unit();
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        const dvec3 a = from.positions[from.indices[3 * t]], b = from.positions[from.indices[3 * t + 1]],
+                    c = from.positions[from.indices[3 * t + 2]];
+        const auto hit = to.nearest(vec3(a + u * (b - a) + v * (c - a)), hint);
+        hint = hit.triangle;
+        distances.push_back(hit.distance);
+        sum += hit.distance;
+    }
+    if (distances.empty()) return {};
+    std::sort(distances.begin(), distances.end());
+    return {distances.back(), distances[distances.size() / 2], static_cast<float>(sum / static_cast<double>(distances.size()))};
 }
 
 }  // namespace surefoot::measure

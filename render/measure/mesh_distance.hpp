@@ -1,9 +1,13 @@
-// How far two meshes are apart: an upper bound of the two-sided (Hausdorff) distance, and a sampled lower bound to check it.
-// No simplifier's own figure is a bound (meshoptimizer 0.18 under-reports up to 27-fold): this is ours. DESIGN 5.
+// Distance between triangle meshes: bounds that hold for every point of a surface, and a sampled figure to judge them by.
+//
+// A simplifier's own error is no bound (DESIGN 5), so bake asks here. The directed distance of A to B is the largest distance
+// of a point of A to the surface B; the two-sided one is the larger of both directions (Hausdorff).
+// Method: branch and bound over the triangles of A. The distance to one triangle of B is convex, so over a triangle of A it is
+// largest at a corner; a triangle whose bound is too loose is cut at its longest edge.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,41 +15,69 @@
 
 namespace surefoot::measure {
 
-/// Triangles as three corners each, and a tree of boxes over them for nearest-point questions.
+/// Positions and triples of indices into them. At least one triangle; positions finite; any unit.
+struct MeshView {
+    std::span<const vec3> positions;
+    std::span<const std::uint32_t> indices;
+    [[nodiscard]] std::size_t triangles() const { return indices.size() / 3; }
+};
+
+/// Nearest-point queries on a mesh: boxes in a binary tree. Keeps its own copy of the corners.
 class TriangleTree {
 public:
-    struct Triangle {
-        vec3 a, b, c;
+    explicit TriangleTree(const MeshView& mesh);
+
+    struct Hit {
+        float distance = std::numeric_limits<float>::infinity();
+        std::uint32_t triangle = 0xffffffffU;  ///< number in the tree's own order; for distance_to()
     };
-    explicit TriangleTree(std::vector<Triangle> triangles);
-    struct Nearest {
-        float distance = 0;
-        std::uint32_t triangle = 0;
-    };
-    /// At most `start` away, else {start, 0}. The tree may not be empty.
-    [[nodiscard]] Nearest nearest(const vec3& p, float start) const;
-    [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
-    [[nodiscard]] bool empty() const { return triangles_.empty(); }
+    /// Nearest triangle to p. `hint`: any triangle of this tree that is likely near (its distance starts the search).
+    [[nodiscard]] Hit nearest(const vec3& p, std::uint32_t hint = 0xffffffffU) const;
+    /// Never below the true distance but for rounding: it is the distance to a point of the triangle.
+    [[nodiscard]] float distance_to(std::uint32_t triangle, const vec3& p) const;
+    [[nodiscard]] float diagonal() const { return diagonal_; }
 
 private:
     struct Node {
         vec3 min, max;
-        std::uint32_t first = 0, count = 0;  ///< leaf: triangles; inner: count 0, children at first and first + 1
+        std::uint32_t first = 0;  ///< leaf: first triangle; inner: the second child (the first follows the node)
+        std::uint32_t count = 0;  ///< leaf: triangles; inner: 0
     };
-    void build(std::uint32_t node, std::uint32_t first, std::uint32_t count, int depth);
-    std::vector<Triangle> triangles_;
+    struct Corners {
+        vec3 a, b, c;
+    };
+    std::uint32_t build(std::span<std::uint32_t> order, const std::vector<Corners>& source, const std::vector<vec3>& centres);
     std::vector<Node> nodes_;
+    std::vector<Corners> corners_;
+    float diagonal_ = 0;
 };
 
-float point_triangle_distance(const vec3& p, const TriangleTree::Triangle& t);
+/// lower <= true distance <= upper. upper holds for every point, rounding included.
+struct DistanceBounds {
+    float lower = 0;
+    float upper = 0;
+};
 
-/// Upper bound of the largest distance from a point of `from` to `to`. Distance to one convex triangle is convex, so over a
-/// triangle it is largest at a corner: min over near triangles of the max over corners bounds it; where that is loose the
-/// triangle is quartered, until the bound is within `slack` of what a sample proves, or below `floor_m`.
-float directed_bound(const TriangleTree& from, const TriangleTree& to, float slack, float floor_m);
-float two_sided_bound(const TriangleTree& a, const TriangleTree& b, float slack, float floor_m);
+/// When to stop narrowing: upper <= max(lower * (1 + relative), absolute), or the queries are spent (the bound stays a bound).
+struct DistanceLimits {
+    float relative = 0.1F;
+    float absolute = 0;
+    float known_lower = 0;        ///< nothing below this needs narrowing: the other direction is known to reach it
+    std::size_t max_queries = 0;  ///< 0: 20 000 and a quarter of the triangles
+};
 
-/// Lower bound: the largest distance of n points spread over `from` by area, seeded.
-float sampled_distance(const TriangleTree& from, const TriangleTree& to, std::uint32_t n, std::uint64_t seed);
+/// Largest distance of a point of `from` to the surface `to`.
+/// initial_upper: empty, or a bound a triangle of `from` already known to hold (by construction): only the worst are looked at.
+DistanceBounds directed_distance(const MeshView& from, const TriangleTree& to, const DistanceLimits& limits,
+                                 std::span<const float> initial_upper = {});
+
+/// The larger of both directions.
+DistanceBounds two_sided_distance(const MeshView& a, const MeshView& b, const DistanceLimits& limits);
+
+/// Distances of `count` points spread evenly over the area of `from` to the surface `to`; seeded. A lower bound of the largest.
+struct SampledDistance {
+    float largest = 0, median = 0, mean = 0;
+};
+SampledDistance sampled_distance(const MeshView& from, const TriangleTree& to, std::size_t count, std::uint64_t seed);
 
 }  // namespace surefoot::measure

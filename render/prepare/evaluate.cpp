@@ -45,10 +45,17 @@ Seen look(const RegionView& view, const Box& box, const dvec3& eye) {
     Seen seen;
     const float deepest = z.centre + z.half;
     if (!(deepest > near_m)) return {0.0F, 1.0F - view.focus_strength};
-    const float depth = std::max(z.centre - z.half, near_m);
-    const float scale = s.pixels_per_radian / depth;
-    seen.pixels =
-        std::min(overlap(x, depth * s.tan_half_x) * overlap(y, depth * s.tan_half_y) * scale * scale, s.viewport_pixels);
+    // The outline at the box's nearest depth alone misses what lies below or beside an eye that the box goes round (ground
+    // under one's feet): the largest share of the view that the box fills at any of five depths through it.
+    const float nearest = std::max(z.centre - z.half, near_m);
+    const int steps = deepest > 1.5F * nearest ? 5 : 1;
+    const float ratio = steps > 1 ? std::sqrt(std::sqrt(deepest / nearest)) : 1.0F;
+    float depth = nearest, share = 0.0F;
+    for (int i = 0; i < steps; ++i, depth *= ratio) {
+        const float wide = depth * s.tan_half_x, high = depth * s.tan_half_y;
+        share = std::max(share, overlap(x, wide) * overlap(y, high) / (4.0F * wide * high));
+    }
+    seen.pixels = std::min(share, 1.0F) * s.viewport_pixels;
     const float right = off_centre(x, deepest * s.tan_half_x), up = off_centre(y, deepest * s.tan_half_y);
     seen.focus = 1.0F - view.focus_strength * 0.5F * (right * right + up * up);
     return seen;
