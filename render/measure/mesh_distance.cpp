@@ -19,14 +19,13 @@ struct Corner {
     TriangleTree::Hit hit;
 };
 
-/// A triangle or a cut piece of one; `known` while its corners' hits are.
+/// A triangle or a cut piece of one.
 struct Piece {
     std::array<Corner, 3> corners;
     float upper = 0;
-    bool known = false;
 };
 
-/// Worst piece first; ties by size of its numbers cannot differ between runs, since pieces are pushed in a fixed order.
+/// Worst piece first; ties by number, which is the order of making.
 struct Entry {
     float upper;
     std::uint32_t piece;
@@ -153,7 +152,7 @@ private:
         found(middle.hit.distance);
         --queries_left_;
         for (const auto& corners : {std::array{a, middle, c}, std::array{middle, b, c}}) {
-            Piece half{corners, 0, true};
+            Piece half{corners, 0};
             half.upper = bound(half, piece.upper);
             keep(half, true);
         }
