@@ -208,7 +208,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
             check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction;
             check.next_us = with(slice.cost) * upper;
             check.next_stand_in_us = with(slice.stand_in_cost) * upper;
-            check.rest_stand_in_us = with(rest_stand_in) * upper;
+            check.rest_stand_in_us = with(rest_stand_in) * correction;  // a sum of many: its own spread is small
             check.limit_us = limits.limit_us;
             full = select::still_fits(check);
         }

@@ -59,7 +59,8 @@ struct Bakery {
     model::Model model;
     model::Index proxy = 0;          ///< a material with vertex colours
     model::Index proxy_or_none = 0;  ///< the same, or none where every colour is a material's own
-    std::vector<PlacedObject> objects;
+    std::vector<PlacedObject> objects;  ///< pieces count each
+    std::uint32_t object_count = 0;     ///< conceptual ones
     std::vector<MeshForm> forms;
     ClusterTree tree;
     std::vector<ClusterForm> clusters;
@@ -67,15 +68,24 @@ struct Bakery {
 
     ProxyInput proxy_input() const;
     void place_objects();
+    void adopt_forms(std::vector<std::vector<MeshForm>> by_mesh);
     bool make_forms();
     bool make_clusters();
     bool make_object_boxes();
     void emit();
-    void emit_node(model::Index node, std::uint32_t entity, const std::vector<EmittedChain>& chains,
-                   const std::vector<std::vector<EmittedChain>>& pieces, std::vector<std::pair<model::Index, std::uint32_t>>& open);
-    void emit_pieces(model::Index node, std::uint32_t object, const std::vector<EmittedChain>& pieces);
+    void emit_object(model::Index node, std::uint32_t object, const std::vector<EmittedChain>& chains);
+    void emit_cluster(model::Index node, std::uint32_t cluster, std::vector<std::pair<model::Index, std::uint32_t>>& open);
     model::Index add_name(const std::string& name);
 };
+
+Box placed_box(const Box& box, const dmat4& world) {
+    Box out;
+    for (unsigned c = 0; c < 8; ++c) {
+        const dvec3 corner((c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y, (c & 4U) != 0 ? box.max.z : box.min.z);
+        out.grow(dvec3(world * dvec4(corner, 1.0)));
+    }
+    return out;
+}
 
 ChainOptions chain_options(const BakeOptions& options, model::Index proxy) {
     ChainOptions chain;
@@ -119,12 +129,13 @@ void Bakery::place_objects() {
         object.world = node.world;
         object.name = node.name;
         object.importance = node.importance;
+        object.object = object_count++;
         objects.push_back(std::move(object));
     }
 }
 
 bool Bakery::make_forms() {
-    forms.resize(scene.meshes.size());
+    std::vector<std::vector<MeshForm>> by_mesh(scene.meshes.size());
     std::vector<double> stretch(scene.meshes.size(), 0.0);
     Box world;
     std::vector<Box> mesh_boxes(scene.meshes.size());
@@ -133,16 +144,9 @@ bool Bakery::make_forms() {
             for (const vec3& v : p.positions) mesh_boxes[m].grow(dvec3(v));
         }
     }
-    const auto grow_placed = [&](Box& box, const PlacedObject& object) {
-        const Box& mesh = mesh_boxes[object.mesh];
-        for (unsigned c = 0; c < 8; ++c) {
-            const dvec3 corner((c & 1U) != 0 ? mesh.max.x : mesh.min.x, (c & 2U) != 0 ? mesh.max.y : mesh.min.y, (c & 4U) != 0 ? mesh.max.z : mesh.min.z);
-            box.grow(dvec3(object.world * dvec4(corner, 1.0)));
-        }
-    };
     std::erase_if(objects, [&](const PlacedObject& o) { return mesh_boxes[o.mesh].empty(); });
     for (PlacedObject& object : objects) {
-        grow_placed(object.box, object);
+        object.box = placed_box(mesh_boxes[object.mesh], object.world);
         world.grow(object.box);
         stretch[object.mesh] = std::max(stretch[object.mesh], largest_stretch(dmat3(object.world)));
     }
@@ -156,10 +160,32 @@ bool Bakery::make_forms() {
         CutLimits limits;
         limits.most_triangles = most;
         limits.longest_m = longest_m / stretch[m];
-        forms[m] = make_form(mesh_geometry(scene.meshes[m], model), limits, chain_options(options, proxy_or_none));
+        by_mesh[m] = bake::make_forms(mesh_geometry(scene.meshes[m], model), limits, chain_options(options, proxy_or_none));
         if (!stage.step()) go = false;
     });
+    if (go) adopt_forms(std::move(by_mesh));
     return go;
+}
+
+/// Forms get their places in one list; an object of several forms becomes as many pieces.
+void Bakery::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
+    std::vector<std::uint32_t> first(by_mesh.size()), count(by_mesh.size());
+    for (std::size_t m = 0; m < by_mesh.size(); ++m) {
+        first[m] = static_cast<std::uint32_t>(forms.size());
+        count[m] = static_cast<std::uint32_t>(by_mesh[m].size());
+        for (MeshForm& form : by_mesh[m]) forms.push_back(std::move(form));
+    }
+    std::vector<PlacedObject> placed;
+    for (const PlacedObject& object : objects) {
+        for (std::uint32_t i = 0; i < count[object.mesh]; ++i) {
+            PlacedObject one = object;
+            one.mesh = first[object.mesh] + i;
+            one.piece = count[object.mesh] > 1;
+            one.box = placed_box(forms[one.mesh].box, object.world);
+            placed.push_back(std::move(one));
+        }
+    }
+    objects = std::move(placed);
 }
 
 bool Bakery::make_clusters() {
@@ -223,67 +249,41 @@ model::Index Bakery::add_name(const std::string& name) {
     return at;
 }
 
-void Bakery::emit_pieces(model::Index node, std::uint32_t object, const std::vector<EmittedChain>& pieces) {
-    const auto first = static_cast<model::Index>(model.nodes.size());
-    model.nodes[node].first_child = first;
-    model.nodes[node].child_count = static_cast<std::uint32_t>(pieces.size());
-    model.nodes.resize(first + pieces.size());
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        model::Node& piece = model.nodes[first + p];
-        piece.parent = node;
-        piece.kind = model::NodeKind::piece;
-        piece.object = object;
-        piece.name = model.nodes[node].name;
-        piece.importance = objects[object].importance;
-        piece.triangles = pieces[p].levels.back().triangles;
-        for (const GeometryPart& part : pieces[p].chain->levels.back().parts) {
-            for (const std::uint32_t index : part.indices) {
-                const dvec3 at = pieces[p].centre + dvec3(position_of(pieces[p].chain->full.vertices[index]));
-                piece.box.grow(dvec3(objects[object].world * dvec4(at, 1.0)));
-            }
-        }
-        piece.first_rep = static_cast<model::Index>(model.reps.size());
-        emit_representations(pieces[p], objects[object].world, model);
-        piece.rep_count = static_cast<std::uint32_t>(model.reps.size()) - piece.first_rep;
-    }
+std::uint32_t faces_of(const BoxForm& box) {
+    std::uint32_t faces = 0;
+    for (const FaceCapture& face : box.faces) faces += face.covered > 0 ? 1 : 0;
+    return faces;
 }
 
-void Bakery::emit_node(model::Index index, std::uint32_t entity, const std::vector<EmittedChain>& chains,
-                       const std::vector<std::vector<EmittedChain>>& pieces, std::vector<std::pair<model::Index, std::uint32_t>>& open) {
-    const auto n = static_cast<std::uint32_t>(objects.size());
-    model.nodes[index].first_rep = static_cast<model::Index>(model.reps.size());
-    const auto close_reps = [&] { model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep; };
-    if (entity < n) {
-        const PlacedObject& object = objects[entity];
-        const MeshForm& form = forms[object.mesh];
-        model::Node& node = model.nodes[index];
-        node.kind = model::NodeKind::object;
-        node.object = entity;
-        node.importance = object.importance;
-        node.box = object.box;
-        node.triangles = form.triangles;
-        node.name = add_name(object.name);
-        const double stretch = largest_stretch(dmat3(object.world));
-        const Level& coarsest = form.chain.levels.front();
-        const BoxForm& box = object_boxes[entity];
-        std::uint32_t faces = 0;
-        for (const FaceCapture& face : box.faces) faces += face.covered > 0 ? 1 : 0;
-        if (faces > 0 && 2 * faces < coarsest.triangles && box.error_m > coarsest.error_m * stretch) emit_box(box, proxy, model);
-        emit_representations(chains[object.mesh], object.world, model);
-        close_reps();
-        if (!form.pieces.empty()) emit_pieces(index, entity, pieces[object.mesh]);
-        return;
-    }
-    const ClusterTree::Cluster& cluster = tree.clusters[entity - n];
-    const ClusterForm& form = clusters[entity - n];
+void Bakery::emit_object(model::Index index, std::uint32_t which, const std::vector<EmittedChain>& chains) {
+    const PlacedObject& object = objects[which];
+    const MeshForm& form = forms[object.mesh];
+    model::Node& node = model.nodes[index];
+    node.kind = object.piece ? model::NodeKind::piece : model::NodeKind::object;
+    node.object = object.object;
+    node.importance = object.importance;
+    node.box = object.box;
+    node.triangles = form.triangles;
+    node.name = add_name(object.name);
+    node.first_rep = static_cast<model::Index>(model.reps.size());
+    const Level& coarsest = form.chain.levels.front();
+    const BoxForm& box = object_boxes[which];
+    const std::uint32_t faces = faces_of(box);
+    const double coarsest_error_m = coarsest.error_m * largest_stretch(dmat3(object.world));
+    if (faces > 0 && 2 * faces < coarsest.triangles && box.error_m > coarsest_error_m) emit_box(box, proxy, model);
+    emit_representations(chains[object.mesh], object.world, model);
+    model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
+}
+
+void Bakery::emit_cluster(model::Index index, std::uint32_t which, std::vector<std::pair<model::Index, std::uint32_t>>& open) {
+    const ClusterTree::Cluster& cluster = tree.clusters[which];
+    const ClusterForm& form = clusters[which];
     model.nodes[index].box = cluster.box;
-    if (form.has_box) {
-        std::uint32_t faces = 0;
-        for (const FaceCapture& face : form.box.faces) faces += face.covered > 0 ? 1 : 0;
-        if (faces > 0 && 2 * faces < form.chain.levels.front().triangles) emit_box(form.box, proxy, model);
-    }
+    model.nodes[index].first_rep = static_cast<model::Index>(model.reps.size());
+    const std::uint32_t faces = faces_of(form.box);
+    if (form.has_box && faces > 0 && 2 * faces < form.chain.levels.front().triangles) emit_box(form.box, proxy, model);
     emit_representations(emit_chain(form.chain, model), dmat4(1.0), model);
-    close_reps();
+    model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
     const auto first = static_cast<model::Index>(model.nodes.size());
     model.nodes[index].first_child = first;
     model.nodes[index].child_count = static_cast<std::uint32_t>(cluster.children.size());
@@ -297,22 +297,23 @@ void Bakery::emit_node(model::Index index, std::uint32_t entity, const std::vect
 void Bakery::emit() {
     model.names.assign(1, '\0');
     std::vector<EmittedChain> chains(forms.size());
-    std::vector<std::vector<EmittedChain>> pieces(forms.size());
     std::vector<std::uint64_t> material_triangles(scene.materials.size(), 0);
     for (std::size_t m = 0; m < forms.size(); ++m) {
-        if (forms[m].triangles == 0) continue;
-        chains[m] = emit_chain(forms[m].chain, model);
-        for (const LodChain& piece : forms[m].pieces) pieces[m].push_back(emit_chain(piece, model));
+        if (forms[m].triangles > 0) chains[m] = emit_chain(forms[m].chain, model);
     }
     for (const PlacedObject& object : objects) {
-        for (const importer::Primitive& p : scene.meshes[object.mesh].primitives) material_triangles[p.material] += p.indices.size() / 3;
+        for (const GeometryPart& part : forms[object.mesh].chain.levels.back().parts) material_triangles[part.material] += part.indices.size() / 3;
     }
-    model.object_count = static_cast<std::uint32_t>(objects.size());
+    model.object_count = object_count;
     model.nodes.resize(1);
     std::vector<std::pair<model::Index, std::uint32_t>> open{{0, tree.root}};
     for (std::size_t i = 0; i < open.size(); ++i) {
         const auto [node, entity] = open[i];
-        emit_node(node, entity, chains, pieces, open);
+        if (entity < objects.size()) {
+            emit_object(node, entity, chains);
+        } else {
+            emit_cluster(node, entity - static_cast<std::uint32_t>(objects.size()), open);
+        }
     }
     for (std::size_t i = model.nodes.size(); i-- > 1;) {  // children come after their parents
         model::Node& node = model.nodes[i];
@@ -328,7 +329,7 @@ void Bakery::emit() {
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
     const auto begun = std::chrono::steady_clock::now();
-    Bakery bakery{scene, options, progress, {}, 0, 0, {}, {}, {}, {}, {}};
+    Bakery bakery{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}};
     bakery.proxy = add_materials(scene, bakery.model);
     mark_vertex_colours(scene, bakery.model);
     bool coloured = false;

@@ -125,31 +125,34 @@ std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
     return pieces;
 }
 
-MeshForm make_form(Geometry geometry, const CutLimits& limits, const ChainOptions& options) {
+namespace {
+
+MeshForm make_form(Geometry geometry, const ChainOptions& options) {
     MeshForm form;
     form.triangles = geometry.triangles();
     const Box local = geometry.box();
     form.box.min = local.min + geometry.centre;
     form.box.max = local.max + geometry.centre;
+    form.chain = make_chain(std::move(geometry), options);
+    return form;
+}
+
+}  // namespace
+
+std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options) {
+    const Box local = geometry.box();
     const dvec3 size = local.max - local.min;
     const double longest = std::max({size.x, size.y, size.z});
-    if (form.triangles > limits.most_triangles || (longest > limits.longest_m && form.triangles > 64)) {
-        ChainOptions locked = options;
-        locked.lock_border = true;
-        std::vector<Geometry> pieces = cut(geometry, limits);
-        if (pieces.size() > 1) {
-            for (Geometry& piece : pieces) form.pieces.push_back(make_chain(std::move(piece), locked));
-        }
+    const std::size_t triangles = geometry.triangles();
+    std::vector<MeshForm> forms;
+    if (triangles <= limits.most_triangles && (longest <= limits.longest_m || triangles <= 64)) {
+        forms.push_back(make_form(std::move(geometry), options));
+        return forms;
     }
-    form.chain = make_chain(std::move(geometry), options);
-    if (!form.pieces.empty()) {
-        // The whole object's coarse forms: no more than an eighth of it, and never the full detail.
-        const std::uint64_t most = std::max<std::uint64_t>(form.triangles / 8, 64);
-        auto& levels = form.chain.levels;
-        while (levels.size() > 1 && (levels.back().triangles > most || levels.back().error_m == 0)) levels.pop_back();
-        if (levels.back().error_m == 0) form.pieces.clear();  // nothing coarser exists: it stays whole
-    }
-    return form;
+    ChainOptions locked = options;
+    locked.lock_border = true;
+    for (Geometry& piece : cut(geometry, limits)) forms.push_back(make_form(std::move(piece), locked));
+    return forms;
 }
 
 }  // namespace surefoot::bake

@@ -10,12 +10,11 @@
 
 namespace surefoot::bake {
 
-/// A mesh's chain; or, of one too large to draw whole, the chain of its coarse forms and the pieces it opens into.
+/// The chain of one mesh, or of one piece of a mesh that is too large to draw whole.
 struct MeshForm {
-    LodChain chain;                ///< whole: its last level is the full detail; cut: coarse levels only
-    std::vector<LodChain> pieces;  ///< empty: whole
+    LodChain chain;
     std::uint64_t triangles = 0;
-    Box box;                       ///< in the mesh's frame
+    Box box;  ///< in the mesh's frame
 };
 
 struct PlacedObject {
@@ -24,6 +23,8 @@ struct PlacedObject {
     std::string name;
     float importance = 1;
     Box box;                       ///< world
+    std::uint32_t object = 0;      ///< the conceptual object it is, or is a piece of
+    bool piece = false;
 };
 
 struct CutLimits {
@@ -37,6 +38,7 @@ double largest_stretch(const dmat3& linear);
 Geometry mesh_geometry(const importer::Mesh& mesh, const model::Model& model);
 /// Cut at medians of the triangles' centres until every piece is within the limits.
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
-MeshForm make_form(Geometry geometry, const CutLimits& limits, const ChainOptions& options);
+/// One form, or several where the geometry is beyond the limits; pieces keep the borders that they share.
+std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options);
 
 }  // namespace surefoot::bake

@@ -1,7 +1,9 @@
 // Opening a device by backend.
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <string>
+#include <thread>
 
 #include "render/gl/context.hpp"
 #include "render/gl/gl_device.hpp"
@@ -10,11 +12,12 @@ namespace surefoot::gl {
 
 namespace {
 
-constexpr int default_rasterisers = 1;
+/// One a core (ARCHITECTURE, measured decisions); beyond sixteen the barriers between scenes eat what they win.
+int default_rasterisers() { return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U)); }
 
 }  // namespace
 
-int effective_rasterisers(int rasterisers) { return rasterisers > 0 ? rasterisers : default_rasterisers; }
+int effective_rasterisers(int rasterisers) { return rasterisers > 0 ? rasterisers : default_rasterisers(); }
 
 Result<BackendKind> parse_backend(std::string_view name) {
     if (name == "egl") return BackendKind::egl;

@@ -10,8 +10,8 @@
 namespace surefoot::model {
 
 struct WalkFileInfo {
-    std::uint64_t bytes = 0;         ///< on disk
-    std::uint64_t payload_bytes = 0; ///< geometry and texels, unpacked
+    std::uint64_t bytes = 0;          ///< on disk
+    std::uint64_t payload_bytes = 0;  ///< geometry and texels, unpacked
     std::uint32_t pages = 0;
 };
 

@@ -110,9 +110,9 @@ struct CheckInput {
     double predicted_so_far_us = 0;  ///< for what was drawn in that time
     double next_us = 0;              ///< the next slice in full, at the upper quantile
     double next_stand_in_us = 0;     ///< the next slice as its stand-in
-    double rest_stand_in_us = 0;     ///< all slices after it as stand-ins, at the upper quantile
+    double rest_stand_in_us = 0;     ///< all slices after it as stand-ins, expected
     double limit_us = 0;             ///< when the frame must be done
-    double margin = 1.1;
+    double margin = 1.0;             ///< on top of the upper quantile
 };
 /// true: draw it in full; false: draw this and every later slice by its stand-ins. The predictions are scaled by how wrong the
 /// frame has been so far (1..8; a twentieth of the limit is taken as seen and right, so that the first slices do not shout).

@@ -127,7 +127,7 @@ TEST(StillFits, ScalesTheRestByHowWrongTheFrameHasBeen) {
     EXPECT_FALSE(still_fits(in));
     in.predicted_so_far_us = 4000;  // faster than said: no more than said is hoped for
     EXPECT_TRUE(still_fits(in));
-    in.next_us = 350;
+    in.next_us = 450;
     EXPECT_FALSE(still_fits(in));
 }
 
