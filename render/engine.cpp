@@ -303,8 +303,8 @@ prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s,
     region.centre.position = now.position + velocity * (0.5 * horizon_s);
     // Half the way on is the centre; the radius reaches both ends, and half as far again for a change of speed.
     const double travel = glm::length(velocity) * horizon_s;
-    region.radius_m = 0.75 * travel + 0.1;
-    region.angle_rad = std::min(1.0, 1.5 * turn_rps * horizon_s + 0.02);
+    region.radius_m = 0.75 * travel + 0.25;
+    region.angle_rad = std::min(1.0, 1.5 * turn_rps * horizon_s + 0.06);
     return region;
 }
 

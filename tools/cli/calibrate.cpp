@@ -5,6 +5,10 @@
 
 #include "render/measure/calibrate.hpp"
 #include "rt/base/file.hpp"
+#include "rt/threads/capability.hpp"
+#include "rt/threads/guard.hpp"
+#include "rt/threads/memory.hpp"
+#include "tools/app/placing.hpp"
 #include "tools/app/state.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/report/report.hpp"
@@ -46,6 +50,17 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     options.device.viewport = {a.width, a.height};
     options.device.rasterisers = a.rasterisers;
     options.quick = a.quick;
+    // Measured as it will be spent: threads where the walk puts them, memory kept and locked.
+    rt::raise_limits(app::WalkRequest{}.frame_priority);
+    const rt::Capabilities capable = rt::probe_capabilities(app::WalkRequest{}.frame_priority);
+    auto plan = app::plan_placing({}, capable.fifo_priority >= app::WalkRequest{}.frame_priority);
+    if (!plan) return fail(plan.error());
+    if (!plan->fifo) note("not fully real-time: SCHED_FIFO is refused; the table will be of ordinary scheduling");
+    if (rt::guard_active()) (void)rt::prepare_memory({});
+    options.opened = [&plan] {
+        if (auto placed = app::place_rasterisers(*plan); !placed) note(placed.error().text());
+        if (auto placed = rt::place_thread(0, app::frame_placement(*plan)); !placed) note(placed.error().text());
+    };
     auto c = measure::calibrate(options, terminal_progress(context));
     end_progress(context);
     if (!c) return fail(c.error());
