@@ -1,0 +1,73 @@
+// The cost table's evaluation: exact at knots, linear between, sane beyond, never negative.
+#include "render/model/cost.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace surefoot::model {
+namespace {
+
+/// submit = triangles, raster = pixels, up to 2^3 and 2^2.
+CostModel plain() {
+    CostGrid grid{0, 4, 3, {}};
+    for (int t = 0; t < 4; ++t) {
+        for (int p = 0; p < 3; ++p) grid.cells.push_back({std::ldexp(1.0F, t), std::ldexp(1.0F, p)});
+    }
+    CostModel costs;
+    costs.grids.push_back(grid);
+    return costs;
+}
+
+TEST(Cost, LinearFiguresComeBackExactly) {
+    const CostModel costs = plain();
+    for (const float t : {1.0F, 1.5F, 2.0F, 3.0F, 7.0F, 8.0F, 40.0F}) {
+        for (const float p : {1.0F, 2.5F, 4.0F, 100.0F}) {
+            const ItemCost cost = costs.item(t, p, costs.grids[0]);
+            EXPECT_FLOAT_EQ(cost.submit_us, t);
+            EXPECT_FLOAT_EQ(cost.raster_us, p);
+        }
+    }
+}
+
+TEST(Cost, BelowOneCountsAsOne) { EXPECT_EQ(plain().item(0, -5, plain().grids[0]).raster_us, 1.0F); }
+
+TEST(Cost, NotANumberCostsTheMost) {
+    const CostModel costs = plain();
+    EXPECT_EQ(costs.item(std::numeric_limits<float>::quiet_NaN(), 1, costs.grids[0]).submit_us, 8.0F);
+    EXPECT_EQ(costs.item(1, std::numeric_limits<float>::infinity(), costs.grids[0]).submit_us, 8.0F);
+}
+
+// Noise can make the last knot cheaper than the one before: drawn out, the line would reach zero.
+TEST(Cost, FallingLastKnotsDoNotMakeMoreWorkFree) {
+    CostModel costs = plain();
+    for (int p = 0; p < 3; ++p) costs.grids[0].cells[9 + static_cast<std::size_t>(p)].submit_us = 3;
+    EXPECT_GE(costs.item(1000, 1, costs.grids[0]).submit_us, 3.0F);
+}
+
+TEST(Cost, ClassIsExactElseTheNextThatDoesMore) {
+    CostModel costs = plain();
+    const CostGrid base = costs.grids[0];
+    for (const EffectMask mask : {EffectMask{effect_texture}, EffectMask{effect_texture | effect_sun | effect_alpha_mask}}) {
+        costs.grids.push_back(base);
+        costs.grids.back().effects = mask;
+    }
+    EXPECT_EQ(costs.grid_for(effect_texture).effects, effect_texture);
+    EXPECT_EQ(costs.grid_for(0).effects, 0U);
+    EXPECT_EQ(costs.grid_for(effect_sun).effects, effect_texture | effect_sun | effect_alpha_mask);
+    EXPECT_EQ(costs.grid_for(effect_blend | effect_texture).effects, effect_texture);
+}
+
+TEST(Cost, DefaultsGrowWithTrianglesAndPixels) {
+    const CostModel costs = default_costs();
+    for (const CostGrid& grid : costs.grids) {
+        ASSERT_EQ(grid.cells.size(), grid.triangle_steps * grid.pixel_steps);
+        EXPECT_LT(costs.item(10, 100, grid).submit_us, costs.item(1000, 100, grid).submit_us);
+        EXPECT_LT(costs.item(10, 100, grid).raster_us, costs.item(10, 10000, grid).raster_us);
+    }
+    EXPECT_FALSE(costs.calibrated);
+}
+
+}  // namespace
+}  // namespace surefoot::model

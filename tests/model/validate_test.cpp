@@ -1,0 +1,73 @@
+// validate(): one wrong thing at a time, and the error names the array and the element.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "tests/model/two_triangles.hpp"
+
+namespace surefoot::model {
+namespace {
+
+TEST(Validate, AcceptsTheSmallestModel) {
+    const auto valid = validate(two_triangles());
+    EXPECT_TRUE(valid.ok()) << valid.error().text();
+}
+
+struct Wrong {
+    const char* name;
+    const char* place;
+    std::function<void(Model&)> make;
+};
+
+class ValidateRefuses : public testing::TestWithParam<Wrong> {};
+
+TEST_P(ValidateRefuses, AndNamesThePlace) {
+    Model model = two_triangles();
+    GetParam().make(model);
+    const auto valid = validate(model);
+    ASSERT_FALSE(valid.ok());
+    EXPECT_EQ(valid.error().place, GetParam().place) << valid.error().text();
+}
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    OneWrongThing, ValidateRefuses,
+    testing::Values(Wrong{"NoNodes", "nodes", [](Model& m) { m.nodes.clear(); }},
+                    Wrong{"IndexBeyondVertices", "parts[0]", [](Model& m) { m.indices[2] = 3; }},
+                    Wrong{"IndicesOverflow", "parts[0]", [](Model& m) { m.parts[0].first_index = 0xffffffffU; }},
+                    Wrong{"NotTriples", "parts[0]", [](Model& m) { m.parts[0].index_count = 2; }},
+                    Wrong{"MaterialOutOfRange", "parts[0]", [](Model& m) { m.parts[0].material = 1; }},
+                    Wrong{"NanVertex", "vertices[2]", [](Model& m) { m.vertices[2].position[1] = nan; }},
+                    Wrong{"FlatPlacement", "placements[0]", [](Model& m) { m.placements[0].linear[2] = vec3(0.0F); }},
+                    Wrong{"TextureTooLarge", "textures[0]", [](Model& m) { m.textures[0].width = 0x7fffffffU; }},
+                    Wrong{"TexelsMissing", "textures[0]", [](Model& m) { m.texels.pop_back(); }},
+                    Wrong{"TooManyLevels", "textures[0]", [](Model& m) { m.textures[0].levels = 3; }},
+                    Wrong{"TextureOutOfRange", "materials[0]", [](Model& m) { m.materials[0].texture = 9; }},
+                    Wrong{"UnknownEffect", "materials[0]", [](Model& m) { m.materials[0].effects |= 1U << 20U; }},
+                    Wrong{"NegativeError", "reps[1]", [](Model& m) { m.reps[1].error_m = -1; }},
+                    Wrong{"NanArea", "reps[2]", [](Model& m) { m.reps[2].area_m2[1] = nan; }},
+                    Wrong{"WrongTriangles", "reps[2]", [](Model& m) { m.reps[2].triangles = 2; }},
+                    Wrong{"PartsOutOfRange", "reps[3]", [](Model& m) { m.reps[3].part_count = 2; }},
+                    Wrong{"ErrorsRise", "nodes[0]", [](Model& m) { m.reps[0].error_m = 1; }},
+                    Wrong{"NothingEverywhere", "nodes[0]", [](Model& m) { m.reps[1].everywhere = false; }},
+                    Wrong{"LeafOnlyFromAfar", "nodes[2]", [](Model& m) { m.reps[3].everywhere = false; }},
+                    Wrong{"OwnParent", "nodes[1]", [](Model& m) { m.nodes[1].parent = 1; }},
+                    Wrong{"ChildBeforeParent", "nodes[1]",
+                          [](Model& m) { m.nodes[1].first_child = 1, m.nodes[1].child_count = 1; }},
+                    Wrong{"ChildrenOverflow", "nodes[0]", [](Model& m) { m.nodes[0].child_count = 0xffffffffU; }},
+                    Wrong{"OrphanNode", "nodes", [](Model& m) { m.nodes[0].child_count = 1; }},
+                    Wrong{"ChildSticksOut", "nodes[2]", [](Model& m) { m.nodes[2].box.max.x = 5; }},
+                    Wrong{"EmptyBox", "nodes[0]", [](Model& m) { m.nodes[0].box = {}; }},
+                    Wrong{"ImportanceTooGreat", "nodes[1]", [](Model& m) { m.nodes[1].importance = 1.5F; }},
+                    Wrong{"NameOutOfRange", "nodes[1]", [](Model& m) { m.nodes[1].name = 14; }},
+                    Wrong{"NamesNotEnded", "names", [](Model& m) { m.names.back() = 'x'; }},
+                    Wrong{"FindingMissing", "effects", [](Model& m) { m.effects.pop_back(); }},
+                    Wrong{"EffectNotCalledFor", "effects", [](Model& m) { m.effects[0].called_for = false; }},
+                    Wrong{"SunNotUnit", "sun_direction", [](Model& m) { m.sun_direction = dvec3(0.0); }}),
+    [](const auto& wrong) { return wrong.param.name; });
+
+}  // namespace
+}  // namespace surefoot::model
