@@ -114,10 +114,11 @@ ProxyInput Bakery::proxy_input() const {
     ProxyInput input;
     input.objects = objects;
     input.forms = forms;
-    input.tree = &tree;
+    input.clusters = clusters;
     input.proxy_material = proxy_or_none;
+    for (const model::Material& m : model.materials) input.two_sided.push_back(m.two_sided);
     for (const importer::Material& m : scene.materials) input.textured_boxes |= m.image != importer::none;
-    input.chain = chain_options(options, proxy_or_none);
+    input.slack = chain_options(options, proxy_or_none).slack;
     return input;
 }
 
@@ -215,12 +216,7 @@ bool Bakery::make_clusters() {
         tbb::parallel_for(std::size_t{0}, same.size(), [&](std::size_t i) {
             if (!go) return;
             const std::uint32_t c = same[i];
-            std::uint32_t coarsest = 0;
-            for (const std::uint32_t e : tree.clusters[c].children) {
-                const LodChain& chain = e < n ? forms[objects[e].mesh].chain : clusters[e - n].chain;
-                coarsest += chain.levels.front().triangles;
-            }
-            clusters[c] = make_cluster(input, tree.clusters[c].box, members[c], coarsest);
+            clusters[c] = make_cluster(input, tree.clusters[c], members[c]);
             if (!stage.step()) go = false;
         });
     }
@@ -270,7 +266,8 @@ void Bakery::emit_object(model::Index index, std::uint32_t which, const std::vec
     const BoxForm& box = object_boxes[which];
     const std::uint32_t faces = faces_of(box);
     const double coarsest_error_m = coarsest.error_m * largest_stretch(dmat3(object.world));
-    if (faces > 0 && 2 * faces < coarsest.triangles && box.error_m > coarsest_error_m) emit_box(box, proxy, model);
+    // A box carries its colours in vertices or a picture: in a scene that calls for neither it would be the only one to.
+    if (proxy_or_none != model::none && faces > 0 && 2 * faces < coarsest.triangles && box.error_m > coarsest_error_m) emit_box(box, proxy, model);
     emit_representations(chains[object.mesh], object.world, model);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
 }
@@ -281,7 +278,7 @@ void Bakery::emit_cluster(model::Index index, std::uint32_t which, std::vector<s
     model.nodes[index].box = cluster.box;
     model.nodes[index].first_rep = static_cast<model::Index>(model.reps.size());
     const std::uint32_t faces = faces_of(form.box);
-    if (form.has_box && faces > 0 && 2 * faces < form.chain.levels.front().triangles) emit_box(form.box, proxy, model);
+    if (proxy_or_none != model::none && form.has_box && faces > 0 && 2 * faces < form.chain.levels.front().triangles) emit_box(form.box, proxy, model);
     emit_representations(emit_chain(form.chain, model), dmat4(1.0), model);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
     const auto first = static_cast<model::Index>(model.nodes.size());

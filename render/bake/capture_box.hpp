@@ -17,10 +17,10 @@ struct ColouredTriangle {
 
 /// One face: what an eye far out along the axis sees, row 0 at the low end of the second in-plane axis.
 struct FaceCapture {
-    std::vector<std::uint8_t> rgba;            ///< pixels x pixels; alpha 0 where nothing is
-    std::array<std::uint8_t, 4> mean{};        ///< of what is covered
-    float depth_m = 0;                         ///< the deepest captured point behind the face
-    float covered = 0;                         ///< share of the face
+    std::vector<std::uint8_t> rgba;      ///< pixels x pixels; alpha 0 where nothing is
+    std::array<std::uint8_t, 4> mean{};  ///< of what is covered
+    float depth_m = 0;                   ///< the deepest captured point behind the face
+    float covered = 0;                   ///< share of the face
 };
 
 /// Faces in the order -x, +x, -y, +y, -z, +z; in-plane axes are (axis + 1) % 3 and (axis + 2) % 3.

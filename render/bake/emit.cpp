@@ -66,6 +66,7 @@ void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
         model::Material m;
         m.texture = add_texture(model, atlas, 3 * n, 2 * n, true, 1);
         m.alpha = model::AlphaMode::mask;
+        m.two_sided = true;  // the far half shows through this one's holes
         m.alpha_cutoff = 0.5F;
         m.effects = model::effect_texture | model::effect_alpha_mask | (model.materials[proxy].effects & model::effect_sun);
         material = static_cast<model::Index>(model.materials.size());

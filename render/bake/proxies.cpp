@@ -4,15 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace surefoot::bake {
+#include "render/bake/box_error.hpp"
+#include "render/bake/vertex_clusters.hpp"
 
-const Level& level_within(const LodChain& chain, std::uint32_t most) {
-    const Level* best = &chain.levels.front();
-    for (const Level& level : chain.levels) {
-        if (level.triangles <= most) best = &level;
-    }
-    return *best;
-}
+namespace surefoot::bake {
 
 namespace {
 
@@ -22,7 +17,26 @@ void append(Geometry& to, const LodChain& chain, const Level& level, const dmat4
     // Normals by the cofactors: right under shear and mirroring, and no inverse of what may be singular.
     const dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
     const bool mirrored = glm::dot(linear[0], cofactor[0]) < 0;
-    std::vector<std::uint32_t> map(chain.full.vertices.size(), model::none);
+    // Sorted, not a table over the chain's vertices: of a large object a few are used, and this runs for every level above it.
+    std::vector<std::uint32_t> used;
+    for (const GeometryPart& part : level.parts) used.insert(used.end(), part.indices.begin(), part.indices.end());
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    const auto base = static_cast<std::uint32_t>(to.vertices.size());
+    for (const std::uint32_t index : used) {
+        model::Vertex v = chain.full.vertices[index];
+        const dvec3 p = dvec3(world * dvec4(chain.full.centre + dvec3(position_of(v)), 1.0)) - to.centre;
+        dvec3 n = cofactor * dvec3(v.normal[0], v.normal[1], v.normal[2]) * (mirrored ? -1.0 : 1.0);
+        const double length = glm::length(n);
+        n = length > 0 ? n / length : dvec3(0, 1, 0);
+        for (int k = 0; k < 3; ++k) {
+            v.position[k] = static_cast<float>(p[k]);
+            v.normal[k] = static_cast<std::int8_t>(std::lround(127.0 * n[k]));
+        }
+        if (proxy_material != model::none) std::copy_n(chain.full.baked[index].begin(), 4, v.colour);
+        to.vertices.push_back(v);
+        to.baked.push_back(chain.full.baked[index]);
+    }
     for (const GeometryPart& part : level.parts) {
         const model::Index material = proxy_material != model::none ? proxy_material : part.material;
         auto same = std::find_if(to.parts.begin(), to.parts.end(), [&](const GeometryPart& q) { return q.material == material; });
@@ -32,23 +46,8 @@ void append(Geometry& to, const LodChain& chain, const Level& level, const dmat4
         }
         for (std::size_t i = 0; i < part.indices.size(); ++i) {
             const std::size_t corner = mirrored ? i - i % 3 + (3 - i % 3) % 3 : i;
-            const std::uint32_t index = part.indices[corner];
-            if (map[index] == model::none) {
-                map[index] = static_cast<std::uint32_t>(to.vertices.size());
-                model::Vertex v = chain.full.vertices[index];
-                const dvec3 p = dvec3(world * dvec4(chain.full.centre + dvec3(position_of(v)), 1.0)) - to.centre;
-                dvec3 n = cofactor * dvec3(v.normal[0], v.normal[1], v.normal[2]) * (mirrored ? -1.0 : 1.0);
-                const double length = glm::length(n);
-                n = length > 0 ? n / length : dvec3(0, 1, 0);
-                for (int k = 0; k < 3; ++k) {
-                    v.position[k] = static_cast<float>(p[k]);
-                    v.normal[k] = static_cast<std::int8_t>(std::lround(127.0 * n[k]));
-                }
-                if (proxy_material != model::none) std::copy_n(chain.full.baked[index].begin(), 4, v.colour);
-                to.vertices.push_back(v);
-                to.baked.push_back(chain.full.baked[index]);
-            }
-            same->indices.push_back(map[index]);
+            const auto at = std::lower_bound(used.begin(), used.end(), part.indices[corner]) - used.begin();
+            same->indices.push_back(base + static_cast<std::uint32_t>(at));
         }
     }
 }
@@ -68,68 +67,107 @@ std::vector<ColouredTriangle> coloured(const Geometry& g) {
     return out;
 }
 
-/// Captured from merged geometry whose frame is centred on the box. The error: what a captured point moves when it is put
-/// on the face (its depth), or what is captured on no face at all stays behind (half the box, then), plus a texel.
-BoxForm make_box(const Geometry& merged, const Box& box, std::uint32_t pixels, bool textured, float input_error_m) {
-    BoxForm form;
-    form.box = box;
-    form.pixels = pixels;
-    form.textured = textured;
-    const vec3 half(glm::max(box.half(), dvec3(1e-4)));
-    form.faces = capture_faces(coloured(merged), half, pixels);
-    float depth = 0;
-    for (const FaceCapture& face : form.faces) depth = std::max(depth, face.depth_m);
-    const float longest = 2 * std::max({half.x, half.y, half.z});
-    // A point hidden behind others lies at most half the shortest way from some face.
-    form.error_m = std::max(depth, std::min({half.x, half.y, half.z})) + longest / static_cast<float>(pixels) + input_error_m;
-    return form;
+/// Several objects in one frame, and what is owed to having taken coarse forms of them.
+struct Merged {
+    Geometry geometry;
+    std::vector<std::uint32_t> owners;  ///< a vertex
+    float error_m = 0;
+};
+
+void append(Merged& to, const LodChain& chain, const Level& level, const dmat4& world, std::uint32_t owner,
+            model::Index proxy_material) {
+    append(to.geometry, chain, level, world, proxy_material);
+    to.owners.resize(to.geometry.vertices.size(), owner);
+    to.error_m = std::max(to.error_m, static_cast<float>(level.error_m * largest_stretch(dmat3(world))));
 }
 
-Geometry merge(const ProxyInput& input, const dvec3& centre, std::span<const std::uint32_t> members, float& error_m) {
-    Geometry merged;
-    merged.centre = centre;
-    std::uint64_t full = 0;
-    for (const std::uint32_t m : members) full += input.forms[input.objects[m].mesh].triangles;
-    error_m = 0;
-    for (const std::uint32_t m : members) {
-        const PlacedObject& object = input.objects[m];
-        const MeshForm& form = input.forms[object.mesh];
-        // Each object gets its share of the input by its size.
-        const double share = static_cast<double>(form.triangles) / static_cast<double>(std::max<std::uint64_t>(1, full));
-        const auto most = static_cast<std::uint32_t>(std::max(24.0, share * input.most_input));
-        const Level& level = level_within(form.chain, most);
-        append(merged, form.chain, level, object.world, input.proxy_material);
-        error_m = std::max(error_m, static_cast<float>(level.error_m * largest_stretch(dmat3(object.world))));
+/// The coarsest level within the error; the full detail where none is.
+const Level& level_for(const LodChain& chain, double error_m) {
+    for (const Level& level : chain.levels) {
+        if (level.error_m <= error_m) return level;
+    }
+    return chain.levels.back();
+}
+
+/// Each object as coarse as one common error allows; the error grows until all fit.
+Merged merge_objects(const ProxyInput& input, const Box& box, std::span<const std::uint32_t> members) {
+    std::vector<double> stretch;
+    for (const std::uint32_t m : members) stretch.push_back(std::max(largest_stretch(dmat3(input.objects[m].world)), 1e-30));
+    double allowed_m = 0.001 * box.diagonal();
+    for (;; allowed_m *= 2) {
+        std::uint64_t triangles = 0;
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            triangles += level_for(input.forms[input.objects[members[i]].mesh].chain, allowed_m / stretch[i]).triangles;
+        }
+        if (triangles <= input.most_input || allowed_m > box.diagonal()) break;
+    }
+    Merged merged;
+    merged.geometry.centre = box.centre();
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        const PlacedObject& object = input.objects[members[i]];
+        const LodChain& chain = input.forms[object.mesh].chain;
+        append(merged, chain, level_for(chain, allowed_m / stretch[i]), object.world, static_cast<std::uint32_t>(i),
+               input.proxy_material);
     }
     return merged;
 }
 
+const LodChain& chain_of(const ProxyInput& input, std::uint32_t entity) {
+    const auto n = static_cast<std::uint32_t>(input.objects.size());
+    return entity < n ? input.forms[input.objects[entity].mesh].chain : input.clusters[entity - n].chain;
+}
+
+/// The finest forms of the children instead, where the objects are too many: their errors add up, level by level.
+Merged merge_children(const ProxyInput& input, const ClusterTree::Cluster& cluster) {
+    Merged merged;
+    merged.geometry.centre = cluster.box.centre();
+    std::uint32_t owner = 0;
+    for (const std::uint32_t e : cluster.children) {
+        const dmat4 world = e < input.objects.size() ? input.objects[e].world : dmat4(1.0);
+        const LodChain& chain = chain_of(input, e);
+        const Level* finest = &chain.levels.front();
+        for (const Level& level : chain.levels) {
+            if (level.triangles <= input.most_input / cluster.children.size()) finest = &level;
+        }
+        append(merged, chain, *finest, world, owner++, input.proxy_material);
+    }
+    return merged;
+}
+
+/// Captured from merged geometry whose frame is centred on the box.
+BoxForm make_box(const Merged& merged, const Box& box, std::uint32_t pixels, const ProxyInput& input) {
+    BoxForm form;
+    form.box = box;
+    form.pixels = pixels;
+    form.textured = input.textured_boxes;
+    const vec3 half(glm::max(box.half(), dvec3(1e-4)));
+    form.faces = capture_faces(coloured(merged.geometry), half, pixels);
+    form.error_m = box_error(form, merged.geometry, half, input.slack) + merged.error_m;
+    return form;
+}
+
 }  // namespace
 
-ClusterForm make_cluster(const ProxyInput& input, const Box& box, std::span<const std::uint32_t> members, std::uint32_t children_coarsest) {
+ClusterForm make_cluster(const ProxyInput& input, const ClusterTree::Cluster& cluster, std::span<const std::uint32_t> members) {
+    std::uint32_t children_coarsest = 0;
+    for (const std::uint32_t e : cluster.children) children_coarsest += chain_of(input, e).levels.front().triangles;
+    const Merged merged =
+        16 * members.size() > input.most_input ? merge_children(input, cluster) : merge_objects(input, cluster.box, members);
+    ClusteringLimits limits;
+    limits.most = std::clamp(children_coarsest * 7 / 10, 12U, 2000U);
+    limits.least = std::clamp(static_cast<std::uint32_t>(4 * members.size()), 32U, 128U);
+    limits.slack = input.slack;
     ClusterForm out;
-    float input_error = 0;
-    Geometry merged = merge(input, box.centre(), members, input_error);
-    out.box = make_box(merged, box, members.size() > 64 ? 32 : 24, input.textured_boxes, input_error);
-    const std::uint32_t finest = std::max(24U, children_coarsest / 2);
-    ChainOptions options = input.chain;
-    options.proxy_material = input.proxy_material;
-    options.proxy_below = 0;  // it is in baked colours already
-    options.smallest = std::clamp(finest / 3, 16U, 64U);
-    options.first_share = static_cast<double>(finest) / static_cast<double>(std::max<std::size_t>(1, merged.triangles()));
-    out.chain = make_chain(std::move(merged), options);
-    auto& levels = out.chain.levels;
-    while (levels.size() > 1 && (levels.back().triangles > finest || levels.back().error_m == 0)) levels.pop_back();
-    for (Level& level : levels) level.error_m += input_error;
-    out.has_box = out.box.error_m > levels.front().error_m && levels.front().triangles > 12;
+    out.chain = cluster_vertices(merged.geometry, merged.owners, input.two_sided, limits);
+    for (Level& level : out.chain.levels) level.error_m += merged.error_m;
+    out.box = make_box(merged, cluster.box, members.size() > 64 ? 32 : 24, input);
+    out.has_box = out.box.error_m > out.chain.levels.front().error_m && out.chain.levels.front().triangles > 12;
     return out;
 }
 
 BoxForm make_object_box(const ProxyInput& input, const PlacedObject& object, std::uint32_t pixels) {
-    float input_error = 0;
-    const std::uint32_t self = static_cast<std::uint32_t>(&object - input.objects.data());
-    const Geometry merged = merge(input, object.box.centre(), std::span(&self, 1), input_error);
-    return make_box(merged, object.box, pixels, input.textured_boxes, input_error);
+    const auto self = static_cast<std::uint32_t>(&object - input.objects.data());
+    return make_box(merge_objects(input, object.box, std::span(&self, 1)), object.box, pixels, input);
 }
 
 }  // namespace surefoot::bake

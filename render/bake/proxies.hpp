@@ -12,7 +12,7 @@
 namespace surefoot::bake {
 
 struct ClusterForm {
-    LodChain chain;   ///< world frame; full is the merged input, which is not a level
+    LodChain chain;  ///< world frame; full holds the levels' vertices only
     BoxForm box;
     bool has_box = false;
 };
@@ -20,21 +20,19 @@ struct ClusterForm {
 struct ProxyInput {
     std::span<const PlacedObject> objects;
     std::span<const MeshForm> forms;
-    const ClusterTree* tree = nullptr;
+    std::span<const ClusterForm> clusters;  ///< those below are made
     model::Index proxy_material = 0;
+    std::vector<bool> two_sided;  ///< by material
     bool textured_boxes = false;
-    ChainOptions chain;
-    std::uint32_t most_input = 12000;  ///< triangles merged: objects come as coarse as that needs, their errors added
+    float slack = 0.25F;               ///< of bounds
+    std::uint32_t most_input = 24000;  ///< triangles merged: objects come as coarse as that needs, their errors added
 };
 
-/// `members`: the objects below the cluster. `children_coarsest`: triangles of its children's coarsest forms together; the
-/// cluster's finest level has at most half of them (Maciel 3.1: a parent costs less than its children).
-ClusterForm make_cluster(const ProxyInput& input, const Box& box, std::span<const std::uint32_t> members, std::uint32_t children_coarsest);
+/// `members`: the objects below the cluster; where they are too many to merge, its children (entities) stand for them.
+/// The finest level has fewer triangles than the children's coarsest together (Maciel 3.1: a parent costs less).
+ClusterForm make_cluster(const ProxyInput& input, const ClusterTree::Cluster& cluster, std::span<const std::uint32_t> members);
 
 /// A box for one object, from a level of its chain.
 BoxForm make_object_box(const ProxyInput& input, const PlacedObject& object, std::uint32_t pixels);
-
-/// The level of a chain with at most `most` triangles, else its coarsest.
-const Level& level_within(const LodChain& chain, std::uint32_t most);
 
 }  // namespace surefoot::bake

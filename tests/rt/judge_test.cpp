@@ -1,0 +1,176 @@
+// Blame from evidence, the deadline rule, the lossless histogram, the flight recorder.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "rt/base/random.hpp"
+#include "rt/frame/blame.hpp"
+#include "rt/frame/control.hpp"
+#include "rt/monitor/flight_recorder.hpp"
+#include "rt/monitor/histogram.hpp"
+
+namespace surefoot::rt {
+namespace {
+
+constexpr std::int64_t period = 33'333'333;
+
+/// An ordinary frame that ends at 0.8 of its period, with noise.
+FrameRecord ordinary(Random& random) {
+    FrameRecord r;
+    r.due_ns = r.ready_ns = 1'000'000'000;
+    r.deadline_ns = r.due_ns + period;
+    const auto share = [&](double s) { return static_cast<std::int64_t>(s * random.range(0.8, 1.2) * static_cast<double>(period)); };
+    r.woken_ns = r.due_ns + share(0.002);
+    r.selected_ns = r.woken_ns + share(0.02);
+    r.submitted_ns = r.selected_ns + share(0.35);
+    r.rastered_ns = r.submitted_ns + share(0.35);
+    r.presented_ns = r.rastered_ns + share(0.02);
+    r.prepared_age = 1;
+    return r;
+}
+
+void delay_from(FrameRecord& r, int phase, std::int64_t ns) {
+    if (phase <= 0) r.woken_ns += ns;
+    if (phase <= 1) r.selected_ns += ns;
+    if (phase <= 2) r.submitted_ns += ns;
+    if (phase <= 3) r.rastered_ns += ns;
+    r.presented_ns += ns;
+    r.missed = r.presented_ns > r.deadline_ns;
+}
+
+TEST(Blame, NamesTheInjectedCauseInNineteenOfTwenty) {
+    Random random(11);
+    const BlameLimits limits;
+    const Cause causes[] = {Cause::woken_late, Cause::stolen, Cause::preempted, Cause::select, Cause::submit,
+                            Cause::raster, Cause::page_fault, Cause::present, Cause::stopped, Cause::upload};
+    int right = 0, all = 0;
+    for (const Cause cause : causes) {
+        for (int i = 0; i < 50; ++i) {
+            FrameRecord r = ordinary(random);
+            const auto ns = static_cast<std::int64_t>(random.range(0.7, 2.0) * static_cast<double>(period));
+            switch (cause) {
+                case Cause::woken_late: delay_from(r, 0, ns); break;
+                case Cause::stolen: delay_from(r, 2, ns), r.stolen_ns = ns; break;
+                case Cause::preempted: delay_from(r, 2, ns), r.preempted_ns = ns, r.involuntary = 2; break;
+                case Cause::select: delay_from(r, 1, ns); break;
+                case Cause::submit: delay_from(r, 2, ns); break;
+                case Cause::raster: delay_from(r, 3, ns); break;
+                case Cause::page_fault: delay_from(r, 2, ns), r.major_faults = 4, r.minor_faults = 100000; break;
+                case Cause::present: delay_from(r, 4, ns); break;
+                case Cause::stopped: delay_from(r, 2, ns), r.continued = 1; break;
+                default: delay_from(r, 2, ns), r.upload_ns = ns; break;
+            }
+            ASSERT_TRUE(r.missed);
+            right += blame(r, limits) == cause ? 1 : 0;
+            ++all;
+        }
+    }
+    EXPECT_GE(right, all * 95 / 100) << right << " of " << all;
+    FrameRecord fine = ordinary(random);
+    EXPECT_EQ(blame(fine, limits), Cause::none);
+}
+
+TEST(Blame, AMissIsOwnWhenTheStolenTimeDoesNotExplainIt) {
+    Random random(2);
+    BlameLimits limits;
+    limits.period_ns = period;
+    FrameRecord r = ordinary(random);
+    delay_from(r, 2, period);
+    EXPECT_TRUE(is_own_miss(r, limits));
+    r.stolen_ns = period;
+    EXPECT_FALSE(is_own_miss(r, limits));
+    r.stolen_ns = period / 10;
+    EXPECT_TRUE(is_own_miss(r, limits));
+}
+
+TEST(Control, ThePermutationTestIsExact) {
+    EXPECT_DOUBLE_EQ(sign_flip_p_value({}), 1.0);
+    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{0, 0, 0}), 1.0);
+    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{1}), 0.5);
+    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{1, 1, 1}), 0.125);
+    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{2, -1}), 0.5);  // +2-1 and +2+1 of four
+    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{-1, -1}), 1.0);
+    Random random(3);
+    std::vector<int> d;
+    for (int i = 0; i < 12; ++i) d.push_back(static_cast<int>(random.below(7)) - 3);
+    int seen = 0, least = 0;
+    for (const int x : d) seen += x;
+    for (unsigned mask = 0; mask < 4096; ++mask) {
+        int sum = 0;
+        for (unsigned i = 0; i < 12; ++i) sum += (mask >> i & 1U) != 0 ? std::abs(d[i]) : -std::abs(d[i]);
+        least += sum >= seen ? 1 : 0;
+    }
+    EXPECT_NEAR(sign_flip_p_value(d), least / 4096.0, 1e-12);
+}
+
+TEST(Control, TheDeadlineRuleWantsAllOfItsParts) {
+    std::vector<BlockTally> blocks;
+    for (std::uint32_t b = 0; b < 180; ++b) {
+        BlockTally tally;
+        tally.block = b;
+        tally.walk = ControlSchedule::is_walk(b);
+        tally.frames = 60;
+        blocks.push_back(tally);
+    }
+    EXPECT_TRUE(judge(blocks, 0.5).holds);
+    EXPECT_FALSE(judge(blocks, 0.1).holds) << "a load that ordinary scheduling stands is no load";
+    EXPECT_FALSE(judge(std::span(blocks).first(100), 0.5).holds) << "50 pairs are too few";
+    std::vector<BlockTally> own = blocks;
+    own[0].own_misses = own[0].misses = 7;  // 5400 walk frames allow 6
+    EXPECT_FALSE(judge(own, 0.5).holds);
+    std::vector<BlockTally> worse = blocks;
+    for (BlockTally& b : worse) b.misses = b.walk ? 1 : 0;
+    EXPECT_FALSE(judge(worse, 0.5).control_holds);
+    for (BlockTally& b : worse) b.misses = b.walk ? 1 : 2;
+    EXPECT_TRUE(judge(worse, 0.5).control_holds);
+}
+
+TEST(Histogram, ClipsNothingAndItsQuantilesAreWithinABin) {
+    Histogram h;
+    std::vector<std::int64_t> values;
+    Random random(5);
+    for (int i = 0; i < 20000; ++i) {
+        const auto v = static_cast<std::int64_t>(std::exp(random.range(0, 43)));
+        values.push_back(v);
+        h.add(v);
+    }
+    h.add(std::numeric_limits<std::int64_t>::max());
+    h.add(-7);
+    values.push_back(std::numeric_limits<std::int64_t>::max());
+    values.push_back(-7);
+    std::sort(values.begin(), values.end());
+    std::uint64_t sum = 0;
+    for (std::size_t b = 0; b < Histogram::bins; ++b) sum += h.bin_count(b);
+    EXPECT_EQ(sum, values.size());
+    EXPECT_EQ(h.count(), values.size());
+    for (const double q : {0.01, 0.5, 0.9, 0.99, 0.999}) {
+        const std::int64_t exact = values[static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size()))) - 1];
+        EXPECT_EQ(Histogram::bin_of(h.quantile(q)), Histogram::bin_of(exact)) << q;
+    }
+    EXPECT_EQ(h.max(), values.back());
+    EXPECT_EQ(h.min(), -7);
+    for (std::size_t b = 1; b + 1 < Histogram::bins; ++b) ASSERT_EQ(Histogram::bin_high(b) + 1, Histogram::bin_low(b + 1)) << b;
+}
+
+TEST(FlightRecorder, KeepsTheFramesAroundAMissAndCountsWhatItSuppresses) {
+    FlightRecorder recorder(2);
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+        FrameRecord r;
+        r.frame = i;
+        r.missed = i == 200 || i == 205 || i == 400 || i == 600;
+        recorder.add(r);
+    }
+    recorder.finish();
+    ASSERT_EQ(recorder.dumps().size(), 2U);
+    EXPECT_EQ(recorder.dumps()[0].missed_frame, 200U);
+    EXPECT_EQ(recorder.dumps()[0].records.size(), 120U);
+    EXPECT_EQ(recorder.dumps()[0].records.front().frame, 111U);
+    EXPECT_EQ(recorder.dumps()[0].records.back().frame, 230U);
+    EXPECT_EQ(recorder.suppressed(), 1U);
+}
+
+}  // namespace
+}  // namespace surefoot::rt

@@ -1,0 +1,134 @@
+// The grid and the frame loop on injected time: slots are conserved, policies are exact, records are whole.
+#include <gtest/gtest.h>
+
+#include "rt/base/random.hpp"
+#include "rt/clock/grid.hpp"
+#include "rt/frame/controller.hpp"
+#include "rt/frame/loop.hpp"
+
+namespace surefoot::rt {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+TEST(Grid, RunAndSkippedAreElapsedExactlyUnderAnyWork) {
+    Random random(1);
+    for (const LatePolicy policy : {LatePolicy::lock, LatePolicy::floating}) {
+        const Grid grid{7, 16'666'667};
+        std::uint64_t slot = 0, run = 0, skipped = 0;
+        std::int64_t now = grid.t0_ns;
+        for (int i = 0; i < 100000; ++i) {
+            now += static_cast<std::int64_t>(random.unit() * random.unit() * 60e6) + (i % 5000 == 0 ? 500 * ms : 0);
+            const NextSlot next = next_slot(grid, policy, slot, now);
+            ++run;
+            skipped += next.skipped;
+            ASSERT_GT(next.slot, slot);
+            ASSERT_EQ(run + skipped, next.slot);
+            ASSERT_GE(next.start_ns, std::min(now, grid.due_ns(next.slot)));
+            if (policy == LatePolicy::lock) {
+                ASSERT_EQ((next.shown_ns - grid.t0_ns) % grid.period_ns, 0) << "lock shows on the grid only";
+                ASSERT_GE(next.shown_ns, now);
+            }
+            slot = next.slot;
+            now = std::max(now, next.start_ns);
+        }
+    }
+}
+
+TEST(Grid, LockSkipsWholeSlotsAndFloatOnlyThoseThatHavePassed) {
+    const Grid grid{0, 10 * ms};
+    const NextSlot lock = next_slot(grid, LatePolicy::lock, 0, 12 * ms);
+    EXPECT_TRUE(lock.missed);
+    EXPECT_EQ(lock.slot, 2U);
+    EXPECT_EQ(lock.skipped, 1U);
+    EXPECT_EQ(lock.shown_ns, 20 * ms);
+    const NextSlot floating = next_slot(grid, LatePolicy::floating, 0, 12 * ms);
+    EXPECT_TRUE(floating.missed);
+    EXPECT_EQ(floating.slot, 1U);
+    EXPECT_EQ(floating.skipped, 0U);
+    EXPECT_EQ(floating.shown_ns, 12 * ms);
+    EXPECT_FALSE(next_slot(grid, LatePolicy::lock, 0, 10 * ms).missed) << "exactly on the deadline is in time";
+}
+
+/// Work of a given length; counts what it is asked.
+class FakeStages final : public FrameStages {
+public:
+    FakeStages(VirtualClock& clock, std::vector<std::int64_t> work_ns) : clock_(clock), work_ns_(std::move(work_ns)) {}
+    void sample(FrameRecord&) override { ++samples; }
+    void select(FrameRecord&) override { clock_.advance(ms); }
+    void submit(FrameRecord& r) override { clock_.advance(work_ns_[r.frame % work_ns_.size()]); }
+    void finish(FrameRecord&) override {}
+    void account(FrameRecord& r) override { missed += r.missed ? 1 : 0; }
+    int samples = 0, missed = 0;
+
+private:
+    VirtualClock& clock_;
+    std::vector<std::int64_t> work_ns_;
+};
+
+TEST(Loop, FillsRecordsAndSkipsLateSlots) {
+    VirtualClock clock;
+    FakeStages stages(clock, {5 * ms, 5 * ms, 14 * ms, 5 * ms});
+    SpscRing<FrameRecord> ring(64);
+    FrameLoopOptions options;
+    options.period_ns = 10 * ms;
+    options.t0_ns = 10 * ms;
+    options.frames = 8;
+    const FrameLoopResult result = run_frame_loop(options, clock, stages, ring);
+    EXPECT_EQ(result.run, 8U);
+    EXPECT_EQ(result.skipped, 2U);
+    EXPECT_EQ(result.elapsed, result.run + result.skipped);
+    EXPECT_EQ(stages.samples, 8);
+    EXPECT_EQ(stages.missed, 2);
+    FrameRecord r;
+    std::uint64_t slot = 0;
+    for (int i = 0; ring.try_pop(r); ++i) {
+        EXPECT_EQ(r.slot, slot + r.skipped_before + (i > 0 ? 1 : 0));
+        slot = r.slot;
+        EXPECT_EQ(r.due_ns, 10 * ms + static_cast<std::int64_t>(r.slot) * 10 * ms);
+        EXPECT_EQ(r.selected_ns - r.woken_ns, ms);
+        EXPECT_EQ(r.missed, i % 4 == 2);
+        if (r.missed) {
+            EXPECT_EQ(r.cause, Cause::submit);
+        }
+    }
+}
+
+TEST(Loop, ControlBlocksAlternateAndTheBareLoopBurnsTheSame) {
+    VirtualClock clock;
+    FakeStages stages(clock, {6 * ms});
+    SpscRing<FrameRecord> ring(256);
+    const ControlSchedule schedule{5, 4};
+    FrameLoopOptions options;
+    options.period_ns = 10 * ms;
+    options.t0_ns = 10 * ms;
+    options.control = &schedule;
+    run_frame_loop(options, clock, stages, ring);
+    FrameRecord r;
+    int walk = 0, bare = 0;
+    while (ring.try_pop(r)) {
+        EXPECT_EQ(r.control, !ControlSchedule::is_walk(r.block));
+        (r.control ? bare : walk) += 1;
+        if (r.control) {
+            EXPECT_EQ(r.presented_ns - r.woken_ns, 7 * ms);
+        }
+    }
+    EXPECT_EQ(walk, 20);
+    EXPECT_EQ(bare, 20);
+}
+
+TEST(Controller, MeetsADoubledCostAndIsDeafToOutliers) {
+    CostController c;
+    for (int i = 0; i < 40; ++i) c.update(100, 200);
+    EXPECT_NEAR(c.factor(), 2.0, 1e-9);
+    for (int i = 0; i < 40; ++i) c.update(100, 1000);
+    EXPECT_EQ(c.factor(), CostController::highest);
+    CostController deaf;
+    for (int i = 0; i < 60; ++i) deaf.update(100, i % 3 == 0 ? 10000 : 100);
+    EXPECT_NEAR(deaf.factor(), 1.0, 1e-9);
+    for (const double bad : {0.0, -5.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) deaf.update(bad, 100), deaf.update(100, bad);
+    EXPECT_NEAR(deaf.factor(), 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace surefoot::rt
