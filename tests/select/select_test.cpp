@@ -289,6 +289,7 @@ TEST(Select, AFrameAllocatesNothing) {
     Scene s(test::town(6));
     Random random(29);
     s.look({test::random_pose(random, 200), 0.3, 0.05});  // oneTBB makes its own things when it is first asked
+    for (const std::string_view name : selector_names()) ASSERT_NE(find_selector(name), nullptr);  // made when first asked for
     for (int i = 0; i < 20; ++i) {
         const prepare::Region region{test::random_pose(random, 200), 0.3, 0.05};
         const std::uint64_t before = test::allocations();
