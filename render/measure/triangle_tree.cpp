@@ -12,28 +12,31 @@ namespace {
 
 constexpr std::uint32_t leaf_triangles = 4;
 
-// Nearest point of a triangle by region (Ericson, Real-Time Collision Detection 5.1.5), given back as a combination of the
-// corners with weights in 0..1: however thin the triangle, the point lies on it, so its distance is never too small.
-vec3 nearest_point(const vec3& p, const vec3& a, const vec3& b, const vec3& c) {
-    const vec3 ab = b - a, ac = c - a, ap = p - a;
-    const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return a;
-    const vec3 bp = p - b;
-    const float d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return b;
-    const auto along = [](float num, float den) { return den > 0 ? std::clamp(num / den, 0.0F, 1.0F) : 0.0F; };
-    const float vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + along(d1, d1 - d3) * ab;
-    const vec3 cp = p - c;
-    const float d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return c;
-    const float vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + along(d2, d2 - d6) * ac;
-    const float va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + along(d4 - d3, (d4 - d3) + (d5 - d6)) * (c - b);
-    const float sum = va + vb + vc;
-    const float v = along(vb, sum), w = std::min(along(vc, sum), 1.0F - v);
-    return a + v * ab + w * ac;
+// Distance to a triangle by region (Ericson, Real-Time Collision Detection 5.1.5). The nearest point is a combination of the
+// corners with weights in 0..1: however thin the triangle, it lies on it, so the distance is never too small. In double: on
+// slivers the regions' signs drown in float, and the distance came out several per cent too large.
+double distance2(const vec3& point, const vec3& corner_a, const vec3& corner_b, const vec3& corner_c) {
+    const dvec3 p(point), a(corner_a), b(corner_b), c(corner_c);
+    const auto along = [](double num, double den) { return den > 0 ? std::clamp(num / den, 0.0, 1.0) : 0.0; };
+    const auto to = [&p](const dvec3& q) { return glm::dot(p - q, p - q); };
+    const dvec3 ab = b - a, ac = c - a, ap = p - a;
+    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return to(a);
+    const dvec3 bp = p - b;
+    const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return to(b);
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return to(a + along(d1, d1 - d3) * ab);
+    const dvec3 cp = p - c;
+    const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return to(c);
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return to(a + along(d2, d2 - d6) * ac);
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return to(b + along(d4 - d3, (d4 - d3) + (d5 - d6)) * (c - b));
+    const double sum = va + vb + vc;
+    const double v = along(vb, sum), w = std::min(along(vc, sum), 1.0 - v);
+    return to(a + v * ab + w * ac);
 }
 
 float box_distance2(const vec3& p, const vec3& low, const vec3& high) {
@@ -93,7 +96,7 @@ std::uint32_t TriangleTree::build(std::span<std::uint32_t> order, const std::vec
 
 float TriangleTree::distance_to(std::uint32_t triangle, const vec3& p) const {
     const Corners& t = corners_[triangle];
-    return glm::length(p - nearest_point(p, t.a, t.b, t.c));
+    return static_cast<float>(std::sqrt(distance2(p, t.a, t.b, t.c)));
 }
 
 TriangleTree::Hit TriangleTree::nearest(const vec3& p, std::uint32_t hint) const {
@@ -113,8 +116,7 @@ TriangleTree::Hit TriangleTree::nearest(const vec3& p, std::uint32_t hint) const
         const Node& node = nodes_[visit.node];
         if (node.count > 0) {
             for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-                const vec3 away = p - nearest_point(p, corners_[i].a, corners_[i].b, corners_[i].c);
-                const float d2 = glm::dot(away, away);
+                const auto d2 = static_cast<float>(distance2(p, corners_[i].a, corners_[i].b, corners_[i].c));
                 if (d2 < best2) {
                     best2 = d2;
                     best.triangle = i;
