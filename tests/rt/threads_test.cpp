@@ -1,7 +1,9 @@
 // Placing, census, guard, exchange: what a session relies on, on real threads.
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -120,6 +122,27 @@ TEST(Guard, OwnScopeCountsAllocationsAndDriverScopeCountsApart) {
     EXPECT_EQ(after.own_violations - before.own_violations, 2U);
     EXPECT_EQ(after.driver_allocations - before.driver_allocations, 1U);
     EXPECT_EQ(after.driver_frees - before.driver_frees, 1U);
+}
+
+TEST(SystemCallTrap, NamesWhatTheFrameThreadsOwnCodeMayNotCall) {
+    TrapCounters counters;
+    bool refused = false;
+    on_own_thread([&] {
+        refused = !trap_system_calls(frame_thread_system_calls()).ok();
+        if (refused) return;
+        {
+            const OwnScope own;
+            (void)own_cpu_ns();                    // allowed
+            (void)syscall(SYS_getppid);            // not
+        }
+        (void)syscall(SYS_getppid);                // outside: counted apart
+        counters = trap_counters();
+    });
+    if (refused) GTEST_SKIP() << "seccomp filters are refused here";
+    EXPECT_EQ(counters.own, 1U);
+    EXPECT_EQ(counters.last_own, SYS_getppid);
+    EXPECT_GE(counters.other, 1U);
+    EXPECT_EQ(system_call_name(SYS_mmap), "mmap");
 }
 
 TEST(Usage, ThreadsAreMeasuredApart) {
