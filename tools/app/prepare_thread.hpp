@@ -14,7 +14,7 @@ namespace surefoot::app {
 
 /// What the frame thread publishes at each frame's start.
 struct PoseSample {
-    std::uint64_t frame = 0;
+    std::uint64_t frame = 0;    ///< walked frames, from 0
     std::int64_t time_ns = 0;   ///< when it was due
     Pose pose, before;          ///< now, and one frame ago
     double dt_s = 0;

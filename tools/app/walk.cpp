@@ -180,6 +180,7 @@ WalkStagesOptions stages_options(const Session& s) {
     o.limit_us = limit_share * period_us;
     o.target_error_rad = s.request.accuracy > 0 ? 1.0 / s.request.accuracy : 0;
     o.correct_costs = s.request.correct_costs;
+    o.control = s.request.control;
     o.virtual_clock = s.virtual_clock;
     o.cost_scale = s.request.cost_scale;
     if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;

@@ -29,8 +29,9 @@ WalkStages::WalkStages(Engine& engine, const Path& path, rt::Clock& clock, rt::T
 
 void WalkStages::sample(rt::FrameRecord& record) {
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
-    const double time_s = static_cast<double>(record.slot) * period_s;
-    const Pose pose = pose_at(path_, time_s);
+    // Beside a control the walk goes on where its last block ended: slots of the bare loop are no time of the path.
+    path_slot_ = options_.control ? walked_ : record.slot;
+    const Pose pose = pose_at(path_, static_cast<double>(path_slot_) * period_s);
     if (options_.virtual_clock) {
         if (!now_.valid) {
             now_.pose = now_.before = pose;
@@ -39,9 +40,9 @@ void WalkStages::sample(rt::FrameRecord& record) {
         prepare_inline();  // from what was known one frame ago, as the workers would
     }
     now_.before = now_.valid ? now_.pose : pose;
-    now_.dt_s = period_s * (1.0 + record.skipped_before);
+    now_.dt_s = period_s * (1.0 + (options_.control ? 0 : record.skipped_before));
     now_.pose = pose;
-    now_.frame = record.frame;
+    now_.frame = walked_++;
     now_.time_ns = record.due_ns;
     now_.valid = true;
     poses_.back() = now_;
@@ -59,7 +60,7 @@ void WalkStages::prepare_inline() {
 void WalkStages::select(rt::FrameRecord& record) {
     prepared_.refresh();
     const prepare::PreparedFrame& set = prepared_.front();
-    const std::uint64_t age = options_.virtual_clock ? 1 : record.frame - std::min(set.frame, record.frame);
+    const std::uint64_t age = options_.virtual_clock ? 1 : now_.frame - std::min(set.frame, now_.frame);
     record.prepared_age = static_cast<std::uint32_t>(age);
     record.correction = static_cast<float>(options_.correct_costs ? controller_.factor() : 1.0);
     record.budget_us = static_cast<float>(options_.budget_us);
@@ -135,7 +136,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.actual_us = static_cast<float>(actual_us);
     if (!coarse_) controller_.update(report_.predicted_us, actual_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
-    const double time_s = static_cast<double>(record.slot) * static_cast<double>(options_.period_ns) * 1e-9;
+    const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
     shots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn());
 }
 

@@ -22,6 +22,7 @@ struct WalkStagesOptions {
     double limit_us = 0;            ///< of the in-frame check, from the due time
     double target_error_rad = 0;
     bool correct_costs = true;
+    bool control = false;           ///< bare blocks lie between: the path's time is counted in walked frames
     bool virtual_clock = false;     ///< prepare inline, charge the device's virtual time
     double cost_scale = 1;          ///< virtual clock with a device that charges nothing
     std::uint64_t capture_frame = ~0ULL;
@@ -67,7 +68,7 @@ private:
     rt::CostController controller_;
     PoseSample now_;
     SubmitReport report_;
-    double predicted_us_ = 0;
+    std::uint64_t walked_ = 0, path_slot_ = 0;
     bool coarse_ = false;
 };
 
