@@ -25,7 +25,10 @@ Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted) 
     plan.frame_priority = request.frame_priority;
     plan.raster_priority = request.raster_priority;
     plan.worker_priority = request.worker_priority;
-    plan.driver_prefixes = gl::driver_thread_prefixes();
+    // The driver's caches ("<program>:…") lower themselves; only what rasterises is ours to place.
+    for (const std::string& prefix : gl::driver_thread_prefixes()) {
+        if (prefix.find(':') == std::string::npos) plan.driver_prefixes.push_back(prefix);
+    }
     return plan;
 }
 
