@@ -1,4 +1,4 @@
-// The one cause of a missed frame.
+// Blame: every cause's excess is worked out from the record; a cause counts first of all when it suffices alone.
 #include "rt/frame/blame.hpp"
 
 #include <algorithm>
@@ -8,57 +8,74 @@ namespace surefoot::rt {
 
 namespace {
 
-/// What would be gained if this cause had not been.
-struct Suspect {
-    Cause cause;
-    std::int64_t ns;
+struct Excess {
+    Cause cause = Cause::none;
+    std::int64_t over_ns = 0;
 };
 
-std::int64_t over(std::int64_t spent_ns, double share, std::int64_t period_ns) {
+std::int64_t over_share(std::int64_t spent_ns, double share, std::int64_t period_ns) {
     return spent_ns - static_cast<std::int64_t>(share * static_cast<double>(period_ns));
 }
 
+std::int64_t wake_lateness_ns(const FrameRecord& r) {
+    return std::max<std::int64_t>(r.woken_ns - std::max(r.ready_ns, r.due_ns), 0);
+}
+
+/// What came from outside our own code's decisions, most specific evidence first.
+std::array<Excess, 4> outside_causes(const FrameRecord& r, const BlameLimits& l) {
+    const std::int64_t gap = r.stolen_ns + r.preempted_ns;
+    const std::int64_t wake = over_share(wake_lateness_ns(r), l.wake_share, l.period_ns);
+    const std::int64_t faults = std::int64_t{r.minor_faults} + r.driver_faults;
+    // A major fault waits for a disk: it shows as a gap, of which it is the reason.
+    const std::int64_t fault_cost = faults * l.minor_fault_ns + (r.major_faults > 0 ? gap : 0);
+    return {{{Cause::page_fault, fault_cost},
+             {Cause::preempted, r.preempted_ns},
+             {Cause::stolen, r.stolen_ns},
+             {Cause::woken_late, wake}}};
+}
+
+/// The phases, each over its share. What was lost in the frame lies within some phase, most likely the longest over: it is
+/// not that phase's doing.
+std::array<Excess, 5> phase_causes(const FrameRecord& r, const BlameLimits& l) {
+    const std::int64_t t = l.period_ns;
+    std::array<Excess, 5> phases = {{{Cause::select, over_share(r.selected_ns - r.woken_ns, l.select_share, t)},
+                                     {Cause::upload, over_share(r.upload_ns, l.upload_share, t)},
+                                     {Cause::submit, over_share(r.submitted_ns - r.selected_ns - r.upload_ns, l.submit_share, t)},
+                                     {Cause::raster, over_share(r.rastered_ns - r.submitted_ns, l.raster_share, t)},
+                                     {Cause::present, over_share(r.presented_ns - r.rastered_ns, l.present_share, t)}}};
+    std::ranges::max_element(phases, {}, &Excess::over_ns)->over_ns -= r.stolen_ns + r.preempted_ns;
+    return phases;
+}
+
+bool was_drawing(Cause cause) { return cause == Cause::submit || cause == Cause::raster || cause == Cause::upload; }
+
 }  // namespace
 
-Cause blame(const FrameRecord& r, const BlameLimits& limits) {
-    const std::int64_t late_ns = r.presented_ns - r.deadline_ns;
-    if (!r.missed && late_ns <= 0) return Cause::none;
-    const std::int64_t period = limits.period_ns;
-    if (r.continued > 0) return Cause::stopped;
-    const std::int64_t faults_ns = static_cast<std::int64_t>(r.minor_faults) * limits.minor_fault_ns + (r.major_faults > 0 ? period : 0);
-    // Most specific evidence first; within the phases the one furthest over its share.
-    const std::array<Suspect, 4> evidence = {{
-        {Cause::page_fault, faults_ns},
-        {Cause::preempted, r.preempted_ns},
-        {Cause::stolen, r.stolen_ns},
-        {Cause::woken_late, over(r.woken_ns - std::max(r.due_ns, r.ready_ns), limits.wake_share, period)},
-    }};
-    for (const Suspect& s : evidence) {
-        if (s.ns > 0 && s.ns >= late_ns) return s.cause;
+Cause blame(const FrameRecord& record, const BlameLimits& limits) {
+    if (!record.missed) return Cause::none;
+    // A stop may fall into a wait, where no gap shows it: that it happened says enough.
+    if (record.continued > 0) return Cause::stopped;
+    const std::int64_t late_ns = std::max<std::int64_t>(record.presented_ns - record.deadline_ns, 1);
+    const auto outside = outside_causes(record, limits);
+    for (const Excess& e : outside) {
+        if (e.over_ns >= late_ns) return e.cause;
     }
-    std::array<Suspect, 5> phases = {{
-        {Cause::select, over(r.selected_ns - r.woken_ns, limits.select_share, period)},
-        {Cause::upload, over(r.upload_ns, limits.upload_share, period)},
-        {Cause::submit, over(r.submitted_ns - r.selected_ns - r.upload_ns, limits.submit_share, period)},
-        {Cause::raster, over(r.rastered_ns - r.submitted_ns, limits.raster_share, period)},
-        {Cause::present, over(r.presented_ns - r.rastered_ns, limits.present_share, period)},
-    }};
-    std::stable_sort(phases.begin(), phases.end(), [](const Suspect& a, const Suspect& b) { return a.ns > b.ns; });
-    if (phases[0].ns >= late_ns && phases[0].ns > 0) return phases[0].cause;
-    if (r.prepared_age > limits.oldest_prepared) return Cause::prepared_too_old;
-    // None would do alone: what took the most over its share.
-    Suspect most = phases[0];
-    for (const Suspect& s : evidence) {
-        if (s.ns > most.ns) most = s;
+    const auto phases = phase_causes(record, limits);
+    Excess most = *std::ranges::max_element(phases, {}, &Excess::over_ns);
+    if (most.over_ns < late_ns) {
+        const Excess& other = *std::ranges::max_element(outside, {}, &Excess::over_ns);
+        if (other.over_ns > most.over_ns) most = other;
     }
+    // The coarse levels of the last complete set were drawn: nobody had chosen them for this frame's budget.
+    if (record.prepared_age > limits.oldest_prepared && was_drawing(most.cause)) return Cause::prepared_too_old;
     return most.cause;
 }
 
-bool is_own_miss(const FrameRecord& r, const BlameLimits& limits) {
-    const std::int64_t late_ns = r.presented_ns - r.deadline_ns;
-    if (late_ns <= 0) return false;
-    const std::int64_t wake_ns = limits.fifo ? std::max<std::int64_t>(0, r.woken_ns - std::max(r.due_ns, r.ready_ns)) : 0;
-    return late_ns > std::max<std::int64_t>(0, r.stolen_ns) + wake_ns;
+bool is_own_miss(const FrameRecord& record, const BlameLimits& limits) {
+    if (!record.missed) return false;
+    const bool not_our_wake = limits.fifo || record.continued > 0;
+    const std::int64_t taken_ns = record.stolen_ns + (not_our_wake ? wake_lateness_ns(record) : 0);
+    return record.presented_ns - taken_ns > record.deadline_ns;
 }
 
 }  // namespace surefoot::rt

@@ -1,144 +1,116 @@
-// The frame loop: wake on the grid, run the stages, account, next slot.
+// The loop itself.
 #include "rt/frame/loop.hpp"
 
-#include <algorithm>
-#include <csignal>
-#include <thread>
+#include <sched.h>
+#include <signal.h>
 
+#include "rt/frame/frame_account.hpp"
 #include "rt/threads/guard.hpp"
 
 namespace surefoot::rt {
 
 namespace {
 
-std::atomic<std::uint32_t> continues{0};
-
-void on_continue(int /*number*/) { continues.fetch_add(1, std::memory_order_relaxed); }
-
-/// What the loop carries from frame to frame.
+/// Where the loop stands.
 struct LoopState {
-    const FrameLoopOptions& options;
-    Clock& clock;
-    FrameStages& stages;
-    ThreadClocks all_rasterisers, core_rasterisers;
-    BurnMeter burn;
-    std::uint32_t seen_continues = 0;
+    std::uint64_t slot = 0;
+    std::uint32_t skipped_before = 0;
+    std::int64_t ready_ns = 0;
+    FrameLoopResult result;
 };
 
-/// Gap between wall and CPU time that no known wait explains: stolen, or, with an involuntary switch, preempted.
-void explain_gap(FrameRecord& r, const ThreadUsage& used, std::int64_t waited_ns) {
-    r.cpu_ns = used.cpu_ns;
-    r.voluntary = static_cast<std::uint32_t>(used.voluntary);
-    r.involuntary = static_cast<std::uint32_t>(used.involuntary);
-    r.waited_ns = waited_ns;
-    const std::int64_t gap_ns = std::max<std::int64_t>(0, r.presented_ns - r.woken_ns - used.cpu_ns - waited_ns);
-    (r.involuntary > 0 ? r.preempted_ns : r.stolen_ns) = gap_ns;
+bool goes_on(const FrameLoopOptions& o, const LoopState& s) {
+    if (o.stop != nullptr && o.stop->load(std::memory_order_relaxed)) return false;
+    if (o.control != nullptr && s.slot >= o.control->slots()) return false;
+    return o.frames == 0 || s.result.run < o.frames;
 }
 
-void run_walk_frame(LoopState& s, FrameRecord& r) {
-    const GuardCounters guard_before = guard_counters();
-    const ThreadUsage begun = s.clock.usage();
-    s.all_rasterisers.start();
-    s.core_rasterisers.start();
-    {
-        const OwnScope own;
-        s.stages.sample(r);
-        s.stages.select(r);
+FrameRecord new_record(const FrameLoopOptions& o, const Grid& grid, const LoopState& s) {
+    FrameRecord record;
+    record.slot = s.slot;
+    record.frame = s.result.run;
+    record.due_ns = grid.due_ns(s.slot);
+    record.ready_ns = s.ready_ns;
+    record.deadline_ns = grid.deadline_ns(s.slot);
+    record.skipped_before = s.skipped_before;
+    if (o.control != nullptr) {
+        record.block = o.control->block_of(s.slot);
+        record.control = !ControlSchedule::is_walk(record.block);
     }
-    r.selected_ns = s.clock.now_ns();
-    const ThreadUsage own_part = s.clock.usage();
+    return record;
+}
+
+void walk_frame(Clock& clock, FrameStages& stages, FrameAccount& account, FrameRecord& record) {
+    account.begin(record);
+    stages.sample(record);
+    stages.select(record);
+    account.own_done(record);
     {
         const DriverScope driver;
-        s.stages.submit(r);
-        if (r.submitted_ns == 0) r.submitted_ns = s.clock.now_ns();
-        s.stages.finish(r);
+        stages.submit(record);
+        if (record.submitted_ns == 0) record.submitted_ns = clock.now_ns();
+        stages.finish(record);
     }
-    r.presented_ns = s.clock.now_ns();
-    if (r.rastered_ns == 0) r.rastered_ns = r.presented_ns;
-    const ThreadUsage ended = s.clock.usage();
-    const ThreadUsage own = own_part - begun, driver = ended - own_part;
-    const ThreadClocks::Spent raster = s.all_rasterisers.spent();
-    r.raster_cpu_ns = raster.sum_ns;
-    // The frame thread sleeps while rasterisers work: at most as long as the busiest of them ran.
-    explain_gap(r, own + driver, raster.longest_ns);
-    r.minor_faults = static_cast<std::uint32_t>(own.minor_faults);
-    r.major_faults = static_cast<std::uint32_t>(own.major_faults);
-    r.driver_faults = static_cast<std::uint32_t>(driver.minor_faults + driver.major_faults);
-    const GuardCounters guard = guard_counters();
-    r.driver_allocations = static_cast<std::uint32_t>(guard.driver_allocations - guard_before.driver_allocations);
-    r.guard_violations = static_cast<std::uint32_t>(guard.own_violations - guard_before.own_violations);
-    // The control burns what this core gave the walk: the frame thread, and the rasterisers that share its core.
-    s.burn.add(r.cpu_ns + s.core_rasterisers.spent().sum_ns);
+    account.driver_done(record);
+    account.close(record);
+    stages.account(record);
 }
 
-void run_bare_frame(LoopState& s, FrameRecord& r) {
-    const ThreadUsage begun = s.clock.usage();
-    r.control = true;
-    r.selected_ns = r.woken_ns;
-    s.clock.burn_ns(s.burn.mean_ns());
-    r.submitted_ns = r.rastered_ns = r.presented_ns = s.clock.now_ns();
-    explain_gap(r, s.clock.usage() - begun, 0);
+void bare_frame(Clock& clock, std::int64_t burn_ns, FrameAccount& account, FrameRecord& record) {
+    account.begin(record);
+    clock.burn_ns(burn_ns);
+    account.own_done(record);
+    account.driver_done(record);
+    account.close(record);
 }
 
-void judge_frame(LoopState& s, FrameRecord& r, bool missed) {
-    BlameLimits limits = s.options.limits;
-    limits.period_ns = s.options.period_ns;
-    r.missed = missed;
-    if (s.options.continued != nullptr) {
-        const std::uint32_t now = s.options.continued->load(std::memory_order_relaxed);
-        r.continued = now - s.seen_continues;
-        s.seen_continues = now;
-    }
-    if (!missed) return;
-    r.cause = blame(r, limits);
-    r.own_miss = is_own_miss(r, limits);
+void hand_over(const FrameLoopOptions& o, const FrameRecord& record, SpscRing<FrameRecord>& records) {
+    while (o.wait_for_ring && records.full()) sched_yield();
+    records.try_push(record);
 }
+
+std::atomic<std::uint32_t> continue_count{0};
 
 }  // namespace
 
-FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, FrameStages& stages, SpscRing<FrameRecord>& records) {
+FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, FrameStages& stages,
+                               SpscRing<FrameRecord>& records) {
     const Grid grid{options.t0_ns != 0 ? options.t0_ns : clock.now_ns() + options.period_ns, options.period_ns};
-    LoopState s{options, clock, stages, ThreadClocks(options.rasterisers), ThreadClocks(options.rasterisers_on_core), {}, 0};
-    if (options.continued != nullptr) s.seen_continues = options.continued->load(std::memory_order_relaxed);
-    FrameLoopResult result;
-    NextSlot next{0, 0, false, 0, grid.due_ns(0)};
-    while (options.frames == 0 || result.run < options.frames) {
-        if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) break;
-        if (options.control != nullptr && next.slot >= options.control->slots()) break;
-        FrameRecord r;
-        r.slot = next.slot;
-        r.frame = result.run;
-        r.skipped_before = next.skipped;
-        r.due_ns = grid.due_ns(next.slot);
-        r.deadline_ns = grid.deadline_ns(next.slot);
-        r.ready_ns = next.start_ns;
-        clock.sleep_until_ns(next.start_ns);
-        r.woken_ns = clock.now_ns();
-        if (options.control != nullptr) r.block = options.control->block_of(next.slot);
-        const bool bare = options.control != nullptr && !ControlSchedule::is_walk(r.block);
-        bare ? run_bare_frame(s, r) : run_walk_frame(s, r);
-        next = next_slot(grid, options.late, r.slot, r.presented_ns);
-        judge_frame(s, r, next.missed);
-        if (!bare) {
-            const OwnScope own;
-            stages.account(r);
+    const OwnScope own;
+    FrameAccount account(options, clock);
+    BurnMeter burn;
+    LoopState s;
+    s.ready_ns = grid.t0_ns;
+    while (goes_on(options, s)) {
+        FrameRecord record = new_record(options, grid, s);
+        clock.sleep_until_ns(s.ready_ns);
+        if (record.control) {
+            bare_frame(clock, burn.mean_ns(), account, record);
+        } else {
+            walk_frame(clock, stages, account, record);
+            burn.add(account.core_cpu_ns());
         }
-        while (options.wait_for_ring && records.full()) std::this_thread::yield();
-        records.try_push(r);
-        ++result.run;
-        result.skipped += next.skipped;
-        result.elapsed = next.slot;
+        account.before_push(record);
+        hand_over(options, record, records);
+
+        const NextSlot next = next_slot(grid, options.late, s.slot, record.presented_ns);
+        s.slot = next.slot;
+        s.skipped_before = next.skipped;
+        s.ready_ns = next.start_ns;
+        ++s.result.run;
+        s.result.skipped += next.skipped;
+        s.result.elapsed = next.slot;
     }
-    // The slots that the last frame ran over are elapsed too: run + skipped = elapsed, exactly.
-    return result;
+    return s.result;
 }
 
 const std::atomic<std::uint32_t>* count_continues() {
     struct sigaction action {};
-    action.sa_handler = on_continue;
+    action.sa_handler = [](int) { continue_count.fetch_add(1, std::memory_order_relaxed); };
     action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
     sigaction(SIGCONT, &action, nullptr);
-    return &continues;
+    return &continue_count;
 }
 
 }  // namespace surefoot::rt

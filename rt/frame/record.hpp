@@ -29,9 +29,9 @@ constexpr std::array<std::string_view, cause_count> cause_names = {
 
 /// Times in integer nanoseconds of CLOCK_MONOTONIC (or of the virtual clock).
 struct FrameRecord {
-    std::uint64_t slot = 0;   ///< grid slot; skipped slots are the gaps
-    std::uint64_t frame = 0;  ///< frames run, from 0
-    std::int64_t due_ns = 0;  ///< t0 + slot * T
+    std::uint64_t slot = 0;     ///< grid slot; skipped slots are the gaps
+    std::uint64_t frame = 0;    ///< frames run, from 0
+    std::int64_t due_ns = 0;    ///< t0 + slot * T
     std::int64_t ready_ns = 0;  ///< earliest start: due_ns, or (late policy float, after a late frame) that frame's end
     std::int64_t woken_ns = 0;
     std::int64_t selected_ns = 0;    ///< sample, select and slice plan done

@@ -1,7 +1,8 @@
 // The monitor thread.
 #include "rt/monitor/recorder.hpp"
 
-#include "rt/clock/clock.hpp"
+#include <chrono>
+
 #include "rt/threads/placement.hpp"
 
 namespace surefoot::rt {
@@ -14,22 +15,23 @@ Recorder::Recorder(SpscRing<FrameRecord>& ring, RecorderOptions options) : ring_
 Recorder::~Recorder() { stop(); }
 
 void Recorder::stop() {
-    stopping_.store(true);
     if (!thread_.joinable()) return;
+    stopping_.store(true, std::memory_order_release);
     thread_.join();
-    drain();
     flight_.finish();
 }
 
 void Recorder::run() {
-    Placement named;
-    named.name = options_.thread_name;
-    (void)place_thread(0, named);
-    RealClock clock;
-    while (!stopping_.load(std::memory_order_relaxed)) {
-        drain();
-        clock.sleep_until_ns(clock.now_ns() + options_.poll_ns);
+    // Only the name: the thread's place is its creator's, who is neutral.
+    if (auto own = read_thread(0)) {
+        own->name = options_.thread_name;
+        (void)restore_thread(*own);
     }
+    while (!stopping_.load(std::memory_order_acquire)) {
+        drain();
+        std::this_thread::sleep_for(std::chrono::nanoseconds(options_.poll_ns));
+    }
+    drain();
 }
 
 void Recorder::drain() {

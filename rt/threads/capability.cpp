@@ -2,7 +2,6 @@
 #include "rt/threads/capability.hpp"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <thread>
 
 #include "rt/base/file.hpp"
+#include "rt/threads/memory.hpp"
 
 namespace surefoot::rt {
 
@@ -51,19 +51,6 @@ std::int64_t soft_limit(__rlimit_resource_t resource) {
     rlimit limit{};
     getrlimit(resource, &limit);
     return limit.rlim_cur == RLIM_INFINITY ? -1 : static_cast<std::int64_t>(limit.rlim_cur);
-}
-
-/// More than any limit without privilege would allow: refused at once where CAP_IPC_LOCK is missing, for address space alone
-/// is asked for and MCL_ONFAULT touches nothing.
-bool lock_unlimited() {
-    const std::int64_t limit = soft_limit(RLIMIT_MEMLOCK);
-    if (limit < 0) return true;
-    const std::size_t bytes = static_cast<std::size_t>(limit) + (1U << 20U);
-    void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (memory == MAP_FAILED) return false;
-    const bool locked = mlock2(memory, bytes, MLOCK_ONFAULT) == 0;
-    munmap(memory, bytes);
-    return locked;
 }
 
 std::string fifo_remedy(int wanted) {

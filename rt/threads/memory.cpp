@@ -66,8 +66,7 @@ Result<void> lock_all(std::uint64_t growth_bytes) {
         setrlimit(RLIMIT_MEMLOCK, &limit);
     }
     const std::uint64_t mapped = status_bytes("VmSize:");
-    const bool privileged = geteuid() == 0;
-    if (!privileged && limit.rlim_cur != RLIM_INFINITY && limit.rlim_cur < mapped + growth_bytes)
+    if (limit.rlim_cur < mapped + growth_bytes && !lock_unlimited())
         return Error{"memory",
                      fmt::format("cannot be locked: the limit is {} MiB, {} MiB are wanted", limit.rlim_cur >> 20U,
                                  (mapped + growth_bytes) >> 20U),
@@ -109,6 +108,20 @@ __attribute__((noinline)) void prefault_stack(std::size_t bytes) {
     auto* const stack = static_cast<volatile char*>(alloca(size));
     for (std::size_t at = 0; at < size; at += 1024) stack[at] = 1;
     stack[size - 1] = 1;
+}
+
+bool lock_unlimited() {
+    rlimit limit{};
+    getrlimit(RLIMIT_MEMLOCK, &limit);
+    if (limit.rlim_cur == RLIM_INFINITY) return true;
+    // More than the limit is refused at once without the capability: address space alone is asked for, and ONFAULT touches
+    // nothing.
+    const std::size_t bytes = limit.rlim_cur + (1U << 20U);
+    void* const memory = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED) return false;
+    const bool locked = mlock2(memory, bytes, MLOCK_ONFAULT) == 0;
+    munmap(memory, bytes);
+    return locked;
 }
 
 std::uint64_t locked_bytes() { return status_bytes("VmLck:"); }

@@ -24,6 +24,9 @@ void release_memory();
 /// Touches the calling thread's stack below here. At most half of the stack is touched.
 void prefault_stack(std::size_t bytes = 256U << 10U);
 
+/// Whether this thread may lock more than RLIMIT_MEMLOCK says (no limit, or CAP_IPC_LOCK); tried out, touching nothing.
+bool lock_unlimited();
+
 /// Bytes locked in this process (/proc/self/status VmLck); 0 when unknown.
 std::uint64_t locked_bytes();
 

@@ -30,8 +30,8 @@ constinit thread_local TrapCounters trap_state __attribute__((tls_model("initial
 constexpr std::array<long, 4> frame_calls = {SYS_clock_nanosleep, SYS_clock_gettime, SYS_getrusage, SYS_restart_syscall};
 
 // What the handler cannot carry out on the caller's behalf, for it would act on the handler's own frame or stack.
-constexpr std::array<long, 7> never_trapped = {SYS_rt_sigreturn, SYS_rt_sigprocmask, SYS_sigaltstack, SYS_exit,
-                                               SYS_exit_group,   SYS_clone,          SYS_clone3};
+constexpr std::array<long, 6> never_trapped = {SYS_rt_sigreturn, SYS_sigaltstack, SYS_exit,
+                                               SYS_exit_group,   SYS_clone,       SYS_clone3};
 
 struct CallName {
     long number;
@@ -72,6 +72,8 @@ constexpr std::array call_names = {
     CallName{SYS_getrandom, "getrandom"},
     CallName{SYS_membarrier, "membarrier"},
     CallName{SYS_rt_sigaction, "rt_sigaction"},
+    CallName{SYS_rt_sigprocmask, "rt_sigprocmask"},
+    CallName{SYS_getppid, "getppid"},
 };
 
 }  // namespace
@@ -103,7 +105,36 @@ surefoot_call_gate_passed:
 
 namespace {
 
-void on_trap(int /*signal*/, siginfo_t* info, void* context) {
+/// The signal mask that counts is the one restored when the handler returns. SIGSYS is left out of it: a trap while it is
+/// blocked would end the process, and the C library blocks all signals around the end of a thread.
+long change_mask(const std::array<long, 6>& arguments, ucontext_t& context) {
+    std::uint64_t mask = 0;
+    std::memcpy(&mask, &context.uc_sigmask, sizeof mask);
+    const std::uint64_t before = mask;
+    if (const auto* asked = reinterpret_cast<const void*>(arguments[1]); asked != nullptr) {
+        std::uint64_t set = 0;
+        std::memcpy(&set, asked, sizeof set);
+        switch (arguments[0]) {
+            case SIG_BLOCK:
+                mask |= set;
+                break;
+            case SIG_UNBLOCK:
+                mask &= ~set;
+                break;
+            case SIG_SETMASK:
+                mask = set;
+                break;
+            default:
+                return -EINVAL;
+        }
+    }
+    mask &= ~(1ULL << (SIGSYS - 1U));
+    std::memcpy(&context.uc_sigmask, &mask, sizeof mask);
+    if (auto* old = reinterpret_cast<void*>(arguments[2]); old != nullptr) std::memcpy(old, &before, sizeof before);
+    return 0;
+}
+
+void on_trap(int /*signal*/, siginfo_t* info, void* context_pointer) {
     TrapCounters& counters = trap_state;
     if (in_own_scope()) {
         ++counters.own;
@@ -112,10 +143,12 @@ void on_trap(int /*signal*/, siginfo_t* info, void* context) {
     } else {
         ++counters.other;
     }
-    auto& registers = static_cast<ucontext_t*>(context)->uc_mcontext.gregs;
+    auto& context = *static_cast<ucontext_t*>(context_pointer);
+    auto& registers = context.uc_mcontext.gregs;
     const std::array<long, 6> arguments = {registers[REG_RDI], registers[REG_RSI], registers[REG_RDX],
                                            registers[REG_R10], registers[REG_R8],  registers[REG_R9]};
-    registers[REG_RAX] = surefoot_call_gate(info->si_syscall, arguments.data());
+    registers[REG_RAX] = info->si_syscall == SYS_rt_sigprocmask ? change_mask(arguments, context)
+                                                                : surefoot_call_gate(info->si_syscall, arguments.data());
 }
 
 constexpr sock_filter load(std::size_t offset) { return BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset)); }

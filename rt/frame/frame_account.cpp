@@ -1,0 +1,90 @@
+// What a frame's clocks and counters say about it.
+#include "rt/frame/frame_account.hpp"
+
+#include <algorithm>
+
+namespace surefoot::rt {
+
+namespace {
+
+std::uint32_t small(std::uint64_t count) { return static_cast<std::uint32_t>(std::min<std::uint64_t>(count, UINT32_MAX)); }
+
+}  // namespace
+
+FrameAccount::FrameAccount(const FrameLoopOptions& options, Clock& clock)
+    : options_(options),
+      clock_(clock),
+      limits_(options.limits),
+      rasterisers_(options.rasterisers),
+      on_core_(options.rasterisers_on_core) {
+    limits_.period_ns = options.period_ns;
+    before_ = clock_.usage();
+    guard_before_ = guard_counters();
+    continued_before_ = continues();
+}
+
+std::uint32_t FrameAccount::continues() const {
+    return options_.continued != nullptr ? options_.continued->load(std::memory_order_relaxed) : 0;
+}
+
+void FrameAccount::begin(FrameRecord& record) {
+    record.woken_ns = clock_.now_ns();
+    rasterisers_.start();
+    on_core_.start();
+    begun_ns_ = clock_.now_ns();
+    begun_ = clock_.usage();
+}
+
+void FrameAccount::own_done(FrameRecord& record) {
+    record.selected_ns = clock_.now_ns();
+    selected_ = clock_.usage();
+}
+
+void FrameAccount::driver_done(FrameRecord& record) {
+    record.presented_ns = clock_.now_ns();
+    ended_ = clock_.usage();
+    if (record.submitted_ns == 0) record.submitted_ns = record.presented_ns;
+    if (record.rastered_ns == 0) record.rastered_ns = record.presented_ns;
+}
+
+void FrameAccount::close(FrameRecord& record) {
+    const ThreadUsage own = selected_ - begun_, driver = ended_ - selected_, frame = ended_ - begun_;
+    const ThreadClocks::Spent raster = rasterisers_.spent();
+    record.cpu_ns = frame.cpu_ns;
+    record.raster_cpu_ns = raster.sum_ns;
+    core_cpu_ns_ = frame.cpu_ns + on_core_.spent().sum_ns;
+    record.voluntary = small(frame.voluntary);
+    record.involuntary = small(frame.involuntary);
+
+    // Own code never waits: all of its gap was lost. The driver's phases wait for the rasterisers: beyond that, lost too.
+    const std::int64_t own_gap = std::max<std::int64_t>(record.selected_ns - begun_ns_ - own.cpu_ns, 0);
+    const std::int64_t wait = std::max<std::int64_t>(record.presented_ns - record.selected_ns - driver.cpu_ns, 0);
+    record.waited_ns = estimate_.known_ns(wait, raster, driver.voluntary > 0);
+    estimate_.update(wait, raster);
+    const std::int64_t gap = own_gap + wait - record.waited_ns;
+    (frame.involuntary > 0 ? record.preempted_ns : record.stolen_ns) = gap;
+
+    // Outside the driver's phases everything is own code, the time between frames included.
+    const ThreadUsage between = begun_ - before_;
+    record.minor_faults = small(between.minor_faults + own.minor_faults);
+    record.major_faults = small(between.major_faults + own.major_faults);
+    record.driver_faults = small(driver.minor_faults + driver.major_faults);
+    before_ = ended_;
+
+    const std::uint32_t continued = continues();
+    record.continued = continued - continued_before_;
+    continued_before_ = continued;
+
+    record.missed = record.presented_ns > record.deadline_ns;
+    record.own_miss = is_own_miss(record, limits_);
+    record.cause = blame(record, limits_);
+}
+
+void FrameAccount::before_push(FrameRecord& record) {
+    const GuardCounters now = guard_counters();
+    record.guard_violations = small(now.own_violations - guard_before_.own_violations);
+    record.driver_allocations = small(now.driver_allocations - guard_before_.driver_allocations);
+    guard_before_ = now;
+}
+
+}  // namespace surefoot::rt
