@@ -17,10 +17,6 @@ Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted) 
     if (!plan.all.has(plan.frame_core)) {
         return Error{fmt::format("frame core {}", plan.frame_core), "this process may not use it", "choose one of " + plan.all.text()};
     }
-    for (const int cpu : cpus) {
-        if (cpu != plan.frame_core) plan.raster_cores.push_back(cpu);
-    }
-    plan.raster_cores.push_back(plan.frame_core);
     plan.fifo = request.fifo && fifo_granted;
     plan.frame_priority = request.frame_priority;
     plan.raster_priority = request.raster_priority;
@@ -38,7 +34,8 @@ Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan) {
         rt::Placement placement;
         placement.policy = plan.fifo ? rt::Policy::fifo : rt::Policy::other;
         placement.priority = plan.fifo ? plan.raster_priority : 0;
-        auto placed = rt::spread_by_prefix(prefix, placement, plan.raster_cores);
+        placement.cpus = plan.all;
+        auto placed = rt::place_by_prefix(prefix, placement);
         if (!placed) return placed.error();
         tids.insert(tids.end(), placed->begin(), placed->end());
     }
@@ -47,10 +44,9 @@ Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan) {
 }
 
 std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_t>& rasterisers) {
+    // They move: on average one core's part of their work is done on the frame core, and that is what one of them does.
     std::vector<pid_t> sharing;
-    for (std::size_t i = 0; i < rasterisers.size(); ++i) {
-        if (plan.raster_cores[i % plan.raster_cores.size()] == plan.frame_core) sharing.push_back(rasterisers[i]);
-    }
+    if (!rasterisers.empty() && plan.all.count() <= static_cast<int>(rasterisers.size())) sharing.push_back(rasterisers.back());
     return sharing;
 }
 
@@ -87,7 +83,7 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
         table.push_back({.name = "sf-prepare", .policy = real_time, .priority = priority(plan.worker_priority), .cpus = plan.all, .min_count = 1, .max_count = 256});
     }
     for (const std::string& prefix : plan.driver_prefixes) {
-        table.push_back({.name = prefix, .policy = real_time, .priority = priority(plan.raster_priority), .cpus = {}, .min_count = 0, .max_count = 64});
+        table.push_back({.name = prefix, .policy = real_time, .priority = priority(plan.raster_priority), .cpus = plan.all, .min_count = 0, .max_count = 64});
     }
     return table;
 }

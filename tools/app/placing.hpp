@@ -15,19 +15,19 @@ namespace surefoot::app {
 struct PlacingPlan {
     bool fifo = false;               ///< asked for and granted
     int frame_core = 0;
-    std::vector<int> raster_cores;   ///< one rasteriser each, the frame core last
     rt::CpuMask all;
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
     std::vector<std::string> driver_prefixes;  ///< the driver's rasterisers
     int rasterisers = 0;             ///< how many were found
 };
 
-/// The frame thread gets the last allowed core unless the request names one; rasterisers start on the others.
+/// The frame thread gets the last allowed core unless the request names one.
 Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted);
 
-/// Places the driver's rasterisers one a core; returns their thread ids. Call when the context exists.
+/// Places the driver's rasterisers below the frame thread, on all cores: pinned one a core, the one on the frame core would
+/// keep each scene's barrier waiting until the frame thread sleeps (measured: ARCHITECTURE). Call when the context exists.
 Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan);
-/// The ids among `rasterisers` that share the frame core.
+/// Rasterisers whose CPU time counts as the frame core's, for the control.
 std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_t>& rasterisers);
 /// Workers (threads named sf-prepare*): below the rasterisers, on every core.
 Result<void> place_workers(const PlacingPlan& plan);

@@ -29,8 +29,8 @@ namespace surefoot::app {
 
 namespace {
 
-constexpr double budget_share = 0.85;  // of the period, where none is asked for
-constexpr double limit_share = 0.92;   // of the period: when the in-frame check wants the frame done
+constexpr double budget_share = 0.80;  // of the period, where none is asked for
+constexpr double limit_share = 0.88;   // of the period: when the in-frame check wants the frame done
 
 /// Everything that one walk holds, in the order in which it must be made and (backwards) taken down.
 struct Session {

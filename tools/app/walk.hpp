@@ -24,7 +24,7 @@ struct WalkRequest {
     std::uint32_t width = 1280, height = 720;
     std::uint64_t frames = 0;     ///< 0: as `seconds`, else as the path is long
     double seconds = 0;
-    double budget_ms = 0;         ///< 0: 0.85 of the frame
+    double budget_ms = 0;         ///< 0: 0.80 of the frame
     double accuracy = 0;          ///< rad^-1; 0: as accurate as the budget allows
     double cost_scale = 1;        ///< what costs really are over what is predicted (virtual clock)
     double cost_noise = 0;        ///< relative, seeded (virtual clock)
