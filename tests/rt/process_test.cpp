@@ -1,0 +1,186 @@
+// Proofs that need a process of their own: oneTBB's order of creation, a stopped process, the loop under the system-call trap.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <thread>
+
+#include "rt/clock/clock.hpp"
+#include "rt/frame/loop.hpp"
+#include "rt/threads/capability.hpp"
+#include "rt/threads/census.hpp"
+#include "rt/threads/guard.hpp"
+#include "rt/threads/placement.hpp"
+#include "rt/threads/syscall_trap.hpp"
+
+namespace surefoot::rt {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr int passed = 0, failed = 1;
+
+void doze() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+
+/// Runs `body` in a forked child; its exit code.
+int in_child(const std::function<int()>& body, const std::function<void(pid_t)>& meanwhile = {}) {
+    std::fflush(nullptr);
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(body());
+    if (meanwhile) meanwhile(child);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// Makes oneTBB start its workers: three tasks that all wait until two threads have met (or a second has passed).
+void start_workers(std::vector<pid_t>& workers) {
+    std::atomic<pid_t> tids[3] = {};
+    tbb::task_arena arena(3);
+    arena.execute([&] {
+        tbb::parallel_for(
+            0, 3,
+            [&](int i) {
+                tids[i] = own_tid();
+                for (int n = 0; n < 1000 && (tids[0] == 0 || tids[1] == 0 || tids[2] == 0); ++n) doze();
+            },
+            tbb::simple_partitioner{});
+    });
+    for (const auto& tid : tids) {
+        if (tid != own_tid()) workers.push_back(tid);
+    }
+}
+
+/// A frame thread and oneTBB's workers, made in one order or the other; what the census says.
+std::vector<std::string> census_with_workers(bool naive) {
+    const tbb::global_control three(tbb::global_control::max_allowed_parallelism, 3);
+    const int core = allowed_cpus().cpus().back();
+    const std::string program = read_thread(0).value().name;
+    std::vector<pid_t> workers;
+    std::vector<std::string> problems;
+    if (!naive) start_workers(workers);
+    std::thread([&] {
+        // As a program would that does not know: without the flag that resets what children inherit.
+        (void)place_thread(
+            0, {.policy = Policy::fifo, .priority = 40, .cpus = CpuMask{core}, .name = "sf-frame", .reset_on_fork = false});
+        if (naive) start_workers(workers);
+        const std::vector<DeclaredThread> table = {
+            {.name = program, .policy = Policy::other, .priority = 0, .cpus = allowed_cpus(), .min_count = 1, .max_count = 8},
+            {.name = "sf-frame", .whole_name = true, .policy = Policy::fifo, .priority = 40, .cpus = CpuMask{core}}};
+        problems = census_now(table);
+    }).join();
+    if (workers.empty()) problems.emplace_back("oneTBB started no worker");
+    return problems;
+}
+
+TEST(CensusWithTbb, TheNaiveOrderFailsAndTheNeutralOnePasses) {
+    if (probe_capabilities(40).fifo_priority < 40)
+        GTEST_SKIP() << "SCHED_FIFO is refused here: run as root or with RLIMIT_RTPRIO";
+    if (!guard_active()) GTEST_SKIP() << "sanitizers do not follow a fork into threads";
+    EXPECT_EQ(in_child([] {
+                  const auto problems = census_with_workers(false);
+                  for (const std::string& p : problems) std::fprintf(stderr, "neutral: %s\n", p.c_str());
+                  return problems.empty() ? passed : failed;
+              }),
+              passed);
+    EXPECT_EQ(in_child([] {
+                  // The workers carry the frame thread's name and priority.
+                  for (const std::string& p : census_with_workers(true)) {
+                      if (p.find("'sf-frame'") != std::string::npos) return passed;
+                  }
+                  return failed;
+              }),
+              passed);
+}
+
+/// Stages that do next to nothing, in own code that is clean.
+class Idle : public FrameStages {
+public:
+    void sample(FrameRecord& r) override { r.prepared_age = 1; }
+    void select(FrameRecord&) override {}
+    void submit(FrameRecord&) override {}
+    void finish(FrameRecord&) override {}
+    void account(FrameRecord&) override {}
+};
+
+TEST(Stopped, AProcessStoppedForThreeTenthsOfASecondCountsItsSlotsAndNamesTheCause) {
+    if (!guard_active()) GTEST_SKIP() << "sanitizers make a forked child's signals unreliable";
+    const auto body = [] {
+        RealClock clock;
+        Idle stages;
+        SpscRing<FrameRecord> ring(128);
+        FrameLoopOptions options;
+        options.frames = 30;
+        options.continued = count_continues();
+        const FrameLoopResult result = run_frame_loop(options, clock, stages, ring);
+        std::uint64_t slot = 0, stopped = 0;
+        FrameRecord r;
+        while (ring.try_pop(r)) {
+            if (r.woken_ns < r.due_ns || (r.frame > 0 && r.slot != slot + 1 + r.skipped_before)) return failed;
+            slot = r.slot;
+            if (r.cause == Cause::stopped && !r.own_miss) ++stopped;
+        }
+        // 300 ms are 18 periods: at least 17 whole ones lie within, one of them the stopped frame's own.
+        return result.run + result.skipped == result.elapsed && result.skipped >= 16 && stopped == 1 ? passed : failed;
+    };
+    EXPECT_EQ(in_child(body,
+                       [](pid_t child) {
+                           std::this_thread::sleep_for(std::chrono::milliseconds(150));
+                           ::kill(child, SIGSTOP);
+                           std::this_thread::sleep_for(std::chrono::milliseconds(300));
+                           ::kill(child, SIGCONT);
+                       }),
+              passed);
+}
+
+/// Idle, but one frame makes a system call in own code and another in the driver's tier.
+class Calling final : public Idle {
+public:
+    void select(FrameRecord& r) override {
+        if (r.frame == forbidden_at) (void)::getppid();
+    }
+    void finish(FrameRecord& r) override {
+        if (r.frame == 5) (void)::getppid();
+    }
+    std::uint64_t forbidden_at = 1000;
+};
+
+TEST(SystemCallTrap, TheLoopItselfMakesNoCallBeyondItsList) {
+    for (const bool forbidden : {false, true}) {
+        TrapCounters before, after;
+        bool refused = false;
+        std::thread([&] {
+            RealClock clock;
+            Calling stages;
+            if (forbidden) stages.forbidden_at = 7;
+            SpscRing<FrameRecord> ring(64);
+            FrameLoopOptions options;
+            options.period_ns = 2 * ms;
+            options.frames = 20;
+            options.continued = count_continues();
+            const pid_t self[] = {own_tid()};
+            options.rasterisers = self;
+            refused = !trap_system_calls(frame_thread_system_calls()).ok();
+            if (refused) return;
+            before = trap_counters();
+            run_frame_loop(options, clock, stages, ring);
+            after = trap_counters();
+        }).join();
+        if (refused) GTEST_SKIP() << "seccomp filters are refused here, or this is a sanitizer build";
+        EXPECT_EQ(after.own - before.own, forbidden ? 1U : 0U) << system_call_name(after.last_own);
+        EXPECT_EQ(after.other - before.other, 1U);
+        if (forbidden) {
+            EXPECT_EQ(system_call_name(after.last_own), "getppid");
+        }
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::rt
