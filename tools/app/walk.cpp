@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <thread>
 
@@ -231,7 +232,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
         const double ran = s.virtual_clock ? 0.5 : static_cast<double>(real.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
         progress.say("walk", std::clamp(ran / static_cast<double>(s.frames), 0.0, 1.0));
         if (!counted && ran > 30) {
-            s.facts.census_problems = rt::census_now(thread_table(s.plan, true, "surefoot"));
+            s.facts.census_problems = rt::census_now(thread_table(s.plan, true, program_invocation_short_name));
             counted = true;
         }
     }
