@@ -265,7 +265,7 @@ void Bakery::emit_object(model::Index index, std::uint32_t which, const std::vec
     const Level& coarsest = form.chain.levels.front();
     const BoxForm& box = object_boxes[which];
     const std::uint32_t faces = faces_of(box);
-    const double coarsest_error_m = coarsest.error_m * largest_stretch(dmat3(object.world));
+    const auto coarsest_error_m = static_cast<float>(coarsest.error_m * largest_stretch(dmat3(object.world)));
     // A box carries its colours in vertices or a picture: in a scene that calls for neither it would be the only one to.
     if (proxy_or_none != model::none && faces > 0 && 2 * faces < coarsest.triangles && box.error_m > coarsest_error_m) emit_box(box, proxy, model);
     emit_representations(chains[object.mesh], object.world, model);
@@ -319,6 +319,11 @@ void Bakery::emit() {
         parent.box.grow(node.box);
     }
     tbb::parallel_for(std::size_t{0}, model.reps.size(), [&](std::size_t r) { model.reps[r].area_m2 = model::rasterised_area(model, model.reps[r]); });
+    std::vector<bool> used(model.materials.size(), false);
+    for (const model::Part& part : model.parts) used[part.material] = true;
+    for (std::size_t m = 0; m < used.size(); ++m) {  // what nothing is drawn with calls for nothing
+        if (!used[m]) model.materials[m].effects = 0;
+    }
     model.effects = find_effects(model, material_triangles);
 }
 

@@ -38,9 +38,13 @@ void emit_representations(const EmittedChain& emitted, const dmat4& world, model
     const auto index = static_cast<model::Index>(model.placements.size());
     model.placements.push_back(placement);
     const double stretch = largest_stretch(linear);
+    bool first = true;
     for (const EmittedChain::Level& level : emitted.levels) {
         model::Representation rep;
         rep.error_m = static_cast<float>(level.error_m * stretch);
+        // Rounding may make two errors one: then the finer of the two buys nothing.
+        if (!first && rep.error_m >= model.reps.back().error_m) continue;
+        first = false;
         rep.placement = index;
         rep.first_part = level.first_part;
         rep.part_count = level.part_count;

@@ -156,7 +156,7 @@ struct Reference {
 
     Reference(const Geometry& g, float slack) : surface(g.vertices, g.parts), tree(surface.view()) {
         limits.relative = slack;
-        limits.absolute = 0.002F * tree.diagonal();
+        limits.absolute = 0.0005F * tree.diagonal();  // half a pixel where it fills a screen of 1000
     }
     /// Upper bound of the two-sided distance.
     [[nodiscard]] float bound(const Geometry& g, const Level& level) const {

@@ -9,19 +9,20 @@
 namespace surefoot::bake {
 
 double largest_stretch(const dmat3& linear) {
-    // Power iteration on the symmetric product; its largest eigenvalue is also at most the trace, which bounds a failure.
+    // Largest eigenvalue of the symmetric product, by its characteristic cubic's cosine form: a rigid placement gives 1, not
+    // nearly 1, so that errors of shared forms stay in order.
     const dmat3 s = glm::transpose(linear) * linear;
-    dvec3 v(0.61, 0.53, 0.59);
-    double eigen = 0;
-    for (int i = 0; i < 64; ++i) {
-        const dvec3 w = s * v;
-        const double length = glm::length(w);
-        if (!(length > 0)) break;
-        eigen = length / glm::length(v);
-        v = w / length;
+    const double mean = (s[0][0] + s[1][1] + s[2][2]) / 3.0;
+    const dmat3 off = s - dmat3(mean);
+    double squares = 0;
+    for (int i = 0; i < 3; ++i) squares += glm::dot(off[i], off[i]);
+    const double spread = std::sqrt(squares / 6.0);
+    double eigen = mean;
+    if (spread > 0) {
+        const double r = std::clamp(0.5 * glm::determinant(off / spread), -1.0, 1.0);
+        eigen += 2.0 * spread * std::cos(std::acos(r) / 3.0);
     }
-    const double trace = s[0][0] + s[1][1] + s[2][2];
-    return std::min(std::sqrt(trace), std::sqrt(eigen) * 1.001);
+    return std::sqrt(std::max(eigen, 0.0)) * (1.0 + 1e-9);
 }
 
 Geometry mesh_geometry(const importer::Mesh& mesh, const model::Model& model) {
@@ -93,8 +94,8 @@ void cut_range(const Geometry& whole, std::span<Loose> triangles, const CutLimit
         for (const std::uint32_t c : t.corner) box.grow(dvec3(position_of(whole.vertices[c])));
     }
     const dvec3 size = box.max - box.min;
-    const bool small = triangles.size() <= limits.most_triangles && std::max({size.x, size.y, size.z}) <= limits.longest_m;
-    if (small || triangles.size() <= 32) {
+    const bool compact = std::max({size.x, size.y, size.z}) <= limits.longest_m || triangles.size() < 2 * limits.least_triangles;
+    if (triangles.size() <= std::max(limits.most_triangles, 32U) && compact) {
         out.push_back(gather(whole, triangles));
         return;
     }
@@ -145,7 +146,7 @@ std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, con
     const double longest = std::max({size.x, size.y, size.z});
     const std::size_t triangles = geometry.triangles();
     std::vector<MeshForm> forms;
-    if (triangles <= limits.most_triangles && (longest <= limits.longest_m || triangles <= 64)) {
+    if (triangles <= limits.most_triangles && (longest <= limits.longest_m || triangles < 2 * limits.least_triangles)) {
         forms.push_back(make_form(std::move(geometry), options));
         return forms;
     }

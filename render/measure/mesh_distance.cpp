@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "render/measure/cover.hpp"
 #include "rt/base/random.hpp"
 
 namespace surefoot::measure {
@@ -12,6 +13,7 @@ namespace surefoot::measure {
 namespace {
 
 constexpr std::uint32_t no_triangle = 0xffffffffU;
+constexpr std::size_t most_covering = 80;  ///< more triangles than this near a piece: cut it first
 
 /// A corner of a (part of a) triangle, with the nearest triangle of the other mesh once that was asked for.
 struct Corner {
@@ -23,6 +25,8 @@ struct Corner {
 struct Piece {
     std::array<Corner, 3> corners;
     float upper = 0;
+    std::uint32_t witness = no_triangle;  ///< the triangle of the other mesh that upper is owed to, where it is one
+    bool covered = false;                 ///< covering was tried
 };
 
 /// Worst piece first; ties by number, which is the order of making.
@@ -36,6 +40,7 @@ class BranchAndBound {
 public:
     BranchAndBound(const MeshView& from, const TriangleTree& to, const DistanceLimits& limits, std::span<const float> initial)
         : from_(from), to_(to), limits_(limits), lower_(limits.known_lower), hits_(from.positions.size()) {
+        margin_ = 1e-6 * to.diagonal();
         queries_left_ = limits.max_queries != 0 ? limits.max_queries : 20000 + from.triangles() / 4;
         if (initial.empty()) {
             ask_all_corners();
@@ -53,6 +58,8 @@ public:
             queue_.pop_back();
             if (worst.piece < unknown_) {
                 look_at(worst);
+            } else if (!pieces_[worst.piece - unknown_].covered) {
+                cover(worst);
             } else {
                 cut(worst.piece);
             }
@@ -96,27 +103,36 @@ private:
         for (const std::uint32_t vertex : from_.indices) ask(vertex);
         for (std::uint32_t t = 0; t < from_.triangles(); ++t) {
             Piece piece = triangle(t);
-            piece.upper = bound(piece, std::numeric_limits<float>::infinity());
+            piece.upper = std::numeric_limits<float>::infinity();
+            bound(piece);
             keep(piece, false);
         }
     }
 
-    /// Over the piece, no point is farther than this: the best of its corners' nearest triangles taken for all corners, and of
-    /// a corner's distance plus the way from it.
-    float bound(const Piece& piece, float at_most) const {
-        float best = at_most;
+    /// Lowers the piece's bound: no point of it is farther from `triangle` than its farthest corner.
+    void try_witness(Piece& piece, std::uint32_t triangle) const {
+        if (triangle == no_triangle) return;
+        float worst = 0;
+        for (const Corner& corner : piece.corners) {
+            const float at_least =
+                corner.hit.triangle == triangle ? corner.hit.distance : to_.distance_to(triangle, corner.position);
+            worst = std::max(worst, at_least);
+            if (worst >= piece.upper) return;
+        }
+        piece.upper = worst;
+        piece.witness = triangle;
+    }
+
+    /// Also by the corners: a corner's distance, and the way from there.
+    void bound(Piece& piece) const {
         const auto& c = piece.corners;
+        try_witness(piece, piece.witness);
         for (std::size_t i = 0; i < 3; ++i) {
             const float way = std::max(glm::length(c[i].position - c[(i + 1) % 3].position),
                                        glm::length(c[i].position - c[(i + 2) % 3].position));
-            best = std::min(best, c[i].hit.distance + way);
-            if (i > 0 && c[i].hit.triangle == c[i - 1].hit.triangle) continue;
-            float worst = c[i].hit.distance;
-            for (std::size_t k = 1; k < 3; ++k)
-                worst = std::max(worst, to_.distance_to(c[i].hit.triangle, c[(i + k) % 3].position));
-            best = std::min(best, worst);
+            piece.upper = std::min(piece.upper, c[i].hit.distance + way);
+            if (i == 0 || c[i].hit.triangle != c[i - 1].hit.triangle) try_witness(piece, c[i].hit.triangle);
         }
-        return best;
     }
 
     void keep(const Piece& piece, bool heap) {
@@ -131,8 +147,44 @@ private:
 
     void look_at(const Entry& entry) {
         Piece piece = triangle(entry.piece);
-        piece.upper = bound(piece, entry.upper);
+        piece.upper = entry.upper;
+        bound(piece);
         keep(piece, true);
+    }
+
+    // Several triangles together: settles the piece, or finds a point of it that none of them is near.
+    void cover(const Entry& entry) {
+        Piece& piece = pieces_[entry.piece - unknown_];
+        piece.covered = true;
+        const auto& c = piece.corners;
+        const double within = enough();
+        const vec3 reach(static_cast<float>(within));
+        const vec3 low = glm::min(glm::min(c[0].position, c[1].position), c[2].position) - reach;
+        const vec3 high = glm::max(glm::max(c[0].position, c[1].position), c[2].position) + reach;
+        std::size_t near = 0;
+        to_.each_in(low, high, [&](const vec3&, const vec3&, const vec3&) { return ++near <= most_covering; });
+        if (near > most_covering) {
+            cut(entry.piece);
+            return;
+        }
+        Cover cover(c[0].position, c[1].position, c[2].position, margin_);
+        to_.each_in(low, high, [&](const vec3& p, const vec3& q, const vec3& r) {
+            return cover.subtract(p, q, r, within) && !cover.done();
+        });
+        queries_left_ -= queries_left_ > 0 ? 1 : 0;
+        if (cover.done()) {
+            settled_ = std::max(settled_, static_cast<float>(cover.reach() + margin_));
+            return;
+        }
+        const TriangleTree::Hit hit = to_.nearest(cover.uncovered(), piece.witness);
+        found(hit.distance);
+        try_witness(piece, hit.triangle);
+        if (piece.upper <= enough()) {
+            settled_ = std::max(settled_, piece.upper);
+            return;
+        }
+        queue_.push_back({piece.upper, entry.piece});
+        std::push_heap(queue_.begin(), queue_.end());
     }
 
     void cut(std::uint32_t number) {
@@ -150,10 +202,10 @@ private:
         Corner middle{0.5F * (a.position + b.position), {}};
         middle.hit = to_.nearest(middle.position, a.hit.triangle);
         found(middle.hit.distance);
-        --queries_left_;
+        queries_left_ -= queries_left_ > 0 ? 1 : 0;
         for (const auto& corners : {std::array{a, middle, c}, std::array{middle, b, c}}) {
-            Piece half{corners, 0};
-            half.upper = bound(half, piece.upper);
+            Piece half{corners, piece.upper, piece.witness};
+            bound(half);
             keep(half, true);
         }
     }
@@ -164,6 +216,7 @@ private:
     float lower_;        ///< known_lower included
     float reached_ = 0;  ///< by a point of this mesh
     float settled_ = 0;  ///< largest bound of what was ruled out
+    double margin_ = 0;  ///< slivers narrower than this are not looked at; added to what they bound
     std::size_t queries_left_ = 0;
     std::size_t unknown_ = 0;  ///< queue numbers below it are triangles not looked at yet
     std::uint32_t last_hit_ = no_triangle;

@@ -3,7 +3,8 @@
 // A simplifier's own error is no bound (DESIGN 5), so bake asks here. The directed distance of A to B is the largest distance
 // of a point of A to the surface B; the two-sided one is the larger of both directions (Hausdorff).
 // Method: branch and bound over the triangles of A. The distance to one triangle of B is convex, so over a triangle of A it is
-// largest at a corner; a triangle whose bound is too loose is cut at its longest edge.
+// largest at a corner. Where no single triangle of B is near all of a triangle of A, several may cover it (cover.hpp); else it is
+// cut at its longest edge.
 #pragma once
 
 #include <cstdint>
@@ -36,6 +37,11 @@ public:
     /// Never below the true distance but for rounding: it is the distance to a point of the triangle.
     [[nodiscard]] float distance_to(std::uint32_t triangle, const vec3& p) const;
     [[nodiscard]] float diagonal() const { return diagonal_; }
+    /// Calls visit(a, b, c) for every triangle whose leaf's box reaches into [low, high], until it says false.
+    template <class Visit>
+    void each_in(const vec3& low, const vec3& high, const Visit& visit) const {
+        each_from(0, low, high, visit);
+    }
 
 private:
     struct Node {
@@ -46,6 +52,16 @@ private:
     struct Corners {
         vec3 a, b, c;
     };
+    template <class Visit>
+    bool each_from(std::uint32_t index, const vec3& low, const vec3& high, const Visit& visit) const {
+        const Node& node = nodes_[index];
+        if (glm::any(glm::greaterThan(node.min, high)) || glm::any(glm::lessThan(node.max, low))) return true;
+        if (node.count == 0) return each_from(index + 1, low, high, visit) && each_from(node.first, low, high, visit);
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            if (!visit(corners_[i].a, corners_[i].b, corners_[i].c)) return false;
+        }
+        return true;
+    }
     std::uint32_t build(std::span<std::uint32_t> order, const std::vector<Corners>& source, const std::vector<vec3>& centres);
     std::vector<Node> nodes_;
     std::vector<Corners> corners_;
