@@ -130,7 +130,7 @@ TEST(Placement, AnotherThreadIsPlacedNamedAndPutBack) {
     EXPECT_EQ(after.cpus, before.cpus);
     stop = true;
     other.join();
-    EXPECT_FALSE(place_thread(tid, {}).ok()) << "it has ended";
+    EXPECT_FALSE(place_thread(1 << 22, {}).ok()) << "there is no such thread";
 }
 
 TEST(Placement, WhatDoesNotExistIsRefusedByName) {
