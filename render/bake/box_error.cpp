@@ -67,6 +67,7 @@ float box_error(const BoxForm& form, const Geometry& shown, const vec3& half, fl
     for (const GeometryPart& part : shown.parts) indices.insert(indices.end(), part.indices.begin(), part.indices.end());
     measure::DistanceLimits limits;
     limits.relative = slack;
+    limits.max_queries = 2000;
     limits.known_lower = form.textured ? depth : 0.0F;  // what is below the parallax does not matter
     const measure::DistanceBounds bounds =
         measure::two_sided_distance({positions, indices}, {box.positions, box.indices}, limits);

@@ -49,6 +49,7 @@ float bound(const Positions& source, const measure::TriangleTree& source_tree, c
     const Positions coarse(mesh.vertices, mesh.parts);
     measure::DistanceLimits limits;
     limits.relative = slack;
+    limits.max_queries = 1000 + source.indices.size() / 24;  // the grid's own bounds are near the truth already
     const measure::DistanceBounds there =
         measure::directed_distance(source.view(), measure::TriangleTree(coarse.view()), limits, mesh.source_bound);
     limits.known_lower = there.lower;

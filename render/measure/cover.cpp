@@ -46,6 +46,14 @@ double area2(const Slab& slab) {
 
 }  // namespace
 
+void Cover::Polygon::measure() {
+    low = high = points[0];
+    for (std::size_t i = 1; i < count; ++i) {
+        low = glm::min(low, points[i]);
+        high = glm::max(high, points[i]);
+    }
+}
+
 Cover::Cover(const vec3& a, const vec3& b, const vec3& c, double margin) : origin_(a), margin_(margin) {
     const dvec3 ab = dvec3(b) - dvec3(a), ac = dvec3(c) - dvec3(a);
     u_ = ab / std::max(glm::length(ab), 1e-300);
@@ -57,6 +65,7 @@ Cover::Cover(const vec3& a, const vec3& b, const vec3& c, double margin) : origi
     whole.points[1] = {glm::dot(ab, u_), 0};
     whole.points[2] = {glm::dot(ac, u_), glm::dot(ac, v_)};
     whole.count = 3;
+    whole.measure();
     left_.push_back(whole);
 }
 
@@ -82,6 +91,7 @@ void Cover::split(Polygon& inside, const dvec2& from, const dvec2& to, std::vect
         }
     }
     if (!any_in) std::swap(out, inside);
+    out.measure();
     outside.push_back(out);
     inside = in;
 }
@@ -98,10 +108,19 @@ bool Cover::subtract(const vec3& a, const vec3& b, const vec3& c, double within)
     if (std::abs(area) <= margin_ * margin_) return true;
     if (area < 0) std::reverse(slab.points.begin(), slab.points.begin() + static_cast<std::ptrdiff_t>(slab.count));
     double highest = 0;
-    for (std::size_t i = 0; i < slab.count; ++i) highest = std::max(highest, std::abs(slab.points[i].z));
+    dvec2 low(slab.points[0]), high(slab.points[0]);
+    for (std::size_t i = 0; i < slab.count; ++i) {
+        highest = std::max(highest, std::abs(slab.points[i].z));
+        low = glm::min(low, dvec2(slab.points[i]));
+        high = glm::max(high, dvec2(slab.points[i]));
+    }
     next_.clear();
     bool hit = false;
     for (const Polygon& polygon : left_) {
+        if (glm::any(glm::lessThan(polygon.high, low)) || glm::any(glm::greaterThan(polygon.low, high))) {
+            next_.push_back(polygon);
+            continue;
+        }
         Polygon inside = polygon;
         parts_.clear();
         for (std::size_t i = 0; i < slab.count && inside.count > 0; ++i) {

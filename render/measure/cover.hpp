@@ -28,6 +28,8 @@ private:
     struct Polygon {
         std::array<dvec2, 16> points;
         std::size_t count = 0;
+        dvec2 low{0}, high{0};  ///< of its points
+        void measure();
     };
     /// Splits `inside` at the line; what is to its right is added to `outside`.
     void split(Polygon& inside, const dvec2& from, const dvec2& to, std::vector<Polygon>& outside) const;

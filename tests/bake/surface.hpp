@@ -27,8 +27,8 @@ inline vec3 placed(const model::Model& m, const model::Representation& rep, cons
 }
 
 /// Opaque texels of a picture's triangle pair become squares of their own: what is seen, not what it is painted on.
-inline void add_picture(const model::Model& m, const model::Representation& rep, const model::Part& part, std::size_t face, const dvec3& centre,
-                        Surface& out) {
+inline void add_picture(const model::Model& m, const model::Representation& rep, const model::Part& part, std::size_t face,
+                        const dvec3& centre, Surface& out) {
     const model::Material& material = m.materials[part.material];
     const model::Texture& t = m.textures[material.texture];
     const std::uint32_t* index = &m.indices[part.first_index + 6 * face];
@@ -44,7 +44,8 @@ inline void add_picture(const model::Model& m, const model::Representation& rep,
             const float v = b.uv[1] + s * (a.uv[1] - b.uv[1]) + r * (c.uv[1] - b.uv[1]);
             const auto x = std::min(t.width - 1, static_cast<std::uint32_t>(u * static_cast<float>(t.width)));
             const auto y = std::min(t.height - 1, static_cast<std::uint32_t>(v * static_cast<float>(t.height)));
-            const auto alpha = std::to_integer<int>(m.texels[t.first_byte + 4ULL * (static_cast<std::uint64_t>(y) * t.width + x) + 3]);
+            const auto alpha =
+                std::to_integer<int>(m.texels[t.first_byte + 4ULL * (static_cast<std::uint64_t>(y) * t.width + x) + 3]);
             if (material.alpha == model::AlphaMode::mask && static_cast<float>(alpha) < material.alpha_cutoff * 255.0F) continue;
             const float s0 = static_cast<float>(i) / steps, s1 = static_cast<float>(i + 1) / steps;
             const float r0 = static_cast<float>(j) / steps, r1 = static_cast<float>(j + 1) / steps;
@@ -81,7 +82,8 @@ inline Surface full_detail(const model::Model& m, model::Index node, const dvec3
         for (std::uint32_t c = 0; c < n.child_count; ++c) open.push_back(n.first_child + c);
         if (n.child_count > 0) continue;
         const Surface leaf = surface_of(m, m.reps[n.first_rep + n.rep_count - 1], centre);
-        for (std::size_t i = 0; i + 2 < leaf.positions.size(); i += 3) out.add(leaf.positions[i], leaf.positions[i + 1], leaf.positions[i + 2]);
+        for (std::size_t i = 0; i + 2 < leaf.positions.size(); i += 3)
+            out.add(leaf.positions[i], leaf.positions[i + 1], leaf.positions[i + 2]);
     }
     return out;
 }
