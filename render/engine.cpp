@@ -204,7 +204,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         if (full && options.in_frame_check) {
             const double upper = correction * costs.upper_factor;
             select::CheckInput check;
-            check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + in_flight_us;
+            check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + in_flight_us * correction;
             check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction;
             check.next_us = with(slice.cost) * upper;
             check.next_stand_in_us = with(slice.stand_in_cost) * upper;

@@ -38,6 +38,7 @@ Path generated_tour(const model::Model& model) {
 }
 
 Result<ChosenPath> choose_path(const std::string& asked, const std::string& model_file, const model::Model& model, double lift_m) {
+    if (!(std::abs(lift_m) <= 1e7)) return Error{"--lift", "is no height", "give metres, e.g. 1.5"};
     ChosenPath chosen;
     std::string file = asked;
     if (file.empty()) {

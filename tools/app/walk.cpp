@@ -215,6 +215,10 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     std::thread frame_thread([&] {
         auto placed = s.virtual_clock ? rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-frame"}) : rt::place_thread(0, frame_placement(s.plan));
         s.facts.pinned = placed.ok() && !s.virtual_clock;
+        if (!placed) {
+            s.plan.fifo = false;  // the figures must say so
+            s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
+        }
         rt::prefault_stack();
         WalkStages stages(*s.engine, s.path.path, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
         s.engine->device().bind();

@@ -1,5 +1,6 @@
 // surefoot bake: imports model files, clusters, simplifies, captures, and writes a .walk model.
 #include <chrono>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -29,6 +30,12 @@ double peak_memory_mib() {
 
 int run_bake(const BakeArguments& a, const Context& context) {
     const auto begun = std::chrono::steady_clock::now();
+    for (const std::string& in : a.in) {
+        std::error_code ignored;
+        if (std::filesystem::equivalent(in, a.out, ignored)) {
+            return fail({a.out, "is one of the files to bake", "name another file with -o"}), exit_usage;
+        }
+    }
     const Progress progress = terminal_progress(context);
     std::string cost_note;
     auto costs = app::load_costs(app::state_directory(a.state), "", cost_note);
