@@ -22,7 +22,9 @@ FrameRecord ordinary(Random& random) {
     FrameRecord r;
     r.due_ns = r.ready_ns = 1'000'000'000;
     r.deadline_ns = r.due_ns + period;
-    const auto share = [&](double s) { return static_cast<std::int64_t>(s * random.range(0.8, 1.2) * static_cast<double>(period)); };
+    const auto share = [&](double s) {
+        return static_cast<std::int64_t>(s * random.range(0.8, 1.2) * static_cast<double>(period));
+    };
     r.woken_ns = r.due_ns + share(0.002);
     r.selected_ns = r.woken_ns + share(0.02);
     r.submitted_ns = r.selected_ns + share(0.35);
@@ -44,24 +46,44 @@ void delay_from(FrameRecord& r, int phase, std::int64_t ns) {
 TEST(Blame, NamesTheInjectedCauseInNineteenOfTwenty) {
     Random random(11);
     const BlameLimits limits;
-    const Cause causes[] = {Cause::woken_late, Cause::stolen, Cause::preempted, Cause::select, Cause::submit,
-                            Cause::raster, Cause::page_fault, Cause::present, Cause::stopped, Cause::upload};
+    const Cause causes[] = {Cause::woken_late, Cause::stolen,     Cause::preempted, Cause::select,  Cause::submit,
+                            Cause::raster,     Cause::page_fault, Cause::present,   Cause::stopped, Cause::upload};
     int right = 0, all = 0;
     for (const Cause cause : causes) {
         for (int i = 0; i < 50; ++i) {
             FrameRecord r = ordinary(random);
             const auto ns = static_cast<std::int64_t>(random.range(0.7, 2.0) * static_cast<double>(period));
             switch (cause) {
-                case Cause::woken_late: delay_from(r, 0, ns); break;
-                case Cause::stolen: delay_from(r, 2, ns), r.stolen_ns = ns; break;
-                case Cause::preempted: delay_from(r, 2, ns), r.preempted_ns = ns, r.involuntary = 2; break;
-                case Cause::select: delay_from(r, 1, ns); break;
-                case Cause::submit: delay_from(r, 2, ns); break;
-                case Cause::raster: delay_from(r, 3, ns); break;
-                case Cause::page_fault: delay_from(r, 2, ns), r.major_faults = 4, r.minor_faults = 100000; break;
-                case Cause::present: delay_from(r, 4, ns); break;
-                case Cause::stopped: delay_from(r, 2, ns), r.continued = 1; break;
-                default: delay_from(r, 2, ns), r.upload_ns = ns; break;
+                case Cause::woken_late:
+                    delay_from(r, 0, ns);
+                    break;
+                case Cause::stolen:
+                    delay_from(r, 2, ns), r.stolen_ns = ns;
+                    break;
+                case Cause::preempted:
+                    delay_from(r, 2, ns), r.preempted_ns = ns, r.involuntary = 2;
+                    break;
+                case Cause::select:
+                    delay_from(r, 1, ns);
+                    break;
+                case Cause::submit:
+                    delay_from(r, 2, ns);
+                    break;
+                case Cause::raster:
+                    delay_from(r, 3, ns);
+                    break;
+                case Cause::page_fault:
+                    delay_from(r, 2, ns), r.major_faults = 4, r.minor_faults = 100000;
+                    break;
+                case Cause::present:
+                    delay_from(r, 4, ns);
+                    break;
+                case Cause::stopped:
+                    delay_from(r, 2, ns), r.continued = 1;
+                    break;
+                default:
+                    delay_from(r, 2, ns), r.upload_ns = ns;
+                    break;
             }
             ASSERT_TRUE(r.missed);
             right += blame(r, limits) == cause ? 1 : 0;

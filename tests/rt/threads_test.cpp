@@ -132,10 +132,10 @@ TEST(SystemCallTrap, NamesWhatTheFrameThreadsOwnCodeMayNotCall) {
         if (refused) return;
         {
             const OwnScope own;
-            (void)own_cpu_ns();                    // allowed
-            (void)syscall(SYS_getppid);            // not
+            (void)own_cpu_ns();          // allowed
+            (void)syscall(SYS_getppid);  // not
         }
-        (void)syscall(SYS_getppid);                // outside: counted apart
+        (void)syscall(SYS_getppid);  // outside: counted apart
         counters = trap_counters();
     });
     if (refused) GTEST_SKIP() << "seccomp filters are refused here";

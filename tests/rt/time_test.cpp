@@ -126,7 +126,8 @@ TEST(Controller, MeetsADoubledCostAndIsDeafToOutliers) {
     CostController deaf;
     for (int i = 0; i < 60; ++i) deaf.update(100, i % 3 == 0 ? 10000 : 100);
     EXPECT_NEAR(deaf.factor(), 1.0, 1e-9);
-    for (const double bad : {0.0, -5.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) deaf.update(bad, 100), deaf.update(100, bad);
+    for (const double bad : {0.0, -5.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+        deaf.update(bad, 100), deaf.update(100, bad);
     EXPECT_NEAR(deaf.factor(), 1.0, 1e-9);
 }
 
