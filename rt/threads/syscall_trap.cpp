@@ -29,10 +29,6 @@ constinit thread_local TrapCounters trap_state __attribute__((tls_model("initial
 
 constexpr std::array<long, 4> frame_calls = {SYS_clock_nanosleep, SYS_clock_gettime, SYS_getrusage, SYS_restart_syscall};
 
-// What the handler cannot carry out on the caller's behalf, for it would act on the handler's own frame or stack.
-constexpr std::array<long, 6> never_trapped = {SYS_rt_sigreturn, SYS_sigaltstack, SYS_exit,
-                                               SYS_exit_group,   SYS_clone,       SYS_clone3};
-
 struct CallName {
     long number;
     const char* name;
@@ -104,6 +100,10 @@ surefoot_call_gate_passed:
 )");
 
 namespace {
+
+// What the handler cannot carry out on the caller's behalf, for it would act on the handler's own frame or stack.
+constexpr std::array<long, 6> never_trapped = {SYS_rt_sigreturn, SYS_sigaltstack, SYS_exit,
+                                               SYS_exit_group,   SYS_clone,       SYS_clone3};
 
 /// The signal mask that counts is the one restored when the handler returns. SIGSYS is left out of it: a trap while it is
 /// blocked would end the process, and the C library blocks all signals around the end of a thread.
