@@ -1,0 +1,69 @@
+// The words the device layer's rooms share: what a control is, what a device has, and its newest state.
+//
+//   hid/, gpio/ ──► DeviceState ──► map/ ──► Wish ──► safety/ ──► motion/ ──► NavigationSample (latest value)
+//   (raw values)    (per device)    (actions, -1..1)  (may only     (limits, filter,
+//                                                      reduce it)    pose in double)
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rt/base/geometry.hpp"
+
+namespace surefoot::input {
+
+constexpr std::size_t max_controls = 256;  ///< of one device; what a device has beyond them is counted and ignored
+
+enum class ControlKind : std::uint8_t { axis, hat, button };
+
+/// What the descriptor says a device is for, decided by usages (devices.md 2, rules 11 and 12).
+enum class DeviceClass : std::uint8_t { navigation, trackball, buttons, reject };
+
+/// One named control, bound by usage and collection, never by index.
+struct ControlInfo {
+    std::string name;        ///< unique in the device: "x", "rz", "hat", "button-3", "slider-2"
+    std::string collection;  ///< path of its collections, outermost first: "Joystick/Physical"
+    ControlKind kind = ControlKind::axis;
+    std::uint16_t usage_page = 0, usage = 0;
+    std::int32_t logical_min = 0, logical_max = 0;
+    double physical_min = 0, physical_max = 0;  ///< in `unit`; both 0 where the descriptor gives none
+    std::string unit;                           ///< "deg", "cm", ...; may be empty
+    bool relative = false;                      ///< after quirks: a displacement, not a deflection
+    bool wraps = false;
+};
+
+/// Newest raw values of one device, index-parallel to its ControlInfo list. Plain data: copied through exchanges.
+/// hat: 0..7 clockwise from north. `has_value` false: never seen, or a null state (a hat at its centre).
+struct DeviceState {
+    std::array<std::int32_t, max_controls> value{};
+    std::bitset<max_controls> has_value;
+    std::int64_t stamp_ns = 0;  ///< CLOCK_MONOTONIC when its newest report was read; 0: none yet
+    std::uint64_t reports = 0;  ///< accepted; short, long and undeclared ones are counted apart and change nothing
+    bool connected = false;
+};
+
+/// What is asked of the walk, before any limit: each -1..1. Walk in the eye's frame: +forward along -Z, +side to the right.
+struct Wish {
+    double forward = 0, side = 0, up = 0;
+    double turn = 0, look = 0;  ///< turn > 0: to the left (counter-clockwise from above); look > 0: upwards
+    double speed = 0;           ///< -1..1: from the slowest to the fastest factor; 0 leaves it
+    bool next_viewpoint = false, reset = false, tour = false, pause = false;  ///< edges: true in the sample they happen in
+};
+
+/// What the frame thread reads, newest wins. Rest is all zeros with the pose held.
+struct NavigationSample {
+    Pose pose;                 ///< integrated so far, double; see geometry.hpp for the frame
+    dvec3 velocity_m_s{0.0};   ///< world
+    dvec3 angular_rad_s{0.0};  ///< world, axis times rate
+    double uncertainty_m = 0;  ///< of the pose one frame ahead: what prepare/ widens its region by
+    double uncertainty_rad = 0;
+    std::int64_t stamp_ns = 0;   ///< of the newest report in it
+    std::uint64_t sequence = 0;  ///< of samples, from 1
+    bool next_viewpoint = false, reset = false, tour = false, pause = false;
+    bool stopped = false;  ///< emergency stop or dead-man: rest by order
+};
+
+}  // namespace surefoot::input
