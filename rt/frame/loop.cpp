@@ -101,6 +101,7 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
         s.result.skipped += next.skipped;
         s.result.elapsed = next.slot;
     }
+    s.result.burn_ns = burn.mean_ns();
     return s.result;
 }
 

@@ -52,6 +52,7 @@ struct FrameLoopResult {
     std::uint64_t run = 0;      ///< frames, bare ones of the control included
     std::uint64_t skipped = 0;  ///< slots
     std::uint64_t elapsed = 0;  ///< slots; always run + skipped
+    std::int64_t burn_ns = 0;   ///< what the control's bare frames burned at the end: mean CPU time of the walk's on this core
 };
 
 /// Runs on the calling thread, which the caller has placed. Records go to `records`, in order; what does not fit is dropped and

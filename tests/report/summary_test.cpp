@@ -184,7 +184,8 @@ TEST(Verdict, MissesOfTheHostAreNotTheWalksOwn) {
     EXPECT_EQ(verdict_of(s), Verdict::bad);
     s.own_misses = 0;
     s.control.ran = true;
-    s.control.p_value = 0.001;
+    s.control.verdict.own_holds = true;
+    s.control.verdict.control_holds = false;
     EXPECT_EQ(verdict_of(s), Verdict::bad);
 }
 

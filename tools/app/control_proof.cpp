@@ -63,23 +63,16 @@ double missed_under_other(const PlacingPlan& plan, std::int64_t period_ns, std::
 
 }  // namespace
 
-void judge_control(const PlacingPlan& plan, std::int64_t period_ns, BlockSteal& steal, WalkOutcome& outcome, const Progress& progress) {
+void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, BlockSteal& steal, WalkOutcome& outcome,
+                   const Progress& progress) {
     std::vector<rt::BlockTally> blocks = rt::tally_blocks(outcome.records);
     const std::vector<double> steal_ms = steal.finish();
-    rt::BurnMeter burn;
-    for (const rt::FrameRecord& record : outcome.records) {
-        if (!record.control) burn.add(record.cpu_ns);
-    }
     progress.say("control under SCHED_OTHER", 0.5);
-    const double other = missed_under_other(plan, period_ns, burn.mean_ns());
-    const rt::DeadlineVerdict verdict = rt::judge(blocks, other);
     report::ControlSummary& c = outcome.summary.control;
     c.ran = true;
-    c.walk_misses = static_cast<std::uint32_t>(verdict.walk_misses);
-    c.control_misses = static_cast<std::uint32_t>(verdict.control_misses);
-    c.pairs = verdict.pairs;
-    c.p_value = verdict.p_value;
-    c.other_miss_share = other;
+    c.burn_ms = static_cast<double>(burn_ns) * 1e-6;
+    c.other_miss_share = missed_under_other(plan, period_ns, burn_ns);
+    c.verdict = rt::judge(blocks, c.other_miss_share);
     for (rt::BlockTally& block : blocks) {
         block.steal_ms = block.block < steal_ms.size() ? steal_ms[block.block] : 0.0;
         c.blocks.push_back({block.walk, block.frames, block.misses, block.own_misses, block.steal_ms});

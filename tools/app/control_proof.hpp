@@ -28,6 +28,8 @@ private:
 
 /// Fills outcome.summary.control: tallies the blocks, runs 10 s of the bare loop under SCHED_OTHER on the frame core with
 /// the same CPU time (the load counts only if that misses a fifth), and applies the permutation test.
-void judge_control(const PlacingPlan& plan, std::int64_t period_ns, BlockSteal& steal, WalkOutcome& outcome, const Progress& progress);
+/// burn_ns: what the control's bare frames burned.
+void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, BlockSteal& steal, WalkOutcome& outcome,
+                   const Progress& progress);
 
 }  // namespace surefoot::app

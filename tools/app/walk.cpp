@@ -49,6 +49,7 @@ struct Session {
     rt::TripleBuffer<prepare::PreparedFrame> prepared;
     KeptFrame kept;
     rt::ControlSchedule control;
+    std::int64_t burn_ns = 0;  ///< the control's
 
     explicit Session(const WalkRequest& r) : request(r) {}
 };
@@ -222,7 +223,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
         rt::prefault_stack();
         WalkStages stages(*s.engine, s.path.path, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
         s.engine->device().bind();
-        rt::run_frame_loop(options, clock, stages, ring);
+        s.burn_ns = rt::run_frame_loop(options, clock, stages, ring).burn_ns;
         s.engine->device().release();
         done.store(true);
     });
@@ -279,7 +280,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     WalkOutcome outcome;
     outcome.records = recorder.take_records();
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
-    if (request.control) judge_control(s.plan, s.grid.period_ns, steal, outcome, progress);
+    if (request.control) judge_control(s.plan, s.grid.period_ns, s.burn_ns, steal, outcome, progress);
     s.engine->device().bind();
     auto written = write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
     s.engine->device().release();

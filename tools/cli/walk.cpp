@@ -4,6 +4,7 @@
 #include "config/settings.hpp"
 #include "tools/app/walk.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/report/verdict.hpp"
 
 namespace surefoot::cli {
 
@@ -79,6 +80,8 @@ int run_walk_command(WalkArguments& a, const Context& context) {
         fmt::print("{}", report::to_table(outcome->summary, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
     }
+    if (report::rule_broken(outcome->summary.control))
+        return note("the deadline rule is broken: see the control's figures"), exit_failure;
     return exit_success;
 }
 
@@ -88,7 +91,8 @@ void add_setting(CLI::App* c, const std::shared_ptr<WalkArguments>& a, const std
     std::string help(entry->help);
     if (!entry->unit.empty()) help += " (" + std::string(entry->unit) + ")";
     help += " [" + config::value_text({}, *entry) + "]";
-    c->add_option_function<std::string>(flag, [a, key](const std::string& text) { a->values.emplace_back(key, text); }, help);
+    c->add_option_function<std::string>(
+        flag, [a, key](const std::string& text) { a->values.emplace_back(key, text); }, help);
 }
 
 }  // namespace
@@ -96,21 +100,30 @@ void add_setting(CLI::App* c, const std::shared_ptr<WalkArguments>& a, const std
 void add_walk(CLI::App& app, Context& context) {
     auto a = std::make_shared<WalkArguments>();
     app::WalkRequest& r = a->request;
-    CLI::App* c = add_command(app, "walk", "Walk through a model in real time, and show the figures",
-                              "surefoot walk town.walk --seconds 30 --report report\n"
-                              "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
-                              "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
-                              a->json);
+    CLI::App* c =
+        add_command(app, "walk", "Walk through a model in real time, and show the figures",
+                    "surefoot walk town.walk --seconds 30 --report report\n"
+                    "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
+                    "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
+                    a->json);
     c->add_option("model", r.model_file, "The .walk model")->required();
     c->add_option("--path", r.path_file, "Poses over time, CSV (else MODEL.path.csv, else a tour)");
     c->add_option("--lift", r.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")->capture_default_str();
     c->add_option("--frames", r.frames, "Frames to walk (else --seconds, else the path once)");
     c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")->check(CLI::Range(0.0, 1e7));
     c->add_option("--size", a->size, "Picture size [1280x720]");
-    for (const auto& [flag, key] : {std::pair{"--rate", "rate_hz"}, {"--budget", "budget_ms"}, {"--accuracy", "accuracy"},
-                                    {"--cost-scale", "cost_scale"}, {"--selector", "selector"}, {"--late", "late"},
-                                    {"--backend", "backend"}, {"--clock", "clock"}, {"--workers", "workers"},
-                                    {"--rasterisers", "rasterisers"}, {"--frame-core", "frame_core"}, {"--slice", "slice_us"},
+    for (const auto& [flag, key] : {std::pair{"--rate", "rate_hz"},
+                                    {"--budget", "budget_ms"},
+                                    {"--accuracy", "accuracy"},
+                                    {"--cost-scale", "cost_scale"},
+                                    {"--selector", "selector"},
+                                    {"--late", "late"},
+                                    {"--backend", "backend"},
+                                    {"--clock", "clock"},
+                                    {"--workers", "workers"},
+                                    {"--rasterisers", "rasterisers"},
+                                    {"--frame-core", "frame_core"},
+                                    {"--slice", "slice_us"},
                                     {"--hysteresis", "hysteresis"}}) {
         add_setting(c, a, flag, key);
     }
@@ -120,7 +133,9 @@ void add_walk(CLI::App& app, Context& context) {
     c->add_flag("--no-check", a->no_check, "Without the in-frame check, to see what it is worth");
     c->add_flag("--no-correction", a->no_correction, "Predictions are not corrected online");
     c->add_flag("--control", r.control, "Alternate blocks of the walk and of a bare loop, and judge by the deadline rule");
-    c->add_option("--control-pairs", r.control_pairs, "Pairs of blocks; the rule wants 90")->check(CLI::Range(1U, 100000U))->capture_default_str();
+    c->add_option("--control-pairs", r.control_pairs, "Pairs of blocks; the rule wants 90")
+        ->check(CLI::Range(1U, 100000U))
+        ->capture_default_str();
     c->add_option("--config", a->config_file, "Settings in TOML; the command line wins");
     c->add_option("--profile", a->profile, "A [profile.NAME] of the settings file");
     c->add_option("--state", r.state_dir, "Folder with the calibrated cost table");

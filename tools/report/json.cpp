@@ -31,8 +31,21 @@ Json control_of(const ControlSummary& control) {
                           {"own_misses", b.own_misses},
                           {"steal_ms", rounded(b.steal_ms)}});
     // A p-value keeps its digits: 0.0004 is not 0.
-    return {
-        {"misses", control.control_misses}, {"p_value", control.ran ? Json(control.p_value) : Json(nullptr)}, {"blocks", blocks}};
+    const rt::DeadlineVerdict& v = control.verdict;
+    Json json = {{"misses", v.control_misses}, {"p_value", control.ran ? Json(v.p_value) : Json(nullptr)}, {"blocks", blocks}};
+    if (!control.ran) return json;
+    json["walk_misses"] = v.walk_misses;
+    json["walk_frames"] = v.walk_frames;
+    json["own_misses"] = v.own_misses;
+    json["pairs"] = v.pairs;
+    json["burn_ms"] = rounded(control.burn_ms);
+    json["other_miss_share"] = rounded(control.other_miss_share);
+    json["rule"] = {{"holds", v.holds},
+                    {"own_misses", v.own_holds},
+                    {"not_above_control", v.control_holds},
+                    {"enough_pairs", v.enough_pairs},
+                    {"load_counts", v.load_counts}};
+    return json;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rt/base/result.hpp"
+#include "rt/frame/control.hpp"
 #include "rt/frame/record.hpp"
 
 namespace surefoot::report {
@@ -25,8 +26,8 @@ struct ControlBlock {
 
 struct ControlSummary {
     bool ran = false;
-    std::uint32_t walk_misses = 0, control_misses = 0, pairs = 0;
-    double p_value = 1;            ///< one-sided permutation test, walk minus control > 0
+    rt::DeadlineVerdict verdict;
+    double burn_ms = 0;            ///< CPU time of a bare frame: the mean of the walk's on the frame core
     double other_miss_share = -1;  ///< the load proof under SCHED_OTHER; -1 not run
     std::vector<ControlBlock> blocks;
 };

@@ -121,7 +121,7 @@ void real_time_rows(Table& table, const WalkSummary& s) {
     for (const std::string& problem : s.census_problems) table.row("census", problem, "31");
     for (const Degraded& d : s.degraded)
         table.row("degraded", d.remedy.empty() ? d.what : fmt::format("{}: {}", d.what, d.remedy), "33");
-    if (s.control.ran) table.row("control", control_words(s.control), s.control.p_value < 0.01 ? "31" : "");
+    if (s.control.ran) table.row("control", control_words(s.control), rule_broken(s.control) ? "31" : "");
 }
 
 }  // namespace

@@ -12,7 +12,6 @@ namespace surefoot::report {
 namespace {
 
 constexpr double own_misses_allowed_per_frame = 2.0 / 1800.0;
-constexpr double significance = 0.01;
 
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
     return fmt::format("{} {}", grouped(static_cast<double>(count)), count == 1 ? one : many);
@@ -24,9 +23,10 @@ Verdict verdict_of(const WalkSummary& s) {
     if (s.frames == 0) return Verdict::bad;
     if (s.misses == 0 && s.skipped == 0) return Verdict::good;
     const bool own = static_cast<double>(s.own_misses) > own_misses_allowed_per_frame * static_cast<double>(s.frames);
-    const bool worse_than_control = s.control.ran && s.control.p_value < significance;
-    return own || worse_than_control ? Verdict::bad : Verdict::warn;
+    return own || rule_broken(s.control) ? Verdict::bad : Verdict::warn;
 }
+
+bool rule_broken(const ControlSummary& c) { return c.ran && !(c.verdict.own_holds && c.verdict.control_holds); }
 
 std::string headline(const WalkSummary& s) {
     if (s.frames == 0) return "No frame was drawn.";
@@ -44,15 +44,19 @@ std::string headline(const WalkSummary& s) {
 
 std::string control_words(const ControlSummary& c) {
     if (!c.ran) return {};
-    std::string text = fmt::format("Over {} pairs of blocks the walk missed {} and a bare loop of the same cost missed {}",
-                                   c.pairs, c.walk_misses, c.control_misses);
-    text += c.p_value < significance ? fmt::format(": the walk misses more (p = {:.4f}).", c.p_value)
-                                     : fmt::format(": no more than the machine itself (p = {:.2f}).", c.p_value);
+    const rt::DeadlineVerdict& v = c.verdict;
+    std::string text = fmt::format(
+        "Over {} pairs of blocks the walk missed {} of {} frames, {} by its own doing, and a bare loop of the "
+        "same cost missed {}",
+        v.pairs, v.walk_misses, v.walk_frames, v.own_misses, v.control_misses);
+    text += v.control_holds ? fmt::format(": no more than the machine itself (p = {:.2f}).", v.p_value)
+                            : fmt::format(": the walk misses more (p = {:.2g}).", v.p_value);
     if (c.other_miss_share >= 0)
-        text += fmt::format(
-            " Without real-time scheduling the bare loop missed {}{}.", percent(c.other_miss_share),
-            c.other_miss_share < 0.2 ? "; below a fifth, so the load was too light to judge by" : ": the load counts");
-    return text;
+        text += fmt::format(" Without real-time scheduling the bare loop missed {}{}.", percent(c.other_miss_share),
+                            v.load_counts ? ": the load counts" : "; below a fifth, so the load was too light to judge by");
+    if (rule_broken(c)) return text + " The deadline rule is broken.";
+    if (v.holds) return text + " The deadline rule holds.";
+    return text + (v.enough_pairs ? " The deadline rule is not judged." : " Too few pairs to judge the deadline rule.");
 }
 
 std::string accuracy_words(double accuracy) {

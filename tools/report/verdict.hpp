@@ -12,6 +12,8 @@ enum class Verdict { good, warn, bad };
 /// good: nothing missed; warn: misses, but within the deadline rule (DESIGN 7: own misses at most 2 per 1800 frames);
 /// bad: beyond it, or nothing ran.
 Verdict verdict_of(const WalkSummary& summary);
+/// A control ran, and the walk had too many own misses, or more misses than the control.
+bool rule_broken(const ControlSummary& control);
 /// "1800 frames, 0 missed: the slowest took 31.2 of 33.3 ms."
 std::string headline(const WalkSummary& summary);
 /// The control's part of the rule in words; empty where no control ran.
