@@ -55,6 +55,18 @@ std::string control_words(const ControlSummary& c) {
     return text;
 }
 
+std::string threads_words(std::span<const ThreadRow> threads) {
+    std::string text;
+    for (const ThreadRow& t : threads) {
+        text += text.empty() ? "" : "; ";
+        if (t.count > 1) text += fmt::format("{} ", t.count);
+        text += t.name + " " + t.policy;
+        if (t.priority > 0) text += fmt::format(" {}", t.priority);
+        text += " on " + t.cores;
+    }
+    return text;
+}
+
 std::string accuracy_words(double accuracy) {
     if (std::isinf(accuracy)) return "exact";
     if (!(accuracy > 0)) return "unknown";
