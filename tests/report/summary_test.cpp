@@ -203,7 +203,8 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     EXPECT_EQ(keys_of(json["cost_error"]), (Keys{"p50", "p90", "p99"}));
     EXPECT_EQ(keys_of(json["accuracy"]), (Keys{"min", "mean"}));
     EXPECT_EQ(keys_of(json["triangles"]), (Keys{"mean", "max"}));
-    EXPECT_EQ(keys_of(json["rt"]), (Keys{"fifo", "pinned", "isolated", "locked", "page_faults", "guard_violations", "driver_allocations_per_frame"}));
+    EXPECT_EQ(keys_of(json["rt"]),
+              (Keys{"fifo", "pinned", "isolated", "locked", "page_faults", "guard_violations", "driver_allocations_per_frame"}));
     EXPECT_EQ(keys_of(json["control"]), (Keys{"misses", "p_value", "blocks"}));
     EXPECT_EQ(json["miss_causes"]["raster"], 1);
     EXPECT_TRUE(json["control"]["p_value"].is_null()) << "no control ran";

@@ -32,15 +32,15 @@ double peak_memory_mib() {
 
 int run_bake(const BakeArguments& a, const Context& context) {
     const auto begun = std::chrono::steady_clock::now();
-    // Pictures and buffers that the files to bake bring along are known only when these are read: no model has their endings.
-    if (std::filesystem::path(a.out).extension() != ".walk") {
-        return misuse({"-o " + a.out, "does not end in .walk", "name the model to write MODEL.walk"});
-    }
     for (const std::string& in : a.in) {
         std::error_code ignored;
         if (std::filesystem::equivalent(in, a.out, ignored)) {
             return misuse({a.out, "is one of the files to bake", "name another file with -o"});
         }
+    }
+    // Pictures and buffers that the files to bake bring along are known only when these are read: no model has their endings.
+    if (std::filesystem::path(a.out).extension() != ".walk") {
+        return misuse({"-o " + a.out, "does not end in .walk", "name the model to write MODEL.walk"});
     }
     if (auto ok = probe_writable(a.out); !ok) return fail(ok.error());
     const Progress progress = terminal_progress(context);
