@@ -153,6 +153,13 @@ grep -q 'cut hash' out || complain "a stopped walk does not sum up"
 stop_after 0.4 bake big.glb -o f.walk; got=$?
 [ $got -eq 130 ] || complain "exit $got, not 130, of a stopped bake: $(cat err)"
 cmp -s f.walk kept.walk || complain "a stopped bake changed the model that was there"
+for command in "calibrate --quick --state stopped" "accuracy f.walk --repeats 100 --poses 256 -o stopped"; do
+  stop_after 1 $command; got=$?
+  grep -qi 'egl\|gl ' err && continue  # no software GL on this machine: nothing to stop
+  [ $got -eq 130 ] || complain "exit $got, not 130, of a stopped $command: $(cat err)"
+  [ "$(wc -l < err)" -eq 1 ] || complain "not one line of a stopped $command: $(cat err)"
+  [ -e stopped ] && complain "a stopped $command left something"
+done
 ls ./*.tmp 2>/dev/null && complain "something half-written is left"
 
 if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi

@@ -76,6 +76,7 @@ Result<Bytes> read_all(const std::string& path, std::uint64_t max_bytes) {
     struct stat info {};
     if (::fstat(file.fd, &info) != 0) return system_error(path, "cannot examine", errno);
     if (S_ISDIR(info.st_mode)) return Error{path, "is a folder, not a file", "name a file"};
+    if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) return Error{path, "is a device, not a file", "name a file"};
     const auto hint = static_cast<std::uint64_t>(std::max<off_t>(info.st_size, 0));
     if (hint > max_bytes) return too_large(path, max_bytes);
     Bytes bytes;

@@ -50,6 +50,12 @@ TEST_F(FileTest, FolderIsRefused) {
     EXPECT_NE(read.error().what.find("folder"), std::string::npos);
 }
 
+TEST_F(FileTest, DeviceWithoutAnEndIsRefused) {
+    const auto zeros = read_file("/dev/zero");
+    ASSERT_FALSE(zeros.ok());
+    EXPECT_NE(zeros.error().text().find("device"), std::string::npos);
+}
+
 TEST_F(FileTest, EmptyFileIsNoError) {
     ASSERT_TRUE(write_text(in("empty"), "").ok());
     const auto read = read_file(in("empty"));
