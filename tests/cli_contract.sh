@@ -14,7 +14,7 @@ complain() { echo "FAIL: $*"; failures=$((failures + 1)); }
 # expect CODE PATTERN COMMAND...: exit code, and stderr (one line and its remedy at most) that matches PATTERN
 expect() {
   local code=$1 pattern=$2; shift 2
-  "$surefoot" "$@" >out 2>err; local got=$?
+  timeout 100 "$surefoot" "$@" >out 2>err; local got=$?
   [ $got -eq "$code" ] || complain "exit $got, not $code: surefoot $*"
   grep -qE -e "$pattern" err || complain "stderr says '$(head -c 300 err)', not /$pattern/: surefoot $*"
 }

@@ -38,7 +38,9 @@ Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock,
     auto plan = plan_placing(request, c.fifo_priority >= request.frame_priority);
     if (!plan) return plan;
     const auto lack = [&](const std::string& what, const std::string& remedy) { facts.degraded.push_back({what, remedy}); };
-    for (const rt::Lack& missing : c.lacking) lack(missing.what, missing.remedy);
+    rt::Capabilities wanted = c;  // whoever does not ask for FIFO does not lack it
+    if (!request.fifo) wanted.fifo_priority = request.frame_priority;
+    for (const rt::Lack& missing : rt::find_lacking(wanted, request.frame_priority)) lack(missing.what, missing.remedy);
     if (!request.fifo) lack("real-time scheduling is switched off", "leave out --no-fifo");
     facts.isolated = c.isolated.has(plan->frame_core);
     if (!facts.isolated && !c.isolated.empty()) {

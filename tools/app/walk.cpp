@@ -53,6 +53,12 @@ struct Session {
     model::CostModel costs;
 
     explicit Session(const WalkRequest& r) : request(r) {}
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+    /// On every way out, refusals included: the memory that claim() had locked.
+    ~Session() {
+        if (!virtual_clock && rt::guard_active()) rt::release_memory();
+    }
 };
 
 Result<void> read_request(Session& s) {
@@ -286,7 +292,6 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     s.engine->device().bind();
     write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
     s.engine->device().release();
-    if (!s.virtual_clock && rt::guard_active()) rt::release_memory();
     return outcome;
 }
 

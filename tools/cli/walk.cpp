@@ -130,8 +130,7 @@ int run_walk_command(WalkArguments& a, const Context& context) {
 void add_setting(CLI::App* c, const std::shared_ptr<WalkArguments>& a, const std::string& flag, const std::string& key) {
     const config::Entry* entry = config::find_entry(key);
     std::string help(entry->help);
-    if (!entry->unit.empty()) help += " (" + std::string(entry->unit) + ")";
-    help += " [" + config::value_text({}, *entry) + "]";
+    help += " Allowed: " + config::allowed(*entry) + " [" + config::value_text({}, *entry) + "]";
     c->add_option_function<std::string>(
         flag,
         [a, flag, key](const std::string& text) {
