@@ -1,5 +1,6 @@
 // surefoot: bakes models, measures the machine, runs walks, and shows what accuracy costs. A thin main: one file a command.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -7,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <sstream>
 #include <system_error>
 
 #include "tools/cli/command.hpp"
@@ -88,7 +90,13 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return cli::finish_output(app.exit(error) == 0 ? cli::exit_success : cli::exit_usage);
+        std::ostringstream out, err;
+        const int code = app.exit(error, out, err) == 0 ? cli::exit_success : cli::exit_usage;
+        (void)std::fputs(err.str().c_str(), stderr);
+        context.run = [text = out.str(), code] {
+            fmt::print("{}", text);
+            return code;
+        };
     }
     const int code = run(context);
     return code == cli::exit_failure && stop_requested.load() ? cli::exit_stopped : code;
