@@ -16,7 +16,7 @@ using std::string_view;
 constexpr std::array<string_view, 8> selectors = {"flat",      "distance",         "depth-first",     "best-first",
                                                   "two-stage", "depth-first-1994", "best-first-1994", "two-stage-1994"};
 constexpr std::array<string_view, 2> late_policies = {"lock", "float"};
-constexpr std::array<string_view, 6> backends = {"egl", "device", "kms", "window", "osmesa", "null"};
+constexpr std::array<string_view, 5> backends = {"egl", "device", "window", "osmesa", "null"};  // kms: planned
 constexpr std::array<string_view, 2> clocks = {"real", "virtual"};
 
 constexpr Entry number(string_view key, string_view unit, double min, double max, string_view help, double S::*member) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "render/effects/effects.hpp"
+#include "render/model/pixels.hpp"
 #include "render/model/view.hpp"
 
 namespace surefoot {
@@ -82,7 +83,7 @@ struct Engine::Impl {
     model::Frustum frustum;  ///< of the pose that is drawn: narrower than the region that was prepared
     model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report);
     void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report);
-    void submit_coarse();
+    void submit_coarse(const Pose& pose, SubmitReport& report);
 };
 
 Engine::Engine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -104,11 +105,11 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->device = std::move(*device);
     auto loaded = impl->device->load(impl->model, effects::assemble_program);
     if (!loaded) return loaded.error();
-    const auto candidates = static_cast<std::uint32_t>(
-        std::min<std::size_t>(options.prepare.max_candidates, impl->model.nodes.size()));
+    const auto candidates =
+        static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_candidates, impl->model.nodes.size()));
     impl->options.prepare.max_candidates = candidates;
-    impl->options.prepare.max_choices = static_cast<std::uint32_t>(
-        std::min<std::size_t>(options.prepare.max_choices, impl->model.reps.size()));
+    impl->options.prepare.max_choices =
+        static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_choices, impl->model.reps.size()));
     impl->options.prepare.full_depth |= options.selector == "flat";  // full detail needs the leaves
     impl->preparer = std::make_unique<prepare::Preparer>(impl->model, impl->costs, impl->options.prepare);
     impl->state.reserve(impl->model, candidates);
@@ -213,7 +214,8 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
             full = select::still_fits(check);
         }
         const model::ItemCost cost = draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
-                                                     : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count), report);
+                                                     : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count),
+                                                report);
         so_far.submit_us += cost.submit_us + costs.slice_us;
         so_far.raster_us += cost.raster_us;
         in_flight_us = cost.raster_us;
@@ -223,8 +225,23 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us);
 }
 
-void Engine::Impl::submit_coarse() {
+/// Predicted as the items of a prepared frame are: no array holds these, and they are few.
+void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
     drawn.assign(coarse.begin(), coarse.end());
+    const model::ViewScale scale = model::make_view_scale(pose, options.device.viewport);
+    model::ItemCost sum{.submit_us = costs.slice_us, .raster_us = 0};
+    for (const gl::DrawItem& item : coarse) {
+        const model::Representation& rep = model.reps[item.rep];
+        const float pixels = model::rasterised_pixels(rep, model.nodes[item.node].box, pose.position, scale);
+        const model::ItemCost cost = costs.item(static_cast<float>(rep.triangles), pixels, costs.grid_for(rep.effects));
+        sum.submit_us += cost.submit_us;
+        sum.raster_us += cost.raster_us;
+        report.triangles += rep.triangles;
+    }
+    report.predicted_us = costs.combine.frame_us(sum.submit_us, sum.raster_us);
+    report.slices = 1;
+    report.downgraded_slices = 1;
+    report.worst_error_rad = std::numeric_limits<float>::infinity();  // the eye may be inside any of them
     device->draw(drawn);
     device->end_slice();
 }
@@ -237,10 +254,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.frustum = model::make_frustum(pose, e.options.device.viewport, 2 * e.model.nodes[0].box.diagonal() + 1e3);
     e.device->begin_frame(pose);
     if (e.use_coarse) {
-        e.submit_coarse();
-        report.slices = 1;
-        report.downgraded_slices = 1;
-        report.worst_error_rad = std::numeric_limits<float>::infinity();
+        e.submit_coarse(pose, report);
     } else {
         e.submit_cut(limits, start_us, report);
     }
@@ -270,7 +284,8 @@ void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> ite
 
 std::vector<gl::DrawItem> Engine::full_detail(const Pose& pose) const {
     const model::Model& model = impl_->model;
-    const model::Frustum frustum = model::make_frustum(pose, impl_->options.device.viewport, 2 * model.nodes[0].box.diagonal() + 1e3);
+    const model::Frustum frustum =
+        model::make_frustum(pose, impl_->options.device.viewport, 2 * model.nodes[0].box.diagonal() + 1e3);
     std::vector<gl::DrawItem> items;
     std::vector<model::Index> stack{0};
     while (!stack.empty()) {

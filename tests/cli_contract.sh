@@ -14,9 +14,9 @@ complain() { echo "FAIL: $*"; failures=$((failures + 1)); }
 # expect CODE PATTERN COMMAND...: exit code, and stderr (one line and its remedy at most) that matches PATTERN
 expect() {
   local code=$1 pattern=$2; shift 2
-  "$surefoot" "$@" >out 2>err; local got=$?
+  timeout 100 "$surefoot" "$@" >out 2>err; local got=$?
   [ $got -eq "$code" ] || complain "exit $got, not $code: surefoot $*"
-  grep -qE "$pattern" err || complain "stderr says '$(head -c 300 err)', not /$pattern/: surefoot $*"
+  grep -qE -e "$pattern" err || complain "stderr says '$(head -c 300 err)', not /$pattern/: surefoot $*"
 }
 valid_json() { if command -v python3 >/dev/null; then python3 -c 'import json,sys; json.load(open(sys.argv[1]))' "$1"; else
   echo "python3 is absent: $1 is only looked at for its braces"; [ "$(head -c 1 "$1")" = "{" ] && [ "$(tail -c 2 "$1")" = "}" ]; fi; }
@@ -56,6 +56,113 @@ expect 1 'nonexistent' walk f.walk --clock virtual --backend null --frames 5 --l
 head -c 300 c.cap > short.cap; expect 1 'short.cap' replay short.cap
 printf 'rate_hz = 30\nselektor = "flat"\n' > s.toml
 expect 2 's.toml:2.*selek' walk f.walk --config s.toml
+
+# Values that are not allowed: the option, what was found and what is allowed, before anything is opened.
+virtual="--clock virtual --backend null"
+refuse() { local pattern=$1; shift; expect 2 "^surefoot: .*$pattern" "$@"; [ -s out ] && complain "stdout is not empty: surefoot $*"
+  [ "$(wc -l < err)" -eq 1 ] || complain "not one line: surefoot $*"; }
+for value in -1 0 1e300 nan; do refuse "--seconds.*$value.* 0.001 to" walk f.walk $virtual --seconds $value; done
+for value in -1 0 many; do refuse "--frames.*$value.* 1 to" walk f.walk $virtual --frames $value; done
+for value in -1 nan inf; do refuse "--budget $value.* 0 to 1000" walk f.walk $virtual --budget $value; done
+for value in 0x0 1000000x1 abc 5x 9x9x9; do
+  refuse "--size $value.* 16 to 16384" walk f.walk $virtual --size $value
+  refuse "--size $value.* 16 to 16384" accuracy f.walk --size $value
+done
+for value in 0 nan -5; do refuse "--rate $value.* 1 to 1000" walk f.walk $virtual --rate $value; done
+for value in nan -1; do refuse "--cost-scale $value.* 0.01 to 100" walk f.walk $virtual --cost-scale $value; done
+refuse '--accuracy nan.* 0 to' walk f.walk $virtual --accuracy nan
+refuse '--lift.*nan' walk f.walk $virtual --lift nan
+refuse '--cost-noise.*nan' walk f.walk $virtual --cost-noise nan
+refuse '--budget.*-1.* 0.001 to' accuracy f.walk --budget -1
+refuse '--selector.*best.*two-stage' accuracy f.walk --selector best
+refuse "nosuch.*forest, room, town" scene nosuch -o x.glb
+for value in 0 -1 1e9 nan; do refuse "--scale.*$value.* 0.01 to 200" scene forest --scale $value -o x.glb; done
+refuse '--rate.*nan' bake f.glb --rate nan -o x.walk
+refuse '--backend foo.*egl' walk f.walk --clock virtual --backend foo
+for command in "walk f.walk" "accuracy f.walk" calibrate; do refuse 'kms.*not in this version.*egl' $command --backend kms; done
+refuse '--profile fast.*--config' walk f.walk $virtual --profile fast
+refuse '--every.*--snap' walk f.walk $virtual --every 5
+refuse '--strict' walk f.walk $virtual --strict
+
+# Outputs: asked for beforehand, never over an input; one that fails spoils no other.
+refuse 'f.glb.*files to bake' bake f.glb -o ./f.glb
+refuse 'f.obj.*\.walk' bake f.glb -o f.obj
+expect 1 'nonexistent' scene forest -o /nonexistent/f.glb
+expect 1 'nonexistent' calibrate --quick --plot /nonexistent/p.svg
+expect 1 'f.glb is a file' calibrate --state f.glb
+expect 1 'f.glb is a file' accuracy f.walk -o f.glb
+for option in --ledger --trace --capture; do
+  expect 1 "^surefoot: $option .*nonexistent" walk f.walk $virtual --frames 4000000 $option /nonexistent/file
+  expect 1 "^surefoot: $option .*reads" walk f.walk $virtual --frames 4000000 $option f.walk
+done
+expect 1 '^surefoot: --report .*f.glb is a file' walk f.walk $virtual --frames 4000000 --report f.glb
+expect 1 '^surefoot: --snap .*f.glb is a file' walk f.walk --snap f.glb
+expect 1 '--capture-frame 9.*5 frames' walk f.walk $virtual --frames 5 --capture n.cap --capture-frame 9
+cmp -s f.walk kept.walk || complain "an output replaced the model"
+cmp -s f.glb again.glb || complain "an output replaced the scene"
+[ -e n.cap ] && complain "a refused capture left a file"
+( ulimit -f 40; "$surefoot" walk f.walk $virtual --frames 300 --ledger big.csv --capture small.cap --json >out 2>err; echo $? >rc )
+( ulimit -f 40; "$surefoot" scene forest --scale 0.3 -o over.obj 2>/dev/null ) && complain "an .obj that is too large is a success"
+[ -e over.mtl ] && complain "half a scene is there"
+[ "$(cat rc)" = 1 ] || complain "exit $(cat rc), not 1, where the ledger could not be finished"
+grep -q 'big.csv.*too large.*ulimit' err || complain "stderr says '$(head -c 300 err)' of a ledger that is too large"
+valid_json out || complain "no summary where an output failed"
+[ -e small.cap ] || complain "an output that could be written is missing because another could not"
+[ -e big.csv ] && complain "half a ledger is there"
+
+# What stdout does not take is said, and is no success; a reader that leaves early is not an error worth a word.
+for command in "scene forest --scale 0.1 -o s.glb" "bake f.glb -o s.walk" "inspect f.walk" "inspect f.walk --tree" "effects f.walk" \
+    "walk f.walk $virtual --frames 5" "replay c.cap" "--help" "walk --help"; do
+  for more in "" --json; do
+    [ -n "$more" ] && case $command in *--help) continue ;; esac
+    "$surefoot" $command $more >/dev/full 2>err; got=$?
+    [ $got -eq 1 ] || complain "exit $got, not 1, on a full stdout: $command $more"
+    grep -q 'standard output: cannot be written' err || complain "nothing said of a full stdout: $command $more"
+    "$surefoot" $command $more 2>err | head -0; got=${PIPESTATUS[0]}
+    [ $got -le 1 ] || complain "exit $got where the reader left: $command $more"
+    grep -q 'standard output\|terminate' err && complain "said of a reader that left: $command $more: $(cat err)"
+  done
+done
+"$surefoot" inspect f.walk >&- 2>/dev/null && complain "a closed stdout is a success"
+"$surefoot" inspect absent.walk 2>/dev/full; [ $? -eq 1 ] || complain "a full stderr is a crash"
+
+# Figures and forms.
+json inspect f.walk --tree
+grep -q '"parent"' out || complain "inspect --tree --json has no parents"
+"$surefoot" replay c.cap >out 2>err; grep -q 'frame 7,' out || complain "replay names another frame than the captured one: $(head -1 out)"
+refuse 'best-worst' replay c.cap --selector best-worst
+"$surefoot" walk f.walk $virtual --frames 5 >out 2>err
+[ "$(cat out err | grep -c 'no cost table')" -eq 1 ] || complain "a missing cost table is not said once"
+grep -q '^uncalibrated' out || complain "the figures are not marked as uncalibrated"
+grep -q 'not fully real-time: no cost' out err && complain "a missing cost table is no lack of real time"
+expect 1 '^surefoot: --strict.*no cost table.*calibrate' walk f.walk --strict --frames 5
+
+# Paths that are out of all measure.
+for row in 1e300,0,0,0,0,0,0,1 1,1e300,0,0,0,0,0,1 1,nan,0,0,0,0,0,1 1,1e999,0,0,0,0,0,1 1,0,0,0,1e300,0,0,1; do
+  printf '0,0,0,0,0,0,0,1\n%s\n' "$row" > huge.csv
+  expect 1 'huge.csv:2: column' walk f.walk $virtual --path huge.csv
+done
+printf '0,0,0,0,0,0,0,1\n9e10,0,0,0,0,0,0,1\n' > long.csv
+expect 1 'long.csv.*frames.*--frames' walk f.walk $virtual --path long.csv
+
+# Ctrl-C: one line, what was there is still there, and a walk sums up what ran.
+stop_after() { local seconds=$1; shift; "$surefoot" "$@" >out 2>err & local pid=$!; sleep "$seconds"; kill -INT $pid; wait $pid; }
+stop_after 1 walk f.walk $virtual --frames 4000000 --ledger stopped.csv; got=$?
+[ $got -eq 130 ] || complain "exit $got, not 130, of a stopped walk"
+grep -q 'stopped by the user after' err || complain "a stopped walk says '$(head -c 300 err)'"
+grep -q 'cut hash' out || complain "a stopped walk does not sum up"
+"$surefoot" scene town --scale 0.5 -o big.glb >/dev/null
+stop_after 0.4 bake big.glb -o f.walk; got=$?
+[ $got -eq 130 ] || complain "exit $got, not 130, of a stopped bake: $(cat err)"
+cmp -s f.walk kept.walk || complain "a stopped bake changed the model that was there"
+for command in "calibrate --quick --state stopped" "accuracy f.walk --repeats 100 --poses 256 -o stopped"; do
+  stop_after 1 $command; got=$?
+  grep -qi 'egl\|gl ' err && continue  # no software GL on this machine: nothing to stop
+  [ $got -eq 130 ] || complain "exit $got, not 130, of a stopped $command: $(cat err)"
+  [ "$(wc -l < err)" -eq 1 ] || complain "not one line of a stopped $command: $(cat err)"
+  [ -e stopped ] && complain "a stopped $command left something"
+done
+ls ./*.tmp 2>/dev/null && complain "something half-written is left"
 
 if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi
 echo "the command line keeps its contract"

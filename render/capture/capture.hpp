@@ -21,6 +21,7 @@ struct Memory {
 };
 
 struct Capture {
+    std::uint64_t frame = 0;  ///< of the walk; prepared.frame is the one whose pose the arrays were begun for
     prepare::PreparedFrame prepared;
     std::string selector;
     double budget_us = 0, correction = 1, target_error_rad = 0, slice_us = 1000;

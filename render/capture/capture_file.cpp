@@ -20,7 +20,7 @@ using model::Index;
 using model::none;
 
 constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 constexpr std::uint64_t most_bytes = 1ULL << 31U;  // unpacked
 constexpr std::uint32_t most_nodes = 1U << 26U;    // replay makes room for them
 constexpr std::size_t header_bytes = 40;
@@ -36,7 +36,7 @@ void each_field(Io& io, Frame& f) {
 }
 template <class Io, class C>
 void each_setting(Io& io, C& c) {
-    io(c.budget_us, c.correction, c.target_error_rad, c.slice_us, c.combine.fixed_us, c.combine.submit_weight,
+    io(c.frame, c.budget_us, c.correction, c.target_error_rad, c.slice_us, c.combine.fixed_us, c.combine.submit_weight,
        c.combine.raster_weight, c.combine.max_weight, c.upper_factor, c.slice_end_us, c.hysteresis, c.node_count, c.hash,
        c.predicted_us);
 }

@@ -25,6 +25,9 @@ Result<BackendKind> parse_backend(std::string_view name) {
     if (name == "window") return BackendKind::window;
     if (name == "osmesa") return BackendKind::osmesa;
     if (name == "null") return BackendKind::null;
+    if (name == "kms") {
+        return Error{"backend 'kms'", "is planned, and not in this version", "one of: egl, device, window, osmesa, null"};
+    }
     return Error{"backend '" + std::string(name) + "'", "there is no such backend", "one of: egl, device, window, osmesa, null"};
 }
 

@@ -31,8 +31,16 @@ std::string remedy_for(int error) {
             return "free some space or choose another disk";
         case ENOTDIR:
             return "a part of the path is a file, not a folder";
+        case EFBIG:
+            return "a file may not grow so large here: raise the limit (ulimit -f) or choose another disk";
+        case EMFILE:
+        case ENFILE:
+            return "raise the limit of open files (ulimit -n)";
+        case ENAMETOOLONG:
+        case ELOOP:
+            return "choose a shorter, plainer name";
         default:
-            return {};
+            return "look at the disk that it is on";
     }
 }
 
@@ -68,6 +76,7 @@ Result<Bytes> read_all(const std::string& path, std::uint64_t max_bytes) {
     struct stat info {};
     if (::fstat(file.fd, &info) != 0) return system_error(path, "cannot examine", errno);
     if (S_ISDIR(info.st_mode)) return Error{path, "is a folder, not a file", "name a file"};
+    if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) return Error{path, "is a device, not a file", "name a file"};
     const auto hint = static_cast<std::uint64_t>(std::max<off_t>(info.st_size, 0));
     if (hint > max_bytes) return too_large(path, max_bytes);
     Bytes bytes;
@@ -192,6 +201,25 @@ Result<void> AtomicFile::commit() {
     const Descriptor folder(::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     // Some file systems refuse to sync a folder (EINVAL); the file itself is complete either way.
     if (folder.fd >= 0 && ::fsync(folder.fd) != 0 && errno != EINVAL) return system_error(path_, "cannot sync its folder", errno);
+    return {};
+}
+
+Result<void> probe_writable(const std::string& path, bool make_folders) {
+    if (path.empty()) return Error{"output", "the file name is empty", "name a file"};
+    std::filesystem::path folder = folder_of(path);
+    std::error_code ignored;
+    bool missing = false;
+    while (make_folders && !std::filesystem::exists(folder, ignored)) {
+        missing = true;
+        const std::filesystem::path above = folder.has_parent_path() ? folder.parent_path() : std::filesystem::path(".");
+        if (above == folder) break;
+        folder = above;
+    }
+    if (make_folders && !std::filesystem::is_directory(folder, ignored)) {
+        return Error{path, folder.string() + " is a file, not a folder", "name another folder"};
+    }
+    const std::string tried = missing ? (folder / "surefoot-probe").string() : path;
+    if (auto file = AtomicFile::create(tried); !file) return Error{path, file.error().what, file.error().remedy};
     return {};
 }
 

@@ -40,6 +40,11 @@ private:
     int fd_ = -1;
 };
 
+/// Whether an AtomicFile could be made at `path` now: tries, and leaves nothing behind. With make_folders, missing folders count
+/// as made if the nearest one above them may be written in. To be asked before long work, so that it is not lost for a wrong
+/// name.
+Result<void> probe_writable(const std::string& path, bool make_folders = false);
+
 /// write + commit in one call.
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);
 Result<void> write_text(const std::string& path, std::string_view text);

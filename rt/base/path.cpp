@@ -39,14 +39,25 @@ std::vector<std::string_view> fields_of(std::string_view line) {
     }
 }
 
+/// A number too large for a double reads as infinity, one too small as zero.
 std::optional<double> number_in(std::string_view field) {
     double value = 0;
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc{} || end != field.data() + field.size()) return std::nullopt;
+    const bool overflow = error == std::errc::result_out_of_range;
+    if (overflow)
+        value = field.find("e-") != std::string_view::npos || field.find("E-") != std::string_view::npos ? 0.0 : HUGE_VAL;
+    if ((error != std::errc{} && !overflow) || end != field.data() + field.size()) return std::nullopt;
     return value;
 }
 
 bool is_header(const std::vector<std::string_view>& fields) { return fields.front() == "time_s"; }
+
+/// Of a column's number, either side of zero.
+double limit_of(std::size_t column) {
+    if (column == 0) return path_time_limit_s;
+    if (column <= 3) return path_coordinate_limit_m;
+    return column < pose_columns ? path_quaternion_limit : HUGE_VAL;  // the field of view has limits of its own
+}
 
 /// One row to a sample, or what is wrong with it.
 struct RowProblem {
@@ -61,6 +72,8 @@ std::variant<PathSample, RowProblem> read_row(const std::vector<std::string_view
         const auto value = number_in(fields[i]);
         if (!value) return RowProblem{fmt::format("column {}: '{}' is not a number", i + 1, fields[i])};
         if (!std::isfinite(*value)) return RowProblem{fmt::format("column {}: '{}' is not finite", i + 1, fields[i])};
+        if (std::abs(*value) > limit_of(i))
+            return RowProblem{fmt::format("column {}: {} is beyond {}", i + 1, fields[i], limit_of(i))};
         v[i] = *value;
     }
     PathSample sample;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace surefoot::rt {
 
 namespace {
@@ -65,6 +67,29 @@ std::vector<std::string> census(std::span<const DeclaredThread> declared, std::s
             problems.push_back(fmt::format("thread '{}': too many ({}, at most {})", row.name, counts[i], row.max_count));
     }
     return problems;
+}
+
+std::vector<CensusRow> census_rows(std::span<const DeclaredThread> declared, std::span<const ThreadInfo> found) {
+    std::vector<CensusRow> rows;
+    const int undeclared = static_cast<int>(declared.size());
+    for (int wanted = 0; wanted <= undeclared; ++wanted) {
+        const std::size_t first = rows.size();
+        for (const ThreadInfo& thread : found) {
+            const int row = row_of(declared, thread);
+            if ((row < 0 ? undeclared : row) != wanted) continue;
+            const std::string& name = row < 0 ? thread.name : declared[static_cast<std::size_t>(row)].name;
+            const auto alike =
+                std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(), [&](const CensusRow& r) {
+                    return r.name == name && r.policy == thread.policy && r.priority == thread.priority && r.cpus == thread.cpus;
+                });
+            if (alike != rows.end()) {
+                ++alike->count;
+            } else {
+                rows.push_back({name, 1, thread.policy, thread.priority, thread.cpus});
+            }
+        }
+    }
+    return rows;
 }
 
 std::vector<std::string> census_now(std::span<const DeclaredThread> declared) {

@@ -1,6 +1,7 @@
 // The thread census: a declared table of threads compared with what is there; every difference named (DESIGN 7).
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,18 @@ struct DeclaredThread {
 /// Pure. Empty: all as declared. Otherwise one line a problem: thread missing, too many, undeclared, or of the wrong policy,
 /// priority or cores.
 std::vector<std::string> census(std::span<const DeclaredThread> declared, std::span<const ThreadInfo> found);
+
+/// Threads that are alike: of one row of the table (or of none), placed the same way.
+struct CensusRow {
+    std::string name;  ///< of the row; of the thread, where it has no row
+    std::uint32_t count = 0;
+    Policy policy = Policy::other;
+    int priority = 0;
+    CpuMask cpus;
+};
+
+/// Pure: all threads found, by row in the order of the table, undeclared ones last.
+std::vector<CensusRow> census_rows(std::span<const DeclaredThread> declared, std::span<const ThreadInfo> found);
 
 /// Of this process, now.
 std::vector<std::string> census_now(std::span<const DeclaredThread> declared);

@@ -50,6 +50,12 @@ TEST_F(FileTest, FolderIsRefused) {
     EXPECT_NE(read.error().what.find("folder"), std::string::npos);
 }
 
+TEST_F(FileTest, DeviceWithoutAnEndIsRefused) {
+    const auto zeros = read_file("/dev/zero");
+    ASSERT_FALSE(zeros.ok());
+    EXPECT_NE(zeros.error().text().find("device"), std::string::npos);
+}
+
 TEST_F(FileTest, EmptyFileIsNoError) {
     ASSERT_TRUE(write_text(in("empty"), "").ok());
     const auto read = read_file(in("empty"));
@@ -126,6 +132,23 @@ TEST_F(FileTest, UnwritablePlacesAreNamed) {
     const auto nowhere = AtomicFile::create(in("no/such/f"));
     ASSERT_FALSE(nowhere.ok());
     EXPECT_NE(nowhere.error().text().find(in("no/such")), std::string::npos);
+}
+
+TEST_F(FileTest, ProbingSaysWhatWritingWouldAndLeavesNothing) {
+    const std::string good = (folder_ / "new").string();
+    EXPECT_TRUE(probe_writable(good).ok());
+    EXPECT_FALSE(probe_writable((folder_ / "no" / "such" / "file").string()).ok());
+    EXPECT_TRUE(probe_writable((folder_ / "no" / "such" / "file").string(), true).ok());
+    EXPECT_TRUE(fs::is_empty(folder_));
+    ASSERT_TRUE(write_text(good, "kept").ok());
+    EXPECT_TRUE(probe_writable(good).ok());
+    const auto below = probe_writable((folder_ / "new" / "file").string(), true);
+    ASSERT_FALSE(below.ok());
+    EXPECT_NE(below.error().text().find("not a folder"), std::string::npos);
+    EXPECT_FALSE(probe_writable(folder_.string()).ok());
+    EXPECT_EQ(*read_text(good), "kept");
+    fs::remove(good);
+    EXPECT_TRUE(fs::is_empty(folder_));
 }
 
 TEST_F(FileTest, ReadOnlyFolderIsRefused) {

@@ -54,8 +54,9 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     ASSERT_EQ(lines.size(), records.size() + 1);
     const auto names = split(lines[0], ',');
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size()) << "a column twice";
-    for (const auto* wanted : {"wake_us", "select_us", "submit_us", "raster_us", "present_us", "slack_us", "predicted_us",
-                               "actual_us", "nodes", "triangles", "accuracy", "benefit", "switches", "cause"})
+    for (const auto* wanted :
+         {"wake_us", "select_us", "submit_us", "raster_us", "present_us", "slack_us", "predicted_us", "actual_us", "nodes",
+          "triangles", "accuracy", "benefit", "switches", "cause", "waited_us", "preempted_us"})
         EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end()) << wanted;
     std::map<std::string, std::string> miss;
     const auto cells = split(lines[2], ',');
@@ -201,6 +202,8 @@ AccuracyRun sweep() {
         }
     run.points.back().snr_db = std::numeric_limits<double>::infinity();
     run.points.back().snr_infinite = 5;
+    run.points.back().accuracy_mean = std::numeric_limits<double>::infinity();
+    run.points.back().exact = 5;
     return run;
 }
 
@@ -213,12 +216,15 @@ TEST_F(ReportFiles, AccuracyPageAndFiles) {
     const auto json = nlohmann::json::parse(*read_text(in("a/accuracy.json")));
     EXPECT_EQ(json["points"].size(), run.points.size());
     EXPECT_TRUE(json["points"].back()["snr_db"].is_null());
+    EXPECT_TRUE(json["points"].back()["accuracy"].is_null());
+    EXPECT_EQ(json["points"].back()["exact"], 5);
+    EXPECT_NE(page.find("left out of the mean"), std::string::npos);
     for (const bool dark : {false, true}) {
         const auto svg = accuracy_svg(run, dark);
         EXPECT_EQ(svg.rfind("<svg xmlns=", 0), 0U);
-        // 9 points in two panels, the infinite one left out of the third; a dot each for two mended selectors in the legend.
+        // 9 points in three panels, the exact one in none but the last; a dot each for two mended selectors in the legend.
         EXPECT_EQ(count_of(svg, "<title>two-stage"), 18U);
-        EXPECT_EQ(count_of(svg, "<title>flat"), 8U);
+        EXPECT_EQ(count_of(svg, "<title>flat"), 7U);
         EXPECT_EQ(svg.find("nan"), std::string::npos);
         EXPECT_EQ(svg.find("inf"), std::string::npos);
     }

@@ -139,6 +139,46 @@ TEST(Summary, ExactPicturesHaveInfiniteAccuracyAndDoNotSpoilTheMean) {
     EXPECT_TRUE(nlohmann::json::parse(to_json(s))["accuracy"]["mean"].is_null());
 }
 
+TEST(Summary, FramesWithoutAPredictionHaveNoErrorOfIt) {
+    auto records = good_frames(4);
+    WalkSummary with, without;
+    summarize(records, period_ns, without);
+    auto coarse = good_frame(4, 4);
+    coarse.predicted_us = 0;
+    records.push_back(coarse);
+    summarize(records, period_ns, with);
+    EXPECT_EQ(with.cost_error.max, without.cost_error.max);
+}
+
+TEST(Summary, DriversAllocationsAreSaidAFrame) {
+    auto records = good_frames(4);
+    for (auto& r : records) r.driver_allocations = 42;
+    WalkSummary s;
+    summarize(records, period_ns, s);
+    EXPECT_EQ(nlohmann::json::parse(to_json(s))["rt"]["driver_allocations_per_frame"], 42.0);
+    EXPECT_NE(to_table(s, false).find("42.0 allocations"), std::string::npos);
+}
+
+TEST(Summary, MissingCostTableIsSaidOnceAndNotAsALackOfRealTime) {
+    WalkSummary s;
+    summarize(good_frames(2), period_ns, s);
+    EXPECT_TRUE(nlohmann::json::parse(to_json(s))["calibrated"]);
+    s.uncalibrated = "no cost table here";
+    const std::string table = to_table(s, false);
+    EXPECT_NE(table.find("uncalibrated"), std::string::npos);
+    EXPECT_EQ(table.find("no cost table"), table.rfind("no cost table"));
+    EXPECT_EQ(table.find("degraded"), std::string::npos);
+    EXPECT_FALSE(nlohmann::json::parse(to_json(s))["calibrated"]);
+}
+
+TEST(Summary, ThreadsOfTheCensusAreNamedWithTheirPlacing) {
+    WalkSummary s;
+    summarize(good_frames(2), period_ns, s);
+    s.threads = {{"sf-frame", 1, "fifo", 80, "1"}, {"llvmpipe-", 2, "fifo", 70, "0-1"}};
+    EXPECT_NE(to_table(s, false).find("sf-frame fifo 80 on 1; 2 llvmpipe- fifo 70 on 0-1"), std::string::npos);
+    EXPECT_EQ(nlohmann::json::parse(to_json(s))["threads"][1]["count"], 2);
+}
+
 std::set<std::string> keys_of(const nlohmann::json& object) {
     std::set<std::string> keys;
     for (const auto& [key, value] : object.items()) keys.insert(key);
@@ -155,7 +195,7 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
               (Keys{"frames",      "slots",      "skipped",   "misses",         "own_misses",   "miss_causes",
                     "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age", "budget_ms",
                     "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
-                    "cut_hash",    "steal_ms",   "rt",        "control"}));
+                    "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
     EXPECT_EQ(keys_of(json["prepared_age"]), (Keys{"p50", "p99", "max"}));
@@ -163,7 +203,8 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     EXPECT_EQ(keys_of(json["cost_error"]), (Keys{"p50", "p90", "p99"}));
     EXPECT_EQ(keys_of(json["accuracy"]), (Keys{"min", "mean"}));
     EXPECT_EQ(keys_of(json["triangles"]), (Keys{"mean", "max"}));
-    EXPECT_EQ(keys_of(json["rt"]), (Keys{"fifo", "pinned", "isolated", "locked", "page_faults", "guard_violations"}));
+    EXPECT_EQ(keys_of(json["rt"]),
+              (Keys{"fifo", "pinned", "isolated", "locked", "page_faults", "guard_violations", "driver_allocations_per_frame"}));
     EXPECT_EQ(keys_of(json["control"]), (Keys{"misses", "p_value", "blocks"}));
     EXPECT_EQ(json["miss_causes"]["raster"], 1);
     EXPECT_TRUE(json["control"]["p_value"].is_null()) << "no control ran";

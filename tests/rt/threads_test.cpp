@@ -103,6 +103,26 @@ TEST(Census, NamesMissingUndeclaredAndWronglyPlacedThreads) {
     EXPECT_EQ(census(table, std::vector{right}).size(), 1U);
 }
 
+TEST(Census, RowsCountThreadsThatAreAlike) {
+    std::vector<DeclaredThread> table(2);
+    table[0].name = "sf-frame";
+    table[1].name = "llvmpipe-";
+    ThreadInfo frame, first, second, other;
+    frame.name = "sf-frame";
+    first.name = "llvmpipe-0";
+    second.name = "llvmpipe-1";
+    first.policy = second.policy = Policy::fifo;
+    first.priority = second.priority = 70;
+    other.name = "stranger";
+    const auto rows = census_rows(table, std::vector{other, first, frame, second});
+    ASSERT_EQ(rows.size(), 3U);
+    EXPECT_EQ(rows[0].name, "sf-frame");
+    EXPECT_EQ(rows[1].name, "llvmpipe-");
+    EXPECT_EQ(rows[1].count, 2U);
+    EXPECT_EQ(rows[1].priority, 70);
+    EXPECT_EQ(rows[2].name, "stranger");
+}
+
 TEST(Guard, OwnScopeCountsAllocationsAndDriverScopeCountsApart) {
     if (!guard_active()) GTEST_SKIP() << "a sanitizer owns the allocator";
     const GuardCounters before = guard_counters();

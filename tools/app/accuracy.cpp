@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "render/engine.hpp"
@@ -19,7 +20,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::int64_t steady_ns(void*) { return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count(); }
+std::int64_t steady_ns(void*) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+}
 
 double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -66,7 +69,11 @@ Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double
     const auto n = static_cast<double>(stations.size());
     for (const Station& station : stations) {
         const select::Cut& cut = engine.select(station.prepared, budget_us, 1.0, target_error_rad);
-        accuracy += cut.worst_error_rad > 0 ? 1.0 / cut.worst_error_rad : 1e4;  // full detail: beyond any screen's pixels
+        if (cut.worst_error_rad > 0) {
+            accuracy += 1.0 / cut.worst_error_rad;
+        } else {
+            ++point.exact;  // no finite accuracy: left out of the mean, as in a walk's summary
+        }
         triangles += static_cast<double>(cut.triangles);
         cost += cut.predicted_us;
         std::vector<double> ms;
@@ -88,7 +95,8 @@ Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double
     const report::Quantiles q = report::quantiles(frame_ms);
     point.frame_ms_p50 = q.p50;
     point.frame_ms_p90 = q.p90;
-    point.accuracy_mean = accuracy / n;
+    const auto inexact = static_cast<double>(stations.size() - point.exact);
+    point.accuracy_mean = inexact > 0 ? accuracy / inexact : std::numeric_limits<double>::infinity();
     point.snr_db = snr_count == 0 ? 0.0 : snr_sum / snr_count;
     point.ssim = ssim_sum / n;
     point.triangles = triangles / n;
@@ -97,7 +105,7 @@ Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double
     return point;
 }
 
-Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, model::Model model, std::string& machine) {
+Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, model::Model model, report::AccuracyRun& run) {
     EngineOptions options;
     auto kind = gl::parse_backend(request.backend);
     if (!kind) return kind.error();
@@ -107,13 +115,15 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
     options.device.kind = *kind;
     options.device.viewport = {request.width, request.height};
     options.device.rasterisers = request.rasterisers;
-    options.prepare.workers = request.workers > 0 ? request.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    options.prepare.workers =
+        request.workers > 0 ? request.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     options.in_frame_check = false;
     std::string note;
     auto costs = load_costs(state_directory(request.state_dir), "", note);
     if (!costs) return costs.error();
     auto engine = Engine::open(std::move(model), *costs, options);
-    if (engine) machine = measure::machine_identity((*engine)->device().renderer(), request.rasterisers);
+    if (engine) run.machine = measure::machine_identity((*engine)->device().renderer(), request.rasterisers);
+    run.uncalibrated = note;
     return engine;
 }
 
@@ -130,7 +140,7 @@ Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const P
     run.width = request.width;
     run.height = request.height;
     run.poses = request.poses;
-    auto opened = open_engine(request, std::move(*model), run.machine);
+    auto opened = open_engine(request, std::move(*model), run);
     if (!opened) return opened.error();
     Engine& engine = **opened;
     engine.device().bind();

@@ -15,7 +15,8 @@ Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted) 
     const std::vector<int> cpus = plan.all.cpus();
     plan.frame_core = request.frame_core >= 0 ? request.frame_core : cpus.back();
     if (!plan.all.has(plan.frame_core)) {
-        return Error{fmt::format("frame core {}", plan.frame_core), "this process may not use it", "choose one of " + plan.all.text()};
+        return Error{fmt::format("frame core {}", plan.frame_core), "this process may not use it",
+                     "choose one of " + plan.all.text()};
     }
     plan.fifo = request.fifo && fifo_granted;
     plan.frame_priority = request.frame_priority;
@@ -74,16 +75,36 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
     const auto priority = [&](int p) { return plan.fifo ? p : 0; };
     std::vector<rt::DeclaredThread> table;
     // The main thread and what the driver makes for itself (its shader and disk caches lower themselves to BATCH).
-    table.push_back({.name = program_name, .whole_name = true, .policy = rt::Policy::other, .cpus = plan.all, .min_count = 1, .max_count = 64});
-    table.push_back({.name = program_name.substr(0, 7) + ":disk", .policy = rt::Policy::batch, .cpus = {}, .min_count = 0, .max_count = 16});
-    table.push_back({.name = program_name.substr(0, 7) + ":sh", .policy = rt::Policy::other, .cpus = {}, .min_count = 0, .max_count = 16});
-    table.push_back({.name = "sf-frame", .policy = real_time, .priority = priority(plan.frame_priority), .cpus = rt::CpuMask{plan.frame_core}});
+    table.push_back({.name = program_name,
+                     .whole_name = true,
+                     .policy = rt::Policy::other,
+                     .cpus = plan.all,
+                     .min_count = 1,
+                     .max_count = 64});
+    table.push_back(
+        {.name = program_name.substr(0, 7) + ":disk", .policy = rt::Policy::batch, .cpus = {}, .min_count = 0, .max_count = 16});
+    table.push_back(
+        {.name = program_name.substr(0, 7) + ":sh", .policy = rt::Policy::other, .cpus = {}, .min_count = 0, .max_count = 16});
+    table.push_back({.name = "sf-frame",
+                     .policy = real_time,
+                     .priority = priority(plan.frame_priority),
+                     .cpus = rt::CpuMask{plan.frame_core}});
     table.push_back({.name = "sf-monitor", .policy = rt::Policy::other, .cpus = plan.all});
     if (real_clock) {
-        table.push_back({.name = "sf-prepare", .policy = real_time, .priority = priority(plan.worker_priority), .cpus = plan.all, .min_count = 1, .max_count = 256});
+        table.push_back({.name = "sf-prepare",
+                         .policy = real_time,
+                         .priority = priority(plan.worker_priority),
+                         .cpus = plan.all,
+                         .min_count = 1,
+                         .max_count = 256});
     }
     for (const std::string& prefix : plan.driver_prefixes) {
-        table.push_back({.name = prefix, .policy = real_time, .priority = priority(plan.raster_priority), .cpus = plan.all, .min_count = 0, .max_count = 64});
+        table.push_back({.name = prefix,
+                         .policy = real_time,
+                         .priority = priority(plan.raster_priority),
+                         .cpus = plan.all,
+                         .min_count = plan.driver_prefixes.size() == 1 ? plan.rasterisers : 0,
+                         .max_count = 64});
     }
     return table;
 }

@@ -12,7 +12,12 @@
 
 namespace surefoot::app {
 
-ShotStore::ShotStore(std::uint64_t every, std::size_t most, std::size_t max_items) : every_(every), shots_(every == 0 ? 0 : most) {
+std::size_t shots_that_fit(std::size_t max_items) {
+    return std::max<std::size_t>(1, shot_memory_bytes / (sizeof(Shot) + max_items * sizeof(gl::DrawItem)));
+}
+
+ShotStore::ShotStore(std::uint64_t every, std::size_t most, std::size_t max_items)
+    : every_(every), shots_(every == 0 ? 0 : most) {
     for (Shot& shot : shots_) {
         shot.items.resize(max_items);  // touched now, so that the copy later does not fault
         shot.items.clear();
@@ -55,8 +60,9 @@ void add_top_view(const Engine& engine, const Shot& shot, report::ReportShot& ou
     out.drawn.reserve(shot.items.size());
     for (const gl::DrawItem& item : shot.items) {
         const model::Node& node = model.nodes[item.node];
-        out.drawn.push_back({static_cast<float>(node.box.min.x), static_cast<float>(node.box.min.z), static_cast<float>(node.box.max.x),
-                             static_cast<float>(node.box.max.z), static_cast<int>(node.kind), detail_of(model, item)});
+        out.drawn.push_back({static_cast<float>(node.box.min.x), static_cast<float>(node.box.min.z),
+                             static_cast<float>(node.box.max.x), static_cast<float>(node.box.max.z), static_cast<int>(node.kind),
+                             detail_of(model, item)});
     }
 }
 
@@ -94,7 +100,10 @@ Result<void> write_snaps(Engine& engine, const ShotStore& store, const std::stri
     std::filesystem::create_directories(dir, error);
     if (error) return Error{dir, "cannot be made: " + error.message(), "name another folder with --snap"};
     for (std::size_t i = 0; i < store.used(); ++i) {
-        if (progress.stopped()) return Error{dir, "stopped by the user", ""};
+        if (progress.stopped()) {
+            return Error{dir, fmt::format("stopped by the user with {} of {} pictures written", i, store.used()),
+                         "the rest is lost"};
+        }
         progress.say("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const Shot& shot = store.shots()[i];
         engine.draw_unbudgeted(shot.pose, shot.items);

@@ -23,6 +23,11 @@ struct Shot {
     std::vector<gl::DrawItem> items;
 };
 
+/// What all shots of a walk may take. 512 of them on the largest models.
+constexpr std::size_t shot_memory_bytes = 256U << 20U;
+/// At least one.
+std::size_t shots_that_fit(std::size_t max_items);
+
 /// Sized before the walk; remember() only copies.
 class ShotStore {
 public:

@@ -30,7 +30,7 @@ Result<model::CostModel> load_costs(const std::string& state_dir, const std::str
     const std::string file = cost_table_file(state_dir);
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) {
-        note = "no cost table in " + state_dir + ": built-in figures are used; run `surefoot calibrate` on this machine";
+        note = "no cost table in " + state_dir + ": built-in figures are used; run `surefoot calibrate`";
         return model::default_costs();
     }
     auto costs = measure::read_costs(file, "");

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <thread>
 
@@ -15,13 +14,14 @@
 #include "rt/frame/control.hpp"
 #include "rt/frame/loop.hpp"
 #include "rt/monitor/recorder.hpp"
-#include "rt/threads/capability.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/memory.hpp"
 #include "tools/app/control_proof.hpp"
+#include "tools/app/outputs.hpp"
 #include "tools/app/path_source.hpp"
 #include "tools/app/placing.hpp"
 #include "tools/app/prepare_thread.hpp"
+#include "tools/app/real_time.hpp"
 #include "tools/app/state.hpp"
 #include "tools/app/walk_results.hpp"
 #include "tools/app/walk_stages.hpp"
@@ -30,8 +30,9 @@ namespace surefoot::app {
 
 namespace {
 
-constexpr double budget_share = 0.80;  // of the period, where none is asked for
-constexpr double limit_share = 0.88;   // of the period: when the in-frame check wants the frame done
+constexpr double budget_share = 0.80;             // of the period, where none is asked for
+constexpr std::uint64_t most_frames = 4'000'000;  // records of 0.4 KiB
+constexpr double limit_share = 0.88;              // of the period: when the in-frame check wants the frame done
 
 /// Everything that one walk holds, in the order in which it must be made and (backwards) taken down.
 struct Session {
@@ -50,8 +51,15 @@ struct Session {
     KeptFrame kept;
     rt::ControlSchedule control;
     std::int64_t burn_ns = 0;  ///< the control's
+    model::CostModel costs;
 
     explicit Session(const WalkRequest& r) : request(r) {}
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+    /// On every way out, refusals included: the memory that claim() had locked.
+    ~Session() {
+        if (!virtual_clock && rt::guard_active()) rt::release_memory();
+    }
 };
 
 Result<void> read_request(Session& s) {
@@ -62,43 +70,27 @@ Result<void> read_request(Session& s) {
     auto period = rt::period_of_rate_ns(r.rate_hz);
     if (!period) return period.error();
     s.grid.period_ns = *period;
-    if (r.clock != "real" && r.clock != "virtual") return Error{"--clock " + r.clock, "there is no such clock", "real or virtual"};
+    if (r.clock != "real" && r.clock != "virtual")
+        return Error{"--clock " + r.clock, "there is no such clock", "real or virtual"};
     s.virtual_clock = r.clock == "virtual";
     if (r.control && s.virtual_clock) return Error{"--control", "judges real time", "leave out --clock virtual"};
+    if (r.strict && s.virtual_clock) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
     return {};
 }
 
-/// Real time, or what it lacks; with --strict the lack is an error.
-Result<void> claim_real_time(Session& s) {
+/// Real time and the cost table, or what they lack; with --strict a lack is an error.
+Result<void> claim(Session& s) {
     const WalkRequest& r = s.request;
-    bool granted = false;
-    if (!s.virtual_clock) {
-        rt::raise_limits(r.frame_priority);
-        const rt::Capabilities c = rt::probe_capabilities(r.frame_priority);
-        granted = c.fifo_priority >= r.frame_priority;
-        if (r.fifo) {
-            for (const rt::Lack& lack : c.lacking) s.facts.degraded.push_back({lack.what, lack.remedy});
-        } else {
-            s.facts.degraded.push_back({"real-time scheduling is switched off", "leave out --no-fifo"});
-        }
-        if (!rt::guard_active()) s.facts.degraded.push_back({"a sanitizer build: allocations are not guarded", "use the release build"});
-    }
-    auto plan = plan_placing(r, granted);
+    auto plan = claim_real_time(r, !s.virtual_clock, s.facts);
     if (!plan) return plan.error();
     s.plan = *plan;
-    s.facts.isolated = !s.virtual_clock && rt::probe_capabilities(r.frame_priority).isolated.has(s.plan.frame_core);
-    if (s.virtual_clock) s.plan.fifo = false;
-    if (r.strict && !s.virtual_clock && !s.plan.fifo) {
-        const report::Degraded why = s.facts.degraded.empty() ? report::Degraded{"no real time", ""} : s.facts.degraded.front();
-        return Error{"--strict", why.what, why.remedy};
-    }
-    if (!s.virtual_clock && rt::guard_active()) {
-        auto locked = rt::prepare_memory({});
-        s.facts.locked = locked.ok();
-        if (!locked && r.strict) return locked.error();
-        if (!locked) s.facts.degraded.push_back({locked.error().what, locked.error().remedy});
-    }
-    return {};
+    auto costs = load_costs(state_directory(r.state_dir), "", s.facts.uncalibrated);
+    if (!costs) return costs.error();
+    s.costs = std::move(*costs);
+    if (!r.strict) return {};
+    std::vector<report::Degraded> lacks = s.facts.degraded;
+    if (!s.facts.uncalibrated.empty()) lacks.push_back({s.facts.uncalibrated, ""});
+    return require_real_time(lacks);
 }
 
 Result<void> open_session(Session& s, const Progress& progress) {
@@ -123,19 +115,16 @@ Result<void> open_session(Session& s, const Progress& progress) {
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
     options.in_frame_check = r.in_frame_check;
-    std::string cost_note;
-    auto costs = load_costs(state_directory(r.state_dir), "", cost_note);
-    if (!costs) return costs.error();
-    if (!cost_note.empty()) s.facts.degraded.push_back({cost_note, "run `surefoot calibrate`"});
     progress.say("open", 0.5);
-    auto engine = Engine::open(std::move(*model), *costs, options);
+    auto engine = Engine::open(std::move(*model), s.costs, options);
     if (!engine) return engine.error();
     s.engine = std::move(*engine);
     s.facts.renderer = s.engine->device().renderer();
     s.facts.machine = measure::machine_identity(s.facts.renderer, r.rasterisers);
-    if (costs->calibrated && *kind != gl::BackendKind::null && costs->machine != s.facts.machine) {
-        s.facts.degraded.push_back({"the cost table was measured on \"" + costs->machine + "\", this is \"" + s.facts.machine + "\"",
-                                    "run `surefoot calibrate` here"});
+    if (s.costs.calibrated && *kind != gl::BackendKind::null && s.costs.machine != s.facts.machine) {
+        s.facts.uncalibrated = "the cost table was measured on \"" + s.costs.machine + "\", this is \"" + s.facts.machine +
+                               "\"; run `surefoot calibrate` here";
+        if (r.strict) return require_real_time(std::vector<report::Degraded>{{s.facts.uncalibrated, ""}});
     }
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
     if (r.capture_file.empty()) return {};
@@ -167,11 +156,25 @@ void warm_up(Session& s) {
     s.prepared.publish();
 }
 
-std::uint64_t frames_wanted(const Session& s) {
+/// How many frames to walk; every one leaves a record in memory, so there is an end to them.
+Result<std::uint64_t> frames_wanted(const Session& s) {
     const double period_s = static_cast<double>(s.grid.period_ns) * 1e-9;
-    if (s.request.frames > 0) return s.request.frames;
     const double seconds = s.request.seconds > 0 ? s.request.seconds : std::max(s.path.path.duration_s(), 1.0);
-    return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(seconds / period_s)));
+    const double frames = s.request.control      ? static_cast<double>(s.control.slots())
+                          : s.request.frames > 0 ? static_cast<double>(s.request.frames)
+                                                 : std::max(1.0, std::round(seconds / period_s));
+    if (!(frames <= static_cast<double>(most_frames))) {
+        return Error{s.request.frames > 0 || s.request.seconds > 0 || s.request.control ? "walk" : s.path.source,
+                     fmt::format("would take {:.4g} frames; at most {} are kept ({:.0f} hours at this rate)", frames, most_frames,
+                                 static_cast<double>(most_frames) * period_s / 3600.0),
+                     "give a smaller --frames or --seconds"};
+    }
+    if (!s.request.capture_file.empty() && static_cast<double>(s.request.capture_frame) >= frames) {
+        return Error{fmt::format("--capture-frame {}", s.request.capture_frame),
+                     fmt::format("the walk has {:.0f} frames, from 0", frames),
+                     "choose one of them, or walk longer with --frames"};
+    }
+    return static_cast<std::uint64_t>(frames);
 }
 
 WalkStagesOptions stages_options(const Session& s) {
@@ -214,7 +217,9 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     if (!s.virtual_clock) preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared);
     std::atomic<bool> done{false};
     std::thread frame_thread([&] {
-        auto placed = s.virtual_clock ? rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-frame"}) : rt::place_thread(0, frame_placement(s.plan));
+        auto placed = s.virtual_clock
+                          ? rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-frame"})
+                          : rt::place_thread(0, frame_placement(s.plan));
         s.facts.pinned = placed.ok() && !s.virtual_clock;
         if (!placed) {
             s.plan.fifo = false;  // the figures must say so
@@ -229,15 +234,17 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     });
     if (!s.virtual_clock) {
         std::this_thread::sleep_for(std::chrono::milliseconds(60));
-        if (auto placed = place_workers(s.plan); !placed) s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
+        if (auto placed = place_workers(s.plan); !placed)
+            s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
     }
     bool counted = s.virtual_clock;
     while (!done.load()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(s.virtual_clock ? 5 : 100));
-        const double ran = s.virtual_clock ? 0.5 : static_cast<double>(real.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
+        const double ran =
+            s.virtual_clock ? 0.5 : static_cast<double>(real.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
         progress.say("walk", std::clamp(ran / static_cast<double>(s.frames), 0.0, 1.0));
         if (!counted && ran > 30) {
-            s.facts.census_problems = rt::census_now(thread_table(s.plan, true, program_invocation_short_name));
+            take_census(s.plan, s.facts);
             counted = true;
         }
     }
@@ -250,21 +257,23 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
 Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress) {
     Session s(request);
     if (auto ok = read_request(s); !ok) return ok.error();
-    if (auto ok = claim_real_time(s); !ok) return ok.error();
+    if (auto ok = check_outputs(request); !ok) return ok.error();
+    if (auto ok = claim(s); !ok) return ok.error();
     if (auto ok = open_session(s, progress); !ok) return ok.error();
+    s.control = rt::control_schedule(s.grid.period_ns, request.control_block_s, request.control_pairs);
+    auto frames = frames_wanted(s);
+    if (!frames) return frames.error();
+    s.frames = *frames;
     if (!s.virtual_clock) {
         auto placed = place_rasterisers(s.plan);
         if (!placed) return placed.error();
         s.rasterisers = *placed;
     }
     warm_up(s);
-    s.control = rt::control_schedule(s.grid.period_ns, request.control_block_s, request.control_pairs);
-    s.frames = request.control ? s.control.slots() : frames_wanted(s);
 
-    const bool pictures = !request.report_dir.empty();
-    const std::uint64_t every = request.snap_every > 0 ? request.snap_every : pictures ? std::max<std::uint64_t>(1, s.frames / 6) : 0;
-    const std::size_t most = request.snap_every > 0 ? s.frames / every + 1 : pictures ? 7 : 0;
-    ShotStore shots(every, most, s.engine->drawn_capacity());
+    WalkOutcome outcome;
+    // After memory is locked: what the store sets aside is locked with it, and touched.
+    ShotStore shots = make_shot_store(request, s.frames, s.engine->drawn_capacity(), outcome.notes);
     rt::SpscRing<rt::FrameRecord> ring(4096);
     BlockSteal steal;
     rt::RecorderOptions recorder_options;
@@ -277,15 +286,13 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     recorder.stop();
     s.facts.steal_ms = total_steal_ms() - steal_before;
     s.facts.dropped_records = ring.dropped();
-    WalkOutcome outcome;
     outcome.records = recorder.take_records();
+    outcome.stopped = progress.stopped() && outcome.records.size() < s.frames;
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
-    if (request.control) judge_control(s.plan, s.grid.period_ns, s.burn_ns, steal, outcome, progress);
+    if (request.control && !outcome.stopped) judge_control(s.plan, s.grid.period_ns, s.burn_ns, steal, outcome, progress);
     s.engine->device().bind();
-    auto written = write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
+    write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
     s.engine->device().release();
-    if (!s.virtual_clock && rt::guard_active()) rt::release_memory();
-    if (!written) return written.error();
     return outcome;
 }
 

@@ -16,42 +16,47 @@ namespace surefoot::app {
 /// What one walk is asked for; 0 or empty means the default that is said here.
 struct WalkRequest {
     std::string model_file;
-    std::string path_file;        ///< empty: beside the model, else a generated tour
-    std::string state_dir;        ///< empty: see state_directory()
+    std::string config_file;  ///< where settings came from: not to be written over; may be empty
+    std::string path_file;    ///< empty: beside the model, else a generated tour
+    std::string state_dir;    ///< empty: see state_directory()
     std::string selector = "two-stage", late = "lock", backend = "egl", clock = "real";
-    double lift_m = 0;            ///< added to the path's heights
+    double lift_m = 0;  ///< added to the path's heights
     double rate_hz = 30;
     std::uint32_t width = 1280, height = 720;
-    std::uint64_t frames = 0;     ///< 0: as `seconds`, else as the path is long
+    std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the path is long
     double seconds = 0;
-    double budget_ms = 0;         ///< 0: 0.80 of the frame
-    double accuracy = 0;          ///< rad^-1; 0: as accurate as the budget allows
-    double cost_scale = 1;        ///< what costs really are over what is predicted (virtual clock)
-    double cost_noise = 0;        ///< relative, seeded (virtual clock)
-    int workers = 0;              ///< 0: one a core
-    int rasterisers = 0;          ///< 0: the measured default
-    int frame_core = -1;          ///< -1: the last core
+    double budget_ms = 0;   ///< 0: 0.80 of the frame
+    double accuracy = 0;    ///< rad^-1; 0: as accurate as the budget allows
+    double cost_scale = 1;  ///< what costs really are over what is predicted (virtual clock)
+    double cost_noise = 0;  ///< relative, seeded (virtual clock)
+    int workers = 0;        ///< 0: one a core
+    int rasterisers = 0;    ///< 0: the measured default
+    int frame_core = -1;    ///< -1: the last core
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
     double slice_us = 1000;
     double hysteresis = 1.25;
-    bool correct_costs = true;    ///< online correction of predictions; false: frozen at 1
+    bool correct_costs = true;  ///< online correction of predictions; false: frozen at 1
     bool fifo = true, strict = false, in_frame_check = true;
-    bool control = false;         ///< ABBA blocks against a bare loop
+    bool control = false;  ///< ABBA blocks against a bare loop
     std::uint32_t control_pairs = 90;
     double control_block_s = 2.0;
     std::string ledger_file, trace_file, report_dir, snap_dir;
     std::uint64_t snap_every = 0;
-    std::string capture_file;     ///< one frame's prepared arrays and cut, for `surefoot replay`
+    std::string capture_file;  ///< one frame's prepared arrays and cut, for `surefoot replay`
     std::uint64_t capture_frame = 0;
 };
 
 struct WalkOutcome {
     report::WalkSummary summary;
     std::vector<rt::FrameRecord> records;
-    std::string report_page;      ///< the report's index.html, where asked for
+    std::vector<Error> failures;     ///< outputs that could not be written; the others are there
+    std::vector<std::string> notes;  ///< what else the user should know, a line each
+    bool stopped = false;            ///< ended before its last frame, by progress.stop
+    std::string report_page;         ///< the report's index.html, where asked for
 };
 
-/// Errors: unreadable model or path, no context, --strict without real time, outputs that cannot be written.
+/// Errors, all before the first frame: unreadable model or path, no context, --strict without real time, outputs that could not
+/// be written. What fails after the walk is in the outcome's failures.
 /// Stopping (progress.stop) ends the walk at the next frame; what was walked is summed up and written.
 Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress);
 

@@ -3,7 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <cerrno>
 
 #include "render/capture/capture.hpp"
 #include "rt/base/file.hpp"
@@ -32,9 +33,12 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
     s.locked = facts.locked;
     s.steal_ms = facts.steal_ms;
     s.census_problems = facts.census_problems;
+    s.threads = facts.threads;
     s.degraded = facts.degraded;
+    s.uncalibrated = facts.uncalibrated;
     if (facts.dropped_records > 0) {
-        s.degraded.push_back({fmt::format("{} frame records were dropped", facts.dropped_records), "give the monitor thread a core with time left"});
+        s.degraded.push_back({fmt::format("{} frame records were dropped", facts.dropped_records),
+                              "give the monitor thread a core with time left"});
     }
     report::summarize(outcome.records, period_ns, s);
 }
@@ -46,12 +50,16 @@ Result<void> write_capture(const WalkRequest& request, const KeptFrame& kept, co
         return Error{request.capture_file, fmt::format("frame {} was not selected in this walk", request.capture_frame),
                      "choose a frame within the walk with --capture-frame"};
     }
-    const select::SelectInput input{&engine.model(), &kept.prepared, &engine.costs(), kept.budget_us, kept.correction, kept.target_error_rad, request.slice_us};
-    return capture::write_capture(request.capture_file,
-                                  capture::take(input, request.selector, static_cast<float>(request.hysteresis), kept.memory, kept.cut));
+    const select::SelectInput input{&engine.model(), &kept.prepared,        &engine.costs(), kept.budget_us,
+                                    kept.correction, kept.target_error_rad, request.slice_us};
+    capture::Capture taken =
+        capture::take(input, request.selector, static_cast<float>(request.hysteresis), kept.memory, kept.cut);
+    taken.frame = kept.frame;
+    return capture::write_capture(request.capture_file, taken);
 }
 
-Result<void> write_report_pages(const WalkRequest& request, Engine& engine, const ShotStore& shots, WalkOutcome& outcome, const Progress& progress) {
+Result<void> write_report_pages(const WalkRequest& request, Engine& engine, const ShotStore& shots, WalkOutcome& outcome,
+                                const Progress& progress) {
     std::vector<report::ReportShot> developed;
     // Snapshots may be many: the page shows at most seven of them, evenly spread.
     const std::size_t step = std::max<std::size_t>(1, (shots.used() + 6) / 7);
@@ -70,22 +78,45 @@ Result<void> write_report_pages(const WalkRequest& request, Engine& engine, cons
 
 }  // namespace
 
-Result<void> write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots, WalkOutcome& outcome,
-                           const Progress& progress) {
-    if (!request.ledger_file.empty()) {
-        if (auto w = report::write_ledger(request.ledger_file, outcome.records); !w) return w;
+void take_census(const PlacingPlan& plan, WalkFacts& facts) {
+    const std::vector<rt::DeclaredThread> table = thread_table(plan, true, program_invocation_short_name);
+    const auto threads = rt::read_threads();
+    if (!threads) {
+        facts.census_problems = {threads.error().text()};
+        return;
     }
-    if (!request.trace_file.empty()) {
-        if (auto w = report::write_trace(request.trace_file, outcome.records); !w) return w;
+    facts.census_problems = rt::census(table, *threads);
+    for (const rt::CensusRow& row : rt::census_rows(table, *threads)) {
+        facts.threads.push_back({row.name, row.count, std::string(rt::policy_name(row.policy)), row.priority, row.cpus.text()});
     }
-    if (!request.capture_file.empty()) {
-        if (auto w = write_capture(request, kept, engine); !w) return w;
+}
+
+ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
+                          std::vector<std::string>& notes) {
+    const bool page_only = request.snap_every == 0;
+    if (page_only && request.report_dir.empty()) return {0, 0, 0};
+    const std::uint64_t every = page_only ? std::max<std::uint64_t>(1, frames / 6) : request.snap_every;
+    const std::uint64_t wanted = page_only ? 7 : (frames - 1) / every + 1;
+    const std::uint64_t fit = shots_that_fit(max_items);
+    if (wanted > fit) {
+        notes.push_back(fmt::format(
+            "--snap: {} of {} pictures are kept: {} MiB of memory hold no more of this model; take fewer with --every {}", fit,
+            wanted, shot_memory_bytes >> 20U, (frames - 1) / fit + 1));
     }
-    if (!request.snap_dir.empty()) {
-        if (auto w = write_snaps(engine, shots, request.snap_dir, progress); !w) return w;
-    }
-    if (!request.report_dir.empty()) return write_report_pages(request, engine, shots, outcome, progress);
-    return {};
+    return {every, static_cast<std::size_t>(std::min(wanted, fit)), max_items};
+}
+
+void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots,
+                   WalkOutcome& outcome, const Progress& progress) {
+    const auto put = [&](const std::string& place, auto write) {
+        if (place.empty()) return;
+        if (Result<void> written = write(); !written) outcome.failures.push_back(written.error());
+    };
+    put(request.ledger_file, [&] { return report::write_ledger(request.ledger_file, outcome.records); });
+    put(request.trace_file, [&] { return report::write_trace(request.trace_file, outcome.records); });
+    put(request.capture_file, [&] { return write_capture(request, kept, engine); });
+    put(request.snap_dir, [&] { return write_snaps(engine, shots, request.snap_dir, progress); });
+    put(request.report_dir, [&] { return write_report_pages(request, engine, shots, outcome, progress); });
 }
 
 }  // namespace surefoot::app

@@ -15,7 +15,9 @@ namespace surefoot::app {
 /// Found out on the way, for the summary.
 struct WalkFacts {
     std::vector<report::Degraded> degraded;
+    std::string uncalibrated;  ///< the cost table is missing or another machine's: what, and the remedy
     std::vector<std::string> census_problems;
+    std::vector<report::ThreadRow> threads;
     std::string renderer, machine;
     bool pinned = false, locked = false, isolated = false;
     double steal_ms = 0;
@@ -25,8 +27,16 @@ struct WalkFacts {
 void fill_summary(const WalkRequest& request, const WalkFacts& facts, const PlacingPlan& plan, std::int64_t period_ns,
                   const std::string& path_source, const Engine& engine, WalkOutcome& outcome);
 
-/// Ledger, trace, capture, pictures, report: what the request names. The device must be bound to the calling thread.
-Result<void> write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots, WalkOutcome& outcome,
-                           const Progress& progress);
+/// The threads as they are now, and how they differ from the declared table.
+void take_census(const PlacingPlan& plan, WalkFacts& facts);
+
+/// Room for the pictures that --snap or --report will want of `frames` frames; a note where that is less than all.
+ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
+                          std::vector<std::string>& notes);
+
+/// Ledger, trace, capture, pictures, report: what the request names. One that fails goes to outcome.failures, and the next is
+/// written. The device must be bound to the calling thread.
+void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots,
+                   WalkOutcome& outcome, const Progress& progress);
 
 }  // namespace surefoot::app

@@ -25,7 +25,14 @@ Pose pose_at(const Path& path, double time_s) {
 WalkStages::WalkStages(Engine& engine, const Path& path, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
                        rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
                        const WalkStagesOptions& options)
-    : engine_(engine), path_(path), clock_(clock), poses_(poses), prepared_(prepared), shots_(shots), kept_(kept), options_(options) {}
+    : engine_(engine),
+      path_(path),
+      clock_(clock),
+      poses_(poses),
+      prepared_(prepared),
+      shots_(shots),
+      kept_(kept),
+      options_(options) {}
 
 void WalkStages::sample(rt::FrameRecord& record) {
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
@@ -60,7 +67,7 @@ void WalkStages::prepare_inline() {
 void WalkStages::select(rt::FrameRecord& record) {
     prepared_.refresh();
     const prepare::PreparedFrame& set = prepared_.front();
-    const std::uint64_t age = options_.virtual_clock ? 1 : now_.frame - std::min(set.frame, now_.frame);
+    const std::uint64_t age = now_.frame - std::min(set.frame, now_.frame);
     record.prepared_age = static_cast<std::uint32_t>(age);
     record.correction = static_cast<float>(options_.correct_costs ? controller_.factor() : 1.0);
     record.budget_us = static_cast<float>(options_.budget_us);
@@ -80,7 +87,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.visits = set.visits;
     record.candidates = static_cast<std::uint32_t>(set.candidates.size());
     record.prepare_cpu_us = static_cast<float>(set.cpu_us);
-    if (record.frame == options_.capture_frame) keep(cut, budget_us);
+    if (record.frame == options_.capture_frame) keep(record.frame, cut, budget_us);
 }
 
 void WalkStages::keep_memory() {
@@ -91,8 +98,9 @@ void WalkStages::keep_memory() {
     }
 }
 
-void WalkStages::keep(const select::Cut& cut, double budget_us) {
+void WalkStages::keep(std::uint64_t frame, const select::Cut& cut, double budget_us) {
     const prepare::PreparedFrame& set = prepared_.front();
+    kept_.frame = frame;
     kept_.prepared = set;  // into vectors that were reserved: no allocation
     kept_.cut = cut;
     kept_.budget_us = budget_us;

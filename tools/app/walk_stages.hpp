@@ -18,19 +18,20 @@ namespace surefoot::app {
 
 struct WalkStagesOptions {
     std::int64_t period_ns = 0;
-    double budget_us = 0;           ///< of the whole frame, from its due time
-    double limit_us = 0;            ///< of the in-frame check, from the due time
+    double budget_us = 0;  ///< of the whole frame, from its due time
+    double limit_us = 0;   ///< of the in-frame check, from the due time
     double target_error_rad = 0;
     bool correct_costs = true;
-    bool control = false;           ///< bare blocks lie between: the path's time is counted in walked frames
-    bool virtual_clock = false;     ///< prepare inline, charge the device's virtual time
-    double cost_scale = 1;          ///< virtual clock with a device that charges nothing
+    bool control = false;        ///< bare blocks lie between: the path's time is counted in walked frames
+    bool virtual_clock = false;  ///< prepare inline, charge the device's virtual time
+    double cost_scale = 1;       ///< virtual clock with a device that charges nothing
     std::uint64_t capture_frame = ~0ULL;
 };
 
 /// One frame kept for `surefoot replay`, copied into memory that was sized before.
 struct KeptFrame {
     bool kept = false;
+    std::uint64_t frame = 0;  ///< of the walk
     prepare::PreparedFrame prepared;
     select::Cut cut;
     std::vector<capture::Memory> memory;  ///< before the selection
@@ -44,7 +45,8 @@ class WalkStages final : public rt::FrameStages {
 public:
     /// `clock` is the loop's; virtual_clock: a rt::VirtualClock. Everything must outlive this.
     WalkStages(Engine& engine, const Path& path, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
-               rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept, const WalkStagesOptions& options);
+               rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
+               const WalkStagesOptions& options);
 
     void sample(rt::FrameRecord& record) override;
     void select(rt::FrameRecord& record) override;
@@ -55,7 +57,7 @@ public:
 private:
     void prepare_inline();
     void keep_memory();
-    void keep(const select::Cut& cut, double budget_us);
+    void keep(std::uint64_t frame, const select::Cut& cut, double budget_us);
 
     Engine& engine_;
     const Path& path_;

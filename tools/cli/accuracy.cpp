@@ -1,10 +1,12 @@
 // surefoot accuracy: what accuracy costs in time on this model and machine, as a chart, a table and a page.
-#include <filesystem>
+#include <cmath>
 
 #include <fmt/format.h>
 
+#include "render/select/select.hpp"
 #include "tools/app/accuracy.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
 
 namespace surefoot::cli {
 
@@ -16,26 +18,28 @@ struct AccuracyArguments {
 };
 
 void print_points(const report::AccuracyRun& run) {
-    fmt::print("{} at {} poses, {}x{}; full detail takes {:.1f} ms a frame\n", run.model, run.poses, run.width, run.height, run.full_frame_ms);
-    fmt::print("{:<18} {:>10} {:>10} {:>10} {:>12} {:>8} {:>7} {:>11}\n", "selector", "budget ms", "p50 ms", "p90 ms", "accuracy 1/r", "SNR dB",
-               "SSIM", "triangles");
+    fmt::print("{} at {} poses, {}x{}; full detail takes {:.1f} ms a frame\n", run.model, run.poses, run.width, run.height,
+               run.full_frame_ms);
+    fmt::print("{:<18} {:>10} {:>10} {:>10} {:>12} {:>6} {:>8} {:>7} {:>11}\n", "selector", "budget ms", "p50 ms", "p90 ms",
+               "accuracy 1/r", "exact", "SNR dB", "SSIM", "triangles");
     for (const report::AccuracyPoint& p : run.points) {
-        fmt::print("{:<18} {:>10.2f} {:>10.2f} {:>10.2f} {:>12.1f} {:>8.2f} {:>7.4f} {:>11.0f}\n", p.selector, p.budget_ms, p.frame_ms_p50,
-                   p.frame_ms_p90, p.accuracy_mean, p.snr_db, p.ssim, p.triangles);
+        fmt::print("{:<18} {:>10.2f} {:>10.2f} {:>10.2f} {:>12} {:>6} {:>8.2f} {:>7.4f} {:>11.0f}\n", p.selector, p.budget_ms,
+                   p.frame_ms_p50, p.frame_ms_p90,
+                   std::isfinite(p.accuracy_mean) ? fmt::format("{:.1f}", p.accuracy_mean) : "exact", p.exact, p.snr_db, p.ssim,
+                   p.triangles);
     }
 }
 
 int run_accuracy_command(AccuracyArguments& a, const Context& context) {
-    char x = 0;
-    if (std::sscanf(a.size.c_str(), "%u%c%u", &a.request.width, &x, &a.request.height) != 3 || x != 'x') {
-        return fail({"--size " + a.size, "is no size", "write WIDTHxHEIGHT, e.g. 1280x720"}), exit_usage;
-    }
+    const auto size = parse_size(a.size);
+    if (!size) return misuse(size.error());
+    a.request.width = size->width;
+    a.request.height = size->height;
+    if (auto ok = report::probe_accuracy_page(a.out); !ok) return fail(ok.error());
     auto run = app::run_accuracy(a.request, terminal_progress(context));
     end_progress(context);
     if (!run) return fail(run.error());
-    std::error_code error;
-    std::filesystem::create_directories(a.out, error);
-    if (error) return fail({a.out, "cannot be made: " + error.message(), "name another folder with --out"});
+    if (!run->uncalibrated.empty()) note("uncalibrated: " + run->uncalibrated);
     if (auto w = report::write_accuracy_page(a.out, *run); !w) return fail(w.error());
     if (a.json) {
         fmt::print("{}\n", report::accuracy_json(*run));
@@ -49,21 +53,33 @@ int run_accuracy_command(AccuracyArguments& a, const Context& context) {
 
 void add_accuracy(CLI::App& app, Context& context) {
     auto a = std::make_shared<AccuracyArguments>();
-    CLI::App* c = add_command(app, "accuracy", "Show what accuracy costs in time: budgets swept, accuracy, SNR and SSIM against frame time",
-                              "surefoot accuracy town.walk --path town.path.csv -o accuracy", a->json);
+    CLI::App* c = add_command(
+        app, "accuracy", "Show what accuracy costs in time: budgets swept, accuracy, SNR and SSIM against frame time",
+        "surefoot accuracy town.walk --path town.path.csv -o accuracy\n\n"
+        "The accuracy of a point is the mean over its places; places drawn exactly have no finite accuracy, are left\n"
+        "out of that mean and counted apart (a point with nothing but such places is 'exact').",
+        a->json);
     app::AccuracyRequest& r = a->request;
     c->add_option("model", r.model_file, "The .walk model")->required();
     c->add_option("--path", r.path_file, "Poses are taken along this path (else MODEL.path.csv, else a tour)");
     c->add_option("-o,--out", a->out, "Folder for index.html, accuracy.svg, accuracy.csv")->capture_default_str();
     c->add_option("--size", a->size, "Picture size")->capture_default_str();
-    c->add_option("--poses", r.poses, "Places along the path, 1..256")->check(CLI::Range(1U, 256U))->capture_default_str();
-    c->add_option("--repeats", r.repeats, "Timed submissions a place; the median counts")->check(CLI::Range(1, 100))->capture_default_str();
-    c->add_option("--selector", r.selectors, "Selectors to compare")->capture_default_str();
-    c->add_option("--budget", r.budgets_ms, "Frame budgets in ms; default: eight shares of the full frame's time");
-    c->add_option("--lift", r.lift_m, "Metres added to every height of the path")->capture_default_str();
-    c->add_option("--backend", r.backend, "egl, device, osmesa or window")->capture_default_str();
-    c->add_option("--workers", r.workers, "Threads that prepare; 0: one a core")->check(CLI::Range(0, 256));
-    c->add_option("--rasterisers", r.rasterisers, "Software GL threads; 0: the measured default")->check(CLI::Range(0, 64));
+    c->add_option("--poses", r.poses, "Places along the path, 1..256")->check(whole_number_within(1, 256))->capture_default_str();
+    c->add_option("--repeats", r.repeats, "Timed submissions a place; the median counts")
+        ->check(whole_number_within(1, 100))
+        ->capture_default_str();
+    c->add_option("--selector", r.selectors, "Selectors to compare")
+        ->check(one_of(select::selector_names()))
+        ->capture_default_str();
+    c->add_option("--budget", r.budgets_ms, "Frame budgets in ms; default: eight shares of the full frame's time")
+        ->check(number_within(0.001, 1e5, "ms"));
+    c->add_option("--lift", r.lift_m, "Metres added to every height of the path")
+        ->check(number_within(-1e7, 1e7, "m"))
+        ->capture_default_str();
+    c->add_option("--backend", r.backend, "egl, device, osmesa or window")->check(drawing_backend())->capture_default_str();
+    c->add_option("--workers", r.workers, "Threads that prepare; 0: one a core")->check(whole_number_within(0, 256));
+    c->add_option("--rasterisers", r.rasterisers, "Software GL threads; 0: the measured default")
+        ->check(whole_number_within(0, 64));
     c->add_option("--state", r.state_dir, "Folder with the calibrated cost table");
     c->callback([&context, a] { context.run = [a, &context] { return run_accuracy_command(*a, context); }; });
 }

@@ -8,8 +8,10 @@
 #include "render/bake/bake.hpp"
 #include "render/import/scene.hpp"
 #include "render/model/walk_file.hpp"
+#include "rt/base/file.hpp"
 #include "tools/app/state.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
 
 namespace surefoot::cli {
 
@@ -33,9 +35,14 @@ int run_bake(const BakeArguments& a, const Context& context) {
     for (const std::string& in : a.in) {
         std::error_code ignored;
         if (std::filesystem::equivalent(in, a.out, ignored)) {
-            return fail({a.out, "is one of the files to bake", "name another file with -o"}), exit_usage;
+            return misuse({a.out, "is one of the files to bake", "name another file with -o"});
         }
     }
+    // Pictures and buffers that the files to bake bring along are known only when these are read: no model has their endings.
+    if (std::filesystem::path(a.out).extension() != ".walk") {
+        return misuse({"-o " + a.out, "does not end in .walk", "name the model to write MODEL.walk"});
+    }
+    if (auto ok = probe_writable(a.out); !ok) return fail(ok.error());
     const Progress progress = terminal_progress(context);
     std::string cost_note;
     auto costs = app::load_costs(app::state_directory(a.state), "", cost_note);
@@ -56,13 +63,19 @@ int run_bake(const BakeArguments& a, const Context& context) {
     for (const std::string& warning : model->provenance.warnings) note(warning);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     if (a.json) {
-        print_json({{"file", a.out}, {"objects", model->object_count}, {"nodes", model->nodes.size()},
-                    {"representations", model->reps.size()}, {"triangles", model->triangles()}, {"bytes", written->bytes},
-                    {"seconds", seconds}, {"peak_mib", peak_memory_mib()}, {"quality", a.quality},
+        print_json({{"file", a.out},
+                    {"objects", model->object_count},
+                    {"nodes", model->nodes.size()},
+                    {"representations", model->reps.size()},
+                    {"triangles", model->triangles()},
+                    {"bytes", written->bytes},
+                    {"seconds", seconds},
+                    {"peak_mib", peak_memory_mib()},
+                    {"quality", a.quality},
                     {"warnings", model->provenance.warnings}});
     } else {
-        fmt::print("{}: {} objects, {} triangles, {} nodes, {} representations; {:.1f} MiB; {:.1f} s, {:.0f} MiB of memory\n", a.out,
-                   model->object_count, model->triangles(), model->nodes.size(), model->reps.size(),
+        fmt::print("{}: {} objects, {} triangles, {} nodes, {} representations; {:.1f} MiB; {:.1f} s, {:.0f} MiB of memory\n",
+                   a.out, model->object_count, model->triangles(), model->nodes.size(), model->reps.size(),
                    static_cast<double>(written->bytes) / 1048576.0, seconds, peak_memory_mib());
     }
     return exit_success;
@@ -76,10 +89,13 @@ void add_bake(CLI::App& app, Context& context) {
     c->add_option("in", a->in, "Model files: .glb, .gltf, .obj, .ostf; several become one scene")->required();
     c->add_option("-o,--out", a->out, "The model to write; what was there stays until it is complete")->required();
     c->add_option("--quality", a->quality, "draft: at most a minute a million triangles; full: tighter error bounds")
-        ->check(CLI::IsMember({"draft", "full"}))->capture_default_str();
-    c->add_option("--workers", a->workers, "Threads; 0: one a core. The result is the same at any number")->check(CLI::Range(0, 256));
+        ->check(CLI::IsMember({"draft", "full"}))
+        ->capture_default_str();
+    c->add_option("--workers", a->workers, "Threads; 0: one a core. The result is the same at any number")
+        ->check(whole_number_within(0, 256));
     c->add_option("--rate", a->rate_hz, "Frame rate in Hz for the rule that no item costs over 1/16 of a frame")
-        ->check(CLI::Range(1.0, 240.0))->capture_default_str();
+        ->check(number_within(1, 240, "Hz"))
+        ->capture_default_str();
     c->add_option("--state", a->state, "Folder with the calibrated cost table");
     c->callback([&context, a] { context.run = [a, &context] { return run_bake(*a, context); }; });
 }

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 
 namespace surefoot::cli {
@@ -30,8 +32,9 @@ void draw_bar(BarState& bar, std::string_view stage, double done) {
     const int filled = static_cast<int>(std::clamp(done, 0.0, 1.0) * 24.0);
     std::string left;
     if (done > 0.02 && spent > 0.5) left = fmt::format("{:.0f} s left", spent / done * (1.0 - done));
-    fmt::print(stderr, "\r\033[K{:<22} [{:<24}] {:3.0f} %  {}", bar.stage, std::string(static_cast<std::size_t>(filled), '#'),
-               100.0 * done, left);
+    const std::string line = fmt::format("\r\033[K{:<22} [{:<24}] {:3.0f} %  {}", bar.stage,
+                                         std::string(static_cast<std::size_t>(filled), '#'), 100.0 * done, left);
+    (void)std::fputs(line.c_str(), stderr);
     std::fflush(stderr);
 }
 
@@ -55,16 +58,39 @@ Progress terminal_progress(const Context& context) {
 }
 
 void end_progress(const Context& context) {
-    if (context.terminal) fmt::print(stderr, "\r\033[K");
+    if (context.terminal) (void)std::fputs("\r\033[K", stderr);
 }
 
 int fail(const Error& error) {
-    fmt::print(stderr, "surefoot: {}\n", error.text());
+    note(error.text());
     return exit_failure;
 }
 
-void note(const std::string& text) { fmt::print(stderr, "surefoot: {}\n", text); }
+int misuse(const Error& error) {
+    note(error.text());
+    return exit_usage;
+}
 
-void print_json(const nlohmann::ordered_json& object) { fmt::print("{}\n", object.dump(2)); }
+// Not fmt::print: it throws where nothing can be written, and of that nobody could be told.
+void note(const std::string& text) { (void)std::fputs(("surefoot: " + text + "\n").c_str(), stderr); }
+
+// Names come from files, and a file's name may hold any byte: what is no UTF-8 is replaced.
+std::string json_text(const nlohmann::ordered_json& value, int indent) {
+    return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void print_json(const nlohmann::ordered_json& object) { fmt::print("{}\n", json_text(object, 2)); }
+
+int finish_output(int code, int error) {
+    errno = 0;
+    const bool flushed = std::fflush(stdout) == 0;
+    if (error == 0) error = errno;
+    if (flushed && std::ferror(stdout) == 0) return code;
+    if (error != EPIPE) {
+        fail({"standard output", fmt::format("cannot be written: {}", error != 0 ? std::strerror(error) : "a part of it is lost"),
+              "free some space, or send it elsewhere"});
+    }
+    return code == exit_success ? exit_failure : code;
+}
 
 }  // namespace surefoot::cli

@@ -14,13 +14,15 @@ namespace surefoot::cli {
 
 /// Exit codes of the contract (DESIGN 6).
 constexpr int exit_success = 0, exit_failure = 1, exit_usage = 2;
+/// Ended by Ctrl-C (or SIGTERM, SIGHUP) before it was done, as a shell would say it.
+constexpr int exit_stopped = 130;
 
 /// Handed to the commands: what to run after parsing, and the wish to stop.
 struct Context {
-    std::function<int()> run;                    ///< set by the chosen command
-    const std::atomic<bool>* stop = nullptr;     ///< set by SIGINT and SIGTERM
-    bool terminal = false;                       ///< stderr is a terminal: progress and colour
-    bool colour = false;                         ///< stdout is a terminal and NO_COLOR is not set
+    std::function<int()> run;                 ///< set by the chosen command
+    const std::atomic<bool>* stop = nullptr;  ///< set by SIGINT and SIGTERM
+    bool terminal = false;                    ///< stderr is a terminal: progress and colour
+    bool colour = false;                      ///< stdout is a terminal and NO_COLOR is not set
 };
 
 /// A subcommand with its help, an example, and --json.
@@ -33,8 +35,15 @@ void end_progress(const Context& context);
 
 /// "surefoot: place: what" and the remedy on its own line; returns exit_failure.
 int fail(const Error& error);
+/// The same for wrong use; returns exit_usage.
+int misuse(const Error& error);
 void note(const std::string& text);
+/// As text that is valid UTF-8 whatever the names in it are; indent -1: one line.
+std::string json_text(const nlohmann::ordered_json& value, int indent);
 void print_json(const nlohmann::ordered_json& object);
+/// Writes out what waits for stdout. Returns `code`, or exit_failure where it could not be written: said on stderr, unless
+/// the reader of a pipe has just gone away. error: of a write that failed before, if one did.
+int finish_output(int code, int error = 0);
 
 void add_scene(CLI::App& app, Context& context);
 void add_bake(CLI::App& app, Context& context);

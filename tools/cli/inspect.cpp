@@ -21,7 +21,10 @@ const char* rep_name(model::RepKind kind) {
 }
 
 void print_tree(const model::Model& m) {
-    struct Open { model::Index node; int depth; };
+    struct Open {
+        model::Index node;
+        int depth;
+    };
     std::vector<Open> open{{0, 0}};
     while (!open.empty()) {
         const Open at = open.back();
@@ -34,6 +37,36 @@ void print_tree(const model::Model& m) {
         fmt::print("\n");
         for (std::uint32_t c = node.child_count; c > 0; --c) open.push_back({node.first_child + c - 1, at.depth + 1});
     }
+}
+
+/// One object with a flat list, a node a line and never all of them in memory: models have millions.
+void print_tree_json(const std::string& file, const model::Model& m) {
+    fmt::print("{{\n\"file\": {},\n\"nodes\": [", json_text(file, -1));
+    std::vector<model::Index> parents(m.nodes.size(), model::none);
+    for (model::Index n = 0; n < m.nodes.size(); ++n) {
+        const model::Node& node = m.nodes[n];
+        for (std::uint32_t c = 0; c < node.child_count; ++c) parents[node.first_child + c] = n;
+    }
+    for (model::Index n = 0; n < m.nodes.size(); ++n) {
+        const model::Node& node = m.nodes[n];
+        nlohmann::ordered_json reps = nlohmann::ordered_json::array();
+        for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
+            reps.push_back({{"kind", rep_name(m.reps[r].kind)},
+                            {"triangles", m.reps[r].triangles},
+                            {"error_m", m.reps[r].error_m},
+                            {"everywhere", m.reps[r].everywhere}});
+        }
+        const nlohmann::ordered_json parent =
+            parents[n] == model::none ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(parents[n]);
+        const nlohmann::ordered_json one = {{"id", n},
+                                            {"parent", parent},
+                                            {"kind", kind_name(node.kind)},
+                                            {"name", std::string(m.name_of(node))},
+                                            {"triangles", node.triangles},
+                                            {"representations", reps}};
+        fmt::print("{}\n{}", n == 0 ? "" : ",", json_text(one, -1));
+    }
+    fmt::print("\n]\n}}\n");
 }
 
 nlohmann::ordered_json effects_json(const model::Model& m) {
@@ -50,6 +83,7 @@ int run_inspect(const InspectArguments& a) {
     model::WalkFileInfo info;
     auto m = model::read_walk(a.file, &info);
     if (!m) return fail(m.error());
+    if (a.tree && a.json) return print_tree_json(a.file, *m), exit_success;
     if (a.tree) return print_tree(*m), exit_success;
     std::uint64_t clusters = 0, pieces = 0;
     for (const model::Node& node : m->nodes) {
@@ -59,13 +93,26 @@ int run_inspect(const InspectArguments& a) {
     std::map<std::string, std::uint64_t> kinds;
     for (const model::Representation& rep : m->reps) ++kinds[rep_name(rep.kind)];
     const Box& box = m->nodes[0].box;
-    print_json({{"file", a.file}, {"objects", m->object_count}, {"clusters", clusters}, {"pieces", pieces},
-                {"nodes", m->nodes.size()}, {"representations", m->reps.size()}, {"representation_kinds", kinds},
-                {"triangles", m->triangles()}, {"stored_triangles", m->indices.size() / 3}, {"vertices", m->vertices.size()},
-                {"materials", m->materials.size()}, {"textures", m->textures.size()}, {"bytes", info.bytes},
-                {"payload_bytes", info.payload_bytes}, {"pages", info.pages}, {"effects", effects_json(*m)},
+    print_json({{"file", a.file},
+                {"objects", m->object_count},
+                {"clusters", clusters},
+                {"pieces", pieces},
+                {"nodes", m->nodes.size()},
+                {"representations", m->reps.size()},
+                {"representation_kinds", kinds},
+                {"triangles", m->triangles()},
+                {"stored_triangles", m->indices.size() / 3},
+                {"vertices", m->vertices.size()},
+                {"materials", m->materials.size()},
+                {"textures", m->textures.size()},
+                {"bytes", info.bytes},
+                {"payload_bytes", info.payload_bytes},
+                {"pages", info.pages},
+                {"effects", effects_json(*m)},
                 {"box_m", {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}}},
-                {"sources", m->provenance.sources}, {"quality", m->provenance.quality}, {"bake_s", m->provenance.bake_s},
+                {"sources", m->provenance.sources},
+                {"quality", m->provenance.quality},
+                {"bake_s", m->provenance.bake_s},
                 {"warnings", m->provenance.warnings}});
     return exit_success;
 }
@@ -75,7 +122,9 @@ void add_inspect(CLI::App& app, Context& context) {
     auto a = std::make_shared<InspectArguments>();
     CLI::App* c = add_command(app, "inspect", "Say what is in a .walk model, as JSON", "surefoot inspect town.walk", a->json);
     c->add_option("model", a->file, "The .walk model")->required();
-    c->add_flag("--tree", a->tree, "The hierarchy instead: a line a node, with its representations as kind:triangles@error");
+    c->add_flag("--tree", a->tree,
+                "The hierarchy instead: a line a node, with its representations as kind:triangles@error; with --json a list with "
+                "parents");
     c->callback([&context, a] { context.run = [a] { return run_inspect(*a); }; });
 }
 

@@ -1,9 +1,15 @@
 // surefoot: bakes models, measures the machine, runs walks, and shows what accuracy costs. A thin main: one file a command.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
-
-#include <unistd.h>
+#include <sstream>
+#include <system_error>
 
 #include "tools/cli/command.hpp"
 
@@ -17,13 +23,43 @@ void on_signal(int number) {
     std::signal(number, SIG_DFL);
 }
 
+/// A closed stdin, stdout or stderr would give its number to the next file that is opened, and print into that.
+void keep_standard_files() {
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
+        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF) (void)open("/dev/null", fd == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+    }
+}
+
+/// Errors are values; what is thrown all the same ends here, and so does what stdout did not take.
+int run(const surefoot::cli::Context& context) {
+    using namespace surefoot;
+    int code = cli::exit_failure, output_error = 0;
+    const auto unexpected = [](const std::exception& error) {
+        cli::fail({"surefoot", std::string("unexpected: ") + error.what(), "please report this with the command line"});
+    };
+    try {
+        code = context.run();
+    } catch (const std::bad_alloc&) {
+        cli::fail({"memory", "not enough for this work", "close other programs, or use a machine with more"});
+    } catch (const std::system_error& error) {
+        output_error = std::ferror(stdout) != 0 ? error.code().value() : 0;
+        if (output_error == 0) unexpected(error);
+    } catch (const std::exception& error) {
+        unexpected(error);
+    }
+    return cli::finish_output(code, output_error);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     using namespace surefoot;
+    keep_standard_files();
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+    if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file limit is an error of that file, not the end of the program
 
     cli::Context context;
     context.stop = &stop_requested;
@@ -48,16 +84,20 @@ int main(int argc, char** argv) {
     cli::add_walk(app, context);
     cli::add_accuracy(app, context);
     cli::add_replay(app, context);
+    app.failure_message([](const CLI::App*, const CLI::Error& error) {
+        return "surefoot: " + std::string(error.what()) + " (see surefoot --help, or --help after the command)\n";
+    });
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? cli::exit_success : cli::exit_usage;
+        std::ostringstream out, err;
+        const int code = app.exit(error, out, err) == 0 ? cli::exit_success : cli::exit_usage;
+        (void)std::fputs(err.str().c_str(), stderr);
+        context.run = [text = out.str(), code] {
+            fmt::print("{}", text);
+            return code;
+        };
     }
-    try {
-        return context.run();
-    } catch (const std::bad_alloc&) {
-        return cli::fail({"memory", "not enough for this work", "close other programs, or bake on a machine with more"});
-    } catch (const std::exception& error) {
-        return cli::fail({"surefoot", std::string("unexpected: ") + error.what(), "please report this with the command line"});
-    }
+    const int code = run(context);
+    return code == cli::exit_failure && stop_requested.load() ? cli::exit_stopped : code;
 }

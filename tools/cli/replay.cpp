@@ -3,6 +3,7 @@
 
 #include "render/capture/capture.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
 
 namespace surefoot::cli {
 
@@ -14,37 +15,50 @@ struct ReplayArguments {
 };
 
 nlohmann::ordered_json cut_json(const std::string& selector, const select::Cut& cut) {
-    return {{"selector", selector}, {"hash", fmt::format("{:016x}", cut.hash)}, {"items", cut.items.size()},
-            {"predicted_us", cut.predicted_us}, {"floor_us", cut.floor_us}, {"floor_binds", cut.floor_binds},
-            {"triangles", cut.triangles}, {"refinements", cut.refinements},
-            {"accuracy", cut.worst_error_rad > 0 ? nlohmann::ordered_json(1.0 / cut.worst_error_rad) : nlohmann::ordered_json(nullptr)}};
+    return {{"selector", selector},
+            {"hash", fmt::format("{:016x}", cut.hash)},
+            {"items", cut.items.size()},
+            {"predicted_us", cut.predicted_us},
+            {"floor_us", cut.floor_us},
+            {"floor_binds", cut.floor_binds},
+            {"triangles", cut.triangles},
+            {"refinements", cut.refinements},
+            {"accuracy",
+             cut.worst_error_rad > 0 ? nlohmann::ordered_json(1.0 / cut.worst_error_rad) : nlohmann::ordered_json(nullptr)}};
 }
 
 int run_replay(const ReplayArguments& a) {
     auto captured = capture::read_capture(a.file);
     if (!captured) return fail(captured.error());
-    if (auto same = capture::verify(*captured); !same) return fail(same.error());
-    nlohmann::ordered_json cuts = nlohmann::ordered_json::array();
+    if (auto same = capture::verify(*captured); !same) {
+        return fail({a.file + ", " + same.error().place, same.error().what, same.error().remedy});
+    }
     std::vector<std::string> selectors{captured->selector};
     selectors.insert(selectors.end(), a.selectors.begin(), a.selectors.end());
-    if (!a.json) {
-        fmt::print("{}: frame {}, {} candidates, budget {:.2f} ms; the cut is repeated exactly\n", a.file, captured->prepared.frame,
-                   captured->prepared.candidates.size(), captured->budget_us * 1e-3);
-        fmt::print("{:<18} {:>16} {:>7} {:>13} {:>10} {:>12}\n", "selector", "hash", "items", "predicted us", "triangles", "refinements");
-    }
+    std::vector<select::Cut> cuts;  // all of them before a word is said
     for (const std::string& selector : selectors) {
         auto cut = capture::replay(*captured, selector);
         if (!cut) return fail(cut.error());
-        if (a.json) {
-            cuts.push_back(cut_json(selector, *cut));
-        } else {
-            fmt::print("{:<18} {:016x} {:>7} {:>13.0f} {:>10} {:>12}\n", selector, cut->hash, cut->items.size(), cut->predicted_us, cut->triangles,
-                       cut->refinements);
-        }
+        cuts.push_back(std::move(*cut));
     }
     if (a.json) {
-        print_json({{"capture", a.file}, {"frame", captured->prepared.frame}, {"candidates", captured->prepared.candidates.size()},
-                    {"budget_us", captured->budget_us}, {"same_cut", true}, {"cuts", cuts}});
+        nlohmann::ordered_json list = nlohmann::ordered_json::array();
+        for (std::size_t i = 0; i < cuts.size(); ++i) list.push_back(cut_json(selectors[i], cuts[i]));
+        print_json({{"capture", a.file},
+                    {"frame", captured->frame},
+                    {"candidates", captured->prepared.candidates.size()},
+                    {"budget_us", captured->budget_us},
+                    {"same_cut", true},
+                    {"cuts", list}});
+        return exit_success;
+    }
+    fmt::print("{}: frame {}, {} candidates, budget {:.2f} ms; the cut is repeated exactly\n", a.file, captured->frame,
+               captured->prepared.candidates.size(), captured->budget_us * 1e-3);
+    fmt::print("{:<18} {:>16} {:>7} {:>13} {:>10} {:>12}\n", "selector", "hash", "items", "predicted us", "triangles",
+               "refinements");
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+        fmt::print("{:<18} {:016x} {:>7} {:>13.0f} {:>10} {:>12}\n", selectors[i], cuts[i].hash, cuts[i].items.size(),
+                   cuts[i].predicted_us, cuts[i].triangles, cuts[i].refinements);
     }
     return exit_success;
 }
@@ -52,11 +66,13 @@ int run_replay(const ReplayArguments& a) {
 
 void add_replay(CLI::App& app, Context& context) {
     auto a = std::make_shared<ReplayArguments>();
-    CLI::App* c = add_command(app, "replay", "Repeat a captured frame's selection off line: the same cut, or an error that names the difference",
-                              "surefoot walk town.walk --capture frame.cap --capture-frame 120\n  surefoot replay frame.cap --selector best-first",
-                              a->json);
+    CLI::App* c = add_command(
+        app, "replay", "Repeat a captured frame's selection off line: the same cut, or an error that names the difference",
+        "surefoot walk town.walk --capture frame.cap --capture-frame 120\n  surefoot replay frame.cap --selector best-first",
+        a->json);
     c->add_option("capture", a->file, "A file from `surefoot walk --capture`")->required();
-    c->add_option("--selector", a->selectors, "Other selectors to try on the same frame");
+    c->add_option("--selector", a->selectors, "Other selectors to try on the same frame")
+        ->check(one_of(select::selector_names()));
     c->callback([&context, a] { context.run = [a] { return run_replay(*a); }; });
 }
 

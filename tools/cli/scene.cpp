@@ -1,9 +1,12 @@
 // surefoot scene: writes a generated scene and its path.
 #include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
 
+#include "rt/base/file.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
 #include "tools/scenes/scenes.hpp"
 
 namespace surefoot::cli {
@@ -16,15 +19,25 @@ struct SceneArguments {
     bool json = false;
 };
 
-int run_scene(const SceneArguments& a) {
+int run_scene(const SceneArguments& a, const Context& context) {
+    const std::string path = std::filesystem::path(a.out).replace_extension(".path.csv").string();
+    for (const std::string& out : {a.out, path}) {
+        if (auto ok = probe_writable(out); !ok) return fail(ok.error());
+    }
     auto scene = scenes::generate(a.name, a.scale, a.seed);
     if (!scene) return fail(scene.error());
+    if (context.stop->load()) return fail({a.out, "stopped by the user", "nothing was written"});
     if (auto written = scenes::write_scene(a.out, *scene); !written) return fail(written.error());
-    const std::string path = std::filesystem::path(a.out).replace_extension(".path.csv").string();
     const std::uint64_t triangles = scene->scene.triangles();
     if (a.json) {
-        print_json({{"scene", a.name}, {"scale", a.scale}, {"seed", a.seed}, {"file", a.out}, {"path", path},
-                    {"triangles", triangles}, {"objects", scene->scene.nodes.size()}, {"path_s", scene->path.duration_s()}});
+        print_json({{"scene", a.name},
+                    {"scale", a.scale},
+                    {"seed", a.seed},
+                    {"file", a.out},
+                    {"path", path},
+                    {"triangles", triangles},
+                    {"objects", scene->scene.nodes.size()},
+                    {"path_s", scene->path.duration_s()}});
     } else {
         fmt::print("{}: {} triangles in {} nodes; path of {:.0f} s in {}\n", a.out, triangles, scene->scene.nodes.size(),
                    scene->path.duration_s(), path);
@@ -35,12 +48,21 @@ int run_scene(const SceneArguments& a) {
 
 void add_scene(CLI::App& app, Context& context) {
     auto a = std::make_shared<SceneArguments>();
-    CLI::App* c = add_command(app, "scene", "Write a generated scene, and its path beside it", "surefoot scene town --scale 1 --seed 1 -o town.glb", a->json);
-    c->add_option("name", a->name, "forest (100 trees a scale), room, town (about 1 M triangles a scale)")->required();
-    c->add_option("--scale", a->scale, "Size of the scene, 0.01..1000")->check(CLI::Range(0.01, 1000.0))->capture_default_str();
-    c->add_option("--seed", a->seed, "The same seed gives the same file, bit for bit")->capture_default_str();
+    CLI::App* c = add_command(app, "scene", "Write a generated scene, and its path beside it",
+                              "surefoot scene town --scale 1 --seed 1 -o town.glb", a->json);
+    const std::vector<std::string> words = scenes::scene_names();
+    const std::vector<std::string_view> names(words.begin(), words.end());
+    c->add_option("name", a->name, "forest (100 trees a scale), room, town (about 1 M triangles a scale)")
+        ->required()
+        ->check(one_of(names));
+    c->add_option("--scale", a->scale, "Size of the scene")
+        ->check(number_within(scenes::least_scale, scenes::most_scale))
+        ->capture_default_str();
+    c->add_option("--seed", a->seed, "The same seed gives the same file, bit for bit")
+        ->check(whole_number_within(0, std::numeric_limits<std::uint64_t>::max()))
+        ->capture_default_str();
     c->add_option("-o,--out", a->out, "OUT.glb, OUT.obj or OUT.ostf; the path goes to OUT.path.csv")->required();
-    c->callback([&context, a] { context.run = [a] { return run_scene(*a); }; });
+    c->callback([&context, a] { context.run = [a, &context] { return run_scene(*a, context); }; });
 }
 
 }  // namespace surefoot::cli

@@ -2,40 +2,74 @@
 #include <fmt/format.h>
 
 #include "config/settings.hpp"
+#include "config/values.hpp"
+#include "render/gl/device.hpp"
 #include "tools/app/walk.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace surefoot::cli {
 
 namespace {
 
+constexpr std::uint64_t unset = ~0ULL;
+
 /// What the command line says; settings come through the schema, so that a file and a flag obey the same limits.
 struct WalkArguments {
     app::WalkRequest request;
     std::string config_file, profile, size;
-    std::vector<std::pair<std::string, std::string>> values;  ///< schema key and text, in the order given
+    struct Setting {
+        std::string flag, key, text;
+    };
+    std::vector<Setting> values;  ///< in the order given
     bool no_fifo = false, no_check = false, no_correction = false, json = false;
 };
 
+/// A value of the command line, through the schema; what is refused is named as the user wrote it.
+Result<void> put_setting(config::Configuration& c, const std::string& flag, const std::string& key, const std::string& text) {
+    const std::string place = flag + " " + text;
+    if (key == "backend") {
+        if (const auto kind = gl::parse_backend(text); !kind) return Error{place, kind.error().what, kind.error().remedy};
+    }
+    if (config::set_value(c, key, text)) return {};
+    return Error{place, "is not allowed", config::allowed(*config::find_entry(key))};
+}
+
+/// Options that say nothing without another one, or against it.
+Result<void> check_together(const app::WalkRequest& r, bool every_given, bool capture_frame_given) {
+    const bool is_virtual = r.clock == "virtual";
+    if (r.control && is_virtual) return Error{"--control", "judges real time", "leave out --clock virtual"};
+    if (r.strict && is_virtual) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
+    if (every_given && r.snap_dir.empty())
+        return Error{"--every", "says how often pictures are taken, and none are", "add --snap DIR"};
+    if (capture_frame_given && r.capture_file.empty())
+        return Error{"--capture-frame", "needs a file to go to", "add --capture FILE"};
+    return {};
+}
+
 Result<app::WalkRequest> to_request(WalkArguments& a) {
     config::Configuration c;
+    if (!a.profile.empty() && a.config_file.empty()) {
+        return Error{"--profile " + a.profile, "is a part of a settings file, and none is given",
+                     "add --config FILE.toml with a [profile." + a.profile + "]"};
+    }
     if (!a.config_file.empty()) {
         if (auto ok = config::load_file(c, a.config_file, a.profile); !ok) return ok.error();
     }
+    for (const auto& [flag, key, text] : a.values) {
+        if (auto ok = put_setting(c, flag, key, text); !ok) return ok.error();
+    }
     if (!a.size.empty()) {
-        const std::size_t x = a.size.find('x');
-        if (x == std::string::npos) return Error{"--size " + a.size, "is no size", "write WIDTHxHEIGHT, e.g. 1280x720"};
-        a.values.emplace_back("width", a.size.substr(0, x));
-        a.values.emplace_back("height", a.size.substr(x + 1));
+        const auto size = parse_size(a.size);
+        if (!size) return size.error();
+        c.values.width = size->width;
+        c.values.height = size->height;
     }
-    if (a.no_fifo) a.values.emplace_back("fifo", "false");
-    if (a.no_check) a.values.emplace_back("in_frame_check", "false");
-    if (a.request.strict) a.values.emplace_back("strict", "true");
-    if (a.request.control) a.values.emplace_back("control", "true");
-    for (const auto& [key, text] : a.values) {
-        if (auto ok = config::set_value(c, key, text); !ok) return ok.error();
-    }
+    if (a.no_fifo) c.values.fifo = false;
+    if (a.no_check) c.values.in_frame_check = false;
+    c.values.strict = c.values.strict || a.request.strict;
+    c.values.control = c.values.control || a.request.control;
     if (auto ok = config::check(c); !ok) return ok.error();
     const config::Settings& s = c.values;
     app::WalkRequest r = a.request;
@@ -62,37 +96,50 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
     r.slice_us = s.slice_us;
     r.hysteresis = s.hysteresis;
     r.correct_costs = !a.no_correction;
+    r.config_file = a.config_file;
+    if (auto ok = check_together(r, r.snap_every > 0, r.capture_frame != unset); !ok) return ok.error();
     if (!r.snap_dir.empty() && r.snap_every == 0) r.snap_every = 30;
+    if (r.capture_frame == unset) r.capture_frame = 0;
     return r;
 }
 
 int run_walk_command(WalkArguments& a, const Context& context) {
     auto request = to_request(a);
-    if (!request) return fail(request.error()), exit_usage;
+    if (!request) return misuse(request.error());
     auto outcome = app::run_walk(*request, terminal_progress(context));
     end_progress(context);
     if (!outcome) return fail(outcome.error());
-    for (const report::Degraded& d : outcome->summary.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
-    for (const std::string& problem : outcome->summary.census_problems) note("thread census: " + problem);
+    for (const std::string& text : outcome->notes) note(text);
     if (a.json) {
         fmt::print("{}\n", report::to_json(outcome->summary));
+        // The table says these itself.
+        if (!outcome->summary.uncalibrated.empty()) note("uncalibrated: " + outcome->summary.uncalibrated);
+        for (const report::Degraded& d : outcome->summary.degraded)
+            note("not fully real-time: " + d.what + " (" + d.remedy + ")");
+        for (const std::string& problem : outcome->summary.census_problems) note("thread census: " + problem);
     } else {
         fmt::print("{}", report::to_table(outcome->summary, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
     }
-    if (report::rule_broken(outcome->summary.control))
-        return note("the deadline rule is broken: see the control's figures"), exit_failure;
-    return exit_success;
+    for (const Error& error : outcome->failures) fail(error);
+    if (outcome->stopped)
+        note(fmt::format("stopped by the user after {} frames; the figures are of these", outcome->summary.frames));
+    const bool broken = report::rule_broken(outcome->summary.control);
+    if (broken) note("the deadline rule is broken: see the control's figures");
+    return outcome->failures.empty() && !outcome->stopped && !broken ? exit_success : exit_failure;
 }
 
 /// An option that goes through the settings' schema under `key`.
 void add_setting(CLI::App* c, const std::shared_ptr<WalkArguments>& a, const std::string& flag, const std::string& key) {
     const config::Entry* entry = config::find_entry(key);
     std::string help(entry->help);
-    if (!entry->unit.empty()) help += " (" + std::string(entry->unit) + ")";
-    help += " [" + config::value_text({}, *entry) + "]";
+    help += " Allowed: " + config::allowed(*entry) + " [" + config::value_text({}, *entry) + "]";
     c->add_option_function<std::string>(
-        flag, [a, key](const std::string& text) { a->values.emplace_back(key, text); }, help);
+        flag,
+        [a, flag, key](const std::string& text) {
+            a->values.push_back({flag, key, text});
+        },
+        help);
 }
 
 }  // namespace
@@ -100,6 +147,7 @@ void add_setting(CLI::App* c, const std::shared_ptr<WalkArguments>& a, const std
 void add_walk(CLI::App& app, Context& context) {
     auto a = std::make_shared<WalkArguments>();
     app::WalkRequest& r = a->request;
+    r.capture_frame = unset;
     CLI::App* c =
         add_command(app, "walk", "Walk through a model in real time, and show the figures",
                     "surefoot walk town.walk --seconds 30 --report report\n"
@@ -108,9 +156,13 @@ void add_walk(CLI::App& app, Context& context) {
                     a->json);
     c->add_option("model", r.model_file, "The .walk model")->required();
     c->add_option("--path", r.path_file, "Poses over time, CSV (else MODEL.path.csv, else a tour)");
-    c->add_option("--lift", r.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")->capture_default_str();
-    c->add_option("--frames", r.frames, "Frames to walk (else --seconds, else the path once)");
-    c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")->check(CLI::Range(0.0, 1e7));
+    c->add_option("--lift", r.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")
+        ->check(number_within(-1e7, 1e7, "m"))
+        ->capture_default_str();
+    c->add_option("--frames", r.frames, "Frames to walk (else --seconds, else the path once)")
+        ->check(whole_number_within(1, 4'000'000));
+    c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")
+        ->check(number_within(0.001, 1e6, "s"));
     c->add_option("--size", a->size, "Picture size [1280x720]");
     for (const auto& [flag, key] : {std::pair{"--rate", "rate_hz"},
                                     {"--budget", "budget_ms"},
@@ -127,14 +179,16 @@ void add_walk(CLI::App& app, Context& context) {
                                     {"--hysteresis", "hysteresis"}}) {
         add_setting(c, a, flag, key);
     }
-    c->add_option("--cost-noise", r.cost_noise, "Virtual clock: relative noise on costs")->check(CLI::Range(0.0, 10.0));
+    c->add_option("--cost-noise", r.cost_noise, "Virtual clock: relative noise on costs")->check(number_within(0, 10));
     c->add_flag("--no-fifo", a->no_fifo, "Ordinary scheduling (the figures are marked)");
-    c->add_flag("--strict", r.strict, "Do not start where real time is refused");
+    c->add_flag("--strict", r.strict,
+                "Do not start where anything that real time needs is refused: FIFO, locked memory, an isolated core, "
+                "placing, a cost table");
     c->add_flag("--no-check", a->no_check, "Without the in-frame check, to see what it is worth");
     c->add_flag("--no-correction", a->no_correction, "Predictions are not corrected online");
     c->add_flag("--control", r.control, "Alternate blocks of the walk and of a bare loop, and judge by the deadline rule");
     c->add_option("--control-pairs", r.control_pairs, "Pairs of blocks; the rule wants 90")
-        ->check(CLI::Range(1U, 100000U))
+        ->check(whole_number_within(1, 100000))
         ->capture_default_str();
     c->add_option("--config", a->config_file, "Settings in TOML; the command line wins");
     c->add_option("--profile", a->profile, "A [profile.NAME] of the settings file");
@@ -142,10 +196,10 @@ void add_walk(CLI::App& app, Context& context) {
     c->add_option("--ledger", r.ledger_file, "CSV, a row a frame");
     c->add_option("--trace", r.trace_file, "A trace that ui.perfetto.dev opens");
     c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html");
-    c->add_option("--snap", r.snap_dir, "Pictures of what the walk drew: DIR/00000.png, ...");
-    c->add_option("--every", r.snap_every, "A picture every N frames [30]");
+    c->add_option("--snap", r.snap_dir, "Pictures of what the walk drew: DIR/00000.png, ...; what 256 MiB of memory hold");
+    c->add_option("--every", r.snap_every, "A picture every N frames [30]")->check(whole_number_within(1, 1'000'000'000));
     c->add_option("--capture", r.capture_file, "One frame's prepared arrays and cut, for `surefoot replay`");
-    c->add_option("--capture-frame", r.capture_frame, "Which frame to capture")->capture_default_str();
+    c->add_option("--capture-frame", r.capture_frame, "Which frame to capture [0]")->check(whole_number_within(0, 4'000'000));
     c->callback([&context, a] { context.run = [a, &context] { return run_walk_command(*a, context); }; });
 }
 

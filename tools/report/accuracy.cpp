@@ -26,14 +26,16 @@ std::string table_of(const AccuracyRun& run) {
     std::string out =
         "<div class=\"card scroll\"><table>\n<tr><th>selector</th><th>budget, ms</th><th>frame p50, "
         "ms</th><th>p90</th><th>accuracy, "
-        "rad⁻¹</th><th>SNR, dB</th><th>SSIM</th><th>triangles</th><th>equal / undefined</th></tr>\n";
+        "rad⁻¹</th><th>exact</th><th>SNR, dB</th><th>SSIM</th><th>triangles</th><th>equal / undefined</th></tr>\n";
     for (const AccuracyPoint& p : run.points)
         out += fmt::format(
-            "<tr><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</td><td>{:.4f}</td><td>{}</td><td>{} / {} "
+            "<tr><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.4f}</td><td>{}</"
+            "td><td>{} / {} "
             "of {}</td></tr>\n",
             escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.2f}", p.budget_ms) : "∞", p.frame_ms_p50,
-            p.frame_ms_p90, short_number(p.accuracy_mean), std::isfinite(p.snr_db) ? fmt::format("{:.2f}", p.snr_db) : "–",
-            p.ssim, grouped(p.triangles), p.snr_infinite, p.snr_undefined, p.frames);
+            p.frame_ms_p90, std::isfinite(p.accuracy_mean) ? short_number(p.accuracy_mean) : "∞", p.exact,
+            std::isfinite(p.snr_db) ? fmt::format("{:.2f}", p.snr_db) : "–", p.ssim, grouped(p.triangles), p.snr_infinite,
+            p.snr_undefined, p.frames);
     return out + "</table></div>\n";
 }
 
@@ -45,11 +47,16 @@ std::string body_of(const AccuracyRun& run) {
                        escaped(run.renderer));
     if (run.full_frame_ms > 0) out += fmt::format(" Full detail takes {:.1f} ms a frame.", run.full_frame_ms);
     out += "</p>\n</header>\n";
+    if (!run.uncalibrated.empty())
+        out += fmt::format("<ul class=\"notes\"><li><b>Uncalibrated: {}</b></li></ul>\n", escaped(run.uncalibrated));
     out += fmt::format("<div class=\"card wide\">{}</div>\n", accuracy_chart(run));
     out +=
         "<p class=\"sub\">Each line is one way to choose what to draw, each point a budget. <b>Accuracy</b>: one over the "
         "largest angular error on "
-        "screen. <b>SNR</b> and <b>SSIM</b>: against full detail from the same place. Up and to the left is better. Points where "
+        "screen, the mean over the places; places drawn exactly have no finite accuracy: they are left out of the mean and "
+        "counted "
+        "under <b>exact</b>. <b>SNR</b> and <b>SSIM</b>: against full detail from the same place. Up and to the left is better. "
+        "Points where "
         "every picture "
         "equals full detail have no finite SNR and are left out of that panel.</p>\n<h2>Figures</h2>\n";
     out += table_of(run);
@@ -73,11 +80,11 @@ std::string stand_alone(const std::string& inline_chart, bool dark) {
 std::string accuracy_csv(const AccuracyRun& run) {
     std::string out =
         "selector,budget_ms,frame_ms_p50,frame_ms_p90,accuracy_per_rad,snr_db,ssim,triangles,cost_us,frames,snr_infinite,snr_"
-        "undefined\n";
+        "undefined,exact\n";
     for (const AccuracyPoint& p : run.points)
-        out += fmt::format("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.6f},{:.1f},{:.2f},{},{},{}\n", p.selector, p.budget_ms,
+        out += fmt::format("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.6f},{:.1f},{:.2f},{},{},{},{}\n", p.selector, p.budget_ms,
                            p.frame_ms_p50, p.frame_ms_p90, p.accuracy_mean, p.snr_db, p.ssim, p.triangles, p.cost_us, p.frames,
-                           p.snr_infinite, p.snr_undefined);
+                           p.snr_infinite, p.snr_undefined, p.exact);
     return out;
 }
 
@@ -94,12 +101,26 @@ std::string accuracy_json(const AccuracyRun& run) {
                           {"cost_us", finite(p.cost_us)},
                           {"frames", p.frames},
                           {"snr_infinite", p.snr_infinite},
-                          {"snr_undefined", p.snr_undefined}});
-    const Json json = {
-        {"model", run.model}, {"path", run.path},     {"renderer", run.renderer}, {"machine", run.machine},
-        {"width", run.width}, {"height", run.height}, {"poses", run.poses},       {"full_frame_ms", finite(run.full_frame_ms)},
-        {"points", points}};
+                          {"snr_undefined", p.snr_undefined},
+                          {"exact", p.exact}});
+    const Json json = {{"model", run.model},
+                       {"path", run.path},
+                       {"renderer", run.renderer},
+                       {"machine", run.machine},
+                       {"width", run.width},
+                       {"height", run.height},
+                       {"poses", run.poses},
+                       {"full_frame_ms", finite(run.full_frame_ms)},
+                       {"calibrated", run.uncalibrated.empty()},
+                       {"points", points}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<void> probe_accuracy_page(const std::string& dir) {
+    for (const auto* name : {"accuracy.csv", "accuracy.json", "accuracy.svg", "accuracy-dark.svg", "index.html"}) {
+        if (auto ok = probe_writable((std::filesystem::path(dir) / name).string(), true); !ok) return ok;
+    }
+    return {};
 }
 
 Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run) {

@@ -48,6 +48,14 @@ Json control_of(const ControlSummary& control) {
     return json;
 }
 
+Json threads_of(const std::vector<ThreadRow>& threads) {
+    Json rows = Json::array();
+    for (const ThreadRow& t : threads)
+        rows.push_back(
+            {{"name", t.name}, {"count", t.count}, {"policy", t.policy}, {"priority", t.priority}, {"cores", t.cores}});
+    return rows;
+}
+
 }  // namespace
 
 std::string to_json(const WalkSummary& s) {
@@ -82,10 +90,13 @@ std::string to_json(const WalkSummary& s) {
           {"isolated", s.isolated},
           {"locked", s.locked},
           {"page_faults", s.page_faults},
-          {"guard_violations", s.guard_violations}}},
+          {"guard_violations", s.guard_violations},
+          {"driver_allocations_per_frame", rounded(s.driver_allocations_per_frame)}}},
+        {"threads", threads_of(s.threads)},
+        {"calibrated", s.uncalibrated.empty()},
         {"control", control_of(s.control)},
     };
-    return json.dump(2) + "\n";
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace surefoot::report

@@ -28,7 +28,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 std::string_view cause_of(const FrameRecord& f) { return rt::cause_names[static_cast<std::size_t>(f.cause)]; }
 
 // clang-format off
-constexpr std::array<Column, 54> columns = {{
+constexpr std::array<Column, 56> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -59,6 +59,8 @@ constexpr std::array<Column, 54> columns = {{
     {"cpu_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.cpu_ns)); }},
     {"raster_cpu_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.raster_cpu_ns)); }},
     {"stolen_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.stolen_ns)); }},
+    {"preempted_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.preempted_ns)); }},
+    {"waited_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.waited_ns)); }},
     {"upload_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.upload_ns)); }},
     {"voluntary", [](auto& r, auto& f) { add(r, "{}", f.voluntary); }},
     {"involuntary", [](auto& r, auto& f) { add(r, "{}", f.involuntary); }},

@@ -94,8 +94,9 @@ std::string page_header(const WalkSummary& s) {
 }
 
 std::string degraded_notes(const WalkSummary& s) {
-    if (s.degraded.empty() && s.census_problems.empty()) return {};
+    if (s.degraded.empty() && s.census_problems.empty() && s.uncalibrated.empty()) return {};
     std::string out = "<ul class=\"notes\">\n";
+    if (!s.uncalibrated.empty()) out += fmt::format("<li><b>Uncalibrated: {}</b></li>\n", escaped(s.uncalibrated));
     for (const Degraded& d : s.degraded) {
         out += fmt::format("<li><b>Not fully real-time: {}</b>", escaped(d.what));
         if (!d.remedy.empty()) out += fmt::format("<code>{}</code>", escaped(d.remedy));
@@ -161,7 +162,7 @@ std::string figures_table(const WalkSummary& s) {
 
 std::string machine_table(const WalkSummary& s) {
     const auto yes = [](bool b) { return b ? "yes" : "no"; };
-    const std::array<std::pair<std::string_view, std::string>, 9> rows = {{
+    const std::array<std::pair<std::string_view, std::string>, 10> rows = {{
         {"Machine", s.machine},
         {"Renderer", fmt::format("{} ({})", s.renderer, s.backend)},
         {"Clock, late frames", fmt::format("{}, {}", s.clock, s.late_policy)},
@@ -169,9 +170,10 @@ std::string machine_table(const WalkSummary& s) {
         {"Threads pinned to cores", yes(s.pinned)},
         {"Core set apart from others", yes(s.isolated)},
         {"Memory locked", yes(s.locked)},
+        {"Threads", s.threads.empty() ? "not counted" : threads_words(s.threads)},
         {"Frame thread's own code", fmt::format("{} page faults, {} guard violations", s.page_faults, s.guard_violations)},
-        {"Driver, and the host", fmt::format("{} page faults, {} allocations; {:.1f} ms stolen by the host", s.driver_faults,
-                                             s.driver_allocations, s.steal_ms)},
+        {"Driver, and the host", fmt::format("{} page faults, {} allocations ({:.1f} a frame); {:.1f} ms stolen by the host",
+                                             s.driver_faults, s.driver_allocations, s.driver_allocations_per_frame, s.steal_ms)},
     }};
     std::string out = "<h2>The machine</h2>\n<div class=\"card scroll\"><table>\n";
     for (const auto& [name, value] : rows)

@@ -36,6 +36,15 @@ struct Degraded {
     std::string what, remedy;
 };
 
+/// Threads that are alike, as the census found them.
+struct ThreadRow {
+    std::string name;
+    std::uint32_t count = 0;
+    std::string policy;
+    int priority = 0;
+    std::string cores;
+};
+
 /// All that `walk --json` prints (DESIGN 6), computed once from the records.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
@@ -49,10 +58,13 @@ struct WalkSummary {
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
     std::uint64_t triangles_max = 0, downgrades = 0, floor_bound_frames = 0, model_triangles = 0;
     std::string cut_hash;  ///< 16 hex digits over all frames
-    double steal_ms = 0;             ///< as the host says, set before summarize; at least what the frames lost
+    double steal_ms = 0;   ///< as the host says, set before summarize; at least what the frames lost
     bool fifo = false, pinned = false, isolated = false, locked = false;
     std::uint64_t page_faults = 0, guard_violations = 0, driver_faults = 0, driver_allocations = 0;
     std::vector<std::string> census_problems;
+    double driver_allocations_per_frame = 0;
+    std::vector<ThreadRow> threads;  ///< of the census, early in the walk; empty where none was taken
+    std::string uncalibrated;        ///< the cost table is missing: what, and the remedy
     std::vector<Degraded> degraded;  ///< what is not real-time here, and how to grant it
     ControlSummary control;
 };
@@ -99,9 +111,11 @@ struct AccuracyPoint {
     std::string selector;
     double budget_ms = 0, frame_ms_p50 = 0, frame_ms_p90 = 0, accuracy_mean = 0, snr_db = 0, ssim = 0, triangles = 0, cost_us = 0;
     std::uint32_t snr_undefined = 0, snr_infinite = 0, frames = 0;
+    std::uint32_t exact = 0;  ///< frames drawn exactly: left out of accuracy_mean, which is infinite where all are
 };
 struct AccuracyRun {
     std::string model, path, renderer, machine;
+    std::string uncalibrated;  ///< where this machine's cost table is missing: what, and the remedy
     std::uint32_t width = 0, height = 0, poses = 0;
     double full_frame_ms = 0;
     std::vector<AccuracyPoint> points;
@@ -109,6 +123,8 @@ struct AccuracyRun {
 std::string accuracy_svg(const AccuracyRun& run, bool dark);
 std::string accuracy_csv(const AccuracyRun& run);
 std::string accuracy_json(const AccuracyRun& run);
+/// Whether the page could be written to `dir` now; to be asked before the sweep.
+Result<void> probe_accuracy_page(const std::string& dir);
 Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run);
 
 /// Maciel's figure 3.4 for this machine: cost against pixels, a line a triangle count, a panel a state class.

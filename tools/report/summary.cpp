@@ -53,6 +53,8 @@ void count_frames(std::span<const FrameRecord* const> frames, WalkSummary& s) {
     s.steal_ms = std::max(s.steal_ms, static_cast<double>(stolen_ns) * 1e-6);
     s.frames = frames.size();
     s.slots = s.frames + s.skipped;
+    s.driver_allocations_per_frame =
+        s.frames == 0 ? 0 : static_cast<double>(s.driver_allocations) / static_cast<double>(s.frames);
     s.cut_hash = fmt::format("{:016x}", hash);
 }
 
@@ -80,8 +82,9 @@ void budget_figures(std::span<const FrameRecord* const> frames, std::int64_t per
     s.budget_used_p99 = used.p99;
     s.budget_used_wall_mean = quantiles_of(frames, [](const FrameRecord& f) { return share_of_budget(f); }).mean;
     std::vector<double> errors;
-    for (const FrameRecord* f : frames)
-        if (f->actual_us > 0) errors.push_back(std::abs(double{f->predicted_us} - double{f->actual_us}) / double{f->actual_us});
+    for (const FrameRecord* f : frames)  // a frame without a prediction has no error of it
+        if (f->actual_us > 0 && f->predicted_us > 0)
+            errors.push_back(std::abs(double{f->predicted_us} - double{f->actual_us}) / double{f->actual_us});
     s.cost_error = quantiles(std::move(errors));
 }
 

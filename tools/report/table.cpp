@@ -118,7 +118,11 @@ void real_time_rows(Table& table, const WalkSummary& s) {
     table.row("real time", fmt::format("{}, {}, {}, {}; page faults {}, guard violations {}, stolen {:.1f} ms",
                                        mark(s.fifo, "FIFO"), mark(s.pinned, "pinned"), mark(s.isolated, "isolated"),
                                        mark(s.locked, "locked"), s.page_faults, s.guard_violations, s.steal_ms));
+    table.row("driver", fmt::format("{:.1f} allocations and {:.2f} page faults a frame", s.driver_allocations_per_frame,
+                                    s.frames == 0 ? 0.0 : static_cast<double>(s.driver_faults) / static_cast<double>(s.frames)));
+    if (!s.threads.empty()) table.row("threads", threads_words(s.threads));
     for (const std::string& problem : s.census_problems) table.row("census", problem, "31");
+    if (!s.uncalibrated.empty()) table.row("uncalibrated", s.uncalibrated, "33");
     for (const Degraded& d : s.degraded)
         table.row("degraded", d.remedy.empty() ? d.what : fmt::format("{}: {}", d.what, d.remedy), "33");
     if (s.control.ran) table.row("control", control_words(s.control), rule_broken(s.control) ? "31" : "");

@@ -59,6 +59,18 @@ std::string control_words(const ControlSummary& c) {
     return text + (v.enough_pairs ? " The deadline rule is not judged." : " Too few pairs to judge the deadline rule.");
 }
 
+std::string threads_words(std::span<const ThreadRow> threads) {
+    std::string text;
+    for (const ThreadRow& t : threads) {
+        text += text.empty() ? "" : "; ";
+        if (t.count > 1) text += fmt::format("{} ", t.count);
+        text += t.name + " " + t.policy;
+        if (t.priority > 0) text += fmt::format(" {}", t.priority);
+        text += " on " + t.cores;
+    }
+    return text;
+}
+
 std::string accuracy_words(double accuracy) {
     if (std::isinf(accuracy)) return "exact";
     if (!(accuracy > 0)) return "unknown";

@@ -18,6 +18,8 @@ bool rule_broken(const ControlSummary& control);
 std::string headline(const WalkSummary& summary);
 /// The control's part of the rule in words; empty where no control ran.
 std::string control_words(const ControlSummary& control);
+/// "sf-frame fifo 80 on 1; 2 llvmpipe- fifo 70 on 0-1".
+std::string threads_words(std::span<const ThreadRow> threads);
 /// The largest angular error of an accuracy: "0.24°", "3.1′"; "exact" where no error was drawn.
 std::string accuracy_words(double accuracy);
 /// "14.2 dB", "∞ dB" for equal pictures, "undefined" where there is no signal.

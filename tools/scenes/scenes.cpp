@@ -49,8 +49,9 @@ std::vector<std::string> scene_names() {
 }
 
 Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed) {
-    if (!(scale >= 0.01 && scale <= 200.0))
-        return Error{std::string(name), fmt::format("scale {} is out of range", scale), "choose 0.01 to 200"};
+    if (!(scale >= least_scale && scale <= most_scale))
+        return Error{std::string(name), fmt::format("scale {} is out of range", scale),
+                     fmt::format("choose {} to {}", least_scale, most_scale)};
     for (const Maker& maker : makers) {
         if (name != maker.name) continue;
         GeneratedScene made = maker.make(scale, seed);

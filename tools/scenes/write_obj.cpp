@@ -26,7 +26,6 @@ public:
     Result<void> run() {
         const std::filesystem::path path(file_);
         const std::string stem = path.stem().string();
-        if (auto done = library((path.parent_path() / stem).string(), stem); !done) return done;
         fmt::format_to(std::back_inserter(text_), "mtllib {}.mtl\n", stem);
         for (const importer::Node& node : scene_.nodes) {
             if (node.mesh == none) continue;
@@ -35,7 +34,9 @@ public:
                 if (auto done = primitive(p, node.world); !done) return done;
             }
         }
-        return out_.write(text_);
+        if (auto done = out_.write(text_); !done) return done;
+        // The library last, small beside the geometry: a full disk shows before anything that was there is replaced.
+        return library((path.parent_path() / stem).string(), stem);
     }
 
 private:
