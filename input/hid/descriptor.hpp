@@ -111,6 +111,9 @@ struct Layout {
     [[nodiscard]] std::uint32_t usage_of(const Field& field, std::uint32_t k) const;
     /// Usage of the nearest enclosing collection of that type; 0 where there is none.
     [[nodiscard]] std::uint32_t enclosing(std::uint32_t collection, std::uint8_t type) const;
+    /// Indexes of `fields`, report by report: inputs, outputs, features; reports in the order in which they were first
+    /// named. The order in which the kernel prints them (debugfs hid/*/rdesc).
+    [[nodiscard]] std::vector<std::uint32_t> fields_by_report() const;
     /// The declared report, or null.
     [[nodiscard]] const Report* find(ReportKind kind, std::uint8_t id) const;
 };

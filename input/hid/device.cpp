@@ -144,11 +144,13 @@ HidDevice describe_device(Layout layout, DeviceId id) {
     const Quirk* ball = find_quirk(id, QuirkEffect::trackball);
     // Without an id only the shape is left to go by.
     const bool ball_by_shape = ball == nullptr && (!id.known() || id.vendor == 0x056e) && pointer_with_constant_buttons(l);
-    Verdict verdict = classify(l, elements, ball != nullptr || ball_by_shape);
+    Verdict verdict = classify(l, elements, ball != nullptr || ball_by_shape || named_trackball(id.name));
     device.device_class = verdict.device_class;
     device.reason = std::move(verdict.reason);
     if (device.device_class == DeviceClass::trackball) {
-        device.quirks.emplace_back(ball != nullptr ? ball->why : "a mouse with buttons declared constant: a trackball by ELECOM");
+        device.quirks.emplace_back(ball != nullptr            ? ball->why
+                                   : named_trackball(id.name) ? "a trackball by its name; its descriptor says mouse"
+                                                              : "a mouse with buttons declared constant: a trackball by ELECOM");
     }
 
     std::stable_sort(elements.begin(), elements.end(), [](const Element& a, const Element& b) { return rank(a) < rank(b); });

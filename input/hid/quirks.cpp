@@ -1,4 +1,4 @@
-// The table of quirks. Ids from usb.ids and the Linux drivers hid-ids.h and hid-elecom.
+// The table of quirks. Ids from usb.ids, systemd's 70-mouse.hwdb, and the Linux drivers' hid-ids.h and hid-elecom.
 #include "input/hid/quirks.hpp"
 
 #include <algorithm>
@@ -17,10 +17,14 @@ constexpr Quirk rows[] = {
     {0x045e, 0x0023, 0x0024, QuirkEffect::trackball, a_ball},  // Microsoft Trackball Optical, Explorer
     {0x046d, 0xc401, 0xc404, QuirkEffect::trackball, a_ball},  // Logitech TrackMan Marble, Wheel
     {0x046d, 0xc408, 0xc408, QuirkEffect::trackball, a_ball},  // Logitech Marble Mouse
+    {0x046d, 0xb01d, 0xb01d, QuirkEffect::trackball, a_ball},  // Logitech MX Ergo
+    {0x046d, 0x1028, 0x1028, QuirkEffect::trackball, a_ball},  // Logitech M570
     {0x047d, 0x1020, 0x1023, QuirkEffect::trackball, a_ball},  // Kensington Expert, Orbit
     {0x047d, 0x2041, 0x2041, QuirkEffect::trackball, a_ball},  // Kensington SlimBlade
     {0x047d, 0x2048, 0x2048, QuirkEffect::trackball, a_ball},  // Kensington Orbit with ring
     {0x047d, 0x8018, 0x8019, QuirkEffect::trackball, a_ball},  // Kensington Expert Wireless
+    {0x047d, 0x80d4, 0x80d4, QuirkEffect::trackball, a_ball},  // Kensington SlimBlade Pro
+    {0x056e, 0x0155, 0x0155, QuirkEffect::trackball, a_ball},  // ELECOM Relacon
     {0x056e, 0x00fb, 0x00ff, QuirkEffect::trackball, a_ball},  // ELECOM EX-G, DEFT
     {0x056e, 0x010c, 0x010d, QuirkEffect::trackball, a_ball},  // ELECOM HUGE
     {0x056e, 0x011c, 0x011c, QuirkEffect::trackball, a_ball},  // ELECOM HUGE
@@ -30,6 +34,13 @@ constexpr Quirk rows[] = {
 }  // namespace
 
 std::span<const Quirk> quirk_table() { return rows; }
+
+bool named_trackball(std::string_view name) {
+    constexpr std::string_view word = "trackball";
+    return std::search(name.begin(), name.end(), word.begin(), word.end(), [](char a, char b) {
+               return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+           }) != name.end();
+}
 
 const Quirk* find_quirk(DeviceId id, QuirkEffect effect) {
     const auto* row = std::find_if(std::begin(rows), std::end(rows), [&](const Quirk& q) {

@@ -7,9 +7,10 @@
 
 namespace surefoot::input {
 
-/// USB or Bluetooth ids; both 0 where unknown.
+/// USB or Bluetooth ids, both 0 where unknown, and the product's name, empty where unknown.
 struct DeviceId {
     std::uint16_t vendor = 0, product = 0;
+    std::string_view name = {};
     [[nodiscard]] bool known() const { return vendor != 0; }
 };
 
@@ -26,6 +27,8 @@ struct Quirk {
 };
 
 std::span<const Quirk> quirk_table();
+/// A pointing device that is named a trackball is one (systemd's 70-mouse.hwdb goes by the name as well).
+bool named_trackball(std::string_view name);
 /// The row for this device and effect, or null.
 const Quirk* find_quirk(DeviceId id, QuirkEffect effect);
 

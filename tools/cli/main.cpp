@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
     cli::add_walk(app, context);
     cli::add_accuracy(app, context);
     cli::add_replay(app, context);
+    cli::add_devices(app, context);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
