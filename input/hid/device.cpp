@@ -91,7 +91,8 @@ ControlInfo control_of(const Layout& layout, const Element& e, std::string name,
     c.usage = static_cast<std::uint16_t>(e.usage);
     c.logical_min = f.variable() ? f.logical_min : 0;
     c.logical_max = f.variable() ? f.logical_max : 1;
-    if (f.physical_min != f.physical_max) {
+    // The globals of an axis before it often still stand when a button is declared: a button has no physical range.
+    if (f.physical_min != f.physical_max && e.kind != ControlKind::button) {
         c.physical_min = physical(f.physical_min, f.exponent);
         c.physical_max = physical(f.physical_max, f.exponent);
         c.unit = unit_name(f.unit);
