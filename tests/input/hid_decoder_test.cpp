@@ -134,7 +134,7 @@ TEST(HidDecoder, NullStatesHaveNoValueAndOthersAreClamped) {
 
 TEST(HidDecoder, FullWidthValues) {
     Live d(device("wide-values"));
-    d.feed("00 00 00 80 ff ff ff 7f 00 00 00 80 00 04 10 00");
+    EXPECT_EQ(d.feed("00 00 00 80 ff ff ff 7f 00 00 00 80 00 04 00"), ReportFate::accepted);
     EXPECT_EQ(d["x"], INT32_MIN);
     EXPECT_EQ(d["y"], INT32_MAX);
     EXPECT_EQ(d["rx"], -1024);
