@@ -1,7 +1,5 @@
 // Reports to values, worked out by hand; what is refused changes nothing; no allocation.
-#include <cstdlib>
-#include <new>
-
+#include "rt/threads/guard.hpp"
 #include "tests/input/hid_test.hpp"
 
 namespace surefoot::input {
@@ -130,6 +128,20 @@ TEST(HidDecoder, NullStatesHaveNoValueAndOthersAreClamped) {
     d.feed("c8 c8");
     EXPECT_EQ(d["x"], std::nullopt);
     EXPECT_EQ(d["y"], 100);
+}
+
+TEST(HidDecoder, DoesNotAllocate) {
+    if (!rt::guard_active()) GTEST_SKIP() << "allocations are not counted under sanitizers";
+    for (const char* name : {"dualshock4-like", "boot-keyboard", "six-axis-array-buttons", "xbox-bluetooth-like"}) {
+        const Recording r = recorded(name);
+        Live d(device_of(r));
+        const auto before = rt::guard_counters().own_violations;
+        {
+            const rt::OwnScope scope;
+            for (std::size_t i = 0; i < r.reports.size(); ++i) (void)d.decoder.decode(r.report(i), 1, d.state);
+        }
+        EXPECT_EQ(rt::guard_counters().own_violations, before) << name;
+    }
 }
 
 TEST(HidDecoder, FullWidthValues) {
