@@ -37,7 +37,7 @@ printf 'E: 0.0 1 81\nE: 0.1 2 00 00\nE: 0.2 1 7f\n' >stick.hid
 says '"status": "accepted", *"values": \{ *"x": -127 *\}.*"long": 1' devices describe stick.bin --reports stick.hid --json
 says 'x=127.*2 accepted, 0 short, 1 long, 0 unknown' devices describe stick.bin --reports stick.hid
 says 'quirk|deflect' devices describe "$nav" --vid-pid 256f:c635
-expect 0 '^$' devices describe --help
+says 'Example:' devices describe --help
 expect 2 'ids look like' devices describe stick.bin --vid-pid rubbish
 expect 2 '.' devices describe
 expect 2 '.' devices
@@ -55,6 +55,7 @@ printf '# no descriptor\nE: 0.0 1 00\n' >none.hid
 expect 1 'none.hid: no R: line' devices describe none.hid
 head -c 5000 /dev/zero >long.bin
 expect 1 'long.bin: byte 4096: ' devices describe long.bin
+expect 0 'another descriptor' devices describe stick.bin --reports "$nav"
 
 [ $failures -eq 0 ] || { echo "$failures failures"; exit 1; }
 echo "the devices command keeps its contract"

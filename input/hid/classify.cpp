@@ -88,15 +88,17 @@ bool any_input(const Layout& layout) {
 }  // namespace
 
 std::uint32_t application_usage(const Layout& layout, std::uint32_t collection) {
-    std::uint32_t outermost = 0, telling = 0;
+    std::uint32_t outermost = 0, telling = 0, any = 0;
     for (; collection != no_collection; collection = layout.collections[collection].parent) {
         const Collection& c = layout.collections[collection];
+        any = c.usage;
         if (c.type != collection_type::application) continue;
         outermost = c.usage;
         const Application a = application_of(c.usage);
         if (a != Application::none && a != Application::other && a != Application::vendor) telling = c.usage;
     }
-    return telling != 0 ? telling : outermost;
+    // Some makers put a joystick into a physical collection and forget the application; the kernel takes those as well.
+    return telling != 0 ? telling : outermost != 0 ? outermost : any;
 }
 
 bool pointer_with_constant_buttons(const Layout& layout) {

@@ -20,7 +20,8 @@ struct Element {
 /// In the order of the layout, at most max_elements looked at.
 std::vector<Element> find_elements(const Layout& layout);
 
-/// The outermost application collection that says something, else the outermost, else 0 (HID 1.11, 6.2.2.6).
+/// The outermost application collection that says something, else the outermost, else the
+/// outermost collection of any type, else 0 (HID 1.11, 6.2.2.6).
 std::uint32_t application_usage(const Layout& layout, std::uint32_t collection);
 
 /// What the elements say the device is.

@@ -53,6 +53,11 @@ TEST(HidClass, EveryDeviceOfTheFolder) {
     }
 }
 
+TEST(HidClass, AJoystickThatForgotItsApplicationIsOne) {
+    const HidDevice d = describe_device(layout_of(hex("05 01 09 04 a1 00 15 81 25 7f 75 08 95 02 09 30 09 31 81 02 c0")), {});
+    EXPECT_EQ(d.device_class, DeviceClass::navigation) << d.reason;
+}
+
 TEST(HidClass, TrackballsAreTold) {
     const Recording mouse = recorded("boot-mouse"), shaped = recorded("trackball-constant-buttons");
     const auto of = [](const Recording& r, DeviceId id) { return describe_device(layout_of(r.descriptor), id).device_class; };

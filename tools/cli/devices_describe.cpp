@@ -75,6 +75,9 @@ Result<Material> gather(const DescribeArguments& a) {
     if (!a.reports.empty()) {
         auto recording = input::read_recording(a.reports);
         if (!recording) return recording.error();
+        if (!recording->descriptor.empty() && recording->descriptor != m.descriptor) {
+            note(a.reports + " was recorded from a device with another descriptor");
+        }
         m.recording = std::move(*recording);
         have_recording = true;
     }
