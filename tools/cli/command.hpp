@@ -53,5 +53,6 @@ void add_calibrate(CLI::App& app, Context& context);
 void add_walk(CLI::App& app, Context& context);
 void add_accuracy(CLI::App& app, Context& context);
 void add_replay(CLI::App& app, Context& context);
+void add_devices(CLI::App& app, Context& context);
 
 }  // namespace surefoot::cli

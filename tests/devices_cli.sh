@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# surefoot devices: the contract of its commands, on the devices beside the tests of input/.
+# usage: devices_cli.sh SUREFOOT DEVICES_FOLDER
+set -u
+surefoot=$(realpath "$1") devices=$(realpath "$2")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+complain() { echo "FAIL: $*"; failures=$((failures + 1)); }
+# expect CODE PATTERN COMMAND...: exit code, and stderr that matches PATTERN
+expect() {
+  local code=$1 pattern=$2; shift 2
+  "$surefoot" "$@" >out 2>err; local got=$?
+  [ $got -eq "$code" ] || complain "exit $got, not $code: surefoot $*"
+  grep -qE "$pattern" err || complain "stderr says '$(head -c 300 err)', not /$pattern/: surefoot $*"
+}
+# says PATTERN COMMAND...: success, and stdout that matches
+says() {
+  local pattern=$1; shift
+  "$surefoot" "$@" >out 2>err || complain "exit $?: surefoot $*: $(head -c 300 err)"
+  tr -d '\n' <out | grep -qE "$pattern" || complain "stdout has no /$pattern/: surefoot $*"
+}
+
+for file in "$devices"/*.hid; do
+  "$surefoot" devices describe "$file" --json >out 2>err || complain "exit $?: $file"
+  [ -s err ] && complain "stderr of $file: $(head -c 200 err)"
+  "$surefoot" devices describe "$file" >out 2>err || complain "exit $? without --json: $file"
+done
+
+nav=$devices/spacenavigator-like.hid
+says '"class": "navigation"' devices describe "$nav" --json
+says '"counts": \{ *"accepted": 8, *"short": 0, *"long": 0, *"unknown": 1' devices describe "$nav" --json
+says '"relative": false' devices describe "$nav" --json
+printf '\x05\x01\x09\x04\xa1\x01\x15\x81\x25\x7f\x75\x08\x95\x01\x09\x30\x81\x02\xc0' >stick.bin
+printf 'E: 0.0 1 81\nE: 0.1 2 00 00\nE: 0.2 1 7f\n' >stick.hid
+says '"status": "accepted", *"values": \{ *"x": -127 *\}.*"long": 1' devices describe stick.bin --reports stick.hid --json
+says 'x=127.*2 accepted, 0 short, 1 long, 0 unknown' devices describe stick.bin --reports stick.hid
+says 'quirk|deflect' devices describe "$nav" --vid-pid 256f:c635
+says 'Example:' devices describe --help
+expect 2 'ids look like' devices describe stick.bin --vid-pid rubbish
+expect 2 '.' devices describe
+expect 2 '.' devices
+expect 1 'nothing.bin' devices describe nothing.bin
+expect 1 'nothing.hid' devices describe stick.bin --reports nothing.hid
+head -c 9 stick.bin >cut.bin
+expect 1 'cut.bin: byte 8: .*cut off' devices describe cut.bin
+expect 1 'cut.bin: byte 8: ' devices describe cut.bin --json
+grep -q '"offset": 8' out || complain "the refusal's byte is not in the object"
+printf 'E: 0.0 1 81\nE: 0.1 2 00\n' >cut.hid
+expect 1 'cut.hid: line 2: ' devices describe stick.bin --reports cut.hid
+: >empty.bin
+expect 1 'empty.bin: byte 0: ' devices describe empty.bin
+printf '# no descriptor\nE: 0.0 1 00\n' >none.hid
+expect 1 'none.hid: no R: line' devices describe none.hid
+head -c 5000 /dev/zero >long.bin
+expect 1 'long.bin: byte 4096: ' devices describe long.bin
+expect 0 'another descriptor' devices describe stick.bin --reports "$nav"
+
+[ $failures -eq 0 ] || { echo "$failures failures"; exit 1; }
+echo "the devices command keeps its contract"

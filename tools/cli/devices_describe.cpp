@@ -1,0 +1,357 @@
+// surefoot devices describe: what a report descriptor says, and what recorded reports mean, without any device.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "input/hid/decoder.hpp"
+#include "input/hid/usages.hpp"
+#include "input/replay/recording.hpp"
+#include "rt/base/file.hpp"
+#include "tools/cli/devices.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t max_usages_listed = 100'000;  ///< of all fields together; ranges are always listed whole
+
+struct DescribeArguments {
+    std::string file, reports, id;
+    bool json = false;
+};
+
+/// What the files gave.
+struct Material {
+    std::vector<std::byte> descriptor;
+    std::string descriptor_place;
+    input::Recording recording;
+    std::uint16_t vendor = 0, product = 0;
+    std::string name;
+};
+
+/// Names in recordings are bytes of unknown sort; JSON wants UTF-8.
+std::string printable(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(),
+        [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f; }, '?');
+    return text;
+}
+
+std::string hex_usage(std::uint32_t usage) { return fmt::format("{:04x}:{:04x}", usage >> 16U, usage & 0xffffU); }
+
+bool parse_id(const std::string& text, std::uint16_t& vendor, std::uint16_t& product) {
+    const auto colon = text.find(':');
+    if (colon == std::string::npos) return false;
+    const auto read = [](const char* from, const char* to, std::uint16_t& value) {
+        const auto [end, code] = std::from_chars(from, to, value, 16);
+        return code == std::errc{} && end == to;
+    };
+    return read(text.data(), text.data() + colon, vendor) && read(text.data() + colon + 1, text.data() + text.size(), product);
+}
+
+Result<Material> gather(const DescribeArguments& a) {
+    Material m;
+    m.descriptor_place = a.file;
+    auto bytes = read_file(a.file, input::max_recording_bytes);
+    if (!bytes) return bytes.error();
+    bool have_recording = false;
+    if (input::looks_like_recording(*bytes)) {
+        const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+        auto recording = input::parse_recording(text, a.file);
+        if (!recording) return recording.error();
+        if (recording->descriptor.empty())
+            return Error{a.file, "no R: line gives the report descriptor", "record it again, or give the descriptor's file"};
+        m.descriptor = recording->descriptor;
+        m.descriptor_place += ": R:";
+        m.recording = std::move(*recording);
+        have_recording = true;
+    } else {
+        m.descriptor = std::move(*bytes);
+    }
+    if (!a.reports.empty()) {
+        auto recording = input::read_recording(a.reports);
+        if (!recording) return recording.error();
+        if (!recording->descriptor.empty() && recording->descriptor != m.descriptor) {
+            note(a.reports + " was recorded from a device with another descriptor");
+        }
+        m.recording = std::move(*recording);
+        have_recording = true;
+    }
+    if (have_recording) {
+        m.vendor = m.recording.vendor;
+        m.product = m.recording.product;
+        m.name = printable(m.recording.name);
+    }
+    if (!a.id.empty()) (void)parse_id(a.id, m.vendor, m.product);  // checked when the command line was read
+    return m;
+}
+
+const char* kind_text(input::ReportKind kind) {
+    return kind == input::ReportKind::input ? "input" : kind == input::ReportKind::output ? "output" : "feature";
+}
+
+std::vector<std::string> flag_names(std::uint32_t flags) {
+    namespace flag = input::flag;
+    std::vector<std::string> names;
+    if ((flags & flag::constant) != 0) names.emplace_back("constant");
+    names.emplace_back((flags & flag::variable) != 0 ? "variable" : "array");
+    names.emplace_back((flags & flag::relative) != 0 ? "relative" : "absolute");
+    static constexpr std::pair<std::uint32_t, const char*> further[] = {{flag::wrap, "wrap"},
+                                                                        {flag::nonlinear, "nonlinear"},
+                                                                        {flag::no_preferred, "no-preferred-state"},
+                                                                        {flag::null_state, "null-state"},
+                                                                        {flag::is_volatile, "volatile"},
+                                                                        {flag::buffered, "buffered-bytes"}};
+    for (const auto& [bit, name] : further)
+        if ((flags & bit) != 0) names.emplace_back(name);
+    return names;
+}
+
+ordered_json layout_json(const input::Layout& l) {
+    ordered_json list = ordered_json::array();
+    std::size_t listed = 0;
+    for (const std::uint32_t i : l.fields_by_report()) {
+        const input::Field& f = l.fields[i];
+        ordered_json usages = ordered_json::array(), ranges = ordered_json::array();
+        std::uint32_t k = 0;
+        for (std::uint32_t r = f.first_run; r < f.first_run + f.run_count; ++r) {
+            const input::UsageRun& run = l.runs[r];
+            ranges.push_back({hex_usage(run.at(0)), hex_usage(run.at(run.count - 1))});
+            for (std::uint32_t u = 0; u < run.count && listed < max_usages_listed; ++u, ++k, ++listed)
+                usages.push_back(run.at(u));
+        }
+        const input::UsageRun& last = l.runs[f.first_run + f.run_count - 1];
+        for (; k < f.usages && listed < max_usages_listed; ++k, ++listed) usages.push_back(last.at(last.count - 1));
+        const auto application = l.enclosing(f.collection, input::collection_type::application);
+        list.push_back({{"kind", kind_text(f.kind)},
+                        {"report_id", f.report_id},
+                        {"bit_offset", f.bit_offset},
+                        {"size", f.size},
+                        {"count", f.count},
+                        {"usages", usages},
+                        {"usage_count", f.usages},
+                        {"usage_ranges", ranges},
+                        {"logical_min", f.logical_min},
+                        {"logical_max", f.logical_max},
+                        {"physical_min", f.physical_min},
+                        {"physical_max", f.physical_max},
+                        {"unit", f.unit},
+                        {"unit_name", input::unit_name(f.unit)},
+                        {"exponent", f.exponent},
+                        {"flags", flag_names(f.flags)},
+                        {"flag_bits", f.flags},
+                        {"application", hex_usage(application)},
+                        {"byte_offset", f.offset}});
+    }
+    return list;
+}
+
+ordered_json reports_json(const input::Layout& l) {
+    ordered_json list = ordered_json::array();
+    for (const input::Report& r : l.reports) {
+        const bool numbered = l.numbered[static_cast<std::size_t>(r.kind)];
+        list.push_back({{"kind", kind_text(r.kind)},
+                        {"report_id", r.id},
+                        {"bits", r.bits},
+                        {"bytes", r.bytes() + (numbered ? 1U : 0U)},
+                        {"fields", r.fields}});
+    }
+    return list;
+}
+
+ordered_json controls_json(const input::HidDevice& d) {
+    ordered_json list = ordered_json::array();
+    for (std::size_t i = 0; i < d.controls.size(); ++i) {
+        const input::ControlInfo& c = d.controls[i];
+        const input::Field& f = d.layout.fields[d.sources[i].field];
+        list.push_back({{"name", c.name},
+                        {"kind", input::kind_name(c.kind)},
+                        {"collection", c.collection},
+                        {"usage_page", c.usage_page},
+                        {"usage", c.usage},
+                        {"report_id", f.report_id},
+                        {"logical_min", c.logical_min},
+                        {"logical_max", c.logical_max},
+                        {"physical_min", c.physical_min},
+                        {"physical_max", c.physical_max},
+                        {"unit", c.unit},
+                        {"relative", c.relative},
+                        {"wraps", c.wraps}});
+    }
+    return list;
+}
+
+const char* fate_text(input::ReportFate fate) {
+    switch (fate) {
+        case input::ReportFate::accepted:
+            return "accepted";
+        case input::ReportFate::too_short:
+            return "short";
+        case input::ReportFate::too_long:
+            return "long";
+        case input::ReportFate::undeclared:
+            return "unknown";
+    }
+    return "unknown";
+}
+
+/// Every report with what it changed; `counts` is filled on the way.
+ordered_json decoded_json(const input::HidDevice& d, const input::Recording& recording, ordered_json& counts) {
+    input::ReportDecoder decoder(d);
+    input::DeviceState state;
+    std::map<std::uint8_t, std::vector<std::uint16_t>> carried;
+    ordered_json list = ordered_json::array();
+    for (std::size_t i = 0; i < recording.reports.size(); ++i) {
+        const auto bytes = recording.report(i);
+        const auto id =
+            static_cast<std::uint8_t>(decoder.numbered() && !bytes.empty() ? std::to_integer<unsigned>(bytes[0]) : 0U);
+        const auto fate = decoder.decode(bytes, recording.reports[i].time_us * 1000, state);
+        ordered_json report = {{"line", recording.reports[i].line},
+                               {"time_s", static_cast<double>(recording.reports[i].time_us) * 1e-6},
+                               {"report_id", id},
+                               {"bytes", bytes.size()},
+                               {"status", fate_text(fate)}};
+        if (fate == input::ReportFate::accepted) {
+            ordered_json values = ordered_json::object();
+            if (!carried.contains(id)) carried[id] = decoder.controls_in(id);
+            for (const auto c : carried[id]) {
+                values[d.controls[c].name] = state.has_value.test(c) ? ordered_json(state.value[c]) : ordered_json(nullptr);
+            }
+            report["values"] = std::move(values);
+        }
+        list.push_back(std::move(report));
+    }
+    const auto& n = decoder.counts();
+    counts = {{"accepted", n.accepted}, {"short", n.too_short}, {"long", n.too_long}, {"unknown", n.undeclared}};
+    return list;
+}
+
+ordered_json notes_json(const input::Layout& l) {
+    ordered_json list = ordered_json::array();
+    for (const input::Note& n : l.notes) list.push_back({{"offset", n.offset}, {"what", n.what}});
+    return list;
+}
+
+std::string range_text(const input::Layout& l, const input::Field& f) {
+    std::string text;
+    for (std::uint32_t r = f.first_run; r < f.first_run + f.run_count; ++r) {
+        const input::UsageRun& run = l.runs[r];
+        if (text.size() > 60) return text + " …";
+        if (!text.empty()) text += ", ";
+        text += input::usage_text(run.at(0));
+        if (run.count > 1) text += " to " + input::usage_text(run.at(run.count - 1));
+    }
+    return text;
+}
+
+void print_tables(const input::HidDevice& d) {
+    const input::Layout& l = d.layout;
+    fmt::print("class: {}: {}\n", input::class_name(d.device_class), d.reason);
+    for (const auto& q : d.quirks) fmt::print("quirk: {}\n", q);
+    for (const auto& n : l.notes) fmt::print("note: byte {}: {}\n", n.offset, n.what);
+    fmt::print("\n{:<8} {:>3} {:>6} {:>5} {:>6} {:>24} {:<34} usages\n", "report", "id", "bit", "size", "count", "logical range",
+               "flags");
+    for (const std::uint32_t i : l.fields_by_report()) {
+        const input::Field& f = l.fields[i];
+        fmt::print("{:<8} {:>3} {:>6} {:>5} {:>6} {:>24} {:<34} {}\n", kind_text(f.kind), f.report_id, f.bit_offset, f.size,
+                   f.count, fmt::format("{} to {}", f.logical_min, f.logical_max),
+                   fmt::format("{}", fmt::join(flag_names(f.flags), " ")), range_text(l, f));
+    }
+    if (!d.controls.empty())
+        fmt::print("\n{:<18} {:<7} {:>18} {:<24} collection\n", "control", "kind", "range", "physical range");
+    for (const auto& c : d.controls) {
+        const std::string physical =
+            c.physical_min == c.physical_max ? "" : fmt::format("{:g} to {:g} {}", c.physical_min, c.physical_max, c.unit);
+        fmt::print("{:<18} {:<7} {:>18} {:<24} {}{}\n", c.name, input::kind_name(c.kind),
+                   fmt::format("{} to {}", c.logical_min, c.logical_max), physical, c.collection,
+                   c.relative ? "  (relative)" : "");
+    }
+    if (d.controls_left_out > 0) fmt::print("and {} more, which are left out\n", d.controls_left_out);
+}
+
+void print_decoded(const ordered_json& decoded, const ordered_json& counts) {
+    fmt::print("\n{:>12} {:>3} {:<8} values\n", "time", "id", "status");
+    for (const auto& r : decoded) {
+        std::string values;
+        if (r.contains("values")) {
+            for (const auto& [name, value] : r["values"].items())
+                if (!value.is_null() && (value.get<std::int64_t>() != 0 || !name.starts_with("button")))
+                    values += fmt::format(" {}={}", name, value.get<std::int64_t>());
+        }
+        fmt::print("{:>12.6f} {:>3} {:<8}{}\n", r["time_s"].get<double>(), r["report_id"].get<unsigned>(),
+                   r["status"].get<std::string>(), values);
+    }
+    fmt::print("reports: {} accepted, {} short, {} long, {} unknown\n", counts["accepted"].get<std::uint64_t>(),
+               counts["short"].get<std::uint64_t>(), counts["long"].get<std::uint64_t>(), counts["unknown"].get<std::uint64_t>());
+}
+
+/// A refused descriptor is a failure, but with --json its place and reason are in the object as well.
+int refuse(const DescribeArguments& a, const Material& m, const input::Refusal& refusal) {
+    if (a.json) {
+        print_json({{"file", a.file},
+                    {"bytes", m.descriptor.size()},
+                    {"class", "reject"},
+                    {"reason", "its report descriptor is refused: " + refusal.what},
+                    {"error", {{"offset", refusal.offset}, {"what", refusal.what}, {"remedy", refusal.remedy}}}});
+    }
+    return fail({fmt::format("{}: byte {}", m.descriptor_place, refusal.offset), refusal.what, refusal.remedy});
+}
+
+int run_describe(const DescribeArguments& a) {
+    auto m = gather(a);
+    if (!m) return fail(m.error());
+    input::Layout layout;
+    if (auto refusal = input::parse_descriptor(m->descriptor, layout)) return refuse(a, *m, *refusal);
+    const input::HidDevice d = input::describe_device(std::move(layout), {m->vendor, m->product, m->name});
+    ordered_json counts, decoded;
+    const bool reports = !a.reports.empty() || !m->recording.reports.empty();
+    if (reports) decoded = decoded_json(d, m->recording, counts);
+    if (!a.json) {
+        print_tables(d);
+        if (reports) print_decoded(decoded, counts);
+        return exit_success;
+    }
+    ordered_json object = {{"file", a.file},
+                           {"bytes", m->descriptor.size()},
+                           {"name", m->name},
+                           {"vid_pid", fmt::format("{:04x}:{:04x}", m->vendor, m->product)},
+                           {"class", input::class_name(d.device_class)},
+                           {"reason", d.reason},
+                           {"quirks", d.quirks},
+                           {"notes", notes_json(d.layout)},
+                           {"note_count", d.layout.note_count},
+                           {"layout", layout_json(d.layout)},
+                           {"reports_declared", reports_json(d.layout)},
+                           {"controls", controls_json(d)},
+                           {"controls_left_out", d.controls_left_out}};
+    if (reports) {
+        object["reports"] = std::move(decoded);
+        object["counts"] = std::move(counts);
+    }
+    print_json(object);
+    return exit_success;
+}
+
+}  // namespace
+
+void add_devices_describe(CLI::App& devices, Context& context) {
+    auto a = std::make_shared<DescribeArguments>();
+    CLI::App* c =
+        add_command(devices, "describe", "What a report descriptor says, and what recorded reports mean; needs no device",
+                    "surefoot devices describe stick.bin --reports stick.hid --json", a->json);
+    c->add_option("descriptor", a->file, "The report descriptor: binary, or a recording by hid-recorder with an R: line")
+        ->required();
+    c->add_option("--reports", a->reports, "A recording by hid-recorder: its reports are decoded");
+    c->add_option("--vid-pid", a->id, "Vendor and product id, 046d:c626: selects quirks; else those of the recording")
+        ->check([](const std::string& text) {
+            std::uint16_t v = 0, p = 0;
+            return parse_id(text, v, p) ? std::string() : std::string("ids look like 046d:c626");
+        });
+    c->callback([&context, a] { context.run = [a] { return run_describe(*a); }; });
+}
+
+}  // namespace surefoot::cli
