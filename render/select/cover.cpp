@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "render/select/queue.hpp"
 #include "rt/base/hash.hpp"
 
 namespace surefoot::select {
@@ -22,7 +23,8 @@ void SelectState::reserve(const model::Model& model, std::uint32_t max_candidate
     touched.clear();
     touched.reserve(max_candidates);
     scratch_next.resize(max_candidates);
-    scratch_head.resize(2 * 4096);
+    scratch_head.resize(2 * BucketQueue::buckets);
+    scratch_sums.resize(4 * BucketQueue::buckets);
     scratch_a.resize(max_candidates);
     scratch_b.resize(max_candidates);
 }

@@ -20,6 +20,9 @@ public:
     /// Starts with the root alone at choice `offset`.
     void take_root(std::uint32_t offset);
 
+    /// Of the items that take_floor() found.
+    [[nodiscard]] const Sum& floor_sum() const { return floor_; }
+
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(chosen_.size()); }
     [[nodiscard]] const prepare::Candidate& candidate(Index c) const { return prepared_.candidates[c]; }
     [[nodiscard]] std::span<const prepare::Choice> choices(Index c) const {

@@ -56,6 +56,7 @@ struct SelectState {
     std::vector<Index> shown;    ///< a node: representation in the last cut, `opened` if that was among its descendants, or none
     std::vector<Index> touched;  ///< nodes whose `shown` is not none
     std::vector<std::uint32_t> scratch_next, scratch_head, scratch_a, scratch_b;  ///< a candidate; scratch_head: the queue
+    std::vector<double> scratch_sums;                                             ///< two costs a bucket, new and shown before
     /// Benefit factor, 1..2, for what was refined in the last frame; 1: no memory.
     float hysteresis = 1.25F;
     void reserve(const model::Model& model, std::uint32_t max_candidates);

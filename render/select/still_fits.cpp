@@ -11,7 +11,8 @@ bool still_fits(const CheckInput& input) {
     const double prior_us = 0.05 * input.limit_us;
     const double wrong = (input.elapsed_us + prior_us) / (input.predicted_so_far_us + prior_us);
     const double factor = std::clamp(std::isfinite(wrong) ? wrong : 8.0, 1.0, 8.0);
-    return input.elapsed_us + (input.next_us + input.rest_stand_in_us) * factor * input.margin <= input.limit_us;  // NaN: does not fit
+    return input.elapsed_us + (input.next_us + input.rest_stand_in_us) * factor * input.margin <=
+           input.limit_us;  // NaN: does not fit
 }
 
 }  // namespace surefoot::select

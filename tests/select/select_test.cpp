@@ -82,60 +82,97 @@ TEST(Select, UnlimitedBudgetGivesWhatFlatGives) {
     }
 }
 
-/// The documented rule, read off directly: from the floor, always the step of greatest key; equal keys in order of arrival.
-std::vector<std::pair<Index, Index>> by_definition(const Scene& s, double budget, bool subtree) {
-    struct Open {
+/// A cut in the making, for the definition: what is drawn and its cost.
+struct Growing {
+    struct Item {
         Index candidate;
-        std::uint32_t choice, arrived;
+        std::uint32_t choice;
     };
-    const auto& f = s.frame;
-    std::vector<Open> open;
-    std::vector<Index> walk{0};
-    std::uint32_t clock = 0;
+    std::vector<Item> items;
     double submit = 0, raster = 0;
-    for (std::size_t i = 0; i < walk.size(); ++i) {
-        const auto& c = f.candidates[walk[i]];
-        if (c.floor_open) {
-            for (Index k = 0; k < c.child_count; ++k) walk.push_back(c.first_child + k);
-        } else {
-            open.push_back({walk[i], 0, clock++});
-            submit += f.choices[c.first_choice].cost.submit_us;
-            raster += f.choices[c.first_choice].cost.raster_us;
+};
+
+/// The documented rule, read off directly: from the floor, always the steps of greatest key, together where they fit; else one
+/// after the other, by candidate, up to the first that does not fit.
+class Definition {
+public:
+    Definition(const Scene& s, double budget, bool subtree) : s_(s), f_(s.frame), budget_(budget), subtree_(subtree) {}
+
+    std::vector<std::pair<Index, Index>> cut() const {
+        Growing now = floor();
+        while (true) {
+            const float key = greatest(now);
+            if (key < 0) break;
+            Growing all = now;
+            while (greatest(all) == key) buy(all, key);
+            if (fits(all)) {
+                now = all;
+                continue;
+            }
+            for (Growing next = now;; now = next) {
+                buy(next, key);
+                if (!fits(next)) break;
+            }
+            break;
         }
+        std::vector<std::pair<Index, Index>> items;
+        for (const auto& o : now.items) items.emplace_back(o.candidate, f_.candidates[o.candidate].first_choice + o.choice);
+        std::sort(items.begin(), items.end());
+        return items;
     }
-    const auto key = [&](const Open& o) {
-        const auto& choice = f.choices[f.candidates[o.candidate].first_choice + o.choice];
-        return subtree ? choice.subtree_benefit : choice.benefit;
-    };
-    while (true) {
-        const Open* best = nullptr;
-        for (const Open& o : open) {
-            const auto& c = f.candidates[o.candidate];
-            if (o.choice + 1 >= c.choice_count && c.child_count == 0) continue;
-            if (best == nullptr || key(o) > key(*best) || (key(o) == key(*best) && o.arrived < best->arrived)) best = &o;
+
+private:
+    Growing floor() const {
+        Growing g;
+        std::vector<Index> walk{0};
+        for (std::size_t i = 0; i < walk.size(); ++i) {
+            const auto& c = f_.candidates[walk[i]];
+            if (c.floor_open) {
+                for (Index k = 0; k < c.child_count; ++k) walk.push_back(c.first_child + k);
+                continue;
+            }
+            g.items.push_back({walk[i], 0});
+            g.submit += f_.choices[c.first_choice].cost.submit_us;
+            g.raster += f_.choices[c.first_choice].cost.raster_us;
         }
-        if (best == nullptr) break;
-        const Open step = *best;
-        const auto& c = f.candidates[step.candidate];
-        const auto& own = f.choices[c.first_choice + step.choice].cost;
+        return g;
+    }
+    bool fits(const Growing& g) const { return predicted(s_, g.submit, g.raster) * (1 + 1e-6) <= budget_; }
+    /// Of the item's next step; -1: it has none.
+    float key(const Growing::Item& o) const {
+        const auto& c = f_.candidates[o.candidate];
+        if (o.choice + 1 >= c.choice_count && c.child_count == 0) return -1;
+        const auto& choice = f_.choices[c.first_choice + o.choice];
+        return subtree_ ? choice.subtree_benefit : choice.benefit;
+    }
+    float greatest(const Growing& g) const {
+        float most = -1;
+        for (const auto& o : g.items) most = std::max(most, key(o));
+        return most;
+    }
+    /// The first step of that key.
+    void buy(Growing& g, float wanted) const {
+        auto best = g.items.end();
+        for (auto o = g.items.begin(); o != g.items.end(); ++o) {
+            if (key(*o) == wanted && (best == g.items.end() || o->candidate < best->candidate)) best = o;
+        }
+        const Growing::Item step = *best;
+        const auto& c = f_.candidates[step.candidate];
+        const auto& own = f_.choices[c.first_choice + step.choice].cost;
         const bool finer = step.choice + 1 < c.choice_count;
-        const auto& next = finer ? f.choices[c.first_choice + step.choice + 1].cost : c.children_cost;
-        const double to_submit = submit - own.submit_us + next.submit_us, to_raster = raster - own.raster_us + next.raster_us;
-        if (predicted(s, to_submit, to_raster) * (1 + 1e-6) > budget) break;
-        submit = to_submit;
-        raster = to_raster;
-        open.erase(open.begin() + (best - open.data()));
-        if (finer) {
-            open.push_back({step.candidate, step.choice + 1, clock++});
-        } else {
-            for (Index k = 0; k < c.child_count; ++k) open.push_back({c.first_child + k, 0, clock++});
-        }
+        const auto& next = finer ? f_.choices[c.first_choice + step.choice + 1].cost : c.children_cost;
+        g.submit += static_cast<double>(next.submit_us) - static_cast<double>(own.submit_us);
+        g.raster += static_cast<double>(next.raster_us) - static_cast<double>(own.raster_us);
+        g.items.erase(best);
+        if (finer) return g.items.push_back({step.candidate, step.choice + 1});
+        for (Index k = 0; k < c.child_count; ++k) g.items.push_back({c.first_child + k, 0});
     }
-    std::vector<std::pair<Index, Index>> items;
-    for (const Open& o : open) items.emplace_back(o.candidate, f.candidates[o.candidate].first_choice + o.choice);
-    std::sort(items.begin(), items.end());
-    return items;
-}
+
+    const Scene& s_;
+    const prepare::PreparedFrame& f_;
+    double budget_;
+    bool subtree_;
+};
 
 TEST(Select, BestFirstAndTwoStageFollowTheirDefinition) {
     Random random(23);
@@ -155,7 +192,7 @@ TEST(Select, BestFirstAndTwoStageFollowTheirDefinition) {
                      floor = static_cast<double>(s.cut.floor_us);
         const double budget = floor + (full - floor) * random.unit();
         for (const bool subtree : {false, true}) {
-            const auto expected = by_definition(s, budget, subtree);
+            const auto expected = Definition(s, budget, subtree).cut();
             const Cut& cut = s.run(subtree ? "two-stage" : "best-first", budget);
             std::vector<std::pair<Index, Index>> items;
             for (const CutItem& item : cut.items) items.emplace_back(item.candidate, item.choice);

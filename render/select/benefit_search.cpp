@@ -1,0 +1,238 @@
+// Best-first and two-stage best-first (Maciel 3.5), mended: each step priced as what it changes, in the order of its benefit.
+// Benefits fall monotonely down the tree, so that this order needs no queue: the steps' costs are summed by benefit, the sums say
+// at which benefit the budget ends, and only the steps of that one bucket are tried in turn (by candidate, then by form), to the
+// first that does not fit. A bucket is 1/128 octave wide: what lies closer counts as equal.
+#include <algorithm>
+
+#include "render/select/cover.hpp"
+#include "render/select/queue.hpp"
+#include "render/select/search.hpp"
+#include "render/select/steps.hpp"
+
+namespace surefoot::select {
+
+namespace {
+
+constexpr std::uint32_t buckets = BucketQueue::buckets;
+
+/// Cost changes of all steps by bucket of their key: those that are new, and those that were shown in the last frame.
+class StepSums {
+public:
+    explicit StepSums(std::span<double> room) : room_(room.first(std::size_t{4} * buckets)) {
+        std::fill(room_.begin(), room_.end(), 0.0);
+    }
+    void add(std::uint32_t bucket, bool refined, const model::ItemCost& away, const model::ItemCost& in) {
+        double* at = &room_[std::size_t{4} * bucket + (refined ? 2U : 0U)];
+        at[0] += static_cast<double>(in.submit_us) - static_cast<double>(away.submit_us);
+        at[1] += static_cast<double>(in.raster_us) - static_cast<double>(away.raster_us);
+    }
+    [[nodiscard]] Sum fresh(std::uint32_t bucket) const { return {room_[4 * bucket], room_[4 * bucket + 1]}; }
+    [[nodiscard]] Sum refined(std::uint32_t bucket) const { return {room_[4 * bucket + 2], room_[4 * bucket + 3]}; }
+
+private:
+    std::span<double> room_;
+};
+
+Sum operator+(const Sum& a, const Sum& b) { return {a.submit_us + b.submit_us, a.raster_us + b.raster_us}; }
+bool nothing(const Sum& sum) { return sum.submit_us == 0.0 && sum.raster_us == 0.0; }
+
+/// Up to where steps of one kind are taken: below `bucket` all, in it those that fit in their turn, above it none.
+struct Edge {
+    std::uint32_t bucket = buckets;
+    Sum before;  ///< predicted sums of all that is taken below the bucket
+};
+
+/// One selection: three walks over the candidates, which stand parents before children.
+class ThresholdSearch {
+public:
+    ThresholdSearch(const SelectInput& input, SelectState& state, Cover& cover, const Budget& budget, bool subtree)
+        : cover_(cover),
+          budget_(budget),
+          steps_(input, state, subtree),
+          sums_(state.scratch_sums),
+          share_(fresh_share(state)),
+          put_off_(state.scratch_next) {}
+
+    /// Returns the number of steps taken.
+    std::uint32_t run() {
+        sum_up();
+        const Edge both = common_edge();
+        take_common(both);
+        if (put_off_count_ > 0 && !closed_) take_put_off(refined_edge(both));
+        return taken_;
+    }
+
+private:
+    struct Step {
+        std::uint32_t bucket;
+        bool refined;
+    };
+    [[nodiscard]] Step step_of(const prepare::Choice& now, Index shown) const {
+        const bool refined = Steps::was_refined(shown, now);
+        return {BucketQueue::bucket_of(steps_.key(now, refined)), refined};
+    }
+
+    /// Calls use(offset of the choice, whether the step opens the children) for every step of a candidate, in order, until it
+    /// returns false. True: all steps were used, the opening one included.
+    template <class Use>
+    bool for_steps(Index c, const Use& use) const {
+        const prepare::Candidate& candidate = cover_.candidate(c);
+        const auto choices = cover_.choices(c);
+        for (std::uint32_t k = 0; k < candidate.choice_count; ++k) {
+            const bool last = k + 1 == candidate.choice_count;
+            if ((last && candidate.child_count == 0) || !steps_.wanted(choices[k]) || !use(k, last)) return false;
+        }
+        return true;
+    }
+
+    void sum_up() {
+        const auto open_below = cover_.scratch();  // only read where a target error may keep a node shut
+        for (Index c = 0; c < cover_.size(); ++c) {
+            if (cover_.chosen(c) == SelectState::opened) continue;  // above the floor
+            const prepare::Candidate& candidate = cover_.candidate(c);
+            if (steps_.has_target() && cover_.chosen(c) == none && open_below[candidate.parent] == 0) {
+                open_below[c] = 0;
+                continue;
+            }
+            const auto choices = cover_.choices(c);
+            const Index shown = steps_.shown(candidate.node);
+            const bool passed = for_steps(c, [&](std::uint32_t k, bool opens) {
+                const Step step = step_of(choices[k], shown);
+                sums_.add(step.bucket, step.refined, choices[k].cost, opens ? candidate.children_cost : choices[k + 1].cost);
+                return true;
+            });
+            if (steps_.has_target()) open_below[c] = passed ? 1 : 0;
+        }
+    }
+
+    /// The first bucket whose steps do not all fit.
+    [[nodiscard]] Edge common_edge() const {
+        Edge edge{0, cover_.floor_sum()};
+        for (; edge.bucket < buckets; ++edge.bucket) {
+            const Sum fresh = sums_.fresh(edge.bucket);
+            const Sum next = edge.before + fresh + sums_.refined(edge.bucket);
+            if (!budget_.fits(next, nothing(fresh) ? 1.0 : share_)) break;
+            edge.before = next;
+        }
+        return edge;
+    }
+    /// The same for what was shown before alone, beyond the common edge.
+    [[nodiscard]] Edge refined_edge(const Edge& common) const {
+        Edge edge{common.bucket + 1, sum_};
+        for (; edge.bucket < buckets; ++edge.bucket) {
+            const Sum next = edge.before + sums_.refined(edge.bucket);
+            if (!budget_.fits(next)) break;
+            edge.before = next;
+        }
+        return edge;
+    }
+
+    void take_common(const Edge& edge) {
+        sum_ = edge.before;
+        bool fresh_closed = edge.bucket == buckets;
+        for (Index c = 0; c < cover_.size(); ++c) {
+            if (cover_.chosen(c) == SelectState::opened) continue;
+            const prepare::Candidate& candidate = cover_.candidate(c);
+            const auto choices = cover_.choices(c);
+            const Index shown = steps_.shown(candidate.node);
+            if (cover_.chosen(c) == none) {  // below what is taken; what it was refined to may still come in
+                if (Steps::was_refined(shown, choices[0])) put_off_[put_off_count_++] = c;
+                continue;
+            }
+            for_steps(c, [&](std::uint32_t k, bool opens) {
+                const Step step = step_of(choices[k], shown);
+                bool take = step.bucket < edge.bucket;
+                if (step.bucket == edge.bucket && !closed_ && (step.refined || !fresh_closed)) {
+                    take = try_step(c, k, opens, step.refined ? 1.0 : share_);
+                    if (!take) (step.refined ? closed_ : fresh_closed) = true;
+                }
+                if (take) return do_step(c, k, opens);
+                if (step.refined && step.bucket > edge.bucket) put_off_[put_off_count_++] = c;
+                return false;
+            });
+        }
+    }
+
+    void take_put_off(const Edge& edge) {
+        sum_ = edge.before;
+        for (std::uint32_t i = 0; i < put_off_count_; ++i) {
+            const Index c = put_off_[i];
+            if (cover_.chosen(c) == none) continue;  // its parent was not opened
+            const auto choices = cover_.choices(c);
+            const Index shown = steps_.shown(cover_.candidate(c).node);
+            for_steps(c, [&](std::uint32_t k, bool opens) {
+                if (k < cover_.chosen(c)) return true;  // taken already
+                const Step step = step_of(choices[k], shown);
+                bool take = step.refined && step.bucket < edge.bucket;
+                if (step.refined && step.bucket == edge.bucket && !closed_) {
+                    take = try_step(c, k, opens, 1.0);
+                    closed_ = !take;
+                }
+                return take && do_step(c, k, opens);
+            });
+        }
+    }
+
+    bool try_step(Index c, std::uint32_t k, bool opens, double share) {
+        const auto choices = cover_.choices(c);
+        const Sum next = sum_.changed(choices[k].cost, opens ? cover_.candidate(c).children_cost : choices[k + 1].cost);
+        if (!budget_.fits(next, share)) return false;
+        sum_ = next;
+        return true;
+    }
+    bool do_step(Index c, std::uint32_t k, bool opens) {
+        ++taken_;
+        if (!opens) {
+            cover_.choose(c, k + 1);
+            return true;
+        }
+        const prepare::Candidate& candidate = cover_.candidate(c);
+        cover_.open(c);
+        for (Index child = 0; child < candidate.child_count; ++child) cover_.choose(candidate.first_child + child, 0);
+        return true;
+    }
+
+    Cover& cover_;
+    const Budget& budget_;
+    Steps steps_;
+    StepSums sums_;
+    double share_;
+    std::span<std::uint32_t> put_off_;  ///< candidates that were shown finer than the common edge allows, ascending
+    std::uint32_t put_off_count_ = 0;
+    Sum sum_;
+    bool closed_ = false;
+    std::uint32_t taken_ = 0;
+};
+
+class BenefitSearch final : public Selector {
+public:
+    BenefitSearch(std::string_view name, bool subtree) : name_(name), subtree_(subtree) {}
+    [[nodiscard]] std::string_view name() const override { return name_; }
+
+    void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
+        clear(cut);
+        if (!has_room(input, state, cut)) return;
+        const Budget budget(input);
+        Cover cover(input, state);
+        cover.take_floor();
+        if (full_detail_fits(input, state, budget)) return cover.finish(budget, cover.take_finest(), cut);
+        cover.finish(budget, ThresholdSearch(input, state, cover, budget, subtree_).run(), cut);
+    }
+
+private:
+    std::string_view name_;
+    bool subtree_;
+};
+
+}  // namespace
+
+const Selector& best_first() {
+    static const BenefitSearch selector("best-first", false);
+    return selector;
+}
+const Selector& two_stage() {
+    static const BenefitSearch selector("two-stage", true);
+    return selector;
+}
+
+}  // namespace surefoot::select
