@@ -53,6 +53,16 @@ struct Wish {
     bool next_viewpoint = false, reset = false, tour = false, pause = false;  ///< edges: true in the sample they happen in
 };
 
+/// How the walk has to follow: `brake` goes to the wish at once (a device was lost), `stop` stands still in this very step.
+enum class Order : std::uint8_t { walk, brake, stop };
+
+/// What safety/ lets through to motion/.
+struct Command {
+    Wish wish;
+    Order order = Order::walk;
+    std::int64_t stamp_ns = 0;  ///< of the newest report in it
+};
+
 /// How often each edge has come since the start. Newest-wins exchanges drop samples, and with them the edges in them; a
 /// reader that compares these counts with those it handled last loses none and takes none twice (counts wrap).
 struct PressCounts {
