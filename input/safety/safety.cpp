@@ -118,7 +118,7 @@ Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Sou
         device.held = judge(state, device, limits, source, now);
         if (device.held == Held::no) passing[i] = source.asked.wish;
         device.contributed = asks(passing[i]);
-        if (device.held != Held::no && contributed) state.brake_until_ns = now + brake_window_ns;
+        if (device.held != Held::no && (contributed || before == Held::no)) state.brake_until_ns = now + brake_window_ns;
         if (device.held == Held::silent && before != Held::silent) ++state.silences;
         if (device.held == Held::disconnected && before != Held::disconnected) ++state.losses;
         device.passed = passing[i];
