@@ -27,7 +27,9 @@ Response response_for(const Shape& shape, double half_travel_counts) {
     Response response;
     const double counts = std::min(tremor_counts / std::max(half_travel_counts, 0.5), widest_play);
     response.play = std::max(shape.hysteresis, counts);
-    response.dead = std::max(shape.dead_zone, response.play);
+    // What the counts add to the play, and the rounding of a coarse control, must not take from the room for a centre's drift.
+    const double rounding = std::min(0.5 / std::max(half_travel_counts, 0.5), least_span);
+    response.dead = std::max(shape.dead_zone, shape.hysteresis) + (response.play - shape.hysteresis) + rounding;
     response.full = std::max(std::min(shape.saturation, 1.0) - response.play, response.dead + least_span);
     response.full = std::min(response.full, 1.0 - response.play);
     response.dead = std::min(response.dead, response.full - least_span / 2);

@@ -56,6 +56,10 @@ public:
     }
     [[nodiscard]] std::string take() { return std::move(text_); }
 
+    void time(std::string_view key, std::int64_t value_ns, std::int64_t standard_ns, double unit_ns) {
+        number(key, static_cast<double>(value_ns) / unit_ns, static_cast<double>(standard_ns) / unit_ns);
+    }
+
 private:
     static std::string shown(double value) { return fmt::format("{}", value); }
     static std::string quoted(std::string_view value) {
@@ -132,10 +136,10 @@ void write_limits(Writer& w, const MotionLimits& m, const SafetyLimits& s) {
     w.number("min_cutoff_hz", m.filter.min_cutoff_hz, dm.filter.min_cutoff_hz);
     w.number("cutoff_slope", m.filter.slope, dm.filter.slope);
     w.header("[safety]");
-    w.number("age_limit_ms", s.age_limit_ns / 1e6, ds.age_limit_ns / 1e6);
+    w.time("age_limit_ms", s.age_limit_ns, ds.age_limit_ns, 1e6);
     w.number("slew_per_s", s.slew_per_s, ds.slew_per_s);
-    w.number("dead_man_press_ms", s.dead_man.press_ns / 1e6, ds.dead_man.press_ns / 1e6);
-    w.number("dead_man_idle_s", s.dead_man.idle_limit_ns / 1e9, ds.dead_man.idle_limit_ns / 1e9);
+    w.time("dead_man_press_ms", s.dead_man.press_ns, ds.dead_man.press_ns, 1e6);
+    w.time("dead_man_idle_s", s.dead_man.idle_limit_ns, ds.dead_man.idle_limit_ns, 1e9);
 }
 
 }  // namespace
@@ -159,7 +163,7 @@ std::string steering_text(const SteeringFile& steering) {
         w.word("bias", words::biases, line.request.bias, Bias::as_is);
         w.flag("active_low", line.request.active_low);
         w.flag("normally_closed", line.normally_closed && line.role != LineRole::stop);
-        w.number("settle_ms", line.settle_ns / 1e6, LineConfig{}.settle_ns / 1e6);
+        w.time("settle_ms", line.settle_ns, LineConfig{}.settle_ns, 1e6);
     }
     return w.take();
 }
