@@ -74,9 +74,9 @@ struct Prediction {
     double uncertainty_m = 0, uncertainty_rad = 0;
 };
 /// The pose `lead_s` after the sample if the hand stays as it is, and how far from it any pose can be that the limits allow by
-/// then: full acceleration in any direction, or any stop. Holds for every hand and order but `brake` towards a moving wish.
-/// `stair_m`: the Ground's. Source of the bound: |v(s) - v0| <= max(A s, |v0|) with A = a + |v0| (|w0| + alpha t / 2),
-/// integrated.
+/// then: stopped at any moment, by order or by a wall, and driven off again in any direction. Holds for every hand and order but
+/// `brake` towards a moving wish. `stair_m`: the Ground's. The bound: |v(s) - v0| <= |v0| + A s, integrated over the lead t, with
+/// A = a + |v0| (|w0| + alpha t / 2) since the walker's frame turns.
 Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double stair_m = 0);
 
 /// What the filter adds now and at most; seconds. The acceleration limit is a limit, not a lag.

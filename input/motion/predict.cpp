@@ -8,11 +8,8 @@ namespace surefoot::input {
 
 namespace {
 
-/// Integral over 0..t of max(rate * s, still): the most that a velocity can stray, or stop, by time t.
-double strayed(double rate, double still, double t) {
-    const double crossing = rate > 0 ? std::min(t, still / rate) : t;
-    return still * crossing + 0.5 * rate * (t * t - crossing * crossing);
-}
+/// The most that a velocity can stray by time t, integrated: stopped at once and then driven off anywhere.
+double strayed(double rate, double speed, double t) { return speed * t + 0.5 * rate * t * t; }
 
 }  // namespace
 
