@@ -161,7 +161,7 @@ void GpioPanel::take(const LineEdge& got) {
     Line& line = state_of_[got.line];
     const bool asserted = asserted_by(got.line, got.active);
     if (got.sequence != 0) {
-        const std::uint32_t lost = line.sequence == 0 ? 0 : got.sequence - line.sequence - 1;
+        const std::uint32_t lost = got.sequence - line.sequence - 1;  // numbered from 1 since the request
         line.sequence = got.sequence;
         if (lost != 0) {  // among them may have been a stop, or a hand off the dead-man
             ++line.contact.presses;

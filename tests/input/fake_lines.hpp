@@ -63,6 +63,7 @@ inline Result<std::unique_ptr<GpioLines>> open_fake(std::span<const LineRequest>
     if (!chip.busy_by.empty()) return Error{"fake line 'ESTOP'", "is in use by '" + chip.busy_by + "'", "stop that program"};
     ++chip.opened;
     chip.queue.clear();
+    std::fill(chip.sequence.begin(), chip.sequence.end(), 0);
     return std::unique_ptr<GpioLines>(std::make_unique<FakeLines>(chip, requests.size()));
 }
 

@@ -74,6 +74,7 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
     for (int d = 0; d < devices; ++d) ASSERT_EQ(steering.attach(*compiled, hostile.controls.size(), Reporting::learn), d);
     std::array<DeviceState, devices> states{};
     std::array<bool, devices> there{};
+    std::array<std::int64_t, devices> mute_until{};
     there.fill(true);
     const auto guard = rt::guard_counters();
     const auto began = std::chrono::steady_clock::now();
@@ -106,6 +107,8 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
                 for (std::size_t control = 0; control < 9; ++control) test::set(states[d], control, control < 2 ? 128 : 0);
                 states[d].has_value.reset(5);
             }
+            if (random.below(10'000) == 0) mute_until[d] = now + 300'000'000;
+            if (now < mute_until[d]) continue;
             states[d].stamp_ns = now;
             steering.report(static_cast<int>(d), states[d], now);
             steering.drained(static_cast<int>(d), random.below(20'000) == 0 ? 64 : 1, random.below(50'000) == 0);
@@ -149,6 +152,7 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
     EXPECT_GT(fastest, 1.0) << "it must have walked";
     EXPECT_GT(s.stops, 0U);
     EXPECT_GT(s.overflows, 0U);
+    EXPECT_GT(s.silences, 0U);
     EXPECT_GT(s.losses, 0U);
 }
 
