@@ -5,6 +5,12 @@
 
 namespace surefoot::input {
 
+namespace {
+
+bool free_again(const Source& source) { return !source.connected && !source.asked.has_stop && !source.asked.has_dead_man; }
+
+}  // namespace
+
 Steering::Steering(const MotionLimits& motion, const SafetyLimits& safety, bool stop_latched)
     : motion_limits_(motion), safety_limits_(safety) {
     safety_.latched = stop_latched;
@@ -15,7 +21,7 @@ int Steering::attach(Mapper mapper, std::size_t controls, Reporting reporting, i
     if (again >= 0 && static_cast<std::size_t>(again) < max_devices)
         at = static_cast<std::size_t>(again);
     else
-        while (at < max_devices && devices_[at]) ++at;
+        while (at < max_devices && devices_[at] && !free_again(sources_[at])) ++at;
     if (at == max_devices) return -1;
     if (!devices_[at]) devices_[at] = std::make_unique<Device>();
     Device& device = *devices_[at];

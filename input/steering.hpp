@@ -20,7 +20,8 @@ public:
     Steering(const MotionLimits& motion, const SafetyLimits& safety, bool stop_latched = false);
 
     /// A device came; its number, or -1 when max_devices are there. It asks for nothing until seen neutral. A device that comes
-    /// back should get its number again (`again`): the found rests and its stop's being there are kept.
+    /// back must get its number again (`again`) if it carries a stop or a dead-man: while it is away these hold the walk, and
+    /// its number is not given to another.
     int attach(Mapper mapper, std::size_t controls, Reporting reporting, int again = -1);
     /// Unplugged, or its reader failed.
     void detach(int device);

@@ -13,7 +13,8 @@
 namespace surefoot::input {
 
 /// Where a step may end, given where it wants to: walls, floors, stairs. `context` is the caller's; must not throw or allocate.
-/// Answers may lie nearer, or aside, or higher by a stair; what is further from the wanted place's reach is shortened to it.
+/// Answers may lie nearer, or aside, or higher by a stair; one that moves the eye further than it wanted to, plus stair_m, is
+/// shortened to that, and one that is not finite holds it where it is.
 struct Ground {
     using Query = dvec3 (*)(const void* context, const dvec3& from, const dvec3& wanted) noexcept;
     Query query = nullptr;

@@ -15,11 +15,7 @@ namespace surefoot::input {
 namespace {
 
 constexpr std::int64_t ms = 1'000'000;
-#ifdef SUREFOOT_SANITIZED
-constexpr int virtual_seconds = 360;  // the sanitizers are ten times slower
-#else
 constexpr int virtual_seconds = 3600;
-#endif
 
 Command walk(double forward, double side = 0, double turn = 0, double look = 0) {
     Command c;

@@ -12,11 +12,7 @@
 namespace surefoot::input {
 namespace {
 
-#ifdef SUREFOOT_SANITIZED
-constexpr int virtual_seconds = 180;  // the sanitizers take twenty times as long
-#else
 constexpr int virtual_seconds = 3600;
-#endif
 constexpr int devices = 8;
 
 /// Every kind of binding on hostile controls: full 32-bit ranges, a relative axis, a hat, buttons.
