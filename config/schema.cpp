@@ -1,10 +1,11 @@
 // The schema: every key once, with its unit, limits and help.
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string>
-#include <vector>
 
 #include "config/settings.hpp"
+#include "rt/base/nearest.hpp"
 
 namespace surefoot::config {
 
@@ -63,20 +64,6 @@ std::string normalised(string_view key) {
     return text;
 }
 
-/// Levenshtein distance: insertions, deletions and replacements.
-std::size_t edits_between(string_view a, string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i + 1);
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = std::exchange(row[j + 1], std::min({replaced, row[j] + 1, row[j + 1] + 1}));
-        }
-    }
-    return row.back();
-}
-
 }  // namespace
 
 std::span<const Entry> schema() { return entries; }
@@ -88,20 +75,9 @@ const Entry* find_entry(string_view key) {
 }
 
 string_view nearest_key(string_view key) {
-    if (key.size() > 64) return {};
-    const std::string wanted = normalised(key);
-    string_view nearest;
-    std::size_t fewest = std::max<std::size_t>(2, wanted.size() / 2);  // further than that is another word
-    for (const Entry& entry : entries) {
-        // Half a name is a common slip: "rate" for rate_hz.
-        const bool half = wanted.size() >= 3 && entry.key.find(wanted) != string_view::npos;
-        const std::size_t edits = half ? 1 : edits_between(wanted, entry.key);
-        if (edits < fewest || (edits == fewest && nearest.empty())) {
-            fewest = edits;
-            nearest = entry.key;
-        }
-    }
-    return nearest;
+    std::array<string_view, entries.size()> keys;
+    std::transform(entries.begin(), entries.end(), keys.begin(), [](const Entry& entry) { return entry.key; });
+    return nearest_word(normalised(key), keys);
 }
 
 }  // namespace surefoot::config

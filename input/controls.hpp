@@ -53,6 +53,22 @@ struct Wish {
     bool next_viewpoint = false, reset = false, tour = false, pause = false;  ///< edges: true in the sample they happen in
 };
 
+/// How the walk has to follow: `brake` goes to the wish at once (a device was lost), `stop` stands still in this very step.
+enum class Order : std::uint8_t { walk, brake, stop };
+
+/// What safety/ lets through to motion/.
+struct Command {
+    Wish wish;
+    Order order = Order::walk;
+    std::int64_t stamp_ns = 0;  ///< of the newest report in it
+};
+
+/// How often each edge has come since the start. Newest-wins exchanges drop samples, and with them the edges in them; a
+/// reader that compares these counts with those it handled last loses none and takes none twice (counts wrap).
+struct PressCounts {
+    std::uint32_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0;
+};
+
 /// What the frame thread reads, newest wins. Rest is all zeros with the pose held.
 struct NavigationSample {
     Pose pose;                 ///< integrated so far, double; see geometry.hpp for the frame
@@ -64,6 +80,7 @@ struct NavigationSample {
     std::uint64_t sequence = 0;  ///< of samples, from 1
     bool next_viewpoint = false, reset = false, tour = false, pause = false;
     bool stopped = false;  ///< emergency stop or dead-man: rest by order
+    PressCounts presses;   ///< up to and with this sample
 };
 
 }  // namespace surefoot::input

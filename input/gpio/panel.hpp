@@ -1,0 +1,101 @@
+// Wired controls as the rest of input/ sees them: emergency stop, dead-man, buttons and encoders, from lines that may break,
+// bounce, lose edges or vanish.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "input/controls.hpp"
+#include "input/gpio/debounce.hpp"
+#include "input/gpio/lines.hpp"
+#include "input/gpio/quadrature.hpp"
+#include "input/safety/safety.hpp"
+
+namespace surefoot::input {
+
+enum class LineRole : std::uint8_t { button, stop, stop_reset, dead_man, encoder_a, encoder_b };
+
+struct LineConfig {
+    std::string name;  ///< of the control; an encoder's two lines have the same
+    LineRole role = LineRole::button;
+    LineRequest request;
+    bool normally_closed = false;  ///< asserted while the contact is open, so that a broken wire asserts. Always so for stops
+    std::int64_t settle_ns = 10'000'000;  ///< of the release; also of stops and resets, never of a dead-man
+};
+
+/// Names are unique but for encoders, encoders have two lines of one chip, at most 64 lines. Error: the line's name and what.
+Result<void> check_lines(std::span<const LineConfig> lines);
+
+/// Waits longer after each failure, from 100 ms to 2 s, for ever.
+struct Retry {
+    std::int64_t next_ns = 0, wait_ns = 0;
+    [[nodiscard]] bool due(std::int64_t now_ns) const { return now_ns >= next_ns; }
+    void failed(std::int64_t now_ns) {
+        wait_ns = wait_ns == 0 ? 100'000'000 : wait_ns * 2 > 2'000'000'000 ? 2'000'000'000 : wait_ns * 2;
+        next_ns = now_ns + wait_ns;
+    }
+    void succeeded() { next_ns = wait_ns = 0; }
+};
+
+/// Reads the lines; one thread. Only opening allocates.
+class GpioPanel {
+public:
+    /// `lines` must have passed check_lines. `opener` and `context`: open_lines, or a fake.
+    GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* context, std::string consumer = "surefoot");
+
+    /// Call when a polled descriptor is readable and at every tick: opens and reopens, drains, reads levels again, settles.
+    void service(std::int64_t now_ns);
+
+    /// For safety/; its "since the last step" parts begin anew. While the chip is gone: stop asserted, dead-man not held.
+    Lines take_lines();
+    /// Buttons ("name") and encoders ("name", relative: steps since the last report) for map/, index-parallel to state().
+    [[nodiscard]] const std::vector<ControlInfo>& controls() const { return controls_; }
+    [[nodiscard]] const DeviceState& state() const { return state_; }
+    [[nodiscard]] std::span<const pollfd> polled() const;
+
+    [[nodiscard]] bool open() const { return lines_ != nullptr; }
+    [[nodiscard]] const std::string& problem() const { return problem_; }  ///< of the last failure; changes only when it does
+    [[nodiscard]] std::uint64_t lost_edges() const;
+    [[nodiscard]] std::uint64_t illegal_steps() const;
+    [[nodiscard]] std::uint64_t opens() const { return opens_; }
+
+private:
+    struct Line {
+        Contact contact;
+        std::size_t control = 0;  ///< index into controls_; only of buttons and encoders
+        std::size_t partner = 0;  ///< an encoder's other line
+        std::uint32_t sequence = 0, releases_taken = 0, presses_taken = 0;
+    };
+    struct Encoder {
+        Quadrature decoder;
+        std::size_t a = 0, b = 0, control = 0;
+        std::int64_t reported = 0;
+    };
+    void try_open(std::int64_t now_ns);
+    void close(const Error& error, std::int64_t now_ns);
+    bool drain(std::int64_t now_ns);
+    void take(const LineEdge& edge);
+    void turn(std::size_t line);
+    void publish(std::int64_t now_ns);
+    [[nodiscard]] bool asserted_by(std::size_t line, bool active) const;
+
+    std::vector<LineConfig> configs_;
+    std::vector<LineRequest> requests_;
+    OpenLines open_;
+    void* context_;
+    std::string consumer_, problem_;
+    std::unique_ptr<GpioLines> lines_;
+    Retry retry_;
+    std::vector<Line> state_of_;
+    std::vector<Encoder> encoders_;
+    std::vector<ControlInfo> controls_;
+    DeviceState state_;
+    std::unique_ptr<bool[]> levels_;
+    std::uint64_t opens_ = 0;
+    bool was_closed_ = true;  ///< since the last take_lines()
+};
+
+}  // namespace surefoot::input

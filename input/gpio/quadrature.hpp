@@ -1,0 +1,36 @@
+// A rotary encoder's two lines to steps, four a cycle. What cannot be a step is counted, never guessed. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace surefoot::input {
+
+/// Gray code 00 01 11 10 counts up (B leads A). A bouncing contact goes to and fro between neighbours and so cancels out.
+struct Quadrature {
+    std::uint8_t state = 0;  ///< A * 2 + B
+    bool known = false;      ///< the first levels only set the state
+    std::int64_t steps = 0;
+    std::uint64_t illegal = 0;  ///< both lines changed at once: an edge was lost, or a step of unknown direction
+
+    /// Returns -1, 0 or 1.
+    int turn(bool a, bool b) {
+        constexpr std::array<std::int8_t, 16> table = {0, 1, -1, 2, -1, 0, 2, 1, 1, 2, 0, -1, 2, -1, 1, 0};  // [old * 4 + new]
+        const auto next = static_cast<std::uint8_t>((a ? 2U : 0U) | (b ? 1U : 0U));
+        const std::uint8_t old = state;
+        state = next;
+        if (!known) {
+            known = true;
+            return 0;
+        }
+        const int step = table[static_cast<std::size_t>(old * 4 + next)];
+        if (step == 2) {
+            ++illegal;
+            return 0;
+        }
+        steps += step;
+        return step;
+    }
+};
+
+}  // namespace surefoot::input

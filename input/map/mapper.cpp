@@ -1,0 +1,200 @@
+// What a device asks for, from its newest raw values.
+#include "input/map/mapper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "input/map/merge.hpp"
+
+namespace surefoot::input {
+
+namespace {
+
+using Source = Binding::Source;
+
+constexpr double pace_window_s = 0.05;      // relative controls: displacement over this time makes the pace
+constexpr double smooth_rest = 1.0 / 1024;  // a smoothed response this near to rest is at rest
+
+/// Low pass that ends: exactly at rest when the target is, instead of creeping for ever.
+void smooth(Binding& b, double dt_s) {
+    if (b.smoothing_s <= 0) {
+        b.smoothed = b.answer;
+        return;
+    }
+    b.smoothed += (b.answer - b.smoothed) * (1 - std::exp(-dt_s / b.smoothing_s));
+    if (b.answer == dvec2(0.0) && glm::length(b.smoothed) < smooth_rest) b.smoothed = dvec2(0.0);
+}
+
+void ask_axes(Binding& b, const DeviceState& state, std::int64_t now_ns) {
+    const std::size_t count = b.source == Source::stick ? 2 : 1;
+    dvec2 deflection{0.0};
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!state.has_value[b.control[i]]) {  // nothing known, or nothing meant: rest
+            b.answer = b.held = dvec2(0.0);
+            return;
+        }
+        deflection[static_cast<int>(i)] = b.rest[i].deflection(state.value[b.control[i]]);
+    }
+    if (count == 2) {
+        b.held = with_play(b.held, deflection, b.response.play);
+        b.answer = respond(b.response, b.held);
+    } else {
+        b.held.x = with_play(b.held.x, deflection.x, b.response.play);
+        b.answer.x = respond(b.response, b.held.x);
+    }
+    const bool active = b.answer != dvec2(0.0);
+    if (!active) b.armed = true;
+    for (std::size_t i = 0; i < count; ++i) b.rest[i].learn(state.value[b.control[i]], active, now_ns);
+    if (!b.armed) b.answer = dvec2(0.0);
+}
+
+/// Displacements become a pace: a leaky sum over a short window, so that a still device rests by itself.
+void ask_relative(Binding& b, const DeviceState& state, bool fresh, double dt_s) {
+    b.armed = true;
+    b.travelled *= std::exp(-dt_s / pace_window_s);
+    if (fresh && state.has_value[b.control[0]]) b.travelled += state.value[b.control[0]] / b.counts_per_s;
+    if (std::abs(b.travelled) < smooth_rest * pace_window_s) b.travelled = 0;
+    // A heavy burst must not make a long tail.
+    b.travelled = std::clamp(b.travelled, -2 * pace_window_s, 2 * pace_window_s);
+    b.answer.x = respond(b.response, std::clamp(b.travelled / pace_window_s, -1.0, 1.0));
+}
+
+void ask_hat(Binding& b, const DeviceState& state) {
+    constexpr double s = 0.70710678118654752;  // diagonals are no faster
+    constexpr std::array<std::array<double, 2>, 8> directions = {
+        {{0, 1}, {s, s}, {1, 0}, {s, -s}, {0, -1}, {-s, -s}, {-1, 0}, {-s, s}}};
+    const std::int32_t value = state.value[b.control[0]];
+    b.answer = dvec2(0.0);
+    const bool centre = !state.has_value[b.control[0]] || value < 0 || value > 7;
+    if (centre) b.armed = b.armed || state.reports > 0;
+    if (centre || !b.armed) return;
+    const auto& direction = directions[static_cast<std::size_t>(value)];
+    b.answer = {direction[0], direction[1]};
+}
+
+/// True in the call in which the button goes down. Down at once, up once the contact stayed open for the settle time.
+bool press(Binding& b, const DeviceState& state, std::int64_t now_ns) {
+    const bool known = state.has_value[b.control[0]];
+    const bool contact = known && state.value[b.control[0]] != 0;
+    const bool asserted = b.normally_closed ? !contact : contact;
+    const bool before = b.pressed;
+    if (asserted) {
+        b.pressed = true;
+        b.open_since_ns = -1;
+    } else if (b.pressed) {
+        if (b.open_since_ns < 0) b.open_since_ns = now_ns;
+        if (now_ns - b.open_since_ns >= b.settle_ns) b.pressed = false;
+    }
+    if (!asserted && state.reports > 0) b.armed = true;
+    return b.pressed && !before && b.armed;
+}
+
+double* member(Wish& wish, Action action) {
+    switch (action) {
+        case Action::forward:
+            return &wish.forward;
+        case Action::side:
+            return &wish.side;
+        case Action::up:
+            return &wish.up;
+        case Action::turn:
+            return &wish.turn;
+        case Action::look:
+            return &wish.look;
+        case Action::speed:
+            return &wish.speed;
+        default:
+            return nullptr;
+    }
+}
+
+void do_button(Binding& b, Asked& asked, const DeviceState& state, std::int64_t now_ns) {
+    const bool edge = press(b, state, now_ns);
+    const bool held = b.pressed && b.armed;  // held when it came: not meant for us
+    b.answer = dvec2(held && has_size(b.action[0]) ? 1.0 : 0.0, 0.0);
+    switch (b.action[0]) {
+        case Action::next_viewpoint:
+            asked.wish.next_viewpoint |= edge;
+            break;
+        case Action::reset:
+            asked.wish.reset |= edge;
+            break;
+        case Action::tour:
+            asked.wish.tour |= edge;
+            break;
+        case Action::pause:
+            asked.wish.pause |= edge;
+            break;
+        case Action::dead_man:
+            asked.has_dead_man = true;
+            // Raw: its release is never delayed (safety/ debounces the press).
+            asked.dead_man |= held && b.open_since_ns < 0;
+            break;
+        case Action::stop:
+            asked.has_stop = true;
+            asked.stop |= b.pressed;
+            break;
+        case Action::stop_reset:
+            asked.stop_reset |= held;
+            break;
+        default:
+            break;
+    }
+}
+
+}  // namespace
+
+Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns) {
+    Asked asked;
+    const std::int64_t passed = mapper.last_ns < 0 ? 0 : std::max<std::int64_t>(0, now_ns - mapper.last_ns);
+    const double dt_s = static_cast<double>(passed) * 1e-9;
+    const bool fresh = state.reports != mapper.last_reports;
+    mapper.last_ns = std::max(mapper.last_ns, now_ns);
+    mapper.last_reports = state.reports;
+    for (Binding& b : mapper.bindings) {
+        switch (b.source) {
+            case Source::axis:
+            case Source::stick:
+                ask_axes(b, state, now_ns);
+                break;
+            case Source::relative:
+                ask_relative(b, state, fresh, dt_s);
+                break;
+            case Source::hat:
+                ask_hat(b, state);
+                break;
+            case Source::button:
+                do_button(b, asked, state, now_ns);
+                break;
+        }
+        smooth(b, dt_s);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const double size = b.smoothed[static_cast<int>(i)];
+            if (double* sum = member(asked.wish, b.action[i])) *sum += b.gain[i] * size;
+            const bool deflected = b.source == Source::button ? b.pressed : b.answer[static_cast<int>(i)] != 0 || !b.armed;
+            const bool seen = b.armed || state.has_value[b.control[i]];
+            if (moves(b.action[i]) && seen && deflected) asked.neutral = false;
+        }
+    }
+    bound(asked.wish);
+    return asked;
+}
+
+void forget(Mapper& mapper) {
+    for (Binding& b : mapper.bindings) {
+        b.held = b.answer = b.smoothed = dvec2(0.0);
+        b.travelled = 0;
+        b.armed = b.pressed = false;
+        b.open_since_ns = -1;
+    }
+    mapper.last_ns = -1;
+    mapper.last_reports = 0;
+}
+
+double mapping_lag_s(const Mapper& mapper) {
+    double lag = 0;
+    for (const Binding& b : mapper.bindings) lag = std::max(lag, b.smoothing_s);
+    return lag;
+}
+
+}  // namespace surefoot::input

@@ -1,0 +1,69 @@
+// A mapping made fast for one device: raw values in, what is asked out. After compile() nothing allocates.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "input/map/mapping.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::input {
+
+/// What one device asks for at one moment.
+struct Asked {
+    Wish wish;            ///< translation and rotation each at most of length 1; edges only in the call in which they came
+    bool neutral = true;  ///< every control that moves is in its dead zone (those not yet seen do not count)
+    bool has_stop = false, stop = false;  ///< bound at all; asserted now
+    bool stop_reset = false;              ///< held now
+    bool has_dead_man = false, dead_man = false;
+};
+
+/// One control or pair of controls with its state. Public so that tools can show it; use compile() and ask().
+struct Binding {
+    enum class Source : std::uint8_t { axis, stick, relative, hat, button };
+    Source source = Source::axis;
+    std::array<std::uint16_t, 2> control{};
+    std::array<Action, 2> action{};
+    std::array<double, 2> gain{};  ///< scale, with the inversion's sign
+    Response response;
+    double smoothing_s = 0;
+    double counts_per_s = 1000;
+    std::int64_t settle_ns = 0;
+    bool normally_closed = false;
+
+    std::array<RestFinder, 2> rest;
+    dvec2 held{0.0};       ///< deflection after play
+    dvec2 answer{0.0};     ///< response before smoothing
+    dvec2 smoothed{0.0};   ///< what goes out
+    double travelled = 0;  ///< relative: leaky sum, in seconds of full response
+    bool armed = false;    ///< seen at rest since the device came: until then it asks for nothing
+    bool pressed = false;
+    std::int64_t open_since_ns = -1;  ///< of a pressed button whose contact has opened
+};
+
+struct Mapper {
+    std::vector<Binding> bindings;
+    std::vector<std::string> notes;  ///< controls that the mapping names and that cannot be bound, for the log
+    std::int64_t last_ns = -1;
+    std::uint64_t last_reports = 0;
+};
+
+/// Binds by name or by usage and collection. A control that the device has not got is an error with the nearest name.
+Result<Mapper> compile(const DeviceMapping& mapping, std::span<const ControlInfo> controls);
+/// The same, leaving out what cannot be bound, with a note for each: a half-fitting mapping steers with what fits.
+Mapper compile_what_fits(const DeviceMapping& mapping, std::span<const ControlInfo> controls);
+
+/// Call after each accepted report, and at least once a tick (smoothing runs on). `now_ns` does not go back; where it does, time
+/// stands still. A control without a value (never seen, or a null state) is at rest; one out of its range is clamped.
+Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns);
+
+/// The device was lost or comes anew: everything at rest and unarmed; the found rests are kept.
+void forget(Mapper& mapper);
+
+/// Longest lag that the mapping itself adds, seconds: its largest smoothing time constant. Play adds an error of at most its
+/// half width and no lag in time.
+double mapping_lag_s(const Mapper& mapper);
+
+}  // namespace surefoot::input

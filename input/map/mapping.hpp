@@ -1,0 +1,129 @@
+// What a user says about a device: which control asks for what, and how it feels. Plain data; TOML reads and writes it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "input/controls.hpp"
+#include "input/map/response.hpp"
+
+namespace surefoot::input {
+
+enum class Action : std::uint8_t {
+    none,
+    forward,
+    side,
+    up,
+    turn,
+    look,
+    speed,  // the six that have a size, as in Wish
+    next_viewpoint,
+    reset,
+    tour,
+    pause,       // edges, as in Wish
+    dead_man,    // walks only while held
+    stop,        // emergency stop: latched
+    stop_reset,  // takes the latch off once the stop is no longer asserted
+};
+constexpr std::size_t action_count = 14;
+
+/// As in TOML: "forward", "next_viewpoint", ...; index is the Action.
+std::span<const std::string_view> action_names();
+std::string_view name_of(Action action);
+[[nodiscard]] constexpr bool has_size(Action a) { return a >= Action::forward && a <= Action::speed; }
+/// Moves the walker: what the neutral interlock watches. Speed does not: a throttle stays where it is put.
+[[nodiscard]] constexpr bool moves(Action a) { return a >= Action::forward && a <= Action::look; }
+
+/// A control by its name ("x"), or by usage ("0x01:0x30": page and usage) where no name is given; `collection`, where not empty,
+/// must be a part of the control's collection path.
+struct ControlRef {
+    std::string name;
+    std::uint16_t usage_page = 0, usage = 0;
+    std::string collection;
+    [[nodiscard]] std::string text() const;
+};
+
+struct AxisMapping {
+    ControlRef control;
+    Action action = Action::none;
+    Shape shape;
+    Rest rest = Rest::centre;
+    bool invert = false;
+    double scale = 1;            ///< response at full deflection; 0..1
+    double counts_per_s = 1000;  ///< relative controls only (trackball, mouse, encoder): the pace that is full response
+};
+
+/// Two axes that one hand moves. Axes: to the right and downwards, as HID sticks count.
+struct StickMapping {
+    std::array<ControlRef, 2> controls;
+    std::array<Action, 2> actions{};
+    std::array<bool, 2> invert{};
+    Shape shape;
+    bool radial = true;  ///< false: each axis has its own dead zone
+    double scale = 1;
+};
+
+/// A hat is a stick with eight directions. Axes: right and up.
+struct HatMapping {
+    ControlRef control;
+    std::array<Action, 2> actions{};
+    std::array<bool, 2> invert{};
+    double scale = 1;
+    double smoothing_s = 0;
+};
+
+struct ButtonMapping {
+    ControlRef control;
+    Action action = Action::none;
+    double scale = 1;              ///< of actions that have a size: what the held button asks for; -1..1
+    double smoothing_s = 0;        ///< of those: time constant
+    double settle_s = 0;           ///< a release counts once it lasted so long (contact bounce); a press counts at once
+    bool normally_closed = false;  ///< asserted while the contact is open or its state unknown: for stops
+};
+
+/// How the device reports while it is deflected, which decides what silence means (safety/).
+enum class Reporting : std::uint8_t {
+    learn,      ///< found out from the reports
+    streaming,  ///< sends all the time while deflected: silence is a fault
+    on_change,  ///< sends changes only: silence means "as before"
+};
+
+/// Everything that is given must fit; an empty one fits every device.
+struct DeviceMatch {
+    std::optional<std::uint16_t> vendor, product;
+    std::string product_name;  ///< a part of it, letters of either case
+    std::optional<DeviceClass> device_class;
+};
+
+struct DeviceMapping {
+    std::string name;
+    DeviceMatch match;
+    Reporting reporting = Reporting::learn;
+    std::vector<AxisMapping> axes;
+    std::vector<StickMapping> sticks;
+    std::vector<HatMapping> hats;
+    std::vector<ButtonMapping> buttons;
+};
+
+/// What is known of a device when a mapping is looked for.
+struct DeviceIdentity {
+    std::uint16_t vendor = 0, product = 0;
+    std::string product_name;
+    DeviceClass device_class = DeviceClass::reject;
+};
+
+[[nodiscard]] bool matches(const DeviceMatch& match, const DeviceIdentity& identity);
+/// The first that fits; null for none.
+const DeviceMapping* find_mapping(std::span<const DeviceMapping> mappings, const DeviceIdentity& identity);
+
+/// A mapping for a device that nobody configured, from its class, collections and usages: gamepads, joysticks with or without
+/// twist and throttle, six-axis controllers, pedals, button boxes. Trackballs, mice, keyboards and rejected devices get an empty
+/// one: they steer only when the configuration asks. `name` says which rule was used.
+DeviceMapping default_mapping(std::span<const ControlInfo> controls, DeviceClass device_class);
+
+}  // namespace surefoot::input

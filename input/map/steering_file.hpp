@@ -1,0 +1,31 @@
+// The file in which a user says how the walk is steered: [motion], [safety], [[device]] and [[gpio]]; read and written.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "input/gpio/panel.hpp"
+#include "input/map/mapping.hpp"
+#include "input/motion/motion.hpp"
+#include "input/safety/safety.hpp"
+
+namespace surefoot::input {
+
+struct SteeringFile {
+    std::vector<DeviceMapping> devices;  ///< the first that fits a device is taken; none fits: the default of its class
+    MotionLimits motion;
+    SafetyLimits safety;
+    std::vector<LineConfig> lines;
+};
+
+/// Errors name FILE:LINE, the key, what is allowed and the nearest known name; unknown keys are errors. Controls are checked
+/// when a device comes (compile()), since only then they are known.
+Result<SteeringFile> read_steering(const std::string& file);
+Result<SteeringFile> parse_steering(std::string_view text, const std::string& name);
+
+/// TOML that parse_steering() reads back to the same; keys at their defaults are left out.
+std::string steering_text(const SteeringFile& steering);
+std::string device_text(const DeviceMapping& mapping);
+
+}  // namespace surefoot::input

@@ -1,0 +1,184 @@
+// The steps of the walk.
+#include "input/motion/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "input/map/merge.hpp"
+
+namespace surefoot::input {
+
+namespace {
+
+constexpr double two_pi = 2 * std::numbers::pi, two_pi_low = 2.4492935982947064e-16;  // their sum is 2 pi to 32 digits
+
+template <class V>
+V towards(const V& from, const V& to, double most) {
+    const V way = to - from;
+    const double length = glm::length(way);
+    return length <= most ? to : from + way * (most / length);
+}
+
+bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+dquat about_y(double angle) { return {std::cos(angle / 2), 0, std::sin(angle / 2), 0}; }
+dquat about_x(double angle) { return {std::cos(angle / 2), std::sin(angle / 2), 0, 0}; }
+dquat about_z(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
+
+dquat walker_frame(const MotionState& state, const MotionLimits& limits, double yaw, double pitch) {
+    return limits.level ? about_y(yaw) : glm::normalize(about_y(yaw) * about_x(pitch) * about_z(state.roll));
+}
+
+dvec3 wanted_velocity(const dvec3& walk, double speed, const MotionLimits& limits) {
+    const double factor = std::pow(speed >= 0 ? limits.fastest : limits.slowest, std::abs(speed));
+    const dvec3 velocity = walk * (limits.walk_m_s * factor);
+    const double length = glm::length(velocity);
+    return length > limits.max_m_s ? velocity * (limits.max_m_s / length) : velocity;
+}
+
+/// Where the ground lets the step end.
+dvec3 allowed(MotionState& state, const Ground& ground, const dvec3& wanted) {
+    if (ground.query == nullptr || wanted == state.position) return wanted;
+    const dvec3 answer = ground.query(ground.context, state.position, wanted);
+    if (!finite(answer)) {
+        ++state.refused;
+        return state.position;
+    }
+    return towards(state.position, answer, glm::length(wanted - state.position) + ground.stair_m);
+}
+
+void count(PressCounts& presses, const Wish& wish) {
+    presses.next_viewpoint += wish.next_viewpoint ? 1 : 0;
+    presses.reset += wish.reset ? 1 : 0;
+    presses.tour += wish.tour ? 1 : 0;
+    presses.pause += wish.pause ? 1 : 0;
+}
+
+void follow(MotionState& state, const MotionLimits& limits, const Wish& wish, Order order, double dt_s) {
+    const dvec3 walk{wish.side, wish.up, -wish.forward};
+    const dvec2 turning{wish.turn, wish.look};
+    if (order == Order::walk) {
+        state.walk.step(limits.filter, walk, dt_s);
+        state.turning.step(limits.filter, turning, dt_s);
+    } else {
+        state.walk.set(walk);
+        state.turning.set(turning);
+    }
+    // The brake is strong enough to end any speed, also in the opposite direction, within brake_s.
+    const double swing_rad_s = std::max(limits.turn_rad_s, limits.look_rad_s);
+    const bool brake = order == Order::brake;
+    const double accel = brake ? std::max(limits.accel_m_s2, limits.max_m_s / limits.brake_s) : limits.accel_m_s2;
+    const double accel_turning = brake ? std::max(limits.accel_rad_s2, swing_rad_s / limits.brake_s) : limits.accel_rad_s2;
+    state.velocity = towards(state.velocity, wanted_velocity(state.walk.value, wish.speed, limits), accel * dt_s);
+    const dvec2 rates = state.turning.value * dvec2(limits.turn_rad_s, limits.look_rad_s);
+    state.rates = towards(state.rates, rates, accel_turning * dt_s);
+}
+
+void integrate(MotionState& state, const MotionLimits& limits, const dvec3& velocity, dvec2 rates, double dt_s,
+               const Ground& ground) {
+    const double yaw_before = state.yaw.value, pitch_before = state.pitch.value;
+    if (std::abs(pitch_before + rates.y * dt_s) > limits.max_pitch_rad && pitch_before * rates.y > 0) rates.y = state.rates.y = 0;
+    state.yaw.add(rates.x * dt_s);
+    state.pitch.add(rates.y * dt_s);
+    if (velocity != dvec3(0.0)) {
+        const dquat frame = walker_frame(state, limits, yaw_before + rates.x * dt_s / 2, pitch_before + rates.y * dt_s / 2);
+        const dvec3 before = state.position, wanted = before + frame * velocity * dt_s;
+        state.position = allowed(state, ground, wanted);
+        if (state.position != wanted) {  // the walker keeps the speed that the wall left
+            const dvec3 kept = glm::inverse(frame) * ((state.position - before) / dt_s);
+            state.velocity = towards(dvec3(0.0), kept, glm::length(state.velocity));
+        }
+    }
+    state.yaw.wrap();
+}
+
+}  // namespace
+
+void Angle::add(double increment) {
+    const double part = increment - carry, sum = value + part;
+    carry = (sum - value) - part;
+    value = sum;
+}
+
+void Angle::wrap() {
+    if (value > std::numbers::pi) value -= two_pi, carry += two_pi_low;
+    if (value < -std::numbers::pi) value += two_pi, carry -= two_pi_low;
+}
+
+bool place(MotionState& state, const Pose& pose) {
+    const dquat q = pose.orientation;
+    const double norm = glm::length(q);
+    if (!finite(pose.position) || !std::isfinite(norm) || norm < 1e-9 || !std::isfinite(pose.fov_y_rad)) return false;
+    const dquat unit = q / norm;
+    const dvec3 ahead = unit * dvec3(0, 0, -1), up = unit * dvec3(0, 1, 0), right = unit * dvec3(1, 0, 0);
+    const double level = std::hypot(ahead.x, ahead.z);
+    state.position = pose.position;
+    state.fov_y_rad = pose.fov_y_rad;
+    state.pitch.set(std::atan2(ahead.y, level));
+    // Straight up or down the heading shows in the right hand only.
+    state.yaw.set(level > 1e-9 ? std::atan2(-ahead.x, -ahead.z) : std::atan2(-right.z, right.x));
+    const dquat unrolled = about_y(state.yaw.value) * about_x(state.pitch.value);
+    const dvec3 over = glm::inverse(unrolled) * up;
+    state.roll = level > 1e-9 ? std::atan2(-over.x, over.y) : 0;
+    state.velocity = dvec3(0.0);
+    state.rates = dvec2(0.0);
+    state.walk.set(dvec3(0.0));
+    state.turning.set(dvec2(0.0));
+    return true;
+}
+
+Pose pose_of(const MotionState& state) {
+    Pose pose;
+    pose.position = state.position;
+    pose.fov_y_rad = state.fov_y_rad;
+    pose.orientation = about_y(state.yaw.value) * about_x(state.pitch.value);
+    if (state.roll != 0) pose.orientation = pose.orientation * about_z(state.roll);
+    pose.orientation = glm::normalize(pose.orientation);
+    return pose;
+}
+
+NavigationSample step(MotionState& state, const MotionLimits& limits, const Command& command, std::int64_t now_ns,
+                      const Ground& ground) {
+    Wish wish = command.wish;
+    if (!bound(wish)) ++state.refused;
+    if (state.last_ns >= 0 && now_ns < state.last_ns) ++state.clock_back;
+    const std::int64_t passed = state.last_ns < 0 ? 0 : std::max<std::int64_t>(0, now_ns - state.last_ns);
+    const double dt_s = std::min(static_cast<double>(passed) * 1e-9, longest_step_s);
+    state.last_ns = std::max(state.last_ns, now_ns);
+    if (command.order == Order::stop) {
+        state.velocity = dvec3(0.0);
+        state.rates = dvec2(0.0);
+        state.walk.set(dvec3(0.0));
+        state.turning.set(dvec2(0.0));
+    } else if (dt_s > 0) {
+        const dvec3 velocity = state.velocity;
+        const dvec2 rates = state.rates;
+        follow(state, limits, wish, command.order, dt_s);
+        integrate(state, limits, 0.5 * (velocity + state.velocity), 0.5 * (rates + state.rates), dt_s, ground);
+    }
+    count(state.presses, wish);
+
+    NavigationSample sample;
+    sample.pose = pose_of(state);
+    sample.velocity_m_s = walker_frame(state, limits, state.yaw.value, state.pitch.value) * state.velocity;
+    sample.angular_rad_s = dvec3(0, state.rates.x, 0) + about_y(state.yaw.value) * dvec3(state.rates.y, 0, 0);
+    sample.stamp_ns = command.stamp_ns;
+    sample.sequence = ++state.sequence;
+    sample.next_viewpoint = wish.next_viewpoint;
+    sample.reset = wish.reset;
+    sample.tour = wish.tour;
+    sample.pause = wish.pause;
+    sample.stopped = command.order == Order::stop;
+    sample.presses = state.presses;
+    const Prediction ahead = predict(sample, limits, limits.frame_s, ground.query != nullptr ? ground.stair_m : 0);
+    sample.uncertainty_m = ahead.uncertainty_m;
+    sample.uncertainty_rad = ahead.uncertainty_rad;
+    return sample;
+}
+
+double filter_lag_s(const MotionState& state, const MotionLimits& limits) {
+    return std::max(state.walk.lag_s(limits.filter), state.turning.lag_s(limits.filter));
+}
+
+}  // namespace surefoot::input

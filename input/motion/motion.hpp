@@ -1,0 +1,86 @@
+// From what is asked to where the eye is: filter, limits of speed and acceleration, pose integrated in double, prediction.
+//
+//   Command ─► One-Euro filter ─► speed limit ─► acceleration limit ─► [may I go there?] ─► pose
+//
+// Pure functions of injected time: nothing here allocates, locks or reads a clock.
+#pragma once
+
+#include <cstdint>
+
+#include "input/controls.hpp"
+#include "input/motion/filter.hpp"
+
+namespace surefoot::input {
+
+/// Where a step may end, given where it wants to: walls, floors, stairs. `context` is the caller's; must not throw or allocate.
+/// Answers may lie nearer, or aside, or higher by a stair; one that moves the eye further than it wanted to, plus stair_m, is
+/// shortened to that, and one that is not finite holds it where it is.
+struct Ground {
+    using Query = dvec3 (*)(const void* context, const dvec3& from, const dvec3& wanted) noexcept;
+    Query query = nullptr;
+    const void* context = nullptr;
+    double stair_m = 0;  ///< how much further than wanted an answer may move the eye
+};
+
+struct MotionLimits {
+    double walk_m_s = 1.4;               ///< at full deflection with speed 0
+    double slowest = 0.25, fastest = 4;  ///< factors at speed -1 and 1; geometric in between
+    double max_m_s = 6;                  ///< never exceeded
+    double accel_m_s2 = 8;               ///< of the velocity in the walker's frame
+    double turn_rad_s = 1.2, look_rad_s = 0.9;
+    double accel_rad_s2 = 8;
+    double max_pitch_rad = 1.48;
+    double brake_s = 0.03;      ///< Order::brake reaches its wish within this, from any speed
+    bool level = false;         ///< true: forward is level however the eye looks; false: along the eye's -Z
+    double frame_s = 1.0 / 30;  ///< how far ahead a sample's uncertainty is stated
+    FilterSettings filter;
+};
+/// Longest time that is integrated in one step: after a stall the walk goes on from where it was, without a leap.
+constexpr double longest_step_s = 0.05;
+
+/// Angles are kept apart and summed with compensation (Kahan), so that neither horizon nor heading drift in hours.
+struct Angle {
+    double value = 0, carry = 0;  ///< the true sum is value - carry
+    void add(double increment);
+    void wrap();  ///< into -pi..pi, by 2 pi in double-double
+    void set(double to) { value = to, carry = 0; }
+};
+
+struct MotionState {
+    dvec3 position{0.0};
+    Angle yaw, pitch;  ///< yaw > 0 to the left, pitch > 0 upwards
+    double roll = 0;   ///< of the pose it was placed with; nothing here changes it
+    double fov_y_rad = Pose{}.fov_y_rad;
+    dvec3 velocity{0.0};  ///< walker's frame: right, up, back; m/s
+    dvec2 rates{0.0};     ///< yaw, pitch; rad/s
+    OneEuro<dvec3> walk;
+    OneEuro<dvec2> turning;
+    std::int64_t last_ns = -1;
+    std::uint64_t sequence = 0;
+    PressCounts presses;
+    std::uint64_t refused = 0;     ///< commands or answers of the ground that were not finite: taken as rest
+    std::uint64_t clock_back = 0;  ///< steps whose time lay before the last one's: time stood still
+};
+
+/// Puts the eye somewhere, at rest. What is not finite is refused and leaves the state as it was (false).
+bool place(MotionState& state, const Pose& pose);
+[[nodiscard]] Pose pose_of(const MotionState& state);
+
+/// One step to `now_ns`; any rate, the first step only sets the time.
+NavigationSample step(MotionState& state, const MotionLimits& limits, const Command& command, std::int64_t now_ns,
+                      const Ground& ground = {});
+
+struct Prediction {
+    Pose pose;
+    double uncertainty_m = 0, uncertainty_rad = 0;
+};
+/// The pose `lead_s` after the sample if the hand stays as it is, and how far from it any pose can be that the limits allow by
+/// then: stopped at any moment, by order or by a wall, and driven off again in any direction. Holds for every hand and order but
+/// `brake` towards a moving wish. `stair_m`: the Ground's. The bound: |v(s) - v0| <= |v0| + A s, integrated over the lead t, with
+/// A = a + |v0| (|w0| + alpha t / 2) since the walker's frame turns.
+Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double stair_m = 0);
+
+/// What the filter adds now and at most; seconds. The acceleration limit is a limit, not a lag.
+double filter_lag_s(const MotionState& state, const MotionLimits& limits);
+
+}  // namespace surefoot::input

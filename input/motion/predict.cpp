@@ -1,0 +1,35 @@
+// Where the eye will be, and how surely.
+#include <algorithm>
+#include <cmath>
+
+#include "input/motion/motion.hpp"
+
+namespace surefoot::input {
+
+namespace {
+
+/// The most that a velocity can stray by time t, integrated: stopped at once and then driven off anywhere.
+double strayed(double rate, double speed, double t) { return speed * t + 0.5 * rate * t * t; }
+
+}  // namespace
+
+Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double stair_m) {
+    const double t = std::clamp(std::isfinite(lead_s) ? lead_s : 0.0, 0.0, 1.0);
+    const double speed = glm::length(sample.velocity_m_s), turning = glm::length(sample.angular_rad_s);
+    Prediction ahead;
+    ahead.pose = sample.pose;
+    ahead.pose.position += sample.velocity_m_s * t;
+    if (turning > 0) {
+        const double half = 0.5 * turning * t;
+        const dvec3 axis = sample.angular_rad_s * (std::sin(half) / turning);
+        ahead.pose.orientation = glm::normalize(dquat(std::cos(half), axis.x, axis.y, axis.z) * sample.pose.orientation);
+    }
+    const double accel = limits.accel_m_s2 + speed * (turning + 0.5 * limits.accel_rad_s2 * t);
+    ahead.uncertainty_m = strayed(accel, speed, t) + stair_m;
+    // Heading and pitch turn one after the other, the prediction about one axis: they differ by half their product.
+    const double most = turning + limits.accel_rad_s2 * t;
+    ahead.uncertainty_rad = strayed(limits.accel_rad_s2, turning, t) + 0.5 * most * most * t * t;
+    return ahead;
+}
+
+}  // namespace surefoot::input

@@ -1,0 +1,154 @@
+// The safety state machine.
+#include "input/safety/safety.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "input/map/merge.hpp"
+
+namespace surefoot::input {
+
+namespace {
+
+constexpr double longest_step_s = 0.05;               // after a stall the slew does not leap
+constexpr std::int64_t brake_window_ns = 50'000'000;  // for so long after a loss the motion brakes
+
+bool asks(const Wish& w) { return w.forward != 0 || w.side != 0 || w.up != 0 || w.turn != 0 || w.look != 0; }
+
+Wish without_edges(Wish wish) {
+    wish.next_viewpoint = wish.reset = wish.tour = wish.pause = false;
+    return wish;
+}
+
+/// Both vectors move along the straight way, so what is bounded stays bounded.
+void slew(Wish& at, const Wish& to, double most) {
+    const auto part = [&](dvec3 from, const dvec3& target) {
+        const dvec3 way = target - from;
+        const double length = glm::length(way);
+        return length <= most ? target : from + way * (most / length);
+    };
+    const dvec3 walk = part({at.forward, at.side, at.up}, {to.forward, to.side, to.up});
+    const dvec3 turning = part({at.turn, at.look, 0}, {to.turn, to.look, 0});
+    at = to;  // edges pass
+    at.forward = walk.x, at.side = walk.y, at.up = walk.z;
+    at.turn = turning.x, at.look = turning.y;
+}
+
+/// Why the device is held at rest now.
+Held judge(SafetyState& state, SafetyState::Device& device, const SafetyLimits& limits, const Source& source,
+           std::int64_t now_ns) {
+    const bool replugged = source.connected && (!device.connected || source.connection != device.connection);
+    if (replugged) {
+        const bool had_stop = device.had_stop;
+        device = {};
+        device.had_stop = had_stop;
+        device.connection = source.connection;
+    }
+    device.connected = source.connected;
+    if (!source.connected) return Held::disconnected;
+    const bool fresh = source.reports != device.reports;
+    device.reports = source.reports;
+    // What was read in an overflowing drain is old; the first report that comes after it is new again.
+    if (source.drained >= limits.full_drain || source.lost) {
+        if (!device.overflow) ++state.overflows;
+        device.overflow = true;
+    } else if (fresh) {
+        device.overflow = false;
+    }
+    const bool quiet = silent(device.habit, source.reporting, fresh, source.equal_report, !source.asked.neutral, source.stamp_ns,
+                              now_ns, limits.age_limit_ns);
+    if (!device.overflow && source.reports > 0 && (source.seen_neutral || source.asked.neutral)) device.interlocked = false;
+    if (device.overflow) return Held::overflow;
+    if (device.interlocked) return Held::not_neutral;
+    return quiet ? Held::silent : Held::no;
+}
+
+/// Latched at the first sign; taken off by a reset pressed anew while nothing is asserted.
+void emergency_stop(SafetyState& state, std::span<const Source> sources, const Lines& lines) {
+    bool reset = lines.stop_reset;
+    state.asserted = lines.stop;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        auto& device = state.devices[i];
+        device.had_stop = device.had_stop || sources[i].asked.has_stop;
+        // A pulled cable is a broken wire.
+        state.asserted |= device.had_stop && (!sources[i].connected || sources[i].asked.stop);
+        reset |= sources[i].connected && sources[i].asked.stop_reset;
+    }
+    if (state.asserted) {
+        if (!state.latched) ++state.stops;
+        state.latched = true;
+    } else if (state.latched && reset && !state.reset_down) {
+        state.latched = false;
+        for (auto& device : state.devices) device.interlocked = true;  // nobody walks off by a stick still pushed
+    }
+    // A reset that was already down when the stop came, or went, does not count.
+    state.reset_down = reset;
+}
+
+}  // namespace
+
+Asked absorbed(const Asked& older, const Asked& newer) {
+    Asked both = newer;
+    both.wish.next_viewpoint |= older.wish.next_viewpoint;
+    both.wish.reset |= older.wish.reset;
+    both.wish.tour |= older.wish.tour;
+    both.wish.pause |= older.wish.pause;
+    both.has_stop |= older.has_stop;
+    both.stop |= older.stop;
+    both.has_dead_man |= older.has_dead_man;
+    both.dead_man = newer.dead_man && (older.dead_man || !older.has_dead_man);
+    return both;
+}
+
+Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Source> all, const Lines& lines,
+             std::int64_t now_ns) {
+    const auto sources = all.first(std::min(all.size(), max_devices));
+    const std::int64_t passed = state.last_ns < 0 ? 0 : std::max<std::int64_t>(0, now_ns - state.last_ns);
+    const double dt_s = std::min(static_cast<double>(passed) * 1e-9, longest_step_s);
+    const std::int64_t now = state.last_ns = std::max(state.last_ns, now_ns);
+
+    std::array<Wish, max_devices> passing{};
+    bool has_dead_man = lines.has_dead_man, dead_man = !lines.has_dead_man || lines.dead_man, walking = false;
+    emergency_stop(state, sources, lines);
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        auto& device = state.devices[i];
+        const Source& source = sources[i];
+        const bool contributed = device.contributed;
+        const Held before = device.held;
+        device.held = judge(state, device, limits, source, now);
+        if (device.held == Held::no) passing[i] = source.asked.wish;
+        device.contributed = asks(passing[i]);
+        if (device.held != Held::no && (contributed || before == Held::no)) state.brake_until_ns = now + brake_window_ns;
+        if (device.held == Held::silent && before != Held::silent) ++state.silences;
+        if (device.held == Held::disconnected && before != Held::disconnected) ++state.losses;
+        device.passed = passing[i];
+        if (source.connected) state.stamp_ns = std::max(state.stamp_ns, source.stamp_ns);
+        // A switch in a device that is gone is not held.
+        if (source.asked.has_dead_man) {
+            has_dead_man = true;
+            dead_man = dead_man && source.connected && source.asked.dead_man;
+        }
+        walking = walking || device.contributed;
+    }
+    Wish wanted = merge(std::span(passing).first(sources.size()));
+    const bool held = step(state.dead_man, limits.dead_man, has_dead_man && dead_man, walking, now);
+    state.wants_press = state.dead_man.tired;
+
+    Command command;
+    command.stamp_ns = state.stamp_ns;
+    if (state.latched || (has_dead_man && !held)) {
+        // Only pause may still be asked for: nothing else should move the picture.
+        command.wish.pause = wanted.pause;
+        command.order = Order::stop;
+        state.slewed = {};
+        return command;
+    }
+    const bool brake = now < state.brake_until_ns;
+    slew(state.slewed, wanted, (brake ? std::max(limits.slew_per_s, 1 / limits.brake_s) : limits.slew_per_s) * dt_s);
+    command.wish = state.slewed;
+    command.order = brake ? Order::brake : Order::walk;
+    state.slewed = without_edges(state.slewed);
+    return command;
+}
+
+}  // namespace surefoot::input

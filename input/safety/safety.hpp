@@ -1,0 +1,84 @@
+// What may be walked: lets each device's wish through, holds it back, or stops everything. It may only reduce.
+//
+//   Asked of each device ─► at rest if gone, silent, overflowed, or not yet seen neutral ─► bounded sum ─► slew ─► Command
+//   lines (GPIO), buttons ─► emergency stop (latched), dead-man ──────────────────────────────────────────► Order::stop
+//
+// A state machine with a pure step function: time and inputs are given, nothing allocates, locks or reads a clock.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "input/controls.hpp"
+#include "input/map/mapper.hpp"
+#include "input/safety/dead_man.hpp"
+#include "input/safety/habit.hpp"
+
+namespace surefoot::input {
+
+constexpr std::size_t max_devices = 16;
+
+struct SafetyLimits {
+    std::int64_t age_limit_ns = 100'000'000;  ///< no deflection of a streaming device is believed for longer
+    /// So many reports in one drain: the kernel's ring was full and has dropped the newest ones. hidraw's 64 slots hold 63
+    /// (one stays free to tell full from empty), so 63 is the least count after which nothing is known.
+    std::uint32_t full_drain = 63;
+    double slew_per_s = 8;  ///< of a wish, full deflections a second
+    double brake_s = 0.03;  ///< a lost device's full deflection is gone after this; within R6's 50 ms with a tick to spare
+    DeadManSettings dead_man;
+};
+
+/// One device, as it is at this step.
+struct Source {
+    bool connected = false;
+    std::uint32_t connection = 0;  ///< counts its connections: a replug between two steps is still seen
+    std::uint64_t reports = 0;     ///< accepted since it was connected
+    std::uint32_t drained = 0;     ///< most reports that one drain of this step read (every drain reads until nothing is left)
+    bool equal_report = false;     ///< one of them was equal to its forerunner
+    bool lost = false;             ///< its reader knows that reports were lost (a ring of our own overflowed)
+    bool seen_neutral = false;     ///< in some report of this step
+    std::int64_t stamp_ns = 0;     ///< of the newest report
+    Reporting reporting = Reporting::learn;
+    Asked asked;  ///< newest; its edges and stops of any report since the last step, dead_man of all
+};
+
+/// Switches that are wired, not plugged: from gpio/. Lost chips and broken wires come as asserted and not pressed.
+struct Lines {
+    bool stop = false;        ///< asserted now or at any moment since the last step
+    bool stop_reset = false;  ///< held
+    bool has_dead_man = false;
+    bool dead_man = false;  ///< held, without a break since the last step
+};
+
+enum class Held : std::uint8_t { no, disconnected, not_neutral, silent, overflow };  ///< why a device is held at rest
+
+struct SafetyState {
+    struct Device {
+        std::uint32_t connection = 0;
+        bool connected = false, interlocked = true, overflow = false, had_stop = false, contributed = false;
+        std::uint64_t reports = 0;
+        Habit habit;
+        Held held = Held::disconnected;
+        Wish passed;  ///< what it contributed to the last step
+    };
+    std::array<Device, max_devices> devices{};
+    Wish slewed;
+    DeadMan dead_man;
+    bool latched = false;      ///< emergency stop; load it from the stop memory at the start
+    bool asserted = false;     ///< now
+    bool reset_down = true;    ///< a reset that is held from before does not count
+    bool wants_press = false;  ///< the dead-man asks to be pressed anew
+    std::int64_t last_ns = -1, brake_until_ns = -1;
+    std::int64_t stamp_ns = 0;
+    std::uint64_t overflows = 0, silences = 0, losses = 0, stops = 0;  ///< counted events
+};
+
+/// One step. At most max_devices sources; a source keeps its index. `now_ns` not before the last step's (then time stands still).
+Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Source> sources, const Lines& lines,
+             std::int64_t now_ns);
+
+/// Two calls of ask() within one step made one: the newest wish, edges of both, stop if either, dead-man if both.
+Asked absorbed(const Asked& older, const Asked& newer);
+
+}  // namespace surefoot::input

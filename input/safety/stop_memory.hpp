@@ -1,0 +1,36 @@
+// The emergency stop's memory across restarts: one small file, replaced whole. Never call it from the input or frame thread.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "rt/base/result.hpp"
+
+namespace surefoot::input {
+
+struct RememberedStop {
+    bool latched = false;
+    std::string note;  ///< why it is latched though no one remembered it so; empty otherwise
+};
+
+/// No file: never stopped, so not latched. A file that cannot be read, or says anything but the two known words: latched.
+RememberedStop load_stop(const std::string& file);
+/// Synced and renamed before it returns. Error: the file's, with the remedy.
+Result<void> store_stop(const std::string& file, bool latched);
+
+/// Between the thread that steps safety/ and the one that writes: set() is one atomic store, flush() writes what changed.
+/// Latching is written at the first flush; until then an open stop line latches anew after a restart by itself.
+class StopKeeper {
+public:
+    StopKeeper(std::string file, bool latched) : file_(std::move(file)), latched_(latched), written_(latched) {}
+    void set(bool latched) noexcept { latched_.store(latched, std::memory_order_relaxed); }
+    /// Call every few milliseconds from a service thread. A failed write is tried again at the next call.
+    Result<void> flush();
+
+private:
+    std::string file_;
+    std::atomic<bool> latched_;
+    bool written_;
+};
+
+}  // namespace surefoot::input

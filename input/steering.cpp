@@ -1,0 +1,104 @@
+// The input thread's loop body.
+#include "input/steering.hpp"
+
+#include <algorithm>
+
+namespace surefoot::input {
+
+namespace {
+
+bool free_again(const Source& source) { return !source.connected && !source.asked.has_stop && !source.asked.has_dead_man; }
+
+}  // namespace
+
+Steering::Steering(const MotionLimits& motion, const SafetyLimits& safety, bool stop_latched)
+    : motion_limits_(motion), safety_limits_(safety) {
+    safety_.latched = stop_latched;
+}
+
+int Steering::attach(Mapper mapper, std::size_t controls, Reporting reporting, int again) {
+    std::size_t at = 0;
+    if (again >= 0 && static_cast<std::size_t>(again) < max_devices)
+        at = static_cast<std::size_t>(again);
+    else
+        while (at < max_devices && devices_[at] && !free_again(sources_[at])) ++at;
+    if (at == max_devices) return -1;
+    if (!devices_[at]) devices_[at] = std::make_unique<Device>();
+    Device& device = *devices_[at];
+    device.mapper = std::move(mapper);
+    forget(device.mapper);
+    device.controls = std::min(controls, max_controls);
+    device.newest = {};
+    device.ticked = true;
+    Source& source = sources_[at];
+    const std::uint32_t connection = source.connection + 1;
+    source = {};
+    source.connected = true;
+    source.connection = connection;
+    source.reporting = reporting;
+    source.asked = ask(device.mapper, device.newest, std::max<std::int64_t>(0, safety_.last_ns));
+    return static_cast<int>(at);
+}
+
+void Steering::detach(int device) {
+    if (device < 0 || static_cast<std::size_t>(device) >= max_devices) return;
+    Source& source = sources_[static_cast<std::size_t>(device)];
+    const Asked before = source.asked;
+    source.connected = false;
+    source.asked = {};
+    source.asked.has_stop = before.has_stop;
+    source.asked.has_dead_man = before.has_dead_man;
+}
+
+void Steering::report(int number, const DeviceState& state, std::int64_t now_ns) {
+    const auto at = static_cast<std::size_t>(number);
+    Source& source = sources_[at];
+    if (!source.connected || !devices_[at]) return;
+    Device& device = *devices_[at];
+    const auto end = state.value.begin() + static_cast<std::ptrdiff_t>(device.controls);
+    const bool equal = source.reports > 0 && state.has_value == device.newest.has_value &&
+                       std::equal(state.value.begin(), end, device.newest.value.begin());
+    if (!equal) {
+        std::copy(state.value.begin(), end, device.newest.value.begin());
+        device.newest.has_value = state.has_value;
+    }
+    device.newest.stamp_ns = state.stamp_ns;
+    device.newest.reports = source.reports + 1;
+    const Asked asked = ask(device.mapper, device.newest, now_ns);
+    source.asked = device.ticked ? asked : absorbed(source.asked, asked);
+    device.ticked = false;
+    ++source.reports;
+    source.stamp_ns = state.stamp_ns;
+    source.equal_report = source.equal_report || equal;
+    source.seen_neutral = source.seen_neutral || asked.neutral;
+}
+
+void Steering::drained(int number, std::uint32_t reports, bool lost) {
+    Source& source = sources_[static_cast<std::size_t>(number)];
+    source.drained = std::max(source.drained, reports);
+    source.lost = source.lost || lost;
+}
+
+NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const Ground& ground) {
+    for (std::size_t i = 0; i < max_devices; ++i) {
+        // Smoothing and settling run on between reports.
+        if (sources_[i].connected && devices_[i]->ticked)
+            sources_[i].asked = ask(devices_[i]->mapper, devices_[i]->newest, now_ns);
+    }
+    const Command command = step(safety_, safety_limits_, sources_, lines, now_ns);
+    for (std::size_t i = 0; i < max_devices; ++i) {
+        sources_[i].equal_report = sources_[i].seen_neutral = sources_[i].lost = false;
+        sources_[i].drained = 0;
+        if (devices_[i]) devices_[i]->ticked = true;
+    }
+    return surefoot::input::step(motion_, motion_limits_, command, now_ns, ground);
+}
+
+double Steering::worst_lag_s() const {
+    double mapping = 0;
+    for (const auto& device : devices_)
+        if (device) mapping = std::max(mapping, mapping_lag_s(device->mapper));
+    return mapping + input::worst_lag_s(motion_limits_.filter);
+}
+
+}  // namespace surefoot::input

@@ -1,0 +1,58 @@
+// Reports in, navigation samples out: the one loop body of the input thread, made of map/, safety/ and motion/.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "input/controls.hpp"
+#include "input/map/mapper.hpp"
+#include "input/motion/motion.hpp"
+#include "input/safety/safety.hpp"
+
+namespace surefoot::input {
+
+/// One thread. attach() and detach() allocate; report(), drained() and tick() do not, nor lock, nor read a clock.
+///
+///   each wake-up:  for each readable device: read until nothing is left, report() each, then drained()
+///                  then tick(): publish what it returns
+class Steering {
+public:
+    Steering(const MotionLimits& motion, const SafetyLimits& safety, bool stop_latched = false);
+
+    /// A device came; its number, or -1 when max_devices are there. It asks for nothing until seen neutral. A device that comes
+    /// back must get its number again (`again`) if it carries a stop or a dead-man: while it is away these hold the walk, and
+    /// its number is not given to another.
+    int attach(Mapper mapper, std::size_t controls, Reporting reporting, int again = -1);
+    /// Unplugged, or its reader failed.
+    void detach(int device);
+
+    /// One accepted report. Anything but `state.connected` false counts as the device being there.
+    void report(int device, const DeviceState& state, std::int64_t now_ns);
+    /// After a drain that read until nothing was left: how many reports it read, and whether some were lost on the way.
+    void drained(int device, std::uint32_t reports, bool lost = false);
+
+    NavigationSample tick(const Lines& lines, std::int64_t now_ns, const Ground& ground = {});
+
+    bool place(const Pose& pose) { return surefoot::input::place(motion_, pose); }
+    [[nodiscard]] const SafetyState& safety() const { return safety_; }
+    [[nodiscard]] const MotionState& motion() const { return motion_; }
+    [[nodiscard]] const Mapper& mapper(int device) const { return devices_[static_cast<std::size_t>(device)]->mapper; }
+    /// Largest lag of mapping and filter together, seconds; limits of speed and acceleration are not counted.
+    [[nodiscard]] double worst_lag_s() const;
+
+private:
+    struct Device {
+        Mapper mapper;
+        std::size_t controls = 0;
+        DeviceState newest;
+        bool ticked = true;  ///< nothing was asked since the last tick
+    };
+    MotionLimits motion_limits_;
+    SafetyLimits safety_limits_;
+    MotionState motion_;
+    SafetyState safety_;
+    std::array<std::unique_ptr<Device>, max_devices> devices_;
+    std::array<Source, max_devices> sources_{};
+};
+
+}  // namespace surefoot::input

@@ -1,0 +1,156 @@
+// An hour of virtual time: eight devices at 1 kHz, random and hostile. Memory flat, every velocity within limits, no NaN.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "rt/base/random.hpp"
+#include "rt/threads/guard.hpp"
+#include "tests/input/stick_fixture.hpp"
+
+namespace surefoot::input {
+namespace {
+
+constexpr int virtual_seconds = 3600;
+constexpr int devices = 8;
+
+/// Every kind of binding on hostile controls: full 32-bit ranges, a relative axis, a hat, buttons.
+struct Hostile {
+    Hostile() {
+        controls = {test::axis("x", 0x30, 0, 255),
+                    test::axis("y", 0x31, 0, 255),
+                    test::axis("z", 0x32, INT32_MIN, INT32_MAX),
+                    test::axis("rz", 0x35, -1, 1),
+                    test::axis("wheel", 0x38, -127, 127),
+                    test::hat(),
+                    test::button(1),
+                    test::button(2),
+                    test::button(3)};
+        controls[4].relative = true;
+        mapping = test::stick_mapping();
+        const auto axis = [&](const char* name, Action action) {
+            AxisMapping m;
+            m.control.name = name;
+            m.action = action;
+            mapping.axes.push_back(m);
+        };
+        axis("z", Action::up);
+        axis("rz", Action::speed);
+        axis("wheel", Action::turn);
+        mapping.axes[0].shape.smoothing_s = 0.02;
+        mapping.hats.push_back({{"hat", 0, 0, ""}, {Action::turn, Action::look}, {}, 1, 0.05});
+        mapping.buttons = {{{"button-1", 0, 0, ""}, Action::next_viewpoint, 1, 0, 0, false},
+                           {{"button-2", 0, 0, ""}, Action::forward, -1, 0.05, 0.005, false},
+                           {{"button-3", 0, 0, ""}, Action::reset, 1, 0, 0, false}};
+    }
+    std::vector<ControlInfo> controls;
+    DeviceMapping mapping;
+};
+
+std::int32_t hostile_value(Random& random, std::size_t control) {
+    switch (random.below(control < 2 ? 40 : 4)) {
+        case 0:
+            return static_cast<std::int32_t>(random.next());
+        case 1:
+            return random.below(2) == 0 ? INT32_MIN : INT32_MAX;
+        default:
+            return control < 2 ? 128 : 0;
+    }
+}
+
+TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
+    const Hostile hostile;
+    const MotionLimits motion;
+    const SafetyLimits safety;
+    Steering steering(motion, safety);
+    Random random(2026);
+    const auto compiled = compile(hostile.mapping, hostile.controls);
+    ASSERT_TRUE(compiled.ok()) << compiled.error().text();
+    for (int d = 0; d < devices; ++d) ASSERT_EQ(steering.attach(*compiled, hostile.controls.size(), Reporting::learn), d);
+    std::array<DeviceState, devices> states{};
+    std::array<bool, devices> there{};
+    std::array<std::int64_t, devices> mute_until{};
+    there.fill(true);
+    const auto guard = rt::guard_counters();
+    const auto began = std::chrono::steady_clock::now();
+    std::int64_t now = 0;
+    std::uint64_t reports = 0, stops = 0;
+    double fastest = 0, norm = 0;
+    NavigationSample before = steering.tick({}, now);
+    dvec3 walker_before{0.0};
+    for (int i = 0; i < virtual_seconds * 1000; ++i) {
+        if (random.below(3000) == 0) {  // plugged and unplugged, outside of what may not allocate
+            const int d = static_cast<int>(random.below(devices));
+            const auto at = static_cast<std::size_t>(d);
+            if (there[at])
+                steering.detach(d);
+            else
+                steering.attach(*compiled, hostile.controls.size(), static_cast<Reporting>(random.below(3)), d);
+            there[at] = !there[at];
+        }
+        const rt::OwnScope own;
+        const std::int64_t passed = random.below(5000) == 0 ? random.below(700) * 1'000'000LL : 1'000'000;
+        now += passed;
+        for (std::size_t d = 0; d < devices; ++d) {
+            if (random.below(1000) == 0) states[d].has_value.reset();
+            if (random.below(64) == 0)  // a hand moves one control
+                for (int k = 0; k < 2; ++k) {
+                    const std::size_t control = random.below(9);
+                    test::set(states[d], control, hostile_value(random, control));
+                }
+            if (random.below(300) == 0) {  // and lets go of all
+                for (std::size_t control = 0; control < 9; ++control) test::set(states[d], control, control < 2 ? 128 : 0);
+                states[d].has_value.reset(5);
+            }
+            if (random.below(10'000) == 0) mute_until[d] = now + 300'000'000;
+            if (now < mute_until[d]) continue;
+            states[d].stamp_ns = now;
+            steering.report(static_cast<int>(d), states[d], now);
+            steering.drained(static_cast<int>(d), random.below(20'000) == 0 ? 64 : 1, random.below(50'000) == 0);
+            ++reports;
+        }
+        Lines lines;
+        lines.stop = random.below(60'000) == 0;
+        lines.stop_reset = random.below(50) == 0;
+        const NavigationSample sample = steering.tick(lines, now);
+        const double speed = glm::length(sample.velocity_m_s), turning = glm::length(sample.angular_rad_s);
+        const double dt = std::min(static_cast<double>(passed) * 1e-9, longest_step_s);
+        const dvec3 walker = steering.motion().velocity;
+        fastest = std::max(fastest, speed);
+        norm = std::max(norm, std::abs(glm::length(sample.pose.orientation) - 1));
+        stops += sample.stopped ? 1 : 0;
+        const bool fine =
+            std::isfinite(sample.pose.position.x + sample.pose.position.y + sample.pose.position.z) && std::isfinite(speed) &&
+            std::isfinite(turning) && std::isfinite(sample.uncertainty_m) && speed <= motion.max_m_s + 1e-9 &&
+            turning <= std::max(motion.turn_rad_s, motion.look_rad_s) + 1e-9 &&
+            (sample.stopped || glm::length(walker - walker_before) <= motion.max_m_s / motion.brake_s * dt + 1e-9) &&
+            glm::length(sample.pose.position - before.pose.position) <= motion.max_m_s * dt + 1e-6;
+        if (!fine) {
+            const rt::DriverScope report;
+            FAIL() << "at " << i << " ms: " << speed << " m/s, " << turning << " rad/s";
+        }
+        before = sample;
+        walker_before = walker;
+    }
+    const auto after = rt::guard_counters();
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    const SafetyState& s = steering.safety();
+    std::printf(
+        "%d s, %llu reports: fastest %.2f m/s, |q| off by %.1e; %llu stops, %llu overflows, %llu silences, %llu losses; stopped "
+        "%.0f %% of the time; allocations %llu; %.0f ns a report\n",
+        virtual_seconds, static_cast<unsigned long long>(reports), fastest, norm, static_cast<unsigned long long>(s.stops),
+        static_cast<unsigned long long>(s.overflows), static_cast<unsigned long long>(s.silences),
+        static_cast<unsigned long long>(s.losses), 100.0 * static_cast<double>(stops) / (virtual_seconds * 1000.0),
+        static_cast<unsigned long long>(after.own_violations - guard.own_violations), took * 1e9 / static_cast<double>(reports));
+    EXPECT_EQ(after.own_violations, guard.own_violations) << "nothing may be allocated or freed";
+    EXPECT_LT(norm, 1e-12);
+    EXPECT_GT(fastest, 1.0) << "it must have walked";
+    EXPECT_GT(s.stops, 0U);
+    EXPECT_GT(s.overflows, 0U);
+    EXPECT_GT(s.silences, 0U);
+    EXPECT_GT(s.losses, 0U);
+}
+
+}  // namespace
+}  // namespace surefoot::input
