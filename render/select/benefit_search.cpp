@@ -139,6 +139,7 @@ private:
                 if (Steps::was_refined(shown, choices[0])) put_off_[put_off_count_++] = c;
                 continue;
             }
+            if (take_all(c, choices, shown, edge)) continue;
             for_steps(c, [&](std::uint32_t k, bool opens) {
                 const Step step = step_of(choices[k], shown);
                 bool take = step.bucket < edge.bucket;
@@ -151,6 +152,17 @@ private:
                 return false;
             });
         }
+    }
+
+    /// Where a candidate's last step lies below the edge, so do all: taken without a look at each.
+    bool take_all(Index c, std::span<const prepare::Choice> choices, Index shown, const Edge& edge) {
+        if (steps_.has_target()) return false;
+        const bool opens = cover_.candidate(c).child_count > 0;
+        const auto steps = static_cast<std::uint32_t>(choices.size()) - (opens ? 0U : 1U);
+        if (steps == 0) return true;
+        if (step_of(choices[steps - 1], shown).bucket >= edge.bucket) return false;
+        taken_ += steps - 1;
+        return do_step(c, steps - 1, opens);
     }
 
     void take_put_off(const Edge& edge) {
