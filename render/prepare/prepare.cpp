@@ -153,7 +153,7 @@ RegionView Preparer::Impl::view_of(const Region& region, model::Viewport viewpor
     view.scale = model::make_view_scale(pose, viewport);
     view.wide = model::make_view_scale(pose, viewport, region.angle_rad);
     view.pixel_angle_rad = static_cast<float>(model::pixel_angle(pose, viewport));
-    const double target = options.target_error_rad > 0.0 ? options.target_error_rad : 0.5 * view.pixel_angle_rad;
+    const double target = options.target_error_rad > 0.0 ? options.target_error_rad : 0.125 * view.pixel_angle_rad;
     view.target_error_rad = static_cast<float>(target) * target_factor;
     view.full_depth = options.full_depth;
     view.focus_strength = static_cast<float>(std::clamp(finite_or(options.focus_strength, 0.0), 0.0, 1.0));

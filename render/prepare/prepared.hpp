@@ -66,7 +66,7 @@ struct PreparedFrame {
 
 /// Limits and weights of preparation, fixed when the Preparer is made.
 struct PrepareOptions {
-    double target_error_rad = 0;  ///< do not open nodes whose error is below this (0: half a pixel)
+    double target_error_rad = 0;  ///< do not open nodes whose error is below this (0: an eighth of a pixel)
     std::uint32_t max_candidates = 1U << 18U;
     std::uint32_t max_choices = 1U << 20U;
     double focus_strength = 0.5;  ///< 0: periphery counts as the centre
@@ -74,8 +74,8 @@ struct PrepareOptions {
     bool full_depth = false;  ///< go down to the leaves, whatever their error (reference pictures, `flat`)
     /// Where a frame looked at more nodes than this, the next ones raise the error below which nodes are not opened, by a
     /// tenth a frame or more, and lower it again when there is room: bounds the CPU time on any model (a visit takes about
-    /// 0.2 us, so that this is 5 ms). 0: no limit.
-    std::uint32_t max_visits = 25000;
+    /// 0.2 us, so that this is 4 ms). 0: no limit.
+    std::uint32_t max_visits = 18000;
 };
 
 /// Prepares frames with a oneTBB arena of its own. Level by level, so the arrays are bit-equal at any worker count.
