@@ -55,6 +55,15 @@ Seen look(const RegionView& view, const Box& box, const dvec3& eye) {
         const float wide = depth * s.tan_half_x, high = depth * s.tan_half_y;
         share = std::max(share, overlap(x, wide) * overlap(y, high) / (4.0F * wide * high));
     }
+    // Flat things have no height at any depth, and yet fill the view from their near edge to their far one: half of the
+    // rectangle round both (a street to the horizon is a triangle in it).
+    const auto between = [&](const Extent& e, float limit) {
+        const float low = e.centre - e.half, high = e.centre + e.half;
+        const float from = std::max(low / (low < 0 ? nearest : deepest), -limit);
+        const float to = std::min(high / (high > 0 ? nearest : deepest), limit);
+        return std::max(0.0F, to - from) / (2.0F * limit);
+    };
+    share = std::max(share, 0.5F * between(x, s.tan_half_x) * between(y, s.tan_half_y));
     seen.pixels = std::min(share, 1.0F) * s.viewport_pixels;
     const float right = off_centre(x, deepest * s.tan_half_x), up = off_centre(y, deepest * s.tan_half_y);
     seen.focus = 1.0F - view.focus_strength * 0.5F * (right * right + up * up);

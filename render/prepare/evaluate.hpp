@@ -41,11 +41,12 @@ struct Weight {
     float distance_m = 1;  ///< error_distance()
 };
 
-/// The accuracy factor of the benefit, 0..1: e / (e + 8) with e the error in pixels. Below a pixel there is little to win
-/// (1/9 at one pixel), and beyond a few dozen pixels a thing is simply wrong, however much.
+/// The accuracy factor of the benefit, 0..1: the mean of e / (e + 8) and e / (e + 256) with e the error in pixels. Below a
+/// pixel there is little to win (a twentieth at one pixel); and what is off by hundreds of pixels (ground that is not there)
+/// still goes before what is off by dozens (a coarse tree).
 inline float accuracy_gain(float error_rad, float pixel_angle_rad) {
     const float error_px = error_rad / pixel_angle_rad;
-    return error_px / (error_px + 8.0F);
+    return 0.5F * (error_px / (error_px + 8.0F) + error_px / (error_px + 256.0F));
 }
 
 /// One number to compare costs by, before the frame's sums are known.
