@@ -156,12 +156,14 @@ bool Bakery::make_forms() {
     const std::uint32_t most = most_triangles(options);
     Stage stage(progress, "levels of detail", scene.meshes.size());
     std::atomic<bool> go{true};
+    ChainOptions chain = chain_options(options, proxy_or_none);
+    for (const model::Material& material : model.materials) chain.textured.push_back(material.texture != model::none);
     tbb::parallel_for(std::size_t{0}, scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
         CutLimits limits;
         limits.most_triangles = most;
         limits.longest_m = longest_m / stretch[m];
-        by_mesh[m] = bake::make_forms(mesh_geometry(scene.meshes[m], model), limits, chain_options(options, proxy_or_none));
+        by_mesh[m] = bake::make_forms(mesh_geometry(scene.meshes[m], model), limits, chain);
         if (!stage.step()) go = false;
     });
     if (go) adopt_forms(std::move(by_mesh));

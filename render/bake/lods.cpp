@@ -168,6 +168,14 @@ struct Reference {
     }
 };
 
+/// A plate simplifies without error, and would then be a plate without its picture at any distance.
+bool may_lose_pictures(const Level& level, const ChainOptions& options, double diagonal_m) {
+    if (static_cast<double>(level.error_m) >= least_proxy_error * diagonal_m) return true;
+    return std::none_of(level.parts.begin(), level.parts.end(), [&](const GeometryPart& part) {
+        return part.material < options.textured.size() && options.textured[part.material];
+    });
+}
+
 }  // namespace
 
 LodChain make_chain(Geometry full, const ChainOptions& options) {
@@ -206,7 +214,8 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         levels.push_back(std::move(round));
     }
     for (std::size_t i = 1; i < levels.size(); ++i) {  // never the full detail
-        if (options.proxy_material != model::none && levels[i].triangles < options.proxy_below) to_proxy(full, levels[i], options.proxy_material);
+        if (options.proxy_material == model::none || levels[i].triangles >= options.proxy_below) continue;
+        if (may_lose_pictures(levels[i], options, box.diagonal())) to_proxy(full, levels[i], options.proxy_material);
     }
     std::reverse(levels.begin(), levels.end());
     chain.full = std::move(full);

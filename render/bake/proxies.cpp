@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/bake/box_error.hpp"
 #include "render/bake/vertex_clusters.hpp"
@@ -159,7 +160,12 @@ ClusterForm make_cluster(const ProxyInput& input, const ClusterTree::Cluster& cl
     limits.slack = input.slack;
     ClusterForm out;
     out.chain = cluster_vertices(merged.geometry, merged.owners, input.two_sided, limits);
-    for (Level& level : out.chain.levels) level.error_m += merged.error_m;
+    float least_m = input.proxy_material == model::none ? 0.0F : static_cast<float>(least_proxy_error * cluster.box.diagonal());
+    for (std::size_t i = out.chain.levels.size(); i-- > 0;) {  // fine to coarse: errors keep rising
+        Level& level = out.chain.levels[i];
+        level.error_m = std::max(level.error_m + merged.error_m, least_m);
+        least_m = std::nextafter(level.error_m, std::numeric_limits<float>::infinity());
+    }
     out.box = make_box(merged, cluster.box, members.size() > 64 ? 32 : 24, input);
     out.has_box = out.box.error_m > out.chain.levels.front().error_m && out.chain.levels.front().triangles > 12;
     return out;

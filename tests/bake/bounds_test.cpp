@@ -46,6 +46,15 @@ const model::Model& town() {
 
 TEST(BakeByHand, NoSampleLiesBeyondItsBound) { expect_bounds_hold(town(), 4000, 1); }
 
+// DESIGN 5 asks for 10^5 points a representation: a minute for all of them, so every tenth, unless SUREFOOT_ALL_BOUNDS is set.
+TEST(BakeByHand, NoneOfAHundredThousandSamplesLiesBeyondItsBound) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer makes this twenty times as long, and finds its faults with fewer points";
+#else
+    expect_bounds_hold(town(), 100000, std::getenv("SUREFOOT_ALL_BOUNDS") != nullptr ? 1 : 10);
+#endif
+}
+
 // Positions near 6000 km have steps of half a metre in float: the bounds are made where the geometry is small.
 TEST(BakeByHand, BoundsHoldFarFromTheOrigin) { expect_bounds_hold(baked(small_town({5.6e6, -6.1e6, 4e6})), 2000, 1); }
 
@@ -78,6 +87,39 @@ TEST(BakeByHand, TheFloorIsSmallButAPicture) {
     EXPECT_LE(floor.triangles, 300U);
     EXPECT_GE(floor.triangles, 12U);
     EXPECT_LT(floor.error_m, 0.25 * m.nodes[0].box.diagonal());
+}
+
+// A plate of many squares is as exact with two: it must not lose its picture for that.
+TEST(BakeByHand, APlateKeepsItsPicture) {
+    importer::Scene scene = small_town();
+    const importer::Primitive plate = grid_surface(20, 20, [](float u, float v) { return vec3(2 * u, 2 * v, 0); });
+    place(scene, add_mesh(scene, plate, "poster"), {-40, 2, 10});
+    ASSERT_NE(scene.materials[0].image, importer::none);
+    const model::Model m = baked(scene);
+    const auto poster = std::find_if(m.nodes.begin(), m.nodes.end(),
+                                     [&](const model::Node& node) { return std::string_view(m.name_of(node)) == "poster"; });
+    ASSERT_NE(poster, m.nodes.end());
+    int simpler = 0;
+    for (model::Index r = poster->first_rep; r < poster->first_rep + poster->rep_count; ++r) {
+        const model::Representation& rep = m.reps[r];
+        if (rep.kind != model::RepKind::mesh || static_cast<double>(rep.error_m) > poster->box.diagonal() / 64) continue;
+        simpler += rep.triangles < poster->triangles ? 1 : 0;
+        for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+            EXPECT_NE(m.materials[m.parts[p].material].texture, model::none) << rep.triangles << " triangles";
+        }
+    }
+    EXPECT_GT(simpler, 0);
+}
+
+// Two things in one place make a mesh of one of them: exact in form, and wrong in colour where it is large.
+TEST(BakeByHand, ClustersOfColoursAreNeverCalledNearlyExact) {
+    const model::Model& m = town();
+    for (const model::Node& node : m.nodes) {
+        if (node.kind != model::NodeKind::cluster) continue;
+        for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
+            EXPECT_GE(static_cast<double>(m.reps[r].error_m), 0.99 * node.box.diagonal() / 64);
+        }
+    }
 }
 
 // Maciel 3.1: drawing the parent costs less than drawing its children at their coarsest.

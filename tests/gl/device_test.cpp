@@ -98,6 +98,34 @@ TEST_F(DeviceTest, the_nearer_plane_wins_in_either_order) {
     }
 }
 
+// Two things in exactly one place: which one shows must not follow the order of slices, which follows the eye.
+TEST_F(DeviceTest, of_two_in_one_place_the_same_one_shows_in_either_order) {
+    for (const double distance : {0.7, 33.3, 4711.0}) {
+        SmallModel scene;
+        const mat3 turned(glm::mat3_cast(glm::angleAxis(0.7F, glm::normalize(vec3(1, 2, 0.5F)))));
+        const auto half = static_cast<float>(0.5 * distance);
+        const auto a = scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -distance, turned), half);
+        const auto b = scene.square(scene.material(plain(0, 1, 0)), at(0, 0, -distance, turned), half);
+        const auto model = scene.finish();
+        ASSERT_TRUE(device_->load(model, effects::assemble_program).ok());
+        std::vector<std::vector<std::uint8_t>> pictures;
+        for (const auto& order : {std::vector<model::Index>{a, b}, std::vector<model::Index>{b, a}}) {
+            device_->begin_frame(straight());
+            for (const model::Index node : order) {
+                const gl::DrawItem item{node, model.nodes[node].first_rep};
+                device_->draw({&item, 1});
+                device_->end_slice();
+            }
+            device_->finish_frame();
+            const auto image = device_->read_pixels();
+            ASSERT_TRUE(image.ok());
+            pictures.push_back(image->rgba);
+            EXPECT_NE(pixel(*image, 50, 50), blue);
+        }
+        EXPECT_EQ(pictures[0], pictures[1]) << distance;
+    }
+}
+
 TEST_F(DeviceTest, far_from_the_origin_nothing_moves) {
     const dvec3 away(6.4e6, 1.2e6, -3.3e6);
     SmallModel here;
