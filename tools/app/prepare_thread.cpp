@@ -10,6 +10,10 @@
 namespace surefoot::app {
 
 void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out) {
+    if (const Foresight& f = sample.foresight; f.known) {
+        engine.prepare(f.region, sample.frame, f.speed_m_s, f.turn_rad_s, out);
+        return;
+    }
     const double dt_s = std::max(sample.dt_s, 1e-3);
     const prepare::Region region = predict_region(sample.before, sample.pose, dt_s, horizon_periods * period_s);
     const double speed_mps = glm::length(sample.pose.position - sample.before.position) / dt_s;
