@@ -1,0 +1,56 @@
+// A recorded visitor on the machine's own clock: the input thread in its place, ten thousand reports none lost, and their age.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt/threads/capability.hpp"
+#include "rt/threads/guard.hpp"
+#include "tests/app/steered_fixture.hpp"
+
+namespace surefoot {
+namespace {
+
+const report::ThreadRow* row(const report::WalkSummary& s, const std::string& name) {
+    const auto found = std::find_if(s.threads.begin(), s.threads.end(), [&](const auto& t) { return t.name == name; });
+    return found == s.threads.end() ? nullptr : &*found;
+}
+
+TEST(SteeredRealWalk, TenThousandReportsReachTheirFramesInTimeThroughTheInputThread) {
+    if (!rt::guard_active()) GTEST_SKIP() << "a sanitizer build: times are not its own, and allocations are not guarded";
+    if (rt::probe_capabilities(80).fifo_priority < 80)
+        GTEST_SKIP() << "SCHED_FIFO 80 is refused here: run as root or with RLIMIT_RTPRIO";
+    app::WalkRequest request = test::steered_request(test::ten_thousand_events(), "real-events");
+    request.clock = "real";
+    const app::WalkOutcome outcome = test::walk(request);
+    const report::WalkSummary& s = outcome.summary;
+    const report::InputSummary& in = s.input;
+
+    EXPECT_EQ(in.reports + in.refused, 10'000U) << "read once each";
+    EXPECT_EQ(in.refused, 0U);
+    EXPECT_EQ(in.reports_shown, 10'000U);
+    std::uint64_t before = 0;
+    for (const rt::FrameRecord& r : outcome.records) {
+        EXPECT_GE(r.input_reports, before);
+        EXPECT_LE(r.input_stamp_ns, r.submitted_ns);
+        before = r.input_reports;
+    }
+    EXPECT_EQ(s.guard_violations, 0U);
+    EXPECT_EQ(in.guard_violations, 0U);
+    EXPECT_TRUE(s.census_problems.empty()) << s.census_problems.front();
+    const report::ThreadRow *input = row(s, "sf-input"), *frame = row(s, "sf-frame");
+    ASSERT_TRUE(input != nullptr && frame != nullptr) << "the census has no such thread";
+    EXPECT_EQ(input->policy, "fifo");
+    EXPECT_LT(input->priority, frame->priority);
+
+    // What the host steals from the frame thread's wake-ups shows in the reports' ages too: that much is allowed for.
+    const double period_ms = 1000.0 / 30, wake_ms = s.wake_us.p99 * 1e-3;
+    RecordProperty("age_p50_ms", std::to_string(in.age_ms.p50));
+    RecordProperty("age_p99_ms", std::to_string(in.age_ms.p99));
+    RecordProperty("wake_p99_ms", std::to_string(wake_ms));
+    EXPECT_LE(in.age_ms.p50, 1.5 * period_ms);
+    EXPECT_LE(in.age_ms.p99, 2 * period_ms + wake_ms);
+}
+
+}  // namespace
+}  // namespace surefoot
