@@ -17,7 +17,7 @@ struct PlacingPlan {
     int frame_core = 0;
     rt::CpuMask all;
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
-    bool input = false;              ///< an input thread steers
+    bool input = false;                        ///< an input thread steers
     std::vector<std::string> driver_prefixes;  ///< the driver's rasterisers
     int rasterisers = 0;             ///< how many were found
 };

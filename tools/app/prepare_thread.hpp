@@ -25,7 +25,7 @@ struct PoseSample {
     std::int64_t time_ns = 0;   ///< when it was due
     Pose pose, before;          ///< now, and one frame ago
     double dt_s = 0;
-    Foresight foresight;        ///< not known: the last two poses say where the walk goes
+    Foresight foresight;  ///< not known: the last two poses say where the walk goes
     bool valid = false;
 };
 

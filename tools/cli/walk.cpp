@@ -162,11 +162,13 @@ void add_walk(CLI::App& app, Context& context) {
                     "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
                     a->json);
     c->add_option("model", r.model_file, "The .walk model")->required();
-    c->add_option("--path", r.path_file, "Poses over time, CSV (else MODEL.path.csv, else a tour). With --input it is not followed: "
+    c->add_option("--path", r.path_file,
+                  "Poses over time, CSV (else MODEL.path.csv, else a tour). With --input it is not followed: "
                   "its first pose is the start, poses at equal times are the viewpoints, and `tour` follows it");
-    c->add_option("--input", r.input_file,
-                  "A device's reports in hid-recorder's text format: they steer, each in its recorded time, in place of the path. "
-                  "Ends a second after the last report, or with --seconds or --frames. Check it with `surefoot devices describe`");
+    c->add_option(
+        "--input", r.input_file,
+        "A device's reports in hid-recorder's text format: they steer, each in its recorded time, in place of the path. "
+        "Ends a second after the last report, or with --seconds or --frames. Check it with `surefoot devices describe`");
     c->add_option("--steering", r.steering_file,
                   "How --input steers, TOML: [motion], [safety], [[device]] (else the default of the device's class)");
     c->add_option("--lift", r.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")

@@ -159,7 +159,8 @@ std::string figures_table(const WalkSummary& s) {
         "hash <code>{}</code></p>\n",
         s.switches_per_frame, grouped(static_cast<double>(s.downgrades)), grouped(static_cast<double>(s.floor_bound_frames)),
         escaped(s.cut_hash));
-    if (s.input.given) out += fmt::format("<p class=\"sub\">Steered by {}: {}</p>\n", escaped(s.input.source), escaped(input_words(s.input)));
+    if (s.input.given)
+        out += fmt::format("<p class=\"sub\">Steered by {}: {}</p>\n", escaped(s.input.source), escaped(input_words(s.input)));
     return out;
 }
 

@@ -53,11 +53,11 @@ struct InputSummary {
         std::string name, device_class, mapping;
     };
     std::vector<Device> devices;
-    std::uint64_t reports = 0;        ///< accepted
-    std::uint64_t reports_shown = 0;  ///< of them, those that some frame's pose holds; the others came after the last frame
-    std::uint64_t refused = 0;        ///< short, long, undeclared: they changed nothing
-    Quantiles age_ms;                 ///< a report's, from its stamp until the first frame that holds it was submitted
-    std::uint64_t stops = 0;          ///< emergency stops
+    std::uint64_t reports = 0;         ///< accepted
+    std::uint64_t reports_shown = 0;   ///< of them, those that some frame's pose holds; the others came after the last frame
+    std::uint64_t refused = 0;         ///< short, long, undeclared: they changed nothing
+    Quantiles age_ms;                  ///< a report's, from its stamp until the first frame that holds it was submitted
+    std::uint64_t stops = 0;           ///< emergency stops
     std::uint64_t stopped_frames = 0;  ///< that stood still by order: emergency stop or dead-man
     bool stop_latched = false;         ///< at the end
     std::uint64_t silences = 0, overflows = 0, losses = 0;

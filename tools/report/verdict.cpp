@@ -68,7 +68,8 @@ std::string input_words(const InputSummary& in) {
     text += fmt::format("; from report to submitted frame {:.1f} ms (p50), {:.1f} (p99), {:.1f} at most", in.age_ms.p50,
                         in.age_ms.p99, in.age_ms.max);
     if (in.stops > 0) text += fmt::format("; {}", counted(in.stops, "emergency stop", "emergency stops"));
-    if (in.stopped_frames > 0) text += fmt::format("; stood still by order for {}", counted(in.stopped_frames, "frame", "frames"));
+    if (in.stopped_frames > 0)
+        text += fmt::format("; stood still by order for {}", counted(in.stopped_frames, "frame", "frames"));
     if (in.stop_latched) text += ", and does to the end: the stop is latched";
     return text + ".";
 }
