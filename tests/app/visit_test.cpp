@@ -71,6 +71,13 @@ TEST_F(VisitTest, ATourFollowsThePathUntilTheHandMovesAndGoesOnWhereItWasLeft) {
     EXPECT_NEAR(z(), -0.5, 0.01);
     run(1, 0, &input::NavigationSample::tour);
     EXPECT_NEAR(x(), 20, 0.2);
+    run(0.1, 0, &input::NavigationSample::next_viewpoint);
+    EXPECT_FALSE(visit_.touring());
+    run(1, 0, &input::NavigationSample::tour);
+    EXPECT_NEAR(x(), 30, 0.3) << "a viewpoint in between does not set it back";
+    run(0.1, 0, &input::NavigationSample::reset);
+    run(1, 0, &input::NavigationSample::tour);
+    EXPECT_NEAR(x(), 10, 0.1) << "a reset does";
 }
 
 TEST_F(VisitTest, AHandThatHoldsOnWhileTheTourIsPressedDoesNotEndIt) {

@@ -195,7 +195,8 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
               (Keys{"frames",      "slots",      "skipped",   "misses",         "own_misses",   "miss_causes",
                     "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age", "budget_ms",
                     "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
-                    "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated"}));
+                    "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated",
+                    "input"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
     EXPECT_EQ(keys_of(json["prepared_age"]), (Keys{"p50", "p99", "max"}));
