@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/capture/capture.hpp"
 #include "tests/app/steered_fixture.hpp"
 #include "tools/app/input_session.hpp"
 
@@ -61,6 +62,29 @@ TEST(SteeredWalk, FramesPrepareForWhereTheHandCanLead) {
         EXPECT_EQ(r.guard_violations, 0U);
     }
     EXPECT_EQ(outcome.summary.input.guard_violations, 0U);
+}
+
+TEST(SteeredWalk, TheRegionOfAPreparedFrameIsThePredictedPoseWidenedByItsUncertainty) {
+    app::WalkRequest request = steered_request(input::test::walk_and_turn(), "region");
+    request.capture_file = test::Forest::get().dir + "/region.cap";
+    const auto captured_at = [&](std::uint64_t frame) {
+        request.capture_frame = frame;
+        walk(request);
+        auto taken = capture::read_capture(request.capture_file);
+        EXPECT_TRUE(taken.ok());
+        return taken.ok() ? taken->prepared.region : prepare::Region{};
+    };
+    const app::WalkOutcome outcome = walk(request);
+    const input::MotionLimits limits;
+    // In full walk: where it will be three frames on, as uncertain as the limits of speed and acceleration leave it.
+    const prepare::Region walking = captured_at(60);
+    const double ahead_s = 3.0 / 30 + 1e-9 * static_cast<double>(app::carry_limit_ns);
+    EXPECT_NEAR(glm::length(walking.centre.position - eye(outcome.records[59])), limits.walk_m_s * ahead_s, 0.003);
+    EXPECT_NEAR(walking.radius_m, limits.walk_m_s * ahead_s + 0.5 * limits.accel_m_s2 * ahead_s * ahead_s, 0.01);
+    // At rest: what a hand that starts now can reach.
+    const prepare::Region resting = captured_at(8);
+    EXPECT_NEAR(resting.radius_m, 0.5 * limits.accel_m_s2 * ahead_s * ahead_s, 1e-6);
+    EXPECT_GT(captured_at(150).angle_rad, resting.angle_rad + 0.1) << "turning is foreseen too";
 }
 
 TEST(SteeredWalk, TenThousandEventsAreInTheFramesTheyBelongToNoneLostNoneTwice) {
