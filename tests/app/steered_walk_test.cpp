@@ -144,6 +144,8 @@ TEST(SteeredWalk, ButtonsLeadToViewpointsTourAndBack) {
     EXPECT_EQ(in.pause, 1U);
     EXPECT_EQ(in.reset, 1U);
     EXPECT_EQ(in.jumps, 3U);
+    for (const rt::FrameRecord& r : outcome.records)
+        EXPECT_GT(r.candidates, 0U) << "frame " << r.frame << " was drawn coarse: nothing was prepared for where it is";
 }
 
 TEST(SteeredWalk, AnEmergencyStopStandsStillAndIsSaid) {
