@@ -33,6 +33,8 @@ public:
     void begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement);
     /// For the frame thread; after begin().
     [[nodiscard]] PoseSource& poses() { return *poses_; }
+    /// For the preparation: where buttons put the eye.
+    [[nodiscard]] PlaceBuffer* places() { return &places_; }
     /// The thread ends. What kept it from its place, if anything did.
     std::optional<Error> end();
 
@@ -49,6 +51,7 @@ private:
     std::unique_ptr<input::ReportSource> source_;
     std::unique_ptr<input::Steering> steering_;
     rt::TripleBuffer<SteeredSample> samples_;
+    PlaceBuffer places_;
     std::unique_ptr<Visit> visit_;
     std::unique_ptr<InputStepper> stepper_;
     std::unique_ptr<SteeredPoses> poses_;

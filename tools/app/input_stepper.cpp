@@ -6,8 +6,8 @@
 namespace surefoot::app {
 
 InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit,
-                           rt::TripleBuffer<SteeredSample>& samples)
-    : source_(source), steering_(steering), visit_(visit), samples_(samples) {
+                           rt::TripleBuffer<SteeredSample>& samples, PlaceBuffer& places)
+    : source_(source), steering_(steering), visit_(visit), samples_(samples), places_(places) {
     steering_.place(visit_.start());
 }
 
@@ -34,6 +34,13 @@ void InputStepper::advance_to(std::int64_t now_ns) {
 }
 
 void InputStepper::publish(const input::NavigationSample& sample, std::int64_t now_ns) {
+    if (visit_.jumps() != jumps_told_) {
+        jumps_told_ = visit_.jumps();
+        PoseSample& place = places_.back();
+        place.pose = place.before = sample.pose;
+        place.time_ns = now_ns;
+        places_.publish();
+    }
     SteeredSample& out = samples_.back();
     out.nav = sample;
     out.time_ns = now_ns;

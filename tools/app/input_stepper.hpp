@@ -9,6 +9,7 @@
 #include "input/report_source.hpp"
 #include "input/steering.hpp"
 #include "rt/exchange/triple_buffer.hpp"
+#include "tools/app/prepare_thread.hpp"
 #include "tools/app/visit.hpp"
 
 namespace surefoot::app {
@@ -28,7 +29,9 @@ struct SteeredSample {
 class InputStepper {
 public:
     /// All of them must outlive this; `steering` is placed at the visit's start.
-    InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit, rt::TripleBuffer<SteeredSample>& samples);
+    /// `places` is told where the eye is put when it does not walk there.
+    InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit, rt::TripleBuffer<SteeredSample>& samples,
+                 PlaceBuffer& places);
 
     /// Publishes the start, and attaches what is there. On a neutral thread, before the first step; allocates.
     void begin(std::int64_t start_ns);
@@ -48,6 +51,8 @@ private:
     input::Steering& steering_;
     Visit& visit_;
     rt::TripleBuffer<SteeredSample>& samples_;
+    PlaceBuffer& places_;
+    std::uint32_t jumps_told_ = 0;
     std::int64_t tick_at_ns_ = 0;
 };
 

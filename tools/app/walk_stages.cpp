@@ -37,29 +37,28 @@ void WalkStages::sample(rt::FrameRecord& record) {
             now_.foresight = newest.foresight;
             now_.dt_s = period_s;
         }
-        prepare_inline();  // from what was known one frame ago, as the workers would
+        // From what was known one frame ago, as the workers would; where the eye is put elsewhere, the input has told them.
+        if (newest.jumped) {
+            now_.pose = now_.before = newest.pose;
+            now_.foresight = newest.foresight;
+        }
+        prepare_inline();
     }
-    // Put elsewhere, the eye stays for one frame more where it was: meanwhile the workers prepare for where it goes. Else the
-    // first picture there would be the coarse one.
-    const bool placed = newest.jumped || staying_;
-    staying_ = newest.jumped && now_.valid && !staying_;
-    now_.before = now_.valid && !placed ? now_.pose : newest.pose;
-    now_.pose = newest.pose;
+    now_.before = now_.valid && !newest.jumped ? now_.pose : newest.pose;
     now_.dt_s = period_s * (1.0 + (options_.control ? 0 : record.skipped_before));
     now_.foresight = newest.foresight;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
     now_.valid = true;
+    take(newest, record);
     poses_.back() = now_;
     poses_.publish();
-    take(staying_ ? FramePose(shown_) : newest, record);
 }
 
 FrameTime WalkStages::frame_time(const rt::FrameRecord& record) const { return {path_slot_, record.due_ns, clock_.now_ns()}; }
 
 void WalkStages::take(const FramePose& from, rt::FrameRecord& record) {
-    shown_ = from;
-    const Pose& pose = shown_.pose;
+    const Pose& pose = now_.pose = from.pose;
     record.eye = {pose.position.x, pose.position.y, pose.position.z};
     record.orientation = {pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w};
     record.input_stamp_ns = from.stamp_ns;
@@ -72,9 +71,7 @@ void WalkStages::latch(rt::FrameRecord& record) {
     const rt::OwnScope own;  // the submission around it is the driver's, this is not
     FramePose newest;
     if (!pose_source_.latch(frame_time(record), newest)) return;
-    if (!coarse_ && !covers(prepared_.front().region, newest.pose)) return;
-    take(newest, record);
-    now_.pose = newest.pose;
+    if (coarse_ || covers(prepared_.front().region, newest.pose)) take(newest, record);
 }
 
 void WalkStages::prepare_inline() {
@@ -90,7 +87,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.prepared_age = static_cast<std::uint32_t>(age);
     record.correction = static_cast<float>(options_.correct_costs ? controller_.factor() : 1.0);
     record.budget_us = static_cast<float>(options_.budget_us);
-    coarse_ = age > oldest_prepared || !covers(set.region, shown_.pose);
+    coarse_ = age > oldest_prepared || !covers(set.region, now_.pose);
     if (coarse_) {
         engine_.select_coarse();
         return;
@@ -138,7 +135,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
     }
-    report_ = engine_.submit(shown_.pose, limits);
+    report_ = engine_.submit(now_.pose, limits);
     if (options_.virtual_clock) {
         const double charged_us = report_.finished_us > 0 ? report_.finished_us : report_.predicted_us * options_.cost_scale;
         static_cast<rt::VirtualClock&>(clock_).advance(static_cast<std::int64_t>(charged_us * 1e3));
@@ -165,7 +162,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     if (!coarse_) controller_.update(report_.predicted_us, actual_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
-    shots_.remember(record.frame, time_s, shown_.pose, record.accuracy, record.triangles, engine_.drawn());
+    shots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn());
 }
 
 }  // namespace surefoot::app

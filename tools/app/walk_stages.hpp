@@ -68,9 +68,7 @@ private:
     KeptFrame& kept_;
     WalkStagesOptions options_;
     rt::CostController controller_;
-    PoseSample now_;        ///< what is prepared for
-    FramePose shown_;       ///< what is drawn: the same, but for the frame in which the eye is put elsewhere
-    bool staying_ = false;  ///< this is that frame
+    PoseSample now_;
     SubmitReport report_;
     std::uint64_t walked_ = 0, path_slot_ = 0;
     bool coarse_ = false;
