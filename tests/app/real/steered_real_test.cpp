@@ -66,5 +66,24 @@ TEST(SteeredRealWalk, TenThousandReportsReachTheirFramesInTimeThroughTheInputThr
     EXPECT_LE(in.age_ms.p99, 2 * period_ms + wake_ms);
 }
 
+TEST(SteeredRealWalk, AViewpointIsPreparedBeforeItIsShown) {
+    if (!rt::guard_active()) GTEST_SKIP() << "a sanitizer build: times are not its own";
+    if (rt::probe_capabilities(80).fifo_priority < 80)
+        GTEST_SKIP() << "SCHED_FIFO 80 is refused here: run as root or with RLIMIT_RTPRIO";
+    constexpr int presses = 16;
+    GamepadSession session;
+    session.report({});
+    for (int i = 0; i < presses; ++i) session.press(GamepadSession::next_viewpoint).hold({}, 0.007 * i);
+    app::WalkRequest request = test::steered_request(session, "real-viewpoints");
+    request.clock = "real";
+    const app::WalkOutcome outcome = test::walk(request);
+    EXPECT_EQ(outcome.summary.input.jumps, static_cast<std::uint64_t>(presses));
+    int coarse = 0;
+    for (const rt::FrameRecord& r : outcome.records) coarse += r.candidates == 0 ? 1 : 0;
+    // A press just before a frame begins comes too late for it; the others do not.
+    EXPECT_LE(coarse, presses / 2);
+    std::printf("drawn coarse: %d frames of %zu, %d presses\n", coarse, outcome.records.size(), presses);
+}
+
 }  // namespace
 }  // namespace surefoot
