@@ -222,6 +222,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         ++report.slices;
         if (!full) ++report.downgraded_slices;
     }
+    report.predicted = so_far;
     report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us);
 }
 
@@ -238,6 +239,7 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
         sum.raster_us += cost.raster_us;
         report.triangles += rep.triangles;
     }
+    report.predicted = sum;
     report.predicted_us = costs.combine.frame_us(sum.submit_us, sum.raster_us);
     report.slices = 1;
     report.downgraded_slices = 1;

@@ -44,6 +44,7 @@ struct SubmitReport {
     double submitted_us = 0;        ///< last slice handed to the driver
     double finished_us = 0;         ///< last fence passed
     double predicted_us = 0;        ///< of what was drawn, uncorrected, median (not the upper quantile)
+    model::ItemCost predicted;      ///< the sums that predicted_us follows from, slices included
     std::uint32_t slices = 0, downgraded_slices = 0, items = 0, draws = 0;
     std::uint32_t culled = 0;       ///< of the region's cut, outside this pose's view
     std::uint64_t triangles = 0;

@@ -46,6 +46,8 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
 
 /// The table as a file: TOML text with a checksum in its first line. read refuses a file of which a byte was changed, and the
 /// table of another machine than `machine` (empty: any machine's), by name.
+/// The same for equal tables: which table a fit to a model was made from.
+std::uint64_t hash_of(const model::CostModel& costs);
 Result<void> write_costs(const std::string& file, const model::CostModel& costs);
 Result<model::CostModel> read_costs(const std::string& file, const std::string& machine);
 /// CPU model, core count, GL renderer, rasterisers (0: as many as the device takes): what a table is valid for.

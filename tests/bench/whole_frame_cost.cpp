@@ -1,5 +1,5 @@
 // Bench: predicted against measured whole-frame cost on random poses, online correction frozen at 1.
-// bench_whole_frame_cost MODEL.walk [POSES 500] [PATH.csv] [STATE_DIR] -> one JSON object.
+// bench_whole_frame_cost MODEL.walk [POSES 500] [PATH.csv] [STATE_DIR] [fitted] -> one JSON object.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,15 +30,6 @@ double quantile(std::vector<double> v, double q) {
     return v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
 }
 
-/// A place on the path, moved by up to 3 m, looking anywhere about the horizon.
-Pose random_pose(const Path& path, Random& random) {
-    Pose pose = sample_path(path, random.range(0, path.duration_s()));
-    pose.position += dvec3(random.range(-3, 3), random.range(-0.3, 1.5), random.range(-3, 3));
-    const double yaw = random.range(-3.14159265358979, 3.14159265358979), pitch = random.range(-0.3, 0.3);
-    pose.orientation = glm::normalize(glm::angleAxis(yaw, dvec3(0, 1, 0)) * glm::angleAxis(pitch, dvec3(1, 0, 0)));
-    return pose;
-}
-
 int fail(const Error& error) {
     fmt::print(stderr, "{}\n", error.text());
     return 1;
@@ -47,9 +38,10 @@ int fail(const Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 2) return fmt::print(stderr, "bench_whole_frame_cost MODEL.walk [POSES] [PATH.csv] [STATE_DIR]\n"), 2;
+    if (argc < 2) return fmt::print(stderr, "bench_whole_frame_cost MODEL.walk [POSES] [PATH.csv] [STATE_DIR] [fitted]\n"), 2;
     const int poses = argc > 2 ? std::atoi(argv[2]) : 500;
-    auto model = model::read_walk(argv[1]);
+    model::WalkFileInfo info;
+    auto model = model::read_walk(argv[1], &info);
     if (!model) return fail(model.error());
     auto path = app::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, 0);
     if (!path) return fail(path.error());
@@ -57,6 +49,10 @@ int main(int argc, char** argv) {
     auto costs = app::load_costs(app::state_directory(argc > 4 ? argv[4] : ""), "", note);
     if (!costs) return fail(costs.error());
     if (!note.empty()) fmt::print(stderr, "{}\n", note);
+    if (argc > 5) {  // "fitted": as `surefoot calibrate MODEL.walk` left it
+        costs = app::fitted_costs(app::state_directory(argv[4]), *costs, info.hash);
+        if (!costs) return fail(costs.error());
+    }
     (void)rt::prepare_memory({});
     EngineOptions options;
     options.in_frame_check = false;
@@ -77,7 +73,7 @@ int main(int argc, char** argv) {
     limits.now_ns = now_ns;
     std::vector<double> errors, ratios, frame_ms;
     for (int i = 0; i < poses + 20; ++i) {
-        const Pose pose = random_pose(path->path, random);
+        const Pose pose = app::random_pose(path->path, random);
         const double budget_us = random.range(3000, 28000);
         (*engine)->prepare({pose, 0, 0}, 0, 0, 0, prepared);
         (*engine)->select(prepared, budget_us, 1.0, 0);
@@ -94,9 +90,14 @@ int main(int argc, char** argv) {
         ratios.push_back(times[1] / predicted);
         frame_ms.push_back(times[1] * 1e-3);
     }
+    // What a correction of the run's own speed would leave: the machine's speed moves between calibration and this run.
+    const double speed = quantile(ratios, 0.5);
+    std::vector<double> shape;
+    for (const double ratio : ratios) shape.push_back(std::abs(speed / ratio - 1));
     fmt::print("{{\"model\": \"{}\", \"poses\": {}, \"error\": {{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}, "
+               "\"error_at_the_runs_speed\": {{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}, "
                "\"actual_over_predicted\": {{\"p10\": {:.3f}, \"p50\": {:.3f}, \"p90\": {:.3f}}}, \"frame_ms\": {{\"p50\": {:.2f}, \"p90\": {:.2f}}}}}\n",
-               argv[1], poses, quantile(errors, 0.5), quantile(errors, 0.9), quantile(errors, 0.99), quantile(ratios, 0.1), quantile(ratios, 0.5),
-               quantile(ratios, 0.9), quantile(frame_ms, 0.5), quantile(frame_ms, 0.9));
+               argv[1], poses, quantile(errors, 0.5), quantile(errors, 0.9), quantile(errors, 0.99), quantile(shape, 0.5), quantile(shape, 0.9),
+               quantile(shape, 0.99), quantile(ratios, 0.1), speed, quantile(ratios, 0.9), quantile(frame_ms, 0.5), quantile(frame_ms, 0.9));
     return 0;
 }

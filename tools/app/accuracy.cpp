@@ -30,6 +30,12 @@ double median(std::vector<double>& values) {
     return *middle;
 }
 
+/// dB. Every picture equal to full detail is infinite; none that defines a ratio is no number.
+double mean_snr(double sum_db, std::uint32_t finite, std::uint32_t infinite) {
+    if (finite > 0) return sum_db / finite;
+    return infinite > 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// One pose, its full-detail picture, and its prepared arrays.
 struct Station {
     Pose pose;
@@ -97,7 +103,7 @@ Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double
     point.frame_ms_p90 = q.p90;
     const auto inexact = static_cast<double>(stations.size() - point.exact);
     point.accuracy_mean = inexact > 0 ? accuracy / inexact : std::numeric_limits<double>::infinity();
-    point.snr_db = snr_count == 0 ? 0.0 : snr_sum / snr_count;
+    point.snr_db = mean_snr(snr_sum, snr_count, point.snr_infinite);
     point.ssim = ssim_sum / n;
     point.triangles = triangles / n;
     point.cost_us = cost / n;
@@ -105,7 +111,8 @@ Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double
     return point;
 }
 
-Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, model::Model model, report::AccuracyRun& run) {
+Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, model::Model model, std::uint64_t model_hash,
+                                            report::AccuracyRun& run) {
     EngineOptions options;
     auto kind = gl::parse_backend(request.backend);
     if (!kind) return kind.error();
@@ -119,7 +126,10 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
         request.workers > 0 ? request.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     options.in_frame_check = false;
     std::string note;
-    auto costs = load_costs(state_directory(request.state_dir), "", note);
+    const std::string state = state_directory(request.state_dir);
+    auto table = load_costs(state, "", note);
+    if (!table) return table.error();
+    auto costs = fitted_costs(state, *table, model_hash);
     if (!costs) return costs.error();
     auto engine = Engine::open(std::move(model), *costs, options);
     if (engine) run.machine = measure::machine_identity((*engine)->device().renderer(), request.rasterisers);
@@ -130,7 +140,8 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
 }  // namespace
 
 Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress) {
-    auto model = model::read_walk(request.model_file);
+    model::WalkFileInfo file;
+    auto model = model::read_walk(request.model_file, &file);
     if (!model) return model.error();
     auto chosen = choose_path(request.path_file, request.model_file, *model, request.lift_m);
     if (!chosen) return chosen.error();
@@ -140,7 +151,7 @@ Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const P
     run.width = request.width;
     run.height = request.height;
     run.poses = request.poses;
-    auto opened = open_engine(request, std::move(*model), run);
+    auto opened = open_engine(request, std::move(*model), file.hash, run);
     if (!opened) return opened.error();
     Engine& engine = **opened;
     engine.device().bind();

@@ -37,6 +37,15 @@ Path generated_tour(const model::Model& model) {
     return path;
 }
 
+Pose random_pose(const Path& path, Random& random) {
+    Pose pose = sample_path(path, random.range(0, path.duration_s()));
+    const double right = random.range(-3, 3), up = random.range(-0.3, 1.5), back = random.range(-3, 3);
+    pose.position += dvec3(right, up, back);
+    const double yaw = random.range(-std::numbers::pi, std::numbers::pi), pitch = random.range(-0.3, 0.3);
+    pose.orientation = glm::normalize(glm::angleAxis(yaw, dvec3(0, 1, 0)) * glm::angleAxis(pitch, dvec3(1, 0, 0)));
+    return pose;
+}
+
 Result<ChosenPath> choose_path(const std::string& asked, const std::string& model_file, const model::Model& model, double lift_m) {
     if (!(std::abs(lift_m) <= 1e7)) return Error{"--lift", "is no height", "give metres, e.g. 1.5"};
     ChosenPath chosen;

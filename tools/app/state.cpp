@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "render/measure/calibrate.hpp"
 
 namespace surefoot::app {
@@ -41,6 +43,18 @@ Result<model::CostModel> load_costs(const std::string& state_dir, const std::str
         return model::default_costs();
     }
     return costs;
+}
+
+std::string model_costs_file(const std::string& state_dir, const model::CostModel& table, std::uint64_t model_hash) {
+    return fmt::format("{}/models/{:016x}-{:016x}.toml", state_dir, model_hash, measure::hash_of(table));
+}
+
+Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table, std::uint64_t model_hash) {
+    if (!table.calibrated) return table;
+    const std::string file = model_costs_file(state_dir, table, model_hash);
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return table;
+    return measure::read_costs(file, table.machine);
 }
 
 }  // namespace surefoot::app

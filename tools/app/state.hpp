@@ -16,4 +16,10 @@ std::string cost_table_file(const std::string& state_dir);
 /// `note` says so and how to calibrate. A damaged table is an Error.
 Result<model::CostModel> load_costs(const std::string& state_dir, const std::string& machine, std::string& note);
 
+/// Where the fit of `table` to the model whose file has `model_hash` lies: a table measured anew leaves old fits behind.
+std::string model_costs_file(const std::string& state_dir, const model::CostModel& table, std::uint64_t model_hash);
+
+/// The fit to this model where there is one (`surefoot calibrate MODEL.walk`), else `table` as it is.
+Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table, std::uint64_t model_hash);
+
 }  // namespace surefoot::app

@@ -111,8 +111,12 @@ Result<void> claim(Session& s) {
 Result<void> open_session(Session& s, const Progress& progress) {
     const WalkRequest& r = s.request;
     progress.say("open", 0.1);
-    auto model = model::read_walk(r.model_file);
+    model::WalkFileInfo file;
+    auto model = model::read_walk(r.model_file, &file);
     if (!model) return model.error();
+    auto costs = fitted_costs(state_directory(r.state_dir), s.costs, file.hash);
+    if (!costs) return costs.error();
+    s.costs = std::move(*costs);
     auto path = choose_path(r.path_file, r.model_file, *model, r.lift_m);
     if (!path) return path.error();
     s.path = std::move(*path);

@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include "render/measure/calibrate.hpp"
+#include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
 #include "rt/threads/capability.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/memory.hpp"
+#include "tools/app/model_costs.hpp"
+#include "tools/app/path_source.hpp"
 #include "tools/app/placing.hpp"
 #include "tools/app/state.hpp"
 #include "tools/cli/command.hpp"
@@ -18,9 +21,10 @@ namespace surefoot::cli {
 
 namespace {
 struct CalibrateArguments {
-    std::string state, backend = "egl", plot;
+    std::string model, path, state, backend = "egl", plot;
     int rasterisers = 0;
     std::uint32_t width = 1280, height = 720;
+    double rate_hz = 30, lift_m = 0;
     bool quick = false, json = false;
 };
 
@@ -33,20 +37,28 @@ std::string state_name(model::EffectMask mask) {
     return name.empty() ? "bare" : name;
 }
 
+nlohmann::ordered_json to_json(const model::CostModel& costs) {
+    const model::FrameCombine& k = costs.combine;
+    return {{"fixed_us", k.fixed_us},
+            {"submit_weight", k.submit_weight},
+            {"raster_weight", k.raster_weight},
+            {"max_weight", k.max_weight},
+            {"upper_factor", costs.upper_factor},
+            {"slice_us", costs.slice_us}};
+}
+
+void print_frame(const model::FrameCombine& k) {
+    fmt::print("  frame = {:.0f} us + {:.2f} submit + {:.2f} raster + {:.2f} max(submit, raster)\n", k.fixed_us, k.submit_weight,
+               k.raster_weight, k.max_weight);
+}
+
 nlohmann::ordered_json to_json(const measure::Calibration& c, const std::string& file, const std::string& plot) {
-    const model::FrameCombine& k = c.costs.combine;
     return {{"table", file},
             {"plot", plot},
             {"machine", c.costs.machine},
             {"seconds", c.seconds},
             {"points", c.points.size()},
-            {"frame",
-             {{"fixed_us", k.fixed_us},
-              {"submit_weight", k.submit_weight},
-              {"raster_weight", k.raster_weight},
-              {"max_weight", k.max_weight},
-              {"upper_factor", c.costs.upper_factor},
-              {"slice_us", c.costs.slice_us}}},
+            {"frame", to_json(c.costs)},
             {"frame_error", {{"p50", c.frame_error_p50}, {"p90", c.frame_error_p90}, {"p99", c.frame_error_p99}}},
             {"timer_query",
              {{"available", c.timer.available},
@@ -55,7 +67,83 @@ nlohmann::ordered_json to_json(const measure::Calibration& c, const std::string&
               {"wall_ms", c.timer.wall_ms}}}};
 }
 
+/// Measured as it will be spent: threads where the walk puts them, memory kept and locked.
+Result<std::function<void()>> placed_as_walked() {
+    rt::raise_limits(app::WalkRequest{}.frame_priority);
+    const rt::Capabilities capable = rt::probe_capabilities(app::WalkRequest{}.frame_priority);
+    auto plan = app::plan_placing({}, capable.fifo_priority >= app::WalkRequest{}.frame_priority);
+    if (!plan) return plan.error();
+    if (!plan->fifo) note("not fully real-time: SCHED_FIFO is refused; the figures will be of ordinary scheduling");
+    if (rt::guard_active()) (void)rt::prepare_memory({});
+    return std::function<void()>([plan = *plan]() mutable {
+        if (auto placed = app::place_rasterisers(plan); !placed) note(placed.error().text());
+        if (auto placed = rt::place_thread(0, app::frame_placement(plan)); !placed) note(placed.error().text());
+    });
+}
+
+Result<void> make_folder(const std::string& dir) {
+    std::error_code error;
+    std::filesystem::create_directories(dir, error);
+    if (error) return Error{dir, "cannot be made: " + error.message(), "name another folder with --state"};
+    return {};
+}
+
+nlohmann::ordered_json to_json(const app::FrameErrors& e) { return {{"p50", e.p50}, {"p90", e.p90}, {"p99", e.p99}}; }
+
+/// One model: the table stays, the weights of a frame's sums are fitted.
+int run_fit(const CalibrateArguments& a, const Context& context) {
+    auto kind = gl::parse_backend(a.backend);
+    if (!kind) return misuse(kind.error());
+    if (!a.plot.empty()) return misuse({"--plot", "belongs to the machine's table", "leave out the model, or leave out --plot"});
+    const std::string dir = app::state_directory(a.state);
+    std::string lacking;
+    auto table = app::load_costs(dir, "", lacking);
+    if (!table) return fail(table.error());
+    if (!lacking.empty()) return fail({a.model, "cannot be fitted: no cost table in " + dir, "run `surefoot calibrate` first"});
+    model::WalkFileInfo info;
+    auto model = model::read_walk(a.model, &info);
+    if (!model) return fail(model.error());
+    auto path = app::choose_path(a.path, a.model, *model, a.lift_m);
+    if (!path) return fail(path.error());
+    const std::string file = app::model_costs_file(dir, *table, info.hash);
+    if (auto made = make_folder(dir + "/models"); !made) return fail(made.error());
+    if (auto ok = probe_writable(file); !ok) return fail(ok.error());
+    auto placed = placed_as_walked();
+    if (!placed) return fail(placed.error());
+    app::ModelFitOptions options;
+    options.device.kind = *kind;
+    options.device.viewport = {a.width, a.height};
+    options.device.rasterisers = a.rasterisers;
+    options.frame_us = 1e6 / a.rate_hz;
+    if (a.quick) options.poses = 80;
+    options.opened = *placed;
+    auto fit = app::fit_to_model(std::move(*model), path->path, *table, options, terminal_progress(context));
+    end_progress(context);
+    if (!fit) return fail(fit.error());
+    if (auto written = measure::write_costs(file, fit->costs); !written) return fail(written.error());
+    const model::FrameCombine& k = fit->costs.combine;
+    if (a.json) {
+        print_json({{"model", a.model},
+                    {"table", file},
+                    {"frames", fit->frames},
+                    {"seconds", fit->seconds},
+                    {"frame", to_json(fit->costs)},
+                    {"frame_error_before", to_json(fit->before)},
+                    {"frame_error", to_json(fit->after)}});
+        return exit_success;
+    }
+    fmt::print("{}: {} frames near {}, {:.0f} s\n  fit {}\n", a.model, fit->frames, path->source, fit->seconds, file);
+    print_frame(k);
+    fmt::print("  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; by the machine's table alone {:.0f} %, {:.0f} %, "
+               "{:.0f} %; the budget spends x{:.2f}\n",
+               100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->after.p99, 100 * fit->before.p50, 100 * fit->before.p90,
+               100 * fit->before.p99, fit->costs.upper_factor);
+    return exit_success;
+}
+
 int run_calibrate(const CalibrateArguments& a, const Context& context) {
+    if (!a.model.empty()) return run_fit(a, context);
+    if (!a.path.empty()) return misuse({"--path " + a.path, "belongs to a model", "name the model: surefoot calibrate MODEL.walk --path P.csv"});
     auto kind = gl::parse_backend(a.backend);
     if (!kind) return misuse(kind.error());
     const std::string dir = app::state_directory(a.state);
@@ -68,24 +156,13 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     options.device.viewport = {a.width, a.height};
     options.device.rasterisers = a.rasterisers;
     options.quick = a.quick;
-    // Measured as it will be spent: threads where the walk puts them, memory kept and locked.
-    rt::raise_limits(app::WalkRequest{}.frame_priority);
-    const rt::Capabilities capable = rt::probe_capabilities(app::WalkRequest{}.frame_priority);
-    auto plan = app::plan_placing({}, capable.fifo_priority >= app::WalkRequest{}.frame_priority);
-    if (!plan) return fail(plan.error());
-    if (!plan->fifo) note("not fully real-time: SCHED_FIFO is refused; the table will be of ordinary scheduling");
-    if (rt::guard_active()) (void)rt::prepare_memory({});
-    options.opened = [&plan] {
-        if (auto placed = app::place_rasterisers(*plan); !placed) note(placed.error().text());
-        if (auto placed = rt::place_thread(0, app::frame_placement(*plan)); !placed) note(placed.error().text());
-    };
+    auto placed = placed_as_walked();
+    if (!placed) return fail(placed.error());
+    options.opened = *placed;
     auto c = measure::calibrate(options, terminal_progress(context));
     end_progress(context);
     if (!c) return fail(c.error());
-
-    std::error_code error;
-    std::filesystem::create_directories(dir, error);
-    if (error) return fail({dir, "cannot be made: " + error.message(), "name another folder with --state"});
+    if (auto made = make_folder(dir); !made) return fail(made.error());
     if (auto written = measure::write_costs(file, c->costs); !written) return fail(written.error());
     std::vector<report::CostPoint> points;
     for (const measure::CalibrationPoint& p : c->points) {
@@ -93,10 +170,8 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     }
     if (auto written = write_text(plot, report::cost_plot_svg(c->costs.machine, points)); !written) return fail(written.error());
     if (a.json) return print_json(to_json(*c, file, plot)), exit_success;
-    const model::FrameCombine& k = c->costs.combine;
     fmt::print("{}\n  table {} ({} points, {:.0f} s), plot {}\n", c->costs.machine, file, c->points.size(), c->seconds, plot);
-    fmt::print("  frame = {:.0f} us + {:.2f} submit + {:.2f} raster + {:.2f} max(submit, raster)\n", k.fixed_us, k.submit_weight,
-               k.raster_weight, k.max_weight);
+    print_frame(c->costs.combine);
     fmt::print("  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; the budget spends x{:.2f}\n",
                100 * c->frame_error_p50, 100 * c->frame_error_p90, 100 * c->frame_error_p99, c->costs.upper_factor);
     fmt::print("  timer query: {} (says {:.3f} ms where {:.3f} ms pass): {}\n",
@@ -111,7 +186,12 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
 void add_calibrate(CLI::App& app, Context& context) {
     auto a = std::make_shared<CalibrateArguments>();
     CLI::App* c = add_command(app, "calibrate", "Measure what drawing costs on this machine: the table that budgets are spent by",
-                              "surefoot calibrate --state /var/lib/surefoot", a->json);
+                              "surefoot calibrate && surefoot calibrate town.walk", a->json);
+    c->add_option("MODEL", a->model,
+                  "Fit the table to one model: how its items add up to a frame; walks of this model use it from then on");
+    c->add_option("--path", a->path, "With a model: near which path (else the one beside it, else a tour)");
+    c->add_option("--lift", a->lift_m, "With a model: metres added to every height of the path")->check(number_within(-1e7, 1e7, "m"));
+    c->add_option("--rate", a->rate_hz, "With a model: frames a second it will be walked at")->check(number_within(1, 1000, "Hz"))->capture_default_str();
     c->add_option("--state", a->state, "Folder for costs.toml and costs.svg (else $STATE_DIRECTORY, else XDG state)");
     c->add_option("--backend", a->backend, "egl, device, osmesa or window")->check(drawing_backend())->capture_default_str();
     c->add_option("--rasterisers", a->rasterisers, "Software GL threads; 0: the measured default")

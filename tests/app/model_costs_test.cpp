@@ -1,0 +1,100 @@
+// Fits to a model: found by model and table, refused when damaged, and nearer to measured frames than a table that is wrong.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "render/measure/calibrate.hpp"
+#include "render/model/walk_file.hpp"
+#include "tests/app/walk_fixture.hpp"
+#include "tools/app/model_costs.hpp"
+#include "tools/app/path_source.hpp"
+#include "tools/app/state.hpp"
+
+namespace surefoot::app {
+namespace {
+
+model::CostModel table(float submit_weight) {
+    model::CostModel costs = model::default_costs();
+    costs.calibrated = true;
+    costs.combine.submit_weight = submit_weight;
+    return costs;
+}
+
+/// A state folder of its own with a folder for fits.
+std::string state_for(const std::string& name) {
+    const std::string state = test::Forest::get().dir + "/" + name;
+    std::filesystem::create_directories(state + "/models");
+    return state;
+}
+
+const std::string& model_file() { return test::Forest::get().model_file; }
+
+TEST(ModelCosts, a_fit_is_found_by_model_and_table) {
+    const std::string state = state_for("found");
+    const model::CostModel machine = table(1), fit = table(2);
+    ASSERT_TRUE(measure::write_costs(model_costs_file(state, machine, 7), fit).ok());
+    const auto weight = [&](const model::CostModel& of, std::uint64_t model) {
+        auto costs = fitted_costs(state, of, model);
+        return costs ? costs->combine.submit_weight : -1;
+    };
+    EXPECT_EQ(weight(machine, 7), 2);
+    EXPECT_EQ(weight(machine, 8), 1);
+    EXPECT_EQ(weight(table(1.5F), 7), 1.5F);  // measured anew: the old fit is of another table
+    model::CostModel built_in = machine;
+    built_in.calibrated = false;
+    EXPECT_EQ(weight(built_in, 7), 1);
+}
+
+TEST(ModelCosts, a_damaged_fit_is_an_error) {
+    const std::string state = state_for("damaged");
+    const std::string fit = model_costs_file(state, table(1), 7);
+    ASSERT_TRUE(measure::write_costs(fit, table(2)).ok());
+    std::fstream(fit, std::ios::in | std::ios::out).seekp(200).put('#');
+    auto costs = fitted_costs(state, table(1), 7);
+    ASSERT_FALSE(costs.ok());
+    EXPECT_NE(costs.error().text().find(fit), std::string::npos);
+}
+
+TEST(ModelCosts, a_file_of_a_model_has_a_hash_of_its_own) {
+    model::WalkFileInfo written, read;
+    auto model = model::read_walk(model_file(), &read);
+    ASSERT_TRUE(model.ok());
+    const std::string other = test::Forest::get().dir + "/other.walk";
+    model->sun_direction = glm::normalize(dvec3(0, 1, 0.125));
+    ASSERT_TRUE(model::write_walk(other, *model).ok());
+    ASSERT_TRUE(model::read_walk(other, &written).ok());
+    EXPECT_NE(read.hash, 0U);
+    EXPECT_NE(read.hash, written.hash);
+}
+
+TEST(ModelCosts, a_fit_is_nearer_to_measured_frames_than_a_table_five_times_off) {
+    auto model = model::read_walk(model_file());
+    ASSERT_TRUE(model.ok());
+    auto path = choose_path("", model_file(), *model, 0);
+    ASSERT_TRUE(path.ok());
+    model::CostModel wrong = table(5);
+    wrong.combine.fixed_us *= 5;
+    wrong.combine.raster_weight *= 5;
+    ModelFitOptions options;
+    options.device.viewport = {320, 180};
+    options.poses = 60;
+    auto fit = fit_to_model(std::move(*model), path->path, wrong, options, {});
+    if (!fit && fit.error().text().find("libEGL") != std::string::npos) GTEST_SKIP() << fit.error().text();
+    ASSERT_TRUE(fit.ok()) << fit.error().text();
+    EXPECT_EQ(fit->frames, 60U);
+    EXPECT_LT(fit->after.p50, fit->before.p50);
+    EXPECT_GE(fit->costs.upper_factor, 1);
+    EXPECT_EQ(fit->costs.grids.size(), wrong.grids.size());
+}
+
+TEST(ModelCosts, stopping_a_fit_is_an_error) {
+    auto model = model::read_walk(model_file());
+    ASSERT_TRUE(model.ok());
+    const std::atomic<bool> stop{true};
+    auto fit = fit_to_model(std::move(*model), Path{{PathSample{}}}, table(1), {}, {{}, &stop});
+    ASSERT_FALSE(fit.ok());
+}
+
+}  // namespace
+}  // namespace surefoot::app

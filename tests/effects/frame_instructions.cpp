@@ -1,0 +1,120 @@
+// A program for callgrind: draws frames of one small scene on software GL, rasterised in this thread, and prints nothing else.
+// frame_instructions bare|plain|sun FRAMES: `plain` has no effects and Surefoot's programs; `bare` the same scene with a program
+// written here by hand, with nothing in it that an effect could have left behind; `sun` calls for an effect, to show that one costs.
+// Two runs of different FRAMES give the instructions of a frame: what is set up and compiled falls out of the difference.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/effects/effects.hpp"
+#include "tests/gl/small_models.hpp"
+
+namespace {
+
+using namespace surefoot;
+
+gl::ProgramSource bare_program(model::EffectMask) {
+    return {"#version 430 core\n"
+            "in vec3 position;\n"
+            "in vec4 world_rows[3];\n"
+            "in vec4 material_colour;\n"
+            "uniform mat4 view_projection;\n"
+            "flat out vec3 colour;\n"
+            "void main() {\n"
+            "    vec4 p = vec4(position, 1.0);\n"
+            "    colour = material_colour.rgb;\n"
+            "    gl_Position = view_projection * vec4(dot(world_rows[0], p), dot(world_rows[1], p), dot(world_rows[2], p), 1.0);\n"
+            "}\n",
+            "#version 430 core\n"
+            "flat in vec3 colour;\n"
+            "out vec4 pixel;\n"
+            "void main() { pixel = vec4(colour, 1.0); }\n"};
+}
+
+/// A ball of 2 x rings x sides triangles.
+void ball(std::vector<model::Vertex>& vertices, std::vector<std::uint32_t>& indices, int rings, int sides) {
+    for (int r = 0; r <= rings; ++r) {
+        for (int s = 0; s <= sides; ++s) {
+            const double down = M_PI * r / rings;
+            const double round = 2 * M_PI * s / sides;
+            const dvec3 n(std::sin(down) * std::cos(round), std::cos(down), std::sin(down) * std::sin(round));
+            model::Vertex v{};
+            for (int i = 0; i < 3; ++i) {
+                v.position[i] = static_cast<float>(n[i]);
+                v.normal[i] = static_cast<std::int8_t>(std::lround(127 * n[i]));
+            }
+            for (auto& byte : v.colour) byte = 255;
+            vertices.push_back(v);
+        }
+    }
+    const auto row = static_cast<std::uint32_t>(sides + 1);
+    for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(rings); ++r) {
+        for (std::uint32_t s = 0; s < static_cast<std::uint32_t>(sides); ++s) {
+            const std::uint32_t a = r * row + s;
+            for (const std::uint32_t i : {a, a + 1, a + row, a + 1, a + row + 1, a + row}) indices.push_back(i);
+        }
+    }
+}
+
+model::Model scene(model::EffectMask effects) {
+    test::SmallModel small;
+    std::vector<model::Vertex> vertices;
+    std::vector<std::uint32_t> indices;
+    ball(vertices, indices, 16, 24);
+    for (int i = 0; i < 48; ++i) {
+        const auto shade = static_cast<float>(i) / 48.0F;
+        const auto material = small.material(test::plain(shade, 1 - shade, 0.5F, 1, effects));
+        small.object(vertices, indices, material, test::at(-10.5 + 3 * (i % 8), -6 + 3 * ((i / 8) % 3), -12.0 - 3 * (i / 24)));
+    }
+    return small.finish();
+}
+
+int fail(const Error& error) {
+    std::fprintf(stderr, "%s\n", error.text().c_str());
+    return 1;
+}
+
+int run(std::string_view what, int frames) {
+    const model::Model model = scene(what == "sun" ? model::EffectMask{model::effect_sun} : model::EffectMask{0});
+    gl::DeviceOptions options;
+    options.kind = gl::BackendKind::egl;
+    options.viewport = {320, 200};
+    auto device = gl::open_device(options);
+    if (!device) return fail(device.error());
+    const gl::ProgramFactory programs = what == "bare" ? gl::ProgramFactory(bare_program) : effects::assemble_program;
+    if (auto loaded = (*device)->load(model, programs); !loaded) return fail(loaded.error());
+    (*device)->bind();
+    std::vector<gl::DrawItem> items;
+    for (model::Index i = 1; i < model.nodes.size(); ++i) items.push_back({i, model.nodes[i].first_rep});
+    Pose pose;
+    pose.fov_y_rad = 1.0;
+    for (int i = 0; i < frames; ++i) {
+        (*device)->begin_frame(pose);
+        (*device)->draw(items);
+        (*device)->end_slice();
+        (*device)->end_items();
+        (*device)->finish_frame();
+    }
+    auto image = (*device)->read_pixels();
+    if (!image) return fail(image.error());
+    std::uint64_t hash = 14695981039346656037U;
+    for (const std::uint8_t byte : image->rgba) hash = (hash ^ byte) * 1099511628211U;
+    std::printf("%016llx %llu\n", static_cast<unsigned long long>(hash),
+                static_cast<unsigned long long>((*device)->stats().triangles));
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::string_view what = argc == 3 ? argv[1] : "";
+    const int frames = argc == 3 ? std::atoi(argv[2]) : 0;
+    if ((what != "bare" && what != "plain" && what != "sun") || frames < 1) {
+        std::fprintf(stderr, "frame_instructions bare|plain|sun FRAMES\n");
+        return 2;
+    }
+    return run(what, frames);
+}

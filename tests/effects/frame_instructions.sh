@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# A scene without effects costs the bare pipeline's instructions (callgrind): at most 1 % more; a scene with one costs more.
+# usage: frame_instructions.sh PROGRAM   prints one JSON object; exit 77 (skipped) where valgrind is missing.
+set -euo pipefail
+program=$1
+command -v valgrind >/dev/null || { echo "skipped: valgrind is not installed"; exit 77; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export LP_NUM_THREADS=0 MESA_SHADER_CACHE_DISABLE=true
+
+counted() { # KIND FRAMES: instructions of the whole run; what it prints goes to $work/KIND.FRAMES
+  valgrind --tool=callgrind --callgrind-out-file=/dev/null "$program" "$1" "$2" >"$work/$1.$2" 2>"$work/log" ||
+    { cat "$work/log" >&2; return 1; }
+  sed -n 's/.*Collected : \([0-9]*\).*/\1/p' "$work/log"
+}
+few=2 many=12
+declare -A frame
+for kind in bare plain sun; do
+  a=$(counted "$kind" $few) b=$(counted "$kind" $many)
+  frame[$kind]=$(((b - a) / (many - few)))
+done
+picture() { cut -d' ' -f1 "$work/$1.$many"; }
+ratio() { awk "BEGIN { printf \"%.4f\", ${frame[$1]} / ${frame[bare]} }"; }
+printf '{"instructions_per_frame": {"bare": %d, "plain": %d, "sun": %d}, "plain_over_bare": %s, "sun_over_bare": %s}\n' \
+  "${frame[bare]}" "${frame[plain]}" "${frame[sun]}" "$(ratio plain)" "$(ratio sun)"
+[[ $(picture bare) == $(picture plain) ]] || { echo "the two programs draw different pictures" >&2; exit 1; }
+[[ $(picture sun) != $(picture plain) ]] || { echo "the sun changes nothing: the scene shows nothing" >&2; exit 1; }
+awk "BEGIN { exit !(${frame[plain]} <= 1.01 * ${frame[bare]}) }" || { echo "more than 1 % above the bare pipeline" >&2; exit 1; }
+awk "BEGIN { exit !(${frame[sun]} > 1.01 * ${frame[bare]}) }" || { echo "an effect costs nothing: this test cannot fail" >&2; exit 1; }

@@ -1,0 +1,80 @@
+// Fitting the frame's weights to a model (model_costs.hpp).
+#include "tools/app/model_costs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <vector>
+
+#include "render/measure/calibrate_fit.hpp"
+#include "rt/base/random.hpp"
+#include "tools/app/path_source.hpp"
+
+namespace surefoot::app {
+
+namespace {
+
+std::int64_t steady_ns(void* /*context*/) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Median of three submissions: a stolen slice of time is no property of the model.
+measure::FrameSample measured(Engine& engine, const Pose& pose) {
+    SubmitLimits limits;
+    limits.limit_us = 1e12;
+    limits.now_ns = steady_ns;
+    std::array<double, 3> us{};
+    SubmitReport report;
+    for (double& time : us) {
+        report = engine.submit(pose, limits);
+        time = report.finished_us;
+    }
+    std::sort(us.begin(), us.end());
+    return {static_cast<double>(report.predicted.submit_us), static_cast<double>(report.predicted.raster_us), us[1]};
+}
+
+FrameErrors errors_of(std::span<const measure::FrameSample> samples, const model::FrameCombine& combine) {
+    const auto at = [&](double q) { return measure::relative_error(samples, combine, q); };
+    return {at(0.5), at(0.9), at(0.99)};
+}
+
+}  // namespace
+
+Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
+                              const Progress& progress) {
+    const auto begun = steady_ns(nullptr);
+    EngineOptions engine_options;
+    engine_options.device = options.device;
+    engine_options.in_frame_check = false;  // whole cuts are timed
+    auto opened = Engine::open(std::move(model), table, engine_options);
+    if (!opened) return opened.error();
+    Engine& engine = **opened;
+    if (options.opened) options.opened();
+    engine.device().bind();
+    prepare::PreparedFrame prepared;
+    engine.reserve(prepared);
+    Random random(options.seed);
+    std::vector<measure::FrameSample> taught, held_out;
+    constexpr std::uint32_t warm_up = 10;
+    for (std::uint32_t i = 0; i < options.poses + warm_up; ++i) {
+        if (progress.stopped()) return Error{"calibration", "stopped: nothing was written", "run it again"};
+        const Pose pose = random_pose(path, random);
+        const double budget_us = random.range(0.1, 0.85) * options.frame_us;
+        engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);
+        engine.select(prepared, budget_us, 1.0, 0);
+        const measure::FrameSample sample = measured(engine, pose);
+        if (i >= warm_up) (i % 2 == 0 ? taught : held_out).push_back(sample);
+        progress.say("frames", static_cast<double>(i) / (options.poses + warm_up));
+    }
+    ModelFit fit;
+    fit.costs = table;
+    fit.costs.combine = measure::fit_combine(taught, table.combine);
+    fit.costs.upper_factor = static_cast<float>(std::max(1.0, measure::ratio(held_out, fit.costs.combine, 0.9)));
+    fit.before = errors_of(held_out, table.combine);
+    fit.after = errors_of(held_out, fit.costs.combine);
+    fit.frames = options.poses;
+    fit.seconds = static_cast<double>(steady_ns(nullptr) - begun) * 1e-9;
+    return fit;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,39 @@
+// What a machine's cost table says of one model, set right: how items add up to a frame, fitted to measured frames of it.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "render/engine.hpp"
+#include "rt/base/path.hpp"
+#include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::app {
+
+struct ModelFitOptions {
+    gl::DeviceOptions device;
+    double frame_us = 1e6 / 30;  ///< budgets are drawn from a tenth of it up to 85 %
+    std::uint32_t poses = 240;
+    std::uint64_t seed = 7;
+    std::function<void()> opened;  ///< called once, when the driver's threads exist: place them as a walk does
+};
+
+/// Relative errors of predicted whole frames, 0..1.
+struct FrameErrors {
+    double p50 = 0, p90 = 0, p99 = 0;
+};
+
+struct ModelFit {
+    model::CostModel costs;     ///< the table with `combine` and `upper_factor` of this model
+    FrameErrors before, after;  ///< on the half of the frames that taught nothing
+    std::uint32_t frames = 0;
+    double seconds = 0;
+};
+
+/// Draws random views near the path at random budgets; every other one teaches the weights, the rest judge them. The table
+/// itself stays: its cells are of single items, and what differs between models is how these overlap and what hides what.
+Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
+                              const Progress& progress);
+
+}  // namespace surefoot::app
