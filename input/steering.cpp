@@ -50,6 +50,11 @@ void Steering::detach(int device) {
     source.asked.has_dead_man = before.has_dead_man;
 }
 
+void Steering::ended(int device) {
+    if (device < 0 || static_cast<std::size_t>(device) >= max_devices) return;
+    sources_[static_cast<std::size_t>(device)].reporting = Reporting::streaming;
+}
+
 void Steering::report(int number, const DeviceState& state, std::int64_t now_ns) {
     const auto at = static_cast<std::size_t>(number);
     Source& source = sources_[at];

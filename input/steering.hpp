@@ -26,6 +26,9 @@ public:
     /// Unplugged, or its reader failed.
     void detach(int device);
 
+    /// No report will come any more though it is not unplugged (a recording's end): from now on silence means rest.
+    void ended(int device);
+
     /// One accepted report. Anything but `state.connected` false counts as the device being there.
     void report(int device, const DeviceState& state, std::int64_t now_ns);
     /// After a drain that read until nothing was left: how many reports it read, and whether some were lost on the way.

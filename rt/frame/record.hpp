@@ -45,6 +45,8 @@ struct FrameRecord {
     std::int64_t preempted_ns = 0;   ///< the same gap, where involuntary switches were seen
     std::int64_t waited_ns = 0;      ///< known waits: for the driver's rasterisers
     std::int64_t upload_ns = 0;
+    std::int64_t input_stamp_ns = 0;                   ///< of the newest report in this frame's pose; 0: none
+    std::uint64_t input_reports = 0;                   ///< in its pose, since the walk began
     std::uint32_t skipped_before = 0;                  ///< slots skipped just before this one
     std::uint32_t voluntary = 0, involuntary = 0;      ///< context switches in the frame
     std::uint32_t minor_faults = 0, major_faults = 0;  ///< in own code
@@ -60,6 +62,7 @@ struct FrameRecord {
     float accuracy = 0;  ///< rad^-1
     float benefit = 0;   ///< mean over items
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
+    bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man): no cause of a miss
     Cause cause = Cause::none;
     std::uint32_t block = 0;              ///< control blocks: number of the 2 s block
     std::array<double, 3> eye{};          ///< metres

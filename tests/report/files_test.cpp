@@ -49,6 +49,9 @@ std::size_t count_of(const std::string& text, std::string_view what) {
 TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     auto records = frames_with_a_miss();
     records[3].control = true;
+    records[1].input_stamp_ns = records[1].submitted_ns - 4'500'000;
+    records[1].input_reports = 17;
+    records[1].stopped = true;
     ASSERT_TRUE(write_ledger(in("l.csv"), records).ok());
     const auto lines = split(*read_text(in("l.csv")), '\n');
     ASSERT_EQ(lines.size(), records.size() + 1);
@@ -69,6 +72,9 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     EXPECT_EQ(miss["cause"], "raster");
     EXPECT_EQ(miss["missed"], "1");
     EXPECT_EQ(miss["triangles"], "5000");
+    EXPECT_EQ(miss["input_age_us"], "4500.000");
+    EXPECT_EQ(miss["input_reports"], "17");
+    EXPECT_EQ(miss["stopped"], "1");
     EXPECT_EQ(miss["cut_hash"], "0000000000001235");
     for (const auto& line : lines) EXPECT_EQ(split(line, ',').size(), names.size());
 }

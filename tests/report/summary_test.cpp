@@ -195,7 +195,8 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
               (Keys{"frames",      "slots",      "skipped",   "misses",         "own_misses",   "miss_causes",
                     "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age", "budget_ms",
                     "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
-                    "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated"}));
+                    "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated",
+                    "input"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
     EXPECT_EQ(keys_of(json["prepared_age"]), (Keys{"p50", "p99", "max"}));
@@ -260,6 +261,33 @@ TEST(Table, KeepsWithinAHundredColumnsAndColoursOnlyWhenAsked) {
         at = end + 1;
     }
     EXPECT_NE(table.find("forest.walk"), std::string::npos) << "the end of a long path must stay";
+}
+
+TEST(Input, IsNullForAPathAndAnObjectWithUnitsAndWordsForAVisitor) {
+    WalkSummary s;
+    summarize(frames_with_a_miss(), period_ns, s);
+    EXPECT_TRUE(nlohmann::json::parse(to_json(s))["input"].is_null());
+    EXPECT_EQ(to_table(s, false).find("\ninput"), std::string::npos);
+    s.input.given = true;
+    s.input.source = "pad.hid";
+    s.input.devices = {{"session \"pad\"", "navigation", "default: gamepad"}};
+    s.input.reports = 1234;
+    s.input.age_ms = quantiles({10, 20, 30.25});
+    const auto json = nlohmann::json::parse(to_json(s))["input"];
+    EXPECT_EQ(json["devices"], 1);
+    EXPECT_EQ(json["steered_by"][0]["mapping"], "default: gamepad");
+    EXPECT_EQ(json["reports"], 1234);
+    EXPECT_EQ(json["age_ms"]["p50"], 20);
+    EXPECT_EQ(json["age_ms"]["max"], 30.25);
+    EXPECT_EQ(json["stops"], 0);
+    EXPECT_NE(input_words(s.input).find("30.2 at most"), std::string::npos) << input_words(s.input);
+    EXPECT_EQ(input_words(s.input).find("stop"), std::string::npos);
+    s.input.stops = 2;
+    s.input.stopped_frames = 61;
+    s.input.stop_latched = true;
+    EXPECT_NE(input_words(s.input).find("2 emergency stops; stood still by order for 61 frames, and does to the end"),
+              std::string::npos)
+        << input_words(s.input);
 }
 
 }  // namespace

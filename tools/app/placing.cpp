@@ -70,6 +70,15 @@ rt::Placement frame_placement(const PlacingPlan& plan) {
     return placement;
 }
 
+rt::Placement input_placement(const PlacingPlan& plan) {
+    rt::Placement placement;
+    placement.policy = plan.fifo ? rt::Policy::fifo : rt::Policy::other;
+    placement.priority = plan.fifo ? (plan.frame_priority + plan.raster_priority) / 2 : 0;
+    placement.cpus = plan.all;
+    placement.name = "sf-input";
+    return placement;
+}
+
 std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_clock, const std::string& program_name) {
     const rt::Policy real_time = plan.fifo ? rt::Policy::fifo : rt::Policy::other;
     const auto priority = [&](int p) { return plan.fifo ? p : 0; };
@@ -90,6 +99,10 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
                      .priority = priority(plan.frame_priority),
                      .cpus = rt::CpuMask{plan.frame_core}});
     table.push_back({.name = "sf-monitor", .policy = rt::Policy::other, .cpus = plan.all});
+    if (real_clock && plan.input) {
+        const rt::Placement input = input_placement(plan);
+        table.push_back({.name = input.name, .policy = input.policy, .priority = input.priority, .cpus = input.cpus});
+    }
     if (real_clock) {
         table.push_back({.name = "sf-prepare",
                          .policy = real_time,

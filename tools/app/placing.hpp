@@ -17,6 +17,7 @@ struct PlacingPlan {
     int frame_core = 0;
     rt::CpuMask all;
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
+    bool input = false;                        ///< an input thread steers
     std::vector<std::string> driver_prefixes;  ///< the driver's rasterisers
     int rasterisers = 0;             ///< how many were found
 };
@@ -32,6 +33,9 @@ std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_
 /// Workers (threads named sf-prepare*): below the rasterisers, on every core.
 Result<void> place_workers(const PlacingPlan& plan);
 rt::Placement frame_placement(const PlacingPlan& plan);
+/// The input thread: between the frame thread and the rasterisers, so that drawing cannot delay a report; on every core, so
+/// that the frame thread does not either.
+rt::Placement input_placement(const PlacingPlan& plan);
 
 /// What the census compares with: every thread that a session may have.
 std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_clock, const std::string& program_name);

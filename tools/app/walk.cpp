@@ -17,6 +17,7 @@
 #include "rt/threads/guard.hpp"
 #include "rt/threads/memory.hpp"
 #include "tools/app/control_proof.hpp"
+#include "tools/app/input_session.hpp"
 #include "tools/app/outputs.hpp"
 #include "tools/app/path_source.hpp"
 #include "tools/app/placing.hpp"
@@ -41,6 +42,8 @@ struct Session {
     PlacingPlan plan;
     std::unique_ptr<Engine> engine;
     ChosenPath path;
+    std::unique_ptr<InputSession> input;  ///< null: the path is followed
+    std::vector<std::string> notes;
     rt::Grid grid;
     rt::LatePolicy late = rt::LatePolicy::lock;
     bool virtual_clock = false;
@@ -75,6 +78,17 @@ Result<void> read_request(Session& s) {
     s.virtual_clock = r.clock == "virtual";
     if (r.control && s.virtual_clock) return Error{"--control", "judges real time", "leave out --clock virtual"};
     if (r.strict && s.virtual_clock) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
+    if (!r.input_file.empty() && r.control)
+        return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
+    return {};
+}
+
+/// Read first of all: a wrong steering file is found before a large model is opened.
+Result<void> open_input(Session& s) {
+    if (s.request.input_file.empty()) return {};
+    auto input = InputSession::open(s.request, s.grid.period_ns, s.notes);
+    if (!input) return input.error();
+    s.input = std::move(*input);
     return {};
 }
 
@@ -84,6 +98,7 @@ Result<void> claim(Session& s) {
     auto plan = claim_real_time(r, !s.virtual_clock, s.facts);
     if (!plan) return plan.error();
     s.plan = *plan;
+    s.plan.input = s.input != nullptr;
     auto costs = load_costs(state_directory(r.state_dir), "", s.facts.uncalibrated);
     if (!costs) return costs.error();
     s.costs = std::move(*costs);
@@ -163,12 +178,16 @@ void warm_up(Session& s) {
 /// How many frames to walk; every one leaves a record in memory, so there is an end to them.
 Result<std::uint64_t> frames_wanted(const Session& s) {
     const double period_s = static_cast<double>(s.grid.period_ns) * 1e-9;
-    const double seconds = s.request.seconds > 0 ? s.request.seconds : std::max(s.path.path.duration_s(), 1.0);
+    const double own_s = s.input ? s.input->duration_s() : std::max(s.path.path.duration_s(), 1.0);
+    const double seconds = s.request.seconds > 0 ? s.request.seconds : own_s;
     const double frames = s.request.control      ? static_cast<double>(s.control.slots())
                           : s.request.frames > 0 ? static_cast<double>(s.request.frames)
                                                  : std::max(1.0, std::round(seconds / period_s));
     if (!(frames <= static_cast<double>(most_frames))) {
-        return Error{s.request.frames > 0 || s.request.seconds > 0 || s.request.control ? "walk" : s.path.source,
+        const bool asked = s.request.frames > 0 || s.request.seconds > 0 || s.request.control;
+        return Error{asked     ? "walk"
+                     : s.input ? s.request.input_file
+                               : s.path.source,
                      fmt::format("would take {:.4g} frames; at most {} are kept ({:.0f} hours at this rate)", frames, most_frames,
                                  static_cast<double>(most_frames) * period_s / 3600.0),
                      "give a smaller --frames or --seconds"};
@@ -196,6 +215,13 @@ WalkStagesOptions stages_options(const Session& s) {
     return o;
 }
 
+/// After the frames: what kept the input thread from its place must be said.
+void end_input(Session& s) {
+    if (!s.input) return;
+    if (const auto misplaced = s.input->end())
+        s.facts.degraded.push_back({misplaced->place + ": " + misplaced->what, misplaced->remedy});
+}
+
 /// The frame loop on its own thread; the caller's thread waits, and takes the census meanwhile.
 void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring, const Progress& progress) {
     rt::RealClock real;
@@ -218,7 +244,11 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     s.grid.t0_ns = options.t0_ns;
 
     std::unique_ptr<PrepareThread> preparing;
-    if (!s.virtual_clock) preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared);
+    PlaceBuffer* places = s.input ? s.input->places() : nullptr;
+    if (!s.virtual_clock) preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, places);
+    PathPoses path_poses(s.path.path, s.grid.period_ns);
+    if (s.input) s.input->begin(s.path.path, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
+    PoseSource& pose_source = s.input ? s.input->poses() : static_cast<PoseSource&>(path_poses);
     std::atomic<bool> done{false};
     std::thread frame_thread([&] {
         auto placed = s.virtual_clock
@@ -230,7 +260,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
             s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
         }
         rt::prefault_stack();
-        WalkStages stages(*s.engine, s.path.path, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
+        WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
         s.engine->device().bind();
         s.burn_ns = rt::run_frame_loop(options, clock, stages, ring).burn_ns;
         s.engine->device().release();
@@ -254,6 +284,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     }
     frame_thread.join();
     if (preparing) preparing->stop();
+    end_input(s);
 }
 
 }  // namespace
@@ -262,6 +293,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     Session s(request);
     if (auto ok = read_request(s); !ok) return ok.error();
     if (auto ok = check_outputs(request); !ok) return ok.error();
+    if (auto ok = open_input(s); !ok) return ok.error();
     if (auto ok = claim(s); !ok) return ok.error();
     if (auto ok = open_session(s, progress); !ok) return ok.error();
     s.control = rt::control_schedule(s.grid.period_ns, request.control_block_s, request.control_pairs);
@@ -276,6 +308,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     warm_up(s);
 
     WalkOutcome outcome;
+    outcome.notes = s.notes;
     // After memory is locked: what the store sets aside is locked with it, and touched.
     ShotStore shots = make_shot_store(request, s.frames, s.engine->drawn_capacity(), outcome.notes);
     rt::SpscRing<rt::FrameRecord> ring(4096);
@@ -292,6 +325,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     s.facts.dropped_records = ring.dropped();
     outcome.records = recorder.take_records();
     outcome.stopped = progress.stopped() && outcome.records.size() < s.frames;
+    if (s.input) outcome.summary.input = s.input->summary(outcome.records);
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
     if (request.control && !outcome.stopped) judge_control(s.plan, s.grid.period_ns, s.burn_ns, steal, outcome, progress);
     s.engine->device().bind();

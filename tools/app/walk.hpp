@@ -18,12 +18,14 @@ struct WalkRequest {
     std::string model_file;
     std::string config_file;  ///< where settings came from: not to be written over; may be empty
     std::string path_file;    ///< empty: beside the model, else a generated tour
+    std::string input_file;   ///< a recording that steers; empty: the path is followed
+    std::string steering_file;  ///< how it steers; empty: the default of the device's class
     std::string state_dir;    ///< empty: see state_directory()
     std::string selector = "two-stage", late = "lock", backend = "egl", clock = "real";
     double lift_m = 0;  ///< added to the path's heights
     double rate_hz = 30;
     std::uint32_t width = 1280, height = 720;
-    std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the path is long
+    std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else as the path is long
     double seconds = 0;
     double budget_ms = 0;   ///< 0: 0.80 of the frame
     double accuracy = 0;    ///< rad^-1; 0: as accurate as the budget allows
@@ -55,9 +57,9 @@ struct WalkOutcome {
     std::string report_page;         ///< the report's index.html, where asked for
 };
 
-/// Errors, all before the first frame: unreadable model or path, no context, --strict without real time, outputs that could not
-/// be written. What fails after the walk is in the outcome's failures.
-/// Stopping (progress.stop) ends the walk at the next frame; what was walked is summed up and written.
+/// Errors, all before the first frame: unreadable model, path, recording or steering file, no context, --strict without real
+/// time, outputs that could not be written. What fails after the walk is in the outcome's failures. Stopping (progress.stop) ends
+/// the walk at the next frame; what was walked is summed up and written.
 Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress);
 
 }  // namespace surefoot::app

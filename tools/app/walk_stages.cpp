@@ -1,8 +1,7 @@
-// The walk's frame: sample the path, take the newest prepared set, select, submit, account.
+// The walk's frame: take the newest pose, take the newest prepared set, select, submit, account.
 #include "tools/app/walk_stages.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "rt/threads/guard.hpp"
@@ -15,18 +14,11 @@ constexpr std::uint64_t oldest_prepared = 3;  // frames; older sets are not used
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
 }  // namespace
 
-Pose pose_at(const Path& path, double time_s) {
-    const double duration_s = path.duration_s();
-    if (duration_s <= 0) return sample_path(path, 0);
-    const double turn = std::fmod(time_s, 2.0 * duration_s);
-    return sample_path(path, turn <= duration_s ? turn : 2.0 * duration_s - turn);
-}
-
-WalkStages::WalkStages(Engine& engine, const Path& path, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
+WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
                        rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
                        const WalkStagesOptions& options)
     : engine_(engine),
-      path_(path),
+      pose_source_(pose_source),
       clock_(clock),
       poses_(poses),
       prepared_(prepared),
@@ -38,24 +30,48 @@ void WalkStages::sample(rt::FrameRecord& record) {
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
     // Beside a control the walk goes on where its last block ended: slots of the bare loop are no time of the path.
     path_slot_ = options_.control ? walked_ : record.slot;
-    const Pose pose = pose_at(path_, static_cast<double>(path_slot_) * period_s);
+    const FramePose newest = pose_source_.sample(frame_time(record));
     if (options_.virtual_clock) {
         if (!now_.valid) {
-            now_.pose = now_.before = pose;
+            now_.pose = now_.before = newest.pose;
+            now_.foresight = newest.foresight;
             now_.dt_s = period_s;
         }
-        prepare_inline();  // from what was known one frame ago, as the workers would
+        // From what was known one frame ago, as the workers would; where the eye is put elsewhere, the input has told them.
+        if (newest.jumped) {
+            now_.pose = now_.before = newest.pose;
+            now_.foresight = newest.foresight;
+        }
+        prepare_inline();
     }
-    now_.before = now_.valid ? now_.pose : pose;
+    now_.before = now_.valid && !newest.jumped ? now_.pose : newest.pose;
     now_.dt_s = period_s * (1.0 + (options_.control ? 0 : record.skipped_before));
-    now_.pose = pose;
+    now_.foresight = newest.foresight;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
     now_.valid = true;
+    take(newest, record);
     poses_.back() = now_;
     poses_.publish();
+}
+
+FrameTime WalkStages::frame_time(const rt::FrameRecord& record) const { return {path_slot_, record.due_ns, clock_.now_ns()}; }
+
+void WalkStages::take(const FramePose& from, rt::FrameRecord& record) {
+    const Pose& pose = now_.pose = from.pose;
     record.eye = {pose.position.x, pose.position.y, pose.position.z};
     record.orientation = {pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w};
+    record.input_stamp_ns = from.stamp_ns;
+    record.input_reports = from.reports;
+    record.stopped = from.stopped;
+}
+
+/// What came while the cut was chosen still counts, as far as the cut was made for it.
+void WalkStages::latch(rt::FrameRecord& record) {
+    const rt::OwnScope own;  // the submission around it is the driver's, this is not
+    FramePose newest;
+    if (!pose_source_.latch(frame_time(record), newest)) return;
+    if (coarse_ || covers(prepared_.front().region, newest.pose)) take(newest, record);
 }
 
 void WalkStages::prepare_inline() {
@@ -110,6 +126,7 @@ void WalkStages::keep(std::uint64_t frame, const select::Cut& cut, double budget
 }
 
 void WalkStages::submit(rt::FrameRecord& record) {
+    latch(record);
     SubmitLimits limits;
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;

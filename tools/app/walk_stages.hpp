@@ -1,4 +1,4 @@
-// The walk's frame: sample the path, take the newest prepared set, select, submit, account. Runs on the frame thread.
+// The walk's frame: take the newest pose, take the newest prepared set, select, submit, account. Runs on the frame thread.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,11 @@
 
 #include "render/capture/capture.hpp"
 #include "render/engine.hpp"
-#include "rt/base/path.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/exchange/triple_buffer.hpp"
 #include "rt/frame/controller.hpp"
 #include "rt/frame/loop.hpp"
+#include "tools/app/pose_source.hpp"
 #include "tools/app/prepare_thread.hpp"
 #include "tools/app/shots.hpp"
 
@@ -38,13 +38,10 @@ struct KeptFrame {
     double budget_us = 0, correction = 1, target_error_rad = 0;
 };
 
-/// The pose at a slot: the path forth and back again for as long as the walk lasts (a jump back would be a teleport).
-Pose pose_at(const Path& path, double time_s);
-
 class WalkStages final : public rt::FrameStages {
 public:
     /// `clock` is the loop's; virtual_clock: a rt::VirtualClock. Everything must outlive this.
-    WalkStages(Engine& engine, const Path& path, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
+    WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
                rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
                const WalkStagesOptions& options);
 
@@ -56,11 +53,14 @@ public:
 
 private:
     void prepare_inline();
+    void take(const FramePose& from, rt::FrameRecord& record);
+    void latch(rt::FrameRecord& record);
+    [[nodiscard]] FrameTime frame_time(const rt::FrameRecord& record) const;
     void keep_memory();
     void keep(std::uint64_t frame, const select::Cut& cut, double budget_us);
 
     Engine& engine_;
-    const Path& path_;
+    PoseSource& pose_source_;
     rt::Clock& clock_;
     rt::TripleBuffer<PoseSample>& poses_;
     rt::TripleBuffer<prepare::PreparedFrame>& prepared_;

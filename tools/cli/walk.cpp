@@ -41,6 +41,12 @@ Result<void> check_together(const app::WalkRequest& r, bool every_given, bool ca
     const bool is_virtual = r.clock == "virtual";
     if (r.control && is_virtual) return Error{"--control", "judges real time", "leave out --clock virtual"};
     if (r.strict && is_virtual) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
+    if (!r.steering_file.empty() && r.input_file.empty()) {
+        return Error{"--steering", "says how a device steers, and none does: the path is followed",
+                     "add --input REC, a recording of the device"};
+    }
+    if (r.control && !r.input_file.empty())
+        return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
     if (every_given && r.snap_dir.empty())
         return Error{"--every", "says how often pictures are taken, and none are", "add --snap DIR"};
     if (capture_frame_given && r.capture_file.empty())
@@ -151,15 +157,24 @@ void add_walk(CLI::App& app, Context& context) {
     CLI::App* c =
         add_command(app, "walk", "Walk through a model in real time, and show the figures",
                     "surefoot walk town.walk --seconds 30 --report report\n"
+                    "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
                     "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
                     "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
                     a->json);
     c->add_option("model", r.model_file, "The .walk model")->required();
-    c->add_option("--path", r.path_file, "Poses over time, CSV (else MODEL.path.csv, else a tour)");
+    c->add_option("--path", r.path_file,
+                  "Poses over time, CSV (else MODEL.path.csv, else a tour). With --input it is not followed: "
+                  "its first pose is the start, poses at equal times are the viewpoints, and `tour` follows it");
+    c->add_option(
+        "--input", r.input_file,
+        "A device's reports in hid-recorder's text format: they steer, each in its recorded time, in place of the path. "
+        "Ends a second after the last report, or with --seconds or --frames. Check it with `surefoot devices describe`");
+    c->add_option("--steering", r.steering_file,
+                  "How --input steers, TOML: [motion], [safety], [[device]] (else the default of the device's class)");
     c->add_option("--lift", r.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")
         ->check(number_within(-1e7, 1e7, "m"))
         ->capture_default_str();
-    c->add_option("--frames", r.frames, "Frames to walk (else --seconds, else the path once)")
+    c->add_option("--frames", r.frames, "Frames to walk (else --seconds, else the recording and a second, else the path once)")
         ->check(whole_number_within(1, 4'000'000));
     c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")
         ->check(number_within(0.001, 1e6, "s"));

@@ -56,6 +56,33 @@ Json threads_of(const std::vector<ThreadRow>& threads) {
     return rows;
 }
 
+/// Null where a path was followed.
+Json input_of(const InputSummary& in) {
+    if (!in.given) return nullptr;
+    Json devices = Json::array();
+    for (const InputSummary::Device& d : in.devices)
+        devices.push_back({{"name", d.name}, {"class", d.device_class}, {"mapping", d.mapping}});
+    return {
+        {"source", in.source},
+        {"devices", in.devices.size()},
+        {"steered_by", devices},
+        {"reports", in.reports},
+        {"reports_shown", in.reports_shown},
+        {"refused", in.refused},
+        {"age_ms", {{"p50", rounded(in.age_ms.p50)}, {"p99", rounded(in.age_ms.p99)}, {"max", rounded(in.age_ms.max)}}},
+        {"stops", in.stops},
+        {"stopped_frames", in.stopped_frames},
+        {"stop_latched", in.stop_latched},
+        {"silences", in.silences},
+        {"overflows", in.overflows},
+        {"losses", in.losses},
+        {"presses", {{"next_viewpoint", in.next_viewpoint}, {"reset", in.reset}, {"tour", in.tour}, {"pause", in.pause}}},
+        {"jumps", in.jumps},
+        {"filter_lag_ms", rounded(in.filter_lag_ms)},
+        {"guard_violations", in.guard_violations},
+    };
+}
+
 }  // namespace
 
 std::string to_json(const WalkSummary& s) {
@@ -95,6 +122,7 @@ std::string to_json(const WalkSummary& s) {
         {"threads", threads_of(s.threads)},
         {"calibrated", s.uncalibrated.empty()},
         {"control", control_of(s.control)},
+        {"input", input_of(s.input)},
     };
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -28,7 +28,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 std::string_view cause_of(const FrameRecord& f) { return rt::cause_names[static_cast<std::size_t>(f.cause)]; }
 
 // clang-format off
-constexpr std::array<Column, 56> columns = {{
+constexpr std::array<Column, 59> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -76,6 +76,9 @@ constexpr std::array<Column, 56> columns = {{
     {"floor_binds", [](auto& r, auto& f) { add(r, "{:d}", f.floor_binds); }},
     {"control", [](auto& r, auto& f) { add(r, "{:d}", f.control); }},
     {"block", [](auto& r, auto& f) { add(r, "{}", f.block); }},
+    {"input_age_us", [](auto& r, auto& f) { if (f.input_stamp_ns > 0) add(r, "{:.3f}", us_between(f.input_stamp_ns, f.submitted_ns)); }},
+    {"input_reports", [](auto& r, auto& f) { add(r, "{}", f.input_reports); }},
+    {"stopped", [](auto& r, auto& f) { add(r, "{:d}", f.stopped); }},
     {"cut_hash", [](auto& r, auto& f) { add(r, "{:016x}", f.cut_hash); }},
     {"snapped", [](auto& r, auto& f) { add(r, "{:d}", f.snapped); }},
     {"x", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[0]); }},

@@ -83,7 +83,8 @@ std::string page_header(const WalkSummary& s) {
     std::string out =
         fmt::format("<header>\n<p class=\"brand\"><b>Surefoot</b> walk report</p>\n{}\n<h1>{}</h1>\n<p class=\"lead\"><b>{}</b>",
                     badge(s), escaped(headline(s)), file_name(s.model));
-    if (!s.path.empty()) out += fmt::format(" along <b>{}</b>", file_name(s.path));
+    if (!s.path.empty()) out += fmt::format(" {} <b>{}</b>", s.input.given ? "from the start of" : "along", file_name(s.path));
+    if (s.input.given) out += fmt::format(", steered by <b>{}</b>", file_name(s.input.source));
     out += fmt::format(" for {:.0f} seconds at {:.4g} Hz and {}×{} pixels, chosen by <b>{}</b>, drawn by {}.", s.seconds,
                        s.rate_hz, s.width, s.height, escaped(s.selector), escaped(s.renderer.empty() ? s.backend : s.renderer));
     if (s.model_triangles > 0)
@@ -151,12 +152,15 @@ std::string figures_table(const WalkSummary& s) {
            row_of("Raster, ms", s.raster_ms, 1, 2) + row_of("Prepare (workers' CPU), µs", s.prepare_cpu_us, 1, 0) +
            row_of("Age of prepared arrays, frames", s.prepared_age, 1, 0) + row_of("Nodes visited to prepare", s.visits, 1, 0) +
            row_of("Error of predicted cost, %", s.cost_error, 100, 1);
+    if (s.input.given) out += row_of("Report to submitted frame, ms", s.input.age_ms, 1, 1);
     out += "</table></div>\n";
     out += fmt::format(
         "<p class=\"sub\">{:.2f} switches a frame · {} slices drawn coarser than chosen · the floor was bound in {} frames · cut "
         "hash <code>{}</code></p>\n",
         s.switches_per_frame, grouped(static_cast<double>(s.downgrades)), grouped(static_cast<double>(s.floor_bound_frames)),
         escaped(s.cut_hash));
+    if (s.input.given)
+        out += fmt::format("<p class=\"sub\">Steered by {}: {}</p>\n", escaped(s.input.source), escaped(input_words(s.input)));
     return out;
 }
 

@@ -45,6 +45,28 @@ struct ThreadRow {
     std::string cores;
 };
 
+/// What steered the walk, and how soon its reports were seen.
+struct InputSummary {
+    bool given = false;  ///< false: a path was followed
+    std::string source;  ///< the recording
+    struct Device {
+        std::string name, device_class, mapping;
+    };
+    std::vector<Device> devices;
+    std::uint64_t reports = 0;         ///< accepted
+    std::uint64_t reports_shown = 0;   ///< of them, those that some frame's pose holds; the others came after the last frame
+    std::uint64_t refused = 0;         ///< short, long, undeclared: they changed nothing
+    Quantiles age_ms;                  ///< a report's, from its stamp until the first frame that holds it was submitted
+    std::uint64_t stops = 0;           ///< emergency stops
+    std::uint64_t stopped_frames = 0;  ///< that stood still by order: emergency stop or dead-man
+    bool stop_latched = false;         ///< at the end
+    std::uint64_t silences = 0, overflows = 0, losses = 0;
+    std::uint64_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0;  ///< presses
+    std::uint64_t jumps = 0;                                           ///< placings elsewhere
+    double filter_lag_ms = 0;                                          ///< at most, of mapping and filter
+    std::uint64_t guard_violations = 0;                                ///< of the input thread
+};
+
 /// All that `walk --json` prints (DESIGN 6), computed once from the records.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
@@ -67,6 +89,7 @@ struct WalkSummary {
     std::string uncalibrated;        ///< the cost table is missing: what, and the remedy
     std::vector<Degraded> degraded;  ///< what is not real-time here, and how to grant it
     ControlSummary control;
+    InputSummary input;
 };
 
 /// Pure: percentiles and sums over the records (control blocks' bare frames excluded from the walk's figures).

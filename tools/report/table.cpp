@@ -134,7 +134,10 @@ std::string to_table(const WalkSummary& s, bool colour) {
     Table table(colour);
     const Verdict verdict = verdict_of(s);
     table.row("walk", headline(s), verdict == Verdict::good ? "1;32" : verdict == Verdict::warn ? "1;33" : "1;31");
-    table.row("model", s.path.empty() ? s.model : fmt::format("{} along {}", s.model, s.path));
+    table.row("model", s.path.empty()  ? s.model
+                       : s.input.given ? fmt::format("{} steered by {}, from the start of {}", s.model, s.input.source, s.path)
+                                       : fmt::format("{} along {}", s.model, s.path));
+    if (s.input.given) table.row("input", input_words(s.input), s.input.stopped_frames > 0 ? "33" : "");
     table.row("drawn", fmt::format("{}x{} at {:.4g} Hz by {} on {} ({}), late: {}, clock: {}", s.width, s.height, s.rate_hz,
                                    s.selector, s.backend, s.renderer, s.late_policy, s.clock));
     table.raw("");

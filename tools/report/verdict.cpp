@@ -59,6 +59,21 @@ std::string control_words(const ControlSummary& c) {
     return text + (v.enough_pairs ? " The deadline rule is not judged." : " Too few pairs to judge the deadline rule.");
 }
 
+std::string input_words(const InputSummary& in) {
+    if (!in.given) return {};
+    std::string text = counted(in.reports, "report", "reports");
+    for (const InputSummary::Device& d : in.devices)
+        text += fmt::format(" of {} ({})", d.name.empty() ? "a " + d.device_class + " device" : d.name, d.mapping);
+    if (in.refused > 0) text += fmt::format(", {} refused", grouped(static_cast<double>(in.refused)));
+    text += fmt::format("; from report to submitted frame {:.1f} ms (p50), {:.1f} (p99), {:.1f} at most", in.age_ms.p50,
+                        in.age_ms.p99, in.age_ms.max);
+    if (in.stops > 0) text += fmt::format("; {}", counted(in.stops, "emergency stop", "emergency stops"));
+    if (in.stopped_frames > 0)
+        text += fmt::format("; stood still by order for {}", counted(in.stopped_frames, "frame", "frames"));
+    if (in.stop_latched) text += ", and does to the end: the stop is latched";
+    return text + ".";
+}
+
 std::string threads_words(std::span<const ThreadRow> threads) {
     std::string text;
     for (const ThreadRow& t : threads) {

@@ -18,6 +18,8 @@ bool rule_broken(const ControlSummary& control);
 std::string headline(const WalkSummary& summary);
 /// The control's part of the rule in words; empty where no control ran.
 std::string control_words(const ControlSummary& control);
+/// What steered, how soon it was seen, and whether it stood still by order; empty where a path was followed.
+std::string input_words(const InputSummary& input);
 /// "sf-frame fifo 80 on 1; 2 llvmpipe- fifo 70 on 0-1".
 std::string threads_words(std::span<const ThreadRow> threads);
 /// The largest angular error of an accuracy: "0.24°", "3.1′"; "exact" where no error was drawn.

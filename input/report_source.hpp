@@ -1,0 +1,65 @@
+// Where reports come from: a recording, or live devices. The seam under the input thread; steering.hpp is what it feeds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "input/safety/safety.hpp"
+#include "rt/clock/clock.hpp"
+
+namespace surefoot::input {
+
+class Steering;
+
+constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
+
+/// The stamp of every accepted report, in the order of reading, so that latencies can be told report by report afterwards.
+/// Reserved before the thread starts; what does not fit is counted and not kept.
+class StampLog {
+public:
+    void reserve(std::size_t reports) { stamps_.reserve(reports); }
+    void add(std::int64_t stamp_ns) {
+        ++count_;
+        if (stamps_.size() < stamps_.capacity()) stamps_.push_back(stamp_ns);
+    }
+    [[nodiscard]] std::span<const std::int64_t> stamps() const { return stamps_; }
+    [[nodiscard]] std::uint64_t count() const { return count_; }
+
+private:
+    std::vector<std::int64_t> stamps_;
+    std::uint64_t count_ = 0;
+};
+
+/// One device that steers, in words.
+struct SteeringDevice {
+    std::string name, device_class, mapping;
+};
+
+/// One thread calls all of it but begin(). drain() and wait() neither allocate nor lock while no device comes or goes; a source
+/// whose devices do come and go opens and describes them on a thread of its own and hands them over complete.
+class ReportSource {
+public:
+    virtual ~ReportSource() = default;
+
+    /// The walk's time begins. Attaches the devices that are there. Before the input thread starts; may allocate.
+    virtual void begin(Steering& steering, std::int64_t start_ns) = 0;
+    /// When the next report comes, where that is known beforehand (a recording); else never_ns.
+    [[nodiscard]] virtual std::int64_t next_ns() const = 0;
+    /// Sleeps until something can be read, or until `until_ns`, whichever is first.
+    virtual void wait(rt::Clock& clock, std::int64_t until_ns) = 0;
+    /// Reads until nothing is left: Steering::report() for each, then drained(); attach() and detach() for what came and went.
+    /// Returns the wired switches as they are.
+    virtual Lines drain(Steering& steering, std::int64_t now_ns) = 0;
+
+    [[nodiscard]] virtual const StampLog& log() const = 0;
+    /// Short, long and undeclared reports: they changed nothing.
+    [[nodiscard]] virtual std::uint64_t refused() const = 0;
+    /// Devices that were there at any time.
+    [[nodiscard]] virtual std::vector<SteeringDevice> devices() const = 0;
+};
+
+}  // namespace surefoot::input

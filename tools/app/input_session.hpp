@@ -1,0 +1,66 @@
+// What steers a walk: opened and checked at the start, wired to its thread, and summed up at the end.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "input/map/steering_file.hpp"
+#include "input/report_source.hpp"
+#include "rt/frame/record.hpp"
+#include "tools/app/input_stepper.hpp"
+#include "tools/app/input_thread.hpp"
+#include "tools/app/steered_poses.hpp"
+#include "tools/app/walk.hpp"
+#include "tools/report/report.hpp"
+
+namespace surefoot::app {
+
+/// How long a walk goes on after its recording has ended: the visitor comes to rest, and is seen to.
+constexpr double after_recording_s = 1.0;
+
+/// The source is a recording today. Live devices plug in here: another ReportSource, and nothing else changes.
+class InputSession {
+public:
+    /// Reads the steering file and the recording; errors name file and line. `notes`: what else the user should know.
+    static Result<std::unique_ptr<InputSession>> open(const WalkRequest& request, std::int64_t period_ns,
+                                                      std::vector<std::string>& notes);
+
+    /// Of the walk that this input is for; 0: no end of its own.
+    [[nodiscard]] double duration_s() const { return duration_s_; }
+
+    /// The walk's time begins at start_ns, at the start of `path`, which must outlive this. real_clock: starts the thread.
+    void begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement);
+    /// For the frame thread; after begin().
+    [[nodiscard]] PoseSource& poses() { return *poses_; }
+    /// For the preparation: where buttons put the eye.
+    [[nodiscard]] PlaceBuffer* places() { return &places_; }
+    /// The thread ends. What kept it from its place, if anything did.
+    std::optional<Error> end();
+
+    /// After end().
+    [[nodiscard]] report::InputSummary summary(std::span<const rt::FrameRecord> records) const;
+
+private:
+    InputSession() = default;
+
+    std::string source_name_;
+    double duration_s_ = 0;
+    std::int64_t period_ns_ = 0;
+    input::MotionLimits motion_;
+    std::unique_ptr<input::ReportSource> source_;
+    std::unique_ptr<input::Steering> steering_;
+    rt::TripleBuffer<SteeredSample> samples_;
+    PlaceBuffer places_;
+    std::unique_ptr<Visit> visit_;
+    std::unique_ptr<InputStepper> stepper_;
+    std::unique_ptr<SteeredPoses> poses_;
+    std::unique_ptr<InputThread> thread_;
+    std::uint64_t guard_violations_ = 0;
+};
+
+/// Pure: of every report that a frame's pose holds, from its stamp until the first such frame was submitted; ms. stamps[i] is the
+/// (i+1)th report's. Reports that no frame holds (they came after the last one) are not in it.
+std::vector<double> report_ages_ms(std::span<const rt::FrameRecord> records, std::span<const std::int64_t> stamps_ns);
+
+}  // namespace surefoot::app
