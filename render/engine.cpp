@@ -75,7 +75,8 @@ struct Engine::Impl {
     std::vector<gl::DrawItem> coarse;
     bool use_coarse = false;
     const prepare::PreparedFrame* prepared = nullptr;
-    double correction = 1;
+    Correction correction;
+    double upper_factor = 1;  ///< that the last select() spent
 
     double now_us(const SubmitLimits& limits) const {
         return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
@@ -144,13 +145,15 @@ Result<void> Engine::set_selector(std::string_view name) {
 
 void Engine::set_in_frame_check(bool on) { impl_->options.in_frame_check = on; }
 
-const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double budget_us, double correction,
+const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction,
                                   double target_error_rad) {
     Impl& e = *impl_;
     e.use_coarse = false;
     e.prepared = &prepared;
     e.correction = correction;
-    const select::SelectInput input{&e.model, &prepared, &e.costs, budget_us, correction, target_error_rad, e.options.slice_us};
+    const select::SelectInput input{&e.model,         &prepared,          &e.costs,        budget_us, correction.factor,
+                                    target_error_rad, e.options.slice_us, correction.upper};
+    e.upper_factor = select::upper_factor_of(input);
     e.selector->run(input, e.state, e.cut);
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
     return e.cut;
@@ -203,13 +206,13 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         rest_stand_in.submit_us -= slice.stand_in_cost.submit_us + costs.slice_us;
         rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
         if (full && options.in_frame_check) {
-            const double upper = correction * costs.upper_factor;
+            const double upper = correction.factor * upper_factor;
             select::CheckInput check;
-            check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + in_flight_us * correction;
-            check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction;
+            check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + in_flight_us * correction.factor;
+            check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction.factor;
             check.next_us = with(slice.cost) * upper;
             check.next_stand_in_us = with(slice.stand_in_cost) * upper;
-            check.rest_stand_in_us = with(rest_stand_in) * correction;  // a sum of many: its own spread is small
+            check.rest_stand_in_us = with(rest_stand_in) * correction.factor;  // a sum of many: its own spread is small
             check.limit_us = limits.limit_us;
             full = select::still_fits(check);
         }

@@ -39,6 +39,12 @@ struct SubmitLimits {
     void* now_context = nullptr;
 };
 
+/// What recent frames say of the predictions: actual over predicted, at the median and, from there, at the upper quantile.
+struct Correction {
+    double factor = 1;
+    double upper = 0;  ///< 0: the cost table's
+};
+
 /// What the submission did. Times in us from the call.
 struct SubmitReport {
     double submitted_us = 0;        ///< last slice handed to the driver
@@ -75,8 +81,9 @@ public:
     /// Turns the in-frame check off or on: off where whole cuts are to be timed.
     void set_in_frame_check(bool on);
 
-    /// budget_us: of the whole frame; correction: online factor on predictions; target_error_rad 0: as far as the budget goes.
-    const select::Cut& select(const prepare::PreparedFrame& prepared, double budget_us, double correction, double target_error_rad);
+    /// budget_us: of the whole frame; target_error_rad 0: as far as the budget goes.
+    const select::Cut& select(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction,
+                              double target_error_rad);
     /// What the selector remembers between frames; copied before a select() that is to be captured.
     [[nodiscard]] const select::SelectState& selection_memory() const;
     /// Draws the cut of the last select(), or the coarse levels of the last select_coarse().

@@ -24,7 +24,7 @@ Capture take(const select::SelectInput& input, std::string_view selector, float 
     c.target_error_rad = input.target_error_rad;
     c.slice_us = input.slice_us;
     c.combine = input.costs->combine;
-    c.upper_factor = input.costs->upper_factor;
+    c.upper_factor = static_cast<float>(select::upper_factor_of(input));
     c.slice_end_us = input.costs->slice_us;
     c.hysteresis = hysteresis;
     c.node_count = static_cast<std::uint32_t>(input.model->nodes.size());

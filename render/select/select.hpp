@@ -48,7 +48,12 @@ struct SelectInput {
     double correction = 1;        ///< online factor on predictions
     double target_error_rad = 0;  ///< stop refining below it (0: refine as far as the budget goes)
     double slice_us = 1000;       ///< predicted length of a slice: what ending the slices costs is in the prediction
+    double upper_factor = 0;      ///< from a corrected prediction to the upper quantile that the budget spends; 0: the table's
 };
+
+inline double upper_factor_of(const SelectInput& input) {
+    return input.upper_factor > 0 ? input.upper_factor : static_cast<double>(input.costs->upper_factor);
+}
 
 /// Kept by the frame thread between frames, sized once: what was shown, for hysteresis and switches; room for the searches.
 struct SelectState {

@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
     for (int i = 0; i < poses; ++i) {
         const Pose pose = sample_path(path->path, path->path.duration_s() * (i + 0.5) / poses);
         e.prepare({pose, 0, 0}, 0, 0, 0, prepared);
-        e.select(prepared, std::numeric_limits<double>::infinity(), 1.0, 0);
+        e.select(prepared, std::numeric_limits<double>::infinity(), {}, 0);
         cut_triangles += e.submit(pose, limits).triangles;
         auto cut = e.device().read_pixels();
         if (!cut) return fail(cut.error());

@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
         const Pose pose = app::random_pose(path->path, random);
         const double budget_us = random.range(3000, 28000);
         (*engine)->prepare({pose, 0, 0}, 0, 0, 0, prepared);
-        (*engine)->select(prepared, budget_us, 1.0, 0);
+        (*engine)->select(prepared, budget_us, {}, 0);
         std::vector<double> times;
         double predicted = 0;
         for (int r = 0; r < 3; ++r) {

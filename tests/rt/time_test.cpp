@@ -117,6 +117,28 @@ TEST(Loop, ControlBlocksAlternateAndTheBareLoopBurnsTheSame) {
     EXPECT_EQ(bare, 20);
 }
 
+TEST(Controller, SpendsTheTablesUpperFactorUntilFramesSayBetter) {
+    CostController c;
+    EXPECT_EQ(c.upper(1.4), 1.4);
+    for (int i = 0; i < 57; ++i) c.update(100, 101);
+    EXPECT_EQ(c.upper(1.4), 1.4);  // six of 64 are still unknown
+    for (int i = 0; i < 200; ++i) c.update(100, 101);
+    EXPECT_EQ(c.upper(1.4), CostController::least_upper);
+    EXPECT_EQ(c.upper(1.02), 1.02);  // never above the table's
+    EXPECT_EQ(c.upper(0.5), 1);
+}
+
+TEST(Controller, UpperIsTheNinetiethPercentileOfRecentFrames) {
+    CostController c;
+    for (int i = 0; i < 1000; ++i) c.update(100, i % 5 == 0 ? 125 : 100);  // a fifth of the frames cost a quarter more
+    EXPECT_EQ(c.factor(), 1);
+    EXPECT_EQ(c.upper(1.4), 1.25);
+    for (int i = 0; i < 1000; ++i) c.update(100, i % 20 == 0 ? 190 : 100);  // a twentieth is outliers
+    EXPECT_EQ(c.upper(1.4), CostController::least_upper);
+    for (int i = 0; i < 7; ++i) c.update(100, 150);  // rises as soon as a tenth of the window says so
+    EXPECT_GT(c.upper(2), 1.4);
+}
+
 TEST(Controller, MeetsADoubledCostAndIsDeafToOutliers) {
     CostController c;
     for (int i = 0; i < 40; ++i) c.update(100, 200);

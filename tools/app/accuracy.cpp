@@ -74,7 +74,7 @@ Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double
     limits.limit_us = 1e12;
     const auto n = static_cast<double>(stations.size());
     for (const Station& station : stations) {
-        const select::Cut& cut = engine.select(station.prepared, budget_us, 1.0, target_error_rad);
+        const select::Cut& cut = engine.select(station.prepared, budget_us, {}, target_error_rad);
         if (cut.worst_error_rad > 0) {
             accuracy += 1.0 / cut.worst_error_rad;
         } else {

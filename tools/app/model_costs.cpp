@@ -61,7 +61,7 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
         const Pose pose = random_pose(path, random);
         const double budget_us = random.range(0.1, 0.85) * options.frame_us;
         engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);
-        engine.select(prepared, budget_us, 1.0, 0);
+        engine.select(prepared, budget_us, {}, 0);
         const measure::FrameSample sample = measured(engine, pose);
         if (i >= warm_up) (i % 2 == 0 ? taught : held_out).push_back(sample);
         progress.say("frames", static_cast<double>(i) / (options.poses + warm_up));

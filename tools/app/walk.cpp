@@ -164,7 +164,7 @@ void warm_up(Session& s) {
         const Pose pose = pose_at(s.path.path, i * s.path.path.duration_s() / 12.0);
         prepare::PreparedFrame& set = s.prepared.slot(0);
         engine.prepare({pose, 0.1, 0.05}, 0, 0, 0, set);
-        engine.select(set, budget_share * period_us, 1.0, 0);
+        engine.select(set, budget_share * period_us, {}, 0);
         engine.submit(pose, limits);
         engine.select_coarse();
         engine.submit(pose, limits);

@@ -95,7 +95,10 @@ void WalkStages::select(rt::FrameRecord& record) {
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
     const double budget_us = std::max(0.0, options_.budget_us - spent_us);
     if (record.frame == options_.capture_frame) keep_memory();
-    const select::Cut& cut = engine_.select(set, budget_us, record.correction, options_.target_error_rad);
+    const Correction correction = options_.correct_costs
+                                      ? Correction{controller_.factor(), controller_.upper(engine_.costs().upper_factor)}
+                                      : Correction{};
+    const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
     record.floor_us = cut.floor_us;
     record.floor_binds = cut.floor_binds;
     record.switches = cut.switches;
@@ -103,7 +106,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.visits = set.visits;
     record.candidates = static_cast<std::uint32_t>(set.candidates.size());
     record.prepare_cpu_us = static_cast<float>(set.cpu_us);
-    if (record.frame == options_.capture_frame) keep(record.frame, cut, budget_us);
+    if (record.frame == options_.capture_frame) keep(record.frame, cut, budget_us, correction);
 }
 
 void WalkStages::keep_memory() {
@@ -114,13 +117,13 @@ void WalkStages::keep_memory() {
     }
 }
 
-void WalkStages::keep(std::uint64_t frame, const select::Cut& cut, double budget_us) {
+void WalkStages::keep(std::uint64_t frame, const select::Cut& cut, double budget_us, const Correction& correction) {
     const prepare::PreparedFrame& set = prepared_.front();
     kept_.frame = frame;
     kept_.prepared = set;  // into vectors that were reserved: no allocation
     kept_.cut = cut;
     kept_.budget_us = budget_us;
-    kept_.correction = options_.correct_costs ? controller_.factor() : 1.0;
+    kept_.correction = correction;
     kept_.target_error_rad = options_.target_error_rad;
     kept_.kept = true;
 }

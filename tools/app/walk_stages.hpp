@@ -35,7 +35,8 @@ struct KeptFrame {
     prepare::PreparedFrame prepared;
     select::Cut cut;
     std::vector<capture::Memory> memory;  ///< before the selection
-    double budget_us = 0, correction = 1, target_error_rad = 0;
+    double budget_us = 0, target_error_rad = 0;
+    Correction correction;
 };
 
 class WalkStages final : public rt::FrameStages {
@@ -57,7 +58,7 @@ private:
     void latch(rt::FrameRecord& record);
     [[nodiscard]] FrameTime frame_time(const rt::FrameRecord& record) const;
     void keep_memory();
-    void keep(std::uint64_t frame, const select::Cut& cut, double budget_us);
+    void keep(std::uint64_t frame, const select::Cut& cut, double budget_us, const Correction& correction);
 
     Engine& engine_;
     PoseSource& pose_source_;
