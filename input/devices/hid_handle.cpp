@@ -2,7 +2,7 @@
 #include "input/devices/hid_handle.hpp"
 
 #include <fcntl.h>
-#include <hidapi/hidapi.h>
+#include <hidapi.h>
 #include <linux/hidraw.h>
 #include <poll.h>
 #include <sys/ioctl.h>

@@ -3,7 +3,7 @@
 #include "input/devices/hid_list.hpp"
 
 #include <fmt/format.h>
-#include <hidapi/hidapi.h>
+#include <hidapi.h>
 #include <libudev.h>
 
 #include <algorithm>
