@@ -40,7 +40,7 @@ says 'quirk|deflect' devices describe "$nav" --vid-pid 256f:c635
 says 'Example:' devices describe --help
 expect 2 'ids look like' devices describe stick.bin --vid-pid rubbish
 expect 2 '.' devices describe
-expect 2 '.' devices
+says . devices
 expect 1 'nothing.bin' devices describe nothing.bin
 expect 1 'nothing.hid' devices describe stick.bin --reports nothing.hid
 head -c 9 stick.bin >cut.bin

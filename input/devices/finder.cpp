@@ -58,7 +58,7 @@ Result<Finder> Finder::create(FinderOptions options) {
 std::int64_t Finder::due_ns() const {
     std::int64_t due = scan_due_ns_;
     for (const auto& [place, entry] : entries_)
-        if (entry.state == State::waiting) due = std::min(due, entry.retry.due_ns());
+        if (entry.state == State::waiting) due = std::min(due, entry.retry.next_ns);
     return due;
 }
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "input/devices/hid_handle.hpp"
-#include "input/devices/retry.hpp"
 #include "input/devices/source.hpp"
 #include "input/devices/udev.hpp"
+#include "input/retry.hpp"
 
 namespace surefoot::input {
 
