@@ -71,6 +71,8 @@ bool HidHandle::open(const std::string& node) {
     device_ = hid_open_path(node.c_str());
     const int code = errno;
     if (device_ != nullptr) fd_ = twin_of(probe);
+    // hidapi polls and then reads: should the report be gone in between, read() would wait for the next one.
+    if (fd_ >= 0) (void)fcntl(fd_, F_SETFL, fcntl(fd_, F_GETFL) | O_NONBLOCK);
     ::close(probe);
     if (device_ == nullptr) return failed(code, std::strerror(code));
     return true;

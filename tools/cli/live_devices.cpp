@@ -64,7 +64,12 @@ Result<std::vector<input::Discovery>> plugged_devices() {
     options.wanted = [](const input::PluggedDevice&) { return true; };
     auto finder = input::Finder::create(std::move(options));
     if (!finder) return finder.error();
-    return finder->look(monotonic_ns());
+    auto all = finder->look(monotonic_ns());
+    std::sort(all.begin(), all.end(), [](const input::Discovery& a, const input::Discovery& b) {
+        const std::string &x = a.plugged->node, &y = b.plugged->node;
+        return x.size() != y.size() ? x.size() < y.size() : x < y;  // hidraw9 before hidraw10
+    });
+    return all;
 }
 
 Result<DevicePointer> one_device(const std::string& text) {
