@@ -53,16 +53,14 @@ void Attendant::attend(const DeviceEvent& e) {
 void Attendant::added(const DeviceEvent& e) {
     const PluggedDevice& p = *e.plugged;
     const DeviceMapping* configured = find_mapping(mappings_, identity_for_mapping(p));
-    const DeviceMapping mapping =
-        configured != nullptr ? *configured : default_mapping(p.device.controls, p.device.device_class);
+    const DeviceMapping mapping = configured != nullptr ? *configured : default_mapping(p.device.controls, p.device.device_class);
     Mapper mapper = compile_what_fits(mapping, p.device.controls);
     for (const std::string& note : mapper.notes) say(fmt::format("{} ({}): {}", p.node, p.name, note));
     const std::string identity = p.identity();
     int again = -1;
     if (const auto known = numbers_.find(identity); known != numbers_.end()) {
-        const bool taken = std::any_of(devices_.begin(), devices_.end(), [&](const std::unique_ptr<Device>& d) {
-            return d->attended.steering == known->second;
-        });
+        const bool taken = std::any_of(devices_.begin(), devices_.end(),
+                                       [&](const std::unique_ptr<Device>& d) { return d->attended.steering == known->second; });
         if (!taken) again = known->second;
     }
     const int number = steering_.attach(std::move(mapper), p.device.controls.size(), mapping.reporting, again);

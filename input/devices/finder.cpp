@@ -14,7 +14,7 @@ namespace surefoot::input {
 
 namespace {
 
-constexpr std::int64_t look_around_ns = 2'000'000'000;          // with a monitor: in case udevd is not there
+constexpr std::int64_t look_around_ns = 2'000'000'000;        // with a monitor: in case udevd is not there
 constexpr std::int64_t look_around_without_ns = 200'000'000;  // without: still within 250 ms
 
 std::string place_text(const PluggedDevice& p) { return p.name.empty() ? p.node : fmt::format("{} ({})", p.node, p.name); }
@@ -22,9 +22,10 @@ std::string place_text(const PluggedDevice& p) { return p.name.empty() ? p.node 
 Error open_error(const PluggedDevice& p, int code, const std::string& what) {
     if (code == EACCES || code == EPERM) {
         return {place_text(p), "may not be opened: " + what,
-                fmt::format("install systemd/70-surefoot.rules as /etc/udev/rules.d/70-surefoot.rules, run `udevadm control --reload` "
-                            "and `udevadm trigger --subsystem-match=hidraw`, and add this user to the group surefoot-input; it is "
-                            "tried again by itself")};
+                fmt::format(
+                    "install systemd/70-surefoot.rules as /etc/udev/rules.d/70-surefoot.rules, run `udevadm control --reload` "
+                    "and `udevadm trigger --subsystem-match=hidraw`, and add this user to the group surefoot-input; it is "
+                    "tried again by itself")};
     }
     return {place_text(p), "cannot be opened: " + what, "it is tried again by itself; else unplug it and plug it in again"};
 }

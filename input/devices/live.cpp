@@ -7,7 +7,7 @@ namespace surefoot::input {
 
 namespace {
 
-constexpr std::size_t largest_report = 16384 + 1;     // the kernel's HID_MAX_BUFFER_SIZE and an id
+constexpr std::size_t largest_report = 16384 + 1;  // the kernel's HID_MAX_BUFFER_SIZE and an id
 constexpr std::size_t bytes_per_take = 1U << 20U;
 constexpr std::int64_t ask_again_ns = 2'000'000;  // where a descriptor could not be found
 

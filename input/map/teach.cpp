@@ -176,9 +176,8 @@ void Teach::tick(std::int64_t now_ns) {
         const Device& d = devices_[static_cast<std::size_t>(best->device)];
         const Control& c = d.controls[best->control];
         const ControlInfo& info = d.infos[best->control];
-        const bool back = !info.relative && (info.kind == ControlKind::hat
-                                                 ? c.value == 0
-                                                 : std::abs(deflection(info, c, limits_)) < back_below);
+        const bool back = !info.relative &&
+                          (info.kind == ControlKind::hat ? c.value == 0 : std::abs(deflection(info, c, limits_)) < back_below);
         if (back || now_ns - moved_since_ns_ >= limits_.stays_ns) return answer(*best, now_ns);
     } else if (now_ns - since_ns_ >= limits_.ask_ns) {
         next(now_ns);

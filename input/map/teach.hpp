@@ -1,4 +1,5 @@
-// Learning a mapping by showing: asks for one movement after the other, and recognises which control moved furthest from its rest.
+// Learning a mapping by showing: asks for one movement after the other, and recognises which control moved furthest from its
+// rest.
 //
 //   settle (everything keeps still) ─► ask ─► one control moved far ─► it is back, or stays ─► learned ─► settle for the next
 //                                      └─► skipped, or time is up ─────────────────────────────────────┘
@@ -18,13 +19,13 @@
 namespace surefoot::input {
 
 struct TeachLimits {
-    std::int64_t still_ns = 300'000'000;          ///< so long everything must keep still before the next question
+    std::int64_t still_ns = 300'000'000;             ///< so long everything must keep still before the next question
     std::int64_t settle_at_most_ns = 3'000'000'000;  ///< then what trembles on is taken as it is
-    std::int64_t stays_ns = 700'000'000;          ///< a lever that does not come back is taken after so long
-    std::int64_t ask_ns = 15'000'000'000;         ///< an unanswered question is skipped after so long
-    double tremor = 0.04;                         ///< of the range: what still counts as keeping still
-    double moved = 0.5;                           ///< of the travel: what counts as meant
-    double relative_counts = 300;                 ///< of balls and wheels: so many counts are a full movement
+    std::int64_t stays_ns = 700'000'000;             ///< a lever that does not come back is taken after so long
+    std::int64_t ask_ns = 15'000'000'000;            ///< an unanswered question is skipped after so long
+    double tremor = 0.04;                            ///< of the range: what still counts as keeping still
+    double moved = 0.5;                              ///< of the travel: what counts as meant
+    double relative_counts = 300;                    ///< of balls and wheels: so many counts are a full movement
 };
 
 /// One answer: this control, moved so, is that action.

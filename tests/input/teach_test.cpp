@@ -70,9 +70,17 @@ struct User {
 
 std::vector<ControlInfo> pad() {
     using test::axis;
-    return {axis("x", 0x30, 0, 255),  axis("y", 0x31, 0, 255),       axis("z", 0x32, 0, 255), axis("rz", 0x35, 0, 255),
-            axis("rx", 0x33, 0, 255), axis("slider", 0x36, 0, 1023), test::hat(),             test::button(1),
-            test::button(2),          test::button(3),               test::button(4)};
+    return {axis("x", 0x30, 0, 255),
+            axis("y", 0x31, 0, 255),
+            axis("z", 0x32, 0, 255),
+            axis("rz", 0x35, 0, 255),
+            axis("rx", 0x33, 0, 255),
+            axis("slider", 0x36, 0, 1023),
+            test::hat(),
+            test::button(1),
+            test::button(2),
+            test::button(3),
+            test::button(4)};
 }
 
 /// Asked of a device that was taught, with one control held.
@@ -178,8 +186,8 @@ TEST(Teach, HatsAreTwoControlsAndButtonsMayWalk) {
         u.state.has_value.reset(h);
         u.report(3);
     };
-    press_hat(0);         // forward by up
-    press_hat(6);         // side: shown to the left, so it is turned round
+    press_hat(0);           // forward by up
+    press_hat(6);           // side: shown to the left, so it is turned round
     u.show("button-2", 1);  // rises
     u.show("button-3", 1);  // sinks
     u.skip_rest();

@@ -13,8 +13,8 @@ namespace surefoot::cli {
 
 namespace {
 
-constexpr std::array<const char*, 8> directions = {"north",      "north-east", "east", "south-east",
-                                                   "south",      "south-west", "west", "north-west"};
+constexpr std::array<const char*, 8> directions = {"north", "north-east", "east", "south-east",
+                                                   "south", "south-west", "west", "north-west"};
 
 winsize terminal_size() {
     winsize size{};

@@ -111,7 +111,8 @@ private:
         }
         std::string line = "\r\033[K" + question;
         if (numbers_.empty()) line += " (no device yet: plug one in)";
-        if (teach_.phase() == Teach::Phase::ask) line += fmt::format("  [Enter: skip, {:.0f} s]", teach_.seconds_left(monotonic_ns()));
+        if (teach_.phase() == Teach::Phase::ask)
+            line += fmt::format("  [Enter: skip, {:.0f} s]", teach_.seconds_left(monotonic_ns()));
         if (const auto l = teach_.leader())
             line += fmt::format("  {} {:3.0f} %", teach_.control(l->device, l->control).name, 100 * std::abs(l->moved));
         (void)std::fputs(line.c_str(), stderr);
@@ -140,7 +141,8 @@ Result<input::SteeringFile> merged(const std::string& file, std::vector<input::D
             return m.match.vendor == n.match.vendor && m.match.product == n.match.product;
         });
     });
-    steering.devices.insert(steering.devices.begin(), std::make_move_iterator(shown.begin()), std::make_move_iterator(shown.end()));
+    steering.devices.insert(steering.devices.begin(), std::make_move_iterator(shown.begin()),
+                            std::make_move_iterator(shown.end()));
     return steering;
 }
 
@@ -185,7 +187,8 @@ void add_devices_map(CLI::App& devices, Context& context) {
     auto a = std::make_shared<MapArguments>();
     CLI::App* c = add_command(devices, "map", "Writes a mapping: asks for each movement, and sees which control does it",
                               "surefoot devices map -o steering.toml", a->json);
-    c->add_option("device", a->device, "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
+    c->add_option("device", a->device,
+                  "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
     c->add_option("-o,--output", a->file, "The steering file; what it says of other things stays. Without it: to stdout");
     c->add_option("--timeout", a->timeout_s, "A question is skipped after so long")->check(number_within(0.1, 3600, "s"));
     c->callback([&context, a] { context.run = [&context, a] { return run_map(*a, context); }; });

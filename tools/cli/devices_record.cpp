@@ -116,7 +116,8 @@ int run_record(const RecordArguments& a, const Context& context) {
     if (auto done = file->commit(); !done) return fail(done.error());
     if (recorder.ended() == "unplugged") note(fmt::format("{}: was unplugged", (*device)->node));
     if (recorder.ended() == "full") note(fmt::format("{}: is as large as a recording may be", a.file));
-    if (recorder.overflows() > 0) note(fmt::format("{} times reports were lost: this machine did not read in time", recorder.overflows()));
+    if (recorder.overflows() > 0)
+        note(fmt::format("{} times reports were lost: this machine did not read in time", recorder.overflows()));
     if (a.json) {
         print_json({{"file", a.file},
                     {"device", device_json(**device)},

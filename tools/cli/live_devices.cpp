@@ -85,7 +85,8 @@ Result<DevicePointer> one_device(const std::string& text) {
         return Error{text, "no such device is plugged in",
                      there.empty() ? "there is no HID device at all; plug it in" : "there are: " + there};
     }
-    if (meant.size() > 1) return Error{text, fmt::format("{} devices are meant", meant.size()), "name its node; there are: " + there};
+    if (meant.size() > 1)
+        return Error{text, fmt::format("{} devices are meant", meant.size()), "name its node; there are: " + there};
     if (meant.front()->kind == input::Discovery::Kind::refused) return meant.front()->why;
     return meant.front()->plugged;
 }

@@ -1,4 +1,5 @@
-// Finding devices through the real hidapi and libudev: one device is one device, whom it opens, and who has to be permitted first.
+// Finding devices through the real hidapi and libudev: one device is one device, whom it opens, and who has to be permitted
+// first.
 #include "tests/input/testbed/testbed.hpp"
 
 namespace surefoot::input {

@@ -3,8 +3,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <pty.h>
 #include <linux/capability.h>
+#include <pty.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
