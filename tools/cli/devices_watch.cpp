@@ -92,6 +92,8 @@ public:
         const std::int64_t start = monotonic_ns(), end = end_after(a_.seconds);
         std::int64_t due = start;
         bool going = true;
+        for (const DeviceEvent& e : source_.take()) going = take(e, start) && going;
+        if (!bars_ && states_.devices().empty()) note("no device that is meant is plugged in: waiting for one");
         while (going && !context_.stop->load() && monotonic_ns() < end) {
             for (const DeviceEvent& e : input::poll(source_, std::min(end, due))) going = take(e, start) && going;
             if (monotonic_ns() < due) continue;

@@ -5,6 +5,7 @@
 
 #include "input/devices/attendant.hpp"
 #include "rt/base/random.hpp"
+#include "rt/threads/guard.hpp"
 #include "tests/input/testbed/testbed.hpp"
 
 namespace surefoot::input {
@@ -253,6 +254,26 @@ TEST(Flood, OneDeviceThatNeverStopsHoldsUpNobody) {
     EXPECT_EQ(quiet_reports, 40U);
     EXPECT_LE(most, max_drain);
     EXPECT_EQ(walk.speed(), 0);
+}
+
+// The input thread obeys the frame thread's rule while no device comes or goes: the finder has a thread of its own for the rest.
+TEST(RealTime, ReadingNeitherAllocatesNorFrees) {
+    if (!rt::guard_active()) GTEST_SKIP() << "allocations are not counted in this build";
+    Testbed bed;
+    auto plug = bed.plug(stick());
+    Walk walk(true);
+    while (walk.source->devices() == 0) walk.step();
+    hold(walk, plug, 0, 0, 20);
+    const auto before = rt::guard_counters();
+    for (int i = 0; i < 500; ++i) {
+        for (int k = 0; k < 3; ++k) ASSERT_TRUE(Testbed::send(plug, at(i % 100, -k)));
+        const rt::OwnScope scope;
+        walk.source->wait(test::now_ns() + 1'000'000);
+        walk.attendant.attend(walk.source->take());
+        walk.sample = walk.steering.tick({}, test::now_ns());
+    }
+    EXPECT_GE(walk.attendant.accepted_reports(), 1500U);
+    EXPECT_EQ(rt::guard_counters().own_violations, before.own_violations);
 }
 
 }  // namespace
