@@ -40,7 +40,7 @@ says 'quirk|deflect' devices describe "$nav" --vid-pid 256f:c635
 says 'Example:' devices describe --help
 expect 2 'ids look like' devices describe stick.bin --vid-pid rubbish
 expect 2 '.' devices describe
-expect 2 '.' devices
+says . devices
 expect 1 'nothing.bin' devices describe nothing.bin
 expect 1 'nothing.hid' devices describe stick.bin --reports nothing.hid
 head -c 9 stick.bin >cut.bin
@@ -56,6 +56,24 @@ expect 1 'none.hid: no R: line' devices describe none.hid
 head -c 5000 /dev/zero >long.bin
 expect 1 'long.bin: byte 4096: ' devices describe long.bin
 expect 0 'another descriptor' devices describe stick.bin --reports "$nav"
+
+# Live devices: what holds whatever is plugged in. With devices: tests/input/testbed.
+for command in list watch record map; do says 'Example:.*surefoot devices' devices $command --help; done
+says '"devices": \[' devices --json
+says '"devices": \[' devices list --json
+says '.' devices list
+expect 0 'waiting for one' devices watch no-such-device --seconds 0.2 --json
+expect 0 'waiting for one' devices watch no-such-device --seconds 0.2
+expect 2 'seconds' devices watch --seconds -1
+expect 2 'seconds' devices record no-such-device -o x.hid --seconds 0
+expect 2 'output|required' devices record no-such-device
+expect 2 'timeout' devices map --timeout never
+expect 1 'no-such-device: no such device' devices record no-such-device -o x.hid
+expect 1 'no-such-device: no such device' devices map no-such-device -o x.toml
+[ -e x.hid ] || [ -e x.toml ] && complain "a file is left behind"
+printf '[motion]\nwalk = 1\n' >bad.toml
+expect 1 'bad.toml:2' devices map -o bad.toml
+expect 1 'no-folder' devices map -o no-folder/x.toml
 
 [ $failures -eq 0 ] || { echo "$failures failures"; exit 1; }
 echo "the devices command keeps its contract"

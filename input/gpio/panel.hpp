@@ -12,6 +12,7 @@
 #include "input/gpio/debounce.hpp"
 #include "input/gpio/lines.hpp"
 #include "input/gpio/quadrature.hpp"
+#include "input/retry.hpp"
 #include "input/safety/safety.hpp"
 
 namespace surefoot::input {
@@ -28,17 +29,6 @@ struct LineConfig {
 
 /// Names are unique but for encoders, encoders have two lines of one chip, at most 64 lines. Error: the line's name and what.
 Result<void> check_lines(std::span<const LineConfig> lines);
-
-/// Waits longer after each failure, from 100 ms to 2 s, for ever.
-struct Retry {
-    std::int64_t next_ns = 0, wait_ns = 0;
-    [[nodiscard]] bool due(std::int64_t now_ns) const { return now_ns >= next_ns; }
-    void failed(std::int64_t now_ns) {
-        wait_ns = wait_ns == 0 ? 100'000'000 : wait_ns * 2 > 2'000'000'000 ? 2'000'000'000 : wait_ns * 2;
-        next_ns = now_ns + wait_ns;
-    }
-    void succeeded() { next_ns = wait_ns = 0; }
-};
 
 /// Reads the lines; one thread. Only opening allocates.
 class GpioPanel {

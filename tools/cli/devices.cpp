@@ -1,12 +1,18 @@
-// surefoot devices: what controls there are; each job is a subcommand of its own.
+// surefoot devices: what controls there are; each job is a subcommand of its own, and without one they are listed.
 #include "tools/cli/devices.hpp"
 
 namespace surefoot::cli {
 
 void add_devices(CLI::App& app, Context& context) {
     CLI::App* c = app.add_subcommand("devices", "Joysticks, 3D mice, pedals and buttons: what they are and what they say");
-    c->footer("Example:\n  surefoot devices describe /sys/class/hidraw/hidraw0/device/report_descriptor");
-    c->require_subcommand(1);
+    c->footer(
+        "Without a subcommand: list.\n\nExample:\n  surefoot devices\n  surefoot devices watch\n  surefoot devices map -o "
+        "steering.toml");
+    c->require_subcommand(0, 1);
+    add_devices_list(*c, context);
+    add_devices_watch(*c, context);
+    add_devices_record(*c, context);
+    add_devices_map(*c, context);
     add_devices_describe(*c, context);
 }
 

@@ -7,5 +7,13 @@ namespace surefoot::cli {
 
 /// devices_describe.cpp: a descriptor and recorded reports, without any device.
 void add_devices_describe(CLI::App& devices, Context& context);
+/// devices_list.cpp: what is plugged in. Also what `surefoot devices` does by itself, with --json of either.
+void add_devices_list(CLI::App& devices, Context& context);
+/// devices_watch.cpp: what the controls say, live.
+void add_devices_watch(CLI::App& devices, Context& context);
+/// devices_record.cpp: raw reports to a file.
+void add_devices_record(CLI::App& devices, Context& context);
+/// devices_map.cpp: a mapping by moving each control.
+void add_devices_map(CLI::App& devices, Context& context);
 
 }  // namespace surefoot::cli

@@ -1,0 +1,159 @@
+// The finder: compares what is listed with what is known, so that lost or doubled events do no harm.
+#include "input/devices/finder.hpp"
+
+#include <fmt/format.h>
+#include <libudev.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <set>
+
+#include "input/devices/hid_list.hpp"
+
+namespace surefoot::input {
+
+namespace {
+
+constexpr std::int64_t look_around_ns = 2'000'000'000;        // with a monitor: in case udevd is not there
+constexpr std::int64_t look_around_without_ns = 200'000'000;  // without: still within 250 ms
+
+std::string place_text(const PluggedDevice& p) { return p.name.empty() ? p.node : fmt::format("{} ({})", p.node, p.name); }
+
+Error open_error(const PluggedDevice& p, int code, const std::string& what) {
+    if (code == EACCES || code == EPERM) {
+        return {place_text(p), "may not be opened: " + what,
+                fmt::format(
+                    "install systemd/70-surefoot.rules as /etc/udev/rules.d/70-surefoot.rules, run `udevadm control --reload` "
+                    "and `udevadm trigger --subsystem-match=hidraw`, and add this user to the group surefoot-input; it is "
+                    "tried again by itself")};
+    }
+    return {place_text(p), "cannot be opened: " + what, "it is tried again by itself; else unplug it and plug it in again"};
+}
+
+}  // namespace
+
+std::string PluggedDevice::identity() const {
+    // Interfaces of one device share its serial; the end of the socket tells them apart.
+    const auto interface = socket.rfind('/');
+    const std::string part = interface == std::string::npos ? std::string() : socket.substr(interface);
+    return fmt::format("{:04x}:{:04x} {}", vendor, product, serial.empty() ? socket : serial + part);
+}
+
+bool steers_by_class(const PluggedDevice& p) {
+    return p.device.device_class == DeviceClass::navigation || p.device.device_class == DeviceClass::buttons;
+}
+
+Result<Finder> Finder::create(FinderOptions options) {
+    Finder f;
+    f.options_ = std::move(options);
+    f.context_.reset(udev_new());
+    if (!f.context_) return Error{"udev", "its library cannot be used: no memory", "close other programs"};
+    auto monitor = UdevMonitor::listen(f.context_.get());
+    if (monitor)
+        f.monitor_ = std::move(*monitor);
+    else
+        f.without_monitor_ = monitor.error();
+    return f;
+}
+
+std::int64_t Finder::due_ns() const {
+    std::int64_t due = scan_due_ns_;
+    for (const auto& [place, entry] : entries_)
+        if (entry.state == State::waiting) due = std::min(due, entry.retry.next_ns);
+    return due;
+}
+
+std::vector<Discovery> Finder::look(std::int64_t now_ns) {
+    std::vector<Discovery> out;
+    UdevMonitor::News news;
+    if (monitor_) news = monitor_->news();
+    for (auto& [place, entry] : entries_) {
+        const bool touched = std::find(news.changed.begin(), news.changed.end(), place) != news.changed.end();
+        if (entry.state == State::waiting && (touched || news.lost)) entry.retry.hurry(now_ns);
+    }
+    if (news.any || now_ns >= scan_due_ns_) scan(out, now_ns);
+    for (auto& [place, entry] : entries_)
+        if (entry.state == State::waiting && entry.retry.due(now_ns)) try_open(out, entry, now_ns);
+    return out;
+}
+
+void Finder::scan(std::vector<Discovery>& out, std::int64_t now_ns) {
+    scan_due_ns_ = now_ns + (monitor_ ? look_around_ns : look_around_without_ns);
+    const auto nodes = list_nodes(context_.get());
+    std::set<std::string> there;
+    for (const ListedNode& n : nodes) there.insert(n.place);
+    // What went is told before what came: one device replugged is not two.
+    for (auto i = entries_.begin(); i != entries_.end();) {
+        if (there.contains(i->first)) {
+            ++i;
+            continue;
+        }
+        if (i->second.state == State::open) {
+            Discovery d;
+            d.kind = Discovery::Kind::lost;
+            d.device = i->second.device;
+            d.plugged = i->second.plugged;
+            d.why = {place_text(*d.plugged), "was unplugged", ""};
+            out.push_back(std::move(d));
+        }
+        i = entries_.erase(i);
+    }
+    for (const ListedNode& n : nodes) {
+        if (entries_.contains(n.place)) continue;
+        std::optional<Error> trouble;
+        Entry entry;
+        entry.plugged = std::make_shared<const PluggedDevice>(read_node(context_.get(), n, trouble));
+        meet(out, n.place, entry, trouble);
+    }
+}
+
+void Finder::meet(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble) {
+    const PluggedDevice& p = *entry.plugged;
+    Discovery d;
+    d.kind = Discovery::Kind::refused;
+    d.plugged = entry.plugged;
+    if (trouble) {
+        d.refused = Refused::descriptor;
+        d.why = *trouble;
+        out.push_back(std::move(d));
+    } else if (!options_.wanted(p)) {
+        d.refused = Refused::unwanted;
+        d.why = {place_text(p), p.device.reason, "name it in the steering file's [[device]] to use it all the same"};
+        out.push_back(std::move(d));
+    } else {
+        entry.state = State::waiting;  // due at once
+    }
+    entries_.emplace(place, std::move(entry));
+}
+
+void Finder::try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t now_ns) {
+    Discovery d;
+    d.plugged = entry.plugged;
+    if (!options_.open || d.handle.open(entry.plugged->node)) {
+        d.kind = Discovery::Kind::found;
+        d.device = entry.device = next_number_++;
+        entry.state = State::open;
+        entry.said.clear();
+        out.push_back(std::move(d));
+        return;
+    }
+    entry.retry.failed(now_ns);
+    const int code = d.handle.code();
+    d.kind = Discovery::Kind::refused;
+    d.refused = code == EACCES || code == EPERM ? Refused::permission : Refused::failed;
+    d.why = open_error(*entry.plugged, code, d.handle.what());
+    if (entry.said == d.why.what) return;
+    entry.said = d.why.what;
+    out.push_back(std::move(d));
+}
+
+void Finder::failed(int device, std::int64_t now_ns) {
+    for (auto& [place, entry] : entries_) {
+        if (entry.state != State::open || entry.device != device) continue;
+        entry.state = State::waiting;
+        entry.device = -1;
+        entry.retry.failed(now_ns);
+    }
+}
+
+}  // namespace surefoot::input

@@ -1,0 +1,79 @@
+// Finds devices that come and go, and opens those that are wanted: udev's events, a schedule for what was refused, and a look
+// around now and then in case an event was lost. Tells each thing once.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "input/devices/hid_handle.hpp"
+#include "input/devices/source.hpp"
+#include "input/devices/udev.hpp"
+#include "input/retry.hpp"
+
+namespace surefoot::input {
+
+/// One thing that was found out.
+struct Discovery {
+    enum class Kind : std::uint8_t { found, lost, refused };
+    Kind kind = Kind::found;
+    int device = -1;  ///< found, lost
+    std::shared_ptr<const PluggedDevice> plugged;
+    HidHandle handle;  ///< found: open
+    Refused refused = Refused::failed;
+    Error why;  ///< lost, refused
+};
+
+/// Whether a device is to be opened.
+using Wanted = std::function<bool(const PluggedDevice&)>;
+/// Those that steer without being configured: navigation and buttons.
+bool steers_by_class(const PluggedDevice& device);
+
+struct FinderOptions {
+    Wanted wanted = steers_by_class;
+    bool open = true;  ///< false: devices are listed only; `found` then carries no open handle
+};
+
+class Finder {
+public:
+    static Result<Finder> create(FinderOptions options);
+
+    /// What became different since the last call. Reads sysfs and opens devices: may take milliseconds.
+    std::vector<Discovery> look(std::int64_t now_ns);
+    /// Readable when look() may find something; -1: no monitor.
+    [[nodiscard]] int fd() const { return monitor_ ? monitor_->fd() : -1; }
+    /// When look() is due whatever fd() says.
+    [[nodiscard]] std::int64_t due_ns() const;
+    /// Reading the device failed: it is closed already, and told as gone. Opened again, under a new number, if it is still there.
+    void failed(int device, std::int64_t now_ns);
+    /// Why there is no monitor, if so: to be said once.
+    [[nodiscard]] const std::optional<Error>& without_monitor() const { return without_monitor_; }
+
+private:
+    enum class State : std::uint8_t { left_alone, waiting, open };
+    struct Entry {
+        std::shared_ptr<const PluggedDevice> plugged;
+        State state = State::left_alone;
+        int device = -1;
+        Retry retry;
+        std::string said;
+    };
+
+    void scan(std::vector<Discovery>& out, std::int64_t now_ns);
+    void meet(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble);
+    void try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t now_ns);
+
+    FinderOptions options_;
+    UdevContext context_;
+    std::optional<UdevMonitor> monitor_;
+    std::optional<Error> without_monitor_;
+    std::map<std::string, Entry> entries_;  ///< by place
+    std::int64_t scan_due_ns_ = 0;
+    int next_number_ = 0;
+};
+
+}  // namespace surefoot::input

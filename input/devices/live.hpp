@@ -1,0 +1,50 @@
+// Live devices as a source of events: polls what is open, and drains it whole.
+#pragma once
+
+#include <poll.h>
+
+#include <memory>
+#include <vector>
+
+#include "input/devices/discoverer.hpp"
+#include "input/devices/source.hpp"
+#include "rt/clock/clock.hpp"
+
+namespace surefoot::input {
+
+/// Reports that one drain of one device reads at most. Far beyond the 63 after which safety/ knows that the kernel has dropped
+/// some, so a device that floods is at rest and holds up nobody.
+constexpr std::uint32_t max_drain = 256;
+
+class LiveDevices final : public DeviceSource {
+public:
+    explicit LiveDevices(std::unique_ptr<Discoverer> discoverer);
+    ~LiveDevices() override;
+
+    void wait(std::int64_t until_ns) override;
+    std::span<const DeviceEvent> take() override;
+
+    /// Open now.
+    [[nodiscard]] std::size_t devices() const { return open_.size(); }
+
+private:
+    void discover(std::int64_t now_ns);
+    bool drain(Discovery& device);
+    void lost(std::size_t at, const Error& why, bool failed, std::int64_t now_ns);
+    void watch();
+
+    rt::RealClock clock_;
+    std::unique_ptr<Discoverer> discoverer_;
+    std::vector<std::unique_ptr<Discovery>> open_;
+    std::vector<std::unique_ptr<Discovery>> told_;  ///< whose errors the events of the last take() point to
+    std::vector<pollfd> watched_;
+    std::vector<DeviceEvent> events_;
+    std::vector<std::byte> bytes_;
+    std::size_t used_ = 0;
+    bool unwatchable_ = false;  ///< a device has no descriptor that is known
+};
+
+/// Live devices with the finder in the same thread, or in one beside it.
+Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool beside = false);
+
+}  // namespace surefoot::input

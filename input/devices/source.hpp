@@ -1,0 +1,73 @@
+// The door of live devices: what was plugged, refused, pulled and reported, as events in the order in which they were seen.
+//
+//   udev monitor, schedule ─► Finder ─► (open, described) ─► LiveDevices ─► events ─► Attendant ─► Steering
+//   (hot-plug, permissions)             a handle each        (poll, drain)            (mapping)
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "input/hid/device.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::input {
+
+/// One hidraw node as it was found; complete before anybody sees it, and never changed afterwards.
+struct PluggedDevice {
+    std::string node;   ///< "/dev/hidraw0"
+    std::string place;  ///< sysfs path: another one at each plugging, even into the same socket under the same node
+    std::string name;
+    std::string socket;  ///< where it is plugged in: "usb-0000:00:14.0-2/input0"; may be empty
+    std::string serial;  ///< may be empty
+    std::uint16_t bus = 0, vendor = 0, product = 0;
+    std::vector<std::byte> descriptor;
+    HidDevice device;  ///< layout, controls, class and its reason
+
+    /// The same when the same device is plugged in again: by its serial, else by its socket.
+    [[nodiscard]] std::string identity() const;
+};
+
+/// Why a device that is there is not read.
+enum class Refused : std::uint8_t {
+    unwanted,    ///< its class does not steer and nobody asked for it; it is not even opened
+    descriptor,  ///< its report descriptor cannot be read or is malformed
+    permission,  ///< tried again at each change of the node, and on a schedule
+    failed,      ///< anything else; tried again likewise
+};
+
+struct DeviceEvent {
+    enum class Kind : std::uint8_t { added, removed, refused, report, drained };
+    Kind kind = Kind::report;
+    int device = -1;            ///< number of this plugging, from 0, never given twice; -1: refused
+    std::int64_t stamp_ns = 0;  ///< CLOCK_MONOTONIC when it was read or seen
+    /// report: the id first where the device numbers its reports. Valid until the next take().
+    std::span<const std::byte> bytes;
+    std::uint32_t reports = 0;  ///< drained: how many reports were read until nothing was left
+    Refused refused = Refused::failed;
+    const Error* why = nullptr;                    ///< refused, removed; valid until the next take()
+    std::shared_ptr<const PluggedDevice> plugged;  ///< added, removed, refused
+};
+
+/// One thread. After the devices have come, wait() and take() do not allocate.
+class DeviceSource {
+public:
+    virtual ~DeviceSource() = default;
+    /// Sleeps until something has happened or may have, or until `until_ns` (CLOCK_MONOTONIC), or until a signal comes.
+    virtual void wait(std::int64_t until_ns) = 0;
+    /// What has happened: never blocks. For each device that had reports: all of them, then `drained`. Valid until the next call.
+    virtual std::span<const DeviceEvent> take() = 0;
+};
+
+/// Waits, then takes: events, or none at `deadline_ns` or after a signal.
+inline std::span<const DeviceEvent> poll(DeviceSource& source, std::int64_t deadline_ns) {
+    const auto waiting = source.take();
+    if (!waiting.empty()) return waiting;
+    source.wait(deadline_ns);
+    return source.take();
+}
+
+}  // namespace surefoot::input

@@ -1,0 +1,39 @@
+// udev as resources: its context, and its monitor of hidraw devices that come, change and go.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rt/base/result.hpp"
+
+struct udev;
+struct udev_monitor;
+
+namespace surefoot::input {
+
+struct UdevDeleter {
+    void operator()(udev* context) const;
+    void operator()(udev_monitor* monitor) const;
+};
+using UdevContext = std::unique_ptr<udev, UdevDeleter>;
+
+class UdevMonitor {
+public:
+    /// Listens from now on. Errors: no netlink socket (a container may forbid it): then devices have to be looked for.
+    static Result<UdevMonitor> listen(udev* context);
+
+    [[nodiscard]] int fd() const;
+    /// What came since the last call, without blocking.
+    struct News {
+        bool any = false;
+        bool lost = false;                 ///< more came than the socket holds: anything may have changed
+        std::vector<std::string> changed;  ///< sysfs paths that were added or changed
+    };
+    News news();
+
+private:
+    std::unique_ptr<udev_monitor, UdevDeleter> monitor_;
+};
+
+}  // namespace surefoot::input

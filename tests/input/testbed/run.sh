@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Runs a test program in which /dev, /sys and udev's events are umockdev's; exit 77 (skipped) with the reason where it cannot.
+# usage: run.sh PROGRAM [SANITIZERS] [ARGUMENTS...]
+set -u
+program=${1:-} sanitizers=${2:-}
+shift 2
+skip() { echo "SKIPPED: $*"; exit 77; }
+[[ -n "$program" ]] || skip "umockdev is not installed (Debian: umockdev, libumockdev-dev); live devices are not tested"
+case ",$sanitizers," in
+  *,thread,*) skip "the thread sanitizer does not work with umockdev's preloaded library" ;;
+esac
+preload=libumockdev-preload.so.0
+# A sanitizer's library must come first of all that are preloaded.
+for library in libasan libubsan; do
+  path=$(ldd "$program" | awk -v l="$library" '$1 ~ "^" l {print $3}')
+  [[ -n "$path" ]] && runtime=${runtime:+$runtime:}$path
+done
+export LD_PRELOAD=${runtime:+$runtime:}$preload
+exec "$program" "$@"

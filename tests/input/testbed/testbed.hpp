@@ -1,0 +1,96 @@
+// Synthetic hidraw devices for the real hidapi and libudev: sysfs, nodes, ioctls and udev events by umockdev.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <umockdev.h>
+
+#include <deque>
+#include <set>
+#include <string>
+
+#include "input/devices/live.hpp"
+#include "tests/input/hid_test.hpp"
+
+namespace surefoot::input::test {
+
+/// What stands behind a node.
+enum class Wire {
+    pipe,      ///< keeps reports apart and drops the newest when 63 wait, as hidraw does; cannot hang up
+    terminal,  ///< hangs up when pulled, as hidraw does; reports run together if they come faster than they are read
+};
+
+/// One plugged device; pull() it before it is plugged again.
+struct Plug {
+    std::string node, place, hid_place;
+    int fd = -1;  ///< the device's end
+};
+
+struct Facts {
+    std::string node = "hidraw0";
+    std::string socket = "usb-0000:00:14.0-1/input0";
+    std::string serial{};
+    Wire wire = Wire::pipe;
+    bool readable = true;
+};
+
+class Testbed {
+public:
+    Testbed();
+    ~Testbed();
+    Testbed(const Testbed&) = delete;
+    Testbed& operator=(const Testbed&) = delete;
+
+    /// A device of tests/input/devices appears: node, sysfs, then udev's "add".
+    Plug plug(const Recording& recording, const Facts& facts = {});
+    /// False: dropped, because nobody has read for so long.
+    static bool send(Plug& plug, std::span<const std::byte> report);
+    /// As a cable: the node hangs up first (a terminal), then sysfs and udev tell.
+    void pull(Plug& plug);
+    /// Hangs up; udev says nothing yet.
+    void hang_up(Plug& plug);
+    /// udev's rules have run: the node may be read.
+    void permit(const Plug& plug, bool tell = true);
+
+    [[nodiscard]] const std::string& root() const { return root_; }
+
+private:
+    UMockdevTestbed* bed_;
+    std::string root_;
+    std::set<std::string> answering_;
+    int plugged_ = 0;
+};
+
+/// While it lives, this thread and those that it starts obey the modes of files even as root: else no permission is ever refused.
+class NoOverride {
+public:
+    NoOverride();
+    ~NoOverride();
+    NoOverride(const NoOverride&) = delete;
+    NoOverride& operator=(const NoOverride&) = delete;
+};
+
+std::int64_t now_ns();
+std::size_t open_descriptors();
+
+/// Polls until an event of that kind comes (true), or for `within_ms`. All events are appended to the log.
+class Watcher {
+public:
+    explicit Watcher(DeviceSource& source) : source_(source) {}
+    struct Seen {
+        DeviceEvent event;
+        std::vector<std::byte> bytes;
+        Error why;
+    };
+    const Seen* next(DeviceEvent::Kind kind, int within_ms = 2000);
+    /// Everything within so long.
+    void watch_for(int ms);
+    [[nodiscard]] std::size_t count(DeviceEvent::Kind kind) const;
+    std::deque<Seen> seen;  ///< what next() returned stays where it is
+
+private:
+    void take(std::span<const DeviceEvent> events);
+    DeviceSource& source_;
+    std::size_t looked_at_ = 0;
+};
+
+}  // namespace surefoot::input::test

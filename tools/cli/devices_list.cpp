@@ -1,0 +1,98 @@
+// surefoot devices list: what is plugged in, what it would steer with, and why it would not.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "input/map/mapping.hpp"
+#include "tools/cli/devices.hpp"
+#include "tools/cli/live_devices.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct ListArguments {
+    bool json = false, parent_json = false;
+};
+
+bool permitted(const input::PluggedDevice& d) { return access(d.node.c_str(), R_OK | W_OK) == 0; }
+
+ordered_json controls_json(const input::HidDevice& device) {
+    ordered_json list = ordered_json::array();
+    for (const auto& c : device.controls)
+        list.push_back({{"name", c.name},
+                        {"kind", input::kind_name(c.kind)},
+                        {"collection", c.collection},
+                        {"logical_min", c.logical_min},
+                        {"logical_max", c.logical_max},
+                        {"relative", c.relative}});
+    return list;
+}
+
+std::string default_name(const input::PluggedDevice& d) {
+    return input::default_mapping(d.device.controls, d.device.device_class).name;
+}
+
+ordered_json list_json(const std::vector<input::Discovery>& all) {
+    ordered_json list = ordered_json::array();
+    for (const auto& d : all) {
+        ordered_json device = device_json(*d.plugged);
+        const bool whole = d.kind != input::Discovery::Kind::refused;
+        device["permitted"] = permitted(*d.plugged);
+        device["steers"] = whole && input::steers_by_class(*d.plugged);
+        if (whole) {
+            device["mapping"] = default_name(*d.plugged);
+            device["quirks"] = d.plugged->device.quirks;
+            device["controls"] = controls_json(d.plugged->device);
+        } else {
+            device["reason"] = d.why.text();
+        }
+        list.push_back(std::move(device));
+    }
+    return {{"devices", std::move(list)}};
+}
+
+void print_list(const std::vector<input::Discovery>& all) {
+    if (all.empty()) fmt::print("No HID device is plugged in.\n");
+    for (const auto& d : all) {
+        const auto& device = *d.plugged;
+        fmt::print("{}\n", device_line(device));
+        if (d.kind == input::Discovery::Kind::refused) {
+            fmt::print("    refused: {}\n", d.why.text());
+            continue;
+        }
+        fmt::print("    {}: {}\n", input::class_name(device.device.device_class), device.device.reason);
+        if (input::steers_by_class(device))
+            fmt::print("    steers by \"{}\"{}\n", default_name(device),
+                       permitted(device)
+                           ? ""
+                           : "; but this user may not open it: see systemd/70-surefoot.rules, and the group surefoot-input");
+    }
+}
+
+int run_list(const ListArguments& a) {
+    const auto all = plugged_devices();
+    if (!all) return fail(all.error());
+    if (a.json || a.parent_json)
+        print_json(list_json(*all));
+    else
+        print_list(*all);
+    return exit_success;
+}
+
+}  // namespace
+
+void add_devices_list(CLI::App& devices, Context& context) {
+    auto a = std::make_shared<ListArguments>();
+    CLI::App* c =
+        add_command(devices, "list", "What is plugged in, its class, and what it steers with when nothing is configured",
+                    "surefoot devices list --json", a->json);
+    c->callback([&context, a] { context.run = [a] { return run_list(*a); }; });
+    devices.add_flag("--json", a->parent_json, "The list as one JSON object");
+    devices.callback([&devices, &context, a] {
+        if (devices.get_subcommands().empty()) context.run = [a] { return run_list(*a); };
+    });
+}
+
+}  // namespace surefoot::cli

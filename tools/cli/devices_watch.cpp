@@ -1,0 +1,162 @@
+// surefoot devices watch: what the controls say, live: bars on a terminal, lines elsewhere, JSON lines with --json.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "tools/cli/bars.hpp"
+#include "tools/cli/devices.hpp"
+#include "tools/cli/live_devices.hpp"
+#include "tools/cli/options.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+
+using input::DeviceEvent;
+using nlohmann::ordered_json;
+
+constexpr std::int64_t redraw_ns = 33'000'000, plain_ns = 100'000'000;
+
+struct WatchArguments {
+    std::string device;
+    double seconds = 0;
+    bool json = false;
+};
+
+double seconds_at(std::int64_t stamp_ns, std::int64_t start_ns) { return static_cast<double>(stamp_ns - start_ns) * 1e-9; }
+
+const char* event_name(DeviceEvent::Kind kind) {
+    return kind == DeviceEvent::Kind::added     ? "added"
+           : kind == DeviceEvent::Kind::removed ? "removed"
+           : kind == DeviceEvent::Kind::refused ? "refused"
+                                                : "report";
+}
+
+ordered_json values_json(const LiveStates::Device& d) {
+    ordered_json values = ordered_json::object();
+    const auto& controls = d.plugged->device.controls;
+    for (std::size_t i = 0; i < controls.size(); ++i)
+        values[controls[i].name] = d.state.has_value.test(i) ? ordered_json(d.state.value[i]) : ordered_json(nullptr);
+    return values;
+}
+
+/// One line an event; false where nobody reads them any more.
+bool print_json_line(const DeviceEvent& e, const LiveStates::Device* d, std::int64_t start_ns) {
+    ordered_json line = {{"time_s", seconds_at(e.stamp_ns, start_ns)}, {"event", event_name(e.kind)}};
+    if (e.plugged) line["device"] = device_json(*e.plugged);
+    if (e.why != nullptr) line["reason"] = e.why->text();
+    if (e.kind == DeviceEvent::Kind::report && d != nullptr) {
+        line["node"] = d->plugged->node;
+        line["accepted"] = d->state.stamp_ns == e.stamp_ns;
+        line["values"] = values_json(*d);
+    }
+    return std::fputs((json_text(line, -1) + "\n").c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+}
+
+/// What has a value other than rest, in one line.
+std::string plain_line(const LiveStates::Device& d) {
+    std::string text;
+    const auto& controls = d.plugged->device.controls;
+    for (std::size_t i = 0; i < controls.size(); ++i)
+        if (d.state.has_value.test(i) && (controls[i].kind != input::ControlKind::button || d.state.value[i] != 0))
+            text += fmt::format(" {}={}", controls[i].name, d.state.value[i]);
+    return text;
+}
+
+std::vector<std::string> screen(LiveStates& states, const std::vector<std::string>& notes) {
+    const std::size_t width = Redraw::width();
+    std::vector<std::string> lines;
+    for (const auto& [number, d] : states.devices()) {
+        const double age_s = static_cast<double>(monotonic_ns() - d->first_ns) * 1e-9;
+        lines.push_back(fmt::format("{}   {} reports, {:.0f}/s", device_line(*d->plugged), d->state.reports,
+                                    age_s > 0 ? static_cast<double>(d->state.reports) / age_s : 0.0));
+        for (std::string& line : control_lines(d->plugged->device.controls, d->state, width)) lines.push_back(std::move(line));
+        lines.emplace_back();
+    }
+    if (states.devices().empty()) lines.emplace_back("No device that steers is plugged in: waiting for one.");
+    for (const std::string& note : notes) lines.push_back(note);
+    lines.emplace_back("Ctrl-C ends it.");
+    return lines;
+}
+
+class Watch {
+public:
+    Watch(const WatchArguments& a, const Context& context, input::LiveDevices& source)
+        : a_(a), context_(context), source_(source), bars_(!a.json && isatty(STDOUT_FILENO) == 1) {}
+
+    int run() {
+        std::unique_ptr<Redraw> redraw;
+        if (bars_) redraw = std::make_unique<Redraw>();
+        const std::int64_t start = monotonic_ns(), end = end_after(a_.seconds);
+        std::int64_t due = start;
+        bool going = true;
+        for (const DeviceEvent& e : source_.take()) going = take(e, start) && going;
+        if (!bars_ && states_.devices().empty()) note("no device that is meant is plugged in: waiting for one");
+        while (going && !context_.stop->load() && monotonic_ns() < end) {
+            for (const DeviceEvent& e : input::poll(source_, std::min(end, due))) going = take(e, start) && going;
+            if (monotonic_ns() < due) continue;
+            due = monotonic_ns() + (bars_ ? redraw_ns : plain_ns);
+            if (bars_)
+                redraw->draw(screen(states_, notes_));
+            else if (!a_.json)
+                going = print_plain(start) && going;
+        }
+        return exit_success;
+    }
+
+private:
+    bool take(const DeviceEvent& e, std::int64_t start) {
+        const LiveStates::Device* d = states_.take(e);
+        if (e.kind == DeviceEvent::Kind::drained) return true;
+        if (a_.json) return print_json_line(e, d, start);
+        if (e.kind == DeviceEvent::Kind::report) return true;
+        if (e.kind == DeviceEvent::Kind::refused && e.refused == input::Refused::unwanted) return true;
+        const std::string text = e.why != nullptr ? e.why->text() : fmt::format("{}: plugged in", device_line(*e.plugged));
+        if (bars_) {
+            notes_.push_back(text);
+            if (notes_.size() > 4) notes_.erase(notes_.begin());
+            return true;
+        }
+        return std::fputs((text + "\n").c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+    }
+    bool print_plain(std::int64_t start) {
+        for (auto& [number, d] : states_.devices()) {
+            if (!d->changed) continue;
+            d->changed = false;
+            const std::string line =
+                fmt::format("{:9.3f} {}{}\n", seconds_at(d->state.stamp_ns, start), d->plugged->node, plain_line(*d));
+            if (std::fputs(line.c_str(), stdout) < 0 || std::fflush(stdout) != 0) return false;
+        }
+        return true;
+    }
+
+    const WatchArguments& a_;
+    const Context& context_;
+    input::LiveDevices& source_;
+    bool bars_;
+    LiveStates states_;
+    std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+void add_devices_watch(CLI::App& devices, Context& context) {
+    auto a = std::make_shared<WatchArguments>();
+    CLI::App* c = devices.add_subcommand("watch", "What the controls say, live; devices may come and go");
+    c->footer("Example:\n  surefoot devices watch\n  surefoot devices watch 046d:c626 --seconds 10 --json");
+    c->add_option("device", a->device,
+                  "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
+    c->add_option("--seconds", a->seconds, "End after so long")->check(number_within(0.01, 1e6, "s"));
+    c->add_flag("--json", a->json, "One JSON object a line on stdout for each report and each device that comes or goes");
+    c->callback([&context, a] {
+        context.run = [&context, a] {
+            auto source = open_devices(a->device);
+            if (!source) return fail(source.error());
+            return Watch(*a, context, **source).run();
+        };
+    });
+}
+
+}  // namespace surefoot::cli
