@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/bake/geometry.hpp"
+#include "render/bake/picture_shift.hpp"
 #include "render/measure/mesh_distance.hpp"
 
 namespace surefoot::bake {
@@ -189,7 +190,9 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     const Box box = full.box();
     const std::size_t own_vertices = full.vertices.size();
     const float floor_m = static_cast<float>(box.diagonal()) * 0.002F;
-    const auto bound = [&](const Level& level) { return reference.bound(full, level); };
+    const auto bound = [&](const Level& level) {
+        return std::max(reference.bound(full, level), picture_shift(full, level, options.textured));
+    };
     while (levels.back().triangles > options.smallest) {
         const Level& before = levels.back();
         const double share = levels.size() == 1 ? std::min(options.ratio, options.first_share) : options.ratio;

@@ -37,6 +37,8 @@ public:
     /// Never below the true distance but for rounding: it is the distance to a point of the triangle.
     [[nodiscard]] float distance_to(std::uint32_t triangle, const vec3& p) const;
     [[nodiscard]] float diagonal() const { return diagonal_; }
+    /// The mesh's number of a triangle of the tree: its indices start at three times that.
+    [[nodiscard]] std::uint32_t in_mesh(std::uint32_t triangle) const { return in_mesh_[triangle]; }
     /// Calls visit(a, b, c) for every triangle whose leaf's box reaches into [low, high], until it says false.
     template <class Visit>
     void each_in(const vec3& low, const vec3& high, const Visit& visit) const {
@@ -65,6 +67,7 @@ private:
     std::uint32_t build(std::span<std::uint32_t> order, const std::vector<Corners>& source, const std::vector<vec3>& centres);
     std::vector<Node> nodes_;
     std::vector<Corners> corners_;
+    std::vector<std::uint32_t> in_mesh_;
     float diagonal_ = 0;
 };
 

@@ -80,6 +80,7 @@ std::uint32_t TriangleTree::build(std::span<std::uint32_t> order, const std::vec
         node.first = static_cast<std::uint32_t>(corners_.size());
         node.count = static_cast<std::uint32_t>(order.size());
         for (const std::uint32_t i : order) corners_.push_back(source[i]);
+        in_mesh_.insert(in_mesh_.end(), order.begin(), order.end());
     } else {
         const vec3 extent = high - low;
         const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);

@@ -1,0 +1,73 @@
+// Pictures on levels: moved, squeezed, repeated, absent.
+#include "render/bake/picture_shift.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace surefoot::bake {
+namespace {
+
+/// A plate of 8 x 8 squares, 2 m wide, its picture laid on by `uv` of 0..1; and as coarse level its two triangles from corner to corner.
+struct Plate {
+    Geometry full;
+    Level coarse;
+};
+Plate plate(const std::function<vec2(vec2)>& uv) {
+    constexpr std::uint32_t n = 8;
+    Plate out;
+    GeometryPart part{0, {}};
+    for (std::uint32_t y = 0; y <= n; ++y) {
+        for (std::uint32_t x = 0; x <= n; ++x) {
+            const vec2 at(static_cast<float>(x) / n, static_cast<float>(y) / n);
+            const vec2 t = uv(at);
+            model::Vertex v{};
+            v.position[0] = 2 * at.x;
+            v.position[1] = 2 * at.y;
+            v.uv[0] = t.x;
+            v.uv[1] = t.y;
+            out.full.vertices.push_back(v);
+            if (x == n || y == n) continue;
+            const std::uint32_t a = y * (n + 1) + x, b = a + n + 1;
+            for (const std::uint32_t i : {a, a + 1, b, a + 1, b + 1, b}) part.indices.push_back(i);
+        }
+    }
+    out.full.parts = {part};
+    const std::uint32_t last = n * (n + 1);
+    out.coarse.parts = {{0, {0, n, last, n, last + n, last}}};
+    out.coarse.triangles = 2;
+    return out;
+}
+
+float shift(const Plate& p, bool textured = true) { return picture_shift(p.full, p.coarse, {textured}); }
+
+TEST(PictureShift, IsNoneWhereThePictureLiesStraight) {
+    EXPECT_NEAR(shift(plate([](vec2 t) { return t; })), 0, 1e-5);
+    EXPECT_NEAR(shift(plate([](vec2 t) { return vec2(3 * t.x + t.y, 2 - t.y); })), 0, 1e-5);
+}
+
+TEST(PictureShift, IsTheDistanceByWhichAPictureIsMoved) {
+    // Squeezed to the left: at x = 1/2 of the plate, 1/4 of the picture has passed; at the quantile, about 0.4 m of 2.
+    const float squeezed = shift(plate([](vec2 t) { return vec2(t.x * t.x, t.y); }));
+    EXPECT_GT(squeezed, 0.2F);
+    EXPECT_LT(squeezed, 1.0F);
+}
+
+TEST(PictureShift, IsOfTexturedPartsOnly) {
+    EXPECT_EQ(shift(plate([](vec2 t) { return vec2(t.x * t.x, t.y); }), false), 0);
+}
+
+TEST(PictureShift, CountsAWholeRepeatAsNone) {
+    // Every square has the whole picture; the coarse plate has it eight times, which is the same.
+    EXPECT_NEAR(shift(plate([](vec2 t) { return 8.0F * t; })), 0, 1e-4);
+}
+
+TEST(PictureShift, IsFiniteForPicturesWithoutExtentAndForNothing) {
+    EXPECT_EQ(shift(plate([](vec2) { return vec2(0.5F); })), 0);
+    EXPECT_EQ(picture_shift({}, {}, {true}), 0);
+    const float wild = shift(plate([](vec2 t) { return vec2(1e30F * t.x * t.x, t.y); }));
+    EXPECT_TRUE(std::isfinite(wild));
+}
+
+}  // namespace
+}  // namespace surefoot::bake
