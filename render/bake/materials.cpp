@@ -104,10 +104,12 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
     }
     if (material.texture != model::none) {
         const model::Texture& t = model.textures[material.texture];
-        // The level of about 8 texels across: an average about the place, not the texel there.
+        // The level of about 8 texels across: an average about the place, not the texel there. Of what is cut out or transparent, the
+        // whole picture's mean, weighted by alpha: a leaf's corners lie where there is no leaf, and are black in most pictures.
+        const std::uint32_t across = material.alpha == model::AlphaMode::opaque ? 8 : 1;
         std::uint32_t level = 0, w = t.width, h = t.height;
         std::uint64_t at = t.first_byte;
-        while (level + 1 < t.levels && std::max(w, h) > 8) {
+        while (level + 1 < t.levels && std::max(w, h) > across) {
             at += static_cast<std::uint64_t>(w) * h * 4;
             w = std::max(1U, w / 2);
             h = std::max(1U, h / 2);
