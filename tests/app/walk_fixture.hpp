@@ -1,8 +1,10 @@
-// A small forest, baked once a test program, in a folder of its own that goes away at the end.
+// A small forest, baked once a build of the test program and copied to a folder of its own that goes away at the end.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -10,6 +12,7 @@
 
 #include "render/bake/bake.hpp"
 #include "render/model/walk_file.hpp"
+#include "rt/base/file.hpp"
 #include "rt/base/path.hpp"
 #include "tools/app/walk.hpp"
 #include "tools/scenes/scenes.hpp"
@@ -42,13 +45,33 @@ private:
         std::filesystem::create_directories(dir);
         model_file = dir + "/forest.walk";
         path_file = dir + "/forest.path.csv";
-        auto scene = scenes::generate("forest", 4, 1);
-        EXPECT_TRUE(scene.ok());
-        auto model = bake::bake(scene->scene, {}, {});
-        EXPECT_TRUE(model.ok()) << (model.ok() ? "" : model.error().text());
-        auto written = model::write_walk(model_file, *model);
-        EXPECT_TRUE(written.ok());
-        EXPECT_TRUE(write_path(path_file, scene->path).ok());
+        const std::string baked = shared_folder();
+        std::filesystem::copy_file(baked + "/forest.walk", model_file);
+        std::filesystem::copy_file(baked + "/forest.path.csv", path_file);
+    }
+    /// Every test is a process of its own, and a bake takes seconds: the first one bakes for all that run this very program.
+    static std::string shared_folder() {
+        const auto program = std::filesystem::read_symlink("/proc/self/exe");
+        const auto built = std::filesystem::last_write_time(program).time_since_epoch().count();
+        const std::string folder = program.string() + ".forest";
+        const std::string of = std::to_string(built), done = folder + "/baked-by-" + of;
+        std::filesystem::create_directories(folder);
+        const int lock = ::open((folder + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+        EXPECT_EQ(::flock(lock, LOCK_EX), 0);
+        if (!std::filesystem::exists(done)) {
+            for (const auto& old : std::filesystem::directory_iterator(folder)) {
+                if (old.path().filename().string().starts_with("baked-by-")) std::filesystem::remove(old.path());
+            }
+            auto scene = scenes::generate("forest", 4, 1);
+            EXPECT_TRUE(scene.ok());
+            auto model = bake::bake(scene->scene, {}, {});
+            EXPECT_TRUE(model.ok()) << (model.ok() ? "" : model.error().text());
+            EXPECT_TRUE(model::write_walk(folder + "/forest.walk", *model).ok());
+            EXPECT_TRUE(write_path(folder + "/forest.path.csv", scene->path).ok());
+            EXPECT_TRUE(write_text(done, "").ok());
+        }
+        ::close(lock);
+        return folder;
     }
     ~Forest() {
         std::error_code ignored;

@@ -98,8 +98,8 @@ TEST(WalkOutputs, AStoppedWalkSumsUpWhatRan) {
     std::atomic<bool> stop{false};
     Progress progress;
     progress.stop = &stop;
-    progress.report = [&](std::string_view stage, double) {
-        if (stage == "walk") stop.store(true);
+    progress.report = [&](std::string_view stage, double done) {
+        if (stage == "walk" && done > 0) stop.store(true);
     };
     auto outcome = app::run_walk(request, progress);
     ASSERT_TRUE(outcome.ok());
