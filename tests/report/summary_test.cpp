@@ -290,5 +290,13 @@ TEST(Input, IsNullForAPathAndAnObjectWithUnitsAndWordsForAVisitor) {
         << input_words(s.input);
 }
 
+TEST(Words, OfAnAccuracyAreAnAngle) {
+    EXPECT_EQ(accuracy_words(57.29577951308232), "1°");
+    EXPECT_EQ(accuracy_words(1e4), "0.34′");
+    EXPECT_EQ(accuracy_words(0.1), "over 180°");
+    EXPECT_EQ(accuracy_words(std::numeric_limits<double>::infinity()), "exact");
+    EXPECT_EQ(accuracy_words(0), "unknown");
+}
+
 }  // namespace
 }  // namespace surefoot::report

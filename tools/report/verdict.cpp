@@ -90,6 +90,7 @@ std::string accuracy_words(double accuracy) {
     if (std::isinf(accuracy)) return "exact";
     if (!(accuracy > 0)) return "unknown";
     const double degrees = 57.29577951308232 / accuracy;
+    if (degrees > 180) return "over 180°";  // an error larger than its distance: the eye is inside it
     return degrees >= 0.1 ? fmt::format("{:.2g}°", degrees) : fmt::format("{:.2g}′", degrees * 60);
 }
 
