@@ -15,10 +15,11 @@ constexpr std::int64_t ask_again_ns = 2'000'000;  // where a descriptor could no
 
 LiveDevices::LiveDevices(std::unique_ptr<Discoverer> discoverer)
     : discoverer_(std::move(discoverer)), bytes_(bytes_per_take + largest_report) {
-    open_.reserve(64);
-    told_.reserve(64);
-    watched_.reserve(64);
-    events_.reserve(1024);
+    constexpr std::size_t most_devices = 64;
+    open_.reserve(most_devices);
+    told_.reserve(most_devices);
+    watched_.reserve(most_devices + 1);
+    events_.reserve(most_devices * (max_drain + 2));
     watch();
 }
 

@@ -148,7 +148,7 @@ struct Reading {
     std::span<const std::byte> bytes;
     std::span<const std::byte> pages;
     std::array<std::span<const std::byte>, section_count> sections;
-    std::uint64_t table_hash = 0;
+    std::uint64_t model_hash = fnv_start;
 
     [[nodiscard]] Error error(std::string_view where, std::string what) const {
         return {fmt::format("{}: {}", file, where), std::move(what), "copy the file again, or bake the model again"};
@@ -179,7 +179,6 @@ Result<void> open_header(Reading& in) {
     }
     const auto table = in.bytes.last(table_size);
     if (hash_bytes(table) != table_hash) return in.error("section table", "checksum does not match: the file is damaged");
-    in.table_hash = table_hash;
     in.pages = in.bytes.subspan(header_bytes, pages_size);
 
     auto rest = in.bytes.subspan(header_bytes + pages_size, room - table_size - pages_size);
@@ -192,6 +191,7 @@ Result<void> open_header(Reading& in) {
         in.sections[i] = rest.first(size);
         rest = rest.subspan(size);
         if (hash_bytes(in.sections[i]) != hash) return in.error(section_names[i], "checksum does not match: the file is damaged");
+        if (i != rest_section) in.model_hash = fnv1a(in.model_hash, hash);
     }
     if (!rest.empty()) return in.error("section table", "bytes that belong to no section");
     return {};
@@ -338,7 +338,7 @@ Result<Model> read_walk(const std::string& file, WalkFileInfo* info) {
     if (auto valid = validate(model); !valid) {
         return Error{fmt::format("{}: {}", file, valid.error().place), valid.error().what, valid.error().remedy};
     }
-    if (info != nullptr) *info = {bytes->size(), sizes.sum(), static_cast<std::uint32_t>(pages.size()), in.table_hash};
+    if (info != nullptr) *info = {bytes->size(), sizes.sum(), static_cast<std::uint32_t>(pages.size()), in.model_hash};
     return model;
 }
 

@@ -114,7 +114,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
     candidate.pixels = seen.pixels;
     const float size = std::sqrt(seen.pixels / view.wide.viewport_pixels);
     const float importance = node.importance >= 0.0F ? std::min(node.importance, 1.0F) : 0.0F;
-    weight = {size * importance * seen.focus * motion_factor(view, distance), distance};
+    weight = {size * importance * seen.focus * motion_factor(view, distance), size * importance, distance};
 
     const auto fill = [&](Choice& choice, Index r, float error_rad) {
         const model::Representation& rep = model_.reps[r];
@@ -122,7 +122,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
         choice.rep = r;
         choice.cost = costs_.item(static_cast<float>(rep.triangles), pixels, costs_.grids[grid_of_rep_[r]]);
         choice.error_rad = error_rad;
-        choice.benefit = weight.weight * accuracy_gain(error_rad, view.pixel_angle_rad);
+        choice.benefit = benefit_of(weight.weight, accuracy_gain(error_rad, view.pixel_angle_rad), wrongness(weight.size, error_rad));
         choice.subtree_benefit = choice.benefit;
         choice.triangles = rep.triangles;
     };

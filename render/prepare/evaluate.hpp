@@ -1,6 +1,7 @@
 // One visible node seen from a region: its legal choices with cost and error, its pixels, its weight in the benefit.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,7 @@ float finest_error(const model::Model& model, const model::Node& node, float nea
 /// choices. Sources: Funkhouser's factors as Maciel 3.3.2 lists them; the accuracy factor is accuracy_gain().
 struct Weight {
     float weight = 0;
+    float size = 0;        ///< square root of the share of the view; importance in it
     float distance_m = 1;  ///< error_distance()
 };
 
@@ -48,6 +50,17 @@ inline float accuracy_gain(float error_rad, float pixel_angle_rad) {
     const float error_px = error_rad / pixel_angle_rad;
     return 0.5F * (error_px / (error_px + 8.0F) + error_px / (error_px + 256.0F));
 }
+
+/// 0..1: a form that is no picture at all, where it fills the view. An error of about its distance and more is a shape that one looks
+/// through, or that hangs before the eye: neither motion nor focus makes it less wrong. size: square root of its share of the view.
+inline float wrongness(float size, float error_rad) {
+    constexpr float begins_rad = 0.75F, full_rad = 2.0F, small = 0.2F;  // small: 1/25 of the view
+    return std::clamp((error_rad - begins_rad) / (full_rad - begins_rad), 0.0F, 1.0F) * std::min(1.0F, size / small);
+}
+
+/// The benefit, 0..1, of leaving a form: half of it weighs what is seen, the other half is for what is no picture, so that
+/// nothing finer elsewhere goes before that.
+inline float benefit_of(float weight, float gain, float wrong) { return 0.5F * weight * gain + 0.5F * wrong; }
 
 /// One number to compare costs by, before the frame's sums are known.
 inline float cost_metric(const model::FrameCombine& combine, const model::ItemCost& cost) {

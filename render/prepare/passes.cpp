@@ -51,7 +51,8 @@ void gather_up(const model::FrameCombine& combine, float pixel_angle_rad, std::s
         float least = sum.benefit;
         for (std::size_t c = choices.size(); c-- > 0;) {
             const float error_m = choices[c].error_rad * weights[i].distance_m;
-            const float gain = sum.weight.weight * accuracy_gain(error_m / sum.weight.distance_m, pixel_angle_rad);
+            const float gain = benefit_of(sum.weight.weight, accuracy_gain(error_m / sum.weight.distance_m, pixel_angle_rad),
+                                          wrongness(weights[i].size, choices[c].error_rad));  // its own: round the eye, not below
             least = std::max(least, gain);
             choices[c].subtree_benefit = least;
         }

@@ -71,9 +71,13 @@ std::string folder_of(const std::string& path) {
 /// Reads to the end into a string or vector; the size hint only saves growing (a pipe has none).
 template <class Bytes>
 Result<Bytes> read_all(const std::string& path, std::uint64_t max_bytes) {
+    struct stat info {};
+    // Opening a pipe that nobody writes to would wait for ever, and no signal would end it. A shell's <(...) has its writer.
+    if (::stat(path.c_str(), &info) == 0 && S_ISFIFO(info.st_mode) && !path.starts_with("/dev/") && !path.starts_with("/proc/")) {
+        return Error{path, "is a named pipe, not a file", "name a file"};
+    }
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.fd < 0) return system_error(path, "cannot open", errno);
-    struct stat info {};
     if (::fstat(file.fd, &info) != 0) return system_error(path, "cannot examine", errno);
     if (S_ISDIR(info.st_mode)) return Error{path, "is a folder, not a file", "name a file"};
     if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) return Error{path, "is a device, not a file", "name a file"};

@@ -20,7 +20,7 @@ public:
     /// predicted_us: uncorrected (factor 1). Pairs that are not positive and finite are ignored.
     void update(double predicted_us, double actual_us);
     [[nodiscard]] double factor() const { return factor_; }
-    /// At most the table's, which it is until 58 frames have passed.
+    /// At most the table's, which it is until 58 frames have passed and it has then fallen that far, 1 % a frame.
     [[nodiscard]] double upper(double of_table) const;
 
 private:

@@ -21,6 +21,8 @@ model::CostModel table(float submit_weight) {
     return costs;
 }
 
+FitConditions under(std::uint64_t model) { return {model, 1280, 720, "egl"}; }
+
 /// A state folder of its own with a folder for fits.
 std::string state_for(const std::string& name) {
     const std::string state = test::Forest::get().dir + "/" + name;
@@ -33,13 +35,19 @@ const std::string& model_file() { return test::Forest::get().model_file; }
 TEST(ModelCosts, a_fit_is_found_by_model_and_table) {
     const std::string state = state_for("found");
     const model::CostModel machine = table(1), fit = table(2);
-    ASSERT_TRUE(measure::write_costs(model_costs_file(state, machine, 7), fit).ok());
+    ASSERT_TRUE(measure::write_costs(model_costs_file(state, machine, under(7)), fit).ok());
     const auto weight = [&](const model::CostModel& of, std::uint64_t model) {
-        auto costs = fitted_costs(state, of, model);
+        auto costs = fitted_costs(state, of, under(model));
         return costs ? costs->combine.submit_weight : -1;
     };
     EXPECT_EQ(weight(machine, 7), 2);
     EXPECT_EQ(weight(machine, 8), 1);
+    auto smaller = fitted_costs(state, machine, {7, 640, 480, "egl"});
+    ASSERT_TRUE(smaller.ok());
+    EXPECT_EQ(smaller->combine.submit_weight, 1);
+    auto elsewhere = fitted_costs(state, machine, {7, 1280, 720, "osmesa"});
+    ASSERT_TRUE(elsewhere.ok());
+    EXPECT_EQ(elsewhere->combine.submit_weight, 1);
     EXPECT_EQ(weight(table(1.5F), 7), 1.5F);  // measured anew: the old fit is of another table
     model::CostModel built_in = machine;
     built_in.calibrated = false;
@@ -48,10 +56,10 @@ TEST(ModelCosts, a_fit_is_found_by_model_and_table) {
 
 TEST(ModelCosts, a_damaged_fit_is_an_error) {
     const std::string state = state_for("damaged");
-    const std::string fit = model_costs_file(state, table(1), 7);
+    const std::string fit = model_costs_file(state, table(1), under(7));
     ASSERT_TRUE(measure::write_costs(fit, table(2)).ok());
     std::fstream(fit, std::ios::in | std::ios::out).seekp(200).put('#');
-    auto costs = fitted_costs(state, table(1), 7);
+    auto costs = fitted_costs(state, table(1), under(7));
     ASSERT_FALSE(costs.ok());
     EXPECT_NE(costs.error().text().find(fit), std::string::npos);
 }
@@ -61,11 +69,17 @@ TEST(ModelCosts, a_file_of_a_model_has_a_hash_of_its_own) {
     auto model = model::read_walk(model_file(), &read);
     ASSERT_TRUE(model.ok());
     const std::string other = test::Forest::get().dir + "/other.walk";
-    model->sun_direction = glm::normalize(dvec3(0, 1, 0.125));
+    model->materials[0].colour[0] = 0.125F;
     ASSERT_TRUE(model::write_walk(other, *model).ok());
     ASSERT_TRUE(model::read_walk(other, &written).ok());
     EXPECT_NE(read.hash, 0U);
     EXPECT_NE(read.hash, written.hash);
+    auto again = model::read_walk(model_file());
+    ASSERT_TRUE(again.ok());
+    again->provenance.bake_s += 1;  // the same bake, slower
+    ASSERT_TRUE(model::write_walk(other, *again).ok());
+    ASSERT_TRUE(model::read_walk(other, &written).ok());
+    EXPECT_EQ(read.hash, written.hash);
 }
 
 TEST(ModelCosts, a_fit_is_nearer_to_measured_frames_than_a_table_five_times_off) {

@@ -1,5 +1,5 @@
 // Bench: with an unlimited budget the cut's picture equals full detail (`flat`): share of pixels within 1/255.
-// bench_unlimited_budget MODEL.walk [POSES 24] [PATH.csv] -> one JSON object; exit 1 below 99.9 %.
+// bench_unlimited_budget MODEL.walk [POSES 24] [PATH.csv] [LIFT_M] -> one JSON object; exit 1 below 99.9 %.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     const int poses = argc > 2 ? std::atoi(argv[2]) : 24;
     auto model = model::read_walk(argv[1]);
     if (!model) return fail(model.error());
-    auto path = app::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, 0);
+    auto path = app::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, argc > 4 ? std::atof(argv[4]) : 0);
     if (!path) return fail(path.error());
     EngineOptions options;
     options.in_frame_check = false;

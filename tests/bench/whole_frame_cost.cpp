@@ -1,5 +1,5 @@
 // Bench: predicted against measured whole-frame cost on random poses, online correction frozen at 1.
-// bench_whole_frame_cost MODEL.walk [POSES 500] [PATH.csv] [STATE_DIR] [fitted] -> one JSON object.
+// bench_whole_frame_cost MODEL.walk [POSES 500] [PATH.csv] [STATE_DIR] [fitted|table] [LIFT_M] -> one JSON object.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,19 +38,19 @@ int fail(const Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 2) return fmt::print(stderr, "bench_whole_frame_cost MODEL.walk [POSES] [PATH.csv] [STATE_DIR] [fitted]\n"), 2;
+    if (argc < 2) return fmt::print(stderr, "bench_whole_frame_cost MODEL.walk [POSES] [PATH.csv] [STATE_DIR] [fitted|table] [LIFT_M]\n"), 2;
     const int poses = argc > 2 ? std::atoi(argv[2]) : 500;
     model::WalkFileInfo info;
     auto model = model::read_walk(argv[1], &info);
     if (!model) return fail(model.error());
-    auto path = app::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, 0);
+    auto path = app::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, argc > 6 ? std::atof(argv[6]) : 0);
     if (!path) return fail(path.error());
     std::string note;
     auto costs = app::load_costs(app::state_directory(argc > 4 ? argv[4] : ""), "", note);
     if (!costs) return fail(costs.error());
     if (!note.empty()) fmt::print(stderr, "{}\n", note);
-    if (argc > 5) {  // "fitted": as `surefoot calibrate MODEL.walk` left it
-        costs = app::fitted_costs(app::state_directory(argv[4]), *costs, info.hash);
+    if (argc > 5 && std::string_view(argv[5]) == "fitted") {  // "fitted": as `surefoot calibrate MODEL.walk` left it
+        costs = app::fitted_costs(app::state_directory(argv[4]), *costs, {info.hash, 1280, 720, "egl"});
         if (!costs) return fail(costs.error());
     }
     (void)rt::prepare_memory({});

@@ -129,7 +129,7 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
     const std::string state = state_directory(request.state_dir);
     auto table = load_costs(state, "", note);
     if (!table) return table.error();
-    auto costs = fitted_costs(state, *table, model_hash);
+    auto costs = fitted_costs(state, *table, {model_hash, request.width, request.height, request.backend});
     if (!costs) return costs.error();
     auto engine = Engine::open(std::move(model), *costs, options);
     if (engine) run.machine = measure::machine_identity((*engine)->device().renderer(), request.rasterisers);

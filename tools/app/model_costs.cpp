@@ -6,6 +6,7 @@
 #include <chrono>
 #include <vector>
 
+#include "render/measure/calibrate.hpp"
 #include "render/measure/calibrate_fit.hpp"
 #include "rt/base/random.hpp"
 #include "tools/app/path_source.hpp"
@@ -73,6 +74,7 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     fit.before = errors_of(held_out, table.combine);
     fit.after = errors_of(held_out, fit.costs.combine);
     fit.frames = options.poses;
+    fit.machine = measure::machine_identity(engine.device().renderer(), options.device.rasterisers);
     fit.seconds = static_cast<double>(steady_ns(nullptr) - begun) * 1e-9;
     return fit;
 }

@@ -27,6 +27,7 @@ struct FrameErrors {
 struct ModelFit {
     model::CostModel costs;     ///< the table with `combine` and `upper_factor` of this model
     FrameErrors before, after;  ///< on the half of the frames that taught nothing
+    std::string machine;        ///< that drew it, as a table names its own
     std::uint32_t frames = 0;
     double seconds = 0;
 };

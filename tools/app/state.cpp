@@ -45,13 +45,14 @@ Result<model::CostModel> load_costs(const std::string& state_dir, const std::str
     return costs;
 }
 
-std::string model_costs_file(const std::string& state_dir, const model::CostModel& table, std::uint64_t model_hash) {
-    return fmt::format("{}/models/{:016x}-{:016x}.toml", state_dir, model_hash, measure::hash_of(table));
+std::string model_costs_file(const std::string& state_dir, const model::CostModel& table, const FitConditions& c) {
+    return fmt::format("{}/models/{:016x}-{:016x}-{}x{}-{}.toml", state_dir, c.model_hash, measure::hash_of(table), c.width, c.height,
+                       c.backend);
 }
 
-Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table, std::uint64_t model_hash) {
+Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table, const FitConditions& conditions) {
     if (!table.calibrated) return table;
-    const std::string file = model_costs_file(state_dir, table, model_hash);
+    const std::string file = model_costs_file(state_dir, table, conditions);
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return table;
     return measure::read_costs(file, table.machine);

@@ -16,10 +16,17 @@ std::string cost_table_file(const std::string& state_dir);
 /// `note` says so and how to calibrate. A damaged table is an Error.
 Result<model::CostModel> load_costs(const std::string& state_dir, const std::string& machine, std::string& note);
 
-/// Where the fit of `table` to the model whose file has `model_hash` lies: a table measured anew leaves old fits behind.
-std::string model_costs_file(const std::string& state_dir, const model::CostModel& table, std::uint64_t model_hash);
+/// What a fit to a model is valid for, beside the table that it was made from.
+struct FitConditions {
+    std::uint64_t model_hash = 0;  ///< model::WalkFileInfo::hash
+    std::uint32_t width = 0, height = 0;
+    std::string backend;
+};
 
-/// The fit to this model where there is one (`surefoot calibrate MODEL.walk`), else `table` as it is.
-Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table, std::uint64_t model_hash);
+/// Where the fit lies: a table measured anew leaves old fits behind.
+std::string model_costs_file(const std::string& state_dir, const model::CostModel& table, const FitConditions& conditions);
+
+/// The fit under these conditions where there is one (`surefoot calibrate MODEL.walk`), else `table` as it is.
+Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table, const FitConditions& conditions);
 
 }  // namespace surefoot::app

@@ -114,7 +114,7 @@ Result<void> open_session(Session& s, const Progress& progress) {
     model::WalkFileInfo file;
     auto model = model::read_walk(r.model_file, &file);
     if (!model) return model.error();
-    auto costs = fitted_costs(state_directory(r.state_dir), s.costs, file.hash);
+    auto costs = fitted_costs(state_directory(r.state_dir), s.costs, {file.hash, r.width, r.height, r.backend});
     if (!costs) return costs.error();
     s.costs = std::move(*costs);
     auto path = choose_path(r.path_file, r.model_file, *model, r.lift_m);
@@ -250,15 +250,12 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     if (s.input) s.input->begin(s.path.path, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
     PoseSource& pose_source = s.input ? s.input->poses() : static_cast<PoseSource&>(path_poses);
     std::atomic<bool> done{false};
+    std::optional<Error> misplaced;  // the frame thread's until it is joined
     std::thread frame_thread([&] {
         auto placed = s.virtual_clock
                           ? rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-frame"})
                           : rt::place_thread(0, frame_placement(s.plan));
-        s.facts.pinned = placed.ok() && !s.virtual_clock;
-        if (!placed) {
-            s.plan.fifo = false;  // the figures must say so
-            s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
-        }
+        if (!placed) misplaced = placed.error();
         rt::prefault_stack();
         WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
         s.engine->device().bind();
@@ -283,6 +280,11 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
         }
     }
     frame_thread.join();
+    s.facts.pinned = !misplaced && !s.virtual_clock;
+    if (misplaced) {
+        s.plan.fifo = false;  // the figures must say so
+        s.facts.degraded.push_back({misplaced->what, misplaced->remedy});
+    }
     if (preparing) preparing->stop();
     end_input(s);
 }

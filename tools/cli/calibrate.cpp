@@ -105,7 +105,8 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
     if (!model) return fail(model.error());
     auto path = app::choose_path(a.path, a.model, *model, a.lift_m);
     if (!path) return fail(path.error());
-    const std::string file = app::model_costs_file(dir, *table, info.hash);
+    const app::FitConditions conditions{info.hash, a.width, a.height, a.backend};
+    const std::string file = app::model_costs_file(dir, *table, conditions);
     if (auto made = make_folder(dir + "/models"); !made) return fail(made.error());
     if (auto ok = probe_writable(file); !ok) return fail(ok.error());
     auto placed = placed_as_walked();
@@ -120,6 +121,15 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
     auto fit = app::fit_to_model(std::move(*model), path->path, *table, options, terminal_progress(context));
     end_progress(context);
     if (!fit) return fail(fit.error());
+    if (fit->machine != table->machine) {
+        return fail({a.model, "was drawn on \"" + fit->machine + "\", the table was measured on \"" + table->machine + "\"",
+                     "run `surefoot calibrate` with the same backend and rasterisers first"});
+    }
+    if (fit->after.p50 > fit->before.p50) {
+        note(fmt::format("the fit is no better (held-out p50 {:.0f} %) than the table (p50 {:.0f} %): nothing was written",
+                         100 * fit->after.p50, 100 * fit->before.p50));
+        fit->costs = *table;
+    }
     if (auto written = measure::write_costs(file, fit->costs); !written) return fail(written.error());
     const model::FrameCombine& k = fit->costs.combine;
     if (a.json) {
@@ -143,7 +153,9 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
 
 int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (!a.model.empty()) return run_fit(a, context);
-    if (!a.path.empty()) return misuse({"--path " + a.path, "belongs to a model", "name the model: surefoot calibrate MODEL.walk --path P.csv"});
+    for (const auto& [given, option] : {std::pair{!a.path.empty(), "--path"}, {a.lift_m != 0, "--lift"}, {a.rate_hz != 30, "--rate"}}) {
+        if (given) return misuse({option, "belongs to a model", "name the model: surefoot calibrate MODEL.walk ..."});
+    }
     auto kind = gl::parse_backend(a.backend);
     if (!kind) return misuse(kind.error());
     const std::string dir = app::state_directory(a.state);
@@ -199,7 +211,7 @@ void add_calibrate(CLI::App& app, Context& context) {
     c->add_option("--width", a->width, "Picture width, pixels")->check(whole_number_within(16, 8192))->capture_default_str();
     c->add_option("--height", a->height, "Picture height, pixels")->check(whole_number_within(16, 8192))->capture_default_str();
     c->add_option("--plot", a->plot, "Where the plot goes (Maciel's figure 3.4 for this machine)");
-    c->add_flag("--quick", a->quick, "Under 20 s instead of under 2 minutes; a wider error");
+    c->add_flag("--quick", a->quick, "A third of the frames and fewer classes; a wider error");
     c->callback([&context, a] { context.run = [a, &context] { return run_calibrate(*a, context); }; });
 }
 
