@@ -45,7 +45,11 @@ DrawTables make_tables(const model::Model& model) {
     for (const model::Part& part : model.parts) tables.parts.push_back(make_part(model, part, tables.masks, tables.textures));
     tables.reps.reserve(model.reps.size());
     for (const model::Representation& rep : model.reps) {
-        tables.reps.push_back({rep.placement, rep.first_part, rep.part_count, rep.triangles});
+        tables.reps.push_back({rep.placement, rep.first_part, rep.part_count, rep.triangles, 0});
+    }
+    for (std::uint32_t n = 0; n < model.nodes.size(); ++n) {
+        const model::Node& node = model.nodes[n];
+        for (std::uint32_t r = node.first_rep; r < node.first_rep + node.rep_count; ++r) tables.reps[r].node = n;
     }
     tables.placements.reserve(model.placements.size());
     for (const model::Placement& placement : model.placements) {

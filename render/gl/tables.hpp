@@ -26,6 +26,7 @@ struct DrawPart {
 
 struct DrawRep {
     std::uint32_t placement, first_part, part_count, triangles;
+    std::uint32_t node;  ///< whose it is
 };
 
 struct Placed {

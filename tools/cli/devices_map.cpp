@@ -49,16 +49,18 @@ private:
 class Session {
 public:
     Session(const MapArguments& a, const Context& context, input::LiveDevices& source)
-        : context_(context), source_(source), teach_(limits(a)) {}
+        : context_(context), source_(source), limits_(limits(a)), teach_(limits_) {}
 
-    /// False: stopped.
+    /// False: stopped, or no device came and nobody is there to plug one in.
     bool run() {
         Keys keys;
+        const std::int64_t patience_ns = std::max<std::int64_t>(limits_.ask_ns, 2'000'000'000), begun_ns = monotonic_ns();
         while (teach_.phase() != Teach::Phase::done) {
             if (context_.stop->load()) {
                 end_progress(context_);
                 return false;
             }
+            if (numbers_.empty() && !context_.terminal && monotonic_ns() - begun_ns > patience_ns) return false;
             for (const DeviceEvent& e : input::poll(source_, monotonic_ns() + redraw_ns)) take(e);
             const std::size_t before = teach_.learned().size();
             if (keys.enter()) teach_.skip(monotonic_ns());
@@ -122,6 +124,7 @@ private:
     const Context& context_;
     input::LiveDevices& source_;
     LiveStates states_;
+    input::TeachLimits limits_;
     Teach teach_;
     std::map<int, int> numbers_;  ///< of the source to those of Teach
     std::string shown_;
@@ -157,7 +160,10 @@ int run_map(const MapArguments& a, const Context& context) {
     auto source = open_devices(a.device);
     if (!source) return fail(source.error());
     Session session(a, context, **source);
-    if (!session.run()) return fail({"map", "was stopped: nothing is written", ""});
+    if (!session.run()) {
+        if (context.stop->load()) return fail({"map", "was stopped: nothing is written", ""});
+        return fail({"map", "no device is there: nothing is written", "plug one in; `surefoot devices` tells why one is not taken"});
+    }
     const auto shown = session.teach().mappings();
     if (shown.empty()) return fail({"map", "no control was shown: nothing is written", "move each control as it is asked for"});
     auto steering = merged(a.file, shown);
