@@ -67,6 +67,11 @@ void PanelDevice::service(std::int64_t now_ns) {
         tell(say_, "{}: {}; tried again by itself, a stop among its lines is asserted until then", panel_name, said_);
 }
 
+void PanelDevice::open() {
+    service(0);
+    (void)panel_.take_lines();  // that the lines were closed until now is no broken wire
+}
+
 /// The steering gives the mapper back that the number had before: the first time an empty one, later the panel's other one.
 void PanelDevice::attach(Steering& steering) {
     number_ = steering.attach(std::move(mapper_), panel_.controls().size(), Reporting::on_change, known_);

@@ -28,7 +28,7 @@ public:
     PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context, Say say);
 
     /// The first try, before the input thread starts: where the lines are there, that thread opens nothing.
-    void open() { service(0); }
+    void open();
 
     struct Step {
         Lines lines;
