@@ -66,8 +66,9 @@ void LiveSource::say_if_nobody_steers(std::int64_t now_ns) {
         somebody_ = true;
     } else if (now_ns >= start_ns_ + look_for_ns) {
         somebody_ = true;
-        tell(say_, "no device is there that steers: the walk rests at its start until one is plugged in "
-                   "(`surefoot devices list` says what is there, and why it does not steer)");
+        tell(say_,
+             "no device is there that steers: the walk rests at its start until one is plugged in "
+             "(`surefoot devices list` says what is there, and why it does not steer)");
     }
 }
 
@@ -81,10 +82,10 @@ std::vector<SteeringDevice> LiveSource::devices() const {
 
 bool has_stop(const SteeringFile& steering) {
     const auto stops = [](const ButtonMapping& b) { return b.action == Action::stop; };
-    return std::any_of(steering.lines.begin(), steering.lines.end(), [](const LineConfig& l) { return l.role == LineRole::stop; }) ||
-           std::any_of(steering.devices.begin(), steering.devices.end(), [&](const DeviceMapping& m) {
-               return std::any_of(m.buttons.begin(), m.buttons.end(), stops);
-           }) ||
+    return std::any_of(steering.lines.begin(), steering.lines.end(),
+                       [](const LineConfig& l) { return l.role == LineRole::stop; }) ||
+           std::any_of(steering.devices.begin(), steering.devices.end(),
+                       [&](const DeviceMapping& m) { return std::any_of(m.buttons.begin(), m.buttons.end(), stops); }) ||
            std::any_of(steering.lines.begin(), steering.lines.end(),
                        [](const LineConfig& l) { return l.role == LineRole::button && l.name == name_of(Action::stop); });
 }

@@ -86,8 +86,7 @@ void Steering::drained(int number, std::uint32_t reports, bool lost) {
 NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const Ground& ground) {
     for (std::size_t i = 0; i < max_devices; ++i) {
         // Smoothing and settling run on between reports.
-        if (sources_[i].connected && devices_[i].ticked)
-            sources_[i].asked = ask(devices_[i].mapper, devices_[i].newest, now_ns);
+        if (sources_[i].connected && devices_[i].ticked) sources_[i].asked = ask(devices_[i].mapper, devices_[i].newest, now_ns);
     }
     const Command command = step(safety_, safety_limits_, sources_, lines, now_ns);
     for (std::size_t i = 0; i < max_devices; ++i) {

@@ -24,7 +24,7 @@ struct Discovery {
     int device = -1;  ///< found, lost
     std::shared_ptr<const PluggedDevice> plugged;
     std::unique_ptr<Readied> readied;  ///< found, where the options make one
-    HidHandle handle;  ///< found: open
+    HidHandle handle;                  ///< found: open
     Refused refused = Refused::failed;
     Error why;  ///< lost, refused
 };

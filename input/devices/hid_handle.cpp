@@ -94,8 +94,8 @@ bool HidHandle::hung_up() const {
     }
 }
 
-// hidapi takes a signal for a failure: asked again unless the device has hung up. Whether it has is asked first, too: for a device
-// that is gone hidapi makes up an error text, and the reader must not allocate.
+// hidapi takes a signal for a failure: asked again unless the device has hung up. Whether it has is asked first, too: for a
+// device that is gone hidapi makes up an error text, and the reader must not allocate.
 int HidHandle::read(std::span<std::byte> to) {
     if (fd_ >= 0 && hung_up()) return -1;
     int n = -1;

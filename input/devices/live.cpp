@@ -17,7 +17,9 @@ constexpr std::size_t most_events = most_reports + 4 * most_devices;  // each of
 }  // namespace
 
 LiveDevices::LiveDevices(std::unique_ptr<Discoverer> discoverer)
-    : discoverer_(std::move(discoverer)), bytes_(bytes_per_take + largest_report), unplugged_{"", "was unplugged, or cannot be read any more", ""} {
+    : discoverer_(std::move(discoverer)),
+      bytes_(bytes_per_take + largest_report),
+      unplugged_{"", "was unplugged, or cannot be read any more", ""} {
     open_.reserve(most_devices);
     told_.reserve(2 * most_devices);
     others_.reserve(most_others);

@@ -1,4 +1,5 @@
-// The panel at work in a walk: its switches as Lines, its buttons and encoders as a device of the steering, its troubles said once.
+// The panel at work in a walk: its switches as Lines, its buttons and encoders as a device of the steering, its troubles said
+// once.
 #pragma once
 
 #include <cstdint>

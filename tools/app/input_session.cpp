@@ -66,8 +66,8 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
 
 void InputSession::begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement) {
     visit_ = std::make_unique<Visit>(path);
-    stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *visit_, samples_, places_,
-                                              live_ ? live_->keeper() : nullptr);
+    stepper_ =
+        std::make_unique<InputStepper>(*source_, *steering_, *visit_, samples_, places_, live_ ? live_->keeper() : nullptr);
     poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get());
     stepper_->begin(start_ns);
     if (real_clock) thread_ = std::make_unique<InputThread>(*stepper_, placement);

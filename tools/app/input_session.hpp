@@ -24,7 +24,8 @@ constexpr double after_recording_s = 1.0;
 /// The source is a recording, or live devices.
 class InputSession {
 public:
-    /// Reads the steering file and the recording, or looks for devices from now on; errors name file and line. `notes`: what else the user should know.
+    /// Reads the steering file and the recording, or looks for devices from now on; errors name file and line. `notes`: what else
+    /// the user should know.
     static Result<std::unique_ptr<InputSession>> open(const WalkRequest& request, std::int64_t period_ns,
                                                       std::vector<std::string>& notes);
 

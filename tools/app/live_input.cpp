@@ -30,7 +30,8 @@ Result<void> check_memory(const std::string& file, bool latched) {
 
 }  // namespace
 
-Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::SteeringFile& steering, std::vector<std::string>& notes) {
+Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::SteeringFile& steering,
+                                  std::vector<std::string>& notes) {
     LiveInput live;
     if (input::has_stop(steering)) {
         const std::string file = stop_file(state_directory(request.state_dir));
@@ -40,8 +41,9 @@ Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::Steer
         if (auto ok = check_memory(file, live.stop_latched_); !ok) return ok.error();
         live.keeper_ = std::make_unique<input::StopKeeper>(file, live.stop_latched_);
         if (live.stop_latched_)
-            notes.push_back(file + ": the emergency stop of an earlier walk is still latched: press what does `stop_reset`, or start "
-                                   "with --clear-stop");
+            notes.push_back(file +
+                            ": the emergency stop of an earlier walk is still latched: press what does `stop_reset`, or start "
+                            "with --clear-stop");
         else if (remembered.latched)
             notes.push_back(file + ": the emergency stop of an earlier walk is taken off, as --clear-stop asks");
     } else if (request.clear_stop) {

@@ -17,7 +17,8 @@ class LiveInput {
 public:
     /// Looks for devices from now on, and recalls the stop where one is configured. Errors: no udev; a state folder in which
     /// the stop cannot be remembered. `notes`: what else the user should know.
-    static Result<LiveInput> open(const WalkRequest& request, const input::SteeringFile& steering, std::vector<std::string>& notes);
+    static Result<LiveInput> open(const WalkRequest& request, const input::SteeringFile& steering,
+                                  std::vector<std::string>& notes);
 
     [[nodiscard]] bool stop_latched() const { return stop_latched_; }
     /// Once, for the stepper; it stays valid while the source lives.

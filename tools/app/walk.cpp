@@ -189,9 +189,9 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
                                                  : std::max(1.0, std::round(seconds / period_s));
     if (!(frames <= static_cast<double>(most_frames))) {
         const bool asked = s.request.frames > 0 || s.request.seconds > 0 || s.request.control;
-        return Error{asked     ? "walk"
+        return Error{asked      ? "walk"
                      : recorded ? s.request.input_file
-                               : s.path.source,
+                                : s.path.source,
                      fmt::format("would take {:.4g} frames; at most {} are kept ({:.0f} hours at this rate)", frames, most_frames,
                                  static_cast<double>(most_frames) * period_s / 3600.0),
                      "give a smaller --frames or --seconds"};

@@ -20,12 +20,12 @@ constexpr std::string_view live_input = "devices";
 /// What one walk is asked for; 0 or empty means the default that is said here.
 struct WalkRequest {
     std::string model_file;
-    std::string config_file;  ///< where settings came from: not to be written over; may be empty
-    std::string path_file;    ///< empty: beside the model, else a generated tour
-    std::string input_file;   ///< a recording that steers, or live_input; empty: the path is followed
+    std::string config_file;    ///< where settings came from: not to be written over; may be empty
+    std::string path_file;      ///< empty: beside the model, else a generated tour
+    std::string input_file;     ///< a recording that steers, or live_input; empty: the path is followed
     std::string steering_file;  ///< how it steers; empty: the default of the device's class
-    bool clear_stop = false;  ///< live: take off a stop that an earlier walk has left latched
-    std::string state_dir;    ///< empty: see state_directory()
+    bool clear_stop = false;    ///< live: take off a stop that an earlier walk has left latched
+    std::string state_dir;      ///< empty: see state_directory()
     std::string selector = "two-stage", late = "lock", backend = "egl", clock = "real";
     double lift_m = 0;  ///< added to the path's heights
     double rate_hz = 30;

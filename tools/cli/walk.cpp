@@ -49,8 +49,7 @@ Result<void> check_together(const app::WalkRequest& r, bool every_given, bool ca
     if (live && is_virtual)
         return Error{"--input devices", "steer in real time, which --clock virtual has not got",
                      "leave out --clock virtual, or give a recording (`surefoot devices record`)"};
-    if (r.clear_stop && !live)
-        return Error{"--clear-stop", "is for devices, and none steers", "add --input devices"};
+    if (r.clear_stop && !live) return Error{"--clear-stop", "is for devices, and none steers", "add --input devices"};
     if (r.control && !r.input_file.empty())
         return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
     if (every_given && r.snap_dir.empty())
@@ -185,7 +184,8 @@ void add_walk(CLI::App& app, Context& context) {
     c->add_option("--lift", r.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")
         ->check(number_within(-1e7, 1e7, "m"))
         ->capture_default_str();
-    c->add_option("--frames", r.frames, "Frames to walk (else --seconds, else the recording and a second, else as long as the path)")
+    c->add_option("--frames", r.frames,
+                  "Frames to walk (else --seconds, else the recording and a second, else as long as the path)")
         ->check(whole_number_within(1, 4'000'000));
     c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")
         ->check(number_within(0.001, 1e6, "s"));

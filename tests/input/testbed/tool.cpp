@@ -8,33 +8,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <fstream>
 #include <sstream>
 
 #include "tests/input/testbed/testbed.hpp"
 
 namespace surefoot::input::test {
-
-namespace {
-
-/// A limit on waiting that runs on by at most 100 ms a look: whoever was stopped in between, this process or the machine, has as
-/// much patience as before.
-class Patience {
-public:
-    explicit Patience(int ms) : left_ns_(ms * std::int64_t{1'000'000}) {}
-    bool over() {
-        const std::int64_t now = now_ns();
-        left_ns_ -= std::min<std::int64_t>(now - looked_ns_, 100'000'000);
-        looked_ns_ = now;
-        return left_ns_ < 0;
-    }
-
-private:
-    std::int64_t left_ns_, looked_ns_ = now_ns();
-};
-
-}  // namespace
 
 int Tool::instances_ = 0;
 
