@@ -63,6 +63,12 @@ Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::Steer
 void LiveInput::attend(const Progress& progress, std::vector<std::string>& notes) {
     for (input::NoteLine note; live_->next_note(note);) say(progress, notes, std::string(note.view()));
     if (!keeper_) return;
+    if (const bool latched = keeper_->latched(); latched != stop_latched_) {
+        stop_latched_ = latched;
+        say(progress, notes,
+            latched ? "emergency stop: the walk stands still until what does `stop_reset` is pressed"
+                    : "emergency stop: taken off");
+    }
     const auto written = keeper_->flush();
     const std::string why = written ? std::string() : written.error().text();
     if (why != unwritten_ && !why.empty()) say(progress, notes, "the emergency stop's memory: " + why);

@@ -37,7 +37,7 @@ private:
     input::LiveSource* live_ = nullptr;
     std::unique_ptr<input::StopKeeper> keeper_;
     std::string unwritten_;  ///< why the stop could not be written, as it was said
-    bool stop_latched_ = false;
+    bool stop_latched_ = false;  ///< as it was said last
 };
 
 }  // namespace surefoot::app
