@@ -24,6 +24,7 @@ class StopKeeper {
 public:
     StopKeeper(std::string file, bool latched) : file_(std::move(file)), latched_(latched), written_(latched) {}
     void set(bool latched) noexcept { latched_.store(latched, std::memory_order_relaxed); }
+    [[nodiscard]] bool latched() const noexcept { return latched_.load(std::memory_order_relaxed); }
     /// Call every few milliseconds from a service thread. A failed write is tried again at the next call.
     Result<void> flush();
 

@@ -106,7 +106,7 @@ TEST(ModelCosts, stopping_a_fit_is_an_error) {
     auto model = model::read_walk(model_file());
     ASSERT_TRUE(model.ok());
     const std::atomic<bool> stop{true};
-    auto fit = fit_to_model(std::move(*model), Path{{PathSample{}}}, table(1), {}, {{}, &stop});
+    auto fit = fit_to_model(std::move(*model), Path{{PathSample{}}}, table(1), {}, {.report = {}, .stop = &stop, .note = {}});
     ASSERT_FALSE(fit.ok());
 }
 

@@ -13,13 +13,14 @@ namespace surefoot::app {
 
 /// Cores and priorities of one session, worked out from the request and the machine.
 struct PlacingPlan {
-    bool fifo = false;               ///< asked for and granted
+    bool fifo = false;  ///< asked for and granted
     int frame_core = 0;
     rt::CpuMask all;
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
     bool input = false;                        ///< an input thread steers
+    bool devices = false;                      ///< and another one finds its devices
     std::vector<std::string> driver_prefixes;  ///< the driver's rasterisers
-    int rasterisers = 0;             ///< how many were found
+    int rasterisers = 0;                       ///< how many were found
 };
 
 /// The frame thread gets the last allowed core unless the request names one.

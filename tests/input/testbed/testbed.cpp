@@ -9,6 +9,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -42,6 +43,36 @@ void override_modes(bool on) {
 }
 
 }  // namespace
+
+namespace {
+constexpr std::int64_t nap_ns = 5'000'000, usual_ns = 20'000'000;  // a nap that took longer was a hold-up
+std::int64_t held_up_since(std::int64_t beat_ns) {
+    const std::int64_t gap = now_ns() - beat_ns;
+    return gap > usual_ns ? gap - nap_ns : 0;
+}
+}  // namespace
+
+HoldUps::HoldUps()
+    : beat_ns_(now_ns()), thread_([this] {
+          while (!stopping_.load()) {
+              beat_ns_.store(now_ns());
+              usleep(nap_ns / 1000);
+              ns_ += held_up_since(beat_ns_.load());
+          }
+      }) {}
+double HoldUps::ms() const { return static_cast<double>(ns_.load() + held_up_since(beat_ns_.load())) * 1e-6; }
+HoldUps::~HoldUps() {
+    stopping_.store(true);
+    thread_.join();
+}
+
+Patience::Patience(int ms) : left_ns_(ms * std::int64_t{1'000'000}), looked_ns_(now_ns()) {}
+bool Patience::over() {
+    const std::int64_t now = now_ns();
+    left_ns_ -= std::min<std::int64_t>(now - looked_ns_, 100'000'000);
+    looked_ns_ = now;
+    return left_ns_ < 0;
+}
 
 Testbed::Testbed() : bed_(umockdev_testbed_new()) {
     gchar* root = umockdev_testbed_get_root_dir(bed_);
@@ -145,12 +176,12 @@ void Watcher::take(std::span<const DeviceEvent> events) {
 }
 
 const Watcher::Seen* Watcher::next(DeviceEvent::Kind kind, int within_ms) {
-    const std::int64_t end = now_ns() + within_ms * std::int64_t{1'000'000};
+    Patience patience(within_ms);
     for (;;) {
         for (; looked_at_ < seen.size(); ++looked_at_)
             if (seen[looked_at_].event.kind == kind) return &seen[looked_at_++];
-        if (now_ns() >= end) return nullptr;
-        take(poll(source_, end));
+        if (patience.over()) return nullptr;
+        take(poll(source_, now_ns() + 50'000'000));
     }
 }
 

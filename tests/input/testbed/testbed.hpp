@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 #include <umockdev.h>
 
+#include <atomic>
 #include <deque>
 #include <set>
 #include <string>
+#include <thread>
 
 #include "input/devices/live.hpp"
 #include "tests/input/hid_test.hpp"
@@ -33,6 +35,32 @@ struct Facts {
     bool readable = true;
 };
 
+/// Counts how long this process has stood still though it wanted to run: stopped, or its machine was. Limits on time are for the
+/// rest.
+class HoldUps {
+public:
+    HoldUps();
+    ~HoldUps();
+    HoldUps(const HoldUps&) = delete;
+    HoldUps& operator=(const HoldUps&) = delete;
+    [[nodiscard]] double ms() const;
+
+private:
+    std::atomic<std::int64_t> ns_{0}, beat_ns_{0};
+    std::atomic<bool> stopping_{false};
+    std::thread thread_;
+};
+
+/// A limit on waiting that runs on by at most 100 ms a look: whoever was stopped in between has as much patience as before.
+class Patience {
+public:
+    explicit Patience(int ms);
+    bool over();
+
+private:
+    std::int64_t left_ns_, looked_ns_;
+};
+
 class Testbed {
 public:
     Testbed();
@@ -52,8 +80,10 @@ public:
     void permit(const Plug& plug, bool tell = true);
 
     [[nodiscard]] const std::string& root() const { return root_; }
+    [[nodiscard]] double held_up_ms() const { return hold_ups_.ms(); }
 
 private:
+    HoldUps hold_ups_;
     UMockdevTestbed* bed_;
     std::string root_;
     std::set<std::string> answering_;

@@ -15,9 +15,11 @@
 
 namespace surefoot::input::test {
 
-Tool::Tool(const std::vector<std::string>& arguments, bool terminal) {
-    err_file_ = testing::TempDir() + "/tool-" + std::to_string(getpid()) + ".err";
-    std::vector<std::string> words = {SUREFOOT_TOOL, "devices"};
+int Tool::instances_ = 0;
+
+Tool::Tool(const std::vector<std::string>& arguments, bool terminal, const std::string& command) {
+    err_file_ = testing::TempDir() + "/tool-" + std::to_string(getpid()) + "-" + std::to_string(++instances_) + ".err";
+    std::vector<std::string> words = {SUREFOOT_TOOL, command};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
@@ -70,9 +72,10 @@ bool Tool::read_some(int within_ms) {
 }
 
 bool Tool::until(const std::string& text, int within_ms) {
-    const std::int64_t end = now_ns() + within_ms * std::int64_t{1'000'000};
+    Patience patience(within_ms);
     while (out_.find(text) == std::string::npos && err().find(text) == std::string::npos)
-        if (now_ns() > end || !read_some(20)) return out_.find(text) != std::string::npos;
+        if (patience.over() || !read_some(20))
+            return out_.find(text) != std::string::npos || err().find(text) != std::string::npos;
     return true;
 }
 
@@ -81,13 +84,13 @@ void Tool::key(const std::string& text) { EXPECT_EQ(write(in_, text.data(), text
 void Tool::signal(int number) { kill(pid_, number); }
 
 int Tool::wait(int within_ms) {
-    const std::int64_t end = now_ns() + within_ms * std::int64_t{1'000'000};
+    Patience patience(within_ms);
     bool open = true;
     int status = 0;
     for (;;) {
         const pid_t done = waitpid(pid_, &status, WNOHANG);
         if (done == pid_) break;
-        if (now_ns() > end) return -1;
+        if (patience.over()) return -1;
         if (open)
             open = read_some(20);
         else
