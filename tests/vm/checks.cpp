@@ -15,7 +15,7 @@ namespace surefoot::vm {
 
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string as_json(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') out += '\\';
@@ -39,8 +39,8 @@ void Checks::write(std::string_view name, std::string_view verdict, std::string_
     std::printf("[ %-7s ] %-34s %.*s\n", std::string(verdict).c_str(), line.c_str(), static_cast<int>(detail.size()), detail.data());
     std::fflush(stdout);
     if (file_ == nullptr) return;
-    const std::string object = "{\"check\": " + quoted(line) + ", \"verdict\": " + quoted(verdict == "FAIL" ? "fail" : verdict) +
-                               ", \"detail\": " + quoted(detail) + "}\n";
+    const std::string object = "{\"check\": " + as_json(line) + ", \"verdict\": " + as_json(verdict == "FAIL" ? "fail" : verdict) +
+                               ", \"detail\": " + as_json(detail) + "}\n";
     std::fputs(object.c_str(), file_);
     std::fflush(file_);
 }

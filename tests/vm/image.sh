@@ -4,7 +4,7 @@
 #   root.img    Debian 12 with udev and the libraries that the tool needs
 #   trixie/     Debian 13 with a compiler and libgpiod 2: its programs are built here, in a chroot
 #   trixie.img  the same as a disk
-#   initrd.gz   finds the disk and goes there
+#   initrd.gz   finds the disk and the shared folder, and starts guest-init there
 # Each is made under another name and moved into place whole, so an interrupted run leaves nothing half made.
 # shellcheck shell=bash
 
@@ -15,7 +15,7 @@ guest_packages=(
 )
 trixie_packages=(g++ libc6-dev libfmt-dev libglm-dev libtomlplusplus-dev libgpiod-dev)
 # What the initrd needs to see the disks and the shared folder; with what each depends on.
-initrd_modules=(virtio_pci virtio_blk ext4)
+initrd_modules=(virtio_pci virtio_blk ext4 9pnet_virtio 9p)
 
 # moved NAME: what was made as $cache/NAME.part is $cache/NAME.
 moved() { rm -rf "${cache:?}/$1"; mv "$cache/$1.part" "$cache/$1"; }
@@ -76,7 +76,7 @@ make_root() {
   rm -rf "$to"/var/cache/apt/archives/*.deb "$to"/usr/share/{doc,locale,man}/*
   mkdir -p "$to/surefoot" "$to/trixie"
   cp -r "$cache/kernel/lib/modules" "$to/lib/"
-  mke2fs -q -t ext4 -O ^has_journal -d "$to" "$(part root.img)" 1500M || return 1
+  mke2fs -q -t ext4 -O ^has_journal -d "$to" "$(part root.img)" 1500M >>"$cache/root.log" 2>&1 || return 1
   rm -rf "$to"
   moved root.img
 }
@@ -88,7 +88,7 @@ make_trixie() {
     { tail -5 "$cache/trixie.log" >&2; return 1; }
   rm -rf "$to"/var/cache/apt/archives/*.deb "$to"/usr/share/{doc,locale,man}/*
   mkdir -p "$to/surefoot"
-  mke2fs -q -t ext4 -O ^has_journal -d "$to" "$(part trixie.img)" 2000M || return 1
+  mke2fs -q -t ext4 -O ^has_journal -d "$to" "$(part trixie.img)" 2000M >>"$cache/trixie.log" 2>&1 || return 1
   moved trixie.img
   moved trixie
 }
@@ -105,15 +105,16 @@ make_initrd() {
   sed -i 's#.*/##' "$to/modules/order"
   cat >"$to/init" <<'INIT'
 #!/bin/busybox sh
-# Finds the disk and goes there.
+# Finds the disk and the shared folder, and starts what is in there.
 /bin/busybox --install -s /bin
 mount -t proc proc /proc; mount -t sysfs sysfs /sys; mount -t devtmpfs dev /dev
 while read -r module; do insmod "/modules/$module"; done </modules/order
 tries=0
 while [ ! -b /dev/vda ] && [ $tries -lt 50 ]; do sleep 0.1; tries=$((tries + 1)); done
 mount -t ext4 /dev/vda /root || { echo "guest: no root disk"; poweroff -f; }
+mount -t 9p -o trans=virtio,version=9p2000.L,msize=262144 share /root/surefoot || { echo "guest: no shared folder"; poweroff -f; }
 mount --move /dev /root/dev; mount --move /proc /root/proc; mount --move /sys /root/sys
-exec switch_root /root /bin/bash /surefoot-init
+exec switch_root /root /bin/bash /surefoot/in/guest-init
 INIT
   chmod +x "$to/init"
   (cd "$to" && find . | cpio -o -H newc --quiet | gzip -1) >"$(part initrd.gz)" || return 1
