@@ -12,20 +12,19 @@ bool free_again(const Source& source) { return !source.connected && !source.aske
 }  // namespace
 
 Steering::Steering(const MotionLimits& motion, const SafetyLimits& safety, bool stop_latched)
-    : motion_limits_(motion), safety_limits_(safety) {
+    : motion_limits_(motion), safety_limits_(safety), devices_(max_devices) {
     safety_.latched = stop_latched;
 }
 
-int Steering::attach(Mapper mapper, std::size_t controls, Reporting reporting, int again) {
+int Steering::attach(Mapper&& mapper, std::size_t controls, Reporting reporting, int again) {
     std::size_t at = 0;
-    if (again >= 0 && static_cast<std::size_t>(again) < max_devices)
+    if (again >= 0 && static_cast<std::size_t>(again) < max_devices && !sources_[static_cast<std::size_t>(again)].connected)
         at = static_cast<std::size_t>(again);
     else
-        while (at < max_devices && devices_[at] && !free_again(sources_[at])) ++at;
+        while (at < max_devices && !free_again(sources_[at])) ++at;
     if (at == max_devices) return -1;
-    if (!devices_[at]) devices_[at] = std::make_unique<Device>();
-    Device& device = *devices_[at];
-    device.mapper = std::move(mapper);
+    Device& device = devices_[at];
+    std::swap(device.mapper, mapper);
     forget(device.mapper);
     device.controls = std::min(controls, max_controls);
     device.newest = {};
@@ -58,8 +57,8 @@ void Steering::ended(int device) {
 void Steering::report(int number, const DeviceState& state, std::int64_t now_ns) {
     const auto at = static_cast<std::size_t>(number);
     Source& source = sources_[at];
-    if (!source.connected || !devices_[at]) return;
-    Device& device = *devices_[at];
+    if (!source.connected) return;
+    Device& device = devices_[at];
     const auto end = state.value.begin() + static_cast<std::ptrdiff_t>(device.controls);
     const bool equal = source.reports > 0 && state.has_value == device.newest.has_value &&
                        std::equal(state.value.begin(), end, device.newest.value.begin());
@@ -87,22 +86,21 @@ void Steering::drained(int number, std::uint32_t reports, bool lost) {
 NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const Ground& ground) {
     for (std::size_t i = 0; i < max_devices; ++i) {
         // Smoothing and settling run on between reports.
-        if (sources_[i].connected && devices_[i]->ticked)
-            sources_[i].asked = ask(devices_[i]->mapper, devices_[i]->newest, now_ns);
+        if (sources_[i].connected && devices_[i].ticked)
+            sources_[i].asked = ask(devices_[i].mapper, devices_[i].newest, now_ns);
     }
     const Command command = step(safety_, safety_limits_, sources_, lines, now_ns);
     for (std::size_t i = 0; i < max_devices; ++i) {
         sources_[i].equal_report = sources_[i].seen_neutral = sources_[i].lost = false;
         sources_[i].drained = 0;
-        if (devices_[i]) devices_[i]->ticked = true;
+        devices_[i].ticked = true;
     }
     return surefoot::input::step(motion_, motion_limits_, command, now_ns, ground);
 }
 
 double Steering::worst_lag_s() const {
     double mapping = 0;
-    for (const auto& device : devices_)
-        if (device) mapping = std::max(mapping, mapping_lag_s(device->mapper));
+    for (const Device& device : devices_) mapping = std::max(mapping, mapping_lag_s(device.mapper));
     return mapping + input::worst_lag_s(motion_limits_.filter);
 }
 

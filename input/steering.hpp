@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <vector>
 
 #include "input/controls.hpp"
 #include "input/map/mapper.hpp"
@@ -11,7 +11,7 @@
 
 namespace surefoot::input {
 
-/// One thread. attach() and detach() allocate; report(), drained() and tick() do not, nor lock, nor read a clock.
+/// One thread. After the constructor nothing allocates, frees, locks or reads a clock.
 ///
 ///   each wake-up:  for each readable device: read until nothing is left, report() each, then drained()
 ///                  then tick(): publish what it returns
@@ -21,8 +21,9 @@ public:
 
     /// A device came; its number, or -1 when max_devices are there. It asks for nothing until seen neutral. A device that comes
     /// back must get its number again (`again`) if it carries a stop or a dead-man: while it is away these hold the walk, and
-    /// its number is not given to another.
-    int attach(Mapper mapper, std::size_t controls, Reporting reporting, int again = -1);
+    /// its number is not given to another. `mapper` is exchanged for the one that had the number before: whoever must not free
+    /// memory keeps it.
+    int attach(Mapper&& mapper, std::size_t controls, Reporting reporting, int again = -1);
     /// Unplugged, or its reader failed.
     void detach(int device);
 
@@ -39,7 +40,7 @@ public:
     bool place(const Pose& pose) { return surefoot::input::place(motion_, pose); }
     [[nodiscard]] const SafetyState& safety() const { return safety_; }
     [[nodiscard]] const MotionState& motion() const { return motion_; }
-    [[nodiscard]] const Mapper& mapper(int device) const { return devices_[static_cast<std::size_t>(device)]->mapper; }
+    [[nodiscard]] const Mapper& mapper(int device) const { return devices_[static_cast<std::size_t>(device)].mapper; }
     /// Largest lag of mapping and filter together, seconds; limits of speed and acceleration are not counted.
     [[nodiscard]] double worst_lag_s() const;
 
@@ -54,7 +55,7 @@ private:
     SafetyLimits safety_limits_;
     MotionState motion_;
     SafetyState safety_;
-    std::array<std::unique_ptr<Device>, max_devices> devices_;
+    std::vector<Device> devices_;  ///< max_devices of them
     std::array<Source, max_devices> sources_{};
 };
 

@@ -81,6 +81,19 @@ expect 1 '^surefoot: other.toml: .*button-55' walk f.walk $virtual --input stopp
 expect 1 '^surefoot: --ledger .*reads' walk f.walk $virtual --input buttons.hid --ledger buttons.hid
 expect 2 '^surefoot: --steering.*--input' walk f.walk $virtual --steering stop.toml
 expect 2 '^surefoot: --control.*--input' walk f.walk --input buttons.hid --control
+
+# Live devices: the real clock only; a file of that name is ./devices.
+expect 2 '^surefoot: --input devices: .*virtual' walk f.walk $virtual --input devices
+expect 2 '^surefoot: --clear-stop.*--input devices' walk f.walk $virtual --clear-stop
+expect 1 '^surefoot: --clear-stop.*stop' walk f.walk --backend null --input devices --clear-stop
+cp walk-and-turn.hid devices; walk ./devices; says '"source":"./devices"'
+printf '[[gpio]]\nname = "ESTOP"\nrole = "stop"\nchip = "gpiochip99"\nline = "0"\n' >panel.toml
+"$surefoot" walk f.walk --backend null --no-fifo --input devices --steering panel.toml --state live --seconds 1.5 --json >out 2>err ||
+  complain "a missing chip is a failure: $(head -c 300 err)"
+[ "$(grep -c 'gpiochip99: cannot open the chip' err)" -eq 1 ] || complain "a missing chip is not said once: $(head -c 600 err)"
+says '"frames":4[0-9],'; says '"stop_latched":true'
+grep -q latched live/emergency-stop || complain "the stop of a missing chip is not remembered"
+printf x >notdir; expect 1 'notdir.*--state' walk f.walk --backend null --input devices --steering panel.toml --state notdir/x --seconds 1
 "$surefoot" walk --help >out 2>err; grep -q -- '--input pad.hid' out || complain "the help has no example with --input"
 
 [ $failures -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -1,11 +1,15 @@
 // The attendant.
 #include "input/devices/attendant.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace surefoot::input {
+
+namespace {
+
+constexpr std::size_t most_met = 64;
+
+}  // namespace
 
 Wanted wanted_by(std::vector<DeviceMapping> mappings) {
     return [mappings = std::move(mappings)](const PluggedDevice& p) {
@@ -17,13 +21,31 @@ Wanted wanted_by(std::vector<DeviceMapping> mappings) {
 
 DeviceIdentity identity_for_mapping(const PluggedDevice& p) { return {p.vendor, p.product, p.name, p.device.device_class}; }
 
-Attendant::Attendant(std::vector<DeviceMapping> mappings, Steering& steering, Say say)
-    : mappings_(std::move(mappings)), steering_(steering), say_(std::move(say)) {}
+std::unique_ptr<ReadyDevice> make_ready(std::span<const DeviceMapping> mappings, const PluggedDevice& p) {
+    const DeviceMapping* configured = find_mapping(mappings, identity_for_mapping(p));
+    const DeviceMapping mapping = configured != nullptr ? *configured : default_mapping(p.device.controls, p.device.device_class);
+    auto ready = std::make_unique<ReadyDevice>(p.device);
+    ready->mapper = compile_what_fits(mapping, p.device.controls);
+    ready->reporting = mapping.reporting;
+    ready->state.connected = true;
+    ready->identity = p.identity();
+    ready->mapping = mapping.name;
+    ready->met = {ready->identity, {p.name, class_name(p.device.device_class), mapping.name}};
+    return ready;
+}
 
-Attendant::Device* Attendant::find(int device) {
-    const auto found = std::find_if(devices_.begin(), devices_.end(),
-                                    [&](const std::unique_ptr<Device>& d) { return d->attended.device == device; });
-    return found == devices_.end() ? nullptr : found->get();
+std::function<std::unique_ptr<Readied>(const PluggedDevice&)> readier(std::vector<DeviceMapping> mappings) {
+    return [mappings = std::move(mappings)](const PluggedDevice& p) { return make_ready(mappings, p); };
+}
+
+Attendant::Attendant(std::vector<DeviceMapping> mappings, Steering& steering, Say say)
+    : mappings_(std::move(mappings)), steering_(steering), say_(std::move(say)) {
+    met_.reserve(most_met);
+}
+
+Attendant::Slot* Attendant::find(int device) {
+    const auto found = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.device == device; });
+    return found == slots_.end() ? nullptr : &*found;
 }
 
 void Attendant::attend(const DeviceEvent& e) {
@@ -33,58 +55,82 @@ void Attendant::attend(const DeviceEvent& e) {
         case DeviceEvent::Kind::removed:
             return removed(e);
         case DeviceEvent::Kind::refused:
-            return say(e.why->text());
+            return tell(say_, *e.why);
         case DeviceEvent::Kind::report:
-            if (Device* d = find(e.device)) {
-                if (d->decoder.decode(e.bytes, e.stamp_ns, d->state) == ReportFate::accepted) {
+            if (const Slot* s = find(e.device)) {
+                if (s->ready->decoder.decode(e.bytes, e.stamp_ns, s->ready->state) == ReportFate::accepted) {
                     ++accepted_reports_;
-                    steering_.report(d->attended.steering, d->state, e.stamp_ns);
+                    steering_.report(s->steering, s->ready->state, e.stamp_ns);
                 } else {
                     ++refused_reports_;
                 }
             }
             return;
         case DeviceEvent::Kind::drained:
-            if (const Device* d = find(e.device)) steering_.drained(d->attended.steering, e.reports);
+            if (const Slot* s = find(e.device)) steering_.drained(s->steering, e.reports);
             return;
     }
 }
 
+/// The number that this device had, if nobody has it now; else -1.
+int Attendant::number_before(const std::string& identity) const {
+    for (std::size_t i = 0; i < identities_.size(); ++i) {
+        const int number = static_cast<int>(i);
+        const auto has_it = [&](const Slot& s) { return s.device >= 0 && s.steering == number; };
+        if (identities_[i] == identity && std::none_of(slots_.begin(), slots_.end(), has_it)) return number;
+    }
+    return -1;
+}
+
+void Attendant::meet(ReadyDevice& device) {
+    ++pluggings_;
+    const auto same = [&](const MetDevice& m) { return m.identity == device.identity && m.words.mapping == device.mapping; };
+    if (met_.size() == most_met || std::any_of(met_.begin(), met_.end(), same)) return;
+    met_.push_back(std::move(device.met));
+}
+
 void Attendant::added(const DeviceEvent& e) {
     const PluggedDevice& p = *e.plugged;
-    const DeviceMapping* configured = find_mapping(mappings_, identity_for_mapping(p));
-    const DeviceMapping mapping = configured != nullptr ? *configured : default_mapping(p.device.controls, p.device.device_class);
-    Mapper mapper = compile_what_fits(mapping, p.device.controls);
-    for (const std::string& note : mapper.notes) say(fmt::format("{} ({}): {}", p.node, p.name, note));
-    const std::string identity = p.identity();
-    int again = -1;
-    if (const auto known = numbers_.find(identity); known != numbers_.end()) {
-        const bool taken = std::any_of(devices_.begin(), devices_.end(),
-                                       [&](const std::unique_ptr<Device>& d) { return d->attended.steering == known->second; });
-        if (!taken) again = known->second;
+    std::unique_ptr<ReadyDevice> own;
+    auto* ready = static_cast<ReadyDevice*>(e.readied);
+    if (ready == nullptr) {
+        own = make_ready(mappings_, p);
+        ready = own.get();
     }
-    const int number = steering_.attach(std::move(mapper), p.device.controls.size(), mapping.reporting, again);
-    if (number < 0) return say(fmt::format("{} ({}): {} devices steer already; unplug one", p.node, p.name, max_devices));
-    std::erase_if(numbers_, [&](const auto& known) { return known.second == number; });
-    numbers_[identity] = number;
-    auto device = std::make_unique<Device>(p.device);
-    device->attended = {e.device, number, mapping.name, e.plugged};
-    device->state.connected = true;
-    say(fmt::format("{} ({}): steers, by the mapping \"{}\"", p.node, p.name, mapping.name));
-    devices_.push_back(std::move(device));
+    for (const std::string& note : ready->mapper.notes) tell(say_, "{} ({}): {}", p.node, p.name, note);
+    Slot* slot = find(-1);
+    const int number = slot == nullptr ? -1
+                                       : steering_.attach(std::move(ready->mapper), p.device.controls.size(), ready->reporting,
+                                                          number_before(ready->identity));
+    if (number < 0) return tell(say_, "{} ({}): {} devices steer already; unplug one", p.node, p.name, max_devices);
+    tell(say_, "{} ({}): steers, by the mapping \"{}\"", p.node, p.name, ready->mapping);
+    slot->device = e.device;
+    slot->steering = number;
+    slot->ready = ready;
+    slot->own = std::move(own);
+    slot->plugged = e.plugged;
+    meet(*ready);
+    std::swap(identities_[static_cast<std::size_t>(number)], ready->identity);
 }
 
 void Attendant::removed(const DeviceEvent& e) {
-    const Device* d = find(e.device);
-    if (d == nullptr) return;
-    steering_.detach(d->attended.steering);
-    say(fmt::format("{} ({}): {}", d->attended.plugged->node, d->attended.plugged->name, e.why->what));
-    std::erase_if(devices_, [&](const std::unique_ptr<Device>& other) { return other.get() == d; });
+    Slot* s = e.device < 0 ? nullptr : find(e.device);
+    if (s == nullptr) return;
+    steering_.detach(s->steering);
+    tell(say_, "{} ({}): {}", s->plugged->node, s->plugged->name, e.why->what);
+    *s = {};
 }
 
 std::vector<Attendant::Attended> Attendant::attended() const {
     std::vector<Attended> list;
-    for (const auto& d : devices_) list.push_back(d->attended);
+    for (const Slot& s : slots_)
+        if (s.device >= 0) list.push_back({s.device, s.steering, s.ready->mapping, s.plugged});
+    return list;
+}
+
+std::vector<SteeringDevice> Attendant::met() const {
+    std::vector<SteeringDevice> list;
+    for (const MetDevice& m : met_) list.push_back(m.words);
     return list;
 }
 

@@ -69,7 +69,7 @@ public:
 
 private:
     void run() {
-        (void)rt::place_thread(0, {rt::Policy::other, 0, {}, "sf-devices"});
+        (void)rt::place_thread(0, {rt::Policy::other, 0, {}, devices_thread_name});
         std::deque<std::unique_ptr<Discovery>> waiting;
         while (!stopping_.load()) {
             const std::int64_t now = clock_.now_ns();

@@ -23,7 +23,8 @@ public:
 
 /// Looks whenever it is asked.
 std::unique_ptr<Discoverer> discover_here(Finder finder);
-/// A thread of its own named "sf-devices", at SCHED_OTHER: neither opening a device nor closing one ever holds up the reader,
+constexpr const char* devices_thread_name = "sf-devices";
+/// A thread of its own named devices_thread_name, at SCHED_OTHER: neither opening a device nor closing one ever holds up the reader,
 /// whose calls allocate nothing, free nothing and take no lock.
 Result<std::unique_ptr<Discoverer>> discover_beside(Finder finder);
 

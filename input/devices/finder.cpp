@@ -132,6 +132,7 @@ void Finder::try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t no
     if (!options_.open || d.handle.open(entry.plugged->node)) {
         d.kind = Discovery::Kind::found;
         d.device = entry.device = next_number_++;
+        if (options_.ready) d.readied = options_.ready(*entry.plugged);
         entry.state = State::open;
         entry.said.clear();
         out.push_back(std::move(d));

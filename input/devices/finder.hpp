@@ -23,6 +23,7 @@ struct Discovery {
     Kind kind = Kind::found;
     int device = -1;  ///< found, lost
     std::shared_ptr<const PluggedDevice> plugged;
+    std::unique_ptr<Readied> readied;  ///< found, where the options make one
     HidHandle handle;  ///< found: open
     Refused refused = Refused::failed;
     Error why;  ///< lost, refused
@@ -35,6 +36,7 @@ bool steers_by_class(const PluggedDevice& device);
 
 struct FinderOptions {
     Wanted wanted = steers_by_class;
+    std::function<std::unique_ptr<Readied>(const PluggedDevice&)> ready;  ///< called for each that is found; may be empty
     bool open = true;  ///< false: devices are listed only; `found` then carries no open handle
 };
 

@@ -94,8 +94,10 @@ bool HidHandle::hung_up() const {
     }
 }
 
-// hidapi takes a signal for a failure: asked again unless the device has hung up.
+// hidapi takes a signal for a failure: asked again unless the device has hung up. Whether it has is asked first, too: for a device
+// that is gone hidapi makes up an error text, and the reader must not allocate.
 int HidHandle::read(std::span<std::byte> to) {
+    if (fd_ >= 0 && hung_up()) return -1;
     int n = -1;
     for (int attempt = 0; attempt < 3 && n < 0; ++attempt) {
         n = hid_read_timeout(device_, reinterpret_cast<unsigned char*>(to.data()), to.size(), 0);

@@ -10,15 +10,19 @@ namespace {
 constexpr std::size_t largest_report = 16384 + 1;  // the kernel's HID_MAX_BUFFER_SIZE and an id
 constexpr std::size_t bytes_per_take = 1U << 20U;
 constexpr std::int64_t ask_again_ns = 2'000'000;  // where a descriptor could not be found
+// Room for events and devices is set aside: sixteen devices that flood, and sixty-four that are open.
+constexpr std::size_t most_reports = 16 * max_drain, most_devices = 64, most_others = 64;
+constexpr std::size_t most_events = most_reports + 4 * most_devices;  // each of them drained, gone and come anew
 
 }  // namespace
 
 LiveDevices::LiveDevices(std::unique_ptr<Discoverer> discoverer)
-    : discoverer_(std::move(discoverer)), bytes_(bytes_per_take + largest_report) {
-    open_.reserve(64);
-    told_.reserve(64);
-    watched_.reserve(64);
-    events_.reserve(1024);
+    : discoverer_(std::move(discoverer)), bytes_(bytes_per_take + largest_report), unplugged_{"", "was unplugged, or cannot be read any more", ""} {
+    open_.reserve(most_devices);
+    told_.reserve(2 * most_devices);
+    others_.reserve(most_others);
+    watched_.reserve(1 + most_devices + most_others);
+    events_.reserve(most_events);
     watch();
 }
 
@@ -35,12 +39,18 @@ void LiveDevices::watch() {
         watched_.push_back({d->handle.fd(), POLLIN, 0});
         unwatchable_ = unwatchable_ || d->handle.fd() < 0;
     }
+    watched_.insert(watched_.end(), others_.begin(), others_.end());
+}
+
+void LiveDevices::watch_also(std::span<const pollfd> others) {
+    others_.assign(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(std::min(others.size(), most_others)));
+    watch();
 }
 
 void LiveDevices::wait(std::int64_t until_ns) {
     const std::int64_t now = clock_.now_ns();
     until_ns = std::min(until_ns, discoverer_->due_ns());
-    if (unwatchable_) until_ns = std::min(until_ns, now + ask_again_ns);
+    if (unwatchable_ || !told_.empty()) until_ns = std::min(until_ns, now + ask_again_ns);
     const std::int64_t left = std::max<std::int64_t>(0, until_ns - now);
     const timespec wait{left / 1'000'000'000, left % 1'000'000'000};
     (void)ppoll(watched_.data(), watched_.size(), &wait, nullptr);
@@ -50,13 +60,13 @@ std::span<const DeviceEvent> LiveDevices::take() {
     events_.clear();
     used_ = 0;
     const std::int64_t now = clock_.now_ns();
-    for (auto& d : told_) discoverer_->give_back(std::move(d), false, now);
+    for (Told& t : told_) discoverer_->give_back(std::move(t.discovery), t.failed, now);
     told_.clear();
     for (std::size_t i = 0; i < open_.size();) {
         if (drain(*open_[i]))
             ++i;
         else
-            lost(i, {open_[i]->plugged->node, "was unplugged, or cannot be read any more", ""}, true, now);
+            lost(i, true, now);
     }
     discover(now);
     return events_;
@@ -66,7 +76,8 @@ std::span<const DeviceEvent> LiveDevices::take() {
 bool LiveDevices::drain(Discovery& device) {
     std::uint32_t reports = 0;
     int size = 0;
-    while (reports < max_drain && used_ < bytes_per_take) {
+    const auto full = [&] { return reports == max_drain || used_ >= bytes_per_take || events_.size() >= most_reports; };
+    while (!full()) {
         const auto room = std::span(bytes_).subspan(used_, largest_report);
         size = device.handle.read(room);
         if (size <= 0) break;
@@ -78,7 +89,7 @@ bool LiveDevices::drain(Discovery& device) {
         ++reports;
         events_.push_back(std::move(e));
     }
-    const bool cut = reports == max_drain || used_ >= bytes_per_take;  // not read to the end: the rest is old by then
+    const bool cut = full();  // not read to the end: the rest is old by then
     if (reports > 0 || cut) {
         DeviceEvent e;
         e.kind = DeviceEvent::Kind::drained;
@@ -90,7 +101,8 @@ bool LiveDevices::drain(Discovery& device) {
     return size >= 0;
 }
 
-void LiveDevices::lost(std::size_t at, const Error& why, bool failed, std::int64_t now_ns) {
+/// Closed only after the next take(), and not by this thread: the events of this one still point into it.
+void LiveDevices::lost(std::size_t at, bool failed, std::int64_t now_ns) {
     auto device = std::move(open_[at]);
     open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(at));
     watch();
@@ -99,31 +111,25 @@ void LiveDevices::lost(std::size_t at, const Error& why, bool failed, std::int64
     e.device = device->device;
     e.stamp_ns = now_ns;
     e.plugged = device->plugged;
-    device->why = why;
-    e.why = &device->why;
+    e.why = &unplugged_;
     events_.push_back(std::move(e));
-    if (failed) {
-        // It goes back, and is closed, at once; the reason stays until the next take().
-        auto reason = std::make_unique<Discovery>();
-        reason->why = std::move(device->why);
-        events_.back().why = &reason->why;
-        told_.push_back(std::move(reason));
-        discoverer_->give_back(std::move(device), true, now_ns);
-    } else {
-        told_.push_back(std::move(device));
-    }
+    told_.push_back({std::move(device), failed});
 }
 
 void LiveDevices::discover(std::int64_t now_ns) {
-    while (auto d = discoverer_->next(now_ns)) {
+    // What finds no room now waits with the discoverer.
+    while (told_.size() + 2 <= told_.capacity() && open_.size() < most_devices && events_.size() < most_events) {
+        auto d = discoverer_->next(now_ns);
+        if (!d) return;
         if (d->kind == Discovery::Kind::lost) {
             // A device that hung up before is told already.
             for (std::size_t i = 0; i < open_.size(); ++i)
                 if (open_[i]->device == d->device) {
-                    lost(i, d->why, false, now_ns);
+                    lost(i, false, now_ns);
+                    events_.back().why = &d->why;
                     break;
                 }
-            told_.push_back(std::move(d));
+            told_.push_back({std::move(d), false});
             continue;
         }
         DeviceEvent e;
@@ -132,13 +138,14 @@ void LiveDevices::discover(std::int64_t now_ns) {
         if (d->kind == Discovery::Kind::found) {
             e.kind = DeviceEvent::Kind::added;
             e.device = d->device;
+            e.readied = d->readied.get();
             open_.push_back(std::move(d));
             watch();
         } else {
             e.kind = DeviceEvent::Kind::refused;
             e.refused = d->refused;
             e.why = &d->why;
-            told_.push_back(std::move(d));
+            told_.push_back({std::move(d), false});
         }
         events_.push_back(std::move(e));
     }

@@ -23,6 +23,7 @@ public:
 
     void wait(std::int64_t until_ns) override;
     std::span<const DeviceEvent> take() override;
+    void watch_also(std::span<const pollfd> others) override;
 
     /// Open now.
     [[nodiscard]] std::size_t devices() const { return open_.size(); }
@@ -30,21 +31,27 @@ public:
 private:
     void discover(std::int64_t now_ns);
     bool drain(Discovery& device);
-    void lost(std::size_t at, const Error& why, bool failed, std::int64_t now_ns);
+    void lost(std::size_t at, bool failed, std::int64_t now_ns);
     void watch();
 
     rt::RealClock clock_;
     std::unique_ptr<Discoverer> discoverer_;
     std::vector<std::unique_ptr<Discovery>> open_;
-    std::vector<std::unique_ptr<Discovery>> told_;  ///< whose errors the events of the last take() point to
-    std::vector<pollfd> watched_;
+    struct Told {
+        std::unique_ptr<Discovery> discovery;
+        bool failed = false;
+    };
+    std::vector<Told> told_;  ///< what the events of the last take() point into
+    std::vector<pollfd> others_, watched_;
     std::vector<DeviceEvent> events_;
     std::vector<std::byte> bytes_;
+    const Error unplugged_;
     std::size_t used_ = 0;
     bool unwatchable_ = false;  ///< a device has no descriptor that is known
 };
 
-/// Live devices with the finder in the same thread, or in one beside it.
+/// Live devices with the finder in the same thread, or in one beside it: then wait() and take() neither allocate, free nor lock,
+/// whatever comes or goes.
 Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool beside = false);
 
 }  // namespace surefoot::input

@@ -4,6 +4,8 @@
 //   (hot-plug, permissions)             a handle each        (poll, drain)            (mapping)
 #pragma once
 
+#include <poll.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -39,6 +41,15 @@ enum class Refused : std::uint8_t {
     failed,      ///< anything else; tried again likewise
 };
 
+/// What the user of a source makes of a device before its reader sees it: made and unmade where devices are opened, so that the
+/// reader needs no memory when one comes or goes.
+struct Readied {
+    Readied() = default;
+    Readied(const Readied&) = delete;
+    Readied& operator=(const Readied&) = delete;
+    virtual ~Readied() = default;
+};
+
 struct DeviceEvent {
     enum class Kind : std::uint8_t { added, removed, refused, report, drained };
     Kind kind = Kind::report;
@@ -50,9 +61,10 @@ struct DeviceEvent {
     Refused refused = Refused::failed;
     const Error* why = nullptr;                    ///< refused, removed; valid until the next take()
     std::shared_ptr<const PluggedDevice> plugged;  ///< added, removed, refused
+    Readied* readied = nullptr;                    ///< added: what was made of it, if so; valid until the take() after `removed`
 };
 
-/// One thread. After the devices have come, wait() and take() do not allocate.
+/// One thread.
 class DeviceSource {
 public:
     virtual ~DeviceSource() = default;
@@ -60,6 +72,8 @@ public:
     virtual void wait(std::int64_t until_ns) = 0;
     /// What has happened: never blocks. For each device that had reports: all of them, then `drained`. Valid until the next call.
     virtual std::span<const DeviceEvent> take() = 0;
+    /// Descriptors of others that end wait() too, instead of those that were given before.
+    virtual void watch_also(std::span<const pollfd> /*others*/) {}
 };
 
 /// Waits, then takes: events, or none at `deadline_ns` or after a signal.

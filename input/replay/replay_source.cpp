@@ -19,7 +19,7 @@ ReplaySource::ReplaySource(RecordedDevice recorded) : recorded_(std::move(record
 
 void ReplaySource::begin(Steering& steering, std::int64_t start_ns) {
     start_ns_ = start_ns;
-    device_ = steering.attach(recorded_.mapper, recorded_.device.controls.size(), recorded_.reporting);
+    device_ = steering.attach(Mapper(recorded_.mapper), recorded_.device.controls.size(), recorded_.reporting);
     state_.connected = true;
 }
 

@@ -13,6 +13,8 @@ struct Progress {
     std::function<void(std::string_view stage, double done)> report;
     /// Set (by a signal handler) when the user wants the work to stop; the work returns an Error soon after.
     const std::atomic<bool>* stop = nullptr;
+    /// Something that the user should know now; on the thread that called. Empty: it is handed back with the result.
+    std::function<void(std::string_view text)> note;
 
     [[nodiscard]] bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
     void say(std::string_view stage, double done) const {

@@ -22,7 +22,7 @@ std::vector<std::byte> at(int x, int y) { return {static_cast<std::byte>(x), sta
 
 struct Hands {
     explicit Hands(std::vector<DeviceMapping> mappings = {})
-        : attendant(std::move(mappings), steering, [this](const std::string& text) { said.push_back(text); }) {}
+        : attendant(std::move(mappings), steering, [this](std::string_view text) { said.emplace_back(text); }) {}
     void tick() {
         attendant.attend(source.take());
         source.now_ns += tick_ns;

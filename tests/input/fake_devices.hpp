@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -27,7 +28,11 @@ public:
         DeviceEvent e;
         e.kind = DeviceEvent::Kind::added;
         e.device = next_++;
-        e.plugged = std::move(p);
+        if (ready) {
+            readied_.push_back(ready(*p));
+            e.readied = readied_.back().get();
+        }
+        e.plugged = plugged_.emplace_back(std::move(p));
         push(e);
         return e.device;
     }
@@ -59,13 +64,16 @@ public:
         if (waiting_.empty()) now_ns = std::max(now_ns, until_ns);
     }
     std::span<const DeviceEvent> take() override {
-        taken_ = std::move(waiting_);
+        std::swap(taken_, waiting_);
         waiting_.clear();
         return taken_;
     }
     std::int64_t now_ns = 1'000'000'000;
+    std::function<std::unique_ptr<Readied>(const PluggedDevice&)> ready;  ///< as FinderOptions::ready
 
 private:
+    std::deque<std::unique_ptr<Readied>> readied_;  ///< kept, as are the plugged: nothing is freed inside take()
+    std::deque<std::shared_ptr<const PluggedDevice>> plugged_;
     int next_ = 0;
     Error unplugged_{"fake", "was unplugged", ""};
     std::deque<std::vector<std::byte>> kept_;

@@ -67,7 +67,7 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
     Random random(2026);
     const auto compiled = compile(hostile.mapping, hostile.controls);
     ASSERT_TRUE(compiled.ok()) << compiled.error().text();
-    for (int d = 0; d < devices; ++d) ASSERT_EQ(steering.attach(*compiled, hostile.controls.size(), Reporting::learn), d);
+    for (int d = 0; d < devices; ++d) ASSERT_EQ(steering.attach(Mapper(*compiled), hostile.controls.size(), Reporting::learn), d);
     std::array<DeviceState, devices> states{};
     std::array<bool, devices> there{};
     std::array<std::int64_t, devices> mute_until{};
@@ -86,7 +86,7 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
             if (there[at])
                 steering.detach(d);
             else
-                steering.attach(*compiled, hostile.controls.size(), static_cast<Reporting>(random.below(3)), d);
+                steering.attach(Mapper(*compiled), hostile.controls.size(), static_cast<Reporting>(random.below(3)), d);
             there[at] = !there[at];
         }
         const rt::OwnScope own;

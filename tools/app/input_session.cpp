@@ -42,16 +42,23 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
         if (!read) return read.error();
         steering = std::move(*read);
     }
-    auto recorded = input::open_recorded(request.input_file, steering, request.steering_file);
-    if (!recorded) return recorded.error();
-    say_what_is_passed_over(steering, *recorded, request, notes);
-
     std::unique_ptr<InputSession> session(new InputSession());
     session->source_name_ = request.input_file;
-    session->duration_s_ = recorded->duration_s() + after_recording_s;
     session->period_ns_ = period_ns;
     session->motion_ = steering.motion;
     session->motion_.frame_s = static_cast<double>(period_ns) * 1e-9;
+    if (request.input_file == live_input) {
+        auto live = LiveInput::open(request, steering, notes);
+        if (!live) return live.error();
+        session->live_.emplace(std::move(*live));
+        session->source_ = session->live_->take_source();
+        session->steering_ = std::make_unique<input::Steering>(session->motion_, steering.safety, session->live_->stop_latched());
+        return session;
+    }
+    auto recorded = input::open_recorded(request.input_file, steering, request.steering_file);
+    if (!recorded) return recorded.error();
+    say_what_is_passed_over(steering, *recorded, request, notes);
+    session->duration_s_ = recorded->duration_s() + after_recording_s;
     session->source_ = std::make_unique<input::ReplaySource>(std::move(*recorded));
     session->steering_ = std::make_unique<input::Steering>(session->motion_, steering.safety);
     return session;
@@ -59,16 +66,18 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
 
 void InputSession::begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement) {
     visit_ = std::make_unique<Visit>(path);
-    stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *visit_, samples_, places_);
+    stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *visit_, samples_, places_,
+                                              live_ ? live_->keeper() : nullptr);
     poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get());
     stepper_->begin(start_ns);
     if (real_clock) thread_ = std::make_unique<InputThread>(*stepper_, placement);
 }
 
-std::optional<Error> InputSession::end() {
+std::optional<Error> InputSession::end(const Progress& progress, std::vector<std::string>& notes) {
     if (!thread_) return {};
     thread_->stop();
     guard_violations_ = thread_->guard_violations();
+    if (live_) live_->finish(steering_->safety().latched, progress, notes);
     return thread_->misplaced();
 }
 
@@ -81,7 +90,8 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     s.reports = source_->log().count();
     s.refused = source_->refused();
     const std::vector<double> ages = report_ages_ms(records, source_->log().stamps());
-    s.reports_shown = ages.size();
+    // Of a long live walk the first reports' ages are kept, not all.
+    s.reports_shown = records.empty() ? 0 : std::max<std::uint64_t>(ages.size(), records.back().input_reports);
     s.age_ms = report::quantiles(ages);
     const input::SafetyState& safety = steering_->safety();
     s.stops = safety.stops;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "rt/frame/record.hpp"
 #include "tools/app/input_stepper.hpp"
 #include "tools/app/input_thread.hpp"
+#include "tools/app/live_input.hpp"
 #include "tools/app/steered_poses.hpp"
 #include "tools/app/walk.hpp"
 #include "tools/report/report.hpp"
@@ -19,10 +21,10 @@ namespace surefoot::app {
 /// How long a walk goes on after its recording has ended: the visitor comes to rest, and is seen to.
 constexpr double after_recording_s = 1.0;
 
-/// The source is a recording today. Live devices plug in here: another ReportSource, and nothing else changes.
+/// The source is a recording, or live devices.
 class InputSession {
 public:
-    /// Reads the steering file and the recording; errors name file and line. `notes`: what else the user should know.
+    /// Reads the steering file and the recording, or looks for devices from now on; errors name file and line. `notes`: what else the user should know.
     static Result<std::unique_ptr<InputSession>> open(const WalkRequest& request, std::int64_t period_ns,
                                                       std::vector<std::string>& notes);
 
@@ -35,8 +37,13 @@ public:
     [[nodiscard]] PoseSource& poses() { return *poses_; }
     /// For the preparation: where buttons put the eye.
     [[nodiscard]] PlaceBuffer* places() { return &places_; }
+    /// Live: to be called every few milliseconds while it walks; says what devices do, and remembers an emergency stop.
+    void attend(const Progress& progress, std::vector<std::string>& notes) {
+        if (live_) live_->attend(progress, notes);
+    }
+    [[nodiscard]] bool live() const { return live_.has_value(); }
     /// The thread ends. What kept it from its place, if anything did.
-    std::optional<Error> end();
+    std::optional<Error> end(const Progress& progress, std::vector<std::string>& notes);
 
     /// After end().
     [[nodiscard]] report::InputSummary summary(std::span<const rt::FrameRecord> records) const;
@@ -45,6 +52,7 @@ private:
     InputSession() = default;
 
     std::string source_name_;
+    std::optional<LiveInput> live_;
     double duration_s_ = 0;
     std::int64_t period_ns_ = 0;
     input::MotionLimits motion_;

@@ -6,8 +6,8 @@
 namespace surefoot::app {
 
 InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit,
-                           rt::TripleBuffer<SteeredSample>& samples, PlaceBuffer& places)
-    : source_(source), steering_(steering), visit_(visit), samples_(samples), places_(places) {
+                           rt::TripleBuffer<SteeredSample>& samples, PlaceBuffer& places, input::StopKeeper* keeper)
+    : source_(source), steering_(steering), visit_(visit), samples_(samples), places_(places), keeper_(keeper) {
     steering_.place(visit_.start());
 }
 
@@ -24,6 +24,7 @@ std::int64_t InputStepper::next_ns() const { return std::min(source_.next_ns(), 
 void InputStepper::step(std::int64_t now_ns) {
     const input::Lines lines = source_.drain(steering_, now_ns);
     input::NavigationSample sample = steering_.tick(lines, now_ns);
+    if (keeper_ != nullptr) keeper_->set(steering_.safety().latched);
     visit_.follow(sample, steering_, now_ns);
     publish(sample, now_ns);
     tick_at_ns_ = now_ns + input_tick_ns;

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "input/report_source.hpp"
+#include "input/safety/stop_memory.hpp"
 #include "input/steering.hpp"
 #include "rt/exchange/triple_buffer.hpp"
 #include "tools/app/prepare_thread.hpp"
@@ -29,9 +30,10 @@ struct SteeredSample {
 class InputStepper {
 public:
     /// All of them must outlive this; `steering` is placed at the visit's start.
+    /// `keeper`, where given, is told at each step whether an emergency stop is latched.
     /// `places` is told where the eye is put when it does not walk there.
     InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit, rt::TripleBuffer<SteeredSample>& samples,
-                 PlaceBuffer& places);
+                 PlaceBuffer& places, input::StopKeeper* keeper = nullptr);
 
     /// Publishes the start, and attaches what is there. On a neutral thread, before the first step; allocates.
     void begin(std::int64_t start_ns);
@@ -52,6 +54,7 @@ private:
     Visit& visit_;
     rt::TripleBuffer<SteeredSample>& samples_;
     PlaceBuffer& places_;
+    input::StopKeeper* keeper_;
     std::uint32_t jumps_told_ = 0;
     std::int64_t tick_at_ns_ = 0;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "input/devices/discoverer.hpp"
 #include "render/gl/device.hpp"
 
 namespace surefoot::app {
@@ -103,6 +104,8 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
         const rt::Placement input = input_placement(plan);
         table.push_back({.name = input.name, .policy = input.policy, .priority = input.priority, .cpus = input.cpus});
     }
+    if (real_clock && plan.devices)
+        table.push_back({.name = input::devices_thread_name, .policy = rt::Policy::other, .cpus = plan.all});
     if (real_clock) {
         table.push_back({.name = "sf-prepare",
                          .policy = real_time,

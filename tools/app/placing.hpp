@@ -18,6 +18,7 @@ struct PlacingPlan {
     rt::CpuMask all;
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
     bool input = false;                        ///< an input thread steers
+    bool devices = false;                      ///< and another one finds its devices
     std::vector<std::string> driver_prefixes;  ///< the driver's rasterisers
     int rasterisers = 0;             ///< how many were found
 };

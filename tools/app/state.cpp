@@ -26,6 +26,8 @@ std::string state_directory(const std::string& asked) {
     return "/var/lib/surefoot";
 }
 
+std::string stop_file(const std::string& state_dir) { return state_dir + "/emergency-stop"; }
+
 std::string cost_table_file(const std::string& state_dir) { return state_dir + "/costs.toml"; }
 
 Result<model::CostModel> load_costs(const std::string& state_dir, const std::string& machine, std::string& note) {

@@ -10,6 +10,8 @@ namespace surefoot::app {
 
 /// `asked` if not empty, else $STATE_DIRECTORY, else $XDG_STATE_HOME/surefoot, else ~/.local/state/surefoot.
 std::string state_directory(const std::string& asked);
+/// Whether an emergency stop is still latched.
+std::string stop_file(const std::string& state_dir);
 std::string cost_table_file(const std::string& state_dir);
 
 /// The calibrated table of this machine and renderer; without one, or with another machine's, default_costs() and

@@ -78,6 +78,8 @@ Result<void> read_request(Session& s) {
     s.virtual_clock = r.clock == "virtual";
     if (r.control && s.virtual_clock) return Error{"--control", "judges real time", "leave out --clock virtual"};
     if (r.strict && s.virtual_clock) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
+    if (r.input_file == live_input && s.virtual_clock)
+        return Error{"--input devices", "are hands in real time", "leave out --clock virtual, or give a recording"};
     if (!r.input_file.empty() && r.control)
         return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
     return {};
@@ -99,6 +101,7 @@ Result<void> claim(Session& s) {
     if (!plan) return plan.error();
     s.plan = *plan;
     s.plan.input = s.input != nullptr;
+    s.plan.devices = s.input && s.input->live();
     auto costs = load_costs(state_directory(r.state_dir), "", s.facts.uncalibrated);
     if (!costs) return costs.error();
     s.costs = std::move(*costs);
@@ -178,7 +181,8 @@ void warm_up(Session& s) {
 /// How many frames to walk; every one leaves a record in memory, so there is an end to them.
 Result<std::uint64_t> frames_wanted(const Session& s) {
     const double period_s = static_cast<double>(s.grid.period_ns) * 1e-9;
-    const double own_s = s.input ? s.input->duration_s() : std::max(s.path.path.duration_s(), 1.0);
+    const bool recorded = s.input && !s.input->live();
+    const double own_s = recorded ? s.input->duration_s() : std::max(s.path.path.duration_s(), 1.0);
     const double seconds = s.request.seconds > 0 ? s.request.seconds : own_s;
     const double frames = s.request.control      ? static_cast<double>(s.control.slots())
                           : s.request.frames > 0 ? static_cast<double>(s.request.frames)
@@ -186,7 +190,7 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
     if (!(frames <= static_cast<double>(most_frames))) {
         const bool asked = s.request.frames > 0 || s.request.seconds > 0 || s.request.control;
         return Error{asked     ? "walk"
-                     : s.input ? s.request.input_file
+                     : recorded ? s.request.input_file
                                : s.path.source,
                      fmt::format("would take {:.4g} frames; at most {} are kept ({:.0f} hours at this rate)", frames, most_frames,
                                  static_cast<double>(most_frames) * period_s / 3600.0),
@@ -216,9 +220,9 @@ WalkStagesOptions stages_options(const Session& s) {
 }
 
 /// After the frames: what kept the input thread from its place must be said.
-void end_input(Session& s) {
+void end_input(Session& s, const Progress& progress) {
     if (!s.input) return;
-    if (const auto misplaced = s.input->end())
+    if (const auto misplaced = s.input->end(progress, s.notes))
         s.facts.degraded.push_back({misplaced->place + ": " + misplaced->what, misplaced->remedy});
 }
 
@@ -272,8 +276,10 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
             s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
     }
     bool counted = s.virtual_clock;
+    const int look_ms = s.virtual_clock ? 5 : s.input && s.input->live() ? 10 : 100;
     while (!done.load()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(s.virtual_clock ? 5 : 100));
+        std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
+        if (s.input) s.input->attend(progress, s.notes);
         const double ran =
             s.virtual_clock ? 0.5 : static_cast<double>(real.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
         progress.say("walk", std::clamp(ran / static_cast<double>(s.frames), 0.0, 1.0));
@@ -284,7 +290,14 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     }
     frame_thread.join();
     if (preparing) preparing->stop();
-    end_input(s);
+    end_input(s, progress);
+}
+
+/// What the user should know before the walk begins, where someone listens; else it stays for the end.
+void tell_now(std::vector<std::string>& notes, const Progress& progress) {
+    if (!progress.note) return;
+    for (const std::string& text : notes) progress.note(text);
+    notes.clear();
 }
 
 }  // namespace
@@ -308,9 +321,9 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     warm_up(s);
 
     WalkOutcome outcome;
-    outcome.notes = s.notes;
+    tell_now(s.notes, progress);
     // After memory is locked: what the store sets aside is locked with it, and touched.
-    ShotStore shots = make_shot_store(request, s.frames, s.engine->drawn_capacity(), outcome.notes);
+    ShotStore shots = make_shot_store(request, s.frames, s.engine->drawn_capacity(), s.notes);
     rt::SpscRing<rt::FrameRecord> ring(4096);
     BlockSteal steal;
     rt::RecorderOptions recorder_options;
@@ -321,6 +334,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     const double steal_before = total_steal_ms();
     run_loop(s, shots, ring, progress);
     recorder.stop();
+    outcome.notes.insert(outcome.notes.begin(), s.notes.begin(), s.notes.end());
     s.facts.steal_ms = total_steal_ms() - steal_before;
     s.facts.dropped_records = ring.dropped();
     outcome.records = recorder.take_records();

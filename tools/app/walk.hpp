@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rt/base/progress.hpp"
@@ -13,19 +14,23 @@
 
 namespace surefoot::app {
 
+/// In place of a recording: the devices that are plugged in. A recording of that name is "./devices".
+constexpr std::string_view live_input = "devices";
+
 /// What one walk is asked for; 0 or empty means the default that is said here.
 struct WalkRequest {
     std::string model_file;
     std::string config_file;  ///< where settings came from: not to be written over; may be empty
     std::string path_file;    ///< empty: beside the model, else a generated tour
-    std::string input_file;   ///< a recording that steers; empty: the path is followed
+    std::string input_file;   ///< a recording that steers, or live_input; empty: the path is followed
     std::string steering_file;  ///< how it steers; empty: the default of the device's class
+    bool clear_stop = false;  ///< live: take off a stop that an earlier walk has left latched
     std::string state_dir;    ///< empty: see state_directory()
     std::string selector = "two-stage", late = "lock", backend = "egl", clock = "real";
     double lift_m = 0;  ///< added to the path's heights
     double rate_hz = 30;
     std::uint32_t width = 1280, height = 720;
-    std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else as the path is long
+    std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
     double seconds = 0;
     double budget_ms = 0;   ///< 0: 0.80 of the frame
     double accuracy = 0;    ///< rad^-1; 0: as accurate as the budget allows

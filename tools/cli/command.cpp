@@ -50,6 +50,10 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
 Progress terminal_progress(const Context& context) {
     Progress progress;
     progress.stop = context.stop;
+    progress.note = [terminal = context.terminal](std::string_view text) {
+        if (terminal) (void)std::fputs("\r\033[K", stderr);
+        note(std::string(text));
+    };
     if (context.terminal) {
         auto bar = std::make_shared<BarState>();
         progress.report = [bar](std::string_view stage, double done) { draw_bar(*bar, stage, done); };

@@ -43,8 +43,14 @@ Result<void> check_together(const app::WalkRequest& r, bool every_given, bool ca
     if (r.strict && is_virtual) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
     if (!r.steering_file.empty() && r.input_file.empty()) {
         return Error{"--steering", "says how a device steers, and none does: the path is followed",
-                     "add --input REC, a recording of the device"};
+                     "add --input devices, or --input REC with a recording of one"};
     }
+    const bool live = r.input_file == app::live_input;
+    if (live && is_virtual)
+        return Error{"--input devices", "steer in real time, which --clock virtual has not got",
+                     "leave out --clock virtual, or give a recording (`surefoot devices record`)"};
+    if (r.clear_stop && !live)
+        return Error{"--clear-stop", "is for devices, and none steers", "add --input devices"};
     if (r.control && !r.input_file.empty())
         return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
     if (every_given && r.snap_dir.empty())
@@ -157,6 +163,7 @@ void add_walk(CLI::App& app, Context& context) {
     CLI::App* c =
         add_command(app, "walk", "Walk through a model in real time, and show the figures",
                     "surefoot walk town.walk --seconds 30 --report report\n"
+                    "  surefoot walk town.walk --input devices --seconds 600             (a gamepad or 3D mouse steers)\n"
                     "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
                     "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
                     "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
@@ -167,14 +174,18 @@ void add_walk(CLI::App& app, Context& context) {
                   "its first pose is the start, poses at equal times are the viewpoints, and `tour` follows it");
     c->add_option(
         "--input", r.input_file,
-        "A device's reports in hid-recorder's text format: they steer, each in its recorded time, in place of the path. "
-        "Ends a second after the last report, or with --seconds or --frames. Check it with `surefoot devices describe`");
+        "Who steers in place of the path. `devices`: what is plugged in, and what will be (a file of that name is ./devices); "
+        "ends with --seconds or --frames, else after the path's length; needs the real clock. Else a file: a device's reports in "
+        "hid-recorder's text format, each in its recorded time; ends a second after the last report, or with --seconds or "
+        "--frames. Check it with `surefoot devices describe`");
     c->add_option("--steering", r.steering_file,
-                  "How --input steers, TOML: [motion], [safety], [[device]] (else the default of the device's class)");
+                  "How --input steers, TOML: [motion], [safety], [[device]], [[gpio]] (else the default of the device's class)");
+    c->add_flag("--clear-stop", r.clear_stop,
+                "--input devices: take off an emergency stop that an earlier walk left latched (else: what does stop_reset)");
     c->add_option("--lift", r.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")
         ->check(number_within(-1e7, 1e7, "m"))
         ->capture_default_str();
-    c->add_option("--frames", r.frames, "Frames to walk (else --seconds, else the recording and a second, else the path once)")
+    c->add_option("--frames", r.frames, "Frames to walk (else --seconds, else the recording and a second, else as long as the path)")
         ->check(whole_number_within(1, 4'000'000));
     c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")
         ->check(number_within(0.001, 1e6, "s"));

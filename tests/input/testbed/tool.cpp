@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -15,9 +16,31 @@
 
 namespace surefoot::input::test {
 
-Tool::Tool(const std::vector<std::string>& arguments, bool terminal) {
-    err_file_ = testing::TempDir() + "/tool-" + std::to_string(getpid()) + ".err";
-    std::vector<std::string> words = {SUREFOOT_TOOL, "devices"};
+namespace {
+
+/// A limit on waiting that runs on by at most 100 ms a look: whoever was stopped in between, this process or the machine, has as
+/// much patience as before.
+class Patience {
+public:
+    explicit Patience(int ms) : left_ns_(ms * std::int64_t{1'000'000}) {}
+    bool over() {
+        const std::int64_t now = now_ns();
+        left_ns_ -= std::min<std::int64_t>(now - looked_ns_, 100'000'000);
+        looked_ns_ = now;
+        return left_ns_ < 0;
+    }
+
+private:
+    std::int64_t left_ns_, looked_ns_ = now_ns();
+};
+
+}  // namespace
+
+int Tool::instances_ = 0;
+
+Tool::Tool(const std::vector<std::string>& arguments, bool terminal, const std::string& command) {
+    err_file_ = testing::TempDir() + "/tool-" + std::to_string(getpid()) + "-" + std::to_string(++instances_) + ".err";
+    std::vector<std::string> words = {SUREFOOT_TOOL, command};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
@@ -70,9 +93,10 @@ bool Tool::read_some(int within_ms) {
 }
 
 bool Tool::until(const std::string& text, int within_ms) {
-    const std::int64_t end = now_ns() + within_ms * std::int64_t{1'000'000};
+    Patience patience(within_ms);
     while (out_.find(text) == std::string::npos && err().find(text) == std::string::npos)
-        if (now_ns() > end || !read_some(20)) return out_.find(text) != std::string::npos;
+        if (patience.over() || !read_some(20))
+            return out_.find(text) != std::string::npos || err().find(text) != std::string::npos;
     return true;
 }
 
@@ -81,13 +105,13 @@ void Tool::key(const std::string& text) { EXPECT_EQ(write(in_, text.data(), text
 void Tool::signal(int number) { kill(pid_, number); }
 
 int Tool::wait(int within_ms) {
-    const std::int64_t end = now_ns() + within_ms * std::int64_t{1'000'000};
+    Patience patience(within_ms);
     bool open = true;
     int status = 0;
     for (;;) {
         const pid_t done = waitpid(pid_, &status, WNOHANG);
         if (done == pid_) break;
-        if (now_ns() > end) return -1;
+        if (patience.over()) return -1;
         if (open)
             open = read_some(20);
         else

@@ -47,7 +47,7 @@ struct Walk {
 
     std::vector<std::string> said;
     Steering steering{MotionLimits{}, SafetyLimits{}};
-    Attendant attendant{{}, steering, [this](const std::string& text) { said.push_back(text); }};
+    Attendant attendant{{}, steering, [this](std::string_view text) { said.emplace_back(text); }};
     std::unique_ptr<LiveDevices> source;
     NavigationSample sample;
 };

@@ -1,0 +1,40 @@
+// What the input thread has to tell a person: lines of fixed size, so that telling neither allocates, nor locks, nor waits.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string_view>
+
+#include "rt/base/result.hpp"
+
+namespace surefoot::input {
+
+/// One line; what does not fit is cut off.
+struct NoteLine {
+    std::array<char, 760> text{};
+    std::size_t size = 0;
+    [[nodiscard]] std::string_view view() const { return {text.data(), size}; }
+};
+
+/// Who listens. Must neither allocate nor lock where the teller may not.
+using Say = std::function<void(std::string_view)>;
+
+template <class... T>
+void tell(const Say& say, fmt::format_string<T...> format, T&&... what) {
+    if (!say) return;
+    NoteLine line;
+    const auto end = fmt::format_to_n(line.text.data(), line.text.size(), format, std::forward<T>(what)...);
+    line.size = std::min(end.size, line.text.size());
+    say(line.view());
+}
+
+inline void tell(const Say& say, const Error& error) {
+    if (error.remedy.empty()) return tell(say, "{}: {}", error.place, error.what);
+    tell(say, "{}: {} ({})", error.place, error.what, error.remedy);
+}
+
+}  // namespace surefoot::input

@@ -1,0 +1,308 @@
+// Live devices and wired lines as a walk's source, in virtual time: what steers, what stops, what is said, and that none of it
+// needs memory.
+#include "input/live_source.hpp"
+
+#include "rt/threads/guard.hpp"
+#include "tests/input/fake_devices.hpp"
+#include "tests/input/fake_lines.hpp"
+
+namespace surefoot::input {
+namespace {
+
+using test::FakeChip;
+using test::FakeDevices;
+
+constexpr std::int64_t tick_ns = 2'000'000;
+
+/// x and y, one signed byte each: "default: joystick" turns by x and walks by y.
+Recording stick() {
+    Recording r;
+    r.descriptor = hex("05 01 09 04 a1 01 15 81 25 7f 75 08 95 02 09 30 09 31 81 02 c0");
+    r.name = "test stick";
+    r.bus = 3;
+    r.vendor = 0x1d50;
+    r.product = 0x8001;
+    return r;
+}
+std::vector<std::byte> at(int x, int y) { return {static_cast<std::byte>(x), static_cast<std::byte>(y)}; }
+
+LineConfig line(const std::string& name, LineRole role, const std::string& place) {
+    LineConfig c;
+    c.name = name;
+    c.role = role;
+    c.request.chip = "gpiochip0";
+    c.request.line = place;
+    return c;
+}
+/// Line 0 is the stop (closed: active), 1 its reset, 2 a button, 3 and 4 an encoder.
+std::vector<LineConfig> lines() {
+    return {line("ESTOP", LineRole::stop, "0"), line("RESET", LineRole::stop_reset, "1"),
+            line("next_viewpoint", LineRole::button, "2"), line("speed", LineRole::encoder_a, "3"),
+            line("speed", LineRole::encoder_b, "4")};
+}
+
+/// The input thread's loop in virtual time. Its calls are made as that thread makes them: without memory, where that counts.
+struct Rig {
+    explicit Rig(std::vector<LineConfig> wired = {}, std::vector<DeviceMapping> mappings = {}) {
+        chip.level[0] = true;
+        auto fake = std::make_unique<FakeDevices>();
+        devices = fake.get();
+        devices->ready = readier(mappings);
+        LiveOptions options;
+        options.mappings = std::move(mappings);
+        options.lines = std::move(wired);
+        options.open_lines = test::open_fake;
+        options.lines_context = &chip;
+        options.stamps = 1000;
+        source = std::make_unique<LiveSource>(std::move(options), std::move(fake));
+        source->begin(steering, devices->now_ns);
+    }
+    NavigationSample tick() {
+        devices->now_ns += tick_ns;
+        const std::uint64_t before = rt::guard_counters().own_violations;
+        {
+            const rt::OwnScope own;
+            const Lines wired = source->drain(steering, devices->now_ns);
+            sample = steering.tick(wired, devices->now_ns);
+        }
+        violations += rt::guard_counters().own_violations - before;
+        presses += sample.next_viewpoint ? 1 : 0;
+        for (NoteLine note; source->next_note(note);) said.emplace_back(note.view());
+        return sample;
+    }
+    void run(int ticks) {
+        for (int i = 0; i < ticks; ++i) tick();
+    }
+    void hold(int device, int x, int y, int ticks) {
+        for (int i = 0; i < ticks; ++i) {
+            devices->send(device, at(x, y));
+            tick();
+        }
+    }
+    [[nodiscard]] double speed() const { return glm::length(sample.velocity_m_s); }
+    [[nodiscard]] int times_said(const std::string& what) const {
+        return static_cast<int>(
+            std::count_if(said.begin(), said.end(), [&](const std::string& s) { return s.find(what) != std::string::npos; }));
+    }
+
+    FakeChip chip;
+    Steering steering{MotionLimits{}, SafetyLimits{}};
+    FakeDevices* devices = nullptr;
+    std::unique_ptr<LiveSource> source;
+    NavigationSample sample;
+    std::vector<std::string> said;
+    std::uint64_t violations = 0;
+    int presses = 0;
+};
+
+TEST(LiveSource, ComesWalksGoesComesBackAndNeedsNoMemoryForIt) {
+    Rig rig;
+    for (int round = 0; round < 3; ++round) {
+        const int device = rig.devices->plug(stick(), "s1");
+        rig.hold(device, 0, -127, 100);
+        EXPECT_EQ(rig.speed(), 0) << "deflected since it came";
+        rig.hold(device, 0, 0, 20);
+        rig.hold(device, 0, -127, 200);
+        EXPECT_GT(rig.speed(), 0.5) << "round " << round;
+        rig.devices->pull(device);
+        rig.run(25);
+        EXPECT_EQ(rig.speed(), 0) << "50 ms after it was pulled";
+    }
+    EXPECT_EQ(rig.violations, 0U);
+    if (!rt::guard_active()) std::printf("allocations are not counted in this build\n");
+    EXPECT_EQ(rig.source->log().count(), 960U);
+    EXPECT_EQ(rig.times_said("steers, by the mapping \"default: joystick\""), 3);
+    EXPECT_EQ(rig.times_said("was unplugged"), 3);
+    ASSERT_EQ(rig.source->devices().size(), 1U) << "one device, however often it comes";
+    EXPECT_EQ(rig.source->devices()[0].name, "test stick");
+    EXPECT_EQ(rig.source->devices()[0].mapping, "default: joystick");
+}
+
+TEST(LiveSource, ManyDevicesComeAndGoWithoutMemory) {
+    Rig rig;
+    std::vector<int> there;
+    for (int i = 0; i < 300; ++i) {
+        there.push_back(rig.devices->plug(stick(), "serial number " + std::to_string(i % 40)));
+        rig.hold(there.back(), 0, 0, 2);
+        if (there.size() == max_devices) {
+            for (const int d : there) rig.devices->pull(d);
+            there.clear();
+            rig.tick();
+        }
+    }
+    EXPECT_EQ(rig.violations, 0U);
+    EXPECT_EQ(rig.source->devices().size(), 40U);
+}
+
+TEST(LiveSource, NobodyToSteerIsRestAndSaidOnce) {
+    Rig rig;
+    rig.run(2000);
+    EXPECT_EQ(rig.times_said("no device is there that steers"), 1);
+    EXPECT_EQ(rig.speed(), 0);
+    EXPECT_EQ(rig.violations, 0U);
+    Rig steered;
+    const int device = steered.devices->plug(stick());
+    steered.hold(device, 0, 0, 5);
+    steered.devices->pull(device);
+    steered.run(2000);
+    EXPECT_EQ(steered.times_said("no device is there"), 0) << "it was, and its going is said";
+}
+
+TEST(LiveSource, ARefusedDeviceIsSaidWithItsRemedy) {
+    Rig rig;
+    Error why{"/dev/hidraw7 (pad)", "may not be opened: Permission denied", "install the rules"};
+    DeviceEvent e;
+    e.kind = DeviceEvent::Kind::refused;
+    e.why = &why;
+    rig.devices->push(e);
+    rig.tick();
+    EXPECT_EQ(rig.times_said("/dev/hidraw7 (pad): may not be opened: Permission denied (install the rules)"), 1);
+    Error endless{"place", std::string(5000, 'x'), "remedy"};
+    e.why = &endless;
+    rig.devices->push(e);
+    rig.tick();
+    EXPECT_EQ(rig.said.back().size(), NoteLine{}.text.size()) << "cut, not overrun";
+    EXPECT_EQ(rig.violations, 0U);
+}
+
+TEST(LiveSource, NotesThatNobodyTakesAreCountedAndHarmNothing) {
+    Rig rig;
+    for (int i = 0; i < 500; ++i) {
+        const int device = rig.devices->plug(stick());
+        rig.devices->pull(device);
+        rig.devices->now_ns += tick_ns;
+        (void)rig.source->drain(rig.steering, rig.devices->now_ns);
+    }
+    EXPECT_GT(rig.source->lost_notes(), 0U);
+    int left = 0;
+    for (NoteLine note; rig.source->next_note(note);) ++left;
+    EXPECT_EQ(left + static_cast<int>(rig.source->lost_notes()), 1000);
+}
+
+TEST(LivePanel, ItsStopLatchesInTheSameStepAndItsResetTakesItOff) {
+    Rig rig(lines());
+    const int device = rig.devices->plug(stick());
+    rig.hold(device, 0, 0, 10);
+    rig.hold(device, 0, -127, 200);
+    ASSERT_GT(rig.speed(), 0.5);
+    rig.chip.set(0, false, rig.devices->now_ns + 1);  // the contact opens
+    rig.devices->send(device, at(0, -127));
+    EXPECT_TRUE(rig.tick().stopped);
+    EXPECT_EQ(rig.speed(), 0);
+    rig.chip.set(0, true, rig.devices->now_ns + 1);
+    rig.hold(device, 0, -127, 100);
+    EXPECT_TRUE(rig.steering.safety().latched) << "closed again is not reset";
+    rig.chip.set(1, true, rig.devices->now_ns + 1);
+    rig.hold(device, 0, -127, 10);
+    EXPECT_FALSE(rig.steering.safety().latched);
+    EXPECT_EQ(rig.speed(), 0) << "the stick is still pushed";
+    rig.hold(device, 0, 0, 10);
+    rig.hold(device, 0, -127, 200);
+    EXPECT_GT(rig.speed(), 0.5);
+    EXPECT_EQ(rig.violations, 0U);
+}
+
+TEST(LivePanel, ButtonsAndEncodersSteerAsADeviceOfTheirOwn) {
+    Rig rig(lines());
+    rig.run(20);
+    EXPECT_EQ(rig.presses, 0);
+    for (int i = 0; i < 3; ++i) {
+        rig.chip.set(2, true, rig.devices->now_ns + 1);
+        rig.run(20);
+        rig.chip.set(2, false, rig.devices->now_ns + 1);
+        rig.run(20);
+    }
+    EXPECT_EQ(rig.presses, 3) << "by its name";
+    ASSERT_EQ(rig.source->devices().size(), 1U);
+    EXPECT_EQ(rig.source->devices()[0].name, panel_name);
+    EXPECT_EQ(rig.source->devices()[0].device_class, "buttons");
+    EXPECT_GE(rig.source->log().count(), 6U) << "what the panel tells counts as reports";
+    EXPECT_EQ(rig.times_said("no device is there"), 0);
+    EXPECT_EQ(rig.violations, 0U);
+}
+
+TEST(LivePanel, AVanishedChipIsAStopSaidOnceAndTheNextOneServesAgain) {
+    Rig rig(lines());
+    const int device = rig.devices->plug(stick());
+    rig.hold(device, 0, 0, 10);
+    rig.hold(device, 0, -127, 200);
+    ASSERT_GT(rig.speed(), 0.5);
+    rig.chip.gone = true;
+    rig.devices->send(device, at(0, -127));
+    EXPECT_TRUE(rig.tick().stopped);
+    rig.run(3000);
+    EXPECT_TRUE(rig.sample.stopped);
+    EXPECT_EQ(rig.times_said("the chip is gone"), 1);
+    EXPECT_GT(rig.chip.tried, 2);
+    EXPECT_LE(rig.times_said(std::string(panel_name)), 2) << "each trouble once";
+    rig.chip.gone = false;
+    rig.run(1200);  // tried every 2 s by now
+    EXPECT_EQ(rig.times_said("its lines are there"), 1);
+    EXPECT_TRUE(rig.steering.safety().latched) << "back is not reset";
+    rig.chip.set(2, true, rig.devices->now_ns + 1);
+    rig.chip.set(1, true, rig.devices->now_ns + 1);
+    rig.run(20);
+    EXPECT_FALSE(rig.steering.safety().latched);
+    rig.chip.set(2, false, rig.devices->now_ns + 1);
+    rig.run(20);
+    rig.chip.set(2, true, rig.devices->now_ns + 1);
+    rig.run(20);
+    EXPECT_GE(rig.presses, 1) << "its buttons steer again";
+}
+
+TEST(LivePanel, ABusyLineIsAStopThatNamesWhoHasIt) {
+    FakeChip chip;
+    chip.busy_by = "gpiomon";
+    std::vector<std::string> said;
+    PanelDevice panel(lines(), {}, test::open_fake, &chip, [&](std::string_view text) { said.emplace_back(text); });
+    panel.open();
+    Steering steering{MotionLimits{}, SafetyLimits{}};
+    for (int i = 1; i < 200; ++i) EXPECT_TRUE(panel.step(steering, i * tick_ns).lines.stop);
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_NE(said[0].find("gpiomon"), std::string::npos) << said[0];
+    chip.busy_by.clear();
+    chip.level[0] = true;
+    bool stop = true;
+    for (int i = 200; i < 2000; ++i) stop = panel.step(steering, i * tick_ns).lines.stop;
+    EXPECT_FALSE(stop);
+}
+
+TEST(LivePanel, TheSteeringFileNamesItsMappingElseTheLinesDo) {
+    const std::vector<LineConfig> wired = lines();
+    FakeChip chip;
+    const GpioPanel panel(wired, test::open_fake, &chip);
+    const DeviceMapping named = panel_mapping({}, panel.controls());
+    ASSERT_EQ(named.buttons.size(), 1U);
+    EXPECT_EQ(named.buttons[0].action, Action::next_viewpoint);
+    ASSERT_EQ(named.axes.size(), 1U);
+    EXPECT_EQ(named.axes[0].action, Action::speed);
+    DeviceMapping any, own;
+    any.name = "any device";  // empty: fits every HID device; a panel must be named
+    own.name = "the panel's";
+    own.match.product_name = "GPIO panel";
+    EXPECT_EQ(panel_mapping(std::vector{any, own}, panel.controls()).name, "the panel's");
+    EXPECT_EQ(panel_mapping(std::vector{any}, panel.controls()).name, named.name);
+    auto plain = wired;
+    plain[2].name = "knob";
+    plain[3].name = plain[4].name = "wheel";
+    const GpioPanel nameless(plain, test::open_fake, &chip);
+    EXPECT_EQ(panel_mapping({}, nameless.controls()).buttons.at(0).action, Action::next_viewpoint) << "as a box of buttons";
+}
+
+TEST(HasStop, IsAStopLineOrAControlThatStops) {
+    SteeringFile file;
+    EXPECT_FALSE(has_stop(file));
+    file.lines = {line("hand", LineRole::dead_man, "0"), line("go", LineRole::button, "1")};
+    EXPECT_FALSE(has_stop(file));
+    file.lines.push_back(line("ESTOP", LineRole::stop, "2"));
+    EXPECT_TRUE(has_stop(file));
+    file.lines.clear();
+    DeviceMapping m;
+    m.buttons.push_back({});
+    m.buttons.back().action = Action::stop;
+    file.devices.push_back(m);
+    EXPECT_TRUE(has_stop(file));
+}
+
+}  // namespace
+}  // namespace surefoot::input

@@ -1,0 +1,244 @@
+// surefoot walk --input devices, the tool itself on the machine's own clock: a pad that is moved, pulled, plugged in again; and a
+// stop that outlives the walk. Judged by the ledger's poses.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "rt/base/file.hpp"
+#include "tests/input/gamepad_session.hpp"
+#include "tests/input/testbed/testbed.hpp"
+#include "tests/input/testbed/tool.hpp"
+
+namespace surefoot::input {
+namespace {
+
+using nlohmann::json;
+using test::Testbed;
+using test::Tool;
+using test::Wire;
+
+/// A small model, made by the tool once.
+struct Place {
+    Place() {
+        dir = fmt::format("{}/walk-{}", testing::TempDir(), getpid());
+        std::filesystem::create_directories(dir);
+        Tool scene({"room", "--scale", "0.2", "-o", dir + "/m.glb"}, false, "scene");
+        EXPECT_EQ(scene.wait(60'000), 0) << scene.err();
+        Tool bake({dir + "/m.glb", "-o", dir + "/m.walk"}, false, "bake");
+        EXPECT_EQ(bake.wait(60'000), 0) << bake.err();
+    }
+    ~Place() {
+        std::error_code ignored;
+        std::filesystem::remove_all(dir, ignored);
+    }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+    static const Place& get() {
+        static const Place place;
+        return place;
+    }
+    [[nodiscard]] std::vector<std::string> walk(const std::string& seconds, const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> words = {dir + "/m.walk", "--backend", "null", "--clock", "real",  "--input",
+                                          "devices",       "--seconds", seconds, "--json",  "--state", dir,
+                                          "--ledger",      dir + "/ledger.csv"};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    }
+    std::string dir;
+};
+
+struct Row {
+    double due_s = 0;  ///< CLOCK_MONOTONIC
+    dvec3 eye{0.0};
+    bool stopped = false;
+};
+
+/// The ledger's poses, on the test's own clock: frame k was due at t0 + k T.
+std::vector<Row> ledger(const std::string& file) {
+    std::ifstream in(file);
+    std::string text;
+    std::getline(in, text);
+    const auto cells = [](const std::string& row) {
+        std::vector<std::string> out;
+        std::istringstream s(row);
+        for (std::string cell; std::getline(s, cell, ',');) out.push_back(cell);
+        return out;
+    };
+    const auto names = cells(text);
+    std::vector<Row> rows;
+    while (std::getline(in, text)) {
+        const auto values = cells(text);
+        std::map<std::string, std::string> by;
+        for (std::size_t i = 0; i < names.size() && i < values.size(); ++i) by[names[i]] = values[i];
+        rows.push_back({std::stod(by.at("due_ns")) * 1e-9,
+                        {std::stod(by.at("x")), std::stod(by.at("y")), std::stod(by.at("z"))},
+                        by.at("stopped") == "1"});
+    }
+    return rows;
+}
+
+std::vector<std::byte> pad(double forward, unsigned buttons = 0) {
+    return {std::byte{128}, static_cast<std::byte>(128 - static_cast<int>(127 * forward)), std::byte{128}, std::byte{128},
+            static_cast<std::byte>(buttons)};
+}
+
+/// Reports every 4 ms for so long.
+void hold(test::Plug& plug, double forward, int ms, unsigned buttons = 0) {
+    for (int i = 0; i < ms; i += 4) {
+        (void)Testbed::send(plug, pad(forward, buttons));
+        usleep(4000);
+    }
+}
+
+double seconds_now() { return static_cast<double>(test::now_ns()) * 1e-9; }
+
+/// Metres a second between the rows that are due in [from, to]; -1: fewer than two.
+double speed_between(const std::vector<Row>& rows, double from_s, double to_s) {
+    const Row *first = nullptr, *last = nullptr;
+    for (const Row& r : rows)
+        if (r.due_s >= from_s && r.due_s <= to_s) {
+            if (first == nullptr) first = &r;
+            last = &r;
+        }
+    if (first == last) return -1;
+    return glm::length(last->eye - first->eye) / (last->due_s - first->due_s);
+}
+
+TEST(WalkTool, APadSteersIsPulledAndSteersAgainOnceSeenNeutral) {
+    Testbed bed;
+    const Recording device = test::GamepadSession().recording();
+    auto plug = bed.plug(device, {.serial = "0001", .wire = Wire::terminal});
+    Tool tool(Place::get().walk("9"), false, "walk");
+    ASSERT_TRUE(tool.until("steers, by the mapping", 30'000)) << tool.err();
+    usleep(400'000);
+    hold(plug, 0, 200);
+    const double pushed = seconds_now();
+    hold(plug, 1, 1200);
+    bed.hang_up(plug);
+    const double pulled = seconds_now();
+    ASSERT_TRUE(tool.until("was unplugged")) << tool.err();
+    bed.pull(plug);
+    usleep(500'000);
+    const double plugged = seconds_now();
+    plug = bed.plug(device, {.node = "hidraw1", .serial = "0001", .wire = Wire::terminal});
+    usleep(300'000);
+    hold(plug, 1, 600);
+    const double neutral = seconds_now();
+    hold(plug, 0, 200);
+    const double again = seconds_now();
+    hold(plug, 1, 1000);
+    const double released = seconds_now();
+    hold(plug, 0, 200);
+    ASSERT_EQ(tool.wait(30'000), 0) << tool.err();
+    bed.pull(plug);
+
+    const json all = json::parse(tool.out()), in = all["input"];
+    EXPECT_EQ(in["source"], "devices");
+    EXPECT_EQ(all["rt"]["guard_violations"], 0);
+    EXPECT_EQ(in["guard_violations"], 0) << "the input thread needed memory";
+    EXPECT_GT(in["reports"], 300);
+    EXPECT_LT(in["refused"], in["reports"].get<int>() / 10) << "a terminal runs two reports together that nobody read in between";
+    EXPECT_EQ(in["losses"], 1);
+    for (const auto& problem : all.value("census", json::array())) ADD_FAILURE() << problem;
+    EXPECT_EQ(tool.err().find("thread census"), std::string::npos) << tool.err();
+    EXPECT_NE(tool.out().find("sf-devices"), std::string::npos) << "not in the census";
+
+    const auto rows = ledger(Place::get().dir + "/ledger.csv");
+    ASSERT_GT(rows.size(), 200U);
+    if (released - pushed > 6 || released > rows.back().due_s - 0.1) GTEST_SKIP() << "this process was held up beyond the walk's end";
+    EXPECT_EQ(speed_between(rows, 0, pushed), 0) << "before anybody pushed";
+    EXPECT_GT(speed_between(rows, pushed + 0.5, pulled - 0.05), 1.2);
+    const double rest = speed_between(rows, pulled + 0.05, plugged);
+    EXPECT_EQ(rest, 0) << "not at rest 50 ms after the cable was pulled";
+    EXPECT_EQ(speed_between(rows, plugged, neutral), 0) << "it came back deflected";
+    EXPECT_GT(speed_between(rows, again + 0.5, released), 1.2);
+    std::printf("[ figure   ] report to submitted frame: %s ms; walked at %.2f m/s, rest 50 ms after the pull\n",
+                in["age_ms"].dump().c_str(), speed_between(rows, pushed + 0.5, pulled - 0.05));
+}
+
+TEST(WalkTool, WithoutADeviceItRestsAndSaysSoOnce) {
+    Testbed bed;
+    bed.plug(recorded("boot-mouse"));
+    Tool tool(Place::get().walk("2"), false, "walk");
+    ASSERT_EQ(tool.wait(30'000), 0) << tool.err();
+    const std::string said = tool.err();
+    const auto first = said.find("no device is there that steers");
+    ASSERT_NE(first, std::string::npos) << said;
+    EXPECT_EQ(said.find("no device is there that steers", first + 1), std::string::npos) << said;
+    EXPECT_NE(said.find("[[device]]"), std::string::npos) << "why the mouse does not steer: " << said;
+    const auto rows = ledger(Place::get().dir + "/ledger.csv");
+    ASSERT_EQ(rows.size(), 60U);
+    EXPECT_EQ(rows.front().eye, rows.back().eye);
+}
+
+TEST(WalkTool, AnEmergencyStopOutlivesTheWalkUntilItIsReset) {
+    Testbed bed;
+    const Recording device = test::GamepadSession().recording();
+    const std::string& dir = Place::get().dir;
+    ASSERT_TRUE(write_text(dir + "/stop.toml", R"([[device]]
+vendor = 0x1d50
+[[device.axis]]
+control = "y"
+action = "forward"
+invert = true
+[[device.button]]
+control = "button-5"
+action = "stop"
+[[device.button]]
+control = "button-6"
+action = "stop_reset"
+)")
+                    .ok());
+    const auto walk = [&](const std::vector<std::string>& more, const auto& hands) {
+        auto plug = bed.plug(device, {.serial = "0001", .wire = Wire::terminal});
+        std::vector<std::string> words = {"--steering", dir + "/stop.toml"};
+        words.insert(words.end(), more.begin(), more.end());
+        Tool tool(Place::get().walk("3", words), false, "walk");
+        EXPECT_TRUE(tool.until("steers, by the mapping", 30'000)) << tool.err();
+        usleep(400'000);
+        hands(plug);
+        EXPECT_EQ(tool.wait(30'000), 0) << tool.err();
+        bed.pull(plug);
+        return std::pair(json::parse(tool.out())["input"], tool.err());
+    };
+    const auto push = [](test::Plug& plug) {
+        hold(plug, 0, 100);
+        hold(plug, 1, 800);
+    };
+    const auto moved = [&] {
+        const auto rows = ledger(dir + "/ledger.csv");
+        return glm::length(rows.back().eye - rows.front().eye) > 0.1;
+    };
+    walk({}, [&](test::Plug& plug) {
+        push(plug);
+        hold(plug, 0, 50, 16);
+        hold(plug, 0, 50);
+    });
+    EXPECT_TRUE(moved());
+    EXPECT_EQ(*read_text(dir + "/emergency-stop"), "surefoot emergency stop: latched\n");
+    const auto [second, said] = walk({}, push);
+    EXPECT_FALSE(moved()) << "the stop was forgotten";
+    EXPECT_EQ(second["stop_latched"], true);
+    EXPECT_NE(said.find("still latched"), std::string::npos) << said;
+    const auto [third, reset] = walk({}, [&](test::Plug& plug) {
+        hold(plug, 0, 100);
+        hold(plug, 0, 100, 32);
+        push(plug);
+    });
+    EXPECT_TRUE(moved()) << "reset by its control";
+    EXPECT_EQ(third["stop_latched"], false);
+    EXPECT_EQ(*read_text(dir + "/emergency-stop"), "surefoot emergency stop: clear\n");
+    ASSERT_TRUE(write_text(dir + "/emergency-stop", "surefoot emergency stop: latched\n").ok());
+    walk({"--clear-stop"}, push);
+    EXPECT_TRUE(moved()) << "reset by the user";
+}
+
+}  // namespace
+}  // namespace surefoot::input
