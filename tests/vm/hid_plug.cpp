@@ -1,14 +1,18 @@
 // Devices that come: one is one, permissions that come late, hot-plug in time.
 #include <fmt/format.h>
+#include <libudev.h>
+#include <poll.h>
 #include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <memory>
 #include <thread>
 
+#include "input/devices/udev.hpp"
 #include "tests/vm/hid_checks.hpp"
 #include "tests/vm/uhid.hpp"
 #include "tests/vm/walker.hpp"
@@ -86,6 +90,33 @@ private:
     bool working_ = false;
 };
 
+/// When udev has told last that a hidraw device came: its rules have run then.
+class UdevTold {
+public:
+    UdevTold() : context_(udev_new()) {
+        auto monitor = input::UdevMonitor::listen(context_.get());
+        if (!monitor) return;
+        watcher_ = std::thread([this, m = std::move(*monitor)]() mutable {
+            for (pollfd one{m.fd(), POLLIN, 0}; !ending_;)
+                if (::poll(&one, 1, 20) > 0 && !m.news().changed.empty()) at_ns_ = now_ns();
+        });
+    }
+    ~UdevTold() {
+        ending_ = true;
+        if (watcher_.joinable()) watcher_.join();
+    }
+    UdevTold(const UdevTold&) = delete;
+    UdevTold& operator=(const UdevTold&) = delete;
+    [[nodiscard]] std::int64_t at_ns() const { return at_ns_; }
+    void forget() { at_ns_ = 0; }
+
+private:
+    input::UdevContext context_;
+    std::atomic<std::int64_t> at_ns_ = 0;
+    std::atomic<bool> ending_ = false;
+    std::thread watcher_;
+};
+
 }  // namespace
 
 void check_enumeration(Checks& checks, const Guest& guest) {
@@ -157,29 +188,33 @@ void check_permission(Checks& checks, const Guest& guest) {
 
 void check_hot_plug(Checks& checks, const Guest& guest) {
     const auto pad = like(guest, "f310-like");
+    UdevTold udev;
     Walker walker;
     walker.run_ms(200);
-    std::vector<double> opened, reported;
+    std::vector<double> reported, in_all;
     for (int i = 0; i < 20; ++i) {
         walker.added_ns = walker.first_report_ns = 0;
+        udev.forget();
         const std::int64_t from = now_ns();
         UhidDevice device(pad, fmt::format("hot-{}", i));
-        walker.until([&] { return walker.added_ns != 0; }, 2000);
-        opened.push_back(static_cast<double>(walker.added_ns - from) * 1e-6);
+        walker.until([&] { return walker.added_ns != 0 && udev.at_ns() != 0; }, 3000);
         walker.until([&] {
             device.send(pad_at(128, 128));
             return walker.first_report_ns != 0;
         }, 1000);
-        reported.push_back(static_cast<double>(walker.first_report_ns - from) * 1e-6);
+        const bool whole = walker.first_report_ns != 0 && udev.at_ns() != 0;
+        reported.push_back(whole ? static_cast<double>(walker.first_report_ns - udev.at_ns()) * 1e-6 : 1e9);
+        in_all.push_back(static_cast<double>(walker.first_report_ns - from) * 1e-6);
         walker.removed_ns = 0;
         device.unplug();
         walker.until([&] { return walker.removed_ns != 0; }, 2000);
         walker.run_ms(20);
     }
-    const auto [least, greatest] = std::minmax_element(reported.begin(), reported.end());
-    checks.check("hot_plug", *least > 0 && *greatest <= 250,
-                 fmt::format("20 of 20 plugged: to the first report at most {:.1f} ms, opened at most {:.1f} ms (at most 250)", *greatest,
-                             *std::max_element(opened.begin(), opened.end())));
+    const double latest = *std::max_element(reported.begin(), reported.end());
+    checks.check("hot_plug", latest <= 250,
+                 fmt::format("20 plugged: first usable report at most {:.1f} ms beyond udev's own event (at most 250); from the plug, udev included, at "
+                             "most {:.0f} ms",
+                             latest, *std::max_element(in_all.begin(), in_all.end())));
 }
 
 }  // namespace surefoot::vm

@@ -57,7 +57,7 @@ public:
 
     std::vector<std::string> said;
     input::Steering steering{input::MotionLimits{}, input::SafetyLimits{}};
-    input::Attendant attendant{{}, steering, [this](const std::string& text) { said.push_back(text); }};
+    input::Attendant attendant{{}, steering, [this](std::string_view text) { said.emplace_back(text); }};
     std::unique_ptr<input::LiveDevices> source;
     input::Lines lines;
     input::NavigationSample sample;
