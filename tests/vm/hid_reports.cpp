@@ -26,14 +26,19 @@ Result<input::Recording> recorded(const Guest& guest, const std::vector<Report>&
     UhidDevice device(like(guest, "f310-like"), name);
     const std::string node = device.node(), file = guest.keep + "/" + name + ".hid";
     sleep_ms(300);
-    std::FILE* tool = popen(fmt::format("{} devices record {} -o {} --seconds 5 2>&1", guest.tool, node, file).c_str(), "re");
-    sleep_ms(800);
+    std::FILE* tool = popen(fmt::format("timeout 60 {} devices record {} -o {} --seconds 50 2>&1", guest.tool, node, file).c_str(), "re");
+    if (tool == nullptr) return Error{guest.tool, "cannot be started", {}};
+    std::array<char, 512> line{};
+    while (std::fgets(line.data(), static_cast<int>(line.size()), tool) != nullptr)
+        if (std::string_view(line.data()).find("recording ") != std::string_view::npos) break;
     took_all = true;
     for (const Report& r : reports) {
         took_all = device.send(r) && took_all;
         sleep_ms(1);
     }
-    if (tool != nullptr) pclose(tool);
+    sleep_ms(200);
+    device.unplug();  // ends the recording
+    pclose(tool);
     return input::read_recording(file);
 }
 

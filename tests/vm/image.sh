@@ -133,6 +133,10 @@ make_image() {
   image_was=made
   rm -f "$cache/stamp"
   say "Making the guest's image in $cache (once; 400 MB to download, about 4 GB of disk)"
-  make_kernel "$release" && make_root && make_trixie && make_initrd || return 1
+  make_trixie &
+  local trixie=$! made=1
+  { make_kernel "$release" && make_root && make_initrd; } || made=0
+  wait "$trixie" || made=0
+  (( made )) || return 1
   echo "$stamp" >"$cache/stamp"
 }

@@ -1,5 +1,7 @@
-// The input thread's loop, run by a test: live devices to the steering, a tick every millisecond.
+// The input thread's loop, run by a test: live devices to the steering, a tick every millisecond, at the input thread's priority.
 #pragma once
+
+#include <sched.h>
 
 #include <glm/geometric.hpp>
 
@@ -19,10 +21,22 @@ public:
         auto made = input::open_live({}, true);
         if (!made) std::fprintf(stderr, "%s\n", made.error().text().c_str());
         if (made) source = std::move(*made);
+        const sched_param fifo{75};
+        if (sched_setscheduler(0, SCHED_FIFO, &fifo) != 0) std::fprintf(stderr, "SCHED_FIFO is refused\n");
     }
+
+    ~Walker() {
+        const sched_param other{0};
+        (void)sched_setscheduler(0, SCHED_OTHER, &other);
+    }
+    Walker(const Walker&) = delete;
+    Walker& operator=(const Walker&) = delete;
 
     /// One wake-up; the speed after it.
     double step() {
+        const std::int64_t began = now_ns();
+        if (last_ns != 0) longest_gap_ns = std::max(longest_gap_ns, began - last_ns);
+        last_ns = began;
         source->wait(now_ns() + 1'000'000);
         for (const input::DeviceEvent& e : source->take()) {
             if (e.kind == input::DeviceEvent::Kind::added) added_ns = e.stamp_ns;
@@ -62,6 +76,7 @@ public:
     input::Lines lines;
     input::NavigationSample sample;
     std::int64_t added_ns = 0, removed_ns = 0, first_report_ns = 0;
+    std::int64_t last_ns = 0, longest_gap_ns = 0;  ///< between two steps; set it to 0 to begin anew
     double greatest = 0;
     int wrong = 0;
 };
