@@ -36,10 +36,12 @@ void Checks::not_run(std::string_view name, std::string_view why) { write(name, 
 
 void Checks::write(std::string_view name, std::string_view verdict, std::string_view detail) {
     const std::string line = group_ + "." + std::string(name);
-    std::printf("[ %-7s ] %-34s %.*s\n", std::string(verdict).c_str(), line.c_str(), static_cast<int>(detail.size()), detail.data());
+    std::printf("[ %-7s ] %-34s %.*s\n", std::string(verdict).c_str(), line.c_str(), static_cast<int>(detail.size()),
+                detail.data());
     std::fflush(stdout);
     if (file_ == nullptr) return;
-    const std::string object = "{\"check\": " + as_json(line) + ", \"verdict\": " + as_json(verdict == "FAIL" ? "fail" : verdict) +
+    const std::string object = "{\"check\": " + as_json(line) +
+                               ", \"verdict\": " + as_json(verdict == "FAIL" ? "fail" : verdict) +
                                ", \"detail\": " + as_json(detail) + "}\n";
     std::fputs(object.c_str(), file_);
     std::fflush(file_);

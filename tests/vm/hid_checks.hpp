@@ -26,6 +26,7 @@ void check_two_devices(Checks& checks, const Guest& guest);
 void check_recording(Checks& checks, const Guest& guest);
 void check_evdev(Checks& checks, const Guest& guest);
 void check_gadget(Checks& checks, const Guest& guest);
+void check_cp2112(Checks& checks, const Guest& guest);
 void check_walk(Checks& checks, const Guest& guest);
 
 /// A device of tests/input/devices, under neutral ids; ends the program where it is not there.

@@ -58,7 +58,8 @@ public:
 private:
     static std::string controller() {
         std::error_code problem;
-        for (const auto& entry : std::filesystem::directory_iterator("/sys/class/udc", problem)) return entry.path().filename().string();
+        for (const auto& entry : std::filesystem::directory_iterator("/sys/class/udc", problem))
+            return entry.path().filename().string();
         return {};
     }
     inline static const std::string root = "/sys/kernel/config/usb_gadget/surefoot";
@@ -83,7 +84,8 @@ void check_gadget(Checks& checks, const Guest& guest) {
     const auto list = nlohmann::json::parse(output_of(guest.tool + " devices list --json 2>/dev/null"), nullptr, false);
     int found = 0;
     if (!list.is_discarded())
-        for (const auto& d : list["devices"]) found += d.value("vid_pid", "") == "1d50:8100" || d.dump().find("gadget") != std::string::npos ? 1 : 0;
+        for (const auto& d : list["devices"])
+            found += d.value("vid_pid", "") == "1d50:8100" || d.dump().find("gadget") != std::string::npos ? 1 : 0;
     checks.check("usb_gadget.one_device", found == 1, fmt::format("{} listed", found));
     Walker walker;
     Random random(5);
@@ -104,9 +106,10 @@ void check_gadget(Checks& checks, const Guest& guest) {
         walker.until([&] { return walker.source->devices() == 0; }, 2000);
     }
     const double latest = rest.empty() ? -1 : *std::max_element(rest.begin(), rest.end());
-    checks.check("usb_gadget.cable_pulled", rest.size() == times && moved == times && latest <= 150,
-                 fmt::format("{} of {} at rest, {} were moving; at most {:.1f} ms after the cable (the age limit's 100 ms and 50)", rest.size(), times,
-                             moved, latest));
+    checks.check(
+        "usb_gadget.cable_pulled", rest.size() == times && moved == times && latest <= 150,
+        fmt::format("{} of {} at rest, {} were moving; at most {:.1f} ms after the cable (the age limit's 100 ms and 50)",
+                    rest.size(), times, moved, latest));
 }
 
 }  // namespace surefoot::vm

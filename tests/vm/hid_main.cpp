@@ -38,11 +38,13 @@ std::string output_of(const std::string& command, int* status) {
 int main(int count, char** arguments) {
     using namespace surefoot::vm;
     if (count != 2) {
-        std::fprintf(stderr, "usage: vm_hid FOLDER   (with surefoot, devices/, 70-surefoot.rules; checks.jsonl and kept/ are written)\n");
+        std::fprintf(stderr,
+                     "usage: vm_hid FOLDER   (with surefoot, devices/, 70-surefoot.rules; checks.jsonl and kept/ are written)\n");
         return 2;
     }
     const std::string folder = arguments[1];
-    const Guest guest{folder + "/surefoot", folder + "/devices", folder + "/70-surefoot.rules", folder + "/model.walk", folder + "/kept"};
+    const Guest guest{folder + "/surefoot", folder + "/devices", folder + "/70-surefoot.rules", folder + "/model.walk",
+                      folder + "/kept"};
     Checks checks("hid", folder + "/checks.jsonl");
     if (access("/dev/uhid", W_OK) != 0) {
         checks.not_run("all", "no /dev/uhid: the kernel has no uhid module");
@@ -57,6 +59,7 @@ int main(int count, char** arguments) {
     check_recording(checks, guest);
     check_evdev(checks, guest);
     check_gadget(checks, guest);
+    check_cp2112(checks, guest);
     check_walk(checks, guest);
     return checks.status();
 }

@@ -22,11 +22,13 @@ namespace {
 using Report = std::vector<std::byte>;
 
 /// What `surefoot devices record` writes while `reports` are sent, one a millisecond.
-Result<input::Recording> recorded(const Guest& guest, const std::vector<Report>& reports, const std::string& name, bool& took_all) {
+Result<input::Recording> recorded(const Guest& guest, const std::vector<Report>& reports, const std::string& name,
+                                  bool& took_all) {
     UhidDevice device(like(guest, "f310-like"), name);
     const std::string node = device.node(), file = guest.keep + "/" + name + ".hid";
     sleep_ms(300);
-    std::FILE* tool = popen(fmt::format("timeout 60 {} devices record {} -o {} --seconds 50 2>&1", guest.tool, node, file).c_str(), "re");
+    std::FILE* tool =
+        popen(fmt::format("timeout 60 {} devices record {} -o {} --seconds 50 2>&1", guest.tool, node, file).c_str(), "re");
     if (tool == nullptr) return Error{guest.tool, "cannot be started", {}};
     std::array<char, 512> line{};
     while (std::fgets(line.data(), static_cast<int>(line.size()), tool) != nullptr)
@@ -83,14 +85,16 @@ void read_events(int fd, Values& values) {
 
 /// The same values as our decoder has them. Source: hid-input.c, hidinput_configure_usage and hidinput_hid_event.
 Values as_events(const input::HidDevice& device, const input::DeviceState& state, unsigned first_button) {
-    static constexpr std::array<std::array<int, 2>, 8> hat = {{{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}}};
+    static constexpr std::array<std::array<int, 2>, 8> hat = {
+        {{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}}};
     Values values;
     for (std::size_t i = 0; i < device.controls.size(); ++i) {
         const auto& c = device.controls[i];
         if (c.kind == input::ControlKind::button && c.usage_page == 9)
             values[{EV_KEY, first_button + c.usage - 1U}] = state.value[i];
         else if (c.kind == input::ControlKind::hat) {
-            const std::array<int, 2> at = state.has_value.test(i) ? hat[static_cast<std::size_t>(state.value[i] & 7)] : std::array<int, 2>{};
+            const std::array<int, 2> at =
+                state.has_value.test(i) ? hat[static_cast<std::size_t>(state.value[i] & 7)] : std::array<int, 2>{};
             values[{EV_ABS, ABS_HAT0X}] = at[0];
             values[{EV_ABS, ABS_HAT0Y}] = at[1];
         } else if (c.kind == input::ControlKind::axis && c.usage_page == 1 && c.usage >= 0x30 && c.usage <= 0x38 && !c.relative)
@@ -130,12 +134,15 @@ void compare(Checks& checks, const Guest& guest, const std::string& name, unsign
             const int theirs = said == kernel.end() ? 0 : said->second;  // without an event it is where it began
             ++compared;
             if (theirs == value) continue;
-            if (different++ == 0) first = fmt::format("; first: report {}, type {} code {}: kernel {}, ours {}", i, at.first, at.second, theirs, value);
+            if (different++ == 0)
+                first =
+                    fmt::format("; first: report {}, type {} code {}: kernel {}, ours {}", i, at.first, at.second, theirs, value);
         }
     }
     ::close(fd);
-    checks.check("evdev." + name, different == 0 && compared > 10'000 && refused == 0,
-                 fmt::format("2000 random reports of {} bytes: {} values compared, {} differ{}", bytes, compared, different, first));
+    checks.check(
+        "evdev." + name, different == 0 && compared > 10'000 && refused == 0,
+        fmt::format("2000 random reports of {} bytes: {} values compared, {} differ{}", bytes, compared, different, first));
 }
 
 }  // namespace
@@ -161,7 +168,8 @@ void check_recording(Checks& checks, const Guest& guest) {
     for (std::size_t i = 0; i < first->reports.size(); ++i) again.emplace_back(first->report(i).begin(), first->report(i).end());
     const auto second = recorded(guest, again, "replayed", sent);
     const std::size_t wrong_again = second ? differences(*second, reports) : reports.size();
-    checks.check("replay", sent && wrong_again == 0, fmt::format("the recording sent through the kernel and recorded again: {} differ", wrong_again));
+    checks.check("replay", sent && wrong_again == 0,
+                 fmt::format("the recording sent through the kernel and recorded again: {} differ", wrong_again));
 }
 
 void check_evdev(Checks& checks, const Guest& guest) {

@@ -45,7 +45,9 @@ private:
     std::thread watcher_;
 };
 
-int deflected(Random& random) { return random.below(2) == 0 ? static_cast<int>(random.below(70)) : 186 + static_cast<int>(random.below(70)); }
+int deflected(Random& random) {
+    return random.below(2) == 0 ? static_cast<int>(random.below(70)) : 186 + static_cast<int>(random.below(70));
+}
 
 struct Pull {
     bool plugged = false, moved = false, rested = false;
@@ -73,10 +75,12 @@ Pull pull_once(Walker& walker, const input::Recording& pad, Random& random, int 
         device->unplug();
     });
     std::int64_t rest_ns = 0;
-    result.rested = walker.until([&] {
-        if (walker.speed() == 0 && pulled_ns != 0 && walker.removed_ns != 0 && rest_ns == 0) rest_ns = now_ns();
-        return rest_ns != 0;
-    }, 2000);
+    result.rested = walker.until(
+        [&] {
+            if (walker.speed() == 0 && pulled_ns != 0 && walker.removed_ns != 0 && rest_ns == 0) rest_ns = now_ns();
+            return rest_ns != 0;
+        },
+        2000);
     cable.join();
     result.stood_still_ms = static_cast<double>(walker.longest_gap_ns) * 1e-6;
     if (rest_ns != 0) {
@@ -103,7 +107,8 @@ void check_unplug(Checks& checks, const Guest& guest) {
     std::vector<double> hang_up, pull;
     for (int i = 0; done < times && stood_still < at_most_void; ++i) {
         const Pull p = pull_once(walker, pad, random, i);
-        // A loop that the host did not run for so long says nothing about the time to rest: it is pulled once more. Rest itself counts.
+        // A loop that the host did not run for so long says nothing about the time to rest: it is pulled once more. Rest itself
+        // counts.
         if (p.plugged && p.rested && p.after_hang_up_ms > 50 && p.stood_still_ms > 10) {
             ++stood_still;
             continue;
@@ -121,10 +126,13 @@ void check_unplug(Checks& checks, const Guest& guest) {
     std::sort(hang_up.begin(), hang_up.end());
     std::sort(pull.begin(), pull.end());
     checks.check("unplug.at_rest", done == times && rested == times && late == 0 && moved > times * 9 / 10 && walker.wrong == 0,
-                 fmt::format("{} of {} at rest, {} were moving, {} never came; hang-up to rest p50 {:.1f} ms, max {:.1f} ms (at most 50; {} later); from "
-                             "the pull max {:.1f} ms; {} velocities that are no numbers; {} more at rest, but later where the host held the loop for "
+                 fmt::format("{} of {} at rest, {} were moving, {} never came; hang-up to rest p50 {:.1f} ms, max {:.1f} ms (at "
+                             "most 50; {} later); from "
+                             "the pull max {:.1f} ms; {} velocities that are no numbers; {} more at rest, but later where the "
+                             "host held the loop for "
                              "over 10 ms, and pulled again",
-                             rested, times, moved, not_plugged, hang_up[hang_up.size() / 2], hang_up.back(), late, pull.back(), walker.wrong, stood_still));
+                             rested, times, moved, not_plugged, hang_up[hang_up.size() / 2], hang_up.back(), late, pull.back(),
+                             walker.wrong, stood_still));
     checks.check("unplug.descriptors", before == after, fmt::format("{} before, {} after {} times", before, after, times));
 
     UhidDevice device(pad, "again");
@@ -162,13 +170,15 @@ void check_stall(Checks& checks, const Guest& guest) {
     };
     // 1 kHz for half a second, ending in release: the ring is full, and the release was dropped.
     const auto full = stalled([&](int i) { device.send(pad_at(128, i < 480 ? 0 : 128)); }, 500);
-    checks.check("stall.ring_overflow", full[0] > 0.5 && full[2] == 0 && walker.steering.safety().overflows >= 1,
-                 fmt::format("500 ms, 500 reports: speed {:.2f} before, {:.2f} one tick after, {:.2f} 100 ms after; {} overflows seen", full[0],
-                             full[1], full[2], walker.steering.safety().overflows));
+    checks.check(
+        "stall.ring_overflow", full[0] > 0.5 && full[2] == 0 && walker.steering.safety().overflows >= 1,
+        fmt::format("500 ms, 500 reports: speed {:.2f} before, {:.2f} one tick after, {:.2f} 100 ms after; {} overflows seen",
+                    full[0], full[1], full[2], walker.steering.safety().overflows));
     // 40 reports fit; the newest one is the release.
     const auto fits = stalled([&](int i) { device.send(pad_at(128, i < 39 ? 0 : 128)); }, 40);
     checks.check("stall.release_read", fits[0] > 0.5 && fits[1] <= fits[0] && fits[2] < fits[1] && fits[3] == 0,
-                 fmt::format("500 ms, 40 reports: speed {:.2f} before, {:.2f} one tick after, {:.2f} after 100 ms, {:.2f} after 400 ms (a release slows "
+                 fmt::format("500 ms, 40 reports: speed {:.2f} before, {:.2f} one tick after, {:.2f} after 100 ms, {:.2f} after "
+                             "400 ms (a release slows "
                              "down at 8 m/s²)",
                              fits[0], fits[1], fits[2], fits[3]));
 }
@@ -182,10 +192,12 @@ void check_two_devices(Checks& checks, const Guest& guest) {
     walker.hold([&] { a.send(pad_at(128, 0)); }, 800);
     const double one = glm::length(walker.sample.velocity_m_s);
     double greatest = 0;
-    walker.hold([&] {
-        a.send(pad_at(0, 0)), b.send(pad_at(0, 0));
-        greatest = std::max(greatest, glm::length(walker.sample.velocity_m_s));
-    }, 800);
+    walker.hold(
+        [&] {
+            a.send(pad_at(0, 0)), b.send(pad_at(0, 0));
+            greatest = std::max(greatest, glm::length(walker.sample.velocity_m_s));
+        },
+        800);
     checks.check("two_devices.bounded", one > 0.5 && greatest > 0.5 && greatest <= one * 1.001,
                  fmt::format("full deflection: {:.3f} m/s by one, at most {:.3f} m/s by two, diagonally", one, greatest));
 }

@@ -71,8 +71,10 @@ void walk_with(Checks& checks, const Guest& guest, const std::string& name, cons
     std::string said;
     int status = -1;
     std::thread walk([&] {
-        said = output_of(fmt::format("timeout 100 {} walk {} --input devices --backend {} --rate 10 --size 320x240 --seconds 14 --state {} --ledger {} --json {}",
-                                     guest.tool, guest.model, backend, guest.keep, file, more), &status);
+        said = output_of(fmt::format("timeout 100 {} walk {} --input devices --backend {} --rate 10 --size 320x240 --seconds 14 "
+                                     "--state {} --ledger {} --json {}",
+                                     guest.tool, guest.model, backend, guest.keep, file, more),
+                         &status);
     });
     // It looks for devices when the model is loaded; the pad is at rest meanwhile. The ledger's clock is ours.
     for (const std::int64_t from = now_ns(); ms_since(from) < 3000; sleep_ms(4)) device->send(pad_at(128, 128));
@@ -96,9 +98,11 @@ void walk_with(Checks& checks, const Guest& guest, const std::string& name, cons
     const auto rows = ledger(file);
     const double follows = gone(rows, pushed + 500 * ms, pulled), stops = gone(rows, pulled + 300 * ms, back),
                  waits = gone(rows, back, neutral), resumes = gone(rows, again + 500 * ms, released);
-    checks.check(name, status == 0 && follows > 0.5 && stops >= 0 && stops < 1e-9 && waits >= 0 && waits < 1e-9 && resumes > 0.5,
-                 fmt::format("{}: followed {:.2f} m, pulled {:.3f} m, replugged deflected {:.3f} m, after neutral {:.2f} m; {} frames, status {}", backend,
-                             follows, stops, waits, resumes, rows.size(), status));
+    checks.check(
+        name, status == 0 && follows > 0.5 && stops >= 0 && stops < 1e-9 && waits >= 0 && waits < 1e-9 && resumes > 0.5,
+        fmt::format(
+            "{}: followed {:.2f} m, pulled {:.3f} m, replugged deflected {:.3f} m, after neutral {:.2f} m; {} frames, status {}",
+            backend, follows, stops, waits, resumes, rows.size(), status));
 }
 
 }  // namespace
@@ -118,7 +122,8 @@ void check_walk(Checks& checks, const Guest& guest) {
             ++count;
             least = std::min<std::size_t>(least, entry.file_size());
         }
-    checks.check("walk.picture", count >= 2 && least > 2000, fmt::format("{} pictures kept, the smallest of {} bytes", count, count > 0 ? least : 0));
+    checks.check("walk.picture", count >= 2 && least > 2000,
+                 fmt::format("{} pictures kept, the smallest of {} bytes", count, count > 0 ? least : 0));
 }
 
 }  // namespace surefoot::vm

@@ -130,6 +130,7 @@ make_image() {
   stamp="$release $(sha256sum "${BASH_SOURCE[0]}" | cut -d' ' -f1)"
   mkdir -p "$cache"
   if [[ -f "$cache/stamp" && "$(cat "$cache/stamp")" == "$stamp" ]]; then image_was=cached; return; fi
+  # shellcheck disable=SC2034  # for who reads this file
   image_was=made
   rm -f "$cache/stamp"
   say "Making the guest's image in $cache (once; 400 MB to download, about 4 GB of disk)"
