@@ -165,10 +165,10 @@ void check_permission(Checks& checks, const Guest& guest) {
         watch.end();
         const auto refused = watch.of("refused"), added = watch.of("added");
         const double ms = added.empty() ? -1 : static_cast<double>(added.front()->ns - permitted) * 1e-6;
-        checks.check("late_permission.by_hand",
-                     refused.size() == 1 && added.size() == 1 && ms >= 0 && ms <= 2250 && opens.count() <= 20,
-                     fmt::format("refused {} times, opened {:.0f} ms after chmod 0666 without an event; {} opens tried (at most 20)",
-                                 refused.size(), ms, opens.count()));
+        checks.check(
+            "late_permission.by_hand", refused.size() == 1 && added.size() == 1 && ms >= 0 && ms <= 2250 && opens.count() <= 20,
+            fmt::format("refused {} times, opened {:.0f} ms after chmod 0666 without an event; {} opens tried (at most 20)",
+                        refused.size(), ms, opens.count()));
     }
     output_of("groupadd -f --system surefoot-input; rm -f /etc/udev/rules.d/70-surefoot.rules; udevadm control --reload");
     UhidDevice device(like(guest, "f310-like"), "late-2");

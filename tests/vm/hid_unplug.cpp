@@ -1,14 +1,12 @@
 // Devices that go, stall and come back deflected: at rest in time, nothing stale, no descriptor left behind.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <memory>
 
 #include "rt/base/random.hpp"
+#include "tests/vm/hang_up.hpp"
 #include "tests/vm/hid_checks.hpp"
 #include "tests/vm/uhid.hpp"
 #include "tests/vm/walker.hpp"
@@ -16,34 +14,6 @@
 namespace surefoot::vm {
 
 namespace {
-
-/// When the kernel hangs a node up, seen by a reader of our own.
-class HangUp {
-public:
-    explicit HangUp(const std::string& node) : fd_(::open(("/dev/" + node).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-        watcher_ = std::thread([this] {
-            for (pollfd one{fd_, 0, 0}; !ending_;)
-                if (::poll(&one, 1, 20) > 0 && (one.revents & (POLLHUP | POLLERR)) != 0) {
-                    at_ns_ = now_ns();
-                    return;
-                }
-        });
-    }
-    ~HangUp() {
-        ending_ = true;
-        watcher_.join();
-        if (fd_ >= 0) ::close(fd_);
-    }
-    HangUp(const HangUp&) = delete;
-    HangUp& operator=(const HangUp&) = delete;
-    [[nodiscard]] std::int64_t at_ns() const { return at_ns_; }
-
-private:
-    int fd_;
-    std::atomic<std::int64_t> at_ns_ = 0;
-    std::atomic<bool> ending_ = false;
-    std::thread watcher_;
-};
 
 int deflected(Random& random) {
     return random.below(2) == 0 ? static_cast<int>(random.below(70)) : 186 + static_cast<int>(random.below(70));
