@@ -1,8 +1,12 @@
 // Checks on real HID devices, in the guest: made through uhid, and through a USB gadget.
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "tests/vm/hid_checks.hpp"
 
@@ -33,13 +37,28 @@ std::string output_of(const std::string& command, int* status) {
     return text;
 }
 
+constexpr std::array<std::pair<std::string_view, void (*)(Checks&, const Guest&)>, 11> all_checks = {{
+    {"enumeration", check_enumeration},
+    {"permission", check_permission},
+    {"hot_plug", check_hot_plug},
+    {"unplug", check_unplug},
+    {"stall", check_stall},
+    {"two_devices", check_two_devices},
+    {"recording", check_recording},
+    {"evdev", check_evdev},
+    {"gadget", check_gadget},
+    {"cp2112", check_cp2112},
+    {"walk", check_walk},
+}};
+
 }  // namespace surefoot::vm
 
 int main(int count, char** arguments) {
     using namespace surefoot::vm;
-    if (count != 2) {
+    if (count < 2) {
         std::fprintf(stderr,
-                     "usage: vm_hid FOLDER   (with surefoot, devices/, 70-surefoot.rules; checks.jsonl and kept/ are written)\n");
+                     "usage: vm_hid FOLDER [CHECK...]   (FOLDER has surefoot, devices/, 70-surefoot.rules, model.walk; "
+                     "checks.jsonl and kept/ are written there)\n");
         return 2;
     }
     const std::string folder = arguments[1];
@@ -50,16 +69,8 @@ int main(int count, char** arguments) {
         checks.not_run("all", "no /dev/uhid: the kernel has no uhid module");
         return 1;
     }
-    check_enumeration(checks, guest);
-    check_permission(checks, guest);
-    check_hot_plug(checks, guest);
-    check_unplug(checks, guest);
-    check_stall(checks, guest);
-    check_two_devices(checks, guest);
-    check_recording(checks, guest);
-    check_evdev(checks, guest);
-    check_gadget(checks, guest);
-    check_cp2112(checks, guest);
-    check_walk(checks, guest);
+    const std::vector<std::string_view> only(arguments + 2, arguments + count);
+    for (const auto& [name, check] : all_checks)
+        if (only.empty() || std::find(only.begin(), only.end(), name) != only.end()) check(checks, guest);
     return checks.status();
 }

@@ -71,10 +71,11 @@ void walk_with(Checks& checks, const Guest& guest, const std::string& name, cons
     std::string said;
     int status = -1;
     std::thread walk([&] {
-        said = output_of(fmt::format("timeout 100 {} walk {} --input devices --backend {} --rate 10 --size 320x240 --seconds 14 "
-                                     "--state {} --ledger {} --json {}",
-                                     guest.tool, guest.model, backend, guest.keep, file, more),
-                         &status);
+        said = output_of(
+            fmt::format("timeout 100 {} walk {} --input devices --backend {} --rate 10 --size 320x240 --seconds 14 --no-fifo "
+                        "--state {} --ledger {} --json {}",
+                        guest.tool, guest.model, backend, guest.keep, file, more),
+            &status);
     });
     // It looks for devices when the model is loaded; the pad is at rest meanwhile. The ledger's clock is ours.
     for (const std::int64_t from = now_ns(); ms_since(from) < 3000; sleep_ms(4)) device->send(pad_at(128, 128));
