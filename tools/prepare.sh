@@ -7,7 +7,7 @@ build_packages=(
   libgl1-mesa-dri libhidapi-dev libudev-dev git
 )
 # Opened at run time, or used by single tests only: their absence is told, and is no failure.
-optional_packages=(libosmesa6)
+optional_packages=(libosmesa6 libgpiod-dev)
 
 say() { printf '\n\033[1m%s\033[0m\n' "$*" | if [[ -t 1 ]]; then cat; else sed 's/\x1b\[[0-9;]*m//g'; fi; }
 fail() { printf 'surefoot: %s\n' "$*" >&2; exit 1; }
