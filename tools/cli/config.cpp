@@ -20,7 +20,8 @@ struct ConfigArguments {
 ordered_json to_json(const config::Problem& p) {
     ordered_json object = {{"place", p.error.place}, {"what", p.error.what}, {"remedy", p.error.remedy}, {"file", p.file}};
     object["line"] = p.line > 0 ? ordered_json(p.line) : ordered_json(nullptr);
-    for (const auto& [name, part] : {std::pair{"key", &p.key}, {"found", &p.found}, {"allowed", &p.allowed}, {"nearest", &p.nearest}})
+    for (const auto& [name, part] :
+         {std::pair{"key", &p.key}, {"found", &p.found}, {"allowed", &p.allowed}, {"nearest", &p.nearest}})
         object[name] = part->empty() ? ordered_json(nullptr) : ordered_json(*part);
     return object;
 }
@@ -49,7 +50,8 @@ ordered_json to_json(const config::Configuration& c, const config::Entry& entry)
         object["min"] = entry.min;
         object["max"] = entry.max;
     }
-    if (entry.kind == config::Kind::choice) object["choices"] = std::vector<std::string>(entry.choices.begin(), entry.choices.end());
+    if (entry.kind == config::Kind::choice)
+        object["choices"] = std::vector<std::string>(entry.choices.begin(), entry.choices.end());
     object["allowed"] = config::allowed(entry);
     object["default"] = value_json({}, entry);
     const config::Origin origin = c.origin(entry.key);
@@ -88,7 +90,8 @@ int run_config(const ConfigArguments& a) {
     if (a.check && (!a.profile.empty() || !a.set.empty()))
         return misuse({"--check", "reads the file with every profile", "leave out --profile and --set, or use --print"});
     if (a.check) return run_check(a);
-    if (!a.profile.empty() && a.file.empty()) return misuse({"--profile " + a.profile, "is a part of a settings file", "name the file too"});
+    if (!a.profile.empty() && a.file.empty())
+        return misuse({"--profile " + a.profile, "is a part of a settings file", "name the file too"});
     if (!a.defaults) return run_print(a);
     if (!a.file.empty() || !a.set.empty() || a.json)
         return misuse({"--defaults", "writes a settings file with nothing changed", "leave out the file, --set and --json"});
@@ -100,16 +103,18 @@ int run_config(const ConfigArguments& a) {
 
 void add_config(CLI::App& app, Context& context) {
     auto a = std::make_shared<ConfigArguments>();
-    CLI::App* c = add_command(app, "config", "Settings: check a file, or print the values that hold and where each came from",
-                              "surefoot config --print --defaults > surefoot.toml\n  surefoot config surefoot.toml --check\n  surefoot config "
-                              "surefoot.toml --profile kiosk --print",
-                              a->json);
+    CLI::App* c = add_command(
+        app, "config", "Settings: check a file, or print the values that hold and where each came from",
+        "surefoot config --print --defaults > surefoot.toml\n  surefoot config surefoot.toml --check\n  surefoot config "
+        "surefoot.toml --profile kiosk --print",
+        a->json);
     c->add_option("FILE", a->file, "The settings file (TOML); without one, the defaults");
     c->add_flag("--check", a->check, "Say OK, or everything that is wrong: file, line, key, what was found and what is allowed");
     c->add_flag("--print", a->print, "Every key: value, unit, where it came from, what is allowed (also without this flag)");
     c->add_flag("--defaults", a->defaults, "With --print: a settings file with every key, commented out");
     c->add_option("--profile", a->profile, "Lay [profile.NAME] of the file over the rest");
-    c->add_option("--set", a->set, "KEY=VALUE, as a command line would set it; may be given more than once")->type_name("KEY=VALUE");
+    c->add_option("--set", a->set, "KEY=VALUE, as a command line would set it; may be given more than once")
+        ->type_name("KEY=VALUE");
     c->callback([&context, a] { context.run = [a] { return run_config(*a); }; });
 }
 

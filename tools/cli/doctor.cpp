@@ -5,8 +5,10 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <tuple>
 
 #include "config/settings.hpp"
+#include "rt/threads/placement.hpp"
 #include "tools/app/state.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
@@ -29,8 +31,9 @@ struct DoctorArguments {
 
 nlohmann::ordered_json wake_json(const std::optional<doctor::WakeFigures>& f) {
     if (!f) return nullptr;
-    nlohmann::ordered_json object = {{"seconds", f->seconds}, {"core", f->core},     {"fifo_priority", f->priority}, {"slots", f->slots},
-                                     {"p50_us", f->p50_us},   {"p99_us", f->p99_us}, {"p999_us", f->p999_us},        {"max_us", f->max_us}};
+    nlohmann::ordered_json object = {{"seconds", f->seconds}, {"core", f->core},     {"fifo_priority", f->priority},
+                                     {"slots", f->slots},     {"p50_us", f->p50_us}, {"p99_us", f->p99_us},
+                                     {"p999_us", f->p999_us}, {"max_us", f->max_us}};
     if (f->source == "surefoot") object["skipped"] = f->skipped;
     if (f->steal_ms >= 0) object["steal_ms"] = f->steal_ms;
     return object;
@@ -92,6 +95,10 @@ int run_doctor(const DoctorArguments& a, const Context& context) {
     std::error_code ignored;
     if (!a.root.empty() && !std::filesystem::is_directory(a.root, ignored))
         return misuse({"--root " + a.root, "is no folder", "name one that holds another machine's /proc, /sys and /etc"});
+    const rt::CpuMask allowed = rt::allowed_cpus();
+    if (a.root.empty() && a.frame_core >= 0 && !allowed.has(a.frame_core))
+        return misuse(
+            {fmt::format("--frame-core {}", a.frame_core), "this process may not use it", "choose one of " + allowed.text()});
     doctor::Probed probed;
     if (a.root.empty()) {
         const auto core = doctor::Machine("", wanted, {}).frame_core();
@@ -115,21 +122,25 @@ int run_doctor(const DoctorArguments& a, const Context& context) {
 
 void add_doctor(CLI::App& app, Context& context) {
     auto a = std::make_shared<DoctorArguments>();
-    CLI::App* c = add_command(app, "doctor", "Is this machine fit for keeping deadlines? What is not, and how to mend it",
-                              "surefoot doctor --quick\n\nExit status: 0 nothing fails, 1 something fails, 2 wrong use. What could not be told is "
-                              "'unknown': no pass, and no failure.",
-                              a->json);
+    CLI::App* c = add_command(
+        app, "doctor", "Is this machine fit for keeping deadlines? What is not, and how to mend it",
+        "surefoot doctor --quick\n\nExit status: 0 nothing fails, 1 something fails, 2 wrong use. What could not be told is "
+        "'unknown': no pass, and no failure.",
+        a->json);
     c->add_option("--root", a->root, "Look at the files of another machine below this folder; nothing is tried or measured");
-    auto* seconds = c->add_option("--seconds", a->seconds, "How long to measure wake-ups; the same again by cyclictest where it is installed")
-                        ->check(number_within(1, 86400, "s"))
-                        ->capture_default_str();
-    c->add_option("--frame-core", a->frame_core, "Core of the frame thread (else an isolated one, else the last)")->check(whole_number_within(0, 1023));
+    auto* seconds =
+        c->add_option("--seconds", a->seconds, "How long to measure wake-ups; the same again by cyclictest where it is installed")
+            ->check(number_within(1, 86400, "s"))
+            ->capture_default_str();
+    c->add_option("--frame-core", a->frame_core, "Core of the frame thread (else an isolated one, else the last)")
+        ->check(whole_number_within(0, 1023));
     c->add_option("--state", a->state, "Folder of the cost table (else $STATE_DIRECTORY, else XDG state)");
     c->add_flag("--quick", a->quick, "Leave the wake-up run out");
     c->callback([&context, a, seconds] {
         context.run = [&context, a, given = seconds->count() > 0] {
             if (given && a->quick) return misuse({"--seconds", "says how long to measure, and --quick not to", "leave one out"});
-            if (given && !a->root.empty()) return misuse({"--seconds", "measures this machine, not the one below --root", "leave one out"});
+            if (given && !a->root.empty())
+                return misuse({"--seconds", "measures this machine, not the one below --root", "leave one out"});
             return run_doctor(*a, context);
         };
     });

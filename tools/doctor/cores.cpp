@@ -20,7 +20,8 @@ Finding count(const Machine& m) {
     if (!online) return unknown("/sys/devices/system/cpu/online cannot be read", "mount -t sysfs sysfs /sys");
     std::string evidence = fmt::format("{} online ({})", online->count(), online->text());
     if (online->count() >= 2) return pass(std::move(evidence));
-    return fail(std::move(evidence), "switch more on: echo 1 > /sys/devices/system/cpu/cpu1/online; or give the machine a second core");
+    return fail(std::move(evidence),
+                "switch more on: echo 1 > /sys/devices/system/cpu/cpu1/online; or give the machine a second core");
 }
 
 Finding isolated(const Machine& m) {
@@ -44,8 +45,9 @@ Finding tickless(const Machine& m) {
                     "apt install linux-image-amd64 (Debian's has it), and boot with nohz_full=" + std::to_string(*core));
     if (!list) return unknown("/sys/devices/system/cpu/nohz_full cannot be read", fmt::format("boot with nohz_full={}", *core));
     if (list->has(*core)) return pass(fmt::format("core {} runs without a tick (nohz_full: {})", *core, list->text()));
-    return fail(fmt::format("core {} has its tick (nohz_full: {})", *core, list->empty() ? "none" : list->text()),
-                fmt::format("add nohz_full={0} rcu_nocbs={0} to GRUB_CMDLINE_LINUX in /etc/default/grub; update-grub; reboot", *core));
+    return fail(
+        fmt::format("core {} has its tick (nohz_full: {})", *core, list->empty() ? "none" : list->text()),
+        fmt::format("add nohz_full={0} rcu_nocbs={0} to GRUB_CMDLINE_LINUX in /etc/default/grub; update-grub; reboot", *core));
 }
 
 /// cgroup 2 first, then 1: the nearest group above this process that says what is effective.
@@ -85,10 +87,12 @@ Finding cpuset(const Machine& m) {
     if (!set) return unknown("no cpuset of this process is to be seen", "mount -t cgroup2 none /sys/fs/cgroup");
     std::string evidence = fmt::format("cores {} ({})", set->cpus.text(), set->file);
     if (set->cpus.has(*core) && set->cpus.count() >= 2) return pass(std::move(evidence));
-    return fail(std::move(evidence),
-                fmt::format("systemctl set-property surefootd.service AllowedCPUs=: the frame core {} and at least one more; the same for "
-                            "the slice above it",
-                            *core));
+    return fail(
+        std::move(evidence),
+        fmt::format(
+            "systemctl set-property surefootd.service AllowedCPUs=: the frame core {} and at least one more; the same for "
+            "the slice above it",
+            *core));
 }
 
 Finding affinity(const Machine& m) {
@@ -99,7 +103,9 @@ Finding affinity(const Machine& m) {
     if (!allowed) return unknown("Cpus_allowed_list is '" + *list + "'", std::string(name_it));
     std::string evidence = fmt::format("this process may use cores {}; the frame thread's is {}", allowed->text(), *core);
     if (allowed->has(*core) && allowed->count() >= 2) return pass(std::move(evidence));
-    return fail(std::move(evidence), fmt::format("take CPUAffinity= out of /etc/systemd/system.conf and the unit, or let it hold {} and one more", *core));
+    return fail(
+        std::move(evidence),
+        fmt::format("take CPUAffinity= out of /etc/systemd/system.conf and the unit, or let it hold {} and one more", *core));
 }
 
 Finding sibling(const Machine& m) {
@@ -107,7 +113,7 @@ Finding sibling(const Machine& m) {
     if (!core) return no_core();
     const std::string file = fmt::format("/sys/devices/system/cpu/cpu{}/topology/thread_siblings_list", *core);
     const auto siblings = m.cpus(file);
-    if (!siblings) return unknown(file + " cannot be read", "mount -t sysfs sysfs /sys");
+    if (!siblings || !siblings->has(*core)) return unknown(file + " cannot be read", "mount -t sysfs sysfs /sys");
     if (siblings->count() <= 1) return pass(fmt::format("core {} shares its hardware with none", *core));
     std::string off;
     for (const int cpu : siblings->cpus()) {
@@ -153,14 +159,18 @@ Finding rivals(const Machine& m) {
             if (thread->kernel || !real_time || thread->priority < m.wanted().frame_priority) continue;
             const auto status = m.text(folder + "/status");
             const auto at = status ? status->find("Cpus_allowed_list:") : std::string::npos;
-            const auto cpus = at == std::string::npos ? Result<rt::CpuMask>(Error{})
-                                                      : rt::CpuMask::parse(trimmed(std::string_view(*status).substr(at + 18, status->find('\n', at) - at - 18)));
+            const auto cpus =
+                at == std::string::npos
+                    ? Result<rt::CpuMask>(Error{})
+                    : rt::CpuMask::parse(trimmed(std::string_view(*status).substr(at + 18, status->find('\n', at) - at - 18)));
             if (cpus && !cpus->has(*core)) continue;
             found += fmt::format("{}{} (tid {}, priority {})", found.empty() ? "" : ", ", thread->name, task, thread->priority);
         }
     }
     if (seen == 0) return unknown("no thread is to be seen in /proc", "run it as root, or mount /proc without hidepid");
-    if (found.empty()) return pass(fmt::format("none of {} threads comes before priority {} on core {}", seen, m.wanted().frame_priority, *core));
+    if (found.empty())
+        return pass(
+            fmt::format("none of {} threads comes before priority {} on core {}", seen, m.wanted().frame_priority, *core));
     return fail("may run before the frame thread: " + found, "chrt --other --pid 0 TID, or taskset it to other cores");
 }
 

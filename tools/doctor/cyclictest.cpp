@@ -42,7 +42,8 @@ struct Child {
 
 Result<Child> start(const std::string& program, std::vector<std::string> words) {
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return Error{program, fmt::format("no pipe to it: {}", std::strerror(errno)), "close other programs"};
+    if (pipe2(ends, O_CLOEXEC) != 0)
+        return Error{program, fmt::format("no pipe to it: {}", std::strerror(errno)), "close other programs"};
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -92,8 +93,15 @@ Result<WakeFigures> read_cyclictest(std::string_view printed) {
 
 Result<WakeFigures> run_cyclictest(const std::string& program, const WakeOptions& o, const Progress& progress) {
     const double seconds = std::max(1.0, std::round(o.seconds));
-    std::vector<std::string> words = {program, "-q", "-m", "-t1", fmt::format("-a{}", o.core), fmt::format("-i{}", o.period_ns / 1000),
-                                      fmt::format("-D{:.0f}", seconds), "-h100000", "--default-system"};
+    std::vector<std::string> words = {program,
+                                      "-q",
+                                      "-m",
+                                      "-t1",
+                                      fmt::format("-a{}", o.core),
+                                      fmt::format("-i{}", o.period_ns / 1000),
+                                      fmt::format("-D{:.0f}", seconds),
+                                      "-h100000",
+                                      "--default-system"};
     if (o.priority > 0) words.push_back(fmt::format("-p{}", o.priority));
     auto child = start(program, std::move(words));
     if (!child) return child.error();
@@ -122,7 +130,9 @@ Result<WakeFigures> run_cyclictest(const std::string& program, const WakeOptions
     }
     if (given_up) return Error{program, "was stopped before it was done", remedy};
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        return Error{program, WIFEXITED(status) ? fmt::format("ended with status {}", WEXITSTATUS(status)) : "was ended by a signal", remedy};
+        return Error{program,
+                     WIFEXITED(status) ? fmt::format("ended with status {}", WEXITSTATUS(status)) : "was ended by a signal",
+                     remedy};
     auto figures = read_cyclictest(printed);
     if (figures) {
         figures->seconds = passed();

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::uint32_t group_read_write = 0060;
 constexpr std::string_view install_rule =
-    "groupadd -f --system surefoot-input && cp 70-surefoot.rules /etc/udev/rules.d/ && udevadm control --reload && udevadm trigger";
+    "groupadd -f --system surefoot-input && cp 70-surefoot.rules /etc/udev/rules.d/ && udevadm control --reload && udevadm "
+    "trigger";
 
 std::vector<std::string> nodes(const Machine& m, const std::string& folder, std::string_view prefix) {
     std::vector<std::string> found;
@@ -22,7 +23,8 @@ std::vector<std::string> nodes(const Machine& m, const std::string& folder, std:
 }
 
 /// Nodes that a group of the service may open, by its number: all of them, or which not.
-Finding opened_by(const Machine& m, const std::vector<std::string>& found, std::initializer_list<std::string_view> groups, std::string_view remedy) {
+Finding opened_by(const Machine& m, const std::vector<std::string>& found, std::initializer_list<std::string_view> groups,
+                  std::string_view remedy) {
     std::string refused, names;
     for (const std::string_view group : groups) names += (names.empty() ? "" : " or ") + std::string(group);
     for (const std::string& path : found) {
@@ -32,19 +34,23 @@ Finding opened_by(const Machine& m, const std::vector<std::string>& found, std::
             open = open || (node && m.group(group) == node->group && (node->mode & group_read_write) == group_read_write);
         if (!open) refused += fmt::format("{}{} (mode {:04o})", refused.empty() ? "" : ", ", path, node ? node->mode : 0U);
     }
-    if (refused.empty()) return pass(fmt::format("{} node{}, open to group {}", found.size(), found.size() == 1 ? "" : "s", names));
+    if (refused.empty())
+        return pass(fmt::format("{} node{}, open to group {}", found.size(), found.size() == 1 ? "" : "s", names));
     return fail(fmt::format("not open to group {}: {}", names, refused), std::string(remedy));
 }
 
 Finding controls(const Machine& m) {
     const auto found = nodes(m, "/dev", "hidraw");
-    if (found.empty()) return unknown("no /dev/hidraw* is there", "plug a control in; if it then is not there: modprobe hid-generic");
+    if (found.empty())
+        return unknown("no /dev/hidraw* is there", "plug a control in; if it then is not there: modprobe hid-generic");
     return opened_by(m, found, {"surefoot-input"}, install_rule);
 }
 
 Finding wires(const Machine& m) {
     const auto found = nodes(m, "/dev", "gpiochip");
-    if (found.empty()) return unknown("no /dev/gpiochip* is there", "nothing, unless buttons are wired to this machine; then: modprobe the board's GPIO driver");
+    if (found.empty())
+        return unknown("no /dev/gpiochip* is there",
+                       "nothing, unless buttons are wired to this machine; then: modprobe the board's GPIO driver");
     return opened_by(m, found, {"surefoot-input", "gpio"},
                      "echo 'SUBSYSTEM==\"gpio\", KERNEL==\"gpiochip*\", GROUP=\"surefoot-input\", MODE=\"0660\"' > "
                      "/etc/udev/rules.d/71-surefoot-gpio.rules; udevadm trigger");
@@ -52,8 +58,11 @@ Finding wires(const Machine& m) {
 
 Finding graphics(const Machine& m) {
     const auto found = nodes(m, "/dev/dri", "renderD");
-    if (found.empty()) return unknown("no /dev/dri/renderD* is there", "nothing, where pictures are drawn by software; else: apt install the card's driver");
-    return opened_by(m, found, {"render", "video"}, "systemctl edit surefootd, and add: [Service] SupplementaryGroups=render video");
+    if (found.empty())
+        return unknown("no /dev/dri/renderD* is there",
+                       "nothing, where pictures are drawn by software; else: apt install the card's driver");
+    return opened_by(m, found, {"render", "video"},
+                     "systemctl edit surefootd, and add: [Service] SupplementaryGroups=render video");
 }
 
 Finding group(const Machine& m) {

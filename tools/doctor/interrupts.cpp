@@ -32,6 +32,15 @@ Line line_of(std::string_view interrupts, std::string_view number, int core) {
     return line;
 }
 
+/// Every core that is on but the frame's, as a list; "0" where that is not to be seen.
+std::string other_cores(const Machine& m, int core) {
+    rt::CpuMask others;
+    for (const int cpu : m.cpus("/sys/devices/system/cpu/online").value_or(rt::CpuMask{0}).cpus()) {
+        if (cpu != core) others.add(cpu);
+    }
+    return others.empty() ? "0" : others.text();
+}
+
 Finding affinity(const Machine& m) {
     const auto core = m.frame_core();
     const auto numbers = m.names("/proc/irq");
@@ -44,21 +53,20 @@ Finding affinity(const Machine& m) {
         const std::string folder = "/proc/irq/" + number;
         auto cpus = m.cpus(folder + "/effective_affinity_list");
         if (!cpus || cpus->empty()) cpus = m.cpus(folder + "/smp_affinity_list");
-        if (!cpus) continue;
+        if (!cpus || cpus->empty()) continue;
         ++read;
         if (!cpus->has(*core)) continue;
         ++on_core;
         const Line line = line_of(interrupts, number, *core);
         if (on_core <= 6) there += fmt::format("{}{} {} ({} so far)", on_core == 1 ? "" : ", ", number, line.name, line.on_core);
-        if (on_core <= 6) move += (move.empty() ? "" : " ") + number;
+        move += (move.empty() ? "" : " ") + number;
     }
     if (read == 0) return unknown("no interrupt's affinity can be read in /proc/irq", "run it as root");
     if (on_core == 0) return pass(fmt::format("none of {} interrupts goes to core {}", read, *core));
     if (on_core > 6) there += fmt::format(", and {} more", on_core - 6);
-    const int other = *core == 0 ? 1 : 0;
     return fail(fmt::format("{} go to core {}: {}", on_core, *core, there),
-                fmt::format("for i in {}; do echo {} > /proc/irq/$i/smp_affinity_list; done{}; at boot: irqaffinity={}", move, other,
-                            on_core > 6 ? " (and the others)" : "", other));
+                fmt::format("for i in {0}; do echo {1} > /proc/irq/$i/smp_affinity_list; done; at boot: irqaffinity={1}", move,
+                            other_cores(m, *core)));
 }
 
 Finding fresh(const Machine& m) {
@@ -68,13 +76,15 @@ Finding fresh(const Machine& m) {
     if (!has) return unknown("/proc/irq/default_smp_affinity cannot be read", "mount -t proc proc /proc");
     if (!*has) return pass(fmt::format("new devices' interrupts do not go to core {} (default_smp_affinity {})", *core, *mask));
     return fail(fmt::format("new devices' interrupts may go to core {} (default_smp_affinity {})", *core, *mask),
-                fmt::format("add irqaffinity= with every core but {} to GRUB_CMDLINE_LINUX in /etc/default/grub; update-grub; reboot", *core));
+                fmt::format("echo {} > /proc/irq/default_smp_affinity; at boot: irqaffinity={}", without_bit(*mask, *core),
+                            other_cores(m, *core)));
 }
 
 Finding balancer(const Machine& m) {
     const auto processes = m.names("/proc");
     const auto core = m.frame_core();
-    if (!core || !processes || !m.exists("/proc/1")) return unknown("the processes of this machine are not to be seen", "mount -t proc proc /proc");
+    if (!core || !processes || !m.exists("/proc/1"))
+        return unknown("the processes of this machine are not to be seen", "mount -t proc proc /proc");
     bool running = false;
     for (const std::string& process : *processes)
         running = running || (number_in(process) && m.text("/proc/" + process + "/comm") == "irqbalance");
@@ -84,8 +94,10 @@ Finding balancer(const Machine& m) {
     const std::string key = "IRQBALANCE_BANNED_CPULIST=";
     for (const std::string_view line : split(settings, "\n")) {
         if (!line.starts_with(key)) continue;
-        const auto banned = rt::CpuMask::parse(split(line.substr(key.size()), "\" ").empty() ? "" : split(line.substr(key.size()), "\" ")[0]);
-        if (banned && banned->has(*core)) return pass(fmt::format("irqbalance is kept off core {} (/etc/default/irqbalance)", *core));
+        const auto banned =
+            rt::CpuMask::parse(split(line.substr(key.size()), "\" ").empty() ? "" : split(line.substr(key.size()), "\" ")[0]);
+        if (banned && banned->has(*core))
+            return pass(fmt::format("irqbalance is kept off core {} (/etc/default/irqbalance)", *core));
     }
     return fail(fmt::format("irqbalance runs, and may move interrupts to core {}", *core),
                 fmt::format("echo '{}{}' >> /etc/default/irqbalance; systemctl restart irqbalance", key, *core));
@@ -99,7 +111,7 @@ Finding kernel_work(const Machine& m) {
     if (!has) return unknown(fmt::format("{} cannot be read", file), "mount -t sysfs sysfs /sys");
     if (!*has) return pass(fmt::format("the kernel's unbound work stays off core {} (mask {})", *core, *mask));
     return fail(fmt::format("the kernel's unbound work may run on core {} (mask {})", *core, *mask),
-                fmt::format("echo the mask without bit {} > {}: on cores 0 and 1 with the frame on 1: echo 1 > {}", *core, file, file));
+                fmt::format("echo {} > {}", without_bit(*mask, *core), file));
 }
 
 constexpr std::array checks = {

@@ -29,13 +29,14 @@ Finding preemption(const Machine& m) {
         return fail("no preemption inside the kernel (/proc/version names none)", "apt install linux-image-rt-amd64");
     }
     if (const auto modes = m.text("/sys/kernel/debug/sched/preempt")) {
-        if (const auto mode = marked_word(*modes, '(', ')'); !mode.empty()) return dynamic_mode(mode, "/sys/kernel/debug/sched/preempt");
+        if (const auto mode = marked_word(*modes, '(', ')'); !mode.empty())
+            return dynamic_mode(mode, "/sys/kernel/debug/sched/preempt");
     }
     if (const auto mode = m.boot_word("preempt")) return dynamic_mode(*mode, "/proc/cmdline");
     if (const auto full = m.build_option("CONFIG_PREEMPT")) {
         if (*full == "y") return dynamic_mode("full", "CONFIG_PREEMPT of the kernel");
-        for (const auto& [key, mode] : {std::pair{"CONFIG_PREEMPT_VOLUNTARY", "voluntary"}, std::pair{"CONFIG_PREEMPT_NONE", "none"},
-                                        std::pair{"CONFIG_PREEMPT_LAZY", "lazy"}}) {
+        for (const auto& [key, mode] : {std::pair{"CONFIG_PREEMPT_VOLUNTARY", "voluntary"},
+                                        std::pair{"CONFIG_PREEMPT_NONE", "none"}, std::pair{"CONFIG_PREEMPT_LAZY", "lazy"}}) {
             if (m.build_option(key) == "y") return dynamic_mode(mode, fmt::format("{} of the kernel", key));
         }
     }
@@ -46,12 +47,14 @@ Finding version(const Machine& m) {
     const auto kernel = m.kernel();
     if (!kernel) return unknown("/proc/sys/kernel/osrelease cannot be read", "mount -t proc proc /proc");
     const std::string name = fmt::format("Linux {}.{}", kernel->major, kernel->minor);
-    if (kernel->before(5, 4)) return fail(name + " is older than what Surefoot is tried on", "apt install linux-image-amd64 (5.4 or newer)");
+    if (kernel->before(5, 4))
+        return fail(name + " is older than what Surefoot is tried on", "apt install linux-image-amd64 (5.4 or newer)");
     const auto controllers = m.text("/sys/fs/cgroup/cgroup.controllers");
     const bool cpusets = controllers && controllers->find("cpuset") != std::string::npos;
     if (kernel->before(6, 2) && cpusets)
-        return fail(name + " puts threads back on all cores whenever a cpuset above them changes (mended in 6.2)",
-                    "apt install -t bookworm-backports linux-image-amd64; or use no AllowedCPUs= in any unit, and isolcpus= instead");
+        return fail(
+            name + " puts threads back on all cores whenever a cpuset above them changes (mended in 6.2)",
+            "apt install -t bookworm-backports linux-image-amd64; or use no AllowedCPUs= in any unit, and isolcpus= instead");
     return pass(name);
 }
 
@@ -63,8 +66,9 @@ Finding throttling(const Machine& m) {
     std::string evidence = fmt::format("real-time threads get {} of {} us (sched_rt_runtime_us)", *runtime, period);
     // All FIFO work together leaves a tenth of each core: a limit of 95 % never bites, one below 90 % does.
     if (*runtime * 10 >= period * 9) return pass(std::move(evidence));
-    return fail(std::move(evidence), fmt::format("sysctl -w kernel.sched_rt_runtime_us={}; to keep it: /etc/sysctl.d/70-surefoot.conf",
-                                                 period / 100 * 95));
+    return fail(
+        std::move(evidence),
+        fmt::format("sysctl -w kernel.sched_rt_runtime_us={}; to keep it: /etc/sysctl.d/70-surefoot.conf", period / 100 * 95));
 }
 
 /// From 6.12 a deadline server gives ordinary threads their share of a core that real-time threads fill.
@@ -99,18 +103,22 @@ std::optional<std::string> own_cgroup(const Machine& m, std::string_view control
 
 Finding group_scheduling(const Machine& m) {
     const auto built = m.build_option("CONFIG_RT_GROUP_SCHED");
-    if (!built) return unknown("the kernel's configuration is not to be had", "apt install linux-image-amd64 (it puts /boot/config-… there), or modprobe configs");
+    if (!built)
+        return unknown("the kernel's configuration is not to be had",
+                       "apt install linux-image-amd64 (it puts /boot/config-… there), or modprobe configs");
     if (*built != "y") return pass("CONFIG_RT_GROUP_SCHED is not set");
     if (m.boot_word("rt_group_sched") == "0") return pass("switched off at boot (rt_group_sched=0)");
     if (const auto group = own_cgroup(m, "cpu")) {
         const std::string file = "/sys/fs/cgroup/cpu" + (*group == "/" ? "" : *group) + "/cpu.rt_runtime_us";
         const auto runtime = m.number(file);
-        if (!runtime) return unknown("CONFIG_RT_GROUP_SCHED is set, and " + file + " cannot be read", "boot with rt_group_sched=0");
+        if (!runtime)
+            return unknown("CONFIG_RT_GROUP_SCHED is set, and " + file + " cannot be read", "boot with rt_group_sched=0");
         if (*runtime != 0) return pass(fmt::format("CONFIG_RT_GROUP_SCHED is set; this group has {} us ({})", *runtime, file));
         return fail("CONFIG_RT_GROUP_SCHED is set, and this group has no real-time budget (" + file + " is 0)",
                     "echo 900000 > " + file + "; or boot with rt_group_sched=0");
     }
-    if (own_cgroup(m, "") == "/") return pass("CONFIG_RT_GROUP_SCHED is set; this process is in the root group, where all is allowed");
+    if (own_cgroup(m, "") == "/")
+        return pass("CONFIG_RT_GROUP_SCHED is set; this process is in the root group, where all is allowed");
     return fail("CONFIG_RT_GROUP_SCHED is set: a service's group gets no real-time budget, FIFO is refused even to root",
                 "boot with rt_group_sched=0, or take a kernel that is built without it");
 }
@@ -118,9 +126,12 @@ Finding group_scheduling(const Machine& m) {
 /// A switch that should be 0.
 Finding should_be_off(const Machine& m, std::string_view file, std::string_view key, std::string_view harm) {
     const auto value = m.number(file);
-    if (!value) return unknown(fmt::format("{} cannot be read", file), fmt::format("nothing, if this kernel is built without it; else: sysctl -w {}=0", key));
+    if (!value)
+        return unknown(fmt::format("{} cannot be read", file),
+                       fmt::format("nothing, if this kernel is built without it; else: sysctl -w {}=0", key));
     if (*value == 0) return pass(fmt::format("{} is 0", key));
-    return fail(fmt::format("{} is {}: {}", key, *value, harm), fmt::format("sysctl -w {0}=0; to keep it: echo '{0} = 0' >> /etc/sysctl.d/70-surefoot.conf", key));
+    return fail(fmt::format("{} is {}: {}", key, *value, harm),
+                fmt::format("sysctl -w {0}=0; to keep it: echo '{0} = 0' >> /etc/sysctl.d/70-surefoot.conf", key));
 }
 
 Finding timer_migration(const Machine& m) {
@@ -133,11 +144,13 @@ Finding numa_balancing(const Machine& m) {
         if (const auto nodes = m.cpus("/sys/devices/system/node/online"); nodes && nodes->count() == 1)
             return pass("one memory node (/sys/devices/system/node/online)");
     }
-    return should_be_off(m, "/proc/sys/kernel/numa_balancing", "kernel.numa_balancing", "pages are unmapped to see who uses them: faults in the frame");
+    return should_be_off(m, "/proc/sys/kernel/numa_balancing", "kernel.numa_balancing",
+                         "pages are unmapped to see who uses them: faults in the frame");
 }
 
 Finding watchdog(const Machine& m) {
-    return should_be_off(m, "/proc/sys/kernel/nmi_watchdog", "kernel.nmi_watchdog", "an interrupt that nothing holds off, on every core");
+    return should_be_off(m, "/proc/sys/kernel/nmi_watchdog", "kernel.nmi_watchdog",
+                         "an interrupt that nothing holds off, on every core");
 }
 
 constexpr std::array checks = {

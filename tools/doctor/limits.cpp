@@ -37,8 +37,10 @@ Finding priority(const Machine& m) {
     const auto limit = hard_limit(m, "Max realtime priority");
     if (!limit) return no_limits();
     const int wanted = m.wanted().frame_priority;
-    if (*limit < 0 || *limit >= wanted) return pass(fmt::format("RLIMIT_RTPRIO is {}, {} is wanted", *limit, wanted));
-    if (m.has_capability(cap_sys_nice) == true) return pass(fmt::format("RLIMIT_RTPRIO is {}, but this process has CAP_SYS_NICE", *limit));
+    if (*limit < 0) return pass("RLIMIT_RTPRIO is unlimited");
+    if (*limit >= wanted) return pass(fmt::format("RLIMIT_RTPRIO is {}, {} is wanted", *limit, wanted));
+    if (m.has_capability(cap_sys_nice) == true)
+        return pass(fmt::format("RLIMIT_RTPRIO is {}, but this process has CAP_SYS_NICE", *limit));
     return fail(fmt::format("RLIMIT_RTPRIO is {}, {} is wanted", *limit, wanted),
                 grant(fmt::format("LimitRTPRIO={}", wanted), fmt::format("@surefoot - rtprio {}", wanted)));
 }
@@ -49,7 +51,8 @@ Finding time(const Machine& m) {
     if (*limit < 0) return pass("RLIMIT_RTTIME is unlimited: the service sets its own");
     std::string evidence = fmt::format("RLIMIT_RTTIME is {} us", *limit);
     if (*limit >= rttime_enough_us) return pass(std::move(evidence));
-    return fail(std::move(evidence) + ": a busy frame thread is ended by the kernel", grant("LimitRTTIME=infinity", "@surefoot - rttime unlimited"));
+    return fail(std::move(evidence) + ": a busy frame thread is ended by the kernel",
+                grant("LimitRTTIME=infinity", "@surefoot - rttime unlimited"));
 }
 
 Finding lock(const Machine& m) {
@@ -69,7 +72,8 @@ Finding fifo(const Machine& m) {
     if (!granted) return unknown("not tried", as_service());
     const int wanted = m.wanted().frame_priority;
     if (*granted >= wanted) return pass(fmt::format("SCHED_FIFO {} was granted to a thread made for it", wanted));
-    return fail(*granted == 0 ? "SCHED_FIFO was refused" : fmt::format("SCHED_FIFO was granted up to {} only, {} is wanted", *granted, wanted),
+    return fail(*granted == 0 ? "SCHED_FIFO was refused"
+                              : fmt::format("SCHED_FIFO was granted up to {} only, {} is wanted", *granted, wanted),
                 grant(fmt::format("LimitRTPRIO={}", wanted), fmt::format("@surefoot - rtprio {}", wanted)) +
                     "; as root: see kernel.rt_group_sched");
 }
@@ -82,10 +86,8 @@ Finding locking(const Machine& m) {
 }
 
 constexpr std::array checks = {
-    Check{"limits.rtprio", "real-time priority", priority},
-    Check{"limits.rttime", "real-time without end", time},
-    Check{"limits.memlock", "locked memory", lock},
-    Check{"limits.fifo_tried", "SCHED_FIFO, tried", fifo},
+    Check{"limits.rtprio", "real-time priority", priority}, Check{"limits.rttime", "real-time without end", time},
+    Check{"limits.memlock", "locked memory", lock},         Check{"limits.fifo_tried", "SCHED_FIFO, tried", fifo},
     Check{"limits.lock_tried", "locking, tried", locking},
 };
 

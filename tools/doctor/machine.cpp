@@ -27,7 +27,8 @@ std::optional<std::string> unpacked(const std::string& file) {
     std::string text;
     std::array<char, 16384> part{};
     int got = 0;
-    while (text.size() < 4 * max_bytes && (got = gzread(in, part.data(), part.size())) > 0) text.append(part.data(), static_cast<std::size_t>(got));
+    while (text.size() < 4 * max_bytes && (got = gzread(in, part.data(), part.size())) > 0)
+        text.append(part.data(), static_cast<std::size_t>(got));
     gzclose(in);
     if (got < 0 || text.empty()) return std::nullopt;
     return text;
@@ -149,7 +150,8 @@ std::optional<std::string> Machine::own_status(std::string_view key) const {
     const auto status = text("/proc/self/status");
     if (!status) return std::nullopt;
     for (const std::string_view line : split(*status, "\n")) {
-        if (line.starts_with(key) && line.substr(key.size()).starts_with(':')) return std::string(trimmed(line.substr(key.size() + 1)));
+        if (line.starts_with(key) && line.substr(key.size()).starts_with(':'))
+            return std::string(trimmed(line.substr(key.size() + 1)));
     }
     return std::nullopt;
 }

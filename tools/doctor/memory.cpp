@@ -17,15 +17,16 @@ std::string keep(std::string_view key, int value) {
 }
 
 Finding available(const Machine& m) {
-    const auto info = m.text("/proc/meminfo");
-    for (const std::string_view line : split(info.value_or(""), "\n")) {
+    const std::string info = m.text("/proc/meminfo").value_or("");
+    for (const std::string_view line : split(info, "\n")) {
         const auto fields = split(line, " ");
         if (fields.size() < 2 || fields[0] != "MemAvailable:") continue;
         const auto kb = number_in(fields[1]);
         if (!kb) break;
         std::string evidence = fmt::format("{} MiB available", *kb >> 10);
         if (*kb >= enough_kb) return pass(std::move(evidence));
-        return fail(std::move(evidence) + ", 1024 are wanted: everything is locked", "systemctl stop what is not needed, or add memory");
+        return fail(std::move(evidence) + ", 1024 are wanted: everything is locked",
+                    "systemctl stop what is not needed, or add memory");
     }
     return unknown("/proc/meminfo does not say", "mount -t proc proc /proc");
 }
@@ -34,7 +35,8 @@ Finding huge_pages(const Machine& m) {
     constexpr std::string_view file = "/sys/kernel/mm/transparent_hugepage/enabled";
     const auto modes = m.text(file);
     const std::string_view mode = modes ? marked_word(*modes, '[', ']') : std::string_view();
-    if (mode.empty()) return unknown(fmt::format("{} cannot be read", file), "nothing, if this kernel is built without huge pages");
+    if (mode.empty())
+        return unknown(fmt::format("{} cannot be read", file), "nothing, if this kernel is built without huge pages");
     std::string evidence = fmt::format("transparent huge pages: {}", mode);
     if (mode != "always") return pass(std::move(evidence));
     return fail(std::move(evidence) + ": khugepaged stops threads to join their pages",
@@ -45,11 +47,14 @@ Finding swap(const Machine& m) {
     const auto swaps = m.text("/proc/swaps");
     if (!swaps) return unknown("/proc/swaps cannot be read", "mount -t proc proc /proc");
     const auto lines = split(*swaps, "\n");
-    if (lines.size() <= 1) return pass("no swap");
+    if (lines.empty() || !lines[0].starts_with("Filename"))
+        return unknown("/proc/swaps is not as expected", "swapon --show says it");
+    if (lines.size() == 1) return pass("no swap");
     const auto fields = split(lines[1], " \t");
     const std::string where = fields.empty() ? "?" : std::string(fields[0]);
     const auto swappiness = m.number("/proc/sys/vm/swappiness");
-    if (!swappiness) return unknown(where + " is on, and vm.swappiness cannot be read", "swapoff -a, and take it out of /etc/fstab");
+    if (!swappiness)
+        return unknown(where + " is on, and vm.swappiness cannot be read", "swapoff -a, and take it out of /etc/fstab");
     std::string evidence = fmt::format("{} is on, vm.swappiness is {}", where, *swappiness);
     if (*swappiness <= 10) return pass(std::move(evidence));
     return fail(std::move(evidence), "swapoff -a, and take it out of /etc/fstab; or " + keep("vm.swappiness", 1));
@@ -57,7 +62,9 @@ Finding swap(const Machine& m) {
 
 Finding compaction(const Machine& m) {
     const auto value = m.number("/proc/sys/vm/compact_unevictable_allowed");
-    if (!value) return unknown("/proc/sys/vm/compact_unevictable_allowed cannot be read", "nothing, if this kernel is built without compaction");
+    if (!value)
+        return unknown("/proc/sys/vm/compact_unevictable_allowed cannot be read",
+                       "nothing, if this kernel is built without compaction");
     if (*value == 0) return pass("locked pages stay where they are (vm.compact_unevictable_allowed is 0)");
     return fail("compaction moves locked pages too: a fault in the frame (vm.compact_unevictable_allowed is 1)",
                 keep("vm.compact_unevictable_allowed", 0));

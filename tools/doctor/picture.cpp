@@ -12,7 +12,8 @@ namespace {
 Finding renderer(const Machine& m) {
     const auto& found = m.probed().renderer;
     if (!found) return unknown("not opened", "run surefoot doctor on the machine itself");
-    if (found->name.empty()) return fail(found->error, found->remedy.empty() ? "apt install libegl1 libgl1-mesa-dri" : found->remedy);
+    if (found->name.empty())
+        return fail(found->error, found->remedy.empty() ? "apt install libegl1 libgl1-mesa-dri" : found->remedy);
     return pass(fmt::format("{} ({})", found->name, found->software ? "software: frames cost CPU time" : "hardware"));
 }
 
@@ -23,7 +24,8 @@ Finding cost_table(const Machine& m) {
     if (!table->there) return fail("no cost table: " + table->file, calibrate);
     if (!table->error.empty()) return fail(table->file + " " + table->error, calibrate);
     const auto& drawn = m.probed().renderer;
-    if (!drawn || drawn->name.empty()) return unknown(fmt::format("{} is of \"{}\"; what draws here is not known", table->file, table->machine), calibrate);
+    if (!drawn || drawn->name.empty())
+        return unknown(fmt::format("{} is of \"{}\"; what draws here is not known", table->file, table->machine), calibrate);
     if (drawn->machine == table->machine) return pass(fmt::format("{} is of this machine", table->file));
     return fail(fmt::format("{} is of \"{}\", this is \"{}\"", table->file, table->machine, drawn->machine), calibrate);
 }

@@ -29,7 +29,8 @@ Finding journal(const Machine& m) {
 Finding kept(const Machine& m) {
     if (m.exists("/var/log/journal")) return pass("the journal outlives a restart (/var/log/journal)");
     if (!m.exists("/var/log")) return unknown("/var/log is not there", "mkdir -p /var/log/journal");
-    return fail("the journal ends with every restart: why it happened is lost", "mkdir -p /var/log/journal && systemctl restart systemd-journald");
+    return fail("the journal ends with every restart: why it happened is lost",
+                "mkdir -p /var/log/journal && systemctl restart systemd-journald");
 }
 
 Finding disk(const Machine& m) {

@@ -11,7 +11,7 @@ namespace surefoot::doctor {
 
 namespace {
 
-constexpr std::size_t name_width = 17, what_width = 30, indent = 4 + name_width + what_width;
+constexpr std::size_t name_width = 17, what_width = 33, indent = 4 + name_width + what_width;
 
 class Pen {
 public:
@@ -54,7 +54,8 @@ std::string row(const Examined& e, const Pen& pen, std::size_t width) {
                                    pen.dim(fmt::format("{:<{}}", e.check.what, what_width)));
     const auto lines = wrapped(e.finding.evidence, std::max<std::size_t>(width, indent + 30) - indent);
     for (std::size_t i = 0; i < lines.size(); ++i)
-        text += (i == 0 ? "" : std::string(indent, ' ')) + (e.finding.status == Status::fail ? pen.bold(lines[i]) : lines[i]) + "\n";
+        text +=
+            (i == 0 ? "" : std::string(indent, ' ')) + (e.finding.status == Status::fail ? pen.bold(lines[i]) : lines[i]) + "\n";
     if (e.finding.status != Status::pass && !e.finding.remedy.empty())
         text += fmt::format("    {} {}\n", pen.paint("36", pen.arrow()), pen.paint("36", e.finding.remedy));
     return text;
@@ -63,17 +64,20 @@ std::string row(const Examined& e, const Pen& pen, std::size_t width) {
 std::string wake_row(const WakeFigures& f) {
     const std::string stolen = f.steal_ms >= 0 ? fmt::format("{:.0f} ms", f.steal_ms) : "-";
     const std::string skipped = f.source == "surefoot" ? std::to_string(f.skipped) : "-";
-    return fmt::format("  {:<11}{:>7.1f} s{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9}{:>9}{:>9}\n", f.source, f.seconds, f.p50_us, f.p99_us, f.p999_us, f.max_us,
-                       f.slots, skipped, stolen);
+    return fmt::format("  {:<11}{:>7.1f} s{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9}{:>9}{:>9}\n", f.source, f.seconds, f.p50_us,
+                       f.p99_us, f.p999_us, f.max_us, f.slots, skipped, stolen);
 }
 
 std::string wake_table(const Probed& probed, const Pen& pen) {
     if (!probed.wake_up) return {};
     const WakeFigures& f = *probed.wake_up;
-    std::string text = fmt::format("\n{}  {}\n", pen.bold("wake-up"),
-                                   pen.dim(fmt::format("every 1 ms on core {}, {}; lateness in us", f.core,
-                                                       f.priority > 0 ? fmt::format("SCHED_FIFO {}", f.priority) : "ordinary scheduling")));
-    text += pen.dim(fmt::format("  {:<11}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}", "", "time", "p50", "p99", "p99.9", "max", "slots", "skipped", "stolen")) + "\n";
+    std::string text =
+        fmt::format("\n{}  {}\n", pen.bold("wake-up"),
+                    pen.dim(fmt::format("every 1 ms on core {}, {}; lateness in us", f.core,
+                                        f.priority > 0 ? fmt::format("SCHED_FIFO {}", f.priority) : "ordinary scheduling")));
+    text += pen.dim(fmt::format("  {:<11}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}", "", "time", "p50", "p99", "p99.9", "max",
+                                "slots", "skipped", "stolen")) +
+            "\n";
     text += wake_row(f);
     if (probed.cyclictest) text += wake_row(*probed.cyclictest);
     return text;

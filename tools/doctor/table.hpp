@@ -11,7 +11,7 @@ namespace surefoot::doctor {
 struct TableOptions {
     bool colour = false;
     bool utf8 = false;        ///< marks beyond ASCII
-    std::size_t width = 100;  ///< evidence is wrapped here; remedies are not, so that they can be copied
+    std::size_t width = 120;  ///< evidence is wrapped here; remedies are not, so that they can be copied
 };
 
 std::string table(const Machine& machine, std::span<const Examined> examined, const TableOptions& options);

@@ -17,7 +17,8 @@ Finding clock_source(const Machine& m) {
     for (const auto* good : {"tsc", "kvm-clock", "arch_sys_counter", "hyperv_clocksource_tsc_page"}) {
         if (*name == good) return pass(*name + ": read without a system call");
     }
-    return fail(*name + ": every reading is slow, and a system call", fmt::format("echo tsc > {}; or boot with clocksource=tsc tsc=reliable", file));
+    return fail(*name + ": every reading is slow, and a system call",
+                fmt::format("echo tsc > {}; or boot with clocksource=tsc tsc=reliable", file));
 }
 
 Finding tsc(const Machine& m) {
@@ -28,8 +29,10 @@ Finding tsc(const Machine& m) {
         return unknown("/proc/cpuinfo lists no flags", "mount -t proc proc /proc");
     }
     if (*constant && *nonstop) return pass("constant_tsc and nonstop_tsc");
-    return fail(fmt::format("the time stamp counter {}", !*constant ? "changes its rate (no constant_tsc)" : "stops in deep sleep (no nonstop_tsc)"),
-                "in a virtual machine: let the host pass invtsc through (-cpu host,+invtsc); on metal: boot with processor.max_cstate=1");
+    return fail(
+        fmt::format("the time stamp counter {}",
+                    !*constant ? "changes its rate (no constant_tsc)" : "stops in deep sleep (no nonstop_tsc)"),
+        "in a virtual machine: let the host pass invtsc through (-cpu host,+invtsc); on metal: boot with processor.max_cstate=1");
 }
 
 Finding hypervisor(const Machine& m) {
@@ -37,7 +40,8 @@ Finding hypervisor(const Machine& m) {
     if (!guest) return unknown("/proc/cpuinfo lists no flags", "systemd-detect-virt says it");
     if (!*guest) return pass("no hypervisor (/proc/cpuinfo)");
     return fail("a virtual machine: the host takes cores away when it likes, and nothing in here can stop it",
-                "run it on the machine itself; or on the host pin every virtual core to a core of its own (virsh vcpupin), with nohz_full there");
+                "run it on the machine itself; or on the host pin every virtual core to a core of its own (virsh vcpupin), with "
+                "nohz_full there");
 }
 
 /// Shares of /proc/stat since boot: user nice system idle iowait irq softirq steal.
@@ -56,7 +60,8 @@ Finding steal(const Machine& m) {
         const double share = static_cast<double>(number_in(fields[8]).value_or(0)) / all;
         std::string evidence = fmt::format("the host took {:.3f} % of core {} since boot (/proc/stat)", 100 * share, *core);
         if (share <= 1e-4) return pass(std::move(evidence));
-        return fail(std::move(evidence), "on the host: give this machine cores of its own (virsh vcpupin), and keep other load off them");
+        return fail(std::move(evidence),
+                    "on the host: give this machine cores of its own (virsh vcpupin), and keep other load off them");
     }
     return unknown(label + " is not in /proc/stat, or has run for less than a second", "ask again later");
 }

@@ -20,7 +20,7 @@ namespace surefoot::doctor {
 
 namespace {
 
-constexpr double p99_limit_us = 1000;     // 3 % of a frame at 30 Hz
+constexpr double p99_limit_us = 1000;      // 3 % of a frame at 30 Hz
 constexpr double longest_limit_us = 8333;  // half of a frame at 60 Hz
 
 /// Since boot; -1: not known.
@@ -47,7 +47,8 @@ int place(const WakeOptions& o) {
 }
 
 std::string in_words(const WakeFigures& f) {
-    std::string text = fmt::format("p50 {:.0f}, p99 {:.0f}, p99.9 {:.0f}, max {:.0f} us over {} slots of 1 ms", f.p50_us, f.p99_us, f.p999_us, f.max_us, f.slots);
+    std::string text = fmt::format("p50 {:.0f}, p99 {:.0f}, p99.9 {:.0f}, max {:.0f} us over {} slots of 1 ms", f.p50_us,
+                                   f.p99_us, f.p999_us, f.max_us, f.slots);
     if (f.skipped > 0) text += fmt::format(", {} passed over", f.skipped);
     if (f.steal_ms >= 0) text += fmt::format("; {:.0f} ms stolen meanwhile", f.steal_ms);
     return text;
@@ -60,16 +61,20 @@ Finding usual(const Machine& m) {
     if (!f || f->slots == 0) return not_run();
     if (f->priority == 0) return fail("measured without SCHED_FIFO, which was refused: " + in_words(*f), "see limits.fifo_tried");
     if (f->p99_us <= p99_limit_us) return pass(in_words(*f));
-    return fail(in_words(*f), "mend what fails in kernel, interrupts and power above; then, as root: rtla timerlat top -a 500 names the culprit");
+    return fail(
+        in_words(*f),
+        "mend what fails in kernel, interrupts and power above; then, as root: rtla timerlat top -a 500 names the culprit");
 }
 
 Finding longest(const Machine& m) {
     const auto& f = m.probed().wake_up;
     if (!f || f->slots == 0) return not_run();
-    std::string evidence = fmt::format("the latest of {} was {:.1f} ms late, half a frame at 60 Hz is {:.1f} ms", f->slots, f->max_us / 1000, longest_limit_us / 1000);
+    std::string evidence = fmt::format("the latest of {} was {:.1f} ms late, half a frame at 60 Hz is {:.1f} ms", f->slots,
+                                       f->max_us / 1000, longest_limit_us / 1000);
     if (f->max_us <= longest_limit_us) return pass(std::move(evidence));
-    return fail(std::move(evidence), f->steal_ms > 0 ? "the host stole time meanwhile: see time.hypervisor and time.steal"
-                                                     : "as root: hwlatdetect --duration=60 (firmware), rtla timerlat top -a 500 (kernel)");
+    return fail(std::move(evidence), f->steal_ms > 0
+                                         ? "the host stole time meanwhile: see time.hypervisor and time.steal"
+                                         : "as root: hwlatdetect --duration=60 (firmware), rtla timerlat top -a 500 (kernel)");
 }
 
 constexpr std::array checks = {

@@ -1,10 +1,13 @@
 // Text as the kernel writes it: words, numbers, masks.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -48,6 +51,20 @@ inline std::optional<bool> in_hex_mask(std::string_view mask, int bit) {
     const auto [end, error] = std::from_chars(group.data(), group.data() + group.size(), bits, 16);
     if (error != std::errc{} || end != group.data() + group.size()) return std::nullopt;
     return (bits >> static_cast<unsigned>(bit % 32) & 1U) != 0;
+}
+
+/// The same mask without one bit, for whoever has to write it back; as it is where it is no such mask.
+inline std::string without_bit(std::string_view mask, int bit) {
+    std::string text;
+    const auto groups = split(mask, ",");
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        std::uint32_t bits = 0;
+        const auto [end, error] = std::from_chars(groups[i].data(), groups[i].data() + groups[i].size(), bits, 16);
+        if (error != std::errc{} || end != groups[i].data() + groups[i].size()) return std::string(mask);
+        if (groups.size() - 1 - i == static_cast<std::size_t>(bit / 32)) bits &= ~(1U << static_cast<unsigned>(bit % 32));
+        text += (i == 0 ? "" : ",") + fmt::format(fmt::runtime(i == 0 ? "{:x}" : "{:08x}"), bits);
+    }
+    return text;
 }
 
 /// The word in [brackets] of "always [madvise] never", as the kernel marks the one in force; "(full)" likewise.
