@@ -117,7 +117,8 @@ Reading read_toml(Configuration before, std::string_view text, const std::string
         reading.problems.push_back(std::move(problem));
         return reading;
     }
-    std::stable_sort(reading.problems.begin(), reading.problems.end(), [](const Problem& a, const Problem& b) { return a.line < b.line; });
+    std::stable_sort(reading.problems.begin(), reading.problems.end(),
+                     [](const Problem& a, const Problem& b) { return a.line < b.line; });
     const bool there = std::find(reading.profiles.begin(), reading.profiles.end(), profile) != reading.profiles.end();
     if (!profile.empty() && !there) reading.problems.push_back(no_profile(reading, name, profile));
     return reading;
