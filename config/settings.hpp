@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "rt/base/result.hpp"
 
@@ -56,11 +57,12 @@ const Entry* find_entry(std::string_view key);
 /// The known key that an unknown one was probably meant to be; empty where none is near.
 std::string_view nearest_key(std::string_view key);
 
-/// Where a value came from: "default", "FILE:LINE", or "command line".
+/// Where a value came from: "default", "FILE:LINE", "FILE:LINE (profile NAME)", or "command line".
 struct Origin {
     std::string file;
     std::int64_t line = 0;
     bool command_line = false;
+    std::string profile;
     [[nodiscard]] std::string text() const;
 };
 
@@ -77,6 +79,18 @@ Result<void> load_file(Configuration& configuration, const std::string& file, st
 Result<void> load_text(Configuration& configuration, std::string_view text, const std::string& name,
                        std::string_view profile = {});
 
+/// One thing that is wrong in a file. `error` says it in words; the rest is the same in parts, empty where it does not apply.
+struct Problem {
+    Error error;
+    std::string file;
+    std::int64_t line = 0;
+    std::string key, found, allowed, nearest;  ///< nearest: the known key that an unknown one was probably meant to be
+};
+/// Everything that is wrong in a file, by line: syntax, every key of every profile, and the rules across keys, with each profile
+/// in force. Empty: load_file() and check() succeed, whatever the profile.
+std::vector<Problem> problems_in_file(const std::string& file);
+std::vector<Problem> problems_in_text(std::string_view text, const std::string& name);
+
 /// One value as text, as on a command line.
 Result<void> set_value(Configuration& configuration, std::string_view key, std::string_view text);
 
@@ -87,7 +101,7 @@ Result<void> check(const Configuration& configuration);
 std::string value_text(const Settings& settings, const Entry& entry);
 /// All keys with unit, limits, default and help: a TOML file that changes nothing.
 std::string commented_defaults();
-/// One line a key: value, unit, origin.
+/// One line a key: value, unit, origin, and what is allowed.
 std::string explain(const Configuration& configuration);
 
 /// "#rrggbb" to 0..1 each, as sRGB bytes over 255; the text must have passed the schema.

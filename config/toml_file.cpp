@@ -3,8 +3,10 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/settings.hpp"
 #include "config/values.hpp"
@@ -28,62 +30,136 @@ std::optional<Value> value_of(const toml::node& node) {
     return std::nullopt;
 }
 
-Result<void> apply_key(Configuration& into, std::string_view key, const toml::node& node, const std::string& name) {
-    const std::string place = place_of(name, node.source());
+/// Where the reading goes: values, and all that is wrong with them.
+struct Reading {
+    Configuration configuration;
+    std::vector<Problem> problems;
+    std::vector<std::string> profiles;  ///< names, as they stand in the file
+};
+
+void complain(Reading& into, const std::string& name, const toml::node& node, Problem problem) {
+    problem.file = name;
+    problem.line = node.source().begin.line;
+    problem.error.place = place_of(name, node.source());
+    into.problems.push_back(std::move(problem));
+}
+
+void read_key(Reading& into, std::string_view key, const toml::node& node, const std::string& name, std::string_view profile) {
+    Problem problem;
+    problem.key = std::string(key);
     const Entry* entry = find_entry(key);
-    if (entry == nullptr) return unknown_key(place, key);
     const auto value = value_of(node);
-    if (!value) return Error{place, fmt::format("{} is not {}", key, allowed(*entry)), {}};
-    if (auto problem = assign(into.values, *entry, *value)) return Error{place, *problem, {}};
-    into.origins[std::string(entry->key)] = {name, node.source().begin.line, false};
-    return {};
-}
-
-Result<void> apply_table(Configuration& into, const toml::table& table, const std::string& name, bool top) {
-    for (const auto& [key, node] : table) {
-        if (top && key.str() == "profile") continue;
-        if (auto applied = apply_key(into, key.str(), node, name); !applied) return applied;
+    if (value) problem.found = text_of(*value);
+    if (entry == nullptr) {
+        problem.error = unknown_key({}, key);
+        problem.nearest = std::string(nearest_key(key));
+        return complain(into, name, node, std::move(problem));
     }
-    return {};
+    problem.allowed = allowed(*entry);
+    auto refused = value ? assign(into.configuration.values, *entry, *value) : fmt::format("{} is not {}", key, problem.allowed);
+    if (refused) {
+        problem.error.what = *refused;
+        return complain(into, name, node, std::move(problem));
+    }
+    into.configuration.origins[std::string(entry->key)] = {name, node.source().begin.line, false, std::string(profile)};
 }
 
-/// Every profile is checked, also those not asked for: a slip should not wait for the day it is used.
-Result<void> apply_profiles(Configuration& into, const toml::table& root, const std::string& name, std::string_view wanted) {
+void not_a_table(Reading& into, const std::string& name, const toml::node& node, std::string_view key) {
+    Problem problem;
+    problem.key = std::string(key);
+    problem.error = {{}, fmt::format("{} is not a table", key), "write [profile.NAME] and keys below it"};
+    complain(into, name, node, std::move(problem));
+}
+
+/// Every profile is read, also those not asked for: a slip should not wait for the day it is used.
+void read_profiles(Reading& into, const toml::table& root, const std::string& name, std::string_view wanted) {
     const toml::node* profiles = root.get("profile");
-    if (profiles != nullptr && !profiles->is_table())
-        return Error{place_of(name, profiles->source()), "profile is not a table", "write [profile.NAME] and keys below it"};
-    std::string names;
-    bool found = false;
-    if (profiles != nullptr) {
-        for (const auto& [key, node] : *profiles->as_table()) {
-            if (!node.is_table())
-                return Error{place_of(name, node.source()), fmt::format("profile.{} is not a table", key.str()),
-                             "write [profile.NAME] and keys below it"};
-            Configuration trial = into;
-            if (auto applied = apply_table(trial, *node.as_table(), name, false); !applied) return applied;
-            names += (names.empty() ? "" : ", ") + std::string(key.str());
-            if (key.str() != wanted) continue;
-            found = true;
+    if (profiles == nullptr) return;
+    if (!profiles->is_table()) return not_a_table(into, name, *profiles, "profile");
+    Reading laid = into;
+    laid.problems.clear();
+    for (const auto& [key, node] : *profiles->as_table()) {
+        if (!node.is_table()) {
+            not_a_table(into, name, node, fmt::format("profile.{}", key.str()));
+            continue;
         }
-        if (found) return apply_table(into, *profiles->as_table()->get(wanted)->as_table(), name, false);
+        into.profiles.emplace_back(key.str());
+        Reading trial = laid;
+        for (const auto& [inner, value] : *node.as_table()) read_key(trial, inner.str(), value, name, key.str());
+        into.problems.insert(into.problems.end(), trial.problems.begin(), trial.problems.end());
+        if (key.str() == wanted) into.configuration = std::move(trial.configuration);
     }
-    if (wanted.empty()) return {};
-    return Error{name, fmt::format("has no profile '{}'", wanted), names.empty() ? "it has none" : "it has " + names};
+}
+
+Problem no_profile(const Reading& reading, const std::string& name, std::string_view wanted) {
+    std::string names;
+    for (const std::string& profile : reading.profiles) names += (names.empty() ? "" : ", ") + profile;
+    Problem problem;
+    problem.error = {name, fmt::format("has no profile '{}'", wanted), names.empty() ? "it has none" : "it has " + names};
+    problem.file = name;
+    return problem;
+}
+
+/// Values over `before`, and all problems by line; the values hold only where there is none.
+Reading read_toml(Configuration before, std::string_view text, const std::string& name, std::string_view profile) {
+    Reading reading{std::move(before), {}, {}};
+    try {
+        const toml::table root = toml::parse(text, name);
+        for (const auto& [key, node] : root) {
+            if (key.str() != "profile") read_key(reading, key.str(), node, name, {});
+        }
+        read_profiles(reading, root, name, profile);
+    } catch (const toml::parse_error& error) {
+        Problem problem;
+        problem.file = name;
+        problem.line = error.source().begin.line;
+        problem.error = {place_of(name, error.source()), std::string(error.description()), "see https://toml.io for the syntax"};
+        reading.problems.push_back(std::move(problem));
+        return reading;
+    }
+    std::stable_sort(reading.problems.begin(), reading.problems.end(),
+                     [](const Problem& a, const Problem& b) { return a.line < b.line; });
+    const bool there = std::find(reading.profiles.begin(), reading.profiles.end(), profile) != reading.profiles.end();
+    if (!profile.empty() && !there) reading.problems.push_back(no_profile(reading, name, profile));
+    return reading;
 }
 
 }  // namespace
 
 Result<void> load_text(Configuration& configuration, std::string_view text, const std::string& name, std::string_view profile) {
-    Configuration trial = configuration;
-    try {
-        const toml::table root = toml::parse(text, name);
-        if (auto applied = apply_table(trial, root, name, true); !applied) return applied;
-        if (auto applied = apply_profiles(trial, root, name, profile); !applied) return applied;
-    } catch (const toml::parse_error& error) {
-        return Error{place_of(name, error.source()), std::string(error.description()), "see https://toml.io for the syntax"};
-    }
-    configuration = std::move(trial);
+    Reading reading = read_toml(configuration, text, name, profile);
+    if (!reading.problems.empty()) return reading.problems.front().error;
+    configuration = std::move(reading.configuration);
     return {};
+}
+
+std::vector<Problem> problems_in_text(std::string_view text, const std::string& name) {
+    Reading reading = read_toml({}, text, name, {});
+    if (!reading.problems.empty()) return reading.problems;
+    const auto across = [&](const Configuration& configuration) {
+        const auto ok = check(configuration);
+        if (ok) return;
+        Problem problem;
+        problem.error = ok.error();
+        problem.key = ok.error().place.substr(0, ok.error().place.find(' '));
+        const Origin origin = configuration.origin(problem.key);
+        problem.file = name;
+        problem.line = origin.line;
+        const auto same = [&](const Problem& known) { return known.error.text() == problem.error.text(); };
+        if (std::none_of(reading.problems.begin(), reading.problems.end(), same)) reading.problems.push_back(std::move(problem));
+    };
+    across(reading.configuration);
+    for (const std::string& profile : reading.profiles) across(read_toml({}, text, name, profile).configuration);
+    return reading.problems;
+}
+
+std::vector<Problem> problems_in_file(const std::string& file) {
+    const auto text = read_text(file, max_bytes);
+    if (text) return problems_in_text(*text, file);
+    Problem problem;
+    problem.error = text.error();
+    problem.file = file;
+    return {problem};
 }
 
 Result<void> load_file(Configuration& configuration, const std::string& file, std::string_view profile) {

@@ -58,14 +58,18 @@ std::string allowed(const Entry& entry) {
     return text;
 }
 
+std::string text_of(const Value& value) {
+    if (const auto* number = std::get_if<double>(&value)) return number_text(*number);
+    if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+    return fmt::format("\"{}\"", std::get<std::string>(value));
+}
+
 std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value) {
-    const auto refusal = [&](const std::string& shown) {
-        return fmt::format("{} = {} is not {}", entry.key, shown, allowed(entry));
-    };
+    const auto refusal = [&] { return fmt::format("{} = {} is not {}", entry.key, text_of(value), allowed(entry)); };
     if (const auto* number = std::get_if<double>(&value)) {
         const bool numeric = entry.kind == Kind::number || entry.kind == Kind::integer;
         const bool whole = entry.kind != Kind::integer || std::floor(*number) == *number;
-        if (!numeric || !whole || !(*number >= entry.min && *number <= entry.max)) return refusal(number_text(*number));
+        if (!numeric || !whole || !(*number >= entry.min && *number <= entry.max)) return refusal();
         if (entry.kind == Kind::number)
             settings.*std::get<double Settings::*>(entry.member) = *number;
         else
@@ -73,7 +77,7 @@ std::optional<std::string> assign(Settings& settings, const Entry& entry, const 
         return std::nullopt;
     }
     if (const auto* flag = std::get_if<bool>(&value)) {
-        if (entry.kind != Kind::flag) return refusal(*flag ? "true" : "false");
+        if (entry.kind != Kind::flag) return refusal();
         settings.*std::get<bool Settings::*>(entry.member) = *flag;
         return std::nullopt;
     }
@@ -81,7 +85,7 @@ std::optional<std::string> assign(Settings& settings, const Entry& entry, const 
     const bool fits =
         (entry.kind == Kind::choice && std::find(entry.choices.begin(), entry.choices.end(), text) != entry.choices.end()) ||
         (entry.kind == Kind::colour && is_colour(text));
-    if (!fits) return refusal(fmt::format("\"{}\"", text));
+    if (!fits) return refusal();
     settings.*std::get<std::string Settings::*>(entry.member) = text;
     return std::nullopt;
 }
@@ -89,12 +93,13 @@ std::optional<std::string> assign(Settings& settings, const Entry& entry, const 
 Error unknown_key(std::string place, std::string_view key) {
     const auto nearest = nearest_key(key);
     return {std::move(place), fmt::format("unknown key '{}'", key),
-            nearest.empty() ? "'surefoot config' lists the keys" : fmt::format("did you mean '{}'?", nearest)};
+            nearest.empty() ? "'surefoot config --print' lists the keys" : fmt::format("did you mean '{}'?", nearest)};
 }
 
 std::string Origin::text() const {
     if (command_line) return "command line";
-    return file.empty() ? "default" : fmt::format("{}:{}", file, line);
+    if (file.empty()) return "default";
+    return fmt::format("{}:{}{}", file, line, profile.empty() ? "" : fmt::format(" (profile {})", profile));
 }
 
 Origin Configuration::origin(std::string_view key) const {
@@ -114,7 +119,7 @@ Result<void> set_value(Configuration& configuration, std::string_view key, std::
         if (text == "false" || text == "off" || text == "no" || text == "0") value = false;
     }
     if (auto problem = assign(configuration.values, *entry, value)) return Error{"command line", *problem, {}};
-    configuration.origins[std::string(entry->key)] = {{}, 0, true};
+    configuration.origins[std::string(entry->key)] = {{}, 0, true, {}};
     return {};
 }
 
@@ -160,10 +165,12 @@ std::string commented_defaults() {
 }
 
 std::string explain(const Configuration& configuration) {
+    std::size_t widest = 7;
+    for (const Entry& entry : schema()) widest = std::max(widest, configuration.origin(entry.key).text().size());
     std::string text;
     for (const Entry& entry : schema())
-        text += fmt::format("{:<16} {:<12} {:<8} {}\n", entry.key, value_text(configuration.values, entry), entry.unit,
-                            configuration.origin(entry.key).text());
+        text += fmt::format("{:<16} {:<12} {:<8} {:<{}}  {}\n", entry.key, value_text(configuration.values, entry), entry.unit,
+                            configuration.origin(entry.key).text(), widest, limits_of(entry));
     return text;
 }
 

@@ -13,6 +13,8 @@ using Value = std::variant<double, bool, std::string>;
 
 /// What the entry allows, for people: "a number from 1 to 1000 (Hz)".
 std::string allowed(const Entry& entry);
+/// A value as TOML would write it.
+std::string text_of(const Value& value);
 /// Puts the value in, or says why not and changes nothing.
 std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value);
 Error unknown_key(std::string place, std::string_view key);

@@ -87,7 +87,7 @@ TEST(Settings, ProfileIsLaidOverTheRest) {
     EXPECT_EQ(c.values.rate_hz, 60);
     EXPECT_EQ(c.values.width, 640);
     EXPECT_FALSE(c.values.strict);
-    EXPECT_EQ(c.origin("rate_hz").text(), "s.toml:4");
+    EXPECT_EQ(c.origin("rate_hz").text(), "s.toml:4 (profile kiosk)");
     const auto missing = load_text(c, text, "s.toml", "kisok");
     ASSERT_FALSE(missing.ok());
     EXPECT_NE(missing.error().remedy.find("kiosk, lab"), std::string::npos);

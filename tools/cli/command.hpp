@@ -54,5 +54,7 @@ void add_walk(CLI::App& app, Context& context);
 void add_accuracy(CLI::App& app, Context& context);
 void add_replay(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);
+void add_doctor(CLI::App& app, Context& context);
+void add_config(CLI::App& app, Context& context);
 
 }  // namespace surefoot::cli

@@ -85,6 +85,8 @@ int main(int argc, char** argv) {
     cli::add_accuracy(app, context);
     cli::add_replay(app, context);
     cli::add_devices(app, context);
+    cli::add_config(app, context);
+    cli::add_doctor(app, context);
     app.failure_message([](const CLI::App*, const CLI::Error& error) {
         return "surefoot: " + std::string(error.what()) + " (see surefoot --help, or --help after the command)\n";
     });

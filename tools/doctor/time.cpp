@@ -1,0 +1,80 @@
+// Time and the host: the clock that frames are counted by, and whether somebody else takes the cores away.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "tools/doctor/check.hpp"
+#include "tools/doctor/words.hpp"
+
+namespace surefoot::doctor {
+
+namespace {
+
+Finding clock_source(const Machine& m) {
+    constexpr std::string_view file = "/sys/devices/system/clocksource/clocksource0/current_clocksource";
+    const auto name = m.text(file);
+    if (!name || name->empty()) return unknown(fmt::format("{} cannot be read", file), "mount -t sysfs sysfs /sys");
+    for (const auto* good : {"tsc", "kvm-clock", "arch_sys_counter", "hyperv_clocksource_tsc_page"}) {
+        if (*name == good) return pass(*name + ": read without a system call");
+    }
+    return fail(*name + ": every reading is slow, and a system call",
+                fmt::format("echo tsc > {}; or boot with clocksource=tsc tsc=reliable", file));
+}
+
+Finding tsc(const Machine& m) {
+    const auto constant = m.processor_flag("constant_tsc"), nonstop = m.processor_flag("nonstop_tsc");
+    if (!constant || !nonstop) {
+        if (m.text("/sys/devices/system/clocksource/clocksource0/current_clocksource") == "arch_sys_counter")
+            return pass("the system counter of this processor keeps one rate by its architecture");
+        return unknown("/proc/cpuinfo lists no flags", "mount -t proc proc /proc");
+    }
+    if (*constant && *nonstop) return pass("constant_tsc and nonstop_tsc");
+    return fail(
+        fmt::format("the time stamp counter {}",
+                    !*constant ? "changes its rate (no constant_tsc)" : "stops in deep sleep (no nonstop_tsc)"),
+        "in a virtual machine: let the host pass invtsc through (-cpu host,+invtsc); on metal: boot with processor.max_cstate=1");
+}
+
+Finding hypervisor(const Machine& m) {
+    const auto guest = m.processor_flag("hypervisor");
+    if (!guest) return unknown("/proc/cpuinfo lists no flags", "systemd-detect-virt says it");
+    if (!*guest) return pass("no hypervisor (/proc/cpuinfo)");
+    return fail("a virtual machine: the host takes cores away when it likes, and nothing in here can stop it",
+                "run it on the machine itself; or on the host pin every virtual core to a core of its own (virsh vcpupin), with "
+                "nohz_full there");
+}
+
+/// Shares of /proc/stat since boot: user nice system idle iowait irq softirq steal.
+Finding steal(const Machine& m) {
+    const auto stat = m.text("/proc/stat");
+    const auto core = m.frame_core();
+    if (!stat || !core) return unknown("/proc/stat or the frame core is not to be seen", "mount -t proc proc /proc");
+    const std::string label = fmt::format("cpu{}", *core);
+    for (const std::string_view line : split(*stat, "\n")) {
+        const auto fields = split(line, " ");
+        if (fields.empty() || fields[0] != label) continue;
+        if (fields.size() < 9) break;
+        double all = 0;
+        for (std::size_t i = 1; i <= 8; ++i) all += static_cast<double>(number_in(fields[i]).value_or(0));
+        if (all < 100) break;
+        const double share = static_cast<double>(number_in(fields[8]).value_or(0)) / all;
+        std::string evidence = fmt::format("the host took {:.3f} % of core {} since boot (/proc/stat)", 100 * share, *core);
+        if (share <= 1e-4) return pass(std::move(evidence));
+        return fail(std::move(evidence),
+                    "on the host: give this machine cores of its own (virsh vcpupin), and keep other load off them");
+    }
+    return unknown(label + " is not in /proc/stat, or has run for less than a second", "ask again later");
+}
+
+constexpr std::array checks = {
+    Check{"time.clock_source", "the clock is quick to read", clock_source},
+    Check{"time.tsc", "it keeps one rate", tsc},
+    Check{"time.hypervisor", "no host above", hypervisor},
+    Check{"time.steal", "nobody takes the frame core", steal},
+};
+
+}  // namespace
+
+std::span<const Check> time_checks() { return checks; }
+
+}  // namespace surefoot::doctor
