@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <linux/capability.h>
 #include <pty.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -102,7 +103,8 @@ Plug Testbed::plug(const Recording& r, const Facts& facts) {
         termios raw{};
         cfmakeraw(&raw);
         EXPECT_EQ(openpty(&p.fd, &tail, name, &raw, nullptr), 0);
-        close(tail);
+        p.tail = tail;
+        fcntl(tail, F_SETFD, FD_CLOEXEC);
         fcntl(p.fd, F_SETFD, FD_CLOEXEC);
         chmod(name, facts.readable ? 0666 : 0);
         EXPECT_EQ(symlink(name, node.c_str()), 0);
@@ -139,9 +141,18 @@ bool Testbed::send(Plug& plug, std::span<const std::byte> report) {
     return write(plug.fd, report.data(), report.size()) == static_cast<ssize_t>(report.size());
 }
 
+bool Testbed::taken(const Plug& plug, int within_ms) {
+    int waiting = 0;
+    for (Patience patience(within_ms); ioctl(plug.tail, FIONREAD, &waiting) == 0 && waiting > 0; usleep(500))
+        if (patience.over()) return false;
+    return true;
+}
+
 void Testbed::hang_up(Plug& plug) {
     if (plug.fd >= 0) close(plug.fd);
     plug.fd = -1;
+    if (plug.tail >= 0) close(plug.tail);
+    plug.tail = -1;
 }
 
 void Testbed::pull(Plug& plug) {

@@ -24,7 +24,8 @@ enum class Wire {
 /// One plugged device; pull() it before it is plugged again.
 struct Plug {
     std::string node, place, hid_place;
-    int fd = -1;  ///< the device's end
+    int fd = -1;    ///< the device's end
+    int tail = -1;  ///< a terminal's other end, to see what waits there
 };
 
 struct Facts {
@@ -72,6 +73,8 @@ public:
     Plug plug(const Recording& recording, const Facts& facts = {});
     /// False: dropped, because nobody has read for so long.
     static bool send(Plug& plug, std::span<const std::byte> report);
+    /// Of a terminal: waits until everything sent was read, so that the next report does not run together with it.
+    static bool taken(const Plug& plug, int within_ms);
     /// As a cable: the node hangs up first (a terminal), then sysfs and udev tell.
     void pull(Plug& plug);
     /// Hangs up; udev says nothing yet.

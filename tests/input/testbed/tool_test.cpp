@@ -69,12 +69,13 @@ TEST_P(Record, EndsWithAValidFileHoweverItEnds) {
     const std::string file = temporary("record.hid"), how = GetParam();
     std::filesystem::remove(file);
     std::vector<std::string> arguments = {"record", "046d:c626", "-o", file, "--json"};
-    if (how == "time") arguments.insert(arguments.end(), {"--seconds", "1.5"});
+    if (how == "time") arguments.insert(arguments.end(), {"--seconds", "3"});
     Tool tool(arguments);
     ASSERT_TRUE(tool.until("recording /dev/hidraw0")) << tool.err();
     for (std::size_t i = 0; i < r.reports.size(); ++i) {
         ASSERT_TRUE(Testbed::send(plug, r.report(i)));
         usleep(30'000);
+        ASSERT_TRUE(Testbed::taken(plug, 5000));
     }
     EXPECT_FALSE(std::filesystem::exists(file)) << "it shows before it is whole";
     if (how == "stopped") tool.signal(SIGINT);
