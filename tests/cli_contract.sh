@@ -2,24 +2,8 @@
 # The command line's contract: exit codes, one JSON object on stdout, one clear line for bad input, and nothing good lost.
 # usage: cli_contract.sh SUREFOOT
 set -u
-surefoot=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-export XDG_STATE_HOME=$work/state
-unset STATE_DIRECTORY
-
-complain() { echo "FAIL: $*"; failures=$((failures + 1)); }
-# expect CODE PATTERN COMMAND...: exit code, and stderr (one line and its remedy at most) that matches PATTERN
-expect() {
-  local code=$1 pattern=$2; shift 2
-  timeout 100 "$surefoot" "$@" >out 2>err; local got=$?
-  [ $got -eq "$code" ] || complain "exit $got, not $code: surefoot $*"
-  grep -qE -e "$pattern" err || complain "stderr says '$(head -c 300 err)', not /$pattern/: surefoot $*"
-}
-valid_json() { if command -v python3 >/dev/null; then python3 -c 'import json,sys; json.load(open(sys.argv[1]))' "$1"; else
-  echo "python3 is absent: $1 is only looked at for its braces"; [ "$(head -c 1 "$1")" = "{" ] && [ "$(tail -c 2 "$1")" = "}" ]; fi; }
+surefoot=$(realpath "$1")
+source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/contract.sh"
 json() { "$surefoot" "$@" --json >out 2>err || complain "exit $?: surefoot $* --json"
   valid_json out || complain "stdout is not one JSON object: surefoot $* --json"; }
 
@@ -164,5 +148,4 @@ for command in "calibrate --quick --state stopped" "accuracy f.walk --repeats 10
 done
 ls ./*.tmp 2>/dev/null && complain "something half-written is left"
 
-if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi
-echo "the command line keeps its contract"
+verdict "the command line"

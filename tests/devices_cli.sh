@@ -3,18 +3,7 @@
 # usage: devices_cli.sh SUREFOOT DEVICES_FOLDER
 set -u
 surefoot=$(realpath "$1") devices=$(realpath "$2")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-complain() { echo "FAIL: $*"; failures=$((failures + 1)); }
-# expect CODE PATTERN COMMAND...: exit code, and stderr that matches PATTERN
-expect() {
-  local code=$1 pattern=$2; shift 2
-  "$surefoot" "$@" >out 2>err; local got=$?
-  [ $got -eq "$code" ] || complain "exit $got, not $code: surefoot $*"
-  grep -qE "$pattern" err || complain "stderr says '$(head -c 300 err)', not /$pattern/: surefoot $*"
-}
+source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/contract.sh"
 # says PATTERN COMMAND...: success, and stdout that matches
 says() {
   local pattern=$1; shift
@@ -75,5 +64,4 @@ printf '[motion]\nwalk = 1\n' >bad.toml
 expect 1 'bad.toml:2' devices map -o bad.toml
 expect 1 'no-folder' devices map -o no-folder/x.toml
 
-[ $failures -eq 0 ] || { echo "$failures failures"; exit 1; }
-echo "the devices command keeps its contract"
+verdict "the devices command"

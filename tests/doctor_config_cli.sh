@@ -2,23 +2,8 @@
 # The command line's contract for `surefoot doctor` and `surefoot config`.
 # usage: doctor_config_cli.sh SUREFOOT
 set -u
-surefoot=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-export XDG_STATE_HOME=$work/state
-unset STATE_DIRECTORY
-
-complain() { echo "FAIL: $*"; failures=$((failures + 1)); }
-expect() {
-  local code=$1 pattern=$2; shift 2
-  timeout 100 "$surefoot" "$@" >out 2>err; local got=$?
-  [ $got -eq "$code" ] || complain "exit $got, not $code: surefoot $*: $(head -c 300 err)"
-  [ -z "$pattern" ] || grep -qE -e "$pattern" err || complain "stderr says '$(head -c 300 err)', not /$pattern/: surefoot $*"
-}
-valid_json() { if command -v python3 >/dev/null; then python3 -c 'import json,sys; json.load(open(sys.argv[1]))' "$1"; else
-  echo "python3 is absent: $1 is only looked at for its braces"; [ "$(head -c 1 "$1")" = "{" ] && [ "$(tail -c 2 "$1")" = "}" ]; fi; }
+surefoot=$(realpath "$1")
+source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/contract.sh"
 
 # doctor: a root where nothing can be seen is neither pass nor failure; a part that fails is exit 1.
 mkdir empty bad; mkdir -p bad/proc/sys/kernel; echo 1 > bad/proc/sys/kernel/timer_migration
@@ -80,5 +65,4 @@ for command in "doctor --quick" "doctor --root empty" "config" "config good.toml
   "$surefoot" $command >/dev/full 2>err; [ $? -eq 1 ] || complain "no failure on a full stdout: $command"
 done
 
-if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi
-echo "doctor and config keep the contract"
+verdict "doctor and config"

@@ -3,23 +3,14 @@
 # usage: walk_input_cli.sh SUREFOOT MAKE_SESSION DEVICES_FOLDER
 set -u
 surefoot=$(realpath "$1") make_session=$(realpath "$2") devices=$(realpath "$3")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-export XDG_STATE_HOME=$work/state
-unset STATE_DIRECTORY
+source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/contract.sh"
 virtual="--clock virtual --backend null"
 
-complain() { echo "FAIL: $*"; failures=$((failures + 1)); }
-# expect CODE PATTERN COMMAND...: exit code, nothing on stdout, and one line on stderr that matches PATTERN
-expect() {
-  local code=$1 pattern=$2; shift 2
-  timeout 100 "$surefoot" "$@" >out 2>err; local got=$?
-  [ $got -eq "$code" ] || complain "exit $got, not $code: surefoot $*"
-  [ -s out ] && complain "stdout is not empty: surefoot $*"
+# refuse CODE PATTERN COMMAND...: as expect, nothing on stdout, and one line and its remedy on stderr
+refuse() {
+  expect "$@"
+  [ -s out ] && complain "stdout is not empty: surefoot ${*:3}"
   [ "$(wc -l < err)" -le 2 ] || complain "more than a line and its remedy: $(head -c 600 err)"
-  grep -qE -e "$pattern" err || complain "stderr says '$(head -c 300 err)', not /$pattern/: surefoot $*"
 }
 # walk SESSION OPTIONS...: a success; its JSON is in out
 walk() { local session=$1; shift
@@ -67,25 +58,25 @@ walk stopped.hid --steering stop.toml; says '"stops":1,"stopped_frames":[1-9][0-
 tr -s ' \n' ' ' <out | grep -q '1 emergency stop; stood still by order for' || complain "the table does not tell of the stop: $(cat out)"
 
 # Bad input is 1: the file, the place, what and the remedy. Wrong use is 2.
-expect 1 '^surefoot: absent.hid' walk f.walk $virtual --input absent.hid
-: >empty.hid; expect 1 '^surefoot: empty.hid: .*R: line' walk f.walk $virtual --input empty.hid
-grep -v '^E:' walk-and-turn.hid >none.hid; expect 1 '^surefoot: none.hid: .*no reports' walk f.walk $virtual --input none.hid
-head -c 1990 walk-and-turn.hid >cut.hid; expect 1 '^surefoot: cut.hid: line [0-9]+: .*announced' walk f.walk $virtual --input cut.hid
-expect 1 'boot-keyboard.hid: .*does not steer: class reject' walk f.walk $virtual --input "$devices/boot-keyboard.hid"
-expect 1 '^surefoot: f.glb' walk f.walk $virtual --input f.glb
-expect 1 '^surefoot: absent.toml' walk f.walk $virtual --input buttons.hid --steering absent.toml
+refuse 1 '^surefoot: absent.hid' walk f.walk $virtual --input absent.hid
+: >empty.hid; refuse 1 '^surefoot: empty.hid: .*R: line' walk f.walk $virtual --input empty.hid
+grep -v '^E:' walk-and-turn.hid >none.hid; refuse 1 '^surefoot: none.hid: .*no reports' walk f.walk $virtual --input none.hid
+head -c 1990 walk-and-turn.hid >cut.hid; refuse 1 '^surefoot: cut.hid: line [0-9]+: .*announced' walk f.walk $virtual --input cut.hid
+refuse 1 'boot-keyboard.hid: .*does not steer: class reject' walk f.walk $virtual --input "$devices/boot-keyboard.hid"
+refuse 1 '^surefoot: f.glb' walk f.walk $virtual --input f.glb
+refuse 1 '^surefoot: absent.toml' walk f.walk $virtual --input buttons.hid --steering absent.toml
 printf '[motion]\nwalk_speed = 9\n' >bad.toml
-expect 1 '^surefoot: bad.toml:2: .*walk_speed' walk f.walk $virtual --input buttons.hid --steering bad.toml
+refuse 1 '^surefoot: bad.toml:2: .*walk_speed' walk f.walk $virtual --input buttons.hid --steering bad.toml
 sed 's/button-5/button-55/' stop.toml >other.toml
-expect 1 '^surefoot: other.toml: .*button-55' walk f.walk $virtual --input stopped.hid --steering other.toml
-expect 1 '^surefoot: --ledger .*reads' walk f.walk $virtual --input buttons.hid --ledger buttons.hid
-expect 2 '^surefoot: --steering.*--input' walk f.walk $virtual --steering stop.toml
-expect 2 '^surefoot: --control.*--input' walk f.walk --input buttons.hid --control
+refuse 1 '^surefoot: other.toml: .*button-55' walk f.walk $virtual --input stopped.hid --steering other.toml
+refuse 1 '^surefoot: --ledger .*reads' walk f.walk $virtual --input buttons.hid --ledger buttons.hid
+refuse 2 '^surefoot: --steering.*--input' walk f.walk $virtual --steering stop.toml
+refuse 2 '^surefoot: --control.*--input' walk f.walk --input buttons.hid --control
 
 # Live devices: the real clock only; a file of that name is ./devices.
-expect 2 '^surefoot: --input devices: .*virtual' walk f.walk $virtual --input devices
-expect 2 '^surefoot: --clear-stop.*--input devices' walk f.walk $virtual --clear-stop
-expect 1 '^surefoot: --clear-stop.*stop' walk f.walk --backend null --input devices --clear-stop
+refuse 2 '^surefoot: --input devices: .*virtual' walk f.walk $virtual --input devices
+refuse 2 '^surefoot: --clear-stop.*--input devices' walk f.walk $virtual --clear-stop
+refuse 1 '^surefoot: --clear-stop.*stop' walk f.walk --backend null --input devices --clear-stop
 cp walk-and-turn.hid devices; walk ./devices; says '"source":"./devices"'
 printf '[[gpio]]\nname = "ESTOP"\nrole = "stop"\nchip = "gpiochip99"\nline = "0"\n' >panel.toml
 "$surefoot" walk f.walk --backend null --no-fifo --input devices --steering panel.toml --state live --seconds 1.5 --json >out 2>err ||
@@ -93,8 +84,7 @@ printf '[[gpio]]\nname = "ESTOP"\nrole = "stop"\nchip = "gpiochip99"\nline = "0"
 [ "$(grep -c 'gpiochip99: cannot open the chip' err)" -eq 1 ] || complain "a missing chip is not said once: $(head -c 600 err)"
 says '"frames":4[0-9],'; says '"stop_latched":true'
 grep -q latched live/emergency-stop || complain "the stop of a missing chip is not remembered"
-printf x >notdir; expect 1 'notdir.*--state' walk f.walk --backend null --input devices --steering panel.toml --state notdir/x --seconds 1
+printf x >notdir; refuse 1 'notdir.*--state' walk f.walk --backend null --input devices --steering panel.toml --state notdir/x --seconds 1
 "$surefoot" walk --help >out 2>err; grep -q -- '--input pad.hid' out || complain "the help has no example with --input"
 
-[ $failures -eq 0 ] || { echo "$failures failures"; exit 1; }
-echo "walk --input keeps its contract"
+verdict "walk --input"

@@ -1,0 +1,22 @@
+# Read by the contract scripts: a folder of their own, what a command must do, and the verdict. Not run by itself.
+# shellcheck shell=bash
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+export XDG_STATE_HOME=$work/state
+unset STATE_DIRECTORY
+
+complain() { echo "FAIL: $*"; failures=$((failures + 1)); }
+# expect CODE PATTERN COMMAND...: exit code, and stderr that matches PATTERN (empty: any); what it said is in out and err
+expect() {
+  local code=$1 pattern=$2; shift 2
+  timeout 100 "$surefoot" "$@" >out 2>err; local got=$?
+  [ $got -eq "$code" ] || complain "exit $got, not $code: surefoot $*: $(head -c 300 err)"
+  [ -z "$pattern" ] || grep -qE -e "$pattern" err || complain "stderr says '$(head -c 300 err)', not /$pattern/: surefoot $*"
+}
+valid_json() { if command -v python3 >/dev/null; then python3 -c 'import json,sys; json.load(open(sys.argv[1]))' "$1"; else
+  echo "python3 is absent: $1 is only looked at for its braces"; [ "$(head -c 1 "$1")" = "{" ] && [ "$(tail -c 2 "$1")" = "}" ]; fi; }
+# verdict NAME: the last line of a script; its exit code.
+verdict() { if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi; echo "$1: the contract is kept"; }
