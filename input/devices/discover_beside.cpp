@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <deque>
 #include <limits>
@@ -115,13 +114,7 @@ Result<std::unique_ptr<Discoverer>> discover_beside(Finder finder) {
         if (to_reader >= 0) ::close(to_reader);
         return error;
     }
-    // Signals belong to the threads that wait for them.
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    std::unique_ptr<Discoverer> made = std::make_unique<Beside>(std::move(finder), to_reader, to_finder);
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    return made;
+    return std::unique_ptr<Discoverer>(std::make_unique<Beside>(std::move(finder), to_reader, to_finder));
 }
 
 }  // namespace surefoot::input

@@ -140,6 +140,7 @@ void Finder::try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t no
     }
     entry.retry.failed(now_ns);
     const int code = d.handle.code();
+    if (code == ENOENT || code == ENODEV || code == ENXIO) return;  // just unplugged: the next look around tells
     d.kind = Discovery::Kind::refused;
     d.refused = code == EACCES || code == EPERM ? Refused::permission : Refused::failed;
     d.why = open_error(*entry.plugged, code, d.handle.what());

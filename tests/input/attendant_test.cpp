@@ -2,23 +2,15 @@
 #include "input/devices/attendant.hpp"
 
 #include "tests/input/fake_devices.hpp"
+#include "tests/input/plain_stick.hpp"
 
 namespace surefoot::input {
 namespace {
 
-constexpr std::int64_t tick_ns = 1'000'000;
+using test::at;
+using test::stick;
 
-/// x and y, one signed byte each.
-Recording stick(std::uint16_t product = 0x8001) {
-    Recording r;
-    r.descriptor = hex("05 01 09 04 a1 01 15 81 25 7f 75 08 95 02 09 30 09 31 81 02 c0");
-    r.name = "test stick";
-    r.bus = 3;
-    r.vendor = 0x1d50;
-    r.product = product;
-    return r;
-}
-std::vector<std::byte> at(int x, int y) { return {static_cast<std::byte>(x), static_cast<std::byte>(y)}; }
+constexpr std::int64_t tick_ns = 1'000'000;
 
 struct Hands {
     explicit Hands(std::vector<DeviceMapping> mappings = {})

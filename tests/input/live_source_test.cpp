@@ -5,26 +5,17 @@
 #include "rt/threads/guard.hpp"
 #include "tests/input/fake_devices.hpp"
 #include "tests/input/fake_lines.hpp"
+#include "tests/input/plain_stick.hpp"
 
 namespace surefoot::input {
 namespace {
 
+using test::at;
+using test::stick;
 using test::FakeChip;
 using test::FakeDevices;
 
 constexpr std::int64_t tick_ns = 2'000'000;
-
-/// x and y, one signed byte each: "default: joystick" turns by x and walks by y.
-Recording stick() {
-    Recording r;
-    r.descriptor = hex("05 01 09 04 a1 01 15 81 25 7f 75 08 95 02 09 30 09 31 81 02 c0");
-    r.name = "test stick";
-    r.bus = 3;
-    r.vendor = 0x1d50;
-    r.product = 0x8001;
-    return r;
-}
-std::vector<std::byte> at(int x, int y) { return {static_cast<std::byte>(x), static_cast<std::byte>(y)}; }
 
 LineConfig line(const std::string& name, LineRole role, const std::string& place) {
     LineConfig c;

@@ -6,11 +6,14 @@
 #include "input/devices/attendant.hpp"
 #include "rt/base/random.hpp"
 #include "rt/threads/guard.hpp"
+#include "tests/input/plain_stick.hpp"
 #include "tests/input/testbed/testbed.hpp"
 
 namespace surefoot::input {
 namespace {
 
+using test::at;
+using test::stick;
 using test::Facts;
 using test::Testbed;
 using test::Watcher;
@@ -62,18 +65,6 @@ struct Walk {
     std::unique_ptr<LiveDevices> source;
     NavigationSample sample;
 };
-
-/// A stick of two bytes, x and y, -127..127: "default: joystick" turns by x and walks by y.
-Recording stick() {
-    Recording r;
-    r.descriptor = hex("05 01 09 04 a1 01 15 81 25 7f 75 08 95 02 09 30 09 31 81 02 c0");
-    r.name = "test stick";
-    r.bus = 3;
-    r.vendor = 0x1d50;
-    r.product = 0x8001;
-    return r;
-}
-std::vector<std::byte> at(int x, int y) { return {static_cast<std::byte>(x), static_cast<std::byte>(y)}; }
 
 /// Sends every millisecond, as a streaming device does, while the walk runs.
 void hold(Walk& walk, test::Plug& plug, int x, int y, int ms) {
