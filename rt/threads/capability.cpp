@@ -71,6 +71,24 @@ void raise(__rlimit_resource_t resource, rlim_t wanted) {
 
 }  // namespace
 
+CpuMask isolated_cpus(const CpuMask& allowed, const std::string& root) {
+    CpuMask isolated;
+    if (auto listed = CpuMask::parse(first_line(root + "/sys/devices/system/cpu/isolated"))) {
+        for (const int cpu : listed->cpus()) {
+            if (allowed.has(cpu)) isolated.add(cpu);
+        }
+    }
+    return isolated;
+}
+
+int default_frame_core(const CpuMask& allowed, const CpuMask& isolated) {
+    const std::vector<int> all = allowed.cpus(), kept_free = isolated.cpus();
+    for (auto cpu = kept_free.rbegin(); cpu != kept_free.rend(); ++cpu) {
+        if (allowed.has(*cpu)) return *cpu;
+    }
+    return all.empty() ? -1 : all.back();
+}
+
 Capabilities probe_capabilities(int wanted_priority, const std::string& root) {
     Capabilities c;
     c.fifo_priority = highest_fifo(wanted_priority);
@@ -78,11 +96,7 @@ Capabilities probe_capabilities(int wanted_priority, const std::string& root) {
     c.can_lock = c.memlock_bytes < 0 || c.memlock_bytes >= lock_enough_bytes;
     c.rttime_us = soft_limit(RLIMIT_RTTIME);
     c.allowed = allowed_cpus();
-    if (auto isolated = CpuMask::parse(first_line(root + "/sys/devices/system/cpu/isolated"))) {
-        for (const int cpu : isolated->cpus()) {
-            if (c.allowed.has(cpu)) c.isolated.add(cpu);
-        }
-    }
+    c.isolated = isolated_cpus(c.allowed, root);
     c.rt_runtime_us = number_in(root + "/proc/sys/kernel/sched_rt_runtime_us", -1);
     c.rt_period_us = number_in(root + "/proc/sys/kernel/sched_rt_period_us", 1'000'000);
     c.preempt_rt = number_in(root + "/sys/kernel/realtime", 0) == 1;

@@ -30,6 +30,11 @@ struct Capabilities {
     std::vector<Lack> lacking;  ///< from the above; empty: nothing is missing
 };
 
+/// The kernel's list of isolated cores, within `allowed`.
+CpuMask isolated_cpus(const CpuMask& allowed, const std::string& root = "");
+/// Where the frame thread goes unless a core is named: the last isolated core that is allowed, else the last allowed; -1: none is.
+int default_frame_core(const CpuMask& allowed, const CpuMask& isolated);
+
 /// Tries FIFO on a thread made for it, and reads limits, /proc and /sys. wanted_priority: what the frame thread asks for.
 /// root: where /proc and /sys lie, for tests.
 Capabilities probe_capabilities(int wanted_priority, const std::string& root = "");

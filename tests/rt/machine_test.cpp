@@ -20,11 +20,10 @@
 #include "rt/threads/memory.hpp"
 #include "rt/threads/placement.hpp"
 #include "rt/threads/usage.hpp"
+#include "tests/time_units.hpp"
 
 namespace surefoot::rt {
 namespace {
-
-constexpr std::int64_t ms = 1'000'000;
 
 /// A folder that stands for / with a few files in it.
 class FakeRoot {
@@ -283,6 +282,14 @@ TEST(Recorder, KeepsEveryRecordInOrderOnAThreadOfItsOwnName) {
     for (std::uint64_t i = 0; i < 2000; ++i) ASSERT_EQ(recorder.records()[i].frame, i);
     ASSERT_EQ(recorder.flight().dumps().size(), 1U);
     EXPECT_EQ(recorder.flight().dumps()[0].missed_frame, 1000U);
+}
+
+TEST(FrameCore, IsTheLastIsolatedOneThatIsAllowedElseTheLast) {
+    EXPECT_EQ(default_frame_core({0, 1, 2, 3}, {1, 2}), 2);
+    EXPECT_EQ(default_frame_core({0, 1}, {2, 3}), 1);
+    EXPECT_EQ(default_frame_core({0, 1, 2}, {1, 3}), 1);
+    EXPECT_EQ(default_frame_core({0, 4}, {}), 4);
+    EXPECT_EQ(default_frame_core({}, {}), -1);
 }
 
 }  // namespace

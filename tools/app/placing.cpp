@@ -7,14 +7,15 @@
 
 #include "input/devices/discoverer.hpp"
 #include "render/gl/device.hpp"
+#include "rt/threads/capability.hpp"
 
 namespace surefoot::app {
 
 Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted) {
     PlacingPlan plan;
     plan.all = rt::allowed_cpus();
-    const std::vector<int> cpus = plan.all.cpus();
-    plan.frame_core = request.frame_core >= 0 ? request.frame_core : cpus.back();
+    plan.frame_core =
+        request.frame_core >= 0 ? request.frame_core : rt::default_frame_core(plan.all, rt::isolated_cpus(plan.all));
     if (!plan.all.has(plan.frame_core)) {
         return Error{fmt::format("frame core {}", plan.frame_core), "this process may not use it",
                      "choose one of " + plan.all.text()};

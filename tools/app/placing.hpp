@@ -23,7 +23,7 @@ struct PlacingPlan {
     int rasterisers = 0;                       ///< how many were found
 };
 
-/// The frame thread gets the last allowed core unless the request names one.
+/// The frame thread gets rt::default_frame_core() unless the request names one.
 Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted);
 
 /// Places the driver's rasterisers below the frame thread, on all cores: pinned one a core, the one on the frame core would

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "rt/base/file.hpp"
+#include "rt/threads/capability.hpp"
 #include "tools/doctor/words.hpp"
 
 namespace surefoot::doctor {
@@ -48,11 +49,8 @@ std::optional<int> choose_core(const Machine& machine, const std::optional<int>&
         if (!online) return std::nullopt;
         allowed = *online;
     }
-    const std::vector<int> all = allowed->cpus(), isolated = machine.isolated().cpus();
-    for (auto cpu = isolated.rbegin(); cpu != isolated.rend(); ++cpu) {
-        if (allowed->has(*cpu)) return *cpu;
-    }
-    return all.empty() ? std::nullopt : std::optional<int>(all.back());
+    const int core = rt::default_frame_core(*allowed, machine.isolated());
+    return core < 0 ? std::nullopt : std::optional<int>(core);
 }
 
 }  // namespace

@@ -96,8 +96,7 @@ public:
     /// The group's number in /etc/group.
     [[nodiscard]] std::optional<std::uint32_t> group(std::string_view name) const;
 
-    /// The core that the frame thread would have: the one asked for, else the last isolated one, else the last of all that this
-    /// process may use (as a walk does).
+    /// The core that the frame thread would have: the one asked for, else rt::default_frame_core(), as in a walk.
     [[nodiscard]] std::optional<int> frame_core() const { return frame_core_; }
     [[nodiscard]] rt::CpuMask isolated() const;
     [[nodiscard]] const Wanted& wanted() const { return wanted_; }
