@@ -157,7 +157,10 @@ bool Bakery::make_forms() {
     Stage stage(progress, "levels of detail", scene.meshes.size());
     std::atomic<bool> go{true};
     ChainOptions chain = chain_options(options, proxy_or_none);
-    for (const model::Material& material : model.materials) chain.textured.push_back(material.texture != model::none);
+    for (const model::Material& material : model.materials) {
+        const bool none = material.texture == model::none;
+        chain.pictures.push_back(none ? Picture::none : model.textures[material.texture].clamp ? Picture::clamped : Picture::repeats);
+    }
     tbb::parallel_for(std::size_t{0}, scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
         CutLimits limits;

@@ -173,7 +173,7 @@ struct Reference {
 bool may_lose_pictures(const Level& level, const ChainOptions& options, double diagonal_m) {
     if (static_cast<double>(level.error_m) >= least_proxy_error * diagonal_m) return true;
     return std::none_of(level.parts.begin(), level.parts.end(), [&](const GeometryPart& part) {
-        return part.material < options.textured.size() && options.textured[part.material];
+        return part.material < options.pictures.size() && options.pictures[part.material] != Picture::none;
     });
 }
 
@@ -187,11 +187,12 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     finest.triangles = total;
     std::vector<Level> levels{finest};
     const Reference reference(full, options.slack);
+    const PictureReference pictures(full, options.pictures);
     const Box box = full.box();
     const std::size_t own_vertices = full.vertices.size();
     const float floor_m = static_cast<float>(box.diagonal()) * 0.002F;
     const auto bound = [&](const Level& level) {
-        return std::max(reference.bound(full, level), picture_shift(full, level, options.textured));
+        return std::max(reference.bound(full, level), pictures.shift_m(level));
     };
     while (levels.back().triangles > options.smallest) {
         const Level& before = levels.back();

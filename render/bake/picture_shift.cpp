@@ -11,11 +11,11 @@ namespace surefoot::bake {
 
 namespace {
 
-struct Corner {
+struct Place {
     vec3 p;
     vec2 uv;
 };
-using Triangle = std::array<Corner, 3>;
+using Triangle = std::array<Place, 3>;
 
 Triangle triangle_of(const std::vector<model::Vertex>& vertices, std::span<const std::uint32_t> three) {
     Triangle t;
@@ -50,41 +50,59 @@ struct Sample {
     float shift_m, area;
 };
 
-void compare(const Geometry& full, const GeometryPart& part, std::vector<Sample>& samples) {
+}  // namespace
+
+struct PictureReference::Surface {
+    model::Index material;
+    bool repeats;
     std::vector<std::uint32_t> indices;
-    for (const GeometryPart& p : full.parts) {
-        if (p.material == part.material) indices.insert(indices.end(), p.indices.begin(), p.indices.end());
-    }
-    if (indices.empty()) return;
+    measure::TriangleTree tree;
+
+    Surface(model::Index of, bool repeating, const std::vector<vec3>& positions, std::vector<std::uint32_t> triangles)
+        : material(of), repeats(repeating), indices(std::move(triangles)), tree({positions, indices}) {}
+};
+
+PictureReference::PictureReference(const Geometry& full, const std::vector<Picture>& pictures) : full_(full) {
     std::vector<vec3> positions;
     positions.reserve(full.vertices.size());
     for (const model::Vertex& v : full.vertices) positions.push_back(position_of(v));
-    const measure::TriangleTree tree({positions, indices});
-    constexpr std::array<vec3, 4> places = {vec3(1.0F / 3), vec3(0.6F, 0.2F, 0.2F), vec3(0.2F, 0.6F, 0.2F), vec3(0.2F, 0.2F, 0.6F)};
-    std::uint32_t hint = 0xffffffffU;
-    for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
-        const Triangle coarse = triangle_of(full.vertices, std::span(part.indices).subspan(i, 3));
-        const float area = 0.5F * glm::length(glm::cross(coarse[1].p - coarse[0].p, coarse[2].p - coarse[0].p));
-        if (!(area > 0)) continue;
-        for (const vec3& at : places) {
-            const vec3 p = coarse[0].p * at.x + coarse[1].p * at.y + coarse[2].p * at.z;
-            const vec2 uv = coarse[0].uv * at.x + coarse[1].uv * at.y + coarse[2].uv * at.z;
-            hint = tree.nearest(p, hint).triangle;
-            const Triangle fine = triangle_of(full.vertices, std::span<const std::uint32_t>(indices).subspan(3 * tree.in_mesh(hint), 3));
-            vec2 step = uv - uv_near(fine, p);
-            step -= glm::round(step);
-            const float shift = metres(fine, step);
-            samples.push_back({std::isfinite(shift) ? shift : 0.0F, area});
+    for (std::size_t m = 0; m < pictures.size(); ++m) {
+        if (pictures[m] == Picture::none) continue;
+        std::vector<std::uint32_t> indices;
+        for (const GeometryPart& p : full.parts) {
+            if (p.material == m) indices.insert(indices.end(), p.indices.begin(), p.indices.end());
         }
+        if (indices.empty()) continue;
+        surfaces_.push_back(std::make_unique<Surface>(static_cast<model::Index>(m), pictures[m] == Picture::repeats, positions,
+                                                      std::move(indices)));
     }
 }
 
-}  // namespace
+PictureReference::~PictureReference() = default;
 
-float picture_shift(const Geometry& full, const Level& level, const std::vector<bool>& textured) {
+float PictureReference::shift_m(const Level& level) const {
     std::vector<Sample> samples;
+    constexpr std::array<vec3, 4> places = {vec3(1.0F / 3), vec3(0.6F, 0.2F, 0.2F), vec3(0.2F, 0.6F, 0.2F), vec3(0.2F, 0.2F, 0.6F)};
     for (const GeometryPart& part : level.parts) {
-        if (part.material < textured.size() && textured[part.material]) compare(full, part, samples);
+        const auto own = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const auto& s) { return s->material == part.material; });
+        if (own == surfaces_.end()) continue;
+        const Surface& surface = **own;
+        std::uint32_t hint = 0xffffffffU;
+        for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+            const Triangle coarse = triangle_of(full_.vertices, std::span(part.indices).subspan(i, 3));
+            const float area = 0.5F * glm::length(glm::cross(coarse[1].p - coarse[0].p, coarse[2].p - coarse[0].p));
+            if (!(area > 0)) continue;
+            for (const vec3& at : places) {
+                const vec3 p = coarse[0].p * at.x + coarse[1].p * at.y + coarse[2].p * at.z;
+                const vec2 uv = coarse[0].uv * at.x + coarse[1].uv * at.y + coarse[2].uv * at.z;
+                hint = surface.tree.nearest(p, hint).triangle;
+                const Triangle fine = triangle_of(full_.vertices, std::span(surface.indices).subspan(3 * surface.tree.in_mesh(hint), 3));
+                vec2 step = uv - uv_near(fine, p);
+                if (surface.repeats) step -= glm::round(step);
+                const float shift = metres(fine, step);
+                samples.push_back({std::isfinite(shift) ? shift : 0.0F, area});
+            }
+        }
     }
     std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.shift_m < b.shift_m; });
     double area = 0, below = 0;

@@ -39,7 +39,7 @@ Plate plate(const std::function<vec2(vec2)>& uv) {
     return out;
 }
 
-float shift(const Plate& p, bool textured = true) { return picture_shift(p.full, p.coarse, {textured}); }
+float shift(const Plate& p, Picture picture = Picture::repeats) { return PictureReference(p.full, {picture}).shift_m(p.coarse); }
 
 TEST(PictureShift, IsNoneWhereThePictureLiesStraight) {
     EXPECT_NEAR(shift(plate([](vec2 t) { return t; })), 0, 1e-5);
@@ -54,7 +54,7 @@ TEST(PictureShift, IsTheDistanceByWhichAPictureIsMoved) {
 }
 
 TEST(PictureShift, IsOfTexturedPartsOnly) {
-    EXPECT_EQ(shift(plate([](vec2 t) { return vec2(t.x * t.x, t.y); }), false), 0);
+    EXPECT_EQ(shift(plate([](vec2 t) { return vec2(t.x * t.x, t.y); }), Picture::none), 0);
 }
 
 TEST(PictureShift, CountsAWholeRepeatAsNone) {
@@ -62,9 +62,21 @@ TEST(PictureShift, CountsAWholeRepeatAsNone) {
     EXPECT_NEAR(shift(plate([](vec2 t) { return 8.0F * t; })), 0, 1e-4);
 }
 
+TEST(PictureShift, IsAWholePictureWhereOneThatIsClampedLiesOneFurther) {
+    Plate p = plate([](vec2 t) { return t; });
+    for (std::uint32_t& index : p.coarse.parts[0].indices) {  // the same corners, one picture further
+        model::Vertex v = p.full.vertices[index];
+        v.uv[0] += 1;
+        index = static_cast<std::uint32_t>(p.full.vertices.size());
+        p.full.vertices.push_back(v);
+    }
+    EXPECT_NEAR(shift(p, Picture::repeats), 0, 1e-5);
+    EXPECT_NEAR(shift(p, Picture::clamped), 2, 1e-4);  // metres: the plate's width
+}
+
 TEST(PictureShift, IsFiniteForPicturesWithoutExtentAndForNothing) {
     EXPECT_EQ(shift(plate([](vec2) { return vec2(0.5F); })), 0);
-    EXPECT_EQ(picture_shift({}, {}, {true}), 0);
+    EXPECT_EQ(PictureReference({}, {Picture::repeats}).shift_m({}), 0);
     const float wild = shift(plate([](vec2 t) { return vec2(1e30F * t.x * t.x, t.y); }));
     EXPECT_TRUE(std::isfinite(wild));
 }
