@@ -10,7 +10,7 @@ namespace surefoot::input {
 
 namespace {
 
-using Source = Binding::Source;
+using From = Binding::Source;
 
 constexpr double pace_window_s = 0.05;      // relative controls: displacement over this time makes the pace
 constexpr double smooth_rest = 1.0 / 1024;  // a smoothed response this near to rest is at rest
@@ -26,7 +26,7 @@ void smooth(Binding& b, double dt_s) {
 }
 
 void ask_axes(Binding& b, const DeviceState& state, std::int64_t now_ns) {
-    const std::size_t count = b.source == Source::stick ? 2 : 1;
+    const std::size_t count = b.source == From::stick ? 2 : 1;
     dvec2 deflection{0.0};
     for (std::size_t i = 0; i < count; ++i) {
         if (!state.has_value[b.control[i]]) {  // nothing known, or nothing meant: rest
@@ -153,17 +153,17 @@ Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns) {
     mapper.last_reports = state.reports;
     for (Binding& b : mapper.bindings) {
         switch (b.source) {
-            case Source::axis:
-            case Source::stick:
+            case From::axis:
+            case From::stick:
                 ask_axes(b, state, now_ns);
                 break;
-            case Source::relative:
+            case From::relative:
                 ask_relative(b, state, fresh, dt_s);
                 break;
-            case Source::hat:
+            case From::hat:
                 ask_hat(b, state);
                 break;
-            case Source::button:
+            case From::button:
                 do_button(b, asked, state, now_ns);
                 break;
         }
@@ -171,7 +171,7 @@ Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns) {
         for (std::size_t i = 0; i < 2; ++i) {
             const double size = b.smoothed[static_cast<int>(i)];
             if (double* sum = member(asked.wish, b.action[i])) *sum += b.gain[i] * size;
-            const bool deflected = b.source == Source::button ? b.pressed : b.answer[static_cast<int>(i)] != 0 || !b.armed;
+            const bool deflected = b.source == From::button ? b.pressed : b.answer[static_cast<int>(i)] != 0 || !b.armed;
             const bool seen = b.armed || state.has_value[b.control[i]];
             if (moves(b.action[i]) && seen && deflected) asked.neutral = false;
         }

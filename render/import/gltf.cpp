@@ -14,8 +14,6 @@
 namespace surefoot::importer {
 namespace {
 
-constexpr const char* export_again = "export the model again";
-
 /// Strips and fans (glTF 2.0, 3.7.2.1) to triples; odd triangles of a strip are turned to keep their side.
 std::vector<std::uint32_t> expand(const std::vector<std::uint32_t>& in, int mode) {
     if (mode == TINYGLTF_MODE_TRIANGLES) return in;

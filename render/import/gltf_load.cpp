@@ -23,7 +23,6 @@ using nlohmann::json;
 /// tinygltf copies extras by recursion: deeper files would run out of stack. Real ones stay below 20.
 constexpr int deepest_json = 100;
 constexpr std::uint32_t glb_magic = 0x46546c67, json_chunk = 0x4e4f534a, bin_chunk = 0x004e4942;
-constexpr const char* export_again = "export the model again";
 
 struct Text {
     std::span<const std::byte> json;

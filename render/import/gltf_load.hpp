@@ -9,6 +9,9 @@
 
 namespace surefoot::importer {
 
+/// The remedy for a file that is damaged.
+inline constexpr const char* export_again = "export the model again";
+
 /// Buffers are loaded and at least as long as their byteLength says; nothing else in the model may be trusted: accessors,
 /// views (but those of images), indices of every kind are checked where they are used.
 /// Images: `image` holds the encoded bytes of a data URI; else `bufferView` or `uri` says where they are.

@@ -16,7 +16,7 @@
 namespace surefoot::importer {
 namespace {
 
-constexpr std::size_t chunk_bytes = 1U << 20U;
+constexpr std::size_t read_at_once = 1U << 20U;  // bytes
 
 /// Reads number after number from an open file, window by window: a leaf may be larger than memory likes.
 class NumberStream {
@@ -47,8 +47,8 @@ private:
         buffer_.erase(0, at_);
         at_ = 0;
         const std::size_t kept = buffer_.size();
-        buffer_.resize(kept + chunk_bytes);
-        in_.read(buffer_.data() + kept, static_cast<std::streamsize>(chunk_bytes));
+        buffer_.resize(kept + read_at_once);
+        in_.read(buffer_.data() + kept, static_cast<std::streamsize>(read_at_once));
         buffer_.resize(kept + static_cast<std::size_t>(in_.gcount()));
         return buffer_.size() > kept;
     }

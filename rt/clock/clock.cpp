@@ -14,11 +14,13 @@ constexpr std::int64_t ns_per_s = 1'000'000'000;
 
 }  // namespace
 
-std::int64_t RealClock::now_ns() const {
+std::int64_t monotonic_ns() {
     timespec t{};
     clock_gettime(CLOCK_MONOTONIC, &t);
     return t.tv_sec * ns_per_s + t.tv_nsec;
 }
+
+std::int64_t RealClock::now_ns() const { return monotonic_ns(); }
 
 void RealClock::sleep_until_ns(std::int64_t time_ns) {
     if (time_ns <= now_ns()) return;

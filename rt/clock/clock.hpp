@@ -29,6 +29,9 @@ public:
     void burn_ns(std::int64_t cpu_ns) override;
 };
 
+/// CLOCK_MONOTONIC, for who needs no injected clock.
+std::int64_t monotonic_ns();
+
 /// Moves only when told: tests and the virtual cost clock. For one thread.
 class VirtualClock final : public Clock {
 public:

@@ -69,4 +69,6 @@ struct FrameRecord {
     std::array<double, 4> orientation{};  ///< x, y, z, w
 };
 
+inline std::string_view cause_of(const FrameRecord& f) { return cause_names[static_cast<std::size_t>(f.cause)]; }
+
 }  // namespace surefoot::rt

@@ -26,12 +26,6 @@ inline app::WalkRequest steered_request(const GamepadSession& session, const std
     return request;
 }
 
-inline app::WalkOutcome walk(const app::WalkRequest& request) {
-    auto outcome = app::run_walk(request, {});
-    EXPECT_TRUE(outcome.ok()) << (outcome.ok() ? "" : outcome.error().text());
-    return outcome.ok() ? std::move(*outcome) : app::WalkOutcome{};
-}
-
 inline dvec3 eye(const rt::FrameRecord& r) { return {r.eye[0], r.eye[1], r.eye[2]}; }
 inline dquat orientation(const rt::FrameRecord& r) {
     return {r.orientation[3], r.orientation[0], r.orientation[1], r.orientation[2]};

@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "tools/app/steered_poses.hpp"
+#include "tests/time_units.hpp"
 
 namespace surefoot::app {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000, period_ns = 33'333'333;
+constexpr std::int64_t period_ns = 33'333'333;
 
 struct SteeredPosesTest : ::testing::Test {
     rt::TripleBuffer<SteeredSample> samples;

@@ -8,11 +8,7 @@
 namespace surefoot {
 namespace {
 
-app::WalkOutcome walk(const app::WalkRequest& request) {
-    auto outcome = app::run_walk(request, {});
-    EXPECT_TRUE(outcome.ok()) << (outcome.ok() ? "" : outcome.error().text());
-    return outcome.ok() ? std::move(*outcome) : app::WalkOutcome{};
-}
+using test::walk;
 
 TEST(VirtualWalk, CutsAreBitEqualAtAnyWorkerCountAndAcrossRuns) {
     app::WalkRequest request = test::Forest::get().virtual_request(120);

@@ -79,4 +79,10 @@ private:
     }
 };
 
+inline app::WalkOutcome walk(const app::WalkRequest& request) {
+    auto outcome = app::run_walk(request, {});
+    EXPECT_TRUE(outcome.ok()) << (outcome.ok() ? "" : outcome.error().text());
+    return outcome.ok() ? std::move(*outcome) : app::WalkOutcome{};
+}
+
 }  // namespace surefoot::test

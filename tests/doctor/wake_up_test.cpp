@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <atomic>
 
+#include "tests/time_units.hpp"
 #include "tools/doctor/check.hpp"
 #include "tools/doctor/cyclictest.hpp"
 #include "tools/doctor/table.hpp"
 
 namespace surefoot::doctor {
 namespace {
-
-constexpr std::int64_t ms = 1'000'000;
 
 /// Wakes 10 us late, and stalls for 50 ms at every `every`-th wake-up.
 class StallingClock final : public rt::Clock {

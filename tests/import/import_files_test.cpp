@@ -6,7 +6,7 @@
 namespace surefoot::importer::test {
 namespace {
 
-std::string error_of(const std::vector<std::string>& files) {
+std::string import_error(const std::vector<std::string>& files) {
     const auto scene = import_files(files, {});
     EXPECT_FALSE(scene.ok());
     if (scene.ok()) return "";
@@ -17,13 +17,13 @@ std::string error_of(const std::vector<std::string>& files) {
 
 TEST(ImportFiles, EachMistakeHasItsWords) {
     const Folder folder;
-    EXPECT_NE(error_of({}).find("no file given"), std::string::npos);
-    EXPECT_NE(error_of({folder.file("none.glb")}).find("no such file"), std::string::npos);
-    EXPECT_NE(error_of({folder.file("")}).find("is a directory"), std::string::npos);
-    EXPECT_NE(error_of({folder.write("a.glb", "")}).find("is empty"), std::string::npos);
-    EXPECT_NE(error_of({folder.write("a.xyz", "x")}).find("unknown ending '.xyz'"), std::string::npos);
-    EXPECT_NE(error_of({folder.write("a", "x")}).find("has no ending"), std::string::npos);
-    EXPECT_NE(error_of({folder.write("a.glb", "not a model at all, but long enough")}).find("JSON"), std::string::npos);
+    EXPECT_NE(import_error({}).find("no file given"), std::string::npos);
+    EXPECT_NE(import_error({folder.file("none.glb")}).find("no such file"), std::string::npos);
+    EXPECT_NE(import_error({folder.file("")}).find("is a directory"), std::string::npos);
+    EXPECT_NE(import_error({folder.write("a.glb", "")}).find("is empty"), std::string::npos);
+    EXPECT_NE(import_error({folder.write("a.xyz", "x")}).find("unknown ending '.xyz'"), std::string::npos);
+    EXPECT_NE(import_error({folder.write("a", "x")}).find("has no ending"), std::string::npos);
+    EXPECT_NE(import_error({folder.write("a.glb", "not a model at all, but long enough")}).find("JSON"), std::string::npos);
 }
 
 TEST(ImportFiles, SeveralFilesBecomeOneScene) {

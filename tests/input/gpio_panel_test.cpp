@@ -5,12 +5,12 @@
 
 #include "rt/base/random.hpp"
 #include "tests/input/fake_lines.hpp"
+#include "tests/time_units.hpp"
 
 namespace surefoot::input {
 namespace {
 
 using test::FakeChip;
-constexpr std::int64_t ms = 1'000'000;
 
 TEST(Contact, AssertsAtOnceAndReleasesAfterItsSettleTime) {
     Random random(1);

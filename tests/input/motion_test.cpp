@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "rt/base/random.hpp"
+#include "tests/time_units.hpp"
 
 namespace surefoot::input {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
 constexpr int virtual_seconds = 3600;
 
 Command walk(double forward, double side = 0, double turn = 0, double look = 0) {

@@ -5,11 +5,11 @@
 #include "input/steering.hpp"
 #include "rt/base/file.hpp"
 #include "tests/input/gamepad_session.hpp"
+#include "tests/time_units.hpp"
 
 namespace surefoot::input {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
 using test::GamepadSession;
 
 RecordedDevice device_of(const GamepadSession& session) {

@@ -8,11 +8,10 @@
 #include "input/map/teach.hpp"
 #include "tests/input/hid_test.hpp"
 #include "tests/input/stick_fixture.hpp"
+#include "tests/time_units.hpp"
 
 namespace surefoot::input {
 namespace {
-
-constexpr std::int64_t ms = 1'000'000;
 
 /// A user with one device, in virtual time: reports every 10 ms.
 struct User {

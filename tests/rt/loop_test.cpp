@@ -10,11 +10,11 @@
 
 #include "rt/frame/wait_estimate.hpp"
 #include "rt/threads/guard.hpp"
+#include "tests/time_units.hpp"
 
 namespace surefoot::rt {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
 constexpr std::uint64_t disturbed_frame = 3;
 
 /// Ordinary frames of 0.5 + 3 + 3 ms in a period of 10; one frame is disturbed in one stage.
@@ -72,7 +72,7 @@ struct Walk {
         for (const FrameRecord& r : run()) {
             const bool here = r.frame == disturbed_frame;
             EXPECT_EQ(r.missed, here) << r.frame;
-            EXPECT_EQ(r.cause, here ? cause : Cause::none) << cause_names[static_cast<std::size_t>(r.cause)];
+            EXPECT_EQ(r.cause, here ? cause : Cause::none) << cause_of(r);
             EXPECT_EQ(r.own_miss, here && own);
             EXPECT_EQ(r.skipped_before > 0, r.frame == disturbed_frame + 1);
         }

@@ -20,11 +20,11 @@
 #include "rt/threads/guard.hpp"
 #include "rt/threads/placement.hpp"
 #include "rt/threads/syscall_trap.hpp"
+#include "tests/time_units.hpp"
 
 namespace surefoot::rt {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
 constexpr int passed = 0, failed = 1;
 
 void doze() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }

@@ -5,11 +5,10 @@
 #include "rt/clock/grid.hpp"
 #include "rt/frame/controller.hpp"
 #include "rt/frame/loop.hpp"
+#include "tests/time_units.hpp"
 
 namespace surefoot::rt {
 namespace {
-
-constexpr std::int64_t ms = 1'000'000;
 
 TEST(Grid, RunAndSkippedAreElapsedExactlyUnderAnyWork) {
     Random random(1);

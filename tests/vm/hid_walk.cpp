@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "tests/vm/hid_checks.hpp"
+#include "tests/time_units.hpp"
 #include "tests/vm/uhid.hpp"
 
 namespace surefoot::vm {
@@ -62,8 +63,6 @@ double gone(const std::vector<Row>& rows, std::int64_t from_ns, std::int64_t to_
 void hold(UhidDevice& device, int y, int ms) {
     for (const std::int64_t from = now_ns(); ms_since(from) < ms; sleep_ms(4)) device.send(pad_at(128, y));
 }
-
-constexpr std::int64_t ms = 1'000'000;
 
 /// `surefoot walk` in a child; what it says is read as it comes.
 class WalkingTool {

@@ -2,7 +2,6 @@
 #include "tools/app/accuracy.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -11,18 +10,13 @@
 #include "render/measure/calibrate.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "render/model/walk_file.hpp"
+#include "rt/clock/clock.hpp"
 #include "tools/app/path_source.hpp"
 #include "tools/app/state.hpp"
 
 namespace surefoot::app {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-std::int64_t steady_ns(void*) {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
-}
 
 double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -55,9 +49,9 @@ struct Sweep {
 double Sweep::time_full(const Station& station, const std::vector<gl::DrawItem>& items) {
     std::vector<double> ms;
     for (int i = 0; i < repeats; ++i) {
-        const auto begun = Clock::now();
+        const std::int64_t begun = rt::monotonic_ns();
         engine.draw_unbudgeted(station.pose, items);
-        ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begun).count());
+        ms.push_back(static_cast<double>(rt::monotonic_ns() - begun) * 1e-6);
     }
     return median(ms);
 }
@@ -70,7 +64,7 @@ Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double
     double accuracy = 0, snr_sum = 0, ssim_sum = 0, triangles = 0, cost = 0;
     std::uint32_t snr_count = 0;
     SubmitLimits limits;
-    limits.now_ns = steady_ns;
+    limits.now_ns = [](void*) { return rt::monotonic_ns(); };
     limits.limit_us = 1e12;
     const auto n = static_cast<double>(stations.size());
     for (const Station& station : stations) {

@@ -3,27 +3,23 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <vector>
 
 #include "render/measure/calibrate.hpp"
 #include "render/measure/calibrate_fit.hpp"
 #include "rt/base/random.hpp"
+#include "rt/clock/clock.hpp"
 #include "tools/app/path_source.hpp"
 
 namespace surefoot::app {
 
 namespace {
 
-std::int64_t steady_ns(void* /*context*/) {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 /// Median of three submissions: a stolen slice of time is no property of the model.
 measure::FrameSample measured(Engine& engine, const Pose& pose) {
     SubmitLimits limits;
     limits.limit_us = 1e12;
-    limits.now_ns = steady_ns;
+    limits.now_ns = [](void*) { return rt::monotonic_ns(); };
     std::array<double, 3> us{};
     SubmitReport report;
     for (double& time : us) {
@@ -43,7 +39,7 @@ FrameErrors errors_of(std::span<const measure::FrameSample> samples, const model
 
 Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
                               const Progress& progress) {
-    const auto begun = steady_ns(nullptr);
+    const auto begun = rt::monotonic_ns();
     EngineOptions engine_options;
     engine_options.device = options.device;
     engine_options.in_frame_check = false;  // whole cuts are timed
@@ -75,7 +71,7 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     fit.after = errors_of(held_out, fit.costs.combine);
     fit.frames = options.poses;
     fit.machine = measure::machine_identity(engine.device().renderer(), options.device.rasterisers);
-    fit.seconds = static_cast<double>(steady_ns(nullptr) - begun) * 1e-9;
+    fit.seconds = static_cast<double>(rt::monotonic_ns() - begun) * 1e-9;
     return fit;
 }
 

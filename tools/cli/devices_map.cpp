@@ -11,6 +11,7 @@
 #include "input/map/steering_file.hpp"
 #include "input/map/teach.hpp"
 #include "rt/base/file.hpp"
+#include "rt/clock/clock.hpp"
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
 #include "tools/cli/options.hpp"
@@ -22,7 +23,7 @@ namespace {
 using input::DeviceEvent;
 using input::Teach;
 
-constexpr std::int64_t redraw_ns = 50'000'000;
+constexpr std::int64_t prompt_ns = 50'000'000;
 
 struct MapArguments {
     std::string device, file;
@@ -54,17 +55,17 @@ public:
     /// False: stopped, or no device came and nobody is there to plug one in.
     bool run() {
         Keys keys;
-        const std::int64_t patience_ns = std::max<std::int64_t>(limits_.ask_ns, 2'000'000'000), begun_ns = monotonic_ns();
+        const std::int64_t patience_ns = std::max<std::int64_t>(limits_.ask_ns, 2'000'000'000), begun_ns = rt::monotonic_ns();
         while (teach_.phase() != Teach::Phase::done) {
             if (context_.stop->load()) {
                 end_progress(context_);
                 return false;
             }
-            if (numbers_.empty() && !context_.terminal && monotonic_ns() - begun_ns > patience_ns) return false;
-            for (const DeviceEvent& e : input::poll(source_, monotonic_ns() + redraw_ns)) take(e);
+            if (numbers_.empty() && !context_.terminal && rt::monotonic_ns() - begun_ns > patience_ns) return false;
+            for (const DeviceEvent& e : input::poll(source_, rt::monotonic_ns() + prompt_ns)) take(e);
             const std::size_t before = teach_.learned().size();
-            if (keys.enter()) teach_.skip(monotonic_ns());
-            if (!numbers_.empty()) teach_.tick(monotonic_ns());
+            if (keys.enter()) teach_.skip(rt::monotonic_ns());
+            if (!numbers_.empty()) teach_.tick(rt::monotonic_ns());
             tell(before);
             show();
         }
@@ -114,7 +115,7 @@ private:
         std::string line = "\r\033[K" + question;
         if (numbers_.empty()) line += " (no device yet: plug one in)";
         if (teach_.phase() == Teach::Phase::ask)
-            line += fmt::format("  [Enter: skip, {:.0f} s]", teach_.seconds_left(monotonic_ns()));
+            line += fmt::format("  [Enter: skip, {:.0f} s]", teach_.seconds_left(rt::monotonic_ns()));
         if (const auto l = teach_.leader())
             line += fmt::format("  {} {:3.0f} %", teach_.control(l->device, l->control).name, 100 * std::abs(l->moved));
         (void)std::fputs(line.c_str(), stderr);

@@ -3,6 +3,7 @@
 
 #include "input/replay/recording.hpp"
 #include "rt/base/file.hpp"
+#include "rt/clock/clock.hpp"
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
 #include "tools/cli/options.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 using input::DeviceEvent;
 
-constexpr std::int64_t redraw_ns = 200'000'000;
+constexpr std::int64_t progress_ns = 200'000'000;
 constexpr std::uint32_t ring_of_kernel = 63;  // so many at once: it was full, and newer ones were dropped
 
 struct RecordArguments {
@@ -41,8 +42,8 @@ public:
     Result<void> run(input::LiveDevices& source) {
         const std::int64_t end = end_after(a_.seconds);
         std::int64_t due = 0;
-        while (ended_.empty() && !context_.stop->load() && monotonic_ns() < end) {
-            for (const DeviceEvent& e : input::poll(source, std::min(end, monotonic_ns() + redraw_ns)))
+        while (ended_.empty() && !context_.stop->load() && rt::monotonic_ns() < end) {
+            for (const DeviceEvent& e : input::poll(source, std::min(end, rt::monotonic_ns() + progress_ns)))
                 if (auto taken = take(e); !taken) return taken;
             if (!text_.empty()) {
                 bytes_ += text_.size();
@@ -50,8 +51,8 @@ public:
                 text_.clear();
             }
             if (bytes_ > input::max_recording_bytes / 2) ended_ = "full";
-            if (context_.terminal && monotonic_ns() >= due) {
-                due = monotonic_ns() + redraw_ns;
+            if (context_.terminal && rt::monotonic_ns() >= due) {
+                due = rt::monotonic_ns() + progress_ns;
                 (void)std::fputs(fmt::format("\r\033[K{} reports", reports_).c_str(), stderr);
             }
         }

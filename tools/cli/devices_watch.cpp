@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "rt/clock/clock.hpp"
 #include "tools/cli/bars.hpp"
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
@@ -17,7 +18,7 @@ namespace {
 using input::DeviceEvent;
 using nlohmann::ordered_json;
 
-constexpr std::int64_t redraw_ns = 33'000'000, plain_ns = 100'000'000;
+constexpr std::int64_t bars_ns = 33'000'000, plain_ns = 100'000'000;
 
 struct WatchArguments {
     std::string device;
@@ -69,7 +70,7 @@ std::vector<std::string> screen(LiveStates& states, const std::vector<std::strin
     const std::size_t width = Redraw::width();
     std::vector<std::string> lines;
     for (const auto& [number, d] : states.devices()) {
-        const double age_s = static_cast<double>(monotonic_ns() - d->first_ns) * 1e-9;
+        const double age_s = static_cast<double>(rt::monotonic_ns() - d->first_ns) * 1e-9;
         lines.push_back(fmt::format("{}   {} reports, {:.0f}/s", device_line(*d->plugged), d->state.reports,
                                     age_s > 0 ? static_cast<double>(d->state.reports) / age_s : 0.0));
         for (std::string& line : control_lines(d->plugged->device.controls, d->state, width)) lines.push_back(std::move(line));
@@ -89,15 +90,15 @@ public:
     int run() {
         std::unique_ptr<Redraw> redraw;
         if (bars_) redraw = std::make_unique<Redraw>();
-        const std::int64_t start = monotonic_ns(), end = end_after(a_.seconds);
+        const std::int64_t start = rt::monotonic_ns(), end = end_after(a_.seconds);
         std::int64_t due = start;
         bool going = true;
         for (const DeviceEvent& e : source_.take()) going = take(e, start) && going;
         if (!bars_ && states_.devices().empty()) note("no device that is meant is plugged in: waiting for one");
-        while (going && !context_.stop->load() && monotonic_ns() < end) {
+        while (going && !context_.stop->load() && rt::monotonic_ns() < end) {
             for (const DeviceEvent& e : input::poll(source_, std::min(end, due))) going = take(e, start) && going;
-            if (monotonic_ns() < due) continue;
-            due = monotonic_ns() + (bars_ ? redraw_ns : plain_ns);
+            if (rt::monotonic_ns() < due) continue;
+            due = rt::monotonic_ns() + (bars_ ? bars_ns : plain_ns);
             if (bars_)
                 redraw->draw(screen(states_, notes_));
             else if (!a_.json)

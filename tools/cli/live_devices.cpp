@@ -64,7 +64,7 @@ Result<std::vector<input::Discovery>> plugged_devices() {
     options.wanted = [](const input::PluggedDevice&) { return true; };
     auto finder = input::Finder::create(std::move(options));
     if (!finder) return finder.error();
-    auto all = finder->look(monotonic_ns());
+    auto all = finder->look(rt::monotonic_ns());
     std::sort(all.begin(), all.end(), [](const input::Discovery& a, const input::Discovery& b) {
         const std::string &x = a.plugged->node, &y = b.plugged->node;
         return x.size() != y.size() ? x.size() < y.size() : x < y;  // hidraw9 before hidraw10
@@ -116,10 +116,8 @@ LiveStates::Device* LiveStates::take(const input::DeviceEvent& e) {
     return &d;
 }
 
-std::int64_t monotonic_ns() { return rt::RealClock().now_ns(); }
-
 std::int64_t end_after(double seconds) {
-    return seconds > 0 ? monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9) : std::numeric_limits<std::int64_t>::max();
+    return seconds > 0 ? rt::monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9) : std::numeric_limits<std::int64_t>::max();
 }
 
 }  // namespace surefoot::cli

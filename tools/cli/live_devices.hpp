@@ -48,8 +48,7 @@ private:
     std::map<int, std::unique_ptr<Device>> devices_;
 };
 
-/// Monotonic now, nanoseconds; and so many seconds on, never where seconds is 0.
-std::int64_t monotonic_ns();
+/// So many seconds from now, never where seconds is 0; nanoseconds of CLOCK_MONOTONIC.
 std::int64_t end_after(double seconds);
 
 }  // namespace surefoot::cli

@@ -20,8 +20,8 @@ namespace surefoot::report {
 
 namespace {
 
-constexpr double width = 900;
-constexpr double height = 420;
+constexpr double chart_width = 900;
+constexpr double chart_height = 420;
 constexpr std::string_view published_ending = "-1994";
 
 struct Panel {
@@ -148,7 +148,7 @@ std::string legend_of(const std::vector<Series>& all, double top) {
     double y = top;
     for (const Series& s : all) {
         const double length = 46 + 7.3 * static_cast<double>(s.name.size());
-        if (at + length > width - 8 && at > 52) {
+        if (at + length > chart_width - 8 && at > 52) {
             at = 52;
             y += 20;
         }
@@ -166,14 +166,14 @@ std::string legend_of(const std::vector<Series>& all, double top) {
 
 std::string accuracy_chart(const AccuracyRun& run) {
     const auto all = series_of(run);
-    std::string out = open_chart(width, height, "What accuracy costs in time");
+    std::string out = open_chart(chart_width, chart_height, "What accuracy costs in time");
     out += legend_of(all, 24);
-    constexpr double panel_width = width / 3;
+    constexpr double panel_width = chart_width / 3;
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const double left = panel_width * static_cast<double>(i);
-        out += panel_chart(run, all, panels[i], {left + 52, 96, left + panel_width - 14, height - 46});
+        out += panel_chart(run, all, panels[i], {left + 52, 96, left + panel_width - 14, chart_height - 46});
     }
-    out += text_at(width / 2, height - 8, "note mid", "median frame time, ms (logarithmic)");
+    out += text_at(chart_width / 2, chart_height - 8, "note mid", "median frame time, ms (logarithmic)");
     return out + close_chart();
 }
 

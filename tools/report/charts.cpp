@@ -36,8 +36,6 @@ TimeChart over_time(const WalkFrames& walk, std::string label, std::string unit,
     return chart;
 }
 
-std::string_view cause_of(const FrameRecord& f) { return rt::cause_names[static_cast<std::size_t>(f.cause)]; }
-
 double deadline_ms(const WalkFrames& walk) { return static_cast<double>(walk.period_ns) * 1e-6; }
 
 }  // namespace
@@ -52,7 +50,7 @@ std::string frame_time_chart(const WalkFrames& walk, double budget_ms) {
     for (const FrameRecord* f : walk.frames)
         if (f->missed)
             chart.markers.push_back({walk.time_s(*f), frame_ms(*f),
-                                     fmt::format("frame {}: {:.1f} ms, {}{}", f->frame, frame_ms(*f), cause_of(*f),
+                                     fmt::format("frame {}: {:.1f} ms, {}{}", f->frame, frame_ms(*f), rt::cause_of(*f),
                                                  f->own_miss ? "" : " (not its own doing)")});
     // One long stall must not flatten the rest: what is above the axis is marked at its top.
     auto values = chart.value;

@@ -25,8 +25,6 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
     fmt::format_to(std::back_inserter(row), format, std::forward<Args>(args)...);
 }
 
-std::string_view cause_of(const FrameRecord& f) { return rt::cause_names[static_cast<std::size_t>(f.cause)]; }
-
 // clang-format off
 constexpr std::array<Column, 59> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
@@ -72,7 +70,7 @@ constexpr std::array<Column, 59> columns = {{
     {"skipped_before", [](auto& r, auto& f) { add(r, "{}", f.skipped_before); }},
     {"missed", [](auto& r, auto& f) { add(r, "{:d}", f.missed); }},
     {"own_miss", [](auto& r, auto& f) { add(r, "{:d}", f.own_miss); }},
-    {"cause", [](auto& r, auto& f) { add(r, "{}", cause_of(f)); }},
+    {"cause", [](auto& r, auto& f) { add(r, "{}", rt::cause_of(f)); }},
     {"floor_binds", [](auto& r, auto& f) { add(r, "{:d}", f.floor_binds); }},
     {"control", [](auto& r, auto& f) { add(r, "{:d}", f.control); }},
     {"block", [](auto& r, auto& f) { add(r, "{}", f.block); }},

@@ -143,7 +143,7 @@ std::string path_map(const WalkFrames& walk, std::span<const ReportShot> shots) 
         if (!f->missed) continue;
         const Point at = p(f->eye[0], f->eye[2]);
         out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" class=\"miss\"><title>frame {}: {}</title></circle>",
-                           at.x, at.y, f->frame, rt::cause_names[static_cast<std::size_t>(f->cause)]);
+                           at.x, at.y, f->frame, rt::cause_of(*f));
     }
     for (std::size_t i = 0; i < shots.size(); ++i) {
         const Point at = p(shots[i].eye[0], shots[i].eye[2]);

@@ -39,7 +39,7 @@ void count_frames(std::span<const FrameRecord* const> frames, WalkSummary& s) {
         s.skipped += f->skipped_before;
         s.misses += f->missed ? 1 : 0;
         s.own_misses += f->own_miss ? 1 : 0;
-        if (f->missed) ++s.miss_causes[std::string(rt::cause_names[static_cast<std::size_t>(f->cause)])];
+        if (f->missed) ++s.miss_causes[std::string(rt::cause_of(*f))];
         s.downgrades += f->downgraded_slices;
         s.floor_bound_frames += f->floor_binds ? 1 : 0;
         s.page_faults += f->minor_faults + f->major_faults;

@@ -87,7 +87,7 @@ std::string frame_args(const FrameRecord& f) {
         "1f},"
         "\"budget_us\":{:.1f},\"nodes\":{},\"triangles\":{},\"switches\":{},\"downgraded_slices\":{},\"prepared_age\":{},"
         "\"stolen_us\":{:.1f}",
-        f.slot, rt::cause_names[static_cast<std::size_t>(f.cause)], f.missed, f.own_miss, slack_us(f), f.predicted_us,
+        f.slot, rt::cause_of(f), f.missed, f.own_miss, slack_us(f), f.predicted_us,
         f.actual_us, f.budget_us, f.items, f.triangles, f.switches, f.downgraded_slices, f.prepared_age,
         us_between(0, f.stolen_ns));
 }
@@ -123,7 +123,7 @@ Result<void> write_trace(const std::string& file, std::span<const FrameRecord> r
     for (const FrameRecord& f : records) {
         write_frame(trace, f);
         if (f.missed)
-            trace.instant(misses, "miss", rt::cause_names[static_cast<std::size_t>(f.cause)], f.deadline_ns,
+            trace.instant(misses, "miss", rt::cause_of(f), f.deadline_ns,
                           fmt::format("\"frame\":{},\"late_us\":{:.1f},\"own\":{}", f.frame, -slack_us(f), f.own_miss));
         if (auto written = trace.flush_if(1U << 20U); !written) return written;
     }

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace surefoot::scenes {
 namespace {
 
-constexpr double samples_per_s = 30.0, pi = 3.14159265358979323846;
+constexpr double samples_per_s = 30.0;
 constexpr int steps_a_stretch = 64;
 
 struct Place {
@@ -104,7 +105,7 @@ std::vector<Place> walk(const std::vector<Place>& curve, const std::vector<doubl
 /// Heading (0: -z, grows to the left) and lift of a look, radians.
 dvec2 angles_of(const dvec3& look) { return {std::atan2(-look.x, -look.z), std::atan2(look.y, std::hypot(look.x, look.z))}; }
 
-double nearest_turn(double angle, double to) { return angle - 2 * pi * std::round((angle - to) / (2 * pi)); }
+double nearest_turn(double angle, double to) { return angle - 2 * std::numbers::pi * std::round((angle - to) / (2 * std::numbers::pi)); }
 
 /// One looks where one will be in a second or so, or at what the waypoint names; from one to the next the head turns the
 /// way that was shorter when it began. Headings are unwrapped, so that they can be smoothed.
@@ -144,7 +145,7 @@ Path make_path(std::span<const Waypoint> waypoints, double duration_s, const std
     for (std::size_t i = 0; i < eyes.size(); ++i) {
         const dquat q = glm::angleAxis(gazes[i].x, dvec3(0, 1, 0)) * glm::angleAxis(gazes[i].y, dvec3(1, 0, 0));
         before = glm::dot(q, before) < 0 ? -q : q;
-        path.samples.push_back({static_cast<double>(i) / samples_per_s, Pose{eyes[i], before, pi / 3}});
+        path.samples.push_back({static_cast<double>(i) / samples_per_s, Pose{eyes[i], before, std::numbers::pi / 3}});
     }
     return path;
 }
