@@ -19,6 +19,8 @@ valid_json t.json || complain "the trace is not JSON"
 
 # Wrong use is 2, bad input 1; what was there is still there.
 expect 2 'required|subcommand' --no-such-option
+expect 2 "no command 'wlak'; did you mean 'walk'" wlak f.walk
+expect 2 "no command 'xyzzy' " xyzzy
 expect 2 'Required|required' bake f.glb
 expect 2 'one of|selector' walk f.walk --selector best
 expect 2 'size' walk f.walk --size big

@@ -39,7 +39,9 @@ public:
     /// Call when a polled descriptor is readable and at every tick: opens and reopens, drains, reads levels again, settles.
     void service(std::int64_t now_ns);
 
-    /// For safety/; its "since the last step" parts begin anew. While the chip is gone: stop asserted, dead-man not held.
+    /// For safety/; its "since the last step" parts begin anew. While the chip is gone: stop asserted, dead-man not held. Closed
+    /// until now counts as gone: the first call tells of a stop, which latches; a caller that starts anew takes it and lets it
+    /// go.
     Lines take_lines();
     /// Buttons ("name") and encoders ("name", relative: steps since the last report) for map/, index-parallel to state().
     [[nodiscard]] const std::vector<ControlInfo>& controls() const { return controls_; }

@@ -54,6 +54,20 @@ TEST(ModelCosts, a_fit_is_found_by_model_and_table) {
     EXPECT_EQ(weight(built_in, 7), 1);
 }
 
+TEST(ModelCosts, fits_to_an_old_table_are_dropped_and_nothing_else) {
+    const std::string state = state_for("dropped");
+    const std::string kept = model_costs_file(state, table(1), under(7)), old = model_costs_file(state, table(2), under(7));
+    const std::string other = state + "/models/notes.toml";
+    ASSERT_TRUE(measure::write_costs(kept, table(1)).ok());
+    ASSERT_TRUE(measure::write_costs(old, table(2)).ok());
+    ASSERT_TRUE(write_text(other, "mine").ok());
+    EXPECT_EQ(drop_old_fits(state, table(1)), 1U);
+    EXPECT_TRUE(std::filesystem::exists(kept));
+    EXPECT_FALSE(std::filesystem::exists(old));
+    EXPECT_TRUE(std::filesystem::exists(other));
+    EXPECT_EQ(drop_old_fits(state + "/none", table(1)), 0U);
+}
+
 TEST(ModelCosts, a_damaged_fit_is_an_error) {
     const std::string state = state_for("damaged");
     const std::string fit = model_costs_file(state, table(1), under(7));

@@ -1,6 +1,13 @@
 // OSTF: the thesis' own cube, leaves by offset, what is truncated or lies, and there and back.
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+
 #include "render/import/ostf.hpp"
 #include "tests/import/fixtures.hpp"
 
@@ -53,6 +60,55 @@ TEST(Ostf, OneLeafIsReadByItsOffset) {
     EXPECT_EQ((*vertices)[0].colour, vec3(1, 0, 0));
     EXPECT_FALSE(read_ostf_leaf(*index, 0).ok());
     EXPECT_FALSE(read_ostf_leaf(*index, 9).ok());
+}
+
+/// Bytes of address space that this process has.
+std::size_t address_space() {
+    std::ifstream status("/proc/self/statm");
+    std::size_t pages = 0;
+    status >> pages;
+    return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// In a child that may not have more than `room` bytes beside what it has: 0 where every leaf is read and holds `count` triangles
+/// each.
+int read_leaves_within(std::size_t room, const std::string& file, std::size_t file_bytes, std::uint64_t leaves,
+                       std::size_t count) {
+    const pid_t child = fork();
+    if (child == 0) {
+        const rlimit limit{address_space() + room, address_space() + room};
+        if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(10);
+        if (void* whole = std::malloc(file_bytes)) {  // else the limit limits nothing
+            std::free(whole);
+            _exit(11);
+        }
+        const auto index = index_ostf(file, {});
+        if (!index.ok() || index->objects.size() != leaves) _exit(12);
+        for (std::size_t i = leaves; i-- > 0;) {
+            const auto vertices = read_ostf_leaf(*index, static_cast<Index>(i));
+            if (!vertices.ok() || vertices->size() != 3 * count) _exit(13);
+        }
+        _exit(0);
+    }
+    int status = 0;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Ostf, AFileLargerThanMemoryIsReadLeafByLeaf) {
+#ifdef SUREFOOT_SANITIZED
+    GTEST_SKIP() << "the sanitizers need the address space that this test takes away";
+#endif
+    const Folder folder;
+    constexpr std::size_t leaves = 60, count = 4000;
+    std::string triangles;
+    for (std::size_t i = 0; i < count; ++i) triangles += triangle;
+    std::string text;
+    for (std::size_t i = 0; i < leaves; ++i) text += leaf("part" + std::to_string(i), count, "", triangles);
+    const std::string file = folder.write("large.ostf", text);
+    const std::size_t bytes = text.size();
+    std::string().swap(text);
+    EXPECT_EQ(read_leaves_within(bytes / 2, file, bytes, leaves, count), 0);
 }
 
 TEST(Ostf, TextureNamesAndTheirAbsence) {

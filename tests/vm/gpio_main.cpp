@@ -15,6 +15,7 @@
 #include "input/gpio/panel.hpp"
 #include "input/safety/safety.hpp"
 #include "input/safety/stop_memory.hpp"
+#include "rt/base/random.hpp"
 #include "tests/vm/checks.hpp"
 #include "tests/vm/gpio_sim.hpp"
 
@@ -56,7 +57,7 @@ struct Rig {
         panel.service(now);
         lines = panel.take_lines();
         command = step(safety, {}, {}, lines, now);
-        stopped_once = stopped_once || command.order == Order::stop;
+        (stop() ? stopped_once : walked_once) = true;
         if (panel.state().reports != reports) {
             reports = panel.state().reports;
             for (std::size_t i = 0; i < panel.controls().size(); ++i)
@@ -88,7 +89,7 @@ struct Rig {
     double longest_gap_ms = 0;  ///< between two steps
     std::uint64_t reports = 0;
     long dial = 0;
-    bool pressed = false, stopped_once = false;
+    bool pressed = false, stopped_once = false, walked_once = false;
 };
 
 class Log {
@@ -221,6 +222,54 @@ void check_dead_man(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
         fmt::format("let go for 0.2 to 5.1 ms: {} of {} stopped; let go: after {:.1f} ms; not latched", seen, times, ms));
     chip.pull(dead_man, true);
     rig.serve(60);
+}
+
+/// The dead-man's contact let go and pressed through bounces of 0.2 to 5 ms, 1 to 20 edges: it stops at the first edge of a
+/// release, stays stopped through all others, and walks again only after 20 ms of quiet.
+void check_bounces(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
+    constexpr int wanted = 40, most_tries = 160;
+    constexpr double quiet_ms = 20;
+    Random random(14);
+    int rounds = 0, late = 0, walked = 0, early = 0, stuck = 0;
+    double slowest_ms = 0;
+    const auto bounce = [&](int edges, bool level) {
+        for (int i = 0; i < edges; ++i, level = !level) {
+            chip.pull(dead_man, level);
+            rig.serve(random.range(0.2, 5.0));
+        }
+    };
+    for (int i = 0; i < most_tries && rounds < wanted; ++i) {
+        (void)rig.until([&] { return !rig.stop(); }, 500);
+        rig.last_ns = 0;
+        rig.longest_gap_ms = 0;
+        chip.pull(dead_man, false);
+        const double stopped_ms = rig.until([&] { return rig.stop(); }, 500);
+        rig.walked_once = false;
+        const int released_by = 1 + 2 * static_cast<int>(random.below(10));
+        bounce(released_by - 1, true);
+        rig.serve(2 * quiet_ms);
+        const int pressed_by = 1 + 2 * static_cast<int>(random.below(10));
+        bounce(pressed_by - 1, true);
+        const bool bounced_through = rig.walked_once;
+        chip.pull(dead_man, true);
+        const std::int64_t pressed = now_ns();
+        const double walks_ms = rig.until([&] { return !rig.stop(); }, 500);
+        // Where the guest was kept from running, a bounce may have been quiet for so long: no round.
+        if (rig.longest_gap_ms > quiet_ms / 2 || ms_since(pressed) - std::max(walks_ms, 0.0) > quiet_ms) continue;
+        ++rounds;
+        late += stopped_ms < 0 || stopped_ms > 50 ? 1 : 0;
+        walked += bounced_through ? 1 : 0;
+        early += walks_ms >= 0 && walks_ms < quiet_ms - 1 ? 1 : 0;  // the edge's stamp is a little older than our clock's reading
+        stuck += walks_ms < 0 ? 1 : 0;
+        slowest_ms = std::max(slowest_ms, stopped_ms);
+    }
+    log.state("dead-man after bounces", rig);
+    checks.check(
+        "dead_man.bounces", rounds == wanted && late + walked + early + stuck == 0,
+        fmt::format(
+            "{} rounds of {}: stopped after {:.1f} ms at most; {} late, {} walked while it bounced, {} before {:.0f} ms of "
+            "quiet, {} not at all",
+            rounds, wanted, slowest_ms, late, walked, early, quiet_ms, stuck));
 }
 
 void check_encoder(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
@@ -390,6 +439,7 @@ int run(const std::string& folder, const std::string& group) {
         check_button(checks, rig, chip, log);
         check_stop(checks, rig, chip, log);
         check_dead_man(checks, rig, chip, log);
+        check_bounces(checks, rig, chip, log);
         check_encoder(checks, rig, chip, log);
         check_burst(checks, rig, chip, log);
     }

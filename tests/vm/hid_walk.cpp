@@ -12,8 +12,8 @@
 #include <string_view>
 #include <thread>
 
-#include "tests/vm/hid_checks.hpp"
 #include "tests/time_units.hpp"
+#include "tests/vm/hid_checks.hpp"
 #include "tests/vm/uhid.hpp"
 
 namespace surefoot::vm {

@@ -1,8 +1,10 @@
 // Where this machine's figures live: the state folder and the calibrated cost table in it.
 #include "tools/app/state.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -48,11 +50,26 @@ Result<model::CostModel> load_costs(const std::string& state_dir, const std::str
 }
 
 std::string model_costs_file(const std::string& state_dir, const model::CostModel& table, const FitConditions& c) {
-    return fmt::format("{}/models/{:016x}-{:016x}-{}x{}-{}.toml", state_dir, c.model_hash, measure::hash_of(table), c.width, c.height,
-                       c.backend);
+    return fmt::format("{}/models/{:016x}-{:016x}-{}x{}-{}.toml", state_dir, c.model_hash, measure::hash_of(table), c.width,
+                       c.height, c.backend);
 }
 
-Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table, const FitConditions& conditions) {
+std::size_t drop_old_fits(const std::string& state_dir, const model::CostModel& table) {
+    const std::string of_this = fmt::format("-{:016x}-", measure::hash_of(table));
+    std::error_code ignored;
+    std::vector<std::filesystem::path> old;
+    for (const auto& entry : std::filesystem::directory_iterator(state_dir + "/models", ignored)) {
+        const std::string name = entry.path().filename().string();
+        // 16 digits of the model, 16 of the table: what is not named so is not ours.
+        const bool a_fit = name.ends_with(".toml") && name.size() > 34 && name[16] == '-' && name[33] == '-';
+        if (a_fit && name.compare(16, of_this.size(), of_this) != 0) old.push_back(entry.path());
+    }
+    return static_cast<std::size_t>(
+        std::count_if(old.begin(), old.end(), [&](const auto& file) { return std::filesystem::remove(file, ignored); }));
+}
+
+Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table,
+                                      const FitConditions& conditions) {
     if (!table.calibrated) return table;
     const std::string file = model_costs_file(state_dir, table, conditions);
     std::error_code ignored;

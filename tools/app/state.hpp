@@ -25,8 +25,11 @@ struct FitConditions {
     std::string backend;
 };
 
-/// Where the fit lies: a table measured anew leaves old fits behind.
+/// Where the fit lies. A table measured anew makes every fit to the old one useless: see drop_old_fits.
 std::string model_costs_file(const std::string& state_dir, const model::CostModel& table, const FitConditions& conditions);
+
+/// Removes the fits to other tables than this one; how many.
+std::size_t drop_old_fits(const std::string& state_dir, const model::CostModel& table);
 
 /// The fit under these conditions where there is one (`surefoot calibrate MODEL.walk`), else `table` as it is.
 Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table, const FitConditions& conditions);

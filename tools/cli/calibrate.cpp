@@ -39,12 +39,8 @@ std::string state_name(model::EffectMask mask) {
 
 nlohmann::ordered_json to_json(const model::CostModel& costs) {
     const model::FrameCombine& k = costs.combine;
-    return {{"fixed_us", k.fixed_us},
-            {"submit_weight", k.submit_weight},
-            {"raster_weight", k.raster_weight},
-            {"max_weight", k.max_weight},
-            {"upper_factor", costs.upper_factor},
-            {"slice_us", costs.slice_us}};
+    return {{"fixed_us", k.fixed_us},     {"submit_weight", k.submit_weight},   {"raster_weight", k.raster_weight},
+            {"max_weight", k.max_weight}, {"upper_factor", costs.upper_factor}, {"slice_us", costs.slice_us}};
 }
 
 void print_frame(const model::FrameCombine& k) {
@@ -144,16 +140,18 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
     }
     fmt::print("{}: {} frames near {}, {:.0f} s\n  fit {}\n", a.model, fit->frames, path->source, fit->seconds, file);
     print_frame(k);
-    fmt::print("  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; by the machine's table alone {:.0f} %, {:.0f} %, "
-               "{:.0f} %; the budget spends x{:.2f}\n",
-               100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->after.p99, 100 * fit->before.p50, 100 * fit->before.p90,
-               100 * fit->before.p99, fit->costs.upper_factor);
+    fmt::print(
+        "  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; by the machine's table alone {:.0f} %, {:.0f} %, "
+        "{:.0f} %; the budget spends x{:.2f}\n",
+        100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->after.p99, 100 * fit->before.p50, 100 * fit->before.p90,
+        100 * fit->before.p99, fit->costs.upper_factor);
     return exit_success;
 }
 
 int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (!a.model.empty()) return run_fit(a, context);
-    for (const auto& [given, option] : {std::pair{!a.path.empty(), "--path"}, {a.lift_m != 0, "--lift"}, {a.rate_hz != 30, "--rate"}}) {
+    for (const auto& [given, option] :
+         {std::pair{!a.path.empty(), "--path"}, {a.lift_m != 0, "--lift"}, {a.rate_hz != 30, "--rate"}}) {
         if (given) return misuse({option, "belongs to a model", "name the model: surefoot calibrate MODEL.walk ..."});
     }
     auto kind = gl::parse_backend(a.backend);
@@ -176,6 +174,10 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (!c) return fail(c.error());
     if (auto made = make_folder(dir); !made) return fail(made.error());
     if (auto written = measure::write_costs(file, c->costs); !written) return fail(written.error());
+    if (const std::size_t old = app::drop_old_fits(dir, c->costs); old > 0) {
+        note(fmt::format("{} to the old table {} removed; fit anew with `surefoot calibrate MODEL.walk`",
+                         old == 1 ? "the fit" : fmt::format("{} fits", old), old == 1 ? "is" : "are"));
+    }
     std::vector<report::CostPoint> points;
     for (const measure::CalibrationPoint& p : c->points) {
         points.push_back({state_name(p.effects), p.triangles, p.pixels, p.submit_us + p.raster_us});
@@ -202,8 +204,11 @@ void add_calibrate(CLI::App& app, Context& context) {
     c->add_option("MODEL", a->model,
                   "Fit the table to one model: how its items add up to a frame; walks of this model use it from then on");
     c->add_option("--path", a->path, "With a model: near which path (else the one beside it, else a tour)");
-    c->add_option("--lift", a->lift_m, "With a model: metres added to every height of the path")->check(number_within(-1e7, 1e7, "m"));
-    c->add_option("--rate", a->rate_hz, "With a model: frames a second it will be walked at")->check(number_within(1, 1000, "Hz"))->capture_default_str();
+    c->add_option("--lift", a->lift_m, "With a model: metres added to every height of the path")
+        ->check(number_within(-1e7, 1e7, "m"));
+    c->add_option("--rate", a->rate_hz, "With a model: frames a second it will be walked at")
+        ->check(number_within(1, 1000, "Hz"))
+        ->capture_default_str();
     c->add_option("--state", a->state, "Folder for costs.toml and costs.svg (else $STATE_DIRECTORY, else XDG state)");
     c->add_option("--backend", a->backend, "egl, device, osmesa or window")->check(drawing_backend())->capture_default_str();
     c->add_option("--rasterisers", a->rasterisers, "Software GL threads; 0: the measured default")

@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <optional>
 #include <sstream>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
+#include "rt/base/nearest.hpp"
 #include "tools/cli/command.hpp"
 
 namespace {
@@ -50,6 +55,18 @@ int run(const surefoot::cli::Context& context) {
     return cli::finish_output(code, output_error);
 }
 
+/// What CLI11 says of a word that is no command is only that one is required.
+std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return std::nullopt;
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return std::nullopt;
+    const std::vector<std::string_view> words(names.begin(), names.end());
+    const std::string_view nearest = surefoot::nearest_word(argv[1], words);
+    return fmt::format("there is no command '{}'{}", argv[1],
+                       nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -87,8 +104,9 @@ int main(int argc, char** argv) {
     cli::add_devices(app, context);
     cli::add_config(app, context);
     cli::add_doctor(app, context);
-    app.failure_message([](const CLI::App*, const CLI::Error& error) {
-        return "surefoot: " + std::string(error.what()) + " (see surefoot --help, or --help after the command)\n";
+    app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {
+        const std::string text = unknown_command(*of, argc, argv).value_or(error.what());
+        return "surefoot: " + text + " (see surefoot --help, or --help after the command)\n";
     });
     try {
         app.parse(argc, argv);
