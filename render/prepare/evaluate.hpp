@@ -51,8 +51,9 @@ inline float accuracy_gain(float error_rad, float pixel_angle_rad) {
     return 0.5F * (error_px / (error_px + 8.0F) + error_px / (error_px + 256.0F));
 }
 
-/// 0..1: a form that is no picture at all, where it fills the view. An error of about its distance and more is a shape that one looks
-/// through, or that hangs before the eye: neither motion nor focus makes it less wrong. size: square root of its share of the view.
+/// 0..1: a form that is no picture at all, where it fills the view. An error of about its distance and more is a shape that one
+/// looks through, or that hangs before the eye: neither motion nor focus makes it less wrong. size: square root of its share of
+/// the view.
 inline float wrongness(float size, float error_rad) {
     constexpr float begins_rad = 0.75F, full_rad = 2.0F, small = 0.2F;  // small: 1/25 of the view
     return std::clamp((error_rad - begins_rad) / (full_rad - begins_rad), 0.0F, 1.0F) * std::min(1.0F, size / small);
@@ -67,12 +68,20 @@ inline float cost_metric(const model::FrameCombine& combine, const model::ItemCo
     return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
 }
 
+/// 0..1: what leaving a form costs counts against it. A half at 2 ms, the sixteenth of a 30 Hz frame that one item may cost at
+/// most: of two forms that are equally wrong the cheaper one goes first, so that one dear step, which ends the search where it
+/// does not fit, does not keep back dozens of cheap ones.
+inline float thrift(float step_us) {
+    constexpr float half_us = 2000.0F;
+    return half_us / (half_us + std::max(step_us, 0.0F));
+}
+
 class Evaluator {
 public:
     Evaluator(const model::Model& model, const model::CostModel& costs);
 
     /// Fills `candidate.pixels` and the choices, `rep_count` of the node at most; returns how many. candidate.node is given.
-    /// Choices have benefit = weight x accuracy, not yet monotone down the tree.
+    /// Choices have benefit = weight x accuracy, not yet thrift, nor monotone down the tree.
     std::uint32_t evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices, Weight& weight) const;
 
 private:

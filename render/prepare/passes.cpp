@@ -38,7 +38,17 @@ void gather_up(const model::FrameCombine& combine, float pixel_angle_rad, std::s
         Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
         candidate.floor_cost = choices[0].cost;
+        const auto thrift_of = [&](std::size_t c) {
+            const model::ItemCost& next = c + 1 < choices.size() ? choices[c + 1].cost : candidate.children_cost;
+            return thrift(cost_metric(combine, next) - cost_metric(combine, choices[c].cost));
+        };
         if (candidate.child_count == 0) {
+            float least = 0;  // of the finest there is no leaving
+            for (std::size_t c = choices.size(); c-- > 0;) {
+                if (c + 1 < choices.size()) choices[c].benefit *= thrift_of(c);
+                least = std::max(least, choices[c].benefit);
+                choices[c].subtree_benefit = least;
+            }
             full_submit_us += static_cast<double>(choices.back().cost.submit_us);
             full_raster_us += static_cast<double>(choices.back().cost.raster_us);
             continue;
@@ -53,7 +63,9 @@ void gather_up(const model::FrameCombine& combine, float pixel_angle_rad, std::s
             const float error_m = choices[c].error_rad * weights[i].distance_m;
             const float gain = benefit_of(sum.weight.weight, accuracy_gain(error_m / sum.weight.distance_m, pixel_angle_rad),
                                           wrongness(weights[i].size, choices[c].error_rad));  // its own: round the eye, not below
-            least = std::max(least, gain);
+            const float share = thrift_of(c);
+            choices[c].benefit *= share;
+            least = std::max(least, gain * share);
             choices[c].subtree_benefit = least;
         }
         weights[i] = sum.weight;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "render/prepare/evaluate.hpp"
+#include "render/prepare/passes.hpp"
 #include "render/prepare/prepared.hpp"
 #include "render/prepare/visibility.hpp"
 #include "tests/prepare/random_model.hpp"
@@ -308,6 +309,35 @@ TEST(Prepare, ChainOfTenThousandDoesNotRecurse) {
     }
     for (model::Node& n : m.nodes) test::add_reps(m, n, random, 1, 0.5, 10);
     EXPECT_EQ(prepared(m, {}).candidates.size(), 10000U);
+}
+
+/// A leaf with two forms, the finer one `step_us` dearer, both equally wrong.
+float benefit_of_step(float step_us) {
+    PreparedFrame frame;
+    Candidate leaf;
+    leaf.choice_count = 2;
+    frame.candidates.push_back(leaf);
+    Choice coarse, fine;
+    coarse.benefit = coarse.subtree_benefit = 0.8F;
+    coarse.cost.submit_us = 10;
+    fine.cost.submit_us = 10 + step_us;
+    frame.choices = {coarse, fine};
+    model::FrameCombine combine;
+    combine.submit_weight = 1;
+    combine.raster_weight = 1;
+    combine.max_weight = 0;
+    std::vector<Weight> weights(1);
+    gather_up(combine, 1e-3F, weights, frame);
+    hold_down(frame);
+    EXPECT_EQ(frame.choices[0].benefit, frame.choices[0].subtree_benefit);
+    return frame.choices[0].benefit;
+}
+
+TEST(Thrift, OfTwoStepsThatAreEquallyWorthTheCheaperGoesFirst) {
+    EXPECT_FLOAT_EQ(benefit_of_step(0), 0.8F);
+    EXPECT_FLOAT_EQ(benefit_of_step(2000), 0.4F);
+    EXPECT_GT(benefit_of_step(8), benefit_of_step(1988));
+    EXPECT_FLOAT_EQ(benefit_of_step(-5), 0.8F) << "what costs less than nothing is worth no more than it is";
 }
 
 }  // namespace
