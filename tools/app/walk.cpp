@@ -151,6 +151,7 @@ Result<void> open_session(Session& s, const Progress& progress) {
     options.device.kind = *kind;
     options.device.viewport = {r.width, r.height};
     options.device.rasterisers = r.rasterisers;
+    options.device.sky = r.sky;
     options.null.cost_scale = r.cost_scale;
     options.null.noise = r.cost_noise;
     options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, s.plan.all.count() - 1);

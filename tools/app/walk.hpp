@@ -2,6 +2,7 @@
 // walk, soak, compare and the daemon all run this.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -29,7 +30,8 @@ struct WalkRequest {
     bool clear_stop = false;    ///< live: take off a stop that an earlier walk has left latched
     std::string state_dir;      ///< empty: see state_directory()
     std::string selector = "two-stage", late = "lock", backend = "egl", clock = "real";
-    double lift_m = 0;  ///< added to the path's heights
+    std::array<float, 3> sky{0.62F, 0.72F, 0.82F};  ///< background, 0..1 each
+    double lift_m = 0;                              ///< added to the path's heights
     double rate_hz = 30;
     std::uint32_t width = 1280, height = 720;
     std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
