@@ -147,6 +147,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
         limits.now_context = &clock_;
     }
     report_ = engine_.submit(now_.pose, limits);
+    if (engine_.device().lost() && options_.lost != nullptr) options_.lost->store(true);
     if (options_.virtual_clock) {
         const double charged_us = report_.finished_us > 0 ? report_.finished_us : report_.predicted_us * options_.cost_scale;
         static_cast<rt::VirtualClock&>(clock_).advance(static_cast<std::int64_t>(charged_us * 1e3));
