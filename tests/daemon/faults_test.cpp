@@ -4,6 +4,7 @@
 #include <sys/ptrace.h>
 
 #include "rt/threads/capability.hpp"
+#include "rt/threads/guard.hpp"
 #include "tests/daemon/running.hpp"
 #include "tools/daemon/exit_code.hpp"
 
@@ -44,6 +45,7 @@ TEST(Faults, TheWatchdogStarvesWhileTheFrameThreadAloneIsFrozen) {
 }
 
 TEST(Faults, AThreadThatNeverSleepsEndsItWithinASecond) {
+    if (!rt::guard_active()) GTEST_SKIP() << "sanitizers hold signal handlers back";
     if (rt::probe_capabilities(80).fifo_priority < 80) GTEST_SKIP() << "SCHED_FIFO is refused here: nothing can run away";
     Running daemon("runaway");
     daemon.environment = {{"SUREFOOT_TEST_FAULT", "runaway"}};
@@ -72,6 +74,14 @@ TEST(Faults, AStateFolderThatCannotBeWrittenIsKnownAtTheStart) {
     // A file stands where the folder should be: not even root can write below it.
     EXPECT_TRUE(write_text(daemon.dir + "/file", "").ok());
     daemon.start({"--set", "state=" + daemon.dir + "/file"});
+    EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("the state folder must keep a stop"), 1) << daemon.said();
+}
+
+TEST(Faults, AFullDiskIsKnownAtTheStart) {
+    Running daemon("full-disk");
+    daemon.write_config("input = \"devices\"\n");
+    daemon.start({}, {.file_bytes = 3000});  // enough for what it says, not for a page
     EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.said();
     EXPECT_EQ(daemon.lines_with("the state folder must keep a stop"), 1) << daemon.said();
 }

@@ -1,6 +1,8 @@
 // surefootd as systemd sees it: ready when frames run, ends when asked, refuses what it must not run with.
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "tests/daemon/running.hpp"
 #include "tools/daemon/exit_code.hpp"
 
@@ -79,6 +81,8 @@ struct Lacking {
     const char* more;  ///< settings
     const char* words;
 };
+
+void PrintTo(const Lacking& lacking, std::ostream* out) { *out << lacking.name; }
 
 class Degraded : public testing::TestWithParam<Lacking> {};
 

@@ -28,8 +28,9 @@ using surefoot::test::Forest;
 
 /// What is taken from the daemon before it starts.
 struct Taken {
-    bool sys_nice = false;     ///< CAP_SYS_NICE, and RLIMIT_RTPRIO 0
-    bool memory_lock = false;  ///< CAP_IPC_LOCK, and RLIMIT_MEMLOCK of 1 MiB
+    bool sys_nice = false;         ///< CAP_SYS_NICE, and RLIMIT_RTPRIO 0
+    bool memory_lock = false;      ///< CAP_IPC_LOCK, and RLIMIT_MEMLOCK of 1 MiB
+    std::uint64_t file_bytes = 0;  ///< RLIMIT_FSIZE, as a full disk; 0: none
 };
 
 inline void drop_capability(unsigned capability) {
@@ -141,6 +142,10 @@ private:
             const rlimit little{1U << 20U, 1U << 20U};
             setrlimit(RLIMIT_MEMLOCK, &little);
             drop_capability(CAP_IPC_LOCK);
+        }
+        if (taken.file_bytes > 0) {
+            const rlimit full{taken.file_bytes, taken.file_bytes};
+            setrlimit(RLIMIT_FSIZE, &full);
         }
         if (taken.sys_nice || taken.memory_lock) drop_capability(CAP_SYS_RESOURCE);
     }

@@ -93,7 +93,6 @@ Result<void> check_state(const app::WalkRequest& request) {
 Ending walk(const config::Configuration& configuration, const Options& options, Log& log, Standing& standing,
             const app::FaultHook& inject) {
     const app::WalkRequest request = request_of(configuration, options.config_file);
-    standing.open(configuration.values);
     if (auto ok = check_state(request); !ok) {
         const Error& e = ok.error();
         return {true, {e.place, "the state folder must keep a stop, and cannot: " + e.what, e.remedy}, exit_cannot_write};
@@ -118,24 +117,27 @@ ExitCode walk_on(config::Configuration current, const Options& options, Log& log
                  const app::FaultHook& inject) {
     std::optional<config::Configuration> good;
     while (true) {
-        // In this order: a signal in between sets both, and is not lost.
+        // In this order: what a signal asks for in between is seen below, or ends the walk as it begins.
+        standing.open(current.values);
         standing.stop_walk.store(false);
         if (standing.leaving.load()) return exit_success;
+        if (auto next = standing.take_next()) {
+            current = std::move(*next);
+            standing.open(current.values);
+        }
         const Ending ending = walk(current, options, log, standing, inject);
         if (standing.leaving.load()) return exit_success;
         if (standing.walk_frames() > 0) good = current;
         if (!ending.failed) {
-            if (auto next = standing.take_next()) {
-                current = std::move(*next);
-                continue;
-            }
+            if (standing.stop_walk.load()) continue;  // a reload
             log.say(Priority::error, event::fault, "the walk ended by itself");
             return exit_failure;
         }
-        if (standing.walk_frames() == 0 && good) {
+        const bool newer = standing.stop_walk.load();  // a reload came while this one failed
+        if (standing.walk_frames() == 0 && (good || newer)) {
             const std::string why = ending.error.text();
-            log.say(Priority::error, event::refused,
-                    "the configuration does not walk, the last good one is in force again: " + why);
+            log.say(Priority::error, event::refused, "the configuration does not walk, another one is taken: " + why);
+            if (newer) continue;
             standing.refuse(why);
             current = *std::exchange(good, std::nullopt);
             continue;
@@ -162,11 +164,13 @@ std::string environment(const char* name) {
 
 int run(const Options& options, const app::FaultHook& inject) {
     if (options.check) return check(options);
+    block_service_signals();
     Log log(default_target());
+    // Until the first walk sets its own limit: without the handler SIGXCPU would end the process without a word.
+    (void)rt::guard_runaways(rt::runaway_limit_us(1'000'000'000));
     Loaded loaded = load(options);
     for (const Error& problem : loaded.problems) log.say(Priority::error, event::refused, problem.text());
     if (!loaded.problems.empty()) return loaded.misuse ? exit_usage : exit_config;
-    block_service_signals();
     Notifier notifier(environment("NOTIFY_SOCKET"));
     Standing standing;
     standing.open(loaded.configuration.values);

@@ -33,6 +33,7 @@ std::string status_text(const Facts& f) {
 }
 
 void Standing::open(const config::Settings& settings) {
+    if (leaving.load()) return;
     const std::lock_guard lock(mutex_);
     facts_.phase = Phase::opening;
     facts_.model = std::filesystem::path(settings.model).filename().string();
