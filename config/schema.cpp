@@ -31,7 +31,25 @@ constexpr Entry choice(string_view key, std::span<const string_view> of, string_
     return {key, Kind::choice, {}, 0, 0, of, help, member};
 }
 
-const std::array<Entry, 23> entries = {
+constexpr double longest_name = 4095;  // bytes, PATH_MAX
+
+constexpr Entry file_name(string_view key, string_view help, std::string S::*member) {
+    return {key, Kind::file, {}, 0, longest_name, {}, help, member};
+}
+
+const std::array<Entry, 30> entries = {
+    file_name("model", "The .walk model that is walked through. Relative names here and below: relative to this file's folder.",
+              &S::model),
+    file_name("path",
+              "Poses over time, CSV; \"\": MODEL.path.csv beside the model, else a tour. With an input: start and viewpoints.",
+              &S::path),
+    number("lift_m", "m", -1e7, 1e7, "Added to the path's heights (recorded drives: 1.5).", &S::lift_m),
+    file_name("input", "Who steers: \"\" nobody, the path is followed; \"devices\" what is plugged in; else a recording.",
+              &S::input),
+    file_name("steering", "How the input steers; \"\": the default of the device's class.", &S::steering),
+    file_name("state", "Folder of the cost table and of a latched emergency stop; \"\": $STATE_DIRECTORY, as systemd sets it.",
+              &S::state),
+    number("open_limit_s", "s", 1, 86400, "Longest time that opening a model may take (surefootd).", &S::open_limit_s),
     number("rate_hz", "Hz", 1, 1000, "Frames a second that the walk keeps.", &S::rate_hz),
     integer("width", "px", 16, 16384, "Width of the picture.", &S::width),
     integer("height", "px", 16, 16384, "Height of the picture.", &S::height),

@@ -17,6 +17,9 @@ namespace surefoot::config {
 
 /// The initial values are the defaults.
 struct Settings {
+    std::string model, path, input, steering, state;  ///< files; see file_setting() for what relative names stand for
+    double lift_m = 0;                                ///< added to the path's heights
+    double open_limit_s = 600;                        ///< the daemon's: for how long opening a model may take
     double rate_hz = 30;
     std::int64_t width = 1280, height = 720;  ///< pixels
     double budget_ms = 0;                     ///< 0: what the rate allows
@@ -36,11 +39,11 @@ struct Settings {
     std::int64_t frame_priority = 80, raster_priority = 70, worker_priority = 60;
 };
 
-enum class Kind : std::uint8_t { number, integer, flag, choice, colour };
+enum class Kind : std::uint8_t { number, integer, flag, choice, colour, file };
 
 using Member = std::variant<double Settings::*, std::int64_t Settings::*, bool Settings::*, std::string Settings::*>;
 
-/// One row of the schema. min and max hold for number and integer, choices for choice.
+/// One row of the schema. min and max hold for number and integer, choices for choice; max for file: bytes.
 struct Entry {
     std::string_view key;
     Kind kind = Kind::number;
@@ -96,6 +99,10 @@ Result<void> set_value(Configuration& configuration, std::string_view key, std::
 
 /// Rules across keys: workers below rasterisers below the frame thread. Call after the last change.
 Result<void> check(const Configuration& configuration);
+
+/// A key of kind file, ready to be opened: a relative name in a settings file is relative to that file's folder. Empty stays
+/// empty, and so does `word` (a value that is no file name).
+std::string file_setting(const Configuration& configuration, std::string_view key, std::string_view word = {});
 
 /// A key's value as TOML would write it.
 std::string value_text(const Settings& settings, const Entry& entry);

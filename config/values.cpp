@@ -6,12 +6,28 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
 namespace surefoot::config {
 
 namespace {
+
+/// As a basic string of TOML.
+std::string toml_string(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') out += '\\';
+        out += c;
+    }
+    return out + "\"";
+}
+
+bool is_file_name(std::string_view text, double most) {
+    const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+    return static_cast<double>(text.size()) <= most && std::none_of(text.begin(), text.end(), control);
+}
 
 std::string joined(std::span<const std::string_view> words) {
     std::string text;
@@ -46,6 +62,8 @@ std::string limits_of(const Entry& entry) {
             return "one of " + joined(entry.choices);
         case Kind::colour:
             return "a colour as \"#rrggbb\"";
+        case Kind::file:
+            return fmt::format("a file name of at most {} bytes", number_text(entry.max));
     }
     return {};
 }
@@ -61,7 +79,7 @@ std::string allowed(const Entry& entry) {
 std::string text_of(const Value& value) {
     if (const auto* number = std::get_if<double>(&value)) return number_text(*number);
     if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-    return fmt::format("\"{}\"", std::get<std::string>(value));
+    return toml_string(std::get<std::string>(value));
 }
 
 std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value) {
@@ -84,7 +102,7 @@ std::optional<std::string> assign(Settings& settings, const Entry& entry, const 
     const auto& text = std::get<std::string>(value);
     const bool fits =
         (entry.kind == Kind::choice && std::find(entry.choices.begin(), entry.choices.end(), text) != entry.choices.end()) ||
-        (entry.kind == Kind::colour && is_colour(text));
+        (entry.kind == Kind::colour && is_colour(text)) || (entry.kind == Kind::file && is_file_name(text, entry.max));
     if (!fits) return refusal();
     settings.*std::get<std::string Settings::*>(entry.member) = text;
     return std::nullopt;
@@ -144,13 +162,21 @@ Result<void> check(const Configuration& configuration) {
     return {};
 }
 
+std::string file_setting(const Configuration& configuration, std::string_view key, std::string_view word) {
+    const Entry* entry = find_entry(key);
+    const std::string& name = configuration.values.*std::get<std::string Settings::*>(entry->member);
+    const Origin origin = configuration.origin(entry->key);
+    if (name.empty() || name == word || origin.file.empty() || name.front() == '/') return name;
+    return (std::filesystem::path(origin.file).parent_path() / name).string();
+}
+
 std::string value_text(const Settings& settings, const Entry& entry) {
     struct Writer {
         const Settings& s;
         std::string operator()(double Settings::*m) const { return number_text(s.*m); }
         std::string operator()(std::int64_t Settings::*m) const { return std::to_string(s.*m); }
         std::string operator()(bool Settings::*m) const { return s.*m ? "true" : "false"; }
-        std::string operator()(std::string Settings::*m) const { return fmt::format("\"{}\"", s.*m); }
+        std::string operator()(std::string Settings::*m) const { return toml_string(s.*m); }
     };
     return std::visit(Writer{settings}, entry.member);
 }

@@ -42,6 +42,9 @@ expect 1 'nonexistent' walk f.walk --clock virtual --backend null --frames 5 --l
 head -c 300 c.cap > short.cap; expect 1 'short.cap' replay short.cap
 printf 'rate_hz = 30\nselektor = "flat"\n' > s.toml
 expect 2 's.toml:2.*selek' walk f.walk --config s.toml
+mkdir -p below; printf 'model = "../f.walk"\nclock = "virtual"\nbackend = "null"\nrate_hz = 50\n' > below/m.toml
+json walk --config below/m.toml --frames 5  # the model is relative to the settings' file
+expect 2 'MODEL.walk: is not named' walk --frames 5
 
 # Values that are not allowed: the option, what was found and what is allowed, before anything is opened.
 virtual="--clock virtual --backend null"

@@ -81,15 +81,27 @@ void EglContext::destroy() {
     surface_ = EGL_NO_SURFACE;
 }
 
+void EglContext::create_of_version(EGLConfig config, EGLint minor, bool tells_resets) {
+    const std::array<EGLint, 9> wanted{EGL_CONTEXT_MAJOR_VERSION,
+                                       4,
+                                       EGL_CONTEXT_MINOR_VERSION,
+                                       minor,
+                                       EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                       tells_resets ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+                                       tells_resets ? EGL_LOSE_CONTEXT_ON_RESET : EGL_NONE,
+                                       EGL_NONE};
+    context_ = egl_.CreateContext(display_, config, EGL_NO_CONTEXT, wanted.data());
+    tells_resets_ = tells_resets && context_ != EGL_NO_CONTEXT;
+}
+
 Result<void> EglContext::create(EGLConfig config) {
     if (egl_.BindAPI(EGL_OPENGL_API) != EGL_TRUE) {
         return Error{name_, "has no desktop OpenGL", "install libgl1-mesa-dri, or use --backend osmesa"};
     }
     for (const EGLint minor : {5, 4, 3}) {
-        const std::array<EGLint, 7> wanted{
-            EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, minor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-        context_ = egl_.CreateContext(display_, config, EGL_NO_CONTEXT, wanted.data());
+        create_of_version(config, minor, true);  // software GL refuses: it cannot be reset
+        if (context_ == EGL_NO_CONTEXT) create_of_version(config, minor, false);
         if (context_ != EGL_NO_CONTEXT) break;
     }
     if (context_ == EGL_NO_CONTEXT) {

@@ -49,6 +49,8 @@ Result<void> GlDevice::set_up() {
     blended_.resize(frame_.instances.size());
     fences_.resize(most_slices, nullptr);
     gl_.GenQueries(1, &timer_);
+    if (context_->tells_resets() && gl_.version >= 45)
+        reset_status_ = reinterpret_cast<PFNGLGETGRAPHICSRESETSTATUSPROC>(context_->find("glGetGraphicsResetStatus"));
     return check_errors(gl_, context_->name(), "see `surefoot doctor`");
 }
 
@@ -134,6 +136,7 @@ void GlDevice::wait_slices(std::uint32_t in_flight) {
 void GlDevice::finish_frame() {
     end_slice();
     wait_slices(0);
+    if (reset_status_ != nullptr && reset_status_() != GL_NO_ERROR) lost_ = true;
     if (!context_->has_window()) return;
     const auto w = static_cast<GLint>(options_.viewport.width);
     const auto h = static_cast<GLint>(options_.viewport.height);

@@ -35,6 +35,7 @@ public:
     void end_items() override;
     void finish_frame() override;
     [[nodiscard]] FrameStats stats() const override { return stats_; }
+    [[nodiscard]] bool lost() const override { return lost_; }
     Result<PixelImage> read_pixels() override;
     bool begin_timer() override;
     double end_timer_ms() override;
@@ -87,6 +88,8 @@ private:
     std::vector<GLsync> fences_;  ///< of this frame's slices; waited ones are null
     std::uint32_t slices_ = 0, slices_done_ = 0;
     GLuint timer_ = 0;
+    PFNGLGETGRAPHICSRESETSTATUSPROC reset_status_ = nullptr;  ///< null: the driver tells no resets
+    bool lost_ = false;
 };
 
 }  // namespace surefoot::gl

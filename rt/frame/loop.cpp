@@ -21,6 +21,7 @@ struct LoopState {
 
 bool goes_on(const FrameLoopOptions& o, const LoopState& s) {
     if (o.stop != nullptr && o.stop->load(std::memory_order_relaxed)) return false;
+    if (o.failed != nullptr && o.failed->load(std::memory_order_relaxed)) return false;
     if (o.control != nullptr && s.slot >= o.control->slots()) return false;
     return o.frames == 0 || s.result.run < o.frames;
 }

@@ -38,8 +38,9 @@ struct FrameLoopOptions {
     std::int64_t t0_ns = 0;    ///< 0: the first slot is due one period after the call
     std::uint64_t frames = 0;  ///< frames to run; 0: until stopped (or the control schedule ends)
     LatePolicy late = LatePolicy::lock;
-    const ControlSchedule* control = nullptr;  ///< not null: ends after its last block
-    const std::atomic<bool>* stop = nullptr;   ///< looked at once a frame
+    const ControlSchedule* control = nullptr;   ///< not null: ends after its last block
+    const std::atomic<bool>* stop = nullptr;    ///< looked at once a frame
+    const std::atomic<bool>* failed = nullptr;  ///< the same: set where the stages cannot go on
     /// Times that the process was continued after a stop, counted by a SIGCONT handler (see count_continues()); may be null.
     const std::atomic<std::uint32_t>* continued = nullptr;
     std::span<const pid_t> rasterisers;          ///< the driver's threads, for raster_cpu_ns and known waits

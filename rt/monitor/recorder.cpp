@@ -8,7 +8,7 @@
 namespace surefoot::rt {
 
 Recorder::Recorder(SpscRing<FrameRecord>& ring, RecorderOptions options) : ring_(ring), options_(std::move(options)) {
-    records_.reserve(options_.reserve_records);
+    if (options_.keep) records_.reserve(options_.reserve_records);
     thread_ = std::thread([this] { run(); });
 }
 
@@ -37,8 +37,10 @@ void Recorder::run() {
 void Recorder::drain() {
     FrameRecord record;
     while (ring_.try_pop(record)) {
-        records_.push_back(record);
-        flight_.add(record);
+        if (options_.keep) {
+            records_.push_back(record);
+            flight_.add(record);
+        }
         if (options_.on_record) options_.on_record(record);
     }
 }

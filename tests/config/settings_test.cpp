@@ -53,6 +53,27 @@ TEST(Settings, LaterSourcesWinAndOriginsAreKept) {
     EXPECT_EQ(c.origin("late").text(), "default");
 }
 
+TEST(Settings, FilesAreRelativeToTheFileThatNamesThem) {
+    Configuration c;
+    ASSERT_TRUE(load_text(c, "model = \"m.walk\"\npath = \"/p.csv\"\ninput = \"devices\"\n", "/etc/surefoot/s.toml").ok());
+    EXPECT_EQ(file_setting(c, "model"), "/etc/surefoot/m.walk");
+    EXPECT_EQ(file_setting(c, "path"), "/p.csv");
+    EXPECT_EQ(file_setting(c, "input", "devices"), "devices");
+    EXPECT_EQ(file_setting(c, "input"), "/etc/surefoot/devices");
+    EXPECT_EQ(file_setting(c, "state"), "");
+    ASSERT_TRUE(set_value(c, "model", "here.walk").ok());
+    EXPECT_EQ(file_setting(c, "model"), "here.walk") << "a command line is relative to where it is typed";
+    refused("model = \"a\\nb\"\n", 1, "is not a file name of at most 4095 bytes");
+    refused("model = \"" + std::string(4096, 'x') + "\"\n", 1, "is not a file name");
+    refused("model = 3\n", 1, "model = 3 is not a file name");
+    Configuration again;
+    ASSERT_TRUE(set_value(again, "model", "a \"b\" \\c").ok());
+    const std::string written = "model = " + value_text(again.values, *find_entry("model")) + "\n";
+    Configuration read;
+    ASSERT_TRUE(load_text(read, written, "s.toml").ok()) << written;
+    EXPECT_EQ(read.values.model, again.values.model);
+}
+
 TEST(Settings, UnknownKeySuggestsTheNearest) {
     refused("widht = 3\n", 1, "unknown key 'widht'", "'width'");
     refused("\nselektor = \"flat\"\n", 2, "unknown key", "'selector'");

@@ -101,6 +101,7 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
                      .priority = priority(plan.frame_priority),
                      .cpus = rt::CpuMask{plan.frame_core}});
     table.push_back({.name = "sf-monitor", .policy = rt::Policy::other, .cpus = plan.all});
+    table.push_back({.name = "sf-service", .policy = rt::Policy::other, .cpus = plan.all, .min_count = 0});  // the daemon's
     if (real_clock && plan.input) {
         const rt::Placement input = input_placement(plan);
         table.push_back({.name = input.name, .policy = input.policy, .priority = input.priority, .cpus = input.cpus});

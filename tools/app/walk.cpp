@@ -38,6 +38,7 @@ constexpr double limit_share = 0.88;              // of the period: when the in-
 /// Everything that one walk holds, in the order in which it must be made and (backwards) taken down.
 struct Session {
     const WalkRequest& request;
+    const WalkWatch& watch;
     WalkFacts facts;
     PlacingPlan plan;
     std::unique_ptr<Engine> engine;
@@ -47,7 +48,7 @@ struct Session {
     rt::Grid grid;
     rt::LatePolicy late = rt::LatePolicy::lock;
     bool virtual_clock = false;
-    std::uint64_t frames = 0;
+    std::uint64_t frames = 0;  ///< 0: until stopped
     std::vector<pid_t> rasterisers;
     rt::TripleBuffer<PoseSample> poses;
     rt::TripleBuffer<prepare::PreparedFrame> prepared;
@@ -55,8 +56,9 @@ struct Session {
     rt::ControlSchedule control;
     std::int64_t burn_ns = 0;  ///< the control's
     model::CostModel costs;
+    std::atomic<bool> lost{false};  ///< the graphics context
 
-    explicit Session(const WalkRequest& r) : request(r) {}
+    Session(const WalkRequest& r, const WalkWatch& w) : request(r), watch(w) {}
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
     /// On every way out, refusals included: the memory that claim() had locked.
@@ -64,6 +66,16 @@ struct Session {
         if (!virtual_clock && rt::guard_active()) rt::release_memory();
     }
 };
+
+/// Where nothing is kept, nothing can be summed up or written.
+Result<void> read_endless(const WalkRequest& r) {
+    if (r.control || r.frames > 0 || r.seconds > 0)
+        return Error{"a walk without end", "was given an end", "leave one of them out"};
+    const bool writes = !(r.ledger_file + r.trace_file + r.report_dir + r.snap_dir + r.capture_file).empty();
+    if (writes)
+        return Error{"a walk without end", "keeps no frames, so none can be written", "leave out the outputs, or give it an end"};
+    return {};
+}
 
 Result<void> read_request(Session& s) {
     const WalkRequest& r = s.request;
@@ -82,12 +94,17 @@ Result<void> read_request(Session& s) {
         return Error{"--input devices", "are hands in real time", "leave out --clock virtual, or give a recording"};
     if (!r.input_file.empty() && r.control)
         return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
-    return {};
+    return r.endless ? read_endless(r) : Result<void>{};
+}
+
+void tell(const Session& s, WalkStep step) {
+    if (s.watch.on_step) s.watch.on_step(step);
 }
 
 /// Read first of all: a wrong steering file is found before a large model is opened.
 Result<void> open_input(Session& s) {
     if (s.request.input_file.empty()) return {};
+    tell(s, WalkStep::input);
     auto input = InputSession::open(s.request, s.grid.period_ns, s.notes);
     if (!input) return input.error();
     s.input = std::move(*input);
@@ -97,15 +114,18 @@ Result<void> open_input(Session& s) {
 /// Real time and the cost table, or what they lack; with --strict a lack is an error.
 Result<void> claim(Session& s) {
     const WalkRequest& r = s.request;
+    tell(s, WalkStep::real_time);
     auto plan = claim_real_time(r, !s.virtual_clock, s.facts);
     if (!plan) return plan.error();
     s.plan = *plan;
     s.plan.input = s.input != nullptr;
     s.plan.devices = s.input && s.input->live();
+    tell(s, WalkStep::input);
     auto costs = load_costs(state_directory(r.state_dir), "", s.facts.uncalibrated);
     if (!costs) return costs.error();
     s.costs = std::move(*costs);
     if (!r.strict) return {};
+    tell(s, WalkStep::real_time);
     std::vector<report::Degraded> lacks = s.facts.degraded;
     if (!s.facts.uncalibrated.empty()) lacks.push_back({s.facts.uncalibrated, ""});
     return require_real_time(lacks);
@@ -113,6 +133,7 @@ Result<void> claim(Session& s) {
 
 Result<void> open_session(Session& s, const Progress& progress) {
     const WalkRequest& r = s.request;
+    tell(s, WalkStep::model);
     progress.say("open", 0.1);
     model::WalkFileInfo file;
     auto model = model::read_walk(r.model_file, &file);
@@ -130,6 +151,7 @@ Result<void> open_session(Session& s, const Progress& progress) {
     options.device.kind = *kind;
     options.device.viewport = {r.width, r.height};
     options.device.rasterisers = r.rasterisers;
+    options.device.sky = r.sky;
     options.null.cost_scale = r.cost_scale;
     options.null.noise = r.cost_noise;
     options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, s.plan.all.count() - 1);
@@ -137,6 +159,7 @@ Result<void> open_session(Session& s, const Progress& progress) {
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
     options.in_frame_check = r.in_frame_check;
+    tell(s, WalkStep::device);
     progress.say("open", 0.5);
     auto engine = Engine::open(std::move(*model), s.costs, options);
     if (!engine) return engine.error();
@@ -146,7 +169,10 @@ Result<void> open_session(Session& s, const Progress& progress) {
     if (s.costs.calibrated && *kind != gl::BackendKind::null && s.costs.machine != s.facts.machine) {
         s.facts.uncalibrated = "the cost table was measured on \"" + s.costs.machine + "\", this is \"" + s.facts.machine +
                                "\"; run `surefoot calibrate` here";
-        if (r.strict) return require_real_time(std::vector<report::Degraded>{{s.facts.uncalibrated, ""}});
+        if (r.strict) {
+            tell(s, WalkStep::real_time);
+            return require_real_time(std::vector<report::Degraded>{{s.facts.uncalibrated, ""}});
+        }
     }
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
     if (r.capture_file.empty()) return {};
@@ -178,8 +204,9 @@ void warm_up(Session& s) {
     s.prepared.publish();
 }
 
-/// How many frames to walk; every one leaves a record in memory, so there is an end to them.
+/// How many frames to walk; 0: until stopped. Where each leaves a record in memory, there is an end to them.
 Result<std::uint64_t> frames_wanted(const Session& s) {
+    if (s.request.endless) return std::uint64_t{0};
     const double period_s = static_cast<double>(s.grid.period_ns) * 1e-9;
     const bool recorded = s.input && !s.input->live();
     const double own_s = recorded ? s.input->duration_s() : std::max(s.path.path.duration_s(), 1.0);
@@ -204,7 +231,7 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
     return static_cast<std::uint64_t>(frames);
 }
 
-WalkStagesOptions stages_options(const Session& s) {
+WalkStagesOptions stages_options(Session& s) {
     const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
     WalkStagesOptions o;
     o.period_ns = s.grid.period_ns;
@@ -216,7 +243,35 @@ WalkStagesOptions stages_options(const Session& s) {
     o.virtual_clock = s.virtual_clock;
     o.cost_scale = s.request.cost_scale;
     if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
+    if (s.watch.inject) o.inject = &s.watch.inject;
+    o.lost = &s.lost;
     return o;
+}
+
+void tell_started(const Session& s) {
+    if (!s.watch.on_started) return;
+    WalkStart start;
+    start.t0_ns = s.grid.t0_ns;
+    start.period_ns = s.grid.period_ns;
+    start.degraded = s.facts.degraded;
+    start.uncalibrated = s.facts.uncalibrated;
+    start.renderer = s.facts.renderer;
+    start.path = s.path.source;
+    start.fifo = s.plan.fifo;
+    start.locked = s.facts.locked;
+    start.isolated = s.facts.isolated;
+    start.frame_core = s.plan.frame_core;
+    s.watch.on_started(start);
+}
+
+void tell_census(const Session& s) {
+    if (!s.watch.on_degraded) return;
+    for (const std::string& problem : s.facts.census_problems) s.watch.on_degraded({"thread census: " + problem, ""});
+}
+
+/// How much of the walk is done, 0..1; of a walk without end nothing.
+double share_done(const Session& s, double slots_ran) {
+    return s.frames == 0 ? 0.0 : std::clamp(slots_ran / static_cast<double>(s.frames), 0.0, 1.0);
 }
 
 /// After the frames: what kept the input thread from its place must be said.
@@ -237,6 +292,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     options.late = s.late;
     options.control = s.request.control ? &s.control : nullptr;
     options.stop = progress.stop;
+    options.failed = &s.lost;
     options.continued = s.virtual_clock ? nullptr : rt::count_continues();
     const std::vector<pid_t> sharing = on_frame_core(s.plan, s.rasterisers);
     options.rasterisers = s.rasterisers;
@@ -253,6 +309,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     PathPoses path_poses(s.path.path, s.grid.period_ns);
     if (s.input) s.input->begin(s.path.path, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
     PoseSource& pose_source = s.input ? s.input->poses() : static_cast<PoseSource&>(path_poses);
+    if (s.virtual_clock) tell_started(s);
     std::atomic<bool> done{false};
     std::optional<Error> misplaced;  // the frame thread's until it is joined
     std::thread frame_thread([&] {
@@ -271,6 +328,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
         std::this_thread::sleep_for(std::chrono::milliseconds(60));
         if (auto placed = place_workers(s.plan); !placed)
             s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
+        tell_started(s);
     }
     bool counted = s.virtual_clock;
     const int look_ms = s.virtual_clock ? 5 : s.input && s.input->live() ? 10 : 100;
@@ -279,9 +337,10 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
         if (s.input) s.input->attend(progress, s.notes);
         const double ran =
             s.virtual_clock ? 0.5 : static_cast<double>(real.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
-        progress.say("walk", std::clamp(ran / static_cast<double>(s.frames), 0.0, 1.0));
+        progress.say("walk", share_done(s, ran));
         if (!counted && ran > 30) {
             take_census(s.plan, s.facts);
+            tell_census(s);
             counted = true;
         }
     }
@@ -302,10 +361,20 @@ void tell_now(std::vector<std::string>& notes, const Progress& progress) {
     notes.clear();
 }
 
+/// What was walked until then is summed up; pictures can no longer be drawn.
+void note_loss(const Session& s, WalkOutcome& outcome) {
+    outcome.lost = s.lost.load();
+    if (!outcome.lost) return;
+    tell(s, WalkStep::device);
+    outcome.failures.push_back({"graphics context", "was lost while walking: the driver was reset, or took it away",
+                                "start again; see the kernel's log for resets of the GPU"});
+}
+
 }  // namespace
 
-Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress) {
-    Session s(request);
+Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkWatch& watch) {
+    Session s(request, watch);
+    tell(s, WalkStep::request);
     if (auto ok = read_request(s); !ok) return ok.error();
     if (auto ok = check_outputs(request); !ok) return ok.error();
     if (auto ok = open_input(s); !ok) return ok.error();
@@ -329,21 +398,29 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     rt::SpscRing<rt::FrameRecord> ring(4096);
     BlockSteal steal;
     rt::RecorderOptions recorder_options;
+    recorder_options.keep = !request.endless;
     recorder_options.reserve_records = s.frames + 64;
-    recorder_options.on_record = [&](const rt::FrameRecord& record) { steal.on_record(record); };
+    recorder_options.on_record = [&](const rt::FrameRecord& record) {
+        if (!request.endless) steal.on_record(record);
+        if (watch.on_record) watch.on_record(record);
+    };
     rt::Recorder recorder(ring, recorder_options);
 
     const double steal_before = total_steal_ms();
+    tell(s, WalkStep::frames);
     run_loop(s, shots, ring, progress);
     recorder.stop();
+    tell(s, WalkStep::ending);
     outcome.notes.insert(outcome.notes.begin(), s.notes.begin(), s.notes.end());
     s.facts.steal_ms = total_steal_ms() - steal_before;
     s.facts.dropped_records = ring.dropped();
     outcome.records = recorder.take_records();
-    outcome.stopped = progress.stopped() && outcome.records.size() < s.frames;
+    note_loss(s, outcome);
+    outcome.stopped = progress.stopped() && (request.endless || outcome.records.size() < s.frames);
     if (s.input) outcome.summary.input = s.input->summary(outcome.records);
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
-    if (request.control && !outcome.stopped) judge_control(s.plan, s.grid.period_ns, s.burn_ns, steal, outcome, progress);
+    if (request.control && !outcome.stopped && !s.lost)
+        judge_control(s.plan, s.grid.period_ns, s.burn_ns, steal, outcome, progress);
     s.engine->device().bind();
     write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
     s.engine->device().release();

@@ -2,7 +2,10 @@
 // walk, soak, compare and the daemon all run this.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,11 +30,13 @@ struct WalkRequest {
     bool clear_stop = false;    ///< live: take off a stop that an earlier walk has left latched
     std::string state_dir;      ///< empty: see state_directory()
     std::string selector = "two-stage", late = "lock", backend = "egl", clock = "real";
-    double lift_m = 0;  ///< added to the path's heights
+    std::array<float, 3> sky{0.62F, 0.72F, 0.82F};  ///< background, 0..1 each
+    double lift_m = 0;                              ///< added to the path's heights
     double rate_hz = 30;
     std::uint32_t width = 1280, height = 720;
     std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
     double seconds = 0;
+    bool endless = false;   ///< until progress.stop: records are handed to the watch and not kept, so nothing is written of them
     double budget_ms = 0;   ///< 0: 0.80 of the frame
     double accuracy = 0;    ///< rad^-1; 0: as accurate as the budget allows
     double cost_scale = 1;  ///< what costs really are over what is predicted (virtual clock)
@@ -59,12 +64,40 @@ struct WalkOutcome {
     std::vector<Error> failures;     ///< outputs that could not be written; the others are there
     std::vector<std::string> notes;  ///< what else the user should know, a line each
     bool stopped = false;            ///< ended before its last frame, by progress.stop
+    bool lost = false;               ///< ended because the graphics context was lost; failures says so too
     std::string report_page;         ///< the report's index.html, where asked for
+};
+
+/// Where a walk is. An Error that run_walk() returns belongs to the step that was told last.
+enum class WalkStep : std::uint8_t { request, input, real_time, model, device, frames, ending };
+
+/// Faults for tests: called on the frame thread as each stage of a frame begins; what it does there delays that stage.
+enum class FramePhase : std::uint8_t { sample, select, submit, finish };
+enum class Fault : std::uint8_t { none, context_lost };
+using FaultHook = std::function<Fault(FramePhase, const rt::FrameRecord&)>;
+
+/// Known when all threads are in place; the spans are valid during the call only.
+struct WalkStart {
+    std::int64_t t0_ns = 0, period_ns = 0;  ///< slot k is due at t0 + k * period
+    std::span<const report::Degraded> degraded;
+    std::string uncalibrated;  ///< the cost table is missing or another machine's: what, and the remedy; else empty
+    std::string renderer, path;
+    bool fifo = false, locked = false, isolated = false;
+    int frame_core = 0;
+};
+
+/// Who looks on while a walk runs: telemetry, the daemon, soaks. Each may be empty.
+struct WalkWatch {
+    std::function<void(WalkStep)> on_step;                  ///< on the caller's thread, as each begins
+    std::function<void(const WalkStart&)> on_started;       ///< on the caller's thread, before the first slot is due (real clock)
+    std::function<void(const rt::FrameRecord&)> on_record;  ///< on the monitor thread: every frame, in order
+    std::function<void(const report::Degraded&)> on_degraded;  ///< on the caller's thread: found after on_started
+    FaultHook inject;
 };
 
 /// Errors, all before the first frame: unreadable model, path, recording or steering file, no context, --strict without real
 /// time, outputs that could not be written. What fails after the walk is in the outcome's failures. Stopping (progress.stop) ends
-/// the walk at the next frame; what was walked is summed up and written.
-Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress);
+/// the walk at the next frame; what was walked is summed up and written. An endless walk has an end too, but no figures.
+Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkWatch& watch = {});
 
 }  // namespace surefoot::app

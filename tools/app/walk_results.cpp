@@ -64,7 +64,7 @@ Result<void> write_report_pages(const WalkRequest& request, Engine& engine, cons
     // Snapshots may be many: the page shows at most seven of them, evenly spread.
     const std::size_t step = std::max<std::size_t>(1, (shots.used() + 6) / 7);
     for (std::size_t i = 0; i < shots.used(); i += step) {
-        if (progress.stopped()) break;  // a shorter page is better than none
+        if (progress.stopped() || outcome.lost) break;  // a shorter page is better than none
         progress.say("pictures", static_cast<double>(i) / static_cast<double>(shots.used()));
         auto shot = develop(engine, shots.shots()[i]);
         if (!shot) return shot.error();
@@ -115,7 +115,7 @@ void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& en
     put(request.ledger_file, [&] { return report::write_ledger(request.ledger_file, outcome.records); });
     put(request.trace_file, [&] { return report::write_trace(request.trace_file, outcome.records); });
     put(request.capture_file, [&] { return write_capture(request, kept, engine); });
-    put(request.snap_dir, [&] { return write_snaps(engine, shots, request.snap_dir, progress); });
+    if (!outcome.lost) put(request.snap_dir, [&] { return write_snaps(engine, shots, request.snap_dir, progress); });
     put(request.report_dir, [&] { return write_report_pages(request, engine, shots, outcome, progress); });
 }
 

@@ -26,7 +26,14 @@ WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock
       kept_(kept),
       options_(options) {}
 
+void WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
+    if (options_.inject == nullptr) return;
+    const Fault fault = (*options_.inject)(phase, record);
+    if (fault == Fault::context_lost && options_.lost != nullptr) options_.lost->store(true);
+}
+
 void WalkStages::sample(rt::FrameRecord& record) {
+    inject(FramePhase::sample, record);
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
     // Beside a control the walk goes on where its last block ended: slots of the bare loop are no time of the path.
     path_slot_ = options_.control ? walked_ : record.slot;
@@ -81,6 +88,7 @@ void WalkStages::prepare_inline() {
 }
 
 void WalkStages::select(rt::FrameRecord& record) {
+    inject(FramePhase::select, record);
     prepared_.refresh();
     const prepare::PreparedFrame& set = prepared_.front();
     const std::uint64_t age = now_.frame - std::min(set.frame, now_.frame);
@@ -95,9 +103,8 @@ void WalkStages::select(rt::FrameRecord& record) {
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
     const double budget_us = std::max(0.0, options_.budget_us - spent_us);
     if (record.frame == options_.capture_frame) keep_memory();
-    const Correction correction = options_.correct_costs
-                                      ? Correction{controller_.factor(), controller_.upper(engine_.costs().upper_factor)}
-                                      : Correction{};
+    const Correction correction =
+        options_.correct_costs ? Correction{controller_.factor(), controller_.upper(engine_.costs().upper_factor)} : Correction{};
     const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
     record.floor_us = cut.floor_us;
     record.floor_binds = cut.floor_binds;
@@ -129,6 +136,7 @@ void WalkStages::keep(std::uint64_t frame, const select::Cut& cut, double budget
 }
 
 void WalkStages::submit(rt::FrameRecord& record) {
+    inject(FramePhase::submit, record);
     latch(record);
     SubmitLimits limits;
     const std::int64_t begun_ns = clock_.now_ns();
@@ -139,6 +147,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
         limits.now_context = &clock_;
     }
     report_ = engine_.submit(now_.pose, limits);
+    if (engine_.device().lost() && options_.lost != nullptr) options_.lost->store(true);
     if (options_.virtual_clock) {
         const double charged_us = report_.finished_us > 0 ? report_.finished_us : report_.predicted_us * options_.cost_scale;
         static_cast<rt::VirtualClock&>(clock_).advance(static_cast<std::int64_t>(charged_us * 1e3));
@@ -149,7 +158,8 @@ void WalkStages::submit(rt::FrameRecord& record) {
     record.rastered_ns = begun_ns + static_cast<std::int64_t>(report_.finished_us * 1e3);
 }
 
-void WalkStages::finish(rt::FrameRecord& /*record*/) {}  // submit() has waited for the last fence and presented
+/// submit() has waited for the last fence and presented.
+void WalkStages::finish(rt::FrameRecord& record) { inject(FramePhase::finish, record); }
 
 void WalkStages::account(rt::FrameRecord& record) {
     record.slices = report_.slices;

@@ -1,6 +1,7 @@
 // The walk's frame: take the newest pose, take the newest prepared set, select, submit, account. Runs on the frame thread.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "tools/app/pose_source.hpp"
 #include "tools/app/prepare_thread.hpp"
 #include "tools/app/shots.hpp"
+#include "tools/app/walk.hpp"
 
 namespace surefoot::app {
 
@@ -26,6 +28,8 @@ struct WalkStagesOptions {
     bool virtual_clock = false;  ///< prepare inline, charge the device's virtual time
     double cost_scale = 1;       ///< virtual clock with a device that charges nothing
     std::uint64_t capture_frame = ~0ULL;
+    const FaultHook* inject = nullptr;  ///< null: no faults
+    std::atomic<bool>* lost = nullptr;  ///< set when the device is; may be null
 };
 
 /// One frame kept for `surefoot replay`, copied into memory that was sized before.
@@ -53,6 +57,7 @@ public:
     void account(rt::FrameRecord& record) override;
 
 private:
+    void inject(FramePhase phase, const rt::FrameRecord& record) const;
     void prepare_inline();
     void take(const FramePose& from, rt::FrameRecord& record);
     void latch(rt::FrameRecord& record);

@@ -4,6 +4,7 @@
 #include "config/settings.hpp"
 #include "config/values.hpp"
 #include "render/gl/device.hpp"
+#include "tools/app/settings_request.hpp"
 #include "tools/app/walk.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
@@ -82,30 +83,10 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
     c.values.strict = c.values.strict || a.request.strict;
     c.values.control = c.values.control || a.request.control;
     if (auto ok = config::check(c); !ok) return ok.error();
-    const config::Settings& s = c.values;
     app::WalkRequest r = a.request;
-    r.rate_hz = s.rate_hz;
-    r.width = static_cast<std::uint32_t>(s.width);
-    r.height = static_cast<std::uint32_t>(s.height);
-    r.budget_ms = s.budget_ms;
-    r.accuracy = s.accuracy;
-    r.cost_scale = s.cost_scale;
-    r.selector = s.selector;
-    r.late = s.late;
-    r.backend = s.backend;
-    r.clock = s.clock;
-    r.workers = static_cast<int>(s.workers);
-    r.rasterisers = static_cast<int>(s.rasterisers);
-    r.fifo = s.fifo;
-    r.strict = s.strict;
-    r.control = s.control;
-    r.in_frame_check = s.in_frame_check;
-    r.frame_core = static_cast<int>(s.frame_core);
-    r.frame_priority = static_cast<int>(s.frame_priority);
-    r.raster_priority = static_cast<int>(s.raster_priority);
-    r.worker_priority = static_cast<int>(s.worker_priority);
-    r.slice_us = s.slice_us;
-    r.hysteresis = s.hysteresis;
+    app::apply_settings(c, r);
+    if (r.model_file.empty())
+        return Error{"MODEL.walk", "is not named", "surefoot walk MODEL.walk, or `model = ...` in the --config file"};
     r.correct_costs = !a.no_correction;
     r.config_file = a.config_file;
     if (auto ok = check_together(r, r.snap_every > 0, r.capture_frame != unset); !ok) return ok.error();
@@ -167,7 +148,7 @@ void add_walk(CLI::App& app, Context& context) {
                     "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
                     "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
                     a->json);
-    c->add_option("model", r.model_file, "The .walk model")->required();
+    c->add_option("model", r.model_file, "The .walk model (else the one that --config names)");
     c->add_option("--path", r.path_file,
                   "Poses over time, CSV (else MODEL.path.csv, else a tour). With --input it is not followed: "
                   "its first pose is the start, poses at equal times are the viewpoints, and `tour` follows it");
@@ -181,16 +162,14 @@ void add_walk(CLI::App& app, Context& context) {
                   "How --input steers, TOML: [motion], [safety], [[device]], [[gpio]] (else the default of the device's class)");
     c->add_flag("--clear-stop", r.clear_stop,
                 "--input devices: take off an emergency stop that an earlier walk left latched (else: what does stop_reset)");
-    c->add_option("--lift", r.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")
-        ->check(number_within(-1e7, 1e7, "m"))
-        ->capture_default_str();
     c->add_option("--frames", r.frames,
                   "Frames to walk (else --seconds, else the recording and a second, else as long as the path)")
         ->check(whole_number_within(1, 4'000'000));
     c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")
         ->check(number_within(0.001, 1e6, "s"));
     c->add_option("--size", a->size, "Picture size [1280x720]");
-    for (const auto& [flag, key] : {std::pair{"--rate", "rate_hz"},
+    for (const auto& [flag, key] : {std::pair{"--lift", "lift_m"},
+                                    {"--rate", "rate_hz"},
                                     {"--budget", "budget_ms"},
                                     {"--accuracy", "accuracy"},
                                     {"--cost-scale", "cost_scale"},

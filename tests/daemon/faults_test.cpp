@@ -1,0 +1,90 @@
+// Faults while it runs: a frame thread that hangs, one that never sleeps, a graphics context that is lost.
+#include <gtest/gtest.h>
+
+#include <sys/ptrace.h>
+
+#include "rt/threads/capability.hpp"
+#include "rt/threads/guard.hpp"
+#include "tests/daemon/running.hpp"
+#include "tools/daemon/exit_code.hpp"
+
+namespace surefoot::daemon::test {
+namespace {
+
+TEST(Faults, TheWatchdogStarvesWhileTheFrameThreadAloneIsFrozen) {
+    Running daemon("freeze");
+    daemon.environment = {{"WATCHDOG_USEC", "2000000"}};
+    daemon.start();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    const std::size_t running_from = daemon.socket.all.size();
+    daemon.socket.listen(2.2);
+    EXPECT_GE(daemon.socket.count("WATCHDOG=1", running_from), 3U) << "fed once a half second: " << daemon.socket.text();
+
+    // A tracer stops one thread; a signal would stop them all.
+    const pid_t frame = daemon.thread("sf-frame");
+    ASSERT_NE(frame, 0);
+    if (::ptrace(PTRACE_SEIZE, frame, nullptr, nullptr) != 0) GTEST_SKIP() << "ptrace is refused here: " << std::strerror(errno);
+    ASSERT_EQ(::ptrace(PTRACE_INTERRUPT, frame, nullptr, nullptr), 0);
+    int status = 0;
+    ASSERT_EQ(::waitpid(frame, &status, __WALL), frame);
+    ASSERT_TRUE(WIFSTOPPED(status));
+    daemon.socket.listen(0.6);  // what was on its way
+    const std::size_t frozen_from = daemon.socket.all.size();
+    daemon.socket.listen(2.2);
+    EXPECT_EQ(daemon.socket.count("WATCHDOG=1", frozen_from), 0U) << daemon.socket.text();
+    EXPECT_EQ(daemon.socket.count("STATUS=NO FRAMES COME"), 1U) << daemon.socket.text();
+    EXPECT_EQ(daemon.lines_with("no frame for"), 1) << daemon.said();
+
+    ASSERT_EQ(::ptrace(PTRACE_DETACH, frame, nullptr, nullptr), 0);
+    EXPECT_TRUE(daemon.socket.wait_for("WATCHDOG=1", 2)) << "recovery does not resume the pings: " << daemon.socket.text();
+    EXPECT_EQ(daemon.lines_with("frames come again"), 1) << daemon.said();
+    daemon.socket.listen(1.5);
+    ::kill(daemon.pid, SIGTERM);
+    EXPECT_EQ(daemon.wait_exit(20), exit_success);
+    EXPECT_EQ(daemon.lines_with("missed"), 1) << "one line for the whole burst: " << daemon.said();
+}
+
+TEST(Faults, AThreadThatNeverSleepsEndsItWithinASecond) {
+    if (!rt::guard_active()) GTEST_SKIP() << "sanitizers hold signal handlers back";
+    if (rt::probe_capabilities(80).fifo_priority < 80) GTEST_SKIP() << "SCHED_FIFO is refused here: nothing can run away";
+    Running daemon("runaway");
+    daemon.environment = {{"SUREFOOT_TEST_FAULT", "runaway"}};
+    daemon.start({}, {}, SUREFOOT_DAEMON_WITH_FAULTS);
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    // It runs away 40 frames of 20 ms after the first.
+    const std::int64_t ready_ns = daemon.socket.all.back().at_ns;
+    ASSERT_EQ(daemon.wait_exit(20), exit_runaway) << daemon.said();
+    EXPECT_LT(NotifySocket::now_ns() - ready_ns, 1'900'000'000) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("thread sf-frame"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("real-time priority was taken"), 1) << daemon.said();
+}
+
+TEST(Faults, ALostContextHasItsOwnExitCode) {
+    Running daemon("context-lost");
+    daemon.environment = {{"SUREFOOT_TEST_FAULT", "context-lost"}};
+    daemon.start({}, {}, SUREFOOT_DAEMON_WITH_FAULTS);
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_EQ(daemon.wait_exit(20), exit_unavailable) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("graphics context: was lost while walking"), 1) << daemon.said();
+}
+
+TEST(Faults, AStateFolderThatCannotBeWrittenIsKnownAtTheStart) {
+    Running daemon("no-state");
+    daemon.write_config("input = \"devices\"\n");
+    // A file stands where the folder should be: not even root can write below it.
+    EXPECT_TRUE(write_text(daemon.dir + "/file", "").ok());
+    daemon.start({"--set", "state=" + daemon.dir + "/file"});
+    EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("the state folder must keep a stop"), 1) << daemon.said();
+}
+
+TEST(Faults, AFullDiskIsKnownAtTheStart) {
+    Running daemon("full-disk");
+    daemon.write_config("input = \"devices\"\n");
+    daemon.start({}, {.file_bytes = 3000});  // enough for what it says, not for a page
+    EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("the state folder must keep a stop"), 1) << daemon.said();
+}
+
+}  // namespace
+}  // namespace surefoot::daemon::test

@@ -1,0 +1,61 @@
+// SIGHUP: a good configuration takes over, a bad one changes nothing, and one that does not walk is taken back.
+#include <gtest/gtest.h>
+
+#include "tests/daemon/running.hpp"
+#include "tools/daemon/exit_code.hpp"
+
+namespace surefoot::daemon::test {
+namespace {
+
+TEST(Reload, AGoodConfigurationTakesOver) {
+    Running daemon("reload-good");
+    daemon.start();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    daemon.write_config("width = 640\n");
+    const std::int64_t asked_us = NotifySocket::now_ns() / 1000;
+    ::kill(daemon.pid, SIGHUP);
+    ASSERT_TRUE(daemon.socket.wait_for("RELOADING=1", 5)) << daemon.said();
+    const std::string& reloading = daemon.socket.all.back().text;
+    const std::size_t stamp = reloading.find("MONOTONIC_USEC=");
+    ASSERT_NE(stamp, std::string::npos) << "systemd wants it in the same message";
+    EXPECT_GE(std::stoll(reloading.substr(stamp + 15)), asked_us);
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_TRUE(daemon.socket.all.back().has("640x720")) << daemon.socket.text();
+    EXPECT_EQ(daemon.wait_exit(0.1), -1000) << "it walks on: " << daemon.said();
+}
+
+TEST(Reload, ABadOneIsRefusedOnceAndTheWalkGoesOn) {
+    Running daemon("reload-bad");
+    daemon.start();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    const pid_t frame_thread = daemon.thread("sf-frame");
+    daemon.write_config("widht = 640\n");
+    ::kill(daemon.pid, SIGHUP);
+    ASSERT_TRUE(daemon.socket.wait_for("RELOADING=1", 5)) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", 5)) << daemon.said();
+    EXPECT_TRUE(daemon.socket.all.back().has("unknown key 'widht'")) << "not in the status: " << daemon.socket.text();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: unknown key 'widht'"), 1) << daemon.said();
+    EXPECT_EQ(daemon.thread("sf-frame"), frame_thread) << "the walk was interrupted";
+    // A good one clears it.
+    daemon.write_config();
+    ::kill(daemon.pid, SIGHUP);
+    ASSERT_TRUE(daemon.socket.wait_for("RELOADING=1", 5));
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_FALSE(daemon.socket.all.back().has("refused")) << daemon.socket.text();
+}
+
+TEST(Reload, OneThatDoesNotWalkIsTakenBack) {
+    Running daemon("reload-back");
+    daemon.start();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_TRUE(write_text(daemon.config_file, "model = \"absent.walk\"\nbackend = \"null\"\n").ok());
+    ::kill(daemon.pid, SIGHUP);
+    ASSERT_TRUE(daemon.socket.wait_for("RELOADING=1", 5)) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_TRUE(daemon.socket.all.back().has("walking forest.walk (50 Hz")) << daemon.socket.text();
+    EXPECT_TRUE(daemon.socket.all.back().has("absent.walk")) << "why is not in the status: " << daemon.socket.text();
+    EXPECT_EQ(daemon.lines_with("absent.walk"), 1) << daemon.said();
+}
+
+}  // namespace
+}  // namespace surefoot::daemon::test

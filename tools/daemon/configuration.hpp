@@ -1,0 +1,29 @@
+// The settings file as the daemon wants it: read whole, with everything that is wrong in it told.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/settings.hpp"
+#include "rt/base/result.hpp"
+#include "tools/app/walk.hpp"
+#include "tools/daemon/options.hpp"
+
+namespace surefoot::daemon {
+
+struct Loaded {
+    config::Configuration configuration;
+    std::vector<Error> problems;  ///< empty: it can be used
+    bool misuse = false;          ///< the command line is wrong, not the file
+};
+
+/// File, profile, then --set; the schema's rules and the daemon's own. Opens nothing but the settings file.
+Loaded load(const Options& options);
+
+/// The walk that is asked for: without end.
+app::WalkRequest request_of(const config::Configuration& configuration, const std::string& config_file);
+
+/// "60 Hz, 1280x720, osmesa".
+std::string in_short(const config::Settings& settings);
+
+}  // namespace surefoot::daemon

@@ -1,0 +1,201 @@
+// One walk after another, each as the newest good configuration says.
+#include "tools/daemon/daemon.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+
+#include "rt/base/file.hpp"
+#include "rt/threads/runaway.hpp"
+#include "tools/app/state.hpp"
+#include "tools/daemon/configuration.hpp"
+#include "tools/daemon/exit_code.hpp"
+#include "tools/daemon/log.hpp"
+#include "tools/daemon/misses.hpp"
+#include "tools/daemon/service.hpp"
+#include "tools/daemon/standing.hpp"
+
+namespace surefoot::daemon {
+
+namespace {
+
+/// A closed stdin, stdout or stderr would give its number to the next file that is opened, and the log would go there.
+void keep_standard_files() {
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
+        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF) (void)open("/dev/null", fd == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+    }
+}
+
+/// What a walk ended with.
+struct Ending {
+    bool failed = false;
+    Error error;
+    ExitCode code = exit_failure;
+};
+
+void say_lack(Log& log, Standing& standing, const report::Degraded& lack) {
+    if (!standing.lacks(lack)) return;
+    log.say(Priority::warning, event::degraded,
+            fmt::format("not fully real-time: {}{}", lack.what, lack.remedy.empty() ? "" : " (" + lack.remedy + ")"),
+            {{"SUREFOOT_LACK", lack.what}, {"SUREFOOT_REMEDY", lack.remedy}});
+}
+
+void say_burst(Log& log, const std::optional<Burst>& burst) {
+    if (!burst) return;
+    log.say(Priority::warning, event::misses, burst->text(),
+            {{"SUREFOOT_MISSES", std::to_string(burst->misses)},
+             {"SUREFOOT_OWN_MISSES", std::to_string(burst->own_misses)},
+             {"SUREFOOT_SKIPPED_SLOTS", std::to_string(burst->skipped)},
+             {"SUREFOOT_FIRST_SLOT", std::to_string(burst->first_slot)},
+             {"SUREFOOT_CAUSE", std::string(rt::cause_names[static_cast<std::size_t>(burst->main_cause())])},
+             {"SUREFOOT_WORST_LATE_US", std::to_string(burst->worst_late_ns / 1000)}});
+}
+
+app::WalkWatch watch_of(Log& log, Standing& standing, Bursts& bursts, const app::FaultHook& inject) {
+    app::WalkWatch watch;
+    watch.on_step = [&](app::WalkStep step) { standing.step.store(step); };
+    watch.on_started = [&](const app::WalkStart& start) {
+        for (const report::Degraded& lack : start.degraded) say_lack(log, standing, lack);
+        if (!start.uncalibrated.empty() && standing.uncalibrated(start.uncalibrated))
+            log.say(Priority::warning, event::uncalibrated, start.uncalibrated);
+        // After the session has raised its limits.
+        if (auto ok = rt::guard_runaways(rt::runaway_limit_us(start.period_ns)); !ok)
+            say_lack(log, standing, {ok.error().place + " " + ok.error().what, ok.error().remedy});
+        standing.walking(start.period_ns);
+    };
+    watch.on_record = [&](const rt::FrameRecord& record) {
+        standing.count(record);
+        say_burst(log, bursts.add(record));
+    };
+    watch.on_degraded = [&](const report::Degraded& lack) { say_lack(log, standing, lack); };
+    watch.inject = inject;
+    return watch;
+}
+
+/// A stop that could not be remembered would be forgotten by the next start: known before the first frame.
+Result<void> check_state(const app::WalkRequest& request) {
+    if (request.input_file != app::live_input) return {};
+    const std::string file = app::state_directory(request.state_dir) + "/probe";
+    auto probe = AtomicFile::create(file);
+    if (!probe) return probe.error();
+    const std::array<std::byte, 4096> page{};
+    return probe->write(page);  // never committed: it goes away again
+}
+
+Ending walk(const config::Configuration& configuration, const Options& options, Log& log, Standing& standing,
+            const app::FaultHook& inject) {
+    const app::WalkRequest request = request_of(configuration, options.config_file);
+    if (auto ok = check_state(request); !ok) {
+        const Error& e = ok.error();
+        return {true, {e.place, "the state folder must keep a stop, and cannot: " + e.what, e.remedy}, exit_cannot_write};
+    }
+    Progress progress;
+    progress.stop = &standing.stop_walk;
+    progress.note = [&](std::string_view text) { log.say(Priority::notice, event::input, text); };
+    Bursts bursts;
+    auto outcome = app::run_walk(request, progress, watch_of(log, standing, bursts, inject));
+    say_burst(log, bursts.finish());
+    if (!outcome) return {true, outcome.error(), exit_code_of(standing.step.load())};
+    for (const std::string& note : outcome->notes) log.say(Priority::notice, event::input, note);
+    for (const Error& failure : outcome->failures) {
+        if (outcome->lost) return {true, failure, exit_unavailable};
+        log.say(Priority::error, event::fault, failure.text());
+    }
+    return {};
+}
+
+/// Walks until the end; of a configuration that never showed a frame back to the last that did.
+ExitCode walk_on(config::Configuration current, const Options& options, Log& log, Standing& standing,
+                 const app::FaultHook& inject) {
+    std::optional<config::Configuration> good;
+    while (true) {
+        // In this order: what a signal asks for in between is seen below, or ends the walk as it begins.
+        standing.open(current.values);
+        standing.stop_walk.store(false);
+        if (standing.leaving.load()) return exit_success;
+        if (auto next = standing.take_next()) {
+            current = std::move(*next);
+            standing.open(current.values);
+        }
+        const Ending ending = walk(current, options, log, standing, inject);
+        if (standing.leaving.load()) return exit_success;
+        if (standing.walk_frames() > 0) good = current;
+        if (!ending.failed) {
+            if (standing.stop_walk.load()) continue;  // a reload
+            log.say(Priority::error, event::fault, "the walk ended by itself");
+            return exit_failure;
+        }
+        const bool newer = standing.stop_walk.load();  // a reload came while this one failed
+        if (standing.walk_frames() == 0 && (good || newer)) {
+            const std::string why = ending.error.text();
+            log.say(Priority::error, event::refused, "the configuration does not walk, another one is taken: " + why);
+            if (newer) continue;
+            standing.refuse(why);
+            current = *std::exchange(good, std::nullopt);
+            continue;
+        }
+        log.say(Priority::error, event::fault, ending.error.text(), {{"SUREFOOT_EXIT_CODE", std::to_string(ending.code)}});
+        return ending.code;
+    }
+}
+
+int check(const Options& options) {
+    const Loaded loaded = load(options);
+    for (const Error& problem : loaded.problems) (void)std::fputs(("surefootd: " + problem.text() + "\n").c_str(), stderr);
+    if (!loaded.problems.empty()) return loaded.misuse ? exit_usage : exit_failure;
+    const bool written = std::printf("%s: OK\n", options.config_file.c_str()) >= 0 && std::fflush(stdout) == 0;
+    return written ? exit_success : exit_failure;
+}
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value == nullptr ? std::string() : std::string(value);
+}
+
+}  // namespace
+
+int run(const Options& options, const app::FaultHook& inject) {
+    if (options.check) return check(options);
+    block_service_signals();
+    Log log(default_target());
+    // Until the first walk sets its own limit: without the handler SIGXCPU would end the process without a word.
+    (void)rt::guard_runaways(rt::runaway_limit_us(1'000'000'000));
+    Loaded loaded = load(options);
+    for (const Error& problem : loaded.problems) log.say(Priority::error, event::refused, problem.text());
+    if (!loaded.problems.empty()) return loaded.misuse ? exit_usage : exit_config;
+    Notifier notifier(environment("NOTIFY_SOCKET"));
+    Standing standing;
+    standing.open(loaded.configuration.values);
+    log.say(
+        Priority::info, event::starting,
+        fmt::format("{}: {}, {}", options.config_file, loaded.configuration.values.model, in_short(loaded.configuration.values)));
+    const Service service(options, log, standing, notifier, watchdog_timeout_ns());
+    return walk_on(std::move(loaded.configuration), options, log, standing, inject);
+}
+
+int run_main(int argc, char** argv, const app::FaultHook& inject) {
+    keep_standard_files();
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file limit is an error of that file, not the end of the program
+    int code = exit_failure;
+    const auto options = read_options(argc, argv, code);
+    if (!options) return code;
+    try {
+        return run(*options, inject);
+    } catch (const std::bad_alloc&) {
+        (void)std::fputs("surefootd: memory: not enough for this model\n", stderr);
+    } catch (const std::exception& error) {
+        (void)std::fprintf(stderr, "surefootd: unexpected: %s\n", error.what());
+    }
+    return exit_failure;
+}
+
+}  // namespace surefoot::daemon

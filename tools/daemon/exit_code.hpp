@@ -1,0 +1,39 @@
+// How surefootd ends: one number a kind of fault, named as sysexits.h names them, so that systemd shows the name too.
+#pragma once
+
+#include "tools/app/walk.hpp"
+
+namespace surefoot::daemon {
+
+enum ExitCode : int {
+    exit_success = 0,
+    exit_failure = 1,        ///< what has no number of its own
+    exit_usage = 2,          ///< wrong command line
+    exit_no_input = 66,      ///< model, path, steering, recording or cost table cannot be read
+    exit_unavailable = 69,   ///< no graphics context, or it was lost
+    exit_runaway = 70,       ///< a real-time thread never slept
+    exit_cannot_write = 73,  ///< the state folder: a stop could not be remembered
+    exit_no_real_time = 77,  ///< `strict`, and the machine refuses what real time needs
+    exit_config = 78,        ///< the settings file
+};
+
+/// Of an Error that run_walk() returned in this step.
+constexpr ExitCode exit_code_of(app::WalkStep step) {
+    switch (step) {
+        case app::WalkStep::request:
+            return exit_config;
+        case app::WalkStep::input:
+        case app::WalkStep::model:
+            return exit_no_input;
+        case app::WalkStep::real_time:
+            return exit_no_real_time;
+        case app::WalkStep::device:
+            return exit_unavailable;
+        case app::WalkStep::frames:
+        case app::WalkStep::ending:
+            break;
+    }
+    return exit_failure;
+}
+
+}  // namespace surefoot::daemon

@@ -1,0 +1,20 @@
+// surefootd's command line.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace surefoot::daemon {
+
+struct Options {
+    std::string config_file = "/etc/surefoot/surefoot.toml";
+    std::string profile;
+    std::vector<std::string> set;  ///< KEY=VALUE each, over the file; kept through reloads
+    bool check = false;            ///< the configuration only
+};
+
+/// What the command line says; or nothing, and the exit code in `code`: help and version were printed, or wrong use was told.
+std::optional<Options> read_options(int argc, char** argv, int& code);
+
+}  // namespace surefoot::daemon

@@ -1,0 +1,181 @@
+// The service thread's loop: twenty looks a second, and one at every signal.
+#include "tools/daemon/service.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include "rt/clock/clock.hpp"
+#include "rt/threads/placement.hpp"
+#include "rt/threads/runaway.hpp"
+#include "tools/daemon/configuration.hpp"
+#include "tools/daemon/exit_code.hpp"
+
+namespace surefoot::daemon {
+
+namespace {
+
+constexpr int look_ms = 50;
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t status_every_ns = 10 * second_ns, extend_every_ns = 5 * second_ns;
+constexpr std::int64_t extend_us = 20'000'000;
+constexpr std::int64_t stop_limit_ns = 1'600'000'000;  // the promise is two seconds
+
+sigset_t service_signals() {
+    sigset_t set;
+    sigemptyset(&set);
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, signal);
+    return set;
+}
+
+}  // namespace
+
+void block_service_signals() {
+    const sigset_t set = service_signals();
+    pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+Service::Service(const Options& options, Log& log, Standing& standing, Notifier& notifier, std::int64_t watchdog_ns)
+    : options_(options), log_(log), standing_(standing), notifier_(notifier), heartbeat_(watchdog_ns, 0) {
+    const sigset_t set = service_signals();
+    signals_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+    thread_ = std::thread([this] { run(); });
+}
+
+Service::~Service() {
+    ending_.store(true);
+    thread_.join();
+    if (signals_ >= 0) ::close(signals_);
+}
+
+void Service::run() {
+    // Only the name: the thread's place is its creator's, who is neutral.
+    if (auto own = rt::read_thread(0)) {
+        own->name = "sf-service";
+        (void)rt::restore_thread(*own);
+    }
+    const rt::RealClock clock;
+    while (!ending_.load()) {
+        pollfd readable{signals_, POLLIN, 0};
+        if (::poll(&readable, 1, look_ms) > 0) take_signals();
+        const std::int64_t now_ns = clock.now_ns();
+        guard(now_ns);
+        tell(now_ns);
+        feed(now_ns);
+    }
+}
+
+void Service::take_signals() {
+    signalfd_siginfo info{};
+    while (::read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info)) {
+        if (info.ssi_signo == SIGHUP)
+            reload();
+        else
+            leave(static_cast<int>(info.ssi_signo));
+    }
+}
+
+/// A good configuration ends the walk, and the main thread begins it anew; a bad one changes nothing.
+void Service::reload() {
+    if (standing_.leaving.load()) return;
+    const rt::RealClock clock;
+    notifier_.send(fmt::format("RELOADING=1\nMONOTONIC_USEC={}", clock.now_ns() / 1000));
+    Loaded loaded = load(options_);
+    if (loaded.problems.empty()) {
+        log_.say(Priority::notice, event::reloading, "the configuration is read again: the walk begins anew with it",
+                 {{"SUREFOOT_CONFIG", options_.config_file}});
+        standing_.refuse({});
+        standing_.put_next(std::move(loaded.configuration));
+        ready_ = false;
+        standing_.stop_walk.store(true);
+        return;
+    }
+    std::string why;
+    for (const Error& problem : loaded.problems) why += (why.empty() ? "" : "; ") + problem.text();
+    log_.say(Priority::error, event::refused, "the configuration is refused, the last good one stays in force: " + why,
+             {{"SUREFOOT_CONFIG", options_.config_file}});
+    standing_.refuse(why);
+    // Still opening: READY=1 comes with the first frame, as ever.
+    if (ready_) send_status("READY=1\n");
+}
+
+void Service::leave(int signal) {
+    if (standing_.leaving.exchange(true)) return;
+    const rt::RealClock clock;
+    leaving_since_ns_ = clock.now_ns();
+    standing_.stopping();
+    standing_.stop_walk.store(true);
+    send_status("STOPPING=1\n");
+    told_ = Phase::stopping;
+    log_.say(Priority::info, event::stopping, fmt::format("ends, as {} asks", signal == SIGTERM ? "SIGTERM" : "SIGINT"));
+}
+
+void Service::send_status(const std::string& first) {
+    status_ = status_text(standing_.facts());
+    notifier_.send(first + "STATUS=" + one_line(status_));
+    told_ns_ = rt::RealClock().now_ns();
+}
+
+void Service::tell(std::int64_t now_ns) {
+    const Facts facts = standing_.facts();
+    if (facts.phase != told_) {
+        told_ = facts.phase;
+        if (facts.phase == Phase::opening) {
+            ready_ = false;
+            opening_since_ns_ = now_ns;
+            heartbeat_.opening(now_ns, facts.open_limit_ns);
+            send_status(fmt::format("EXTEND_TIMEOUT_USEC={}\n", extend_us));
+        } else if (facts.phase == Phase::walking) {
+            heartbeat_.frames_begin(now_ns, facts.period_ns);
+        }
+    }
+    if (facts.phase == Phase::opening && now_ns - told_ns_ >= extend_every_ns &&
+        now_ns - opening_since_ns_ < facts.open_limit_ns) {
+        send_status(fmt::format("EXTEND_TIMEOUT_USEC={}\n", extend_us));
+    }
+    if (facts.phase != Phase::walking) return;
+    if (!ready_ && facts.walk_frames > 0 && !standing_.stop_walk.load()) {
+        ready_ = true;
+        send_status("READY=1\n");
+        log_.say(Priority::notice, event::walking, fmt::format("walking {} at {}", facts.model, facts.in_short),
+                 {{"SUREFOOT_MODEL", facts.model}});
+    } else if (ready_ && now_ns - told_ns_ >= status_every_ns) {
+        send_status({});
+    }
+}
+
+void Service::feed(std::int64_t now_ns) {
+    if (told_ == Phase::stopping) return;
+    const Beat beat = heartbeat_.look(now_ns, standing_.frames());
+    if (beat.ping) notifier_.send("WATCHDOG=1");
+    if (!beat.stalled && !beat.resumed) return;
+    standing_.stalled.store(beat.stalled);
+    if (beat.stalled) {
+        log_.say(
+            Priority::error, event::stalled,
+            fmt::format("no frame for {:.1f} s: the watchdog is fed no more", static_cast<double>(heartbeat_.stall_ns()) * 1e-9));
+    } else {
+        log_.say(Priority::notice, event::resumed, "frames come again");
+    }
+    send_status({});
+}
+
+void Service::guard(std::int64_t now_ns) {
+    if (const auto runaway = rt::runaway_seen()) {
+        const std::string who = runaway->tid != 0 ? fmt::format("thread {} ({})", runaway->name, runaway->tid) : "a thread";
+        log_.say(Priority::error, event::fault,
+                 fmt::format("{} ran without sleeping for too long; {}: ends, to begin anew", who,
+                             runaway->demoted ? "its real-time priority was taken" : "it could not be stopped"),
+                 {{"SUREFOOT_FAULT", "runaway"}});
+        _exit(exit_runaway);
+    }
+    if (leaving_since_ns_ == 0 || now_ns - leaving_since_ns_ < stop_limit_ns) return;
+    // What must be kept is on the disk already: a stop is written as it happens.
+    log_.say(Priority::warning, event::stopping,
+             "the walk does not end in time (a model is opened, or the driver hangs): left as it is");
+    _exit(exit_success);
+}
+
+}  // namespace surefoot::daemon

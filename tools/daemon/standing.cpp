@@ -1,0 +1,105 @@
+// The shared state, and its one line.
+#include "tools/daemon/standing.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "rt/clock/grid.hpp"
+#include "tools/daemon/configuration.hpp"
+
+namespace surefoot::daemon {
+
+std::string status_text(const Facts& f) {
+    std::string text;
+    switch (f.phase) {
+        case Phase::opening:
+            text = fmt::format("opening {}", f.model);
+            break;
+        case Phase::walking:
+            text = fmt::format("walking {} ({}): {} frames, {} missed, {} slots skipped", f.model, f.in_short, f.frames, f.misses,
+                               f.skipped);
+            break;
+        case Phase::stopping:
+            text = "stopping";
+            break;
+    }
+    if (f.stalled) text = "NO FRAMES COME; " + text;
+    if (!f.refused.empty()) text += "; the configuration was refused, the last good one is in force: " + f.refused;
+    for (std::size_t i = 0; i < f.lacks.size(); ++i) text += (i == 0 ? "; not fully real-time: " : ", ") + f.lacks[i];
+    if (f.uncalibrated) text += "; uncalibrated";
+    return text;
+}
+
+void Standing::open(const config::Settings& settings) {
+    if (leaving.load()) return;
+    const std::lock_guard lock(mutex_);
+    facts_.phase = Phase::opening;
+    facts_.model = std::filesystem::path(settings.model).filename().string();
+    facts_.in_short = in_short(settings);
+    facts_.period_ns = rt::period_of_rate_ns(settings.rate_hz) ? *rt::period_of_rate_ns(settings.rate_hz) : 0;
+    facts_.open_limit_ns = static_cast<std::int64_t>(settings.open_limit_s * 1e9);
+    facts_.lacks.clear();
+    facts_.uncalibrated = false;
+    walk_frames_.store(0);
+    stalled.store(false);
+}
+
+void Standing::walking(std::int64_t period_ns) {
+    const std::lock_guard lock(mutex_);
+    facts_.phase = Phase::walking;
+    facts_.period_ns = period_ns;
+}
+
+void Standing::count(const rt::FrameRecord& record) {
+    misses_.fetch_add(record.missed ? 1 : 0);
+    skipped_.fetch_add(record.skipped_before);
+    frames_.fetch_add(1);
+    walk_frames_.fetch_add(1);
+}
+
+bool Standing::lacks(const report::Degraded& lack) {
+    const std::lock_guard lock(mutex_);
+    facts_.lacks.push_back(lack.what);
+    return said_.insert(lack.what).second;
+}
+
+bool Standing::uncalibrated(const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    facts_.uncalibrated = true;
+    return said_.insert(why).second;
+}
+
+std::optional<config::Configuration> Standing::take_next() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(next_, std::nullopt);
+}
+
+void Standing::put_next(config::Configuration configuration) {
+    const std::lock_guard lock(mutex_);
+    next_ = std::move(configuration);
+}
+
+void Standing::stopping() {
+    const std::lock_guard lock(mutex_);
+    facts_.phase = Phase::stopping;
+}
+
+void Standing::refuse(const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    facts_.refused = why;
+}
+
+Facts Standing::facts() const {
+    const std::lock_guard lock(mutex_);
+    Facts facts = facts_;
+    facts.frames = frames_.load();
+    facts.walk_frames = walk_frames_.load();
+    facts.misses = misses_.load();
+    facts.skipped = skipped_.load();
+    facts.stalled = stalled.load();
+    return facts;
+}
+
+}  // namespace surefoot::daemon

@@ -1,0 +1,73 @@
+// How the daemon's walk stands: what its threads tell each other, and how it reads in `systemctl status`.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "config/settings.hpp"
+#include "tools/app/walk.hpp"
+
+namespace surefoot::daemon {
+
+enum class Phase : std::uint8_t { opening, walking, stopping };
+
+/// A copy of all that STATUS= speaks of.
+struct Facts {
+    Phase phase = Phase::opening;
+    std::string model, in_short;  ///< in_short: rate, size, backend
+    std::int64_t period_ns = 0;   ///< of the walk that runs or was asked for
+    std::int64_t open_limit_ns = 0;
+    std::uint64_t walk_frames = 0;                      ///< of this walk
+    std::uint64_t frames = 0, misses = 0, skipped = 0;  ///< since the daemon's start
+    std::vector<std::string> lacks;                     ///< of real time
+    bool uncalibrated = false;                          ///< predictions are built-in figures
+    std::string refused;                                ///< why the newest configuration is not in force; empty: it is
+    bool stalled = false;
+};
+
+/// Pure: one line, the most important first.
+std::string status_text(const Facts& facts);
+
+/// Between the session (main thread), its monitor thread and the service thread.
+class Standing {
+public:
+    std::atomic<bool> stop_walk{false};  ///< the walk is to end, for good or to begin anew
+    std::atomic<bool> leaving{false};    ///< for good
+    std::atomic<bool> stalled{false};
+    std::atomic<app::WalkStep> step{app::WalkStep::request};
+
+    // The session's.
+    void open(const config::Settings& settings);
+    void walking(std::int64_t period_ns);
+    void count(const rt::FrameRecord& record);
+    /// Of this walk. True: not known before in this process, so it is to be said.
+    bool lacks(const report::Degraded& lack);
+    /// The same of the cost table.
+    bool uncalibrated(const std::string& why);
+    /// The configuration that a reload brought, once.
+    std::optional<config::Configuration> take_next();
+
+    // The service's.
+    void put_next(config::Configuration configuration);
+    void stopping();
+
+    // Both.
+    void refuse(const std::string& why);  ///< empty: the newest configuration is in force
+    [[nodiscard]] Facts facts() const;
+    [[nodiscard]] std::uint64_t frames() const { return frames_.load(); }
+    [[nodiscard]] std::uint64_t walk_frames() const { return walk_frames_.load(); }
+
+private:
+    mutable std::mutex mutex_;  // of what follows; no real-time thread comes here
+    Facts facts_;
+    std::set<std::string> said_;
+    std::optional<config::Configuration> next_;
+    std::atomic<std::uint64_t> frames_{0}, walk_frames_{0}, misses_{0}, skipped_{0};
+};
+
+}  // namespace surefoot::daemon
