@@ -87,6 +87,8 @@ int main(int argc, char** argv) {
     cli::add_devices(app, context);
     cli::add_config(app, context);
     cli::add_doctor(app, context);
+    cli::add_status(app, context);
+    cli::add_top(app, context);
     app.failure_message([](const CLI::App*, const CLI::Error& error) {
         return "surefoot: " + std::string(error.what()) + " (see surefoot --help, or --help after the command)\n";
     });

@@ -7,6 +7,7 @@
 #include "tools/app/walk.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/cli/watched.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace surefoot::cli {
@@ -18,6 +19,7 @@ constexpr std::uint64_t unset = ~0ULL;
 /// What the command line says; settings come through the schema, so that a file and a flag obey the same limits.
 struct WalkArguments {
     app::WalkRequest request;
+    WatchRequest watch;
     std::string config_file, profile, size;
     struct Setting {
         std::string flag, key, text;
@@ -117,7 +119,19 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
 int run_walk_command(WalkArguments& a, const Context& context) {
     auto request = to_request(a);
     if (!request) return misuse(request.error());
-    auto outcome = app::run_walk(*request, terminal_progress(context));
+    auto monitor = open_monitor(a.watch);
+    if (!monitor) return fail(monitor.error());
+    if (*monitor && !(*monitor)->address().empty())
+        note(fmt::format("look at it with: surefoot top --socket {}", (*monitor)->address()));
+    Progress progress = terminal_progress(context);
+    if (*monitor) {
+        progress.note = [tell = progress.note, m = monitor->get()](std::string_view text) {
+            tell(text);
+            m->add_note(text);
+        };
+    }
+    auto outcome = app::run_walk(*request, progress, *monitor ? watch_of(**monitor, *request) : app::WalkWatch{});
+    monitor->reset();  // what waits to be written is, before the figures are
     end_progress(context);
     if (!outcome) return fail(outcome.error());
     for (const std::string& text : outcome->notes) note(text);
@@ -165,6 +179,7 @@ void add_walk(CLI::App& app, Context& context) {
                     "  surefoot walk town.walk --input devices --seconds 600             (a gamepad or 3D mouse steers)\n"
                     "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
                     "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
+                    "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
                     "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
                     a->json);
     c->add_option("model", r.model_file, "The .walk model")->required();
@@ -222,6 +237,12 @@ void add_walk(CLI::App& app, Context& context) {
     c->add_option("--ledger", r.ledger_file, "CSV, a row a frame");
     c->add_option("--trace", r.trace_file, "A trace that ui.perfetto.dev opens");
     c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html");
+    c->add_option("--monitor", a->watch.address,
+                  "Serve live figures while it walks, for `surefoot status`, `surefoot top` and Prometheus (/metrics): "
+                  "unix:PATH, or 127.0.0.1:PORT (port 0: any)");
+    c->add_option("--incidents", a->watch.incidents_dir,
+                  "Folder in which bursts of misses are written down as they happen: the last minute's ledger and trace; "
+                  "the newest 20, at most 256 MiB");
     c->add_option("--snap", r.snap_dir, "Pictures of what the walk drew: DIR/00000.png, ...; what 256 MiB of memory hold");
     c->add_option("--every", r.snap_every, "A picture every N frames [30]")->check(whole_number_within(1, 1'000'000'000));
     c->add_option("--capture", r.capture_file, "One frame's prepared arrays and cut, for `surefoot replay`");
