@@ -111,8 +111,8 @@ TEST_F(MonitorPages, NamesHaveBaseUnits) {
         for (const char* ending : {"_total", "_seconds", "_bytes", "_ratio", "_info", "_hertz", "_per_radian", "_frames"})
             unit = unit || name.ends_with(ending);
         EXPECT_TRUE(unit) << name;
-        for (const char* scaled : {"_ms", "_us", "_milli", "_micro", "_kb", "_mb", "percent_of"})
-            EXPECT_EQ(name.find(scaled), std::string::npos) << name;
+        for (const char* scaled : {"_ms_", "_us_", "_ns_", "_milli", "_micro", "_kb_", "_mb_"})
+            EXPECT_EQ((name + "_").find(scaled), std::string::npos) << name;
         EXPECT_TRUE(name.starts_with("surefoot_") || name.starts_with("process_")) << name;
         EXPECT_TRUE(family.help.ends_with(".") || family.help.ends_with("done.")) << name << ": HELP is a sentence";
     }

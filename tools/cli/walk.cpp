@@ -119,6 +119,9 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
 int run_walk_command(WalkArguments& a, const Context& context) {
     auto request = to_request(a);
     if (!request) return misuse(request.error());
+    if (!a.watch.address.empty()) {
+        if (const auto address = console::parse_address(a.watch.address); !address) return misuse(address.error());
+    }
     auto monitor = open_monitor(a.watch);
     if (!monitor) return fail(monitor.error());
     if (*monitor && !(*monitor)->address().empty())

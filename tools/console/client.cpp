@@ -30,7 +30,7 @@ struct OwnSocket {
 };
 
 constexpr std::string_view start_one =
-    "start the service (systemctl start surefootd), or a walk with --monitor; or name its place with --socket";
+    "start the service with `systemctl start surefootd`, or a walk with --monitor; or name its place with --socket";
 
 Error unreachable(const Address& address, int error) {
     std::string remedy(start_one);

@@ -112,8 +112,9 @@ void add_input(const json& s, const Look& look, std::vector<std::string>& lines)
 }
 
 void add_house(const json& s, std::vector<std::string>& lines) {
-    lines.push_back(fmt::format("memory {} ({} locked), {} threads, {} descriptors, host stole {} s",
-                                mebibytes(number_at(s, "/process/rss_bytes")), mebibytes(number_at(s, "/process/locked_bytes")),
+    const bool locked = number_at(s, "/process/locked_bytes") > 0;
+    lines.push_back(fmt::format("memory {}{}, {} threads, {} descriptors, host stole {} s since boot",
+                                mebibytes(number_at(s, "/process/rss_bytes")), locked ? ", locked" : "",
                                 grouped(number_at(s, "/process/threads")), grouped(number_at(s, "/process/descriptors")),
                                 short_number(number_at(s, "/process/host_steal_s"))));
     if (const double bursts = number_at(s, "/monitor/bursts"); bursts > 0)
