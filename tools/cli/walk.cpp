@@ -7,7 +7,7 @@
 #include "tools/app/walk.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
-#include "tools/cli/watched.hpp"
+#include "tools/console/watch.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace surefoot::cli {
@@ -16,10 +16,16 @@ namespace {
 
 constexpr std::uint64_t unset = ~0ULL;
 
+/// Who may look on while it walks.
+struct MonitorArguments {
+    std::string address;        ///< empty: nobody
+    std::string incidents_dir;  ///< empty: none are written
+};
+
 /// What the command line says; settings come through the schema, so that a file and a flag obey the same limits.
 struct WalkArguments {
     app::WalkRequest request;
-    WatchRequest watch;
+    MonitorArguments watch;
     std::string config_file, profile, size;
     struct Setting {
         std::string flag, key, text;
@@ -116,6 +122,19 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
     return r;
 }
 
+/// Null where nothing is asked for.
+Result<std::unique_ptr<console::Monitor>> open_monitor(const MonitorArguments& a) {
+    if (a.address.empty() && a.incidents_dir.empty()) return std::unique_ptr<console::Monitor>();
+    console::MonitorOptions options;
+    options.address = a.address;
+    options.incidents_dir = a.incidents_dir;
+    options.version = SUREFOOT_VERSION;
+    options.say = [](std::string_view text) { note(std::string(text)); };
+    auto monitor = console::Monitor::open(std::move(options));
+    if (monitor && !a.address.empty()) note(fmt::format("look at it with: surefoot top --socket {}", (*monitor)->address()));
+    return monitor;
+}
+
 int run_walk_command(WalkArguments& a, const Context& context) {
     auto request = to_request(a);
     if (!request) return misuse(request.error());
@@ -124,16 +143,16 @@ int run_walk_command(WalkArguments& a, const Context& context) {
     }
     auto monitor = open_monitor(a.watch);
     if (!monitor) return fail(monitor.error());
-    if (*monitor && !(*monitor)->address().empty())
-        note(fmt::format("look at it with: surefoot top --socket {}", (*monitor)->address()));
+    app::WalkWatch watch;
     Progress progress = terminal_progress(context);
     if (*monitor) {
+        console::watch_with(**monitor, *request, watch);
         progress.note = [tell = progress.note, m = monitor->get()](std::string_view text) {
             tell(text);
             m->add_note(text);
         };
     }
-    auto outcome = app::run_walk(*request, progress, *monitor ? watch_of(**monitor, *request) : app::WalkWatch{});
+    auto outcome = app::run_walk(*request, progress, watch);
     monitor->reset();  // what waits to be written is, before the figures are
     end_progress(context);
     if (!outcome) return fail(outcome.error());

@@ -1,9 +1,10 @@
 // The walk's words into the monitor's.
-#include "tools/cli/watched.hpp"
+#include "tools/console/watch.hpp"
 
-#include "tools/cli/command.hpp"
+#include <algorithm>
+#include <utility>
 
-namespace surefoot::cli {
+namespace surefoot::console {
 
 namespace {
 
@@ -27,35 +28,32 @@ report::MonitoredWalk monitored(const app::WalkRequest& request, const app::Walk
     return w;
 }
 
-}  // namespace
-
-Result<std::unique_ptr<console::Monitor>> open_monitor(const WatchRequest& request) {
-    if (request.address.empty() && request.incidents_dir.empty()) return std::unique_ptr<console::Monitor>();
-    console::MonitorOptions options;
-    options.address = request.address;
-    options.incidents_dir = request.incidents_dir;
-    options.version = SUREFOOT_VERSION;
-    options.say = [](std::string_view text) { note(std::string(text)); };
-    return console::Monitor::open(std::move(options));
+/// `then` after what was there.
+template <class Told, class Then>
+void chain(std::function<void(Told)>& callback, Then then) {
+    callback = [before = std::exchange(callback, {}), then](Told told) {
+        if (before) before(told);
+        then(told);
+    };
 }
 
-app::WalkWatch watch_of(console::Monitor& monitor, const app::WalkRequest& request) {
-    app::WalkWatch watch;
-    watch.on_started = [&monitor, &request](const app::WalkStart& start) {
+}  // namespace
+
+void watch_with(Monitor& monitor, const app::WalkRequest& request, app::WalkWatch& watch) {
+    chain(watch.on_started, [&monitor, &request](const app::WalkStart& start) {
         std::vector<report::Degraded> lacks(start.degraded.begin(), start.degraded.end());
         if (!start.uncalibrated.empty()) lacks.push_back({start.uncalibrated, ""});
         monitor.set_degraded(std::move(lacks));
         monitor.begin_walk(monitored(request, start));
-    };
-    watch.on_record = [&monitor](const rt::FrameRecord& record) { monitor.on_record(record); };
-    watch.on_degraded = [&monitor](const report::Degraded& lack) { monitor.add_degraded(lack); };
-    watch.on_input = [&monitor](const app::WalkInput& input) {
+    });
+    chain(watch.on_record, [&monitor](const rt::FrameRecord& record) { monitor.on_record(record); });
+    chain(watch.on_degraded, [&monitor](const report::Degraded& lack) { monitor.add_degraded(lack); });
+    chain(watch.on_input, [&monitor](const app::WalkInput& input) {
         monitor.set_input({input.live, input.devices, input.emergency_stop});
-    };
-    watch.on_step = [&monitor](app::WalkStep step) {
+    });
+    chain(watch.on_step, [&monitor](app::WalkStep step) {
         if (step == app::WalkStep::ending) monitor.end_walk();
-    };
-    return watch;
+    });
 }
 
-}  // namespace surefoot::cli
+}  // namespace surefoot::console
