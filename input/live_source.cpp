@@ -57,6 +57,7 @@ Lines LiveSource::drain(Steering& steering, std::int64_t now_ns) {
         if (step.reported) log_.add(now_ns);
         devices_->watch_also(panel_->polled());
     }
+    steering_now_.store(attendant_->steering_now() + (panel_ && panel_->has_controls() ? 1 : 0), std::memory_order_relaxed);
     if (!somebody_) say_if_nobody_steers(now_ns);
     return lines;
 }

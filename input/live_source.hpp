@@ -4,6 +4,7 @@
 //   GPIO lines ─► GpioPanel ─► PanelDevice ─────────────────────┴► Steering           notes ─► ring ─► whoever prints
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -38,6 +39,8 @@ public:
     [[nodiscard]] const StampLog& log() const override { return log_; }
     [[nodiscard]] std::uint64_t refused() const override { return attendant_ ? attendant_->refused_reports() : 0; }
     [[nodiscard]] std::vector<SteeringDevice> devices() const override;
+    /// How many devices steer now, as of the last drain; any thread.
+    [[nodiscard]] int steering_now() const { return steering_now_.load(std::memory_order_relaxed); }
 
     /// What a person should know; false: nothing (more). For one thread, any but the one that drains.
     bool next_note(NoteLine& note) { return notes_.try_pop(note); }
@@ -55,6 +58,7 @@ private:
     std::optional<PanelDevice> panel_;
     StampLog log_;
     std::int64_t start_ns_ = 0;
+    std::atomic<int> steering_now_{0};
     bool somebody_ = false;  ///< steers, or its absence was said
 };
 

@@ -128,6 +128,10 @@ std::vector<Attendant::Attended> Attendant::attended() const {
     return list;
 }
 
+int Attendant::steering_now() const {
+    return static_cast<int>(std::count_if(slots_.begin(), slots_.end(), [](const Slot& s) { return s.device >= 0; }));
+}
+
 std::vector<SteeringDevice> Attendant::met() const {
     std::vector<SteeringDevice> list;
     for (const MetDevice& m : met_) list.push_back(m.words);

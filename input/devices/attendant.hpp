@@ -65,6 +65,8 @@ public:
     [[nodiscard]] std::vector<Attended> attended() const;
     /// Devices that steered at any time, once each; the first 64 of them.
     [[nodiscard]] std::vector<SteeringDevice> met() const;
+    /// How many devices steer now.
+    [[nodiscard]] int steering_now() const;
     /// How many pluggings have steered.
     [[nodiscard]] std::uint64_t pluggings() const { return pluggings_; }
     /// Short, long and undeclared reports: they changed nothing.

@@ -48,6 +48,20 @@ void Histogram::add(std::int64_t value_ns, std::uint64_t times) {
     sum_ += static_cast<double>(value_ns) * static_cast<double>(times);
 }
 
+void Histogram::add_progression(std::int64_t first_ns, std::int64_t step_ns, std::uint64_t times) {
+    for (std::uint64_t done = 0; done < times;) {
+        const std::int64_t value = first_ns + static_cast<std::int64_t>(done) * step_ns;
+        const auto room = static_cast<std::uint64_t>(bin_high(bin_of(value)) - value) / static_cast<std::uint64_t>(step_ns) + 1;
+        const std::uint64_t here = std::min(room, times - done);
+        const std::int64_t last = value + static_cast<std::int64_t>(here - 1) * step_ns;
+        // All in one bin: its count by the first, its sum by the mean, its ends by themselves.
+        add(value, here);
+        sum_ += (static_cast<double>(last) - static_cast<double>(value)) * 0.5 * static_cast<double>(here);
+        max_ = std::max(max_, last);
+        done += here;
+    }
+}
+
 void Histogram::merge(const Histogram& other) {
     if (other.count_ == 0) return;
     for (std::size_t i = 0; i < bins; ++i) counts_[i] += other.counts_[i];

@@ -15,6 +15,8 @@ public:
     static constexpr std::size_t bins = 1 + ((64 - sub_bits) << sub_bits);
 
     void add(std::int64_t value_ns, std::uint64_t times = 1);
+    /// first, first + step, ... (`times` values, step > 0): the same as adding each, in at most one step a bin.
+    void add_progression(std::int64_t first_ns, std::int64_t step_ns, std::uint64_t times);
     void merge(const Histogram& other);
 
     [[nodiscard]] std::uint64_t count() const { return count_; }

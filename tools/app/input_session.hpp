@@ -43,6 +43,10 @@ public:
         if (live_) live_->attend(progress, notes);
     }
     [[nodiscard]] bool live() const { return live_.has_value(); }
+    /// As of the last attend().
+    [[nodiscard]] WalkInput now() const {
+        return live_ ? WalkInput{true, live_->steering_now(), live_->stop_latched()} : WalkInput{};
+    }
     /// The thread ends. What kept it from its place, if anything did.
     std::optional<Error> end(const Progress& progress, std::vector<std::string>& notes);
 

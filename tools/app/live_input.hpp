@@ -21,6 +21,7 @@ public:
                                   std::vector<std::string>& notes);
 
     [[nodiscard]] bool stop_latched() const { return stop_latched_; }
+    [[nodiscard]] int steering_now() const { return live_->steering_now(); }
     /// Once, for the stepper; it stays valid while the source lives.
     [[nodiscard]] std::unique_ptr<input::ReportSource> take_source() { return std::move(source_); }
     /// Null where nothing can stop for good.

@@ -102,6 +102,9 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
                      .cpus = rt::CpuMask{plan.frame_core}});
     table.push_back({.name = "sf-monitor", .policy = rt::Policy::other, .cpus = plan.all});
     table.push_back({.name = "sf-service", .policy = rt::Policy::other, .cpus = plan.all, .min_count = 0});  // the daemon's
+    // Whoever watches the walk serves readers and writes incidents beside it.
+    for (const char* name : {"sf-console", "sf-incidents"})
+        table.push_back({.name = name, .policy = rt::Policy::other, .cpus = {}, .min_count = 0});
     if (real_clock && plan.input) {
         const rt::Placement input = input_placement(plan);
         table.push_back({.name = input.name, .policy = input.policy, .priority = input.priority, .cpus = input.cpus});

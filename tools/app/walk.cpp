@@ -44,6 +44,7 @@ struct Session {
     std::unique_ptr<Engine> engine;
     ChosenPath path;
     std::unique_ptr<InputSession> input;  ///< null: the path is followed
+    WalkInput input_told;
     std::vector<std::string> notes;
     rt::Grid grid;
     rt::LatePolicy late = rt::LatePolicy::lock;
@@ -261,7 +262,14 @@ void tell_started(const Session& s) {
     start.locked = s.facts.locked;
     start.isolated = s.facts.isolated;
     start.frame_core = s.plan.frame_core;
+    start.rasterisers = s.plan.rasterisers;
     s.watch.on_started(start);
+}
+
+void tell_input(Session& s) {
+    if (!s.watch.on_input || !s.input || s.input->now() == s.input_told) return;
+    s.input_told = s.input->now();
+    s.watch.on_input(s.input_told);
 }
 
 void tell_census(const Session& s) {
@@ -335,6 +343,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     while (!done.load()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
         if (s.input) s.input->attend(progress, s.notes);
+        tell_input(s);
         const double ran =
             s.virtual_clock ? 0.5 : static_cast<double>(real.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
         progress.say("walk", share_done(s, ran));

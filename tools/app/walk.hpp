@@ -83,7 +83,15 @@ struct WalkStart {
     std::string uncalibrated;  ///< the cost table is missing or another machine's: what, and the remedy; else empty
     std::string renderer, path;
     bool fifo = false, locked = false, isolated = false;
-    int frame_core = 0;
+    int frame_core = 0, rasterisers = 0;
+};
+
+/// What steers now.
+struct WalkInput {
+    bool live = false;            ///< devices steer; else a path or a recording
+    int devices = 0;              ///< that steer
+    bool emergency_stop = false;  ///< latched
+    friend bool operator==(const WalkInput&, const WalkInput&) = default;
 };
 
 /// Who looks on while a walk runs: telemetry, the daemon, soaks. Each may be empty.
@@ -92,6 +100,7 @@ struct WalkWatch {
     std::function<void(const WalkStart&)> on_started;       ///< on the caller's thread, before the first slot is due (real clock)
     std::function<void(const rt::FrameRecord&)> on_record;  ///< on the monitor thread: every frame, in order
     std::function<void(const report::Degraded&)> on_degraded;  ///< on the caller's thread: found after on_started
+    std::function<void(const WalkInput&)> on_input;            ///< on the caller's thread: whenever it has changed
     FaultHook inject;
 };
 

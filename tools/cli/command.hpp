@@ -56,5 +56,7 @@ void add_replay(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
 void add_config(CLI::App& app, Context& context);
+void add_status(CLI::App& app, Context& context);
+void add_top(CLI::App& app, Context& context);
 
 }  // namespace surefoot::cli

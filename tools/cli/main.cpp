@@ -104,9 +104,12 @@ int main(int argc, char** argv) {
     cli::add_devices(app, context);
     cli::add_config(app, context);
     cli::add_doctor(app, context);
+    cli::add_status(app, context);
+    cli::add_top(app, context);
     app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {
         const std::string text = unknown_command(*of, argc, argv).value_or(error.what());
-        return "surefoot: " + text + " (see surefoot --help, or --help after the command)\n";
+        return "surefoot: " + text + " (see surefoot --help, or --help after the command)
+";
     });
     try {
         app.parse(argc, argv);

@@ -8,6 +8,7 @@
 #include "tools/app/walk.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/console/watch.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace surefoot::cli {
@@ -16,9 +17,16 @@ namespace {
 
 constexpr std::uint64_t unset = ~0ULL;
 
+/// Who may look on while it walks.
+struct MonitorArguments {
+    std::string address;        ///< empty: nobody
+    std::string incidents_dir;  ///< empty: none are written
+};
+
 /// What the command line says; settings come through the schema, so that a file and a flag obey the same limits.
 struct WalkArguments {
     app::WalkRequest request;
+    MonitorArguments watch;
     std::string config_file, profile, size;
     struct Setting {
         std::string flag, key, text;
@@ -95,10 +103,38 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
     return r;
 }
 
+/// Null where nothing is asked for.
+Result<std::unique_ptr<console::Monitor>> open_monitor(const MonitorArguments& a) {
+    if (a.address.empty() && a.incidents_dir.empty()) return std::unique_ptr<console::Monitor>();
+    console::MonitorOptions options;
+    options.address = a.address;
+    options.incidents_dir = a.incidents_dir;
+    options.version = SUREFOOT_VERSION;
+    options.say = [](std::string_view text) { note(std::string(text)); };
+    auto monitor = console::Monitor::open(std::move(options));
+    if (monitor && !a.address.empty()) note(fmt::format("look at it with: surefoot top --socket {}", (*monitor)->address()));
+    return monitor;
+}
+
 int run_walk_command(WalkArguments& a, const Context& context) {
     auto request = to_request(a);
     if (!request) return misuse(request.error());
-    auto outcome = app::run_walk(*request, terminal_progress(context));
+    if (!a.watch.address.empty()) {
+        if (const auto address = console::parse_address(a.watch.address); !address) return misuse(address.error());
+    }
+    auto monitor = open_monitor(a.watch);
+    if (!monitor) return fail(monitor.error());
+    app::WalkWatch watch;
+    Progress progress = terminal_progress(context);
+    if (*monitor) {
+        console::watch_with(**monitor, *request, watch);
+        progress.note = [tell = progress.note, m = monitor->get()](std::string_view text) {
+            tell(text);
+            m->add_note(text);
+        };
+    }
+    auto outcome = app::run_walk(*request, progress, watch);
+    monitor->reset();  // what waits to be written is, before the figures are
     end_progress(context);
     if (!outcome) return fail(outcome.error());
     for (const std::string& text : outcome->notes) note(text);
@@ -146,6 +182,7 @@ void add_walk(CLI::App& app, Context& context) {
                     "  surefoot walk town.walk --input devices --seconds 600             (a gamepad or 3D mouse steers)\n"
                     "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
                     "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
+                    "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
                     "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
                     a->json);
     c->add_option("model", r.model_file, "The .walk model (else the one that --config names)");
@@ -201,6 +238,12 @@ void add_walk(CLI::App& app, Context& context) {
     c->add_option("--ledger", r.ledger_file, "CSV, a row a frame");
     c->add_option("--trace", r.trace_file, "A trace that ui.perfetto.dev opens");
     c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html");
+    c->add_option("--monitor", a->watch.address,
+                  "Serve live figures while it walks, for `surefoot status`, `surefoot top` and Prometheus (/metrics): "
+                  "unix:PATH, or 127.0.0.1:PORT (port 0: any)");
+    c->add_option("--incidents", a->watch.incidents_dir,
+                  "Folder in which bursts of misses are written down as they happen: the last minute's ledger and trace; "
+                  "the newest 20, at most 256 MiB");
     c->add_option("--snap", r.snap_dir, "Pictures of what the walk drew: DIR/00000.png, ...; what 256 MiB of memory hold");
     c->add_option("--every", r.snap_every, "A picture every N frames [30]")->check(whole_number_within(1, 1'000'000'000));
     c->add_option("--capture", r.capture_file, "One frame's prepared arrays and cut, for `surefoot replay`");

@@ -1,9 +1,9 @@
 // What the times of one frame record mean, in one place: the ledger, the summary, the trace and the page agree by construction.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
+#include "rt/frame/busy.hpp"
 #include "rt/frame/record.hpp"
 
 namespace surefoot::report {
@@ -19,15 +19,7 @@ inline double slack_us(const rt::FrameRecord& f) { return us_between(f.presented
 /// From when the frame was due (not from when it woke) to its end: comparable with the period.
 inline double frame_ms(const rt::FrameRecord& f) { return us_between(f.due_ns, f.presented_ns) * 1e-3; }
 
-/// CPU time that the frame took of its grid: the frame thread's, and the rasterisers' as spread over their threads. Where a
-/// clock is not known (a GPU, the virtual clock), the wall time of that part less what was stolen.
-inline double busy_ns(const rt::FrameRecord& f, std::uint32_t rasterisers) {
-    const double stolen = static_cast<double>(f.stolen_ns);
-    const double raster_wall = std::max(0.0, static_cast<double>(f.rastered_ns - f.submitted_ns) - stolen);
-    if (f.cpu_ns <= 0) return std::max(0.0, static_cast<double>(f.rastered_ns - f.woken_ns) - stolen);
-    const double raster = f.raster_cpu_ns > 0 ? static_cast<double>(f.raster_cpu_ns) / std::max(1U, rasterisers) : raster_wall;
-    return static_cast<double>(f.cpu_ns) + raster;
-}
+using rt::busy_ns;
 
 /// Wall time spent over the budget that the frame had; 0 where it had none.
 inline double share_of_budget(const rt::FrameRecord& f) {

@@ -1,0 +1,133 @@
+// Live figures of a walk: every record's times and counts, added up on the monitor thread, and whole copies of them for one
+// reader. Neither waits for the other, and the frame thread knows of neither.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "rt/clock/grid.hpp"
+#include "rt/exchange/triple_buffer.hpp"
+#include "rt/frame/record.hpp"
+#include "rt/monitor/histogram.hpp"
+
+namespace surefoot::rt {
+
+/// Upper edges of exact cumulative counts, rising, without doubles: round times from 10 us to 10 s and T/4, T/2, T, 2T.
+class Edges {
+public:
+    static constexpr std::size_t most = 23;
+    Edges() : Edges(16'666'667) {}
+    explicit Edges(std::int64_t period_ns);
+    [[nodiscard]] std::span<const std::int64_t> ns() const { return {edges_ns_.data(), count_}; }
+
+private:
+    std::array<std::int64_t, most> edges_ns_{};
+    std::size_t count_ = 0;
+};
+
+/// Nanoseconds >= 0, or whatever comes (Histogram has a bin for all): lossless, and exact at the edges.
+struct Distribution {
+    Histogram fine;
+    std::array<std::uint64_t, Edges::most + 1> up_to{};  ///< [i]: above edge i-1, at most edge i; the last: above all edges
+
+    void add(const Edges& edges, std::int64_t value_ns);
+    void add_progression(const Edges& edges, std::int64_t first_ns, std::int64_t step_ns, std::uint64_t times);
+};
+
+/// What is kept as a distribution. Every slot is in exactly one of slack and lateness:
+/// slack.count + lateness.count = frames + skipped slots.
+enum class Series : std::uint8_t {
+    wake,             ///< due -> woken
+    prepare,          ///< CPU time of the workers for the set that the frame used
+    select,           ///< woken -> selected
+    submit,           ///< selected -> submitted
+    raster,           ///< submitted -> last fence
+    present,          ///< last fence -> presented
+    frame,            ///< due -> presented
+    slack,            ///< of frames in time: presented -> deadline
+    lateness,         ///< of late frames: deadline -> presented; of a skipped slot: its deadline -> the next frame presented
+    shown_interval,   ///< from one picture shown to the next
+    animation_error,  ///< |shown interval - interval of the times that the poses are of|
+    input_age         ///< of a frame with new reports: stamp of the newest -> submitted
+};
+constexpr std::size_t series_count = 12;
+
+/// One of the last frames, for live views.
+struct RecentFrame {
+    float frame_us = 0, wake_us = 0, slack_us = 0;
+    float used = 0;      ///< of the period, CPU time of frame thread and rasterisers
+    float accuracy = 0;  ///< rad^-1; infinite where all was exact
+    std::uint32_t skipped_before = 0;
+    bool missed = false;
+    Cause cause = Cause::none;
+};
+
+struct TelemetrySetup {
+    std::int64_t period_ns = 16'666'667;
+    LatePolicy late = LatePolicy::lock;
+    std::uint32_t rasterisers = 1;  ///< threads that raster_cpu_ns is spread over
+};
+
+/// Everything that a reader may want, in one plain block (about 220 KiB). The control's bare frames count in bare_frames only.
+struct Figures {
+    static constexpr std::size_t recent_most = 1024;
+
+    TelemetrySetup setup;
+    Edges edges;
+    std::array<Distribution, series_count> series;
+    std::array<std::uint64_t, cause_count> misses{};  ///< by cause; [none] stays 0
+    std::uint64_t frames = 0, skipped_slots = 0, bare_frames = 0;
+    std::uint64_t lost_slots = 0;  ///< whose records did not fit into the ring: of them nothing is known
+    std::uint64_t own_misses = 0, downgraded_slices = 0, slices = 0, switches = 0, triangles = 0;
+    std::uint64_t minor_faults = 0, major_faults = 0, driver_faults = 0, driver_allocations = 0, guard_violations = 0;
+    std::uint64_t input_reports = 0, stopped_frames = 0, floor_frames = 0, continues = 0;
+    std::int64_t stolen_ns = 0, preempted_ns = 0, frame_cpu_ns = 0, raster_cpu_ns = 0;
+    double prepare_cpu_us = 0;
+    FrameRecord last;  ///< newest frame of the walk; meaningless while frames is 0
+    std::array<RecentFrame, recent_most> recent{};
+    std::uint64_t recent_count = 0;  ///< ever; the i-th is recent[i % recent_most]
+
+    [[nodiscard]] const Distribution& of(Series s) const { return series[static_cast<std::size_t>(s)]; }
+    [[nodiscard]] std::uint64_t all_misses() const;
+    /// slots = frames + skipped_slots + lost_slots
+    [[nodiscard]] std::uint64_t slots() const { return frames + skipped_slots + lost_slots; }
+    /// 1 / p99 of shown_interval; 0 before the second picture.
+    [[nodiscard]] double one_percent_low_hz() const;
+};
+
+/// One writer (the monitor thread; begin() before it starts) and one reader. About 900 KiB: keep it on the heap.
+class Telemetry {
+public:
+    static constexpr std::int64_t publish_ns = 250'000'000;
+
+    Telemetry() = default;
+    /// A walk begins. Counts go on from the last one; with another period, whose edges are others, they start from zero.
+    void begin(const TelemetrySetup& setup);
+    /// In order. Publishes by itself every publish_ns of the records' own time.
+    void add(const FrameRecord& record);
+    void publish();
+    [[nodiscard]] const Figures& figures() const { return figures_; }
+
+    /// Reader: the newest published figures; they stay until the next call.
+    const Figures& newest();
+
+private:
+    void count(const FrameRecord& f);
+    void add_times(const FrameRecord& f);
+    void add_shown(const FrameRecord& f);
+    void add_recent(const FrameRecord& f);
+    Distribution& of(Series s) { return figures_.series[static_cast<std::size_t>(s)]; }
+
+    Figures figures_;
+    bool follows_ = false;  ///< previous_ is the record just before, and the walk's
+    bool any_ = false;      ///< of this walk
+    std::uint64_t next_slot_ = 0;
+    std::int64_t previous_due_ns_ = 0, previous_shown_ns_ = 0;
+    std::uint64_t reports_seen_ = 0;
+    std::int64_t published_ns_ = 0;
+    TripleBuffer<Figures> published_;
+};
+
+}  // namespace surefoot::rt

@@ -1,0 +1,79 @@
+// Readers for the tests of the server: good ones, and those that misbehave.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "tools/console/address.hpp"
+
+namespace surefoot::test {
+
+/// A folder that goes away at the end.
+class OwnFolder {
+public:
+    OwnFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "surefoot-console-XXXXXX").string();
+        EXPECT_NE(::mkdtemp(name.data()), nullptr);
+        path_ = name;
+    }
+    OwnFolder(const OwnFolder&) = delete;
+    OwnFolder& operator=(const OwnFolder&) = delete;
+    ~OwnFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    [[nodiscard]] std::string operator/(std::string_view name) const { return path_ + "/" + std::string(name); }
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+private:
+    std::string path_;
+};
+
+/// A connection that does what it is told, and nothing else.
+class RawReader {
+public:
+    explicit RawReader(const console::Address& address, int receive_bytes = 0) {
+        const console::SocketAddress to = console::socket_address(address);
+        fd_ = ::socket(to.family(), SOCK_STREAM | SOCK_CLOEXEC, 0);
+        if (receive_bytes > 0) (void)::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_bytes, sizeof receive_bytes);
+        connected_ = ::connect(fd_, to.get(), to.length) == 0;
+    }
+    RawReader(RawReader&& other) noexcept : fd_(std::exchange(other.fd_, -1)), connected_(other.connected_) {}
+    RawReader(const RawReader&) = delete;
+    RawReader& operator=(const RawReader&) = delete;
+    ~RawReader() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    [[nodiscard]] bool connected() const { return connected_; }
+    bool say(std::string_view text) {
+        return ::send(fd_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
+    }
+    /// All until the other side closes, or `timeout_ms` without a byte.
+    std::string listen(int timeout_ms = 3000) {
+        std::string all;
+        std::array<char, 65536> part{};
+        for (;;) {
+            pollfd p{fd_, POLLIN, 0};
+            if (::poll(&p, 1, timeout_ms) <= 0) return all + "(silence)";
+            const ssize_t got = ::read(fd_, part.data(), part.size());
+            if (got <= 0) return all;
+            all.append(part.data(), static_cast<std::size_t>(got));
+        }
+    }
+
+private:
+    int fd_ = -1;
+    bool connected_ = false;
+};
+
+}  // namespace surefoot::test

@@ -1,0 +1,220 @@
+// The Prometheus page and the status page: strict form, base units, monotone counters, bounded labels, true figures.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+
+#include "rt/threads/capability.hpp"
+#include "tests/report/exposition.hpp"
+#include "tools/report/monitor.hpp"
+
+namespace surefoot::report {
+namespace {
+
+constexpr std::int64_t period_30_ns = 33'333'333;
+
+rt::FrameRecord monitored_frame(std::uint64_t i, bool late) {
+    rt::FrameRecord f;
+    f.frame = f.slot = i;
+    f.due_ns = 1'000'000'000 + static_cast<std::int64_t>(i) * period_30_ns;
+    f.deadline_ns = f.due_ns + period_30_ns;
+    f.woken_ns = f.due_ns + 50'000;
+    f.selected_ns = f.woken_ns + 400'000;
+    f.submitted_ns = f.selected_ns + 6'000'000;
+    f.rastered_ns = f.submitted_ns + (late ? 30'000'000 : 12'000'000);
+    f.presented_ns = f.rastered_ns + 100'000;
+    f.cpu_ns = 5'000'000;
+    f.raster_cpu_ns = 20'000'000;
+    f.missed = late;
+    f.own_miss = late;
+    f.cause = late ? rt::Cause::raster : rt::Cause::none;
+    f.budget_us = 26'000;
+    f.actual_us = 18'000;
+    f.accuracy = 250;
+    f.prepare_cpu_us = 3000;
+    f.switches = 4;
+    f.slices = 6;
+    f.downgraded_slices = late ? 2 : 0;
+    return f;
+}
+
+class MonitorPages : public ::testing::Test {
+protected:
+    MonitorPages() {
+        telemetry_->begin({period_30_ns, rt::LatePolicy::lock, 2});
+        page_.figures = &telemetry_->figures();
+        page_.version = "1.2.3";
+        page_.state = ServiceState::walking;
+        page_.walk.model = "town.walk";
+        page_.walk.setup = telemetry_->figures().setup;
+        page_.process = rt::read_process();
+    }
+    void run(int frames, int every_late) {
+        for (int i = 0; i < frames; ++i) telemetry_->add(monitored_frame(next_++, every_late > 0 && i % every_late == 0));
+    }
+    test::Exposed scrape() {
+        test::Exposed e = test::ExpositionReader::read(prometheus_text(page_));
+        for (const std::string& problem : e.problems) ADD_FAILURE() << problem;
+        return e;
+    }
+    std::unique_ptr<rt::Telemetry> telemetry_ = std::make_unique<rt::Telemetry>();
+    MonitorPage page_;
+    std::uint64_t next_ = 0;
+};
+
+TEST(Exposition, TheReaderIsStrict) {
+    const auto bad = [](const std::string& text) { return !test::ExpositionReader::read(text).problems.empty(); };
+    const std::string head = "# HELP x_total Some words here.\n# TYPE x_total counter\n";
+    EXPECT_FALSE(bad(head + "x_total 1\n"));
+    EXPECT_TRUE(bad(head + "x_total 1"));
+    EXPECT_TRUE(bad(head + "x_total -1\n"));
+    EXPECT_TRUE(bad(head + "x_total one\n"));
+    EXPECT_TRUE(bad(head + "x_total 1\nx_total 1\n"));
+    EXPECT_TRUE(bad(head + "y_total 1\n"));
+    EXPECT_TRUE(bad(head));
+    EXPECT_TRUE(bad("x_total 1\n"));
+    EXPECT_TRUE(bad("# HELP x Some words here.\n# TYPE x counter\nx 1\n")) << "a counter without _total";
+    EXPECT_TRUE(bad("# HELP x_total Some words here.\n# TYPE x_total gauge\nx_total 1\n"));
+    EXPECT_TRUE(bad(head + "x_total{a=\"b} 1\n"));
+    EXPECT_TRUE(bad(head + "x_total{1a=\"b\"} 1\n"));
+    const std::string h = "# HELP h Some words here.\n# TYPE h histogram\n";
+    EXPECT_FALSE(bad(h + "h_bucket{le=\"1\"} 1\nh_bucket{le=\"+Inf\"} 2\nh_sum 3\nh_count 2\n"));
+    EXPECT_TRUE(bad(h + "h_bucket{le=\"1\"} 3\nh_bucket{le=\"+Inf\"} 2\nh_sum 3\nh_count 2\n")) << "not cumulative";
+    EXPECT_TRUE(bad(h + "h_bucket{le=\"1\"} 1\nh_sum 3\nh_count 1\n")) << "no +Inf";
+    EXPECT_TRUE(bad(h + "h_bucket{le=\"1\"} 1\nh_bucket{le=\"+Inf\"} 2\nh_sum 3\nh_count 1\n"));
+    EXPECT_TRUE(bad(h + "h_bucket{le=\"2\"} 1\nh_bucket{le=\"1\"} 1\nh_bucket{le=\"+Inf\"} 2\nh_sum 3\nh_count 2\n"));
+}
+
+TEST_F(MonitorPages, AreStrictBeforeTheFirstFrameAndAfter) {
+    scrape();
+    run(300, 50);
+    scrape();
+    page_.walk.renderer = "llvmpipe (\"LLVM\" 15\\0)\nsecond line";
+    page_.input.live = true;
+    page_.input.devices = 2;
+    const auto e = scrape();
+    EXPECT_EQ(e.at("surefoot_input_devices"), 2);
+}
+
+TEST_F(MonitorPages, NamesHaveBaseUnits) {
+    run(10, 0);
+    const std::set<std::string> without_unit = {
+        "surefoot_state",          "surefoot_degraded",      "surefoot_standing_still",
+        "surefoot_emergency_stop", "surefoot_input_devices", "process_open_fds",
+        "process_max_fds",         "process_threads",        "surefoot_monitor_open_readers"};
+    page_.input.live = true;
+    for (const auto& [name, family] : scrape().families) {
+        bool unit = without_unit.contains(name);
+        for (const char* ending : {"_total", "_seconds", "_bytes", "_ratio", "_info", "_hertz", "_per_radian", "_frames"})
+            unit = unit || name.ends_with(ending);
+        EXPECT_TRUE(unit) << name;
+        for (const char* scaled : {"_ms_", "_us_", "_ns_", "_milli", "_micro", "_kb_", "_mb_"})
+            EXPECT_EQ((name + "_").find(scaled), std::string::npos) << name;
+        EXPECT_TRUE(name.starts_with("surefoot_") || name.starts_with("process_")) << name;
+        EXPECT_TRUE(family.help.ends_with(".") || family.help.ends_with("done.")) << name << ": HELP is a sentence";
+    }
+}
+
+TEST_F(MonitorPages, CountersNeverGoBackAndNoSeriesVanishes) {
+    run(1, 0);
+    auto before = scrape();
+    std::mt19937 random(7);
+    for (int i = 0; i < 20; ++i) {
+        run(static_cast<int>(random() % 40), static_cast<int>(random() % 5));
+        auto after = scrape();
+        test::expect_monotone(before, after);
+        before = std::move(after);
+    }
+}
+
+TEST_F(MonitorPages, SayWhatHappened) {
+    run(100, 10);
+    const auto e = scrape();
+    EXPECT_EQ(e.at("surefoot_frames_total"), 100);
+    EXPECT_EQ(e.at("surefoot_misses_total{cause=\"raster\"}"), 10);
+    EXPECT_EQ(e.at("surefoot_misses_total{cause=\"stolen\"}"), 0);
+    EXPECT_EQ(e.at("surefoot_own_misses_total"), 10);
+    EXPECT_EQ(e.at("surefoot_downgraded_slices_total"), 20);
+    EXPECT_EQ(e.at("surefoot_switches_total"), 400);
+    // On the edge itself, in full: T/4, T/2, T, 2T, of frames of 18.55 and 36.55 ms.
+    EXPECT_EQ(e.at("surefoot_frame_seconds_bucket{le=\"0.008333333\"}"), 0);
+    EXPECT_EQ(e.at("surefoot_frame_seconds_bucket{le=\"0.016666666\"}"), 0);
+    EXPECT_EQ(e.at("surefoot_frame_seconds_bucket{le=\"0.033333333\"}"), 90);
+    EXPECT_EQ(e.at("surefoot_frame_seconds_bucket{le=\"0.066666666\"}"), 100);
+    EXPECT_EQ(e.at("surefoot_frame_seconds_count"), 100);
+    EXPECT_NEAR(e.at("surefoot_frame_seconds_sum"), 90 * 0.01855 + 10 * 0.03655, 1e-9);
+    EXPECT_EQ(e.at("surefoot_phase_seconds_bucket{phase=\"wake\",le=\"0.00005\"}"), 100);
+    EXPECT_EQ(e.at("surefoot_slack_seconds_count") + e.at("surefoot_lateness_seconds_count"), 100);
+    EXPECT_NEAR(e.at("surefoot_budget_used_ratio"), (5e6 + 20e6 / 2) / period_30_ns, 1e-6);
+    EXPECT_NEAR(e.at("surefoot_budget_seconds"), 0.026, 1e-9);
+    EXPECT_EQ(e.at("surefoot_accuracy_per_radian"), 250);
+    EXPECT_NEAR(e.at("surefoot_frame_time_quantile_seconds{quantile=\"1\"}"), 0.03655, 1e-12);
+    EXPECT_EQ(e.at("surefoot_state{state=\"walking\"}"), 1);
+    EXPECT_EQ(e.at("surefoot_state{state=\"failed\"}"), 0);
+    EXPECT_GT(e.at("process_resident_memory_bytes"), 1e6);
+    EXPECT_NE(e.families.at("surefoot_one_percent_low_hertz").help.find("1 / "), std::string::npos) << "its formula";
+    EXPECT_NE(e.families.at("surefoot_animation_error_seconds").help.find("due[n]"), std::string::npos) << "its formula";
+}
+
+TEST_F(MonitorPages, ExactPicturesHaveNoErrorAndUnknownIsNotZero) {
+    auto f = monitored_frame(next_++, false);
+    f.accuracy = std::numeric_limits<float>::infinity();
+    telemetry_->add(f);
+    EXPECT_TRUE(std::isinf(scrape().at("surefoot_accuracy_per_radian")));
+    EXPECT_FALSE(scrape().samples.contains("surefoot_last_frame_age_seconds"));
+    page_.process = rt::ProcessFigures();
+    const auto e = scrape();
+    EXPECT_FALSE(e.samples.contains("process_resident_memory_bytes"));
+    EXPECT_FALSE(e.samples.contains("surefoot_host_steal_seconds_total"));
+    const auto j = nlohmann::json::parse(status_json(page_));
+    EXPECT_TRUE(j["now"]["accuracy"].is_null());
+    EXPECT_TRUE(j["now"]["exact"].get<bool>());
+    EXPECT_TRUE(j["process"]["rss_bytes"].is_null());
+}
+
+TEST_F(MonitorPages, LabelsAreBoundedWhateverTheMachineLacks) {
+    rt::Capabilities c;  // as little as there can be
+    c.rt_runtime_us = 100'000;
+    std::set<std::string_view> named;
+    for (const rt::Lack& lack : rt::find_lacking(c, 80)) {
+        page_.degraded.push_back({lack.what, lack.remedy});
+        EXPECT_NE(degraded_reason({lack.what, lack.remedy}), "other") << lack.what;
+        named.insert(degraded_reason({lack.what, ""}));
+    }
+    EXPECT_EQ(named.size(), 4U) << "FIFO, memory, core, throttling: each has its own word";
+    for (const auto& [what, reason] : {std::pair{"real-time scheduling is switched off", "switched_off"},
+                                       {"the frame core 1 is not isolated", "isolated_core"},
+                                       {"thread census: sf-frame: missing", "census"},
+                                       {"no cost table of this machine", "cost_table"},
+                                       {"a sanitizer build: allocations are not guarded", "sanitizer"},
+                                       {"something that nobody has heard of", "other"}})
+        EXPECT_EQ(degraded_reason({what, ""}), reason);
+    for (int i = 0; i < 100; ++i) page_.degraded.push_back({"trouble number " + std::to_string(i), ""});
+    const auto e = scrape();
+    EXPECT_EQ(e.values_of.at("surefoot_degraded/reason").size(), degraded_reasons().size());
+    EXPECT_EQ(e.at("surefoot_degraded{reason=\"fifo\"}"), 1);
+    EXPECT_EQ(e.at("surefoot_degraded{reason=\"census\"}"), 0);
+    for (const auto& [label, values] : e.values_of) EXPECT_LE(values.size(), 24U) << label;
+}
+
+TEST_F(MonitorPages, TheStatusPageIsOneLineOfJsonThatAgreesWithTheMetrics) {
+    run(500, 20);
+    const std::string text = status_json(page_);
+    EXPECT_EQ(text.find('\n'), text.size() - 1);
+    const auto j = nlohmann::json::parse(text);
+    const auto e = scrape();
+    EXPECT_EQ(j["totals"]["frames"].get<double>(), e.at("surefoot_frames_total"));
+    EXPECT_EQ(j["totals"]["misses"].get<int>(), 25);
+    EXPECT_EQ(j["totals"]["miss_causes"]["raster"].get<int>(), 25);
+    EXPECT_NEAR(j["times"]["frame_ms"]["max"].get<double>(), 36.55, 1e-9);
+    EXPECT_EQ(j["recent"]["frames"].get<int>(), 301) << "ten seconds at 30 Hz";
+    EXPECT_NEAR(j["recent"]["slack_ms"]["min"].get<double>(), 33.333333 - 36.55, 1e-3);
+    EXPECT_EQ(j["recent"]["frame_ms_skipped_missed"].size(), 301U);
+    EXPECT_EQ(j["version"], "1.2.3");
+}
+
+}  // namespace
+}  // namespace surefoot::report

@@ -1,0 +1,35 @@
+// Where a monitor is found: a Unix socket, or a port on loopback. Written unix:/PATH (or /PATH), 127.0.0.1:9464, [::1]:9464.
+#pragma once
+
+#include <sys/socket.h>
+
+#include <cstdint>
+#include <string>
+
+#include "rt/base/result.hpp"
+
+namespace surefoot::console {
+
+struct Address {
+    std::string socket_path;  ///< empty: TCP
+    std::string host;         ///< a numeric address on loopback
+    std::uint16_t port = 0;   ///< 0: any free one (a server only)
+    [[nodiscard]] std::string text() const;
+};
+
+/// Errors: neither of the two forms; a socket's path that is too long; a host that others than this machine could reach.
+Result<Address> parse_address(const std::string& text);
+
+/// Where the service listens unless it is told otherwise: surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot.
+std::string default_address();
+
+/// As the system calls want it.
+struct SocketAddress {
+    sockaddr_storage storage{};
+    socklen_t length = 0;
+    [[nodiscard]] const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
+    [[nodiscard]] int family() const { return storage.ss_family; }
+};
+SocketAddress socket_address(const Address& address);
+
+}  // namespace surefoot::console

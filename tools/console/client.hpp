@@ -1,0 +1,16 @@
+// Asks a monitor for a page, and never waits longer than it was told to.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "rt/base/result.hpp"
+#include "tools/console/address.hpp"
+
+namespace surefoot::console {
+
+/// The body of GET `path`. Errors name the place and the remedy: nobody there, no permission, no answer in time, another program.
+Result<std::string> fetch(const Address& address, std::string_view path, std::int64_t timeout_ms = 3000);
+
+}  // namespace surefoot::console

@@ -1,0 +1,174 @@
+// Folders written under a temporary name and renamed; the oldest make room.
+#include "tools/console/incidents.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "rt/base/file.hpp"
+#include "rt/threads/placement.hpp"
+#include "tools/report/report.hpp"
+
+namespace surefoot::console {
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view folder_prefix = "incident-", half_prefix = ".incident-";
+
+std::uint64_t bytes_below(const fs::path& folder) {
+    std::uint64_t bytes = 0;
+    std::error_code problem;
+    for (fs::recursive_directory_iterator at(folder, problem), end; !problem && at != end; at.increment(problem)) {
+        std::error_code vanished;
+        const auto size = at->is_regular_file(vanished) ? at->file_size(vanished) : 0;
+        if (!vanished) bytes += size;
+    }
+    return bytes;
+}
+
+/// Names in `dir` that start with `prefix`, by rising name: by rising time.
+std::vector<fs::path> folders_in(const std::string& dir, std::string_view prefix) {
+    std::vector<fs::path> found;
+    std::error_code problem;
+    for (fs::directory_iterator at(dir, problem), end; !problem && at != end; at.increment(problem)) {
+        std::error_code vanished;
+        if (at->path().filename().string().starts_with(prefix) && at->is_directory(vanished)) found.push_back(at->path());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+/// The oldest go until one more folder of `coming` bytes is within the limits.
+void make_room(const std::string& dir, std::uint64_t coming, const IncidentLimits& limits) {
+    const auto folders = folders_in(dir, folder_prefix);
+    std::uint64_t bytes = coming;
+    for (const fs::path& folder : folders) bytes += bytes_below(folder);
+    std::size_t left = folders.size();
+    for (const fs::path& folder : folders) {
+        if (left + 1 <= limits.folders && bytes <= limits.bytes) return;
+        bytes -= std::min(bytes, bytes_below(folder));
+        std::error_code ignored;
+        fs::remove_all(folder, ignored);
+        --left;
+    }
+}
+
+std::string summary_json(const rt::BlackBox::Incident& incident, std::string_view time) {
+    std::map<std::string, std::uint64_t> causes;
+    std::uint64_t frames = 0, misses = 0, own = 0, skipped = 0;
+    std::int64_t worst_ns = 0;
+    for (const rt::FrameRecord& f : incident.records) {
+        if (f.control) continue;
+        ++frames;
+        skipped += f.skipped_before;
+        own += f.own_miss ? 1 : 0;
+        worst_ns = std::max(worst_ns, f.presented_ns - f.due_ns);
+        if (!f.missed) continue;
+        ++misses;
+        ++causes[std::string(rt::cause_of(f))];
+    }
+    const nlohmann::ordered_json j = {{"time", time},
+                                      {"burst", incident.number},
+                                      {"first_frame", incident.first_frame},
+                                      {"period_ms", static_cast<double>(incident.period_ns) * 1e-6},
+                                      {"frames", frames},
+                                      {"skipped", skipped},
+                                      {"misses", misses},
+                                      {"own_misses", own},
+                                      {"miss_causes", causes},
+                                      {"worst_frame_ms", static_cast<double>(worst_ns) * 1e-6},
+                                      {"suppressed_so_far", incident.suppressed},
+                                      {"ledger", "ledger.csv"},
+                                      {"trace", "trace.json"}};
+    return j.dump(2) + "\n";
+}
+
+Result<void> write_files(const fs::path& folder, const rt::BlackBox::Incident& incident, std::string_view time) {
+    if (auto ok = report::write_ledger(folder / "ledger.csv", incident.records); !ok) return ok;
+    if (auto ok = report::write_trace(folder / "trace.json", incident.records); !ok) return ok;
+    return write_text(folder / "incident.json", summary_json(incident, time));
+}
+
+}  // namespace
+
+Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::Incident& incident, const IncidentLimits& limits,
+                                   std::int64_t unix_s) {
+    const std::string time = fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(static_cast<std::time_t>(unix_s)));
+    const std::string name = fmt::format("{}{}-{:06}", folder_prefix, time, incident.number);
+    const fs::path half = fs::path(dir) / ("." + name), whole = fs::path(dir) / name;
+    std::error_code problem;
+    fs::create_directories(half, problem);
+    if (problem)
+        return Error{half.string(), "cannot be made: " + problem.message(),
+                     "see that its disk has room, and who may write there"};
+    const auto give_up = [&](const Error& error) {
+        std::error_code ignored;
+        fs::remove_all(half, ignored);
+        return error;
+    };
+    if (auto ok = write_files(half, incident, time); !ok) return give_up(ok.error());
+    const std::uint64_t bytes = bytes_below(half);
+    if (bytes > limits.bytes)
+        return give_up({half.string(), fmt::format("would take {} bytes, {} are allowed", bytes, limits.bytes), "allow more"});
+    make_room(dir, bytes, limits);
+    fs::rename(half, whole, problem);
+    if (problem) return give_up({whole.string(), "cannot be renamed: " + problem.message(), "look at the disk that it is on"});
+    return whole.string();
+}
+
+IncidentWriter::IncidentWriter(std::string dir, rt::BlackBox& box, const IncidentLimits& limits,
+                               std::function<void(std::string_view)> say)
+    : dir_(std::move(dir)), box_(box), limits_(limits), say_(std::move(say)) {}
+
+Result<std::unique_ptr<IncidentWriter>> IncidentWriter::start(const std::string& dir, rt::BlackBox& box,
+                                                              const IncidentLimits& limits,
+                                                              std::function<void(std::string_view)> say) {
+    std::error_code problem;
+    fs::create_directories(dir, problem);
+    if (problem) return Error{dir, "cannot be made: " + problem.message(), "name a folder that can be written"};
+    if (auto ok = probe_writable((fs::path(dir) / "incident.json").string()); !ok) return ok.error();
+    for (const fs::path& half : folders_in(dir, half_prefix)) fs::remove_all(half, problem);
+    std::unique_ptr<IncidentWriter> writer(new IncidentWriter(dir, box, limits, std::move(say)));
+    writer->thread_ = std::thread([w = writer.get()] { w->run(); });
+    return writer;
+}
+
+IncidentWriter::~IncidentWriter() {
+    box_.stop();
+    if (thread_.joinable()) thread_.join();
+}
+
+void IncidentWriter::run() {
+    if (auto own = rt::read_thread(0)) {
+        own->name = "sf-incidents";
+        (void)rt::restore_thread(*own);
+    }
+    while (const rt::BlackBox::Incident* incident = box_.wait()) {
+        write(*incident);
+        box_.done();
+    }
+}
+
+void IncidentWriter::write(const rt::BlackBox::Incident& incident) {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    const auto folder = write_incident(dir_, incident, limits_, std::chrono::duration_cast<std::chrono::seconds>(now).count());
+    if (folder) {
+        written_.fetch_add(1, std::memory_order_relaxed);
+        if (say_) say_(fmt::format("a burst of misses from frame {} on: {}", incident.first_frame, *folder));
+        failing_ = false;
+        return;
+    }
+    failed_.fetch_add(1, std::memory_order_relaxed);
+    if (!failing_ && say_) say_("a burst of misses could not be written down: " + folder.error().text());
+    failing_ = true;
+}
+
+}  // namespace surefoot::console

@@ -1,0 +1,55 @@
+// Incidents on disk: what the black box hands over, as a ledger and a trace in a folder of its own, within bounds of number and
+// bytes. Written by an ordinary thread; a full disk is said once and survived.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "rt/base/result.hpp"
+#include "rt/monitor/black_box.hpp"
+
+namespace surefoot::console {
+
+struct IncidentLimits {
+    std::size_t folders = 20;             ///< the oldest is removed for a new one
+    std::uint64_t bytes = 256ULL << 20U;  ///< of all of them together; an incident that alone is larger is not kept
+};
+
+/// DIR/incident-20260102T030405Z-000017/{incident.json, ledger.csv, trace.json}: a folder is there whole or not at all. Others'
+/// files in DIR are left alone.
+class IncidentWriter {
+public:
+    /// Makes the folder where it is missing, and clears away what an earlier process left half-written. Its thread, sf-incidents,
+    /// inherits the caller's place. say: what somebody should know, once; on that thread. `box` must outlive it.
+    static Result<std::unique_ptr<IncidentWriter>> start(const std::string& dir, rt::BlackBox& box, const IncidentLimits& limits,
+                                                         std::function<void(std::string_view)> say);
+    ~IncidentWriter();  ///< what waits is written first
+    IncidentWriter(const IncidentWriter&) = delete;
+    IncidentWriter& operator=(const IncidentWriter&) = delete;
+
+    [[nodiscard]] std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
+    [[nodiscard]] std::uint64_t failed() const { return failed_.load(std::memory_order_relaxed); }
+
+private:
+    IncidentWriter(std::string dir, rt::BlackBox& box, const IncidentLimits& limits, std::function<void(std::string_view)> say);
+    void run();
+    void write(const rt::BlackBox::Incident& incident);
+
+    std::string dir_;
+    rt::BlackBox& box_;
+    IncidentLimits limits_;
+    std::function<void(std::string_view)> say_;
+    bool failing_ = false;
+    std::atomic<std::uint64_t> written_{0}, failed_{0};
+    std::thread thread_;
+};
+
+/// One incident into `dir`, within the limits; the new folder's name. `unix_s`: now, seconds since 1970.
+Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::Incident& incident, const IncidentLimits& limits,
+                                   std::int64_t unix_s);
+
+}  // namespace surefoot::console

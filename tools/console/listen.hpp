@@ -1,0 +1,21 @@
+// Inside the console: a listening socket, or why there is none.
+#pragma once
+
+#include <cstdint>
+
+#include "rt/base/result.hpp"
+#include "tools/console/address.hpp"
+
+namespace surefoot::console {
+
+struct Listener {
+    int fd = -1;
+    Address address;                 ///< with the port that was given
+    std::uint64_t socket_inode = 0;  ///< of the socket's file
+};
+/// A socket that a dead process left is replaced; one that somebody answers on is an Error.
+Result<Listener> open_listener(const Address& address);
+/// The inode of a path; 0 where there is none.
+std::uint64_t inode_of(const std::string& path);
+
+}  // namespace surefoot::console

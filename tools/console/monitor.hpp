@@ -1,0 +1,96 @@
+// The monitor of a service: takes every record on the monitor thread, keeps the live figures, serves them, and writes incidents
+// down. What the daemon and `walk --monitor` construct.
+//
+//   monitor thread ──► figures ──► (latest copy) ──► sf-console: /metrics, /status.json   ordinary threads;
+//                 └──► black box ──► (hand-over) ──► sf-incidents: folders on disk        the first waits for none
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "rt/base/result.hpp"
+#include "rt/monitor/black_box.hpp"
+#include "rt/monitor/telemetry.hpp"
+#include "tools/console/incidents.hpp"
+#include "tools/console/server.hpp"
+#include "tools/report/monitor.hpp"
+
+namespace surefoot::console {
+
+struct MonitorOptions {
+    std::string address;        ///< see parse_address(); empty: nobody can look
+    std::string incidents_dir;  ///< empty: incidents are counted, and not written
+    std::string version;
+    rt::BlackBoxOptions black_box;
+    IncidentLimits incidents;
+    ServerLimits server;
+    std::function<void(std::string_view)> say;  ///< something to be told, once; on sf-incidents
+};
+
+/// Wired to a walk by watch_with() (watch.hpp). Lives as long as the service, over many walks; counters go on from walk to walk (with another rate they start anew, as after a
+/// restart). Open it from a neutral thread, before memory is locked: its threads inherit the caller's place.
+class Monitor {
+public:
+    /// Errors: an address that is none, is in use or may not be had; a folder that cannot be written.
+    static Result<std::unique_ptr<Monitor>> open(MonitorOptions options);
+    ~Monitor();  ///< after the last record; what waits to be written is
+    Monitor(const Monitor&) = delete;
+    Monitor& operator=(const Monitor&) = delete;
+
+    /// Any thread but the monitor's, in any order:
+    void begin_walk(const report::MonitoredWalk& walk);  ///< before its first record
+    void end_walk();                                     ///< after its last record
+    void set_state(report::ServiceState state);
+    void set_degraded(std::vector<report::Degraded> degraded);
+    void add_degraded(const report::Degraded& degraded);
+    void set_input(const report::MonitoredInput& input);
+    void add_note(std::string_view text);  ///< told to the user: the last few are shown
+
+    /// The monitor thread: every record, in order. Never waits for a reader or for a disk.
+    void on_record(const rt::FrameRecord& record);
+
+    /// Where it listens, the port that was given included; empty where it does not.
+    [[nodiscard]] std::string address() const;
+    /// The pages, as a reader gets them; one caller at a time.
+    [[nodiscard]] std::optional<Server::Page> page(std::string_view path);
+
+private:
+    explicit Monitor(MonitorOptions options);
+    void take_walk();
+    const report::MonitorPage& fill_page(bool with_threads);
+
+    MonitorOptions options_;
+    // The monitor thread's, and (the published copy) the readers'.
+    rt::Telemetry telemetry_;
+    rt::BlackBox black_box_;
+    std::atomic<bool> walk_waits_{false};  ///< setup_ is to be taken before the next record
+    std::atomic<std::int64_t> cpu_ns_{0};  ///< of all walks' monitor threads
+    std::int64_t cpu_read_ns_ = 0;         ///< record time
+    std::int64_t cpu_seen_ns_ = 0;
+
+    std::mutex facts_mutex_;  ///< of what callers set and readers copy; never taken for a record, but for a walk's first
+    rt::TelemetrySetup setup_;
+    report::MonitorPage facts_;
+    struct Note {
+        std::int64_t at_ns = 0;
+        std::string text;
+    };
+    std::deque<Note> notes_;
+
+    // The readers'.
+    struct Cached;
+    std::unique_ptr<Cached> cached_;
+    std::int64_t started_ns_ = 0;
+
+    std::unique_ptr<IncidentWriter> writer_;
+    std::unique_ptr<Server> server_;  ///< last: its thread uses all the others
+};
+
+}  // namespace surefoot::console

@@ -1,0 +1,165 @@
+// Words, colours, bars and the frame chart.
+#include "tools/console/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace surefoot::console {
+
+namespace {
+
+using nlohmann::json;
+
+const json* find_at(const json& j, const char* pointer) {
+    const json::json_pointer at(pointer);
+    return j.contains(at) ? &j.at(at) : nullptr;
+}
+
+struct Column {
+    double ms = 0;
+    bool missed = false, skipped = false;
+};
+
+/// A column a slot, the last `most` of them.
+std::vector<Column> columns_of(const json& frames, std::size_t most) {
+    std::vector<Column> columns;
+    if (!frames.is_array()) return columns;
+    for (const json& f : frames) {
+        if (!f.is_array() || f.size() != 3 || !f[0].is_number() || !f[1].is_number_unsigned() || !f[2].is_boolean()) continue;
+        const auto gap = std::min<std::uint64_t>(f[1].get<std::uint64_t>(), most);
+        for (std::uint64_t i = 0; i < gap; ++i) columns.push_back({0, false, true});
+        columns.push_back({f[0].get<double>(), f[2].get<bool>(), false});
+    }
+    if (columns.size() > most) columns.erase(columns.begin(), columns.end() - static_cast<std::ptrdiff_t>(most));
+    return columns;
+}
+
+}  // namespace
+
+double number_at(const json& j, const char* pointer) {
+    const json* found = find_at(j, pointer);
+    return found != nullptr && found->is_number() ? found->get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string text_at(const json& j, const char* pointer) {
+    const json* found = find_at(j, pointer);
+    return found != nullptr && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+bool flag_at(const json& j, const char* pointer) {
+    const json* found = find_at(j, pointer);
+    return found != nullptr && found->is_boolean() && found->get<bool>();
+}
+
+std::string grouped(double whole) {
+    if (!std::isfinite(whole)) return "-";
+    std::string digits = fmt::format("{:.0f}", std::abs(whole));
+    for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
+        digits.insert(static_cast<std::size_t>(at), " ");
+    return (whole < 0 ? "-" : "") + digits;
+}
+
+std::string short_number(double value) {
+    if (!std::isfinite(value)) return "-";
+    const double size = std::abs(value);
+    if (size >= 1000) return grouped(value);
+    if (size >= 100) return fmt::format("{:.0f}", value);
+    if (size >= 10) return fmt::format("{:.1f}", value);
+    return fmt::format("{:.2f}", value);
+}
+
+std::string duration(double seconds) {
+    if (!std::isfinite(seconds)) return "-";
+    const auto s = static_cast<std::int64_t>(seconds);
+    const std::string clock = fmt::format("{}:{:02}:{:02}", s / 3600 % 24, s / 60 % 60, s % 60);
+    return s >= 86400 ? fmt::format("{} d {}", s / 86400, clock) : clock;
+}
+
+std::string mebibytes(double bytes) { return std::isfinite(bytes) ? fmt::format("{:.0f} MiB", bytes / 1048576.0) : "-"; }
+
+std::string inked(const Look& look, Ink ink, std::string_view text) {
+    constexpr std::array<std::string_view, 6> codes = {"", "1", "2", "32", "33", "31"};
+    if (!look.colour || ink == Ink::plain) return std::string(text);
+    return fmt::format("\033[{}m{}\033[0m", codes[static_cast<std::size_t>(ink)], text);
+}
+
+std::string cut_to(std::string_view line, std::size_t width) {
+    std::string out;
+    std::size_t used = 0;
+    bool styled = false;
+    for (std::size_t i = 0; i < line.size();) {
+        if (line[i] == '\033') {
+            const std::size_t end = std::min(line.find('m', i), line.size() - 1);
+            out += line.substr(i, end - i + 1);
+            styled = line.substr(i, end - i + 1) != "\033[0m";
+            i = end + 1;
+            continue;
+        }
+        std::size_t next = i + 1;
+        while (next < line.size() && (static_cast<unsigned char>(line[next]) & 0xc0U) == 0x80U) ++next;
+        if (used == width) break;
+        out += line.substr(i, next - i);
+        ++used;
+        i = next;
+    }
+    if (styled) out += "\033[0m";
+    return out;
+}
+
+std::size_t places(std::string_view line) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '\033')
+            i = std::min(line.find('m', i), line.size() - 1);
+        else if ((static_cast<unsigned char>(line[i]) & 0xc0U) != 0x80U)
+            ++count;
+    }
+    return count;
+}
+
+std::string share_bar(const Look& look, double share, std::size_t width) {
+    const double cells = std::isfinite(share) ? std::clamp(share, 0.0, 1.0) * static_cast<double>(width) : 0;
+    const auto whole = static_cast<std::size_t>(std::lround(cells));
+    std::string bar;
+    for (std::size_t i = 0; i < width; ++i) bar += look.unicode ? (i < whole ? "█" : "░") : (i < whole ? "#" : "-");
+    return bar;
+}
+
+std::string causes_text(const json& causes) {
+    std::string text;
+    if (!causes.is_object()) return text;
+    for (const auto& [cause, count] : causes.items())
+        if (count.is_number()) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", cause, grouped(count.get<double>()));
+    return text;
+}
+
+std::vector<std::string> frame_chart(const json& frames, double period_ms, const Look& look, std::size_t columns,
+                                     std::size_t rows) {
+    constexpr std::array<std::string_view, 9> blocks = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+    constexpr std::array<std::string_view, 9> plain = {" ", ".", ".", ":", ":", "|", "|", "#", "#"};
+    const std::vector<Column> slots = columns_of(frames, columns);
+    std::vector<std::string> lines;
+    const double row_ms = period_ms / static_cast<double>(rows - 1);
+    for (std::size_t row = rows; row-- > 0;) {
+        std::string line(columns - slots.size(), ' ');
+        for (const Column& c : slots) {
+            if (c.skipped) {
+                line += row == 0 ? inked(look, Ink::bad, look.unicode ? "×" : "x") : " ";
+                continue;
+            }
+            const double filled = std::clamp(c.ms / row_ms - static_cast<double>(row), 0.0, 1.0);
+            const auto eighths = static_cast<std::size_t>(std::lround(filled * 8));
+            const std::string_view block =
+                (look.unicode ? blocks : plain)[row == 0 ? std::max<std::size_t>(eighths, 1) : eighths];
+            line += c.missed && eighths > 0 ? inked(look, Ink::bad, block) : std::string(block);
+        }
+        lines.push_back(std::move(line));
+    }
+    return lines;
+}
+
+}  // namespace surefoot::console

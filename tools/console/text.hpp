@@ -1,0 +1,44 @@
+// Inside the console: numbers out of JSON, words, colours, bars, and lines that end where the screen does.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/console/view.hpp"
+
+namespace surefoot::console {
+
+/// A number at a JSON pointer ("/recent/frame_ms/p50"); NaN where there is none.
+double number_at(const nlohmann::json& j, const char* pointer);
+std::string text_at(const nlohmann::json& j, const char* pointer);
+bool flag_at(const nlohmann::json& j, const char* pointer);
+
+/// "22 620"; "-" for NaN.
+std::string grouped(double whole);
+/// About three digits: "24.1", "0.52", "1 204"; "-" for NaN.
+std::string short_number(double value);
+/// "0:12:34", "3 d 4:05:06"
+std::string duration(double seconds);
+std::string mebibytes(double bytes);
+
+enum class Ink { plain, bold, dim, good, warn, bad };
+std::string inked(const Look& look, Ink ink, std::string_view text);
+
+/// Cut to `width` places of the screen; escape sequences take none, and end with the line.
+std::string cut_to(std::string_view line, std::size_t width);
+/// How many places of the screen it takes.
+std::size_t places(std::string_view line);
+/// `share` 0..1 of `width` places.
+std::string share_bar(const Look& look, double share, std::size_t width);
+
+/// "raster 2, stolen 1"; empty where there are none.
+std::string causes_text(const nlohmann::json& causes);
+
+/// Frames as columns of `rows` lines, newest at the right; the last row but one ends at the period. A skipped slot is a column
+/// too. frames: [[ms, skipped before, missed], …]
+std::vector<std::string> frame_chart(const nlohmann::json& frames, double period_ms, const Look& look, std::size_t columns,
+                                     std::size_t rows);
+
+}  // namespace surefoot::console

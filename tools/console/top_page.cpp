@@ -1,0 +1,190 @@
+// `surefoot top`: the last seconds as a chart of slots, what is left and what is spent, causes, devices, threads.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tools/console/text.hpp"
+
+namespace surefoot::console {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t chart_rows = 5, label_places = 9;
+
+/// How much a total has grown a second; NaN where there is no earlier one, or the service was started anew.
+double rate_of(const json& s, const json& before, double between_s, const char* pointer) {
+    const double now = number_at(s, pointer), then = number_at(before, pointer);
+    return between_s > 0 && now >= then ? (now - then) / between_s : std::nan("");
+}
+
+std::string rate_text(double rate) { return std::isnan(rate) ? "-" : fmt::format("{:.{}f}", rate, rate < 9.95 ? 1 : 0); }
+
+/// `left` and `right` at the two ends of the line.
+std::string spread(const std::string& left, const std::string& right, std::size_t width) {
+    const std::size_t used = places(left) + places(right);
+    return used + 2 <= width ? left + std::string(width - used, ' ') + right : left;
+}
+
+void add_title(const json& s, const Look& look, std::vector<std::string>& lines) {
+    const std::string state = text_at(s, "/state");
+    const double age = number_at(s, "/last_frame_age_s");
+    const bool stalled = state == "walking" && age > 2;
+    const std::string what = text_at(s, "/walk/model");
+    std::string left = inked(look, Ink::bold, what.empty() ? "surefoot" : what.substr(what.rfind('/') + 1));
+    if (!what.empty())
+        left += fmt::format("  {:.4g} Hz {}, {}, {}", number_at(s, "/walk/rate_hz"), text_at(s, "/walk/late"),
+                            text_at(s, "/walk/selector"), text_at(s, "/walk/backend"));
+    const std::string right = stalled ? inked(look, Ink::bad, fmt::format("no frame for {:.0f} s", age))
+                                      : inked(look, state == "walking" ? Ink::good : Ink::warn, state);
+    lines.push_back(spread(left, right + "  up " + duration(number_at(s, "/up_s")), look.width));
+}
+
+void add_totals(const json& s, const json& before, double between_s, const Look& look, std::vector<std::string>& lines) {
+    const auto alarm = [&](const char* pointer) {
+        const double value = number_at(s, pointer);
+        return inked(look, value > 0 ? Ink::bad : Ink::plain, grouped(value));
+    };
+    const std::string left = fmt::format("frames {}  skipped {}  misses {} (own {})", grouped(number_at(s, "/totals/frames")),
+                                         alarm("/totals/skipped"), alarm("/totals/misses"), alarm("/totals/own_misses"));
+    lines.push_back(spread(left, rate_text(rate_of(s, before, between_s, "/totals/frames")) + " frames/s", look.width));
+    std::string lacks;
+    if (s.contains("degraded") && s["degraded"].is_array())
+        for (const json& d : s["degraded"]) lacks += (lacks.empty() ? "" : ", ") + text_at(d, "/reason");
+    if (!lacks.empty())
+        lines.push_back(inked(look, Ink::warn, "not fully real-time: " + lacks + "  (surefoot status says more)"));
+}
+
+void add_chart(const json& s, const Look& look, std::vector<std::string>& lines) {
+    const double period_ms = number_at(s, "/walk/period_ms");
+    if (!(period_ms > 0) || !(number_at(s, "/recent/frames") > 0)) {
+        lines.push_back("no frames yet");
+        return;
+    }
+    const auto ms = [&](const char* q) { return short_number(number_at(s, fmt::format("/recent/frame_ms/{}", q).c_str())); };
+    lines.push_back(fmt::format("{}  p50 {}  p99 {}  max {} ms, last {:.0f} s", inked(look, Ink::bold, "frame time"), ms("p50"),
+                                ms("p99"), ms("max"), number_at(s, "/recent/seconds")));
+    const std::size_t columns = look.width > label_places + 10 ? look.width - label_places : 10;
+    const auto chart = frame_chart(s["recent"]["frame_ms_skipped_missed"], period_ms, look, columns, chart_rows);
+    for (std::size_t i = 0; i < chart.size(); ++i) {
+        // The second line from above ends at the deadline.
+        std::string label(label_places, ' ');
+        if (i == 1) label = fmt::format("{:>5} ms ", short_number(period_ms));
+        if (i == 3) label = fmt::format("{:>5} ms ", short_number(period_ms / 2));
+        lines.push_back(inked(look, Ink::dim, label) + chart[i]);
+    }
+}
+
+void add_gauges(const json& s, const Look& look, std::vector<std::string>& lines) {
+    if (!(number_at(s, "/recent/frames") > 0)) return;
+    const double period_ms = number_at(s, "/walk/period_ms");
+    const std::size_t width = std::clamp<std::size_t>(look.width > 60 ? look.width - 52 : 8, 8, 40);
+    const double slack = number_at(s, "/recent/slack_ms/p50"), least = number_at(s, "/recent/slack_ms/min");
+    lines.push_back(fmt::format("slack    {} {:>6} ms   least {}", share_bar(look, slack / period_ms, width), short_number(slack),
+                                inked(look, least < 0 ? Ink::bad : Ink::plain, short_number(least) + " ms")));
+    const double used = number_at(s, "/recent/budget_used/mean");
+    lines.push_back(fmt::format("used     {} {:>6.0f} %    p99 {:.0f} % of the period", share_bar(look, used, width), 100 * used,
+                                100 * number_at(s, "/recent/budget_used/p99")));
+    const double accuracy = number_at(s, "/recent/accuracy/mean");
+    lines.push_back(std::isnan(accuracy) ? fmt::format("accuracy exact, {} triangles", grouped(number_at(s, "/now/triangles")))
+                                         : fmt::format("accuracy {} /rad, least {}, {} triangles", short_number(accuracy),
+                                                       short_number(number_at(s, "/recent/accuracy/min")),
+                                                       grouped(number_at(s, "/now/triangles"))));
+}
+
+void add_events(const json& s, const json& before, double between_s, const Look& look, std::vector<std::string>& lines) {
+    const auto rate = [&](const char* pointer) { return rate_text(rate_of(s, before, between_s, pointer)); };
+    lines.push_back(fmt::format("a second: {} switches, {} downgrades, {} faults (driver {}), {} reports",
+                                rate("/totals/switches"), rate("/totals/downgrades"), rate("/totals/page_faults"),
+                                rate("/totals/driver_faults"), rate("/totals/input_reports")));
+    const std::string causes = causes_text(s["totals"]["miss_causes"]);
+    lines.push_back("misses   " + (causes.empty() ? inked(look, Ink::good, "none") : inked(look, Ink::bad, causes)));
+    if (flag_at(s, "/input/emergency_stop"))
+        lines.push_back(inked(look, Ink::bad, "EMERGENCY STOP: the walk stands still"));
+    else if (flag_at(s, "/now/standing_still"))
+        lines.push_back(inked(look, Ink::warn, "the walk stands still by order"));
+    const std::string note = s.contains("notes") && !s["notes"].empty() ? text_at(s["notes"].back(), "/text") : "";
+    if (flag_at(s, "/input/live"))
+        lines.push_back(
+            fmt::format("devices  {} steer{}{}", grouped(number_at(s, "/input/devices")), note.empty() ? "" : "; ", note));
+    else if (!note.empty())
+        lines.push_back("note     " + note);
+    lines.push_back(fmt::format("process  memory {}, {} descriptors, {} threads, host stole {} ms/s",
+                                mebibytes(number_at(s, "/process/rss_bytes")), grouped(number_at(s, "/process/descriptors")),
+                                grouped(number_at(s, "/process/threads")),
+                                rate_text(1e3 * rate_of(s, before, between_s, "/process/host_steal_s"))));
+}
+
+struct ThreadLine {
+    std::string name, policy, cores;
+    double priority = 0, share = 0;
+};
+
+/// By the CPU time that they took since `before`, most first.
+std::vector<ThreadLine> thread_lines(const json& s, const json& before, double between_s) {
+    std::map<double, double> spent;
+    if (before.contains("threads"))
+        for (const json& t : before["threads"]) spent[number_at(t, "/tid")] = number_at(t, "/cpu_s");
+    std::vector<ThreadLine> all;
+    if (!s.contains("threads") || !s["threads"].is_array()) return all;
+    for (const json& t : s["threads"]) {
+        const auto then = spent.find(number_at(t, "/tid"));
+        const double share =
+            then != spent.end() && between_s > 0 ? (number_at(t, "/cpu_s") - then->second) / between_s : std::nan("");
+        all.push_back({text_at(t, "/name"), text_at(t, "/policy"), text_at(t, "/cores"), number_at(t, "/priority"), share});
+    }
+    std::stable_sort(all.begin(), all.end(), [](const ThreadLine& a, const ThreadLine& b) {
+        return (std::isnan(a.share) ? 0 : a.share) > (std::isnan(b.share) ? 0 : b.share);
+    });
+    return all;
+}
+
+void add_threads(const json& s, const json& before, double between_s, const Look& look, std::vector<std::string>& lines) {
+    if (lines.size() + 3 > look.height) return;
+    const auto all = thread_lines(s, before, between_s);
+    lines.push_back(
+        inked(look, Ink::dim, fmt::format("{:<16} {:<12} {:>4}  {:<10} {:>6}", "thread", "policy", "prio", "cores", "CPU %")));
+    for (const ThreadLine& t : all) {
+        if (lines.size() + 2 > look.height) break;
+        lines.push_back(fmt::format("{:<16} {:<12} {:>4}  {:<10} {:>6}", t.name, t.policy, grouped(t.priority), t.cores,
+                                    std::isnan(t.share) ? "-" : fmt::format("{:.1f}", 100 * t.share)));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> top_page(const json& status, const json& before, double between_s, const Look& look) {
+    std::vector<std::string> lines;
+    add_title(status, look, lines);
+    add_totals(status, before, between_s, look, lines);
+    lines.emplace_back();
+    add_chart(status, look, lines);
+    add_gauges(status, look, lines);
+    add_events(status, before, between_s, look, lines);
+    if (lines.size() + 4 <= look.height) lines.emplace_back();
+    add_threads(status, before, between_s, look, lines);
+    if (lines.size() >= look.height) lines.resize(look.height - 1);
+    lines.push_back(inked(look, Ink::dim, "q ends it"));
+    for (std::string& line : lines) line = cut_to(line, look.width);
+    return lines;
+}
+
+std::string top_line(const json& s, const json& before, double between_s) {
+    const double age = number_at(s, "/last_frame_age_s"), accuracy = number_at(s, "/recent/accuracy/mean");
+    std::string line =
+        fmt::format("{} {} frames/s, {} skipped, {} misses ({} own)", text_at(s, "/state"),
+                    rate_text(rate_of(s, before, between_s, "/totals/frames")), grouped(number_at(s, "/totals/skipped")),
+                    grouped(number_at(s, "/totals/misses")), grouped(number_at(s, "/totals/own_misses")));
+    if (age > 2) line += fmt::format(", no frame for {:.0f} s", age);
+    if (!(number_at(s, "/recent/frames") > 0)) return line;
+    return line +
+           fmt::format(", frame p50 {} p99 {} max {} ms, least slack {} ms, used {:.0f} %, accuracy {}",
+                       short_number(number_at(s, "/recent/frame_ms/p50")), short_number(number_at(s, "/recent/frame_ms/p99")),
+                       short_number(number_at(s, "/recent/frame_ms/max")), short_number(number_at(s, "/recent/slack_ms/min")),
+                       100 * number_at(s, "/recent/budget_used/mean"), std::isnan(accuracy) ? "exact" : short_number(accuracy));
+}
+
+}  // namespace surefoot::console

@@ -1,0 +1,30 @@
+// A running service for people: a page of a screen (`surefoot status`), a live screen and a line a second (`surefoot top`). Pure
+// functions of /status.json.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt/base/result.hpp"
+#include "tools/console/address.hpp"
+
+namespace surefoot::console {
+
+struct Look {
+    bool colour = false, unicode = false;
+    std::size_t width = 80, height = 24;
+};
+
+/// /status.json of `address` as read; an Error where it is something else.
+Result<nlohmann::json> parse_status(const Address& address, const std::string& text);
+
+std::vector<std::string> status_page(const nlohmann::json& status, const Look& look);
+
+/// before: the status some time ago, null for none; between_s: how long ago. Rates come from the two.
+std::vector<std::string> top_page(const nlohmann::json& status, const nlohmann::json& before, double between_s, const Look& look);
+std::string top_line(const nlohmann::json& status, const nlohmann::json& before, double between_s);
+
+}  // namespace surefoot::console

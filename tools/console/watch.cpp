@@ -1,0 +1,59 @@
+// The walk's words into the monitor's.
+#include "tools/console/watch.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace surefoot::console {
+
+namespace {
+
+report::MonitoredWalk monitored(const app::WalkRequest& request, const app::WalkStart& start) {
+    report::MonitoredWalk w;
+    w.model = request.model_file;
+    w.path = request.input_file.empty() ? start.path : request.input_file;
+    w.selector = request.selector;
+    w.backend = request.backend;
+    w.renderer = start.renderer;
+    w.clock = request.clock;
+    w.rate_hz = request.rate_hz;
+    w.setup.period_ns = start.period_ns;
+    w.setup.late = request.late == "lock" ? rt::LatePolicy::lock : rt::LatePolicy::floating;
+    w.setup.rasterisers = static_cast<std::uint32_t>(std::max(start.rasterisers, 1));
+    w.budget_ms = request.budget_ms;
+    w.fifo = start.fifo;
+    w.locked = start.locked;
+    w.isolated = start.isolated;
+    w.frame_core = start.frame_core;
+    return w;
+}
+
+/// `then` after what was there.
+template <class Told, class Then>
+void chain(std::function<void(Told)>& callback, Then then) {
+    callback = [before = std::exchange(callback, {}), then](Told told) {
+        if (before) before(told);
+        then(told);
+    };
+}
+
+}  // namespace
+
+void watch_with(Monitor& monitor, const app::WalkRequest& request, app::WalkWatch& watch) {
+    chain(watch.on_started, [&monitor, &request](const app::WalkStart& start) {
+        std::vector<report::Degraded> lacks(start.degraded.begin(), start.degraded.end());
+        if (!start.uncalibrated.empty()) lacks.push_back({start.uncalibrated, ""});
+        monitor.set_degraded(std::move(lacks));
+        monitor.begin_walk(monitored(request, start));
+    });
+    chain(watch.on_record, [&monitor](const rt::FrameRecord& record) { monitor.on_record(record); });
+    chain(watch.on_degraded, [&monitor](const report::Degraded& lack) { monitor.add_degraded(lack); });
+    chain(watch.on_input, [&monitor](const app::WalkInput& input) {
+        monitor.set_input({input.live, input.devices, input.emergency_stop});
+    });
+    chain(watch.on_step, [&monitor](app::WalkStep step) {
+        if (step == app::WalkStep::ending) monitor.end_walk();
+    });
+}
+
+}  // namespace surefoot::console

@@ -1,0 +1,12 @@
+// A monitor wired to what a walk tells: for `walk --monitor` and for the daemon.
+#pragma once
+
+#include "tools/app/walk.hpp"
+#include "tools/console/monitor.hpp"
+
+namespace surefoot::console {
+
+/// From now on `watch` tells the monitor too, after whomever it told before. Monitor and request must outlive the walk.
+void watch_with(Monitor& monitor, const app::WalkRequest& request, app::WalkWatch& watch);
+
+}  // namespace surefoot::console
