@@ -42,6 +42,11 @@ Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock,
     if (!request.fifo) wanted.fifo_priority = request.frame_priority;
     for (const rt::Lack& missing : rt::find_lacking(wanted, request.frame_priority)) lack(missing.what, missing.remedy);
     if (!request.fifo) lack("real-time scheduling is switched off", "leave out --no-fifo");
+    if (plan->absent_core >= 0) {
+        lack(fmt::format("frame core {} is not there, or not for this process: core {} serves", plan->absent_core,
+                         plan->frame_core),
+             "choose one of " + plan->all.text() + " with --frame-core");
+    }
     facts.isolated = c.isolated.has(plan->frame_core);
     if (!facts.isolated && !c.isolated.empty()) {
         lack(fmt::format("the frame core {} is not isolated", plan->frame_core),
@@ -52,6 +57,7 @@ Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock,
         lack("a sanitizer build: allocations are not guarded, memory is not locked", "use the release build");
         return plan;
     }
+    facts.minor_fault_ns = rt::minor_fault_cost_ns();  // before locking: then nothing faults
     auto locked = rt::prepare_memory({});
     facts.locked = locked.ok();
     // The limit itself may be among the lacks already.
