@@ -17,7 +17,7 @@ struct BlameLimits {
     double raster_share = 0.40;
     double present_share = 0.05;
     std::uint32_t oldest_prepared = 3;   ///< frames; older sets are not used (DESIGN 1.4)
-    std::int64_t minor_fault_ns = 1000;  ///< estimated cost of one (0.25 us native to 2 us in a guest)
+    std::int64_t minor_fault_ns = 1000;  ///< of one, at most (0.25 us native to 2 us in a guest); see minor_fault_cost_ns()
     bool fifo = true;  ///< the frame thread has SCHED_FIFO: a late wake-up is the platform's doing, not that of our scheduling
 };
 

@@ -26,25 +26,28 @@ ControlSchedule control_schedule(std::int64_t period_ns, double block_s, std::ui
     return schedule;
 }
 
-std::vector<BlockTally> tally_blocks(std::span<const FrameRecord> records) {
-    std::vector<BlockTally> blocks;
-    for (const FrameRecord& r : records) {
-        while (blocks.size() <= r.block) {
-            const auto number = static_cast<std::uint32_t>(blocks.size());
-            blocks.push_back({.block = number, .walk = ControlSchedule::is_walk(number)});
-        }
-        BlockTally& block = blocks[r.block];
-        ++block.frames;
-        block.misses += r.missed ? 1U : 0U;
-        block.own_misses += r.own_miss ? 1U : 0U;
+void BlockTallies::add(const FrameRecord& r) {
+    const bool first = blocks_.empty();
+    while (blocks_.size() <= r.block) {
+        const auto number = static_cast<std::uint32_t>(blocks_.size());
+        blocks_.push_back({.block = number, .walk = ControlSchedule::is_walk(number)});
     }
     // A skipped slot belongs to the late frame before it, whichever block the next frame fell into.
-    for (std::size_t i = 1; i < records.size(); ++i) {
-        BlockTally& block = blocks[records[i - 1].block];
-        block.skipped += records[i].skipped_before;
-        block.misses += records[i].skipped_before;
+    if (!first) {
+        blocks_[last_block_].skipped += r.skipped_before;
+        blocks_[last_block_].misses += r.skipped_before;
     }
-    return blocks;
+    BlockTally& block = blocks_[r.block];
+    ++block.frames;
+    block.misses += r.missed ? 1U : 0U;
+    block.own_misses += r.own_miss ? 1U : 0U;
+    last_block_ = r.block;
+}
+
+std::vector<BlockTally> tally_blocks(std::span<const FrameRecord> records) {
+    BlockTallies tallies;
+    for (const FrameRecord& r : records) tallies.add(r);
+    return tallies.blocks();
 }
 
 double sign_flip_p_value(std::span<const int> differences) {

@@ -40,7 +40,19 @@ struct BlockTally {
     std::uint32_t frames = 0, misses = 0, own_misses = 0, skipped = 0;
     double steal_ms = 0;  ///< filled by who reads /proc/stat
 };
-/// By block number, from 0 to the last block seen; records in order of time.
+/// Counts record by record, for walks that keep none.
+class BlockTallies {
+public:
+    /// In order of time.
+    void add(const FrameRecord& record);
+    /// By block number, from 0 to the last block seen.
+    [[nodiscard]] const std::vector<BlockTally>& blocks() const { return blocks_; }
+
+private:
+    std::vector<BlockTally> blocks_;
+    std::uint32_t last_block_ = 0;
+};
+/// The same over records that were kept.
 std::vector<BlockTally> tally_blocks(std::span<const FrameRecord> records);
 
 /// One-sided sign-flip permutation test: the chance, if walk and control were the same, of a sum of differences at least as

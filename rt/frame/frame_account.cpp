@@ -47,6 +47,15 @@ void FrameAccount::driver_done(FrameRecord& record) {
     if (record.rastered_ns == 0) record.rastered_ns = record.presented_ns;
 }
 
+/// Of a wait that the rasterisers' work does not explain, in a thread that slept of its own will: what presenting took beyond its
+/// share. After the last fence nobody is waited for but the display. A host that steals just there is wronged, and the frame's
+/// miss its own; that part of a frame is short.
+std::int64_t FrameAccount::display_wait_ns(const FrameRecord& record, std::int64_t unexplained_ns) const {
+    const auto share_ns = static_cast<std::int64_t>(limits_.present_share * static_cast<double>(limits_.period_ns));
+    return std::clamp<std::int64_t>(record.presented_ns - record.rastered_ns - share_ns, 0,
+                                    std::max<std::int64_t>(unexplained_ns, 0));
+}
+
 void FrameAccount::close(FrameRecord& record) {
     const ThreadUsage own = selected_ - begun_, driver = ended_ - selected_, frame = ended_ - begun_;
     const ThreadClocks::Spent raster = rasterisers_.spent();
@@ -61,6 +70,7 @@ void FrameAccount::close(FrameRecord& record) {
     const std::int64_t wait = std::max<std::int64_t>(record.presented_ns - record.selected_ns - driver.cpu_ns, 0);
     record.waited_ns = estimate_.known_ns(wait, raster, driver.voluntary > 0);
     estimate_.update(wait, raster);
+    if (driver.voluntary > 0 && frame.involuntary == 0) record.waited_ns += display_wait_ns(record, wait - record.waited_ns);
     const std::int64_t gap = own_gap + wait - record.waited_ns;
     (frame.involuntary > 0 ? record.preempted_ns : record.stolen_ns) = gap;
 

@@ -31,6 +31,7 @@ public:
 
 private:
     std::uint32_t continues() const;
+    std::int64_t display_wait_ns(const FrameRecord& record, std::int64_t unexplained_ns) const;
 
     const FrameLoopOptions& options_;
     Clock& clock_;

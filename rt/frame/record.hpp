@@ -43,7 +43,7 @@ struct FrameRecord {
     std::int64_t raster_cpu_ns = 0;  ///< of the driver's rasterisers; 0 where unknown
     std::int64_t stolen_ns = 0;      ///< wall minus CPU minus known waits, with no involuntary switch
     std::int64_t preempted_ns = 0;   ///< the same gap, where involuntary switches were seen
-    std::int64_t waited_ns = 0;      ///< known waits: for the driver's rasterisers
+    std::int64_t waited_ns = 0;      ///< known waits: for the driver's rasterisers, for the display
     std::int64_t upload_ns = 0;
     std::int64_t input_stamp_ns = 0;                   ///< of the newest report in this frame's pose; 0: none
     std::uint64_t input_reports = 0;                   ///< in its pose, since the walk began

@@ -17,6 +17,7 @@
 #include <string_view>
 
 #include "rt/base/file.hpp"
+#include "rt/threads/usage.hpp"
 
 namespace surefoot::rt {
 
@@ -108,6 +109,21 @@ __attribute__((noinline)) void prefault_stack(std::size_t bytes) {
     auto* const stack = static_cast<volatile char*>(alloca(size));
     for (std::size_t at = 0; at < size; at += 1024) stack[at] = 1;
     stack[size - 1] = 1;
+}
+
+std::int64_t minor_fault_cost_ns() {
+    constexpr std::size_t pages = 1024, page = 4096;
+    constexpr std::int64_t least_ns = 500, most_ns = 5000;
+    void* const mapped = mmap(nullptr, pages * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (mapped == MAP_FAILED) return most_ns;
+    madvise(mapped, pages * page, MADV_NOHUGEPAGE);
+    auto* const memory = static_cast<volatile unsigned char*>(mapped);
+    const ThreadUsage before = read_own_usage();
+    for (std::size_t i = 0; i < pages; ++i) memory[i * page] = 1;
+    const ThreadUsage spent = read_own_usage() - before;
+    munmap(mapped, pages * page);
+    const auto faults = static_cast<std::int64_t>(spent.minor_faults);
+    return std::clamp(faults > 0 ? 2 * spent.cpu_ns / faults : least_ns, least_ns, most_ns);
 }
 
 bool lock_unlimited() {

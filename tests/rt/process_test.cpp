@@ -1,7 +1,6 @@
 // Proofs that need a process of their own: oneTBB's order of creation, a stopped process, the loop under the system-call trap.
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/wait.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -20,25 +19,17 @@
 #include "rt/threads/guard.hpp"
 #include "rt/threads/placement.hpp"
 #include "rt/threads/syscall_trap.hpp"
+#include "tests/rt/in_child.hpp"
 #include "tests/time_units.hpp"
 
 namespace surefoot::rt {
 namespace {
 
-constexpr int passed = 0, failed = 1;
+using test::failed;
+using test::in_child;
+using test::passed;
 
 void doze() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
-
-/// Runs `body` in a forked child; its exit code.
-int in_child(const std::function<int()>& body, const std::function<void(pid_t)>& meanwhile = {}) {
-    std::fflush(nullptr);
-    const pid_t child = ::fork();
-    if (child == 0) ::_exit(body());
-    if (meanwhile) meanwhile(child);
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
 
 /// Makes oneTBB start its workers: three tasks that all wait until two threads have met (or a second has passed).
 void start_workers(std::vector<pid_t>& workers) {

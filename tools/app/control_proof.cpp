@@ -15,24 +15,24 @@ double total_steal_ms() {
     return steal ? steal->total_ms : 0.0;
 }
 
-void BlockSteal::on_record(const rt::FrameRecord& record) {
-    if (at_start_ < 0) {
-        at_start_ = total_steal_ms();
-        block_ = record.block;
-        return;
+void ControlBlocks::on_record(const rt::FrameRecord& record) {
+    tallies_.add(record);
+    if (at_start_ms_ >= 0 && record.block == block_) return;
+    const double now_ms = total_steal_ms();
+    if (at_start_ms_ >= 0) {
+        steal_ms_.resize(block_ + 1, 0.0);
+        steal_ms_[block_] = now_ms - at_start_ms_;
     }
-    if (record.block == block_) return;
-    const double now = total_steal_ms();
-    per_block_.resize(block_ + 1, 0.0);
-    per_block_[block_] = now - at_start_;
-    at_start_ = now;
+    at_start_ms_ = now_ms;
     block_ = record.block;
 }
 
-std::vector<double> BlockSteal::finish() {
-    per_block_.resize(block_ + 1, 0.0);
-    if (at_start_ >= 0) per_block_[block_] = total_steal_ms() - at_start_;
-    return per_block_;
+std::vector<rt::BlockTally> ControlBlocks::finish() {
+    steal_ms_.resize(block_ + 1, 0.0);
+    if (at_start_ms_ >= 0) steal_ms_[block_] = total_steal_ms() - at_start_ms_;
+    std::vector<rt::BlockTally> blocks = tallies_.blocks();
+    for (rt::BlockTally& block : blocks) block.steal_ms = block.block < steal_ms_.size() ? steal_ms_[block.block] : 0.0;
+    return blocks;
 }
 
 namespace {
@@ -63,20 +63,17 @@ double missed_under_other(const PlacingPlan& plan, std::int64_t period_ns, std::
 
 }  // namespace
 
-void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, BlockSteal& steal, WalkOutcome& outcome,
-                   const Progress& progress) {
-    std::vector<rt::BlockTally> blocks = rt::tally_blocks(outcome.records);
-    const std::vector<double> steal_ms = steal.finish();
+void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, ControlBlocks& blocks,
+                   WalkOutcome& outcome, const Progress& progress) {
+    const std::vector<rt::BlockTally> tallied = blocks.finish();
     progress.say("control under SCHED_OTHER", 0.5);
     report::ControlSummary& c = outcome.summary.control;
     c.ran = true;
     c.burn_ms = static_cast<double>(burn_ns) * 1e-6;
     c.other_miss_share = missed_under_other(plan, period_ns, burn_ns);
-    c.verdict = rt::judge(blocks, c.other_miss_share);
-    for (rt::BlockTally& block : blocks) {
-        block.steal_ms = block.block < steal_ms.size() ? steal_ms[block.block] : 0.0;
+    c.verdict = rt::judge(tallied, c.other_miss_share);
+    for (const rt::BlockTally& block : tallied)
         c.blocks.push_back({block.walk, block.frames, block.misses, block.own_misses, block.steal_ms});
-    }
 }
 
 }  // namespace surefoot::app

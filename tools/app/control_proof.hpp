@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "rt/frame/control.hpp"
 #include "rt/frame/record.hpp"
 #include "tools/app/placing.hpp"
 #include "tools/app/walk.hpp"
@@ -13,23 +14,24 @@ namespace surefoot::app {
 /// Of all cores since boot, ms; 0 where the kernel does not say.
 double total_steal_ms();
 
-/// Steal a block, read at the blocks' borders by the monitor thread.
-class BlockSteal {
+/// The blocks' counts as they come, and the steal of each, read at the blocks' borders by the monitor thread.
+class ControlBlocks {
 public:
     void on_record(const rt::FrameRecord& record);
-    /// By block number; ms.
-    [[nodiscard]] std::vector<double> finish();
+    /// By block number; the last one ends now.
+    [[nodiscard]] std::vector<rt::BlockTally> finish();
 
 private:
-    std::vector<double> per_block_;
+    rt::BlockTallies tallies_;
+    std::vector<double> steal_ms_;
     std::uint32_t block_ = 0;
-    double at_start_ = -1;
+    double at_start_ms_ = -1;
 };
 
-/// Fills outcome.summary.control: tallies the blocks, runs 10 s of the bare loop under SCHED_OTHER on the frame core with
+/// Fills outcome.summary.control: takes the blocks, runs 10 s of the bare loop under SCHED_OTHER on the frame core with
 /// the same CPU time (the load counts only if that misses a fifth), and applies the permutation test.
 /// burn_ns: what the control's bare frames burned.
-void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, BlockSteal& steal, WalkOutcome& outcome,
-                   const Progress& progress);
+void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, ControlBlocks& blocks,
+                   WalkOutcome& outcome, const Progress& progress);
 
 }  // namespace surefoot::app

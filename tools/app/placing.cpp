@@ -14,12 +14,9 @@ namespace surefoot::app {
 Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted) {
     PlacingPlan plan;
     plan.all = rt::allowed_cpus();
-    plan.frame_core =
-        request.frame_core >= 0 ? request.frame_core : rt::default_frame_core(plan.all, rt::isolated_cpus(plan.all));
-    if (!plan.all.has(plan.frame_core)) {
-        return Error{fmt::format("frame core {}", plan.frame_core), "this process may not use it",
-                     "choose one of " + plan.all.text()};
-    }
+    plan.frame_core = rt::default_frame_core(plan.all, rt::isolated_cpus(plan.all));
+    if (!plan.all.has(plan.frame_core)) return Error{"cores", "this process may use none", "look at its affinity (taskset -p)"};
+    if (request.frame_core >= 0) (plan.all.has(request.frame_core) ? plan.frame_core : plan.absent_core) = request.frame_core;
     plan.fifo = request.fifo && fifo_granted;
     plan.frame_priority = request.frame_priority;
     plan.raster_priority = request.raster_priority;

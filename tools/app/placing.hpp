@@ -15,6 +15,7 @@ namespace surefoot::app {
 struct PlacingPlan {
     bool fifo = false;  ///< asked for and granted
     int frame_core = 0;
+    int absent_core = -1;  ///< asked for as the frame core, and not there (or not ours): another one serves; -1: none
     rt::CpuMask all;
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
     bool input = false;                        ///< an input thread steers
@@ -23,7 +24,7 @@ struct PlacingPlan {
     int rasterisers = 0;                       ///< how many were found
 };
 
-/// The frame thread gets rt::default_frame_core() unless the request names one.
+/// The frame thread gets rt::default_frame_core() unless the request names one that is there.
 Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted);
 
 /// Places the driver's rasterisers below the frame thread, on all cores: pinned one a core, the one on the frame core would

@@ -35,20 +35,17 @@ Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock,
     }
     rt::raise_limits(request.frame_priority);
     const rt::Capabilities c = rt::probe_capabilities(request.frame_priority);
-    WalkRequest possible = request;
-    const bool absent = request.endless && request.frame_core >= 0 && !c.allowed.has(request.frame_core);
-    if (absent) possible.frame_core = -1;  // a service goes on where it can; a single walk is refused below
-    auto plan = plan_placing(possible, c.fifo_priority >= request.frame_priority);
+    auto plan = plan_placing(request, c.fifo_priority >= request.frame_priority);
     if (!plan) return plan;
     const auto lack = [&](const std::string& what, const std::string& remedy) { facts.degraded.push_back({what, remedy}); };
     rt::Capabilities wanted = c;  // whoever does not ask for FIFO does not lack it
     if (!request.fifo) wanted.fifo_priority = request.frame_priority;
     for (const rt::Lack& missing : rt::find_lacking(wanted, request.frame_priority)) lack(missing.what, missing.remedy);
     if (!request.fifo) lack("real-time scheduling is switched off", "leave out --no-fifo");
-    if (absent) {
-        lack(fmt::format("frame_core {} is not among the cores that this process may use ({}): core {} is taken",
-                         request.frame_core, c.allowed.text(), plan->frame_core),
-             "name one of these, or -1");
+    if (plan->absent_core >= 0) {
+        lack(fmt::format("frame core {} is not there, or not for this process: core {} serves", plan->absent_core,
+                         plan->frame_core),
+             "choose one of " + plan->all.text() + " with --frame-core");
     }
     facts.isolated = c.isolated.has(plan->frame_core);
     if (!facts.isolated && !c.isolated.empty()) {
@@ -60,6 +57,7 @@ Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock,
         lack("a sanitizer build: allocations are not guarded, memory is not locked", "use the release build");
         return plan;
     }
+    facts.minor_fault_ns = rt::minor_fault_cost_ns();  // before locking: then nothing faults
     auto locked = rt::prepare_memory({});
     facts.locked = locked.ok();
     // The limit itself may be among the lacks already.

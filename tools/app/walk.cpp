@@ -215,7 +215,7 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
     const double frames = s.request.control      ? static_cast<double>(s.control.slots())
                           : s.request.frames > 0 ? static_cast<double>(s.request.frames)
                                                  : std::max(1.0, std::round(seconds / period_s));
-    if (!(frames <= static_cast<double>(most_frames))) {
+    if (s.request.keep_records && !(frames <= static_cast<double>(most_frames))) {
         const bool asked = s.request.frames > 0 || s.request.seconds > 0 || s.request.control;
         return Error{asked      ? "walk"
                      : recorded ? s.request.input_file
@@ -306,6 +306,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     options.rasterisers = s.rasterisers;
     options.rasterisers_on_core = sharing;
     options.limits.fifo = s.plan.fifo;
+    if (s.facts.minor_fault_ns > 0) options.limits.minor_fault_ns = s.facts.minor_fault_ns;
     options.wait_for_ring = s.virtual_clock;
     // Far enough ahead that all threads are in place before the first slot.
     options.t0_ns = s.virtual_clock ? s.grid.period_ns : real.now_ns() + 300'000'000;
@@ -405,12 +406,14 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     // After memory is locked: what the store sets aside is locked with it, and touched.
     ShotStore shots = make_shot_store(request, s.frames, s.engine->drawn_capacity(), s.notes);
     rt::SpscRing<rt::FrameRecord> ring(4096);
-    BlockSteal steal;
+    ControlBlocks blocks;
+    std::uint64_t seen = 0;
     rt::RecorderOptions recorder_options;
-    recorder_options.keep = !request.endless;
+    recorder_options.keep = !request.endless && request.keep_records;
     recorder_options.reserve_records = s.frames + 64;
     recorder_options.on_record = [&](const rt::FrameRecord& record) {
-        if (!request.endless) steal.on_record(record);
+        ++seen;
+        if (!request.endless) blocks.on_record(record);
         if (watch.on_record) watch.on_record(record);
     };
     rt::Recorder recorder(ring, recorder_options);
@@ -425,11 +428,11 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     s.facts.dropped_records = ring.dropped();
     outcome.records = recorder.take_records();
     note_loss(s, outcome);
-    outcome.stopped = progress.stopped() && (request.endless || outcome.records.size() < s.frames);
+    outcome.stopped = progress.stopped() && (request.endless || seen < s.frames);
     if (s.input) outcome.summary.input = s.input->summary(outcome.records);
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
     if (request.control && !outcome.stopped && !s.lost)
-        judge_control(s.plan, s.grid.period_ns, s.burn_ns, steal, outcome, progress);
+        judge_control(s.plan, s.grid.period_ns, s.burn_ns, blocks, outcome, progress);
     s.engine->device().bind();
     write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
     s.engine->device().release();

@@ -36,6 +36,7 @@ struct WalkRequest {
     std::uint32_t width = 1280, height = 720;
     std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
     double seconds = 0;
+    bool keep_records = true;  ///< false: records are handed to the watch only, and what is made of records is not made
     bool endless = false;   ///< until progress.stop: records are handed to the watch and not kept, so nothing is written of them
     double budget_ms = 0;   ///< 0: 0.80 of the frame
     double accuracy = 0;    ///< rad^-1; 0: as accurate as the budget allows

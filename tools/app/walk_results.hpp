@@ -21,6 +21,7 @@ struct WalkFacts {
     std::string renderer, machine;
     bool pinned = false, locked = false, isolated = false;
     double steal_ms = 0;
+    std::int64_t minor_fault_ns = 0;  ///< cost of a page fault, for blame; 0: not measured
     std::uint64_t dropped_records = 0;
 };
 

@@ -99,6 +99,7 @@ int main(int argc, char** argv) {
     cli::add_effects(app, context);
     cli::add_calibrate(app, context);
     cli::add_walk(app, context);
+    cli::add_soak(app, context);
     cli::add_accuracy(app, context);
     cli::add_replay(app, context);
     cli::add_devices(app, context);

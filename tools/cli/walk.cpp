@@ -1,13 +1,11 @@
 // surefoot walk: a real-time walk through a model, with its figures.
 #include <fmt/format.h>
 
-#include "config/settings.hpp"
-#include "config/values.hpp"
-#include "render/gl/device.hpp"
 #include "tools/app/settings_request.hpp"
 #include "tools/app/walk.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/cli/walk_settings.hpp"
 #include "tools/console/watch.hpp"
 #include "tools/report/verdict.hpp"
 
@@ -23,27 +21,13 @@ struct MonitorArguments {
     std::string incidents_dir;  ///< empty: none are written
 };
 
-/// What the command line says; settings come through the schema, so that a file and a flag obey the same limits.
+/// What the command line says.
 struct WalkArguments {
     app::WalkRequest request;
     MonitorArguments watch;
-    std::string config_file, profile, size;
-    struct Setting {
-        std::string flag, key, text;
-    };
-    std::vector<Setting> values;  ///< in the order given
-    bool no_fifo = false, no_check = false, no_correction = false, json = false;
+    std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
+    bool no_correction = false, json = false;
 };
-
-/// A value of the command line, through the schema; what is refused is named as the user wrote it.
-Result<void> put_setting(config::Configuration& c, const std::string& flag, const std::string& key, const std::string& text) {
-    const std::string place = flag + " " + text;
-    if (key == "backend") {
-        if (const auto kind = gl::parse_backend(text); !kind) return Error{place, kind.error().what, kind.error().remedy};
-    }
-    if (config::set_value(c, key, text)) return {};
-    return Error{place, "is not allowed", config::allowed(*config::find_entry(key))};
-}
 
 /// Options that say nothing without another one, or against it.
 Result<void> check_together(const app::WalkRequest& r, bool every_given, bool capture_frame_given) {
@@ -69,25 +53,9 @@ Result<void> check_together(const app::WalkRequest& r, bool every_given, bool ca
 }
 
 Result<app::WalkRequest> to_request(WalkArguments& a) {
-    config::Configuration c;
-    if (!a.profile.empty() && a.config_file.empty()) {
-        return Error{"--profile " + a.profile, "is a part of a settings file, and none is given",
-                     "add --config FILE.toml with a [profile." + a.profile + "]"};
-    }
-    if (!a.config_file.empty()) {
-        if (auto ok = config::load_file(c, a.config_file, a.profile); !ok) return ok.error();
-    }
-    for (const auto& [flag, key, text] : a.values) {
-        if (auto ok = put_setting(c, flag, key, text); !ok) return ok.error();
-    }
-    if (!a.size.empty()) {
-        const auto size = parse_size(a.size);
-        if (!size) return size.error();
-        c.values.width = size->width;
-        c.values.height = size->height;
-    }
-    if (a.no_fifo) c.values.fifo = false;
-    if (a.no_check) c.values.in_frame_check = false;
+    auto read = read_settings(*a.settings);
+    if (!read) return read.error();
+    config::Configuration& c = *read;
     c.values.strict = c.values.strict || a.request.strict;
     c.values.control = c.values.control || a.request.control;
     if (auto ok = config::check(c); !ok) return ok.error();
@@ -96,7 +64,7 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
     if (r.model_file.empty())
         return Error{"MODEL.walk", "is not named", "surefoot walk MODEL.walk, or `model = ...` in the --config file"};
     r.correct_costs = !a.no_correction;
-    r.config_file = a.config_file;
+    r.config_file = a.settings->config_file;
     if (auto ok = check_together(r, r.snap_every > 0, r.capture_frame != unset); !ok) return ok.error();
     if (!r.snap_dir.empty() && r.snap_every == 0) r.snap_every = 30;
     if (r.capture_frame == unset) r.capture_frame = 0;
@@ -157,19 +125,6 @@ int run_walk_command(WalkArguments& a, const Context& context) {
     return outcome->failures.empty() && !outcome->stopped && !broken ? exit_success : exit_failure;
 }
 
-/// An option that goes through the settings' schema under `key`.
-void add_setting(CLI::App* c, const std::shared_ptr<WalkArguments>& a, const std::string& flag, const std::string& key) {
-    const config::Entry* entry = config::find_entry(key);
-    std::string help(entry->help);
-    help += " Allowed: " + config::allowed(*entry) + " [" + config::value_text({}, *entry) + "]";
-    c->add_option_function<std::string>(
-        flag,
-        [a, flag, key](const std::string& text) {
-            a->values.push_back({flag, key, text});
-        },
-        help);
-}
-
 }  // namespace
 
 void add_walk(CLI::App& app, Context& context) {
@@ -204,36 +159,31 @@ void add_walk(CLI::App& app, Context& context) {
         ->check(whole_number_within(1, 4'000'000));
     c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")
         ->check(number_within(0.001, 1e6, "s"));
-    c->add_option("--size", a->size, "Picture size [1280x720]");
-    for (const auto& [flag, key] : {std::pair{"--lift", "lift_m"},
-                                    {"--rate", "rate_hz"},
-                                    {"--budget", "budget_ms"},
-                                    {"--accuracy", "accuracy"},
-                                    {"--cost-scale", "cost_scale"},
-                                    {"--selector", "selector"},
-                                    {"--late", "late"},
-                                    {"--backend", "backend"},
-                                    {"--clock", "clock"},
-                                    {"--workers", "workers"},
-                                    {"--rasterisers", "rasterisers"},
-                                    {"--frame-core", "frame_core"},
-                                    {"--slice", "slice_us"},
-                                    {"--hysteresis", "hysteresis"}}) {
-        add_setting(c, a, flag, key);
-    }
+    add_settings(c, a->settings,
+                 {{"--lift", "lift_m"},
+                  {"--rate", "rate_hz"},
+                  {"--budget", "budget_ms"},
+                  {"--accuracy", "accuracy"},
+                  {"--cost-scale", "cost_scale"},
+                  {"--selector", "selector"},
+                  {"--late", "late"},
+                  {"--backend", "backend"},
+                  {"--clock", "clock"},
+                  {"--workers", "workers"},
+                  {"--rasterisers", "rasterisers"},
+                  {"--frame-core", "frame_core"},
+                  {"--slice", "slice_us"},
+                  {"--hysteresis", "hysteresis"}});
     c->add_option("--cost-noise", r.cost_noise, "Virtual clock: relative noise on costs")->check(number_within(0, 10));
-    c->add_flag("--no-fifo", a->no_fifo, "Ordinary scheduling (the figures are marked)");
     c->add_flag("--strict", r.strict,
                 "Do not start where anything that real time needs is refused: FIFO, locked memory, an isolated core, "
                 "placing, a cost table");
-    c->add_flag("--no-check", a->no_check, "Without the in-frame check, to see what it is worth");
+    c->add_flag("--no-check", a->settings->no_check, "Without the in-frame check, to see what it is worth");
     c->add_flag("--no-correction", a->no_correction, "Predictions are not corrected online");
     c->add_flag("--control", r.control, "Alternate blocks of the walk and of a bare loop, and judge by the deadline rule");
     c->add_option("--control-pairs", r.control_pairs, "Pairs of blocks; the rule wants 90")
         ->check(whole_number_within(1, 100000))
         ->capture_default_str();
-    c->add_option("--config", a->config_file, "Settings in TOML; the command line wins");
-    c->add_option("--profile", a->profile, "A [profile.NAME] of the settings file");
     c->add_option("--state", r.state_dir, "Folder with the calibrated cost table");
     c->add_option("--ledger", r.ledger_file, "CSV, a row a frame");
     c->add_option("--trace", r.trace_file, "A trace that ui.perfetto.dev opens");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/report/text_table.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/svg.hpp"
 #include "tools/report/verdict.hpp"
@@ -13,66 +14,7 @@ namespace surefoot::report {
 
 namespace {
 
-constexpr std::size_t max_columns = 100;
-constexpr std::size_t label_columns = 16;
-
-/// Columns on screen: code points (no wide characters are used here).
-std::size_t width_of(std::string_view text) {
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
-}
-
-/// The last columns of a word longer than a line: of a path, its end says more than its middle.
-std::string end_of(const std::string& text, std::size_t columns) {
-    std::size_t at = text.size();
-    for (std::size_t kept = 0; at > 0 && kept + 1 < columns; --at)
-        kept += (static_cast<unsigned char>(text[at - 1]) & 0xc0U) != 0x80U ? 1 : 0;
-    return "…" + text.substr(at);
-}
-
-/// Builds lines, and colours only where asked to.
-class Table {
-public:
-    explicit Table(bool colour) : colour_(colour) {}
-
-    void raw(const std::string& line) { text_ += line + "\n"; }
-    /// A label and words, wrapped under each other.
-    void row(std::string_view label, std::string_view words, std::string_view code = {}) {
-        std::string line;
-        std::string_view shown = label;
-        std::size_t at = 0;
-        while (at < words.size()) {
-            auto end = words.find(' ', at);
-            if (end == std::string_view::npos) end = words.size();
-            const auto word = words.substr(at, end - at);
-            at = end + 1;
-            if (!line.empty() && label_columns + width_of(line) + 1 + width_of(word) > max_columns) {
-                put(shown, line, code);
-                shown = {};
-                line.clear();
-            }
-            if (!line.empty()) line += ' ';
-            line += word;
-        }
-        put(shown, line, code);
-    }
-    [[nodiscard]] std::string coloured(std::string_view text, std::string_view code) const {
-        if (!colour_ || code.empty()) return std::string(text);
-        return fmt::format("\x1b[{}m{}\x1b[0m", code, text);
-    }
-    [[nodiscard]] const std::string& text() const { return text_; }
-
-private:
-    void put(std::string_view label, std::string line, std::string_view code) {
-        if (label_columns + width_of(line) > max_columns) line = end_of(line, max_columns - label_columns);
-        const std::string padded = fmt::format("{:<{}}", label, label_columns);
-        raw(coloured(padded, "2") + coloured(line, code));
-    }
-    bool colour_;
-    std::string text_;
-};
-
-void timing_rows(Table& table, const WalkSummary& s) {
+void timing_rows(TextTable& table, const WalkSummary& s) {
     const auto row = [&](std::string_view label, const Quantiles& q, int decimals, std::string_view note) {
         std::string line = fmt::format("{:<{}}", label, label_columns);
         for (const double v : {q.p50, q.p90, q.p99, q.p999, q.max}) line += fmt::format("{:>10.{}f}", v, decimals);
@@ -94,7 +36,7 @@ void timing_rows(Table& table, const WalkSummary& s) {
         1, "");
 }
 
-void quality_rows(Table& table, const WalkSummary& s) {
+void quality_rows(TextTable& table, const WalkSummary& s) {
     table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget by the clock on the wall",
                                     s.budget_ms, percent(s.budget_used_mean), percent(s.budget_used_p99),
                                     percent(s.budget_used_wall_mean)));
@@ -110,7 +52,7 @@ void quality_rows(Table& table, const WalkSummary& s) {
                                        s.switches_per_frame, s.downgrades, s.floor_bound_frames));
 }
 
-void real_time_rows(Table& table, const WalkSummary& s) {
+void real_time_rows(TextTable& table, const WalkSummary& s) {
     std::string causes;
     for (const auto& [cause, count] : s.miss_causes) causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", cause, count);
     if (!causes.empty()) table.row("misses", causes, "33");
@@ -131,7 +73,7 @@ void real_time_rows(Table& table, const WalkSummary& s) {
 }  // namespace
 
 std::string to_table(const WalkSummary& s, bool colour) {
-    Table table(colour);
+    TextTable table(colour);
     const Verdict verdict = verdict_of(s);
     table.row("walk", headline(s), verdict == Verdict::good ? "1;32" : verdict == Verdict::warn ? "1;33" : "1;31");
     table.row("model", s.path.empty()  ? s.model

@@ -1,0 +1,170 @@
+// Frames of a known make, into which every cause of a miss can be injected for real: by spinning, sleeping, faulting, a blocker
+// of higher priority on the same core, or a stop of the whole process.
+#pragma once
+
+#include <semaphore.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdint>
+#include <thread>
+
+#include "rt/clock/clock.hpp"
+#include "rt/frame/loop.hpp"
+#include "rt/threads/placement.hpp"
+
+namespace surefoot::bench {
+
+/// A thread that does a piece of work when it is handed one.
+class Helper {
+public:
+    explicit Helper(const rt::Placement& placement) {
+        sem_init(&asked_, 0, 0);
+        sem_init(&done_, 0, 0);
+        thread_ = std::thread([this, placement] {
+            if (!rt::place_thread(0, placement)) misplaced_ = true;
+            tid_ = rt::own_tid();
+            sem_post(&done_);
+            for (wait(asked_); !ending_; wait(asked_)) {
+                clock_.sleep_until_ns(from_ns_);
+                if (cpu_ns_ > 0) clock_.burn_ns(cpu_ns_);
+                while (clock_.now_ns() < until_ns_) {
+                }
+                sem_post(&done_);
+            }
+        });
+        wait(done_);
+    }
+    ~Helper() {
+        ending_ = true;
+        sem_post(&asked_);
+        thread_.join();
+    }
+    Helper(const Helper&) = delete;
+    Helper& operator=(const Helper&) = delete;
+
+    /// From from_ns on: burns so much CPU time, and spins until until_ns.
+    void ask(std::int64_t from_ns, std::int64_t cpu_ns, std::int64_t until_ns) {
+        from_ns_ = from_ns;
+        cpu_ns_ = cpu_ns;
+        until_ns_ = until_ns;
+        sem_post(&asked_);
+    }
+    void finish() { wait(done_); }
+    [[nodiscard]] pid_t tid() const { return tid_; }
+    [[nodiscard]] bool misplaced() const { return misplaced_; }
+
+private:
+    static void wait(sem_t& semaphore) {
+        while (sem_wait(&semaphore) != 0) {
+        }
+    }
+    rt::RealClock clock_;
+    sem_t asked_{}, done_{};
+    std::atomic<bool> ending_{false};
+    bool misplaced_ = false;
+    std::int64_t from_ns_ = 0, cpu_ns_ = 0, until_ns_ = 0;
+    pid_t tid_ = 0;
+    std::thread thread_;
+};
+
+/// A process that stops this one and lets it go on again, for as long as it is told.
+class Stopper {
+public:
+    /// Forks: before there are threads.
+    Stopper() {
+        if (pipe(ends_) != 0) return;
+        const pid_t parent = getpid();
+        child_ = fork();
+        if (child_ != 0) return;
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        close(ends_[1]);
+        // At once, also where the machine is busy: a stop that falls on another frame teaches nothing.
+        (void)rt::place_thread(0, {.policy = rt::Policy::fifo, .priority = 95, .cpus = {}, .name = "stopper"});
+        rt::RealClock clock;
+        std::int64_t for_ns = 0;
+        while (read(ends_[0], &for_ns, sizeof for_ns) == sizeof for_ns) {
+            kill(parent, SIGSTOP);
+            clock.sleep_until_ns(clock.now_ns() + for_ns);
+            kill(parent, SIGCONT);
+        }
+        _exit(0);
+    }
+    ~Stopper() {
+        close(ends_[0]);
+        close(ends_[1]);
+        if (child_ > 0) waitpid(child_, nullptr, 0);
+    }
+    Stopper(const Stopper&) = delete;
+    Stopper& operator=(const Stopper&) = delete;
+    void stop_for(std::int64_t ns) { (void)!write(ends_[1], &ns, sizeof ns); }
+
+private:
+    int ends_[2] = {-1, -1};
+    pid_t child_ = -1;
+};
+
+/// Memory that the kernel gives anew, page by page, at the first touch of each.
+class FreshPages {
+public:
+    static constexpr std::size_t bytes = 256U << 20U, page = 4096;
+    FreshPages() {
+        void* const mapped = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        memory_ = mapped == MAP_FAILED ? nullptr : static_cast<unsigned char*>(mapped);
+        if (memory_ != nullptr) madvise(memory_, bytes, MADV_NOHUGEPAGE);
+    }
+    ~FreshPages() {
+        if (memory_ != nullptr) munmap(memory_, bytes);
+    }
+    FreshPages(const FreshPages&) = delete;
+    FreshPages& operator=(const FreshPages&) = delete;
+    /// Not in a frame: it takes its time.
+    void renew() const { madvise(memory_, bytes, MADV_DONTNEED); }
+    void fault_until(std::int64_t until_ns) const {
+        const rt::RealClock clock;
+        for (std::size_t at = 0; at < bytes && clock.now_ns() < until_ns; at += page)
+            const_cast<volatile unsigned char&>(memory_[at]) = 1;
+    }
+
+private:
+    unsigned char* memory_ = nullptr;
+};
+
+constexpr std::uint64_t frames_apart = 6;  ///< from one injection to the next
+
+/// At 60 Hz a frame takes about 7 of its 16.7 ms. Every frames_apart frames one takes 14 to 30 ms more, by one cause.
+class BlameStages final : public rt::FrameStages {
+public:
+    BlameStages(rt::Cause cause, int frame_core, Helper& rasteriser, Stopper& stopper);
+
+    void sample(rt::FrameRecord& record) override;
+    void select(rt::FrameRecord& record) override;
+    void submit(rt::FrameRecord& record) override;
+    void finish(rt::FrameRecord& record) override;
+    void account(rt::FrameRecord& record) override;
+    [[nodiscard]] static bool injected(std::uint64_t frame) { return frame % frames_apart == frames_apart / 2; }
+    [[nodiscard]] bool blocked() const { return !blocker_.misplaced(); }
+
+private:
+    [[nodiscard]] bool now(const rt::FrameRecord& record, rt::Cause cause) const {
+        return cause_ == cause && injected(record.frame);
+    }
+    [[nodiscard]] std::int64_t extra_ns(std::uint64_t frame) const;
+    bool stopped_for(std::int64_t ns);
+
+    rt::Cause cause_;
+    Helper& rasteriser_;
+    Stopper& stopper_;
+    Helper blocker_;  ///< above the frame thread, on its core
+    FreshPages pages_;
+    rt::RealClock clock_;
+    std::uint64_t newest_set_ = 0;  ///< frame of the newest prepared set
+    bool blocking_ = false;
+};
+
+}  // namespace surefoot::bench

@@ -1,0 +1,120 @@
+// surefoot soak: hours of a walk under a rotating mix of load, with a verdict.
+#include <fmt/format.h>
+
+#include "tools/app/settings_request.hpp"
+#include "tools/app/soak/soak.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
+#include "tools/cli/walk_settings.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+
+constexpr double judged_from_s = 750;  ///< 90 pairs of blocks, and ten minutes of memory after the warm-up
+
+struct SoakArguments {
+    app::SoakRequest request;
+    std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
+    std::string mix;
+    double seconds = 0, hours = 0;
+    bool strict = false, no_control = false, json = false;
+};
+
+Result<app::SoakRequest> to_soak_request(const SoakArguments& a) {
+    app::SoakRequest r = a.request;
+    if (a.seconds > 0 && a.hours > 0) return Error{"--hours", "and --seconds are two lengths", "give one of them"};
+    if (a.seconds > 0) r.seconds = a.seconds;
+    if (a.hours > 0) r.seconds = a.hours * 3600;
+    if (!a.mix.empty()) {
+        auto mix = app::parse_mix(a.mix);
+        if (!mix) return mix.error();
+        r.mix = *mix;
+    }
+    auto settings = read_settings(*a.settings);
+    if (!settings) return settings.error();
+    settings->values.strict = settings->values.strict || a.strict;
+    if (auto ok = config::check(*settings); !ok) return ok.error();
+    app::apply_settings(*settings, r.walk);
+    r.walk.config_file = a.settings->config_file;
+    r.control = !a.no_control;
+    if (r.walk.strict && r.walk.clock == "virtual") return Error{"--strict", "asks for real time", "leave out --clock virtual"};
+    return r;
+}
+
+int run_soak_command(const SoakArguments& a, const Context& context) {
+    auto request = to_soak_request(a);
+    if (!request) return misuse(request.error());
+    if (request->seconds < judged_from_s) {
+        note(fmt::format("a verdict needs {:.1f} minutes or more; of {:.0f} s not all can be judged", judged_from_s / 60,
+                         request->seconds));
+    }
+    auto outcome = app::run_soak(*request, terminal_progress(context));
+    end_progress(context);
+    if (!outcome) return fail(outcome.error());
+    const report::SoakSummary& s = outcome->summary;
+    for (const std::string& text : outcome->notes) note(text);
+    if (a.json) {
+        fmt::print("{}", report::soak_json(s));
+        if (!s.walk.uncalibrated.empty()) note("uncalibrated: " + s.walk.uncalibrated);
+        for (const report::Degraded& d : s.walk.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
+    } else {
+        fmt::print("{}", report::soak_table(s, context.colour));
+        if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
+    }
+    for (const Error& error : outcome->failures) fail(error);
+    if (s.stopped)
+        note(fmt::format("stopped by the user after {:.0f} of {:.0f} s; the figures are of these", s.ran_s, s.asked_s));
+    const bool holds = report::verdict_of(s) == report::Judged::holds;
+    return holds && outcome->failures.empty() && !s.stopped ? exit_success : exit_failure;
+}
+
+}  // namespace
+
+void add_soak(CLI::App& app, Context& context) {
+    auto a = std::make_shared<SoakArguments>();
+    app::SoakRequest& r = a->request;
+    CLI::App* c =
+        add_command(app, "soak", "Walk for hours under a rotating mix of load, and judge it",
+                    "surefoot soak town.walk --rate 60 --size 640x480 --report soak\n"
+                    "  surefoot soak town.walk --hours 8 --mix cpu,memory,io,forks,devices,reloads,caches\n"
+                    "  surefoot soak town.walk --hours 1 --clock virtual --backend null --json      (seconds: for CI)\n\n"
+                    "Exit status 0 only if every point of the verdict holds. The load is processes of this command's own;\n"
+                    "they end with it, however it ends.",
+                    a->json);
+    c->add_option("model", r.walk.model_file, "The .walk model")->required();
+    c->add_option("--path", r.walk.path_file, "Poses over time, CSV (else MODEL.path.csv, else a tour); walked forth and back");
+    c->add_option("--lift", r.walk.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")
+        ->check(number_within(-1e7, 1e7, "m"))
+        ->capture_default_str();
+    c->add_option("--seconds", a->seconds, "How long; with the control whole pairs of blocks of it [1200]")
+        ->check(number_within(1, 1e6, "s"));
+    c->add_option("--hours", a->hours, "The same in hours")->check(number_within(0.001, 240, "h"));
+    c->add_option(
+        "--mix", a->mix,
+        "Loads, apart by commas [cpu,memory,io,forks,devices,reloads,caches]. `caches` drops the machine's page cache, where "
+        "that is permitted. `clock` steps the time of day of the whole machine and back: only who asks for it gets it. On the "
+        "virtual clock nothing contends: of the mix only `reloads` is run there");
+    c->add_option("--clock-step", r.clock_step_s, "Seconds that the load `clock` steps, there and back")
+        ->check(number_within(0.001, 86400, "s"))
+        ->capture_default_str();
+    c->add_option("--seed", r.seed, "Of the timetable: the same seed loads in the same order")->capture_default_str();
+    c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html, and DIR/soak.json");
+    add_settings(c, a->settings,
+                 {{"--rate", "rate_hz"},
+                  {"--budget", "budget_ms"},
+                  {"--selector", "selector"},
+                  {"--late", "late"},
+                  {"--backend", "backend"},
+                  {"--clock", "clock"},
+                  {"--workers", "workers"},
+                  {"--rasterisers", "rasterisers"},
+                  {"--frame-core", "frame_core"}});
+    c->add_flag("--no-control", a->no_control,
+                "The walk alone, without a bare loop in turn with it: twice the frames, judged by its own misses alone");
+    c->add_flag("--strict", a->strict, "Do not start where anything that real time needs is refused");
+    c->add_option("--state", r.walk.state_dir, "Folder with the calibrated cost table");
+    c->callback([&context, a] { context.run = [a, &context] { return run_soak_command(*a, context); }; });
+}
+
+}  // namespace surefoot::cli

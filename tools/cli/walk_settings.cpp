@@ -1,0 +1,69 @@
+// Settings of a walk, from file and command line.
+#include "tools/cli/walk_settings.hpp"
+
+#include "config/values.hpp"
+#include "render/gl/device.hpp"
+#include "tools/cli/options.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+
+/// A value of the command line, through the schema; what is refused is named as the user wrote it.
+Result<void> put_setting(config::Configuration& c, const std::string& flag, const std::string& key, const std::string& text) {
+    const std::string place = flag + " " + text;
+    if (key == "backend") {
+        if (const auto kind = gl::parse_backend(text); !kind) return Error{place, kind.error().what, kind.error().remedy};
+    }
+    if (config::set_value(c, key, text)) return {};
+    return Error{place, "is not allowed", config::allowed(*config::find_entry(key))};
+}
+
+/// An option that goes through the settings' schema under `key`.
+void add_setting(CLI::App* c, const std::shared_ptr<SettingArguments>& a, const std::string& flag, const std::string& key) {
+    const config::Entry* entry = config::find_entry(key);
+    std::string help(entry->help);
+    help += " Allowed: " + config::allowed(*entry) + " [" + config::value_text({}, *entry) + "]";
+    c->add_option_function<std::string>(
+        flag,
+        [a, flag, key](const std::string& text) {
+            a->values.push_back({flag, key, text});
+        },
+        help);
+}
+
+}  // namespace
+
+void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& a,
+                  std::initializer_list<std::pair<const char*, const char*>> flags_and_keys) {
+    command->add_option("--size", a->size, "Picture size [1280x720]");
+    for (const auto& [flag, key] : flags_and_keys) add_setting(command, a, flag, key);
+    command->add_flag("--no-fifo", a->no_fifo, "Ordinary scheduling (the figures are marked)");
+    command->add_option("--config", a->config_file, "Settings in TOML; the command line wins");
+    command->add_option("--profile", a->profile, "A [profile.NAME] of the settings file");
+}
+
+Result<config::Configuration> read_settings(const SettingArguments& a) {
+    config::Configuration c;
+    if (!a.profile.empty() && a.config_file.empty()) {
+        return Error{"--profile " + a.profile, "is a part of a settings file, and none is given",
+                     "add --config FILE.toml with a [profile." + a.profile + "]"};
+    }
+    if (!a.config_file.empty()) {
+        if (auto ok = config::load_file(c, a.config_file, a.profile); !ok) return ok.error();
+    }
+    for (const auto& [flag, key, text] : a.values) {
+        if (auto ok = put_setting(c, flag, key, text); !ok) return ok.error();
+    }
+    if (!a.size.empty()) {
+        const auto size = parse_size(a.size);
+        if (!size) return size.error();
+        c.values.width = size->width;
+        c.values.height = size->height;
+    }
+    if (a.no_fifo) c.values.fifo = false;
+    if (a.no_check) c.values.in_frame_check = false;
+    return c;
+}
+
+}  // namespace surefoot::cli

@@ -1,0 +1,30 @@
+// What the commands that walk share: settings from a file and from the command line, through the same schema and limits.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "config/settings.hpp"
+#include "tools/app/walk.hpp"
+#include "tools/cli/command.hpp"
+
+namespace surefoot::cli {
+
+struct SettingArguments {
+    std::string config_file, profile, size;
+    struct Setting {
+        std::string flag, key, text;
+    };
+    std::vector<Setting> values;  ///< in the order given
+    bool no_fifo = false, no_check = false;
+};
+
+/// --config, --profile, --size, --no-fifo, and an option for each flag and key.
+void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& arguments,
+                  std::initializer_list<std::pair<const char*, const char*>> flags_and_keys);
+/// The file, then the command line; what is refused is named as the user wrote it.
+Result<config::Configuration> read_settings(const SettingArguments& arguments);
+
+}  // namespace surefoot::cli
