@@ -37,6 +37,7 @@ TEST(Faults, TheWatchdogStarvesWhileTheFrameThreadAloneIsFrozen) {
 
     ASSERT_EQ(::ptrace(PTRACE_DETACH, frame, nullptr, nullptr), 0);
     EXPECT_TRUE(daemon.socket.wait_for("WATCHDOG=1", 2)) << "recovery does not resume the pings: " << daemon.socket.text();
+    EXPECT_TRUE(daemon.socket.wait_for("STATUS=walking", 2)) << "the status still says that none come: " << daemon.socket.text();
     EXPECT_EQ(daemon.lines_with("frames come again"), 1) << daemon.said();
     daemon.socket.listen(1.5);
     ::kill(daemon.pid, SIGTERM);
