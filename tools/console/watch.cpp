@@ -20,7 +20,6 @@ report::MonitoredWalk monitored(const app::WalkRequest& request, const app::Walk
     w.setup.period_ns = start.period_ns;
     w.setup.late = request.late == "lock" ? rt::LatePolicy::lock : rt::LatePolicy::floating;
     w.setup.rasterisers = static_cast<std::uint32_t>(std::max(start.rasterisers, 1));
-    w.budget_ms = request.budget_ms;
     w.fifo = start.fifo;
     w.locked = start.locked;
     w.isolated = start.isolated;

@@ -21,10 +21,9 @@ std::string_view service_state_name(ServiceState state);
 
 /// Known when a walk begins.
 struct MonitoredWalk {
-    std::string model, path, selector, backend, renderer, clock, machine;
+    std::string model, path, selector, backend, renderer, clock;
     double rate_hz = 0;
     rt::TelemetrySetup setup;
-    double budget_ms = 0;  ///< 0: what the rate allows
     bool fifo = false, locked = false, isolated = false;
     int frame_core = -1;
 };

@@ -136,7 +136,6 @@ ordered_json walk_json(const MonitoredWalk& w) {
             {"backend", w.backend},
             {"renderer", w.renderer},
             {"clock", w.clock},
-            {"machine", w.machine},
             {"rate_hz", w.rate_hz},
             {"period_ms", static_cast<double>(w.setup.period_ns) / 1e6},
             {"late", w.setup.late == rt::LatePolicy::lock ? "lock" : "float"},
