@@ -109,8 +109,7 @@ int main(int argc, char** argv) {
     cli::add_top(app, context);
     app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {
         const std::string text = unknown_command(*of, argc, argv).value_or(error.what());
-        return "surefoot: " + text + " (see surefoot --help, or --help after the command)
-";
+        return "surefoot: " + text + " (see surefoot --help, or --help after the command)\n";
     });
     try {
         app.parse(argc, argv);
