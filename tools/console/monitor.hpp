@@ -34,8 +34,9 @@ struct MonitorOptions {
     std::function<void(std::string_view)> say;  ///< something to be told, once; on sf-incidents
 };
 
-/// Wired to a walk by watch_with() (watch.hpp). Lives as long as the service, over many walks; counters go on from walk to walk (with another rate they start anew, as after a
-/// restart). Open it from a neutral thread, before memory is locked: its threads inherit the caller's place.
+/// Wired to a walk by watch_with() (watch.hpp). Lives as long as the service, over many walks; counters go on from walk to walk
+/// (with another rate they start anew, as after a restart). Open it from a neutral thread, before memory is locked: its threads
+/// inherit the caller's place.
 class Monitor {
 public:
     /// Errors: an address that is none, is in use or may not be had; a folder that cannot be written.
