@@ -186,9 +186,10 @@ bool print_row(std::string_view cause, const Named& n, int wanted) {
     for (const auto& [name, count] : n.instead) instead += fmt::format(" {} {}", name, count);
     fmt::print("{:<18}{:>9}{:>8}{:>8}{:>8.1f} %  {}{}\n", cause, n.injected, n.missed, n.right,
                n.missed > 0 ? 100.0 * n.right / n.missed : 0.0,
-               enough && right ? ""
-               : enough        ? "BELOW 95 %"
-                               : "TOO FEW",
+               wanted == 0       ? "told, not judged:"
+               : enough && right ? ""
+               : enough          ? "BELOW 95 %"
+                                 : "TOO FEW",
                instead);
     return enough && right;
 }

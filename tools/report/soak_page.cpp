@@ -93,15 +93,9 @@ std::string hours_section(const SoakSummary& s) {
     out +=
         half_card("Worst accuracy", "Of each moment: one over the largest angular error. Load lowers it before it costs a frame.",
                   soak_accuracy_chart(s));
-    if (s.walk.misses == 0) return out + "</div>\n";
-    out += half_card("Misses by load", "While it was on, alone or with others.", soak_load_chart(s));
-    out +=
-        half_card("Worst accuracy", "Of each moment: one over the largest angular error. Load lowers it before it costs a frame.",
-                  soak_accuracy_chart(s));
     out += half_card("Misses by load", "While it was on, alone or with others.", soak_load_chart(s));
     if (s.walk.misses > 0)
         out += half_card("Misses by cause", "One cause a miss, from the evidence of that frame.", cause_chart(s.walk));
-    out += half_card("Misses by cause", "One cause a miss, from the evidence of that frame.", cause_chart(s.walk));
     return out + "</div>\n";
 }
 
