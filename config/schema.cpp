@@ -37,7 +37,7 @@ constexpr Entry file_name(string_view key, string_view help, std::string S::*mem
     return {key, Kind::file, {}, 0, longest_name, {}, help, member};
 }
 
-const std::array<Entry, 30> entries = {
+const std::array<Entry, 32> entries = {
     file_name("model", "The .walk model that is walked through. Relative names here and below: relative to this file's folder.",
               &S::model),
     file_name("path",
@@ -49,6 +49,11 @@ const std::array<Entry, 30> entries = {
     file_name("steering", "How the input steers; \"\": the default of the device's class.", &S::steering),
     file_name("state", "Folder of the cost table and of a latched emergency stop; \"\": $STATE_DIRECTORY, as systemd sets it.",
               &S::state),
+    file_name(
+        "monitor",
+        "Where surefootd serves live figures, unix:/PATH or 127.0.0.1:PORT; \"\": surefoot.sock in $RUNTIME_DIRECTORY; \"none\".",
+        &S::monitor),
+    file_name("incidents", "Folder where surefootd writes bursts of misses down; \"\": nowhere.", &S::incidents),
     number("open_limit_s", "s", 1, 86400, "Longest time that opening a model may take (surefootd).", &S::open_limit_s),
     number("rate_hz", "Hz", 1, 1000, "Frames a second that the walk keeps.", &S::rate_hz),
     integer("width", "px", 16, 16384, "Width of the picture.", &S::width),

@@ -18,6 +18,7 @@ namespace surefoot::config {
 /// The initial values are the defaults.
 struct Settings {
     std::string model, path, input, steering, state;  ///< files; see file_setting() for what relative names stand for
+    std::string monitor, incidents;                   ///< the daemon's: where live figures are served; a folder
     double lift_m = 0;                                ///< added to the path's heights
     double open_limit_s = 600;                        ///< the daemon's: for how long opening a model may take
     double rate_hz = 30;

@@ -80,6 +80,7 @@ public:
         ::setenv("NOTIFY_SOCKET", (dir + "/notify").c_str(), 1);
         ::unsetenv("JOURNAL_STREAM");
         ::unsetenv("STATE_DIRECTORY");
+        ::unsetenv("RUNTIME_DIRECTORY");
         for (const auto& [key, value] : environment) ::setenv(key.c_str(), value.c_str(), 1);
         std::freopen(err.c_str(), "w", stderr);
         std::freopen(out.c_str(), "w", stdout);

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "tools/app/settings_request.hpp"
+#include "tools/console/address.hpp"
+#include "tools/daemon/monitoring.hpp"
 
 namespace surefoot::daemon {
 
@@ -23,6 +25,10 @@ std::vector<Error> own_rules(const config::Configuration& c, const std::string& 
     if (s.clock != "real") wrong("clock", "= \"" + s.clock + "\" has no real time", "take it out");
     if (!s.steering.empty() && s.input.empty())
         wrong("steering", "says how an input steers, and there is none", "add input = \"devices\", or take it out");
+    if (!s.monitor.empty() && s.monitor != no_monitor) {
+        if (const auto address = console::parse_address(s.monitor); !address)
+            wrong("monitor", address.error().what, address.error().remedy);
+    }
     return problems;
 }
 

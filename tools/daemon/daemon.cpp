@@ -16,10 +16,12 @@
 #include "rt/base/file.hpp"
 #include "rt/threads/runaway.hpp"
 #include "tools/app/state.hpp"
+#include "tools/console/watch.hpp"
 #include "tools/daemon/configuration.hpp"
 #include "tools/daemon/exit_code.hpp"
 #include "tools/daemon/log.hpp"
 #include "tools/daemon/misses.hpp"
+#include "tools/daemon/monitoring.hpp"
 #include "tools/daemon/service.hpp"
 #include "tools/daemon/standing.hpp"
 
@@ -91,7 +93,7 @@ Result<void> check_state(const app::WalkRequest& request) {
 }
 
 Ending walk(const config::Configuration& configuration, const Options& options, Log& log, Standing& standing,
-            const app::FaultHook& inject) {
+            console::Monitor* monitor, const app::FaultHook& inject) {
     const app::WalkRequest request = request_of(configuration, options.config_file);
     if (auto ok = check_state(request); !ok) {
         const Error& e = ok.error();
@@ -99,9 +101,17 @@ Ending walk(const config::Configuration& configuration, const Options& options, 
     }
     Progress progress;
     progress.stop = &standing.stop_walk;
-    progress.note = [&](std::string_view text) { log.say(Priority::notice, event::input, text); };
+    progress.note = [&](std::string_view text) {
+        log.say(Priority::notice, event::input, text);
+        if (monitor != nullptr) monitor->add_note(text);
+    };
     Bursts bursts;
-    auto outcome = app::run_walk(request, progress, watch_of(log, standing, bursts, inject));
+    app::WalkWatch watch = watch_of(log, standing, bursts, inject);
+    if (monitor != nullptr) {
+        monitor->set_state(report::ServiceState::starting);
+        console::watch_with(*monitor, request, watch);
+    }
+    auto outcome = app::run_walk(request, progress, watch);
     say_burst(log, bursts.finish());
     if (!outcome) return {true, outcome.error(), exit_code_of(standing.step.load())};
     for (const std::string& note : outcome->notes) log.say(Priority::notice, event::input, note);
@@ -113,7 +123,7 @@ Ending walk(const config::Configuration& configuration, const Options& options, 
 }
 
 /// Walks until the end; of a configuration that never showed a frame back to the last that did.
-ExitCode walk_on(config::Configuration current, const Options& options, Log& log, Standing& standing,
+ExitCode walk_on(config::Configuration current, const Options& options, Log& log, Standing& standing, console::Monitor* monitor,
                  const app::FaultHook& inject) {
     std::optional<config::Configuration> good;
     while (true) {
@@ -125,7 +135,7 @@ ExitCode walk_on(config::Configuration current, const Options& options, Log& log
             current = std::move(*next);
             standing.open(current.values);
         }
-        const Ending ending = walk(current, options, log, standing, inject);
+        const Ending ending = walk(current, options, log, standing, monitor, inject);
         if (standing.leaving.load()) return exit_success;
         if (standing.walk_frames() > 0) good = current;
         if (!ending.failed) {
@@ -177,8 +187,9 @@ int run(const Options& options, const app::FaultHook& inject) {
     log.say(
         Priority::info, event::starting,
         fmt::format("{}: {}, {}", options.config_file, loaded.configuration.values.model, in_short(loaded.configuration.values)));
+    const std::unique_ptr<console::Monitor> monitor = open_monitor(loaded.configuration, log);
     const Service service(options, log, standing, notifier, watchdog_timeout_ns());
-    return walk_on(std::move(loaded.configuration), options, log, standing, inject);
+    return walk_on(std::move(loaded.configuration), options, log, standing, monitor.get(), inject);
 }
 
 int run_main(int argc, char** argv, const app::FaultHook& inject) {

@@ -1,0 +1,62 @@
+// The daemon looked at from outside: live figures where the settings say, over a reload, and a walk that needs nobody to look.
+#include <gtest/gtest.h>
+
+#include "tests/daemon/running.hpp"
+#include "tools/console/client.hpp"
+#include "tools/daemon/exit_code.hpp"
+#include "tools/daemon/monitoring.hpp"
+
+namespace surefoot::daemon::test {
+namespace {
+
+std::string page(const std::string& socket_file, std::string_view path) {
+    const auto address = console::parse_address("unix:" + socket_file);
+    if (!address) return {};
+    auto body = console::fetch(*address, path);
+    return body ? *body : std::string();
+}
+
+TEST(Monitoring, IsWhereTheSettingsSayElseInTheRunTimeFolder) {
+    config::Settings settings;
+    EXPECT_EQ(monitor_address(settings, false), "");
+    EXPECT_EQ(monitor_address(settings, true), console::default_address());
+    settings.monitor = "127.0.0.1:9464";
+    EXPECT_EQ(monitor_address(settings, true), "127.0.0.1:9464");
+    settings.monitor = "none";
+    EXPECT_EQ(monitor_address(settings, true), "");
+}
+
+TEST(Monitoring, FiguresAreServedAndGoOnOverAReload) {
+    Running daemon("monitored");
+    daemon.environment = {{"RUNTIME_DIRECTORY", daemon.dir}};
+    daemon.start();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    const std::string socket = daemon.dir + "/surefoot.sock";
+    EXPECT_NE(page(socket, "/metrics").find("surefoot_frames_total"), std::string::npos);
+    EXPECT_NE(page(socket, "/status.json").find("forest.walk"), std::string::npos);
+    ::kill(daemon.pid, SIGHUP);
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_NE(page(socket, "/status.json").find("walking"), std::string::npos) << "the same socket, after the walk began anew";
+    ::kill(daemon.pid, SIGTERM);
+    EXPECT_EQ(daemon.wait_exit(20), exit_success) << daemon.said();
+    EXPECT_FALSE(std::filesystem::exists(socket)) << "nothing is left behind";
+}
+
+TEST(Monitoring, AnAddressThatCannotBeHadCostsTheFiguresAndNotTheWalk) {
+    Running daemon("unmonitored");
+    daemon.write_config("monitor = \"unix:" + daemon.dir + "/absent/s.sock\"\n");
+    daemon.start();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("nobody can look on, the walk goes on"), 1) << daemon.said();
+}
+
+TEST(Monitoring, AnAddressThatIsNoneIsRefusedByLine) {
+    Running daemon("misaddressed");
+    daemon.write_config("monitor = \"0.0.0.0:80\"\n");
+    daemon.start();
+    EXPECT_EQ(daemon.wait_exit(start_s), exit_config);
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: monitor"), 1) << daemon.said();
+}
+
+}  // namespace
+}  // namespace surefoot::daemon::test

@@ -1,0 +1,25 @@
+// The monitor of the service, as the settings ask for it. A service that cannot be looked at walks all the same.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "config/settings.hpp"
+#include "tools/console/monitor.hpp"
+#include "tools/daemon/log.hpp"
+
+namespace surefoot::daemon {
+
+/// The setting `monitor` where nobody shall look.
+constexpr std::string_view no_monitor = "none";
+
+/// Where the settings put it: as they say, else surefoot.sock in the service's run-time folder if it has one, else nowhere
+/// (empty).
+std::string monitor_address(const config::Settings& settings, bool has_runtime_directory);
+
+/// Null where nothing is asked for, or where it cannot be had, which is logged. Call it from a neutral thread, before the first
+/// walk: it stays for all of them, so a reload does not move it.
+std::unique_ptr<console::Monitor> open_monitor(const config::Configuration& configuration, Log& log);
+
+}  // namespace surefoot::daemon
