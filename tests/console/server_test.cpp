@@ -177,6 +177,10 @@ TEST(Server, AFloodIsTurnedAwayAtItsRate) {
 }
 
 TEST(Server, WithoutDescriptorsItWaitsAndComesBack) {
+#ifdef SUREFOOT_SANITIZED
+    GTEST_SKIP()
+        << "UBSan looks whether memory can be read through a pipe, and reports a false type where no descriptor is left for it";
+#endif
     const OwnFolder folder;
     const auto server = serving(at_socket(folder), hello_pages());
     rlimit before{};
