@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rt/base/file.hpp"
+#include "rt/threads/guard.hpp"
 #include "tests/app/walk_fixture.hpp"
 #include "tools/app/soak/soak.hpp"
 
@@ -20,16 +21,17 @@ SoakRequest virtual_soak(double seconds) {
 }
 
 TEST(Soak, TwentyVirtualMinutesHoldAndLeaveAPageAndTheirFigures) {
-#ifdef SUREFOOT_SANITIZED
-    GTEST_SKIP() << "the sanitizers keep freed memory, which a soak calls growth";
-#endif
+    // The sanitizers keep freed memory, which a soak rightly calls growth: all but that is judged there.
+    const bool memory_counts = rt::guard_active();
     SoakRequest request = virtual_soak(1200);
     request.report_dir = Forest::get().dir + "/soak";
     auto outcome = run_soak(request, {});
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     const report::SoakSummary& s = outcome->summary;
-    for (const report::SoakCheck& check : s.checks)
+    for (const report::SoakCheck& check : s.checks) {
+        if (!memory_counts && check.name == "memory") continue;
         EXPECT_EQ(check.judged, report::Judged::holds) << check.name << ": " << check.words;
+    }
     EXPECT_EQ(s.walk.frames, 36'000U);
     EXPECT_EQ(s.slots_run + s.slots_skipped, s.slots_elapsed);
     EXPECT_EQ(s.grid_drift_ns, 0);
@@ -42,12 +44,13 @@ TEST(Soak, TwentyVirtualMinutesHoldAndLeaveAPageAndTheirFigures) {
 
     const auto page = read_text(outcome->report_page);
     ASSERT_TRUE(page.ok());
-    for (const char* expected : {"20 minutes of virtual time", "the verdict holds", "descriptors", "Interrupts"})
+    for (const char* expected :
+         {"20 minutes of virtual time", memory_counts ? "the verdict holds" : "descriptors", "descriptors", "Interrupts"})
         EXPECT_NE(page->find(expected), std::string::npos) << expected;
     EXPECT_EQ(page->find("nan"), std::string::npos);
     EXPECT_EQ(page->find("http"), std::string::npos) << "the page asks the network for something";
     const auto json = nlohmann::json::parse(*read_text(request.report_dir + "/soak.json"));
-    EXPECT_EQ(json["verdict"], "holds");
+    EXPECT_EQ(json["verdict"], memory_counts ? "holds" : "broken");
     EXPECT_EQ(json["walk"]["frames"], 36'000);
     EXPECT_EQ(json["grid"]["drift_ns"], 0);
     for (const char* key : {"kernel", "kernel_command_line", "interrupts", "pressure", "steal_ms"})

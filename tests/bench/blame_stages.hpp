@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -87,10 +88,12 @@ public:
         // At once, also where the machine is busy: a stop that falls on another frame teaches nothing.
         (void)rt::place_thread(0, {.policy = rt::Policy::fifo, .priority = 95, .cpus = {}, .name = "stopper"});
         rt::RealClock clock;
-        std::int64_t for_ns = 0;
-        while (read(ends_[0], &for_ns, sizeof for_ns) == sizeof for_ns) {
-            kill(parent, SIGSTOP);
-            clock.sleep_until_ns(clock.now_ns() + for_ns);
+        Wish wish;
+        while (read(ends_[0], &wish, sizeof wish) == sizeof wish) {
+            // To the thread that runs: the process's own would be taken by the main thread, which waits its turn where the
+            // machine is busy.
+            syscall(SYS_tgkill, parent, wish.thread, SIGSTOP);
+            clock.sleep_until_ns(clock.now_ns() + wish.for_ns);
             kill(parent, SIGCONT);
         }
         _exit(0);
@@ -102,9 +105,17 @@ public:
     }
     Stopper(const Stopper&) = delete;
     Stopper& operator=(const Stopper&) = delete;
-    void stop_for(std::int64_t ns) { (void)!write(ends_[1], &ns, sizeof ns); }
+    /// Stops the whole process, through the calling thread.
+    void stop_for(std::int64_t ns) {
+        const Wish wish{ns, static_cast<pid_t>(syscall(SYS_gettid))};
+        (void)!write(ends_[1], &wish, sizeof wish);
+    }
 
 private:
+    struct Wish {
+        std::int64_t for_ns = 0;
+        pid_t thread = 0;
+    };
     int ends_[2] = {-1, -1};
     pid_t child_ = -1;
 };

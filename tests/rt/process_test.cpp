@@ -19,6 +19,7 @@
 #include "rt/threads/guard.hpp"
 #include "rt/threads/placement.hpp"
 #include "rt/threads/syscall_trap.hpp"
+#include "tests/rt/idle_stages.hpp"
 #include "tests/rt/in_child.hpp"
 #include "tests/time_units.hpp"
 
@@ -91,21 +92,11 @@ TEST(CensusWithTbb, TheNaiveOrderFailsAndTheNeutralOnePasses) {
               passed);
 }
 
-/// Stages that do next to nothing, in own code that is clean.
-class Idle : public FrameStages {
-public:
-    void sample(FrameRecord& r) override { r.prepared_age = 1; }
-    void select(FrameRecord&) override {}
-    void submit(FrameRecord&) override {}
-    void finish(FrameRecord&) override {}
-    void account(FrameRecord&) override {}
-};
-
 TEST(Stopped, AProcessStoppedForThreeTenthsOfASecondCountsItsSlotsAndNamesTheCause) {
     if (!guard_active()) GTEST_SKIP() << "sanitizers make a forked child's signals unreliable";
     const auto body = [] {
         RealClock clock;
-        Idle stages;
+        test::IdleStages stages;
         SpscRing<FrameRecord> ring(128);
         FrameLoopOptions options;
         options.frames = 30;
@@ -132,7 +123,7 @@ TEST(Stopped, AProcessStoppedForThreeTenthsOfASecondCountsItsSlotsAndNamesTheCau
 }
 
 /// Idle, but one frame makes a system call in own code and another in the driver's tier.
-class Calling final : public Idle {
+class Calling final : public test::IdleStages {
 public:
     void select(FrameRecord& r) override {
         if (r.frame == forbidden_at) (void)::getppid();

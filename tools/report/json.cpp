@@ -4,19 +4,13 @@
 #include <string>
 
 #include "tools/report/report.hpp"
+#include "tools/report/rounded.hpp"
 
 namespace surefoot::report {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Three decimals; infinity and not-a-number become null (an accuracy without any error, a test not run).
-Json rounded(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    const double scaled = std::round(value * 1000.0) / 1000.0;
-    return std::isfinite(scaled) ? Json(scaled) : Json(value);
-}
 
 Json tail(const Quantiles& q) {
     return {{"p50", rounded(q.p50)}, {"p99", rounded(q.p99)}, {"p999", rounded(q.p999)}, {"max", rounded(q.max)}};

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tools/report/rounded.hpp"
 #include "tools/report/soak.hpp"
 
 namespace surefoot::report {
@@ -10,13 +11,6 @@ namespace surefoot::report {
 namespace {
 
 using SoakJson = nlohmann::ordered_json;
-
-/// Three decimals; null where it is not finite.
-SoakJson short_of(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    const double scaled = std::round(value * 1000.0) / 1000.0;
-    return std::isfinite(scaled) ? SoakJson(scaled) : SoakJson(value);
-}
 
 SoakJson checks_of(const SoakSummary& s) {
     SoakJson checks = SoakJson::array();
@@ -31,9 +25,9 @@ SoakJson loads_of(const SoakSummary& s) {
         loads.push_back({{"name", l.name},
                          {"ran", l.ran},
                          {"real", l.real},
-                         {"seconds", short_of(l.seconds)},
-                         {"amount", short_of(l.amount)},
-                         {"evidence", short_of(l.evidence)},
+                         {"seconds", rounded(l.seconds)},
+                         {"amount", rounded(l.amount)},
+                         {"evidence", rounded(l.evidence)},
                          {"failures", l.failures},
                          {"proof", l.words}});
     return loads;
@@ -42,24 +36,24 @@ SoakJson loads_of(const SoakSummary& s) {
 SoakJson phases_of(const SoakSummary& s) {
     SoakJson phases = SoakJson::array();
     for (const SoakPhase& p : s.phases)
-        phases.push_back({{"from_s", short_of(p.from_s)},
-                          {"to_s", short_of(p.to_s)},
+        phases.push_back({{"from_s", rounded(p.from_s)},
+                          {"to_s", rounded(p.to_s)},
                           {"loads", p.loads},
                           {"frames", p.frames},
                           {"misses", p.misses},
                           {"own_misses", p.own_misses},
                           {"skipped", p.skipped},
-                          {"frame_ms_p99", short_of(p.frame_ms_p99)},
-                          {"frame_ms_max", short_of(p.frame_ms_max)}});
+                          {"frame_ms_p99", rounded(p.frame_ms_p99)},
+                          {"frame_ms_max", rounded(p.frame_ms_max)}});
     return phases;
 }
 
 SoakJson process_of(const SoakSummary& s) {
     SoakJson samples = SoakJson::array();
     for (const SoakSample& p : s.samples)
-        samples.push_back({short_of(p.time_s), p.memory_kib, p.resident_kib, p.descriptors, p.threads});
-    return {{"memory_kib_per_hour", s.memory.known ? short_of(s.memory.per_s * 3600) : SoakJson(nullptr)},
-            {"warm_up_s", short_of(s.warm_up_s)},
+        samples.push_back({rounded(p.time_s), p.memory_kib, p.resident_kib, p.descriptors, p.threads});
+    return {{"memory_kib_per_hour", s.memory.known ? rounded(s.memory.per_s * 3600) : SoakJson(nullptr)},
+            {"warm_up_s", rounded(s.warm_up_s)},
             {"columns", {"time_s", "memory_kib", "resident_kib", "descriptors", "threads"}},
             {"samples", samples}};
 }
@@ -67,12 +61,12 @@ SoakJson process_of(const SoakSummary& s) {
 SoakJson machine_of(const SoakMachine& m) {
     SoakJson interrupts = SoakJson::object(), pressure = SoakJson::object();
     for (const SoakCount& c : m.interrupts) interrupts[c.name] = c.count;
-    for (const SoakCount& c : m.pressure) pressure[c.name] = short_of(c.count);
+    for (const SoakCount& c : m.pressure) pressure[c.name] = rounded(c.count);
     return {{"kernel", m.kernel},
             {"kernel_command_line", m.kernel_command_line},
             {"processor", m.processor},
             {"cores", m.cores},
-            {"steal_ms", short_of(m.steal_ms)},
+            {"steal_ms", rounded(m.steal_ms)},
             {"context_switches", m.context_switches},
             {"processes", m.processes},
             {"interrupts", interrupts},
@@ -82,8 +76,8 @@ SoakJson machine_of(const SoakMachine& m) {
 SoakJson misses_of(const SoakSummary& s) {
     SoakJson misses = SoakJson::array();
     for (const SoakMiss& m : s.misses)
-        misses.push_back({{"time_s", short_of(m.time_s)},
-                          {"frame_ms", short_of(m.frame_ms)},
+        misses.push_back({{"time_s", rounded(m.time_s)},
+                          {"frame_ms", rounded(m.frame_ms)},
                           {"cause", m.cause},
                           {"own", m.own},
                           {"skipped", m.skipped}});
@@ -104,8 +98,8 @@ std::string soak_json(const SoakSummary& s) {
         {"command_line", s.command_line},
         {"clock", s.walk.clock},
         {"seed", s.seed},
-        {"asked_s", short_of(s.asked_s)},
-        {"ran_s", short_of(s.ran_s)},
+        {"asked_s", rounded(s.asked_s)},
+        {"ran_s", rounded(s.ran_s)},
         {"stopped", s.stopped},
         {"grid",
          {{"run", s.slots_run},

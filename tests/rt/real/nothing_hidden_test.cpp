@@ -16,6 +16,7 @@
 #include "rt/monitor/histogram.hpp"
 #include "rt/monitor/recorder.hpp"
 #include "rt/threads/guard.hpp"
+#include "tests/rt/idle_stages.hpp"
 #include "tests/rt/in_child.hpp"
 #include "tests/time_units.hpp"
 
@@ -104,20 +105,11 @@ TEST(NothingHidden, TwentyStallsOfFiftyMillisecondsAppearInFull) {
     EXPECT_EQ(Histogram::bin_of(frames.quantile(0.999)), Histogram::bin_of(p999));
 }
 
-class Nothing final : public FrameStages {
-public:
-    void sample(FrameRecord& r) override { r.prepared_age = 1; }
-    void select(FrameRecord&) override {}
-    void submit(FrameRecord&) override {}
-    void finish(FrameRecord&) override {}
-    void account(FrameRecord&) override {}
-};
-
 TEST(NothingHidden, AStopOfHalfASecondCostsThirtySlotsAndLeavesThePhase) {
     if (!guard_active()) GTEST_SKIP() << "sanitizers make a forked child's signals unreliable";
     const auto body = [] {
         RealClock clock;
-        Nothing stages;
+        test::IdleStages stages;
         SpscRing<FrameRecord> ring(256);
         FrameLoopOptions options;
         options.period_ns = period_ns;
