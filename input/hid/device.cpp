@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -71,12 +72,14 @@ public:
         if (used_.insert(name).second) return name;
         if (const auto prefix = prefix_of(e.application); !prefix.empty() && used_.insert(prefix + name).second)
             return prefix + name;
-        for (int n = 2;; ++n)
-            if (auto numbered = fmt::format("{}-{}", name, n); used_.insert(numbered).second) return numbered;
+        // From where the last of this name ended: a descriptor may hold thousands of one name.
+        for (int& n = last_.try_emplace(name, 1).first->second;;)
+            if (auto numbered = fmt::format("{}-{}", name, ++n); used_.insert(numbered).second) return numbered;
     }
 
 private:
     std::set<std::string> used_;
+    std::map<std::string, int> last_;
 };
 
 double physical(std::int32_t value, std::int32_t exponent) { return value * std::pow(10.0, std::clamp(exponent, -32, 32)); }

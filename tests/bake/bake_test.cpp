@@ -129,7 +129,7 @@ TEST(Bake, EveryTriangleOfTheSceneIsInTheLeaves) {
 }
 
 TEST(Bake, LeavesAreSplitBelowASixteenthOfAFrame) {
-    const importer::Scene scene = scene_of("town", 0.2);
+    const importer::Scene scene = scene_of("town", 0.1);
     bake::BakeOptions options;
     model::CostModel slow = model::default_costs();  // a machine on which 1/16 frame is few triangles
     for (model::CostGrid& grid : slow.grids) {
