@@ -17,6 +17,7 @@
 
 #include "rt/clock/clock.hpp"
 #include "tools/app/soak/load_runner.hpp"
+#include "tools/app/soak/proc_figure.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -180,6 +181,17 @@ TEST(SoakLoads, ClockStepsAreUndoneAlsoWhereTheyAreEnded) {
     EXPECT_GT(furthest, 30'000'000) << "no step was seen";
     EXPECT_LT(std::llabs(offset_ns() - before), 5'000'000) << "the last step was not undone";
     EXPECT_EQ(c.failures.load(), 0U);
+}
+
+TEST(ProcFigure, IsThatOfItsOwnLineOrNothing) {
+    const std::string io = "wchar: 7\ncancelled_write_bytes: 4\nwrite_bytes: 8192\n";
+    EXPECT_EQ(proc_figure(io, "write_bytes"), 8192U);
+    EXPECT_EQ(proc_figure(io, "wchar"), 7U);
+    EXPECT_EQ(proc_figure("Cached:    17 kB\n", "Cached"), 17U);
+    EXPECT_EQ(proc_figure("intr 1 2\nctxt 5\n", "ctxt"), 5U);
+    for (const char* text : {"", "ctxt", "\nctxt ", "ctxts 4\n"}) EXPECT_EQ(proc_figure(text, "ctxt"), 0U) << text;
+    EXPECT_EQ(proc_figure_of("/nonexistent", "ctxt"), 0U);
+    EXPECT_GT(proc_figure_of("/proc/stat", "processes"), 0U);
 }
 
 }  // namespace

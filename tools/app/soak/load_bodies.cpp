@@ -8,13 +8,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <vector>
 
 #include "rt/base/file.hpp"
 #include "rt/threads/usage.hpp"
 #include "tools/app/soak/load_board.hpp"
+#include "tools/app/soak/proc_figure.hpp"
 
 namespace surefoot::app {
 
@@ -23,19 +23,6 @@ namespace {
 void doze_ms(std::int64_t ms) {
     const timespec time{ms / 1000, ms % 1000 * 1'000'000};
     nanosleep(&time, nullptr);
-}
-
-/// A figure of a /proc file: the number after `name`.
-std::uint64_t number_after(const std::string& file, std::string_view name) {
-    const auto text = read_text(file, 1U << 22U);
-    const std::size_t at = text ? text->find(name) : std::string::npos;
-    if (at == std::string::npos) return 0;
-    const char* from = text->data() + at + name.size();
-    const char* const end = text->data() + text->size();
-    while (from < end && (*from == ' ' || *from == ':')) ++from;
-    std::uint64_t value = 0;
-    std::from_chars(from, end, value);
-    return value;
 }
 
 void burn_cpu(LoadCounters& c, const std::atomic<bool>& stop) {
@@ -87,7 +74,7 @@ void write_files(LoadCounters& c, const LoadSettings& s, const std::atomic<bool>
         return;
     }
     unlink(name.c_str());
-    std::uint64_t to_device = number_after("/proc/self/io", "\nwrite_bytes");
+    std::uint64_t to_device = proc_figure_of("/proc/self/io", "write_bytes");
     while (!stop.load()) {
         for (std::uint64_t at = 0; at < s.file_bytes && !stop.load(); at += block) {
             if (pwrite(fd, bytes.data(), block, static_cast<off_t>(at)) != static_cast<ssize_t>(block)) {
@@ -100,7 +87,7 @@ void write_files(LoadCounters& c, const LoadSettings& s, const std::atomic<bool>
         }
         for (std::uint64_t at = 0; at < s.file_bytes && !stop.load(); at += block)
             if (pread(fd, bytes.data(), block, static_cast<off_t>(at)) <= 0) break;
-        const std::uint64_t now = number_after("/proc/self/io", "\nwrite_bytes");
+        const std::uint64_t now = proc_figure_of("/proc/self/io", "write_bytes");
         c.evidence += (now - to_device) >> 10U;
         to_device = now;
         (void)ftruncate(fd, 0);
@@ -111,7 +98,7 @@ void write_files(LoadCounters& c, const LoadSettings& s, const std::atomic<bool>
 /// Batches of processes that touch some memory, write a byte into a pipe and end.
 void fork_processes(LoadCounters& c, int number, const std::atomic<bool>& stop) {
     constexpr int batch = 8;
-    std::uint64_t made = number_after("/proc/stat", "\nprocesses");
+    std::uint64_t made = proc_figure_of("/proc/stat", "processes");
     while (!stop.load()) {
         int ends[2];
         if (pipe(ends) != 0) {
@@ -137,7 +124,7 @@ void fork_processes(LoadCounters& c, int number, const std::atomic<bool>& stop) 
         c.failures += static_cast<std::uint64_t>(batch - children);
         c.amount += static_cast<std::uint64_t>(children);
         if (number == 0) {
-            const std::uint64_t now = number_after("/proc/stat", "\nprocesses");
+            const std::uint64_t now = proc_figure_of("/proc/stat", "processes");
             c.evidence += now - made;
             made = now;
         }
@@ -148,13 +135,13 @@ void fork_processes(LoadCounters& c, int number, const std::atomic<bool>& stop) 
 /// Drops clean pages every second; what the page cache holds before and after says that it happened.
 void drop_caches(LoadCounters& c, const std::atomic<bool>& stop) {
     while (!stop.load()) {
-        const std::uint64_t before_kib = number_after("/proc/meminfo", "\nCached");
+        const std::uint64_t before_kib = proc_figure_of("/proc/meminfo", "Cached");
         const int fd = open("/proc/sys/vm/drop_caches", O_WRONLY | O_CLOEXEC);
         const bool dropped = fd >= 0 && write(fd, "1", 1) == 1;
         if (!dropped) c.refused = errno;
         if (fd >= 0) close(fd);
         if (!dropped) return;
-        const std::uint64_t after_kib = number_after("/proc/meminfo", "\nCached");
+        const std::uint64_t after_kib = proc_figure_of("/proc/meminfo", "Cached");
         ++c.amount;
         c.evidence += before_kib > after_kib ? before_kib - after_kib : 0;
         for (int i = 0; i < 10 && !stop.load(); ++i) doze_ms(100);

@@ -12,6 +12,7 @@
 #include "rt/base/file.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/threads/usage.hpp"
+#include "tools/app/soak/proc_figure.hpp"
 
 namespace surefoot::app {
 
@@ -71,13 +72,6 @@ void read_pressure(const std::string& text, const std::string& of, std::map<std:
     }
 }
 
-double number_after(const std::string& text, const std::string& name) {
-    const std::size_t at = text.find("\n" + name + " ");
-    double value = 0;
-    if (at != std::string::npos) std::from_chars(text.data() + at + name.size() + 2, text.data() + text.size(), value);
-    return value;
-}
-
 }  // namespace
 
 MachineCounters read_counters(const std::string& root) {
@@ -87,8 +81,8 @@ MachineCounters read_counters(const std::string& root) {
     for (const char* of : {"cpu", "memory", "io"}) read_pressure(text_of(root + "/proc/pressure/" + of), of, c.pressure_us);
     if (const auto steal = rt::read_steal(root)) c.steal_ms = steal->total_ms;
     const std::string stat = text_of(root + "/proc/stat");
-    c.context_switches = number_after(stat, "ctxt");
-    c.processes = number_after(stat, "processes");
+    c.context_switches = static_cast<double>(proc_figure(stat, "ctxt"));
+    c.processes = static_cast<double>(proc_figure(stat, "processes"));
     return c;
 }
 
