@@ -51,6 +51,12 @@ if command -v script >/dev/null; then
   grep -q 'frame time' typescript || complain "top shows no frame times"
 fi
 
+# A burst of misses is written down, with a frame of it that can be replayed.
+kill -STOP $walk; sleep 0.3; kill -CONT $walk
+for _ in $(seq 60); do ls incidents/incident-*/incident.json >/dev/null 2>&1 && break; sleep 0.1; done
+[ -s "$(ls incidents/incident-*/ledger.csv | head -1)" ] || complain "a stop of 0.3 s left no incident"
+"$surefoot" replay incidents/incident-*/frame.capture >out 2>err || complain "its frame cannot be replayed: $(cat err)"
+
 kill -INT $walk; wait $walk; got=$?
 [ $got -eq 130 ] || complain "exit $got, not 130, of the stopped walk: $(cat walk.err)"
 valid_json walk.out || complain "the walk's own figures are gone"

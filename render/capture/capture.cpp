@@ -7,15 +7,8 @@
 
 namespace surefoot::capture {
 
-std::vector<Memory> remember(const select::SelectState& state) {
-    std::vector<Memory> memory;
-    memory.reserve(state.touched.size());
-    for (const model::Index node : state.touched) memory.push_back({node, state.shown[node]});
-    return memory;
-}
-
-Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<Memory> memory,
-             const select::Cut& cut) {
+Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis,
+             std::vector<select::Shown> memory, const select::Cut& cut) {
     Capture c;
     c.prepared = *input.prepared;
     c.selector = selector;
@@ -47,10 +40,8 @@ Result<select::Cut> replay(const Capture& capture, std::string_view selector_nam
     select::SelectState state;
     state.reserve(nodes_only, candidates);
     state.hysteresis = capture.hysteresis;
-    for (const Memory& m : capture.memory) {
-        state.shown[m.node] = m.shown;
-        state.touched.push_back(m.node);
-    }
+    for (const select::Shown& m : capture.memory) state.shown[m.node] = m.form;
+    state.touched = capture.memory;
     model::CostModel costs;
     costs.combine = capture.combine;
     costs.upper_factor = capture.upper_factor;

@@ -14,12 +14,6 @@
 
 namespace surefoot::capture {
 
-/// What the selector remembered of one node (SelectState::shown).
-struct Memory {
-    model::Index node = 0;
-    model::Index shown = 0;
-};
-
 struct Capture {
     std::uint64_t frame = 0;  ///< of the walk; prepared.frame is the one whose pose the arrays were begun for
     prepare::PreparedFrame prepared;
@@ -29,18 +23,15 @@ struct Capture {
     float upper_factor = 1, slice_end_us = 0;  ///< of the cost model: all of it that selection uses
     float hysteresis = 1;
     std::uint32_t node_count = 0;        ///< of the model
-    std::vector<Memory> memory;          ///< before the selection
+    std::vector<select::Shown> memory;   ///< what the selector remembered, before the selection
     std::vector<select::CutItem> items;  ///< the cut
     std::uint64_t hash = 0;              ///< of the cut
     float predicted_us = 0;
 };
 
-/// What the selector remembers now. Call before the selection that is to be captured: it changes the state. Allocates.
-std::vector<Memory> remember(const select::SelectState& state);
-
-/// Puts a frame together; `memory` from remember() before `cut` was made. Allocates: not for the frame thread's every frame.
-Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<Memory> memory,
-             const select::Cut& cut);
+/// Puts a frame together; `memory`: SelectState::before, after `cut` was made. Allocates: not for the frame thread.
+Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis,
+             std::vector<select::Shown> memory, const select::Cut& cut);
 
 /// Little-endian; magic, version, sizes and a checksum, then one zstd frame. Replaces the file only when complete.
 Result<void> write_capture(const std::string& file, const Capture& capture);

@@ -50,8 +50,8 @@ void each(Io& io, C& c) requires std::is_same_v<std::remove_const_t<C>, prepare:
     io(c.rep, c.cost.submit_us, c.cost.raster_us, c.error_rad, c.benefit, c.subtree_benefit, c.triangles);
 }
 template <class Io, class M>
-void each(Io& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Memory> {
-    io(m.node, m.shown);
+void each(Io& io, M& m) requires std::is_same_v<std::remove_const_t<M>, select::Shown> {
+    io(m.node, m.form);
 }
 template <class Io, class I>
 void each(Io& io, I& i) requires std::is_same_v<std::remove_const_t<I>, select::CutItem> {
@@ -161,7 +161,7 @@ Result<void> check(const Capture& c, const std::string& place) {
     for (std::size_t i = 0; i < f.choices.size(); ++i) {
         if (!finite(f.choices[i].cost)) return bad(fmt::format("choices[{}]: cost is not finite", i));
     }
-    for (const Memory& m : c.memory) {
+    for (const select::Shown& m : c.memory) {
         if (m.node >= c.node_count) return bad("a remembered node is out of range");
     }
     for (const select::CutItem& item : c.items) {

@@ -20,8 +20,10 @@ std::uint64_t mixed(std::uint64_t hash, const CutItem& item) {
 
 void SelectState::reserve(const model::Model& model, std::uint32_t max_candidates) {
     shown.assign(model.nodes.size(), none);
-    touched.clear();
-    touched.reserve(max_candidates);
+    for (std::vector<Shown>* list : {&touched, &before}) {
+        list->clear();
+        list->reserve(max_candidates);
+    }
     scratch_next.resize(max_candidates);
     scratch_head.resize(2 * BucketQueue::buckets);
     scratch_sums.resize(4 * BucketQueue::buckets);
@@ -33,7 +35,7 @@ void reserve(Cut& cut, std::uint32_t max_candidates) { cut.items.reserve(max_can
 
 bool has_room(const SelectInput& input, const SelectState& state, const Cut& cut) {
     const std::size_t n = input.prepared->candidates.size();
-    return n > 0 && n <= state.scratch_a.size() && n <= state.touched.capacity() && n <= cut.items.capacity();
+    return n > 0 && n <= state.scratch_a.size() && n <= state.touched.capacity() && n <= state.before.capacity() && n <= cut.items.capacity();
 }
 
 Cover::Cover(const SelectInput& input, SelectState& state)
@@ -115,13 +117,14 @@ void Cover::list_items(const Budget& budget, Cut& cut) {
 }
 
 void Cover::remember() {
-    for (const Index node : state_.touched) state_.shown[node] = none;
+    for (const Shown& last : state_.touched) state_.shown[last.node] = none;
+    std::swap(state_.before, state_.touched);
     state_.touched.clear();
     for (Index c = 0; c < chosen_.size(); ++c) {
         if (chosen_[c] == none) continue;
         const Index node = prepared_.candidates[c].node;
         state_.shown[node] = chosen_[c] == SelectState::opened ? SelectState::opened : current(c).rep;
-        state_.touched.push_back(node);
+        state_.touched.push_back({node, state_.shown[node]});
     }
 }
 

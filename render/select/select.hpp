@@ -55,11 +55,18 @@ inline double upper_factor_of(const SelectInput& input) {
     return input.upper_factor > 0 ? input.upper_factor : static_cast<double>(input.costs->upper_factor);
 }
 
+/// What was shown of a node: a representation, or SelectState::opened.
+struct Shown {
+    Index node = 0;
+    Index form = 0;
+};
+
 /// Kept by the frame thread between frames, sized once: what was shown, for hysteresis and switches; room for the searches.
 struct SelectState {
     static constexpr Index opened = none - 1;
     std::vector<Index> shown;    ///< a node: representation in the last cut, `opened` if that was among its descendants, or none
-    std::vector<Index> touched;  ///< nodes whose `shown` is not none
+    std::vector<Shown> touched;  ///< nodes whose `shown` is not none, and what it is
+    std::vector<Shown> before;   ///< `touched` as the last selection found it: with it, that selection can be repeated
     std::vector<std::uint32_t> scratch_next, scratch_head, scratch_a, scratch_b;  ///< a candidate; scratch_head: the queue
     std::vector<double> scratch_sums;                                             ///< two costs a bucket, new and shown before
     /// Benefit factor, 1..2, for what was refined in the last frame; 1: no memory.

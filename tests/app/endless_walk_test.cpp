@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <set>
 #include <vector>
 
+#include "render/capture/capture.hpp"
 #include "rt/base/path.hpp"
 #include "tests/app/walk_fixture.hpp"
 #include "tools/app/visit.hpp"
@@ -80,6 +82,35 @@ TEST(WatchedWalk, AnErrorBelongsToTheStepToldLast) {
     watch.on_step = [&](WalkStep step) { last = step; };
     EXPECT_FALSE(run_walk(request, {}, watch).ok());
     EXPECT_EQ(last, WalkStep::model);
+}
+
+TEST(WatchedWalk, HandsOverAMissedFrameThatReplays) {
+    WalkRequest request = Forest::get().virtual_request(120);
+    request.correct_costs = false;
+    request.in_frame_check = false;
+    WalkWatch watch;
+    std::vector<capture::Capture> captures;
+    std::set<std::uint64_t> missed;
+    watch.on_missed_frame = [&](const capture::Capture& c) { captures.push_back(c); };
+    watch.on_record = [&](const rt::FrameRecord& record) {
+        if (record.missed) missed.insert(record.frame);
+    };
+    ASSERT_TRUE(run_walk(request, {}, watch).ok());
+    EXPECT_TRUE(captures.empty()) << "frame " << captures[0].frame << " was in time";
+    request.cost_scale = 2;
+    ASSERT_TRUE(run_walk(request, {}, watch).ok());
+    ASSERT_FALSE(captures.empty());
+    for (const capture::Capture& c : captures) {
+        EXPECT_TRUE(missed.contains(c.frame)) << c.frame;
+        const auto same = capture::verify(c);
+        EXPECT_TRUE(same.ok()) << same.error().text();
+    }
+    // The frame that was asked for goes first.
+    captures.clear();
+    request.capture_file = Forest::get().dir + "/asked.capture";
+    request.capture_frame = 5;
+    ASSERT_TRUE(run_walk(request, {}, watch).ok());
+    EXPECT_TRUE(captures.empty());
 }
 
 TEST(WatchedWalk, SeesWhatIsKeptAndFaultsComeStageByStage) {

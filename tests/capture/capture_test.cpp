@@ -31,9 +31,8 @@ Capture captured(std::string_view selector, std::uint32_t depth = 4) {
         region.centre.position.x += 0.7;
     }
     s.look(region);
-    auto memory = remember(s.state);
     s.run(selector, 5500);
-    return take(s.input(5500), selector, s.state.hysteresis, std::move(memory), s.cut);
+    return take(s.input(5500), selector, s.state.hysteresis, s.state.before, s.cut);
 }
 
 TEST(Capture, ReplaysToTheSameCutForEverySelector) {

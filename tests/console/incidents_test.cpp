@@ -99,6 +99,22 @@ TEST(Incidents, TheOldestMakeRoomByNumberAndByBytes) {
     EXPECT_EQ(*read_text(folder / "mine.txt"), "kept");
 }
 
+TEST(Incidents, KeepTheMissedFrameThatIsTheirs) {
+    const OwnFolder folder;
+    MissedFrame missed{100, [](const std::string& file) { return write_text(file, "the frame"); }};
+    auto written = write_incident(folder.path(), an_incident(1), {}, 1'767'323'045, &missed);
+    ASSERT_TRUE(written.ok()) << written.error().text();
+    EXPECT_EQ(*read_text(*written + "/frame.capture"), "the frame");
+    EXPECT_EQ(nlohmann::json::parse(*read_text(*written + "/incident.json"))["capture"]["frame"], 100);
+    for (const std::uint64_t of_another : {99, 200}) {
+        missed.frame = of_another;
+        written = write_incident(folder.path(), an_incident(of_another), {}, 1'767'323'046, &missed);
+        ASSERT_TRUE(written.ok()) << written.error().text();
+        EXPECT_FALSE(fs::exists(*written + "/frame.capture"));
+        EXPECT_FALSE(nlohmann::json::parse(*read_text(*written + "/incident.json")).contains("capture"));
+    }
+}
+
 TEST(Incidents, AFullDiskIsSaidOnceAndSurvived) {
     const OwnFolder folder;
     const std::string dir = folder / "incidents";

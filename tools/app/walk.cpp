@@ -31,6 +31,7 @@ WalkStagesOptions stages_options(Session& s) {
     o.virtual_clock = s.virtual_clock;
     o.cost_scale = s.request.cost_scale;
     if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
+    o.capture_missed = s.request.capture_file.empty() && s.watch.on_missed_frame;
     if (s.watch.inject) o.inject = &s.watch.inject;
     o.lost = &s.lost;
     return o;
@@ -94,6 +95,12 @@ rt::FrameLoopOptions loop_options(const Session& s, const Progress& progress) {
     return o;
 }
 
+void tell_missed_frame(Session& s) {
+    if (!s.request.capture_file.empty() || !s.watch.on_missed_frame || !s.kept.kept.load(std::memory_order_acquire)) return;
+    s.watch.on_missed_frame(capture_of(s.kept, s.request, *s.engine));
+    s.kept.kept.store(false, std::memory_order_release);
+}
+
 /// While the frame thread walks: attends to the input, tells how far it is, and counts the threads once they have settled.
 void attend(Session& s, rt::Clock& clock, const std::atomic<bool>& done, const Progress& progress) {
     bool counted = s.virtual_clock;
@@ -102,6 +109,7 @@ void attend(Session& s, rt::Clock& clock, const std::atomic<bool>& done, const P
         std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
         if (s.input) s.input->attend(progress, s.notes);
         tell_input(s);
+        tell_missed_frame(s);
         const double ran =
             s.virtual_clock ? 0.5 : static_cast<double>(clock.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
         progress.say("walk", share_done(s, ran));
@@ -152,6 +160,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     }
     attend(s, clock, done, progress);
     frame_thread.join();
+    tell_missed_frame(s);
     s.facts.pinned = !misplaced && !s.virtual_clock;
     if (misplaced) {
         s.plan.fifo = false;  // the figures must say so

@@ -15,6 +15,10 @@
 #include "rt/frame/record.hpp"
 #include "tools/report/report.hpp"
 
+namespace surefoot::capture {
+struct Capture;
+}
+
 namespace surefoot::app {
 
 /// In place of a recording: the devices that are plugged in. A recording of that name is "./devices".
@@ -102,6 +106,9 @@ struct WalkWatch {
     std::function<void(const rt::FrameRecord&)> on_record;  ///< on the monitor thread: every frame, in order
     std::function<void(const report::Degraded&)> on_degraded;  ///< on the caller's thread: found after on_started
     std::function<void(const WalkInput&)> on_input;            ///< on the caller's thread: whenever it has changed
+    /// On the caller's thread, a tenth of a second later at most: a missed frame as `surefoot replay` takes it, the first one
+    /// since the last call. Not of frames drawn from coarse levels, nor beside capture_file, nor of the largest models.
+    std::function<void(const capture::Capture&)> on_missed_frame;
     FaultHook inject;
 };
 

@@ -50,12 +50,7 @@ Result<void> write_capture(const WalkRequest& request, const KeptFrame& kept, co
         return Error{request.capture_file, fmt::format("frame {} was not selected in this walk", request.capture_frame),
                      "choose a frame within the walk with --capture-frame"};
     }
-    const select::SelectInput input{&engine.model(),       &kept.prepared,        &engine.costs(), kept.budget_us,
-                                    kept.correction.factor, kept.target_error_rad, request.slice_us, kept.correction.upper};
-    capture::Capture taken =
-        capture::take(input, request.selector, static_cast<float>(request.hysteresis), kept.memory, kept.cut);
-    taken.frame = kept.frame;
-    return capture::write_capture(request.capture_file, taken);
+    return capture::write_capture(request.capture_file, capture_of(kept, request, engine));
 }
 
 Result<void> write_report_pages(const WalkRequest& request, Engine& engine, const ShotStore& shots, WalkOutcome& outcome,

@@ -122,10 +122,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
         }
     }
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
-    if (r.capture_file.empty()) return {};
-    s.engine->reserve(s.kept.prepared);
-    select::reserve(s.kept.cut, s.engine->options().prepare.max_candidates);
-    s.kept.memory.reserve(s.engine->model().nodes.size());
+    if (!r.capture_file.empty() || s.watch.on_missed_frame) s.kept.reserve(*s.engine);
     return {};
 }
 

@@ -102,7 +102,6 @@ void WalkStages::select(rt::FrameRecord& record) {
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
     const double budget_us = std::max(0.0, options_.budget_us - spent_us);
-    if (record.frame == options_.capture_frame) keep_memory();
     const Correction correction =
         options_.correct_costs ? Correction{controller_.factor(), controller_.upper(engine_.costs().upper_factor)} : Correction{};
     const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
@@ -113,26 +112,27 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.visits = set.visits;
     record.candidates = static_cast<std::uint32_t>(set.candidates.size());
     record.prepare_cpu_us = static_cast<float>(set.cpu_us);
-    if (record.frame == options_.capture_frame) keep(record.frame, cut, budget_us, correction);
+    cut_ = &cut;
+    asked_budget_us_ = budget_us;
+    asked_correction_ = correction;
 }
 
-void WalkStages::keep_memory() {
-    const select::SelectState& state = engine_.selection_memory();
-    kept_.memory.clear();
-    for (const model::Index node : state.touched) {
-        if (kept_.memory.size() < kept_.memory.capacity()) kept_.memory.push_back({node, state.shown[node]});
-    }
-}
-
-void WalkStages::keep(std::uint64_t frame, const select::Cut& cut, double budget_us, const Correction& correction) {
+/// After the frame, when it is known whether it was late. Copying takes a tenth of a millisecond for a few thousand candidates;
+/// of larger sets only the frame that was asked for is kept, so that one miss does not make the next.
+void WalkStages::keep(const rt::FrameRecord& record) {
+    constexpr std::size_t most_candidates = 16'384;
     const prepare::PreparedFrame& set = prepared_.front();
-    kept_.frame = frame;
+    const bool missed = options_.capture_missed && record.missed && set.candidates.size() <= most_candidates;
+    if (coarse_ || cut_ == nullptr || (record.frame != options_.capture_frame && !missed)) return;
+    if (kept_.kept.load(std::memory_order_acquire)) return;
+    kept_.frame = record.frame;
     kept_.prepared = set;  // into vectors that were reserved: no allocation
-    kept_.cut = cut;
-    kept_.budget_us = budget_us;
-    kept_.correction = correction;
+    kept_.cut = *cut_;
+    kept_.memory = engine_.selection_memory().before;
+    kept_.budget_us = asked_budget_us_;
+    kept_.correction = asked_correction_;
     kept_.target_error_rad = options_.target_error_rad;
-    kept_.kept = true;
+    kept_.kept.store(true, std::memory_order_release);
 }
 
 void WalkStages::submit(rt::FrameRecord& record) {
@@ -174,6 +174,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.actual_us = static_cast<float>(actual_us);
     if (!coarse_) controller_.update(report_.predicted_us, actual_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
+    keep(record);
     const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
     shots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn());
 }

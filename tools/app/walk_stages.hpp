@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/capture/capture.hpp"
 #include "render/engine.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/exchange/triple_buffer.hpp"
 #include "rt/frame/controller.hpp"
 #include "rt/frame/loop.hpp"
+#include "tools/app/kept_frame.hpp"
 #include "tools/app/pose_source.hpp"
 #include "tools/app/prepare_thread.hpp"
 #include "tools/app/shots.hpp"
@@ -27,20 +27,10 @@ struct WalkStagesOptions {
     bool control = false;        ///< bare blocks lie between: the path's time is counted in walked frames
     bool virtual_clock = false;  ///< prepare inline, charge the device's virtual time
     double cost_scale = 1;       ///< virtual clock with a device that charges nothing
-    std::uint64_t capture_frame = ~0ULL;
+    std::uint64_t capture_frame = ~0ULL;  ///< kept, or else (capture_missed) the first missed one that nobody has taken yet
+    bool capture_missed = false;
     const FaultHook* inject = nullptr;  ///< null: no faults
     std::atomic<bool>* lost = nullptr;  ///< set when the device is; may be null
-};
-
-/// One frame kept for `surefoot replay`, copied into memory that was sized before.
-struct KeptFrame {
-    bool kept = false;
-    std::uint64_t frame = 0;  ///< of the walk
-    prepare::PreparedFrame prepared;
-    select::Cut cut;
-    std::vector<capture::Memory> memory;  ///< before the selection
-    double budget_us = 0, target_error_rad = 0;
-    Correction correction;
 };
 
 class WalkStages final : public rt::FrameStages {
@@ -62,8 +52,7 @@ private:
     void take(const FramePose& from, rt::FrameRecord& record);
     void latch(rt::FrameRecord& record);
     [[nodiscard]] FrameTime frame_time(const rt::FrameRecord& record) const;
-    void keep_memory();
-    void keep(std::uint64_t frame, const select::Cut& cut, double budget_us, const Correction& correction);
+    void keep(const rt::FrameRecord& record);
 
     Engine& engine_;
     PoseSource& pose_source_;
@@ -78,6 +67,9 @@ private:
     SubmitReport report_;
     std::uint64_t walked_ = 0, path_slot_ = 0;
     bool coarse_ = false;
+    const select::Cut* cut_ = nullptr;  ///< the last selection's, and what it was asked
+    double asked_budget_us_ = 0;
+    Correction asked_correction_;
 };
 
 }  // namespace surefoot::app

@@ -21,6 +21,7 @@ namespace surefoot::console {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr const char* capture_name = "frame.capture";
 constexpr std::string_view folder_prefix = "incident-", half_prefix = ".incident-";
 
 std::uint64_t bytes_below(const fs::path& folder) {
@@ -61,7 +62,7 @@ void make_room(const std::string& dir, std::uint64_t coming, const IncidentLimit
     }
 }
 
-std::string summary_json(const rt::BlackBox::Incident& incident, std::string_view time) {
+std::string summary_json(const rt::BlackBox::Incident& incident, std::string_view time, const MissedFrame* missed) {
     std::map<std::string, std::uint64_t> causes;
     std::uint64_t frames = 0, misses = 0, own = 0, skipped = 0;
     std::int64_t worst_ns = 0;
@@ -75,32 +76,43 @@ std::string summary_json(const rt::BlackBox::Incident& incident, std::string_vie
         ++misses;
         ++causes[std::string(rt::cause_of(f))];
     }
-    const nlohmann::ordered_json j = {{"time", time},
-                                      {"burst", incident.number},
-                                      {"first_frame", incident.first_frame},
-                                      {"period_ms", static_cast<double>(incident.period_ns) * 1e-6},
-                                      {"frames", frames},
-                                      {"skipped", skipped},
-                                      {"misses", misses},
-                                      {"own_misses", own},
-                                      {"miss_causes", causes},
-                                      {"worst_frame_ms", static_cast<double>(worst_ns) * 1e-6},
-                                      {"suppressed_so_far", incident.suppressed},
-                                      {"ledger", "ledger.csv"},
-                                      {"trace", "trace.json"}};
+    nlohmann::ordered_json j = {{"time", time},
+                                {"burst", incident.number},
+                                {"first_frame", incident.first_frame},
+                                {"period_ms", static_cast<double>(incident.period_ns) * 1e-6},
+                                {"frames", frames},
+                                {"skipped", skipped},
+                                {"misses", misses},
+                                {"own_misses", own},
+                                {"miss_causes", causes},
+                                {"worst_frame_ms", static_cast<double>(worst_ns) * 1e-6},
+                                {"suppressed_so_far", incident.suppressed},
+                                {"ledger", "ledger.csv"},
+                                {"trace", "trace.json"}};
+    if (missed != nullptr) j["capture"] = {{"frame", missed->frame}, {"file", capture_name}};
     return j.dump(2) + "\n";
 }
 
-Result<void> write_files(const fs::path& folder, const rt::BlackBox::Incident& incident, std::string_view time) {
+bool belongs_to(const MissedFrame* missed, const rt::BlackBox::Incident& incident) {
+    return missed != nullptr && missed->write && !incident.records.empty() && missed->frame >= incident.first_frame &&
+           missed->frame <= incident.records.back().frame;
+}
+
+Result<void> write_files(const fs::path& folder, const rt::BlackBox::Incident& incident, std::string_view time,
+                         const MissedFrame* missed) {
+    if (!belongs_to(missed, incident)) missed = nullptr;
     if (auto ok = report::write_ledger(folder / "ledger.csv", incident.records); !ok) return ok;
     if (auto ok = report::write_trace(folder / "trace.json", incident.records); !ok) return ok;
-    return write_text(folder / "incident.json", summary_json(incident, time));
+    if (missed != nullptr) {
+        if (auto ok = missed->write(folder / capture_name); !ok) return ok;
+    }
+    return write_text(folder / "incident.json", summary_json(incident, time, missed));
 }
 
 }  // namespace
 
 Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::Incident& incident, const IncidentLimits& limits,
-                                   std::int64_t unix_s) {
+                                   std::int64_t unix_s, const MissedFrame* missed) {
     const std::string time = fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(static_cast<std::time_t>(unix_s)));
     const std::string name = fmt::format("{}{}-{:06}", folder_prefix, time, incident.number);
     const fs::path half = fs::path(dir) / ("." + name), whole = fs::path(dir) / name;
@@ -114,7 +126,7 @@ Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::I
         fs::remove_all(half, ignored);
         return error;
     };
-    if (auto ok = write_files(half, incident, time); !ok) return give_up(ok.error());
+    if (auto ok = write_files(half, incident, time, missed); !ok) return give_up(ok.error());
     const std::uint64_t bytes = bytes_below(half);
     if (bytes > limits.bytes)
         return give_up({half.string(), fmt::format("would take {} bytes, {} are allowed", bytes, limits.bytes), "allow more"});
@@ -157,9 +169,20 @@ void IncidentWriter::run() {
     }
 }
 
+void IncidentWriter::offer(MissedFrame missed) {
+    const std::lock_guard lock(missed_mutex_);
+    missed_ = std::move(missed);
+}
+
 void IncidentWriter::write(const rt::BlackBox::Incident& incident) {
+    MissedFrame missed;
+    {
+        const std::lock_guard lock(missed_mutex_);
+        missed = missed_;
+    }
     const auto now = std::chrono::system_clock::now().time_since_epoch();
-    const auto folder = write_incident(dir_, incident, limits_, std::chrono::duration_cast<std::chrono::seconds>(now).count());
+    const auto folder =
+        write_incident(dir_, incident, limits_, std::chrono::duration_cast<std::chrono::seconds>(now).count(), &missed);
     if (folder) {
         written_.fetch_add(1, std::memory_order_relaxed);
         if (say_) say_(fmt::format("a burst of misses from frame {} on: {}", incident.first_frame, *folder));

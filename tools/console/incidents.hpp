@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -19,7 +21,13 @@ struct IncidentLimits {
     std::uint64_t bytes = 256ULL << 20U;  ///< of all of them together; an incident that alone is larger is not kept
 };
 
-/// DIR/incident-20260102T030405Z-000017/{incident.json, ledger.csv, trace.json}: a folder is there whole or not at all. Others'
+/// A missed frame as `surefoot replay` takes it, and who can write it into a file.
+struct MissedFrame {
+    std::uint64_t frame = 0;  ///< of the walk
+    std::function<Result<void>(const std::string& file)> write;
+};
+
+/// DIR/incident-20260102T030405Z-000017/{incident.json, ledger.csv, trace.json, frame.capture}: a folder is there whole or not at all. Others'
 /// files in DIR are left alone.
 class IncidentWriter {
 public:
@@ -30,6 +38,9 @@ public:
     ~IncidentWriter();  ///< what waits is written first
     IncidentWriter(const IncidentWriter&) = delete;
     IncidentWriter& operator=(const IncidentWriter&) = delete;
+
+    /// Any thread: goes into the next incident that it belongs to; a later one takes its place.
+    void offer(MissedFrame missed);
 
     [[nodiscard]] std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
     [[nodiscard]] std::uint64_t failed() const { return failed_.load(std::memory_order_relaxed); }
@@ -44,12 +55,15 @@ private:
     IncidentLimits limits_;
     std::function<void(std::string_view)> say_;
     bool failing_ = false;
+    std::mutex missed_mutex_;
+    MissedFrame missed_;
     std::atomic<std::uint64_t> written_{0}, failed_{0};
     std::thread thread_;
 };
 
-/// One incident into `dir`, within the limits; the new folder's name. `unix_s`: now, seconds since 1970.
+/// One incident into `dir`, within the limits; the new folder's name. `unix_s`: now, seconds since 1970. `missed`: written too, if
+/// it is one of the burst; may be null.
 Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::Incident& incident, const IncidentLimits& limits,
-                                   std::int64_t unix_s);
+                                   std::int64_t unix_s, const MissedFrame* missed = nullptr);
 
 }  // namespace surefoot::console

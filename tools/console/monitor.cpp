@@ -69,6 +69,10 @@ Monitor::~Monitor() {
     writer_.reset();
 }
 
+void Monitor::offer(MissedFrame missed) {
+    if (writer_) writer_->offer(std::move(missed));
+}
+
 std::string Monitor::address() const { return server_ ? server_->address().text() : std::string(); }
 
 void Monitor::begin_walk(const report::MonitoredWalk& walk) {

@@ -54,11 +54,15 @@ public:
     void set_input(const report::MonitoredInput& input);
     void add_note(std::string_view text);  ///< told to the user: the last few are shown
 
+    /// A missed frame, for the incident that it belongs to.
+    void offer(MissedFrame missed);
+
     /// The monitor thread: every record, in order. Never waits for a reader or for a disk.
     void on_record(const rt::FrameRecord& record);
 
     /// Where it listens, the port that was given included; empty where it does not.
     [[nodiscard]] std::string address() const;
+    [[nodiscard]] bool writes_incidents() const { return writer_ != nullptr; }
     /// The pages, as a reader gets them; one caller at a time.
     [[nodiscard]] std::optional<Server::Page> page(std::string_view path);
 

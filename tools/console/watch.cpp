@@ -2,7 +2,10 @@
 #include "tools/console/watch.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
+
+#include "render/capture/capture.hpp"
 
 namespace surefoot::console {
 
@@ -50,6 +53,14 @@ void watch_with(Monitor& monitor, const app::WalkRequest& request, app::WalkWatc
     chain(watch.on_input, [&monitor](const app::WalkInput& input) {
         monitor.set_input({input.live, input.devices, input.emergency_stop});
     });
+    if (monitor.writes_incidents()) {
+        chain(watch.on_missed_frame, [&monitor](const capture::Capture& frame) {
+            // Shared, for the writer's thread may hold it when the next one comes.
+            monitor.offer({frame.frame, [kept = std::make_shared<const capture::Capture>(frame)](const std::string& file) {
+                               return capture::write_capture(file, *kept);
+                           }});
+        });
+    }
     chain(watch.on_step, [&monitor](app::WalkStep step) {
         if (step == app::WalkStep::ending) monitor.end_walk();
     });
