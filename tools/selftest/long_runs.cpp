@@ -35,7 +35,7 @@ void grid_books(const Effort& effort, Outcome& out) {
     while (slot < thousand_million || run < steps) {
         if (effort.stopped()) break;
         const auto late = random.below(2) == 0 ? rt::LatePolicy::lock : rt::LatePolicy::floating;
-        const std::int64_t most = random.below(1000) == 0 ? 2'592'000'000'000'000 : 3 * period_ns;
+        const std::int64_t most = slot < thousand_million && random.below(1000) == 0 ? 2'592'000'000'000'000 : 3 * period_ns;
         const std::int64_t finished = grid.due_ns(slot) + static_cast<std::int64_t>(random.unit() * static_cast<double>(most));
         const rt::NextSlot next = rt::next_slot(grid, late, slot, finished);
         ++run;
