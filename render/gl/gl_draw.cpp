@@ -19,11 +19,12 @@ std::uint64_t state_key(std::uint32_t program, Culling culling, std::uint32_t te
            static_cast<std::uint64_t>(texture & 0xfffffU) << 32U | distance_bits(distance);
 }
 
-/// Scales a part about the eye by up to 3e-5, by its object's number and its own in that: it stays where it is on the screen, and of
-/// two things in exactly one place (a game's two banners on one pole) the same one shows, whatever the order in which a cut or a
-/// slice draws them, and at every level with the same parts. One pair in 32 shares a number by chance, and follows the order still.
-void settle_ties(std::uint32_t node, std::uint32_t part_in_rep, std::array<float, 12>& rows) {
-    const float away = 1.0F + static_cast<float>((node + part_in_rep) % 32) * 0x1p-20F;  // one step is what depth tells apart
+/// Scales a part about the eye by its rank among what lies in exactly one place: it stays where it is on the screen, and of two
+/// such things the same one shows, whatever the order in which a cut or a slice draws them. One step is what depth tells apart
+/// over large triangles. What is in nobody's place is not moved: planes a millimetre apart at a kilometre keep their order.
+void settle_ties(std::uint8_t rank, std::array<float, 12>& rows) {
+    if (rank == 0) return;
+    const float away = 1.0F + static_cast<float>(rank) * 0x1p-20F;
     for (float& value : rows) value *= away;
 }
 
@@ -142,7 +143,7 @@ void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
     Instance instance;
     eye_relative_rows(placed, pose_.position, instance.rows);
     const DrawRep& rep = tables_.reps[pending.rep];
-    settle_ties(rep.node, pending.part - rep.first_part, instance.rows);
+    settle_ties(tables_.ties.ranks[tables_.ties.first_of_rep[pending.rep] + pending.part - rep.first_part], instance.rows);
     instance.colour = part.colour;
     instance.alpha_cutoff = part.alpha_cutoff;
     instance.two_sided = part.two_sided ? 1.0F : 0.0F;

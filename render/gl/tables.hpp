@@ -8,6 +8,7 @@
 #include "render/gl/device.hpp"
 #include "render/gl/program.hpp"
 #include "render/gl/texture_arrays.hpp"
+#include "render/gl/ties.hpp"
 
 namespace surefoot::gl {
 
@@ -41,6 +42,7 @@ struct DrawTables {
     std::vector<DrawPart> parts;
     std::vector<DrawRep> reps;
     std::vector<Placed> placements;
+    TieRanks ties;
     std::vector<vec4> centres;  ///< of a node's box, relative to `middle`; for sorting only
     dvec3 middle{0.0};
 };

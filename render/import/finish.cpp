@@ -16,6 +16,17 @@ namespace {
 /// Farther than this from the origin even double loses the millimetre.
 constexpr double farthest_m = 1e12;
 
+/// Smaller than this is nothing that could be seen, and squares of it underflow float.
+constexpr double smallest_m = 1e-9;
+
+Box box_of(const Mesh& mesh) {
+    Box box;
+    for (const Primitive& primitive : mesh.primitives) {
+        for (const vec3& p : primitive.positions) box.grow(dvec3(p));
+    }
+    return box;
+}
+
 std::string why_not_drawable(const dmat4& world) {
     for (int c = 0; c < 4; ++c) {
         for (int r = 0; r < 4; ++r) {
@@ -26,6 +37,21 @@ std::string why_not_drawable(const dmat4& world) {
     const dmat3 linear(world);
     const double size = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
     if (!(std::abs(glm::determinant(linear)) > 1e-12 * size)) return "transform is singular (a scale of 0)";
+    for (int c = 0; c < 3; ++c) {
+        if (glm::length(linear[c]) < smallest_m) return "transform shrinks it more than a thousand million times";
+    }
+    return {};
+}
+
+/// The mesh as it is placed: neither out of all measure nor too small to be anything.
+std::string why_not_drawable(const Box& box, const dmat4& world) {
+    if (const std::string why = why_not_drawable(world); !why.empty()) return why;
+    const dmat3 linear(world);
+    const dvec3 half =
+        glm::abs(linear[0]) * box.half().x + glm::abs(linear[1]) * box.half().y + glm::abs(linear[2]) * box.half().z;
+    const dvec3 reach = glm::abs(dvec3(world * dvec4(box.centre(), 1.0))) + half;
+    if (std::max({reach.x, reach.y, reach.z}) > farthest_m) return "geometry as placed is beyond 1e12 m";
+    if (box.diagonal() < smallest_m || 2 * glm::length(half) < smallest_m) return "geometry is smaller than 1e-9 m";
     return {};
 }
 
@@ -48,11 +74,13 @@ void clean_meshes(Scene& scene, const Progress& progress) {
 Result<void> finish(Scene& scene, const std::string& file, const Progress& progress) {
     if (scene.materials.empty()) scene.materials.push_back(Material{.name = "white"});
     clean_meshes(scene, progress);
+    std::vector<Box> boxes;
+    for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh));
     for (Node& node : scene.nodes) {
         if (node.mesh == none) continue;
         if (scene.meshes[node.mesh].primitives.empty()) {
             node.mesh = none;
-        } else if (const std::string why = why_not_drawable(node.world); !why.empty()) {
+        } else if (const std::string why = why_not_drawable(boxes[node.mesh], node.world); !why.empty()) {
             scene.warnings.push_back(fmt::format("node '{}' dropped: its {}", node.name, why));
             node.mesh = none;
         }
@@ -69,7 +97,8 @@ Index load_texture(Scene& scene, const std::string& file, const std::string& nam
     std::string portable = name;
     std::replace(portable.begin(), portable.end(), '\\', '/');
     const std::filesystem::path beside = std::filesystem::path(file).parent_path() / portable;
-    auto bytes = read_file(beside.string());
+    const auto plain = require_plain(beside.string());
+    auto bytes = plain ? read_file(beside.string()) : plain.error();
     auto image = bytes ? decode_image(*bytes, beside.string()) : Result<Image>(bytes.error());
     if (!image) {
         scene.warnings.push_back(fmt::format("texture '{}' left white: {}", name, image.error().text()));

@@ -132,7 +132,8 @@ void read_statement(Reading& reading, TextCursor& cursor) {
 
 void read_mtl(const std::string& obj_file, const std::string& library, Scene& scene) {
     const std::string place = (std::filesystem::path(obj_file).parent_path() / library).string();
-    auto text = read_text(place);
+    const auto plain = require_plain(place);
+    auto text = plain ? read_text(place) : plain.error();
     if (!text) {
         scene.warnings.push_back(fmt::format("materials left white: {}", text.error().text()));
         return;

@@ -87,7 +87,7 @@ ViewScale make_view_scale(const Pose& pose, Viewport viewport, double angle_rad)
     scale.forward = vec3(pose.forward());
     const double width = std::max(1.0, static_cast<double>(viewport.width));
     const double height = std::max(1.0, static_cast<double>(viewport.height));
-    const double half_y = std::clamp(0.5 * pose.fov_y_rad, 1e-4, largest_half_angle_rad);
+    const double half_y = half_angle_y(pose);
     const double half_x = std::atan(std::tan(half_y) * width / height);
     scale.tan_half_y = static_cast<float>(std::tan(std::min(half_y + angle_rad, largest_half_angle_rad)));
     scale.tan_half_x = static_cast<float>(std::tan(std::min(half_x + angle_rad, largest_half_angle_rad)));

@@ -15,7 +15,7 @@ struct HalfAngles {
 };
 
 HalfAngles half_angles(const Pose& pose, Viewport viewport) {
-    const double y = std::clamp(0.5 * pose.fov_y_rad, 1e-4, widest_half_angle_rad);
+    const double y = half_angle_y(pose);
     const double aspect = static_cast<double>(std::max(viewport.width, 1U)) / static_cast<double>(std::max(viewport.height, 1U));
     return {std::min(std::atan(std::tan(y) * aspect), widest_half_angle_rad), y};
 }
@@ -28,6 +28,11 @@ double widen(double half, double other, double angle_rad) {
 }
 
 }  // namespace
+
+double half_angle_y(const Pose& pose) {
+    const double fov = std::isnan(pose.fov_y_rad) ? Pose{}.fov_y_rad : pose.fov_y_rad;  // clamp hands a NaN on
+    return std::clamp(0.5 * fov, 1e-4, widest_half_angle_rad);
+}
 
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m, double angle_rad) {
     HalfAngles half = half_angles(pose, viewport);

@@ -20,6 +20,10 @@ struct Frustum {
     std::array<dvec3, 5> corners;  ///< the eye and the four far corners (at far_m)
 };
 
+/// Half of the field of view up and down as every part of the renderer takes it: capped below 89 degrees, at least 1e-4 rad; the
+/// default's where the pose's is not a number.
+double half_angle_y(const Pose& pose);
+
 /// The frustum that holds every pose of a region: widened by angle_rad on each side and pulled back by radius_m.
 /// radius 0 and angle 0: exactly the pose's own. Half angles are capped below 89 degrees.
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m = 0.0, double angle_rad = 0.0);

@@ -113,6 +113,12 @@ Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t 
 
 Result<std::string> read_text(const std::string& path, std::uint64_t max_bytes) { return read_all<std::string>(path, max_bytes); }
 
+Result<void> require_plain(const std::string& path) {
+    struct stat info {};
+    if (::stat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode) || S_ISDIR(info.st_mode)) return {};
+    return Error{path, "is not a plain file", "name a plain file"};
+}
+
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
     if (path.empty()) return Error{"output", "the file name is empty", "name a file"};
     AtomicFile file;

@@ -16,6 +16,10 @@ namespace surefoot {
 Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t max_bytes = 1ULL << 34U);
 Result<std::string> read_text(const std::string& path, std::uint64_t max_bytes = 1ULL << 30U);
 
+/// Whether `path` may be read where its name comes out of a file, which may be anybody's: a pipe, /dev/stdin among them, would be
+/// waited for without end. What is not there passes: reading it says so.
+Result<void> require_plain(const std::string& path);
+
 /// A file written under a temporary name beside its place; commit() syncs and renames it over the old one.
 /// Destroyed without commit(): the temporary is removed and the old file stays (Ctrl-C handlers rely on it).
 class AtomicFile {

@@ -19,6 +19,21 @@ constexpr std::uint64_t low_of(std::uint64_t index) {
     return (sub_bins + index % sub_bins) << octave;
 }
 
+/// A full counter stays full: what wraps would say that nothing had happened.
+std::uint64_t saturated(std::uint64_t a, std::uint64_t b) {
+    return a > std::numeric_limits<std::uint64_t>::max() - b ? std::numeric_limits<std::uint64_t>::max() : a + b;
+}
+
+/// first + step * times for step, times > 0; the end of time where that lies beyond it.
+std::int64_t along(std::int64_t first, std::int64_t step, std::uint64_t times) {
+    std::uint64_t way = 0;
+    if (__builtin_mul_overflow(static_cast<std::uint64_t>(step), times, &way)) return std::numeric_limits<std::int64_t>::max();
+    const std::uint64_t room =
+        static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) - static_cast<std::uint64_t>(first);
+    return way > room ? std::numeric_limits<std::int64_t>::max()
+                      : static_cast<std::int64_t>(static_cast<std::uint64_t>(first) + way);
+}
+
 }  // namespace
 
 std::size_t Histogram::bin_of(std::int64_t value_ns) {
@@ -41,19 +56,23 @@ std::int64_t Histogram::bin_high(std::size_t bin) {
 
 void Histogram::add(std::int64_t value_ns, std::uint64_t times) {
     if (times == 0) return;
-    counts_[bin_of(value_ns)] += times;
+    std::uint64_t& bin = counts_[bin_of(value_ns)];
+    bin = saturated(bin, times);
     min_ = count_ > 0 ? std::min(min_, value_ns) : value_ns;
     max_ = count_ > 0 ? std::max(max_, value_ns) : value_ns;
-    count_ += times;
+    count_ = saturated(count_, times);
     sum_ += static_cast<double>(value_ns) * static_cast<double>(times);
 }
 
 void Histogram::add_progression(std::int64_t first_ns, std::int64_t step_ns, std::uint64_t times) {
     for (std::uint64_t done = 0; done < times;) {
-        const std::int64_t value = first_ns + static_cast<std::int64_t>(done) * step_ns;
-        const auto room = static_cast<std::uint64_t>(bin_high(bin_of(value)) - value) / static_cast<std::uint64_t>(step_ns) + 1;
-        const std::uint64_t here = std::min(room, times - done);
-        const std::int64_t last = value + static_cast<std::int64_t>(here - 1) * step_ns;
+        const std::int64_t value = along(first_ns, step_ns, done);
+        const bool at_end = value == std::numeric_limits<std::int64_t>::max();  // all that follow are there too
+        const auto room = (static_cast<std::uint64_t>(bin_high(bin_of(value))) - static_cast<std::uint64_t>(value)) /
+                              static_cast<std::uint64_t>(step_ns) +
+                          1;
+        const std::uint64_t here = at_end ? times - done : std::min(room, times - done);
+        const std::int64_t last = along(value, step_ns, here - 1);
         // All in one bin: its count by the first, its sum by the mean, its ends by themselves.
         add(value, here);
         sum_ += (static_cast<double>(last) - static_cast<double>(value)) * 0.5 * static_cast<double>(here);
@@ -64,10 +83,10 @@ void Histogram::add_progression(std::int64_t first_ns, std::int64_t step_ns, std
 
 void Histogram::merge(const Histogram& other) {
     if (other.count_ == 0) return;
-    for (std::size_t i = 0; i < bins; ++i) counts_[i] += other.counts_[i];
+    for (std::size_t i = 0; i < bins; ++i) counts_[i] = saturated(counts_[i], other.counts_[i]);
     min_ = count_ > 0 ? std::min(min_, other.min_) : other.min_;
     max_ = count_ > 0 ? std::max(max_, other.max_) : other.max_;
-    count_ += other.count_;
+    count_ = saturated(count_, other.count_);
     sum_ += other.sum_;
 }
 

@@ -8,7 +8,7 @@
 namespace surefoot::rt {
 
 /// Values 0 to 63 have a bin each; above, 32 bins an octave. Negative values have one bin below all. The sum over the bins is
-/// always count(). 15 KiB; add() never allocates.
+/// always count(). Counts that are full (2^64 - 1) stay so. 15 KiB; add() never allocates.
 class Histogram {
 public:
     static constexpr int sub_bits = 5;
@@ -16,6 +16,7 @@ public:
 
     void add(std::int64_t value_ns, std::uint64_t times = 1);
     /// first, first + step, ... (`times` values, step > 0): the same as adding each, in at most one step a bin.
+    /// Beyond the end of time: at its end.
     void add_progression(std::int64_t first_ns, std::int64_t step_ns, std::uint64_t times);
     void merge(const Histogram& other);
 

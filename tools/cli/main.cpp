@@ -105,6 +105,7 @@ int main(int argc, char** argv) {
     cli::add_devices(app, context);
     cli::add_config(app, context);
     cli::add_doctor(app, context);
+    cli::add_selftest(app, context);
     cli::add_status(app, context);
     cli::add_top(app, context);
     app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {

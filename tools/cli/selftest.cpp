@@ -1,0 +1,132 @@
+// surefoot selftest: the hard cases, measured here: input, what must hold, what was found, its limit, and one line at the end.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
+#include "tools/selftest/hard.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+
+struct SelftestArguments {
+    std::vector<std::string> rows;
+    double scale = 1;
+    bool hard = false, list = false, json = false;
+};
+
+std::string_view word(selftest::Verdict verdict) {
+    return verdict == selftest::Verdict::holds ? "holds" : verdict == selftest::Verdict::broken ? "broken" : "not run";
+}
+
+std::string_view word(selftest::Relation relation) {
+    return relation == selftest::Relation::at_most    ? "at most"
+           : relation == selftest::Relation::at_least ? "at least"
+                                                      : "exactly";
+}
+
+nlohmann::ordered_json describe(const selftest::Row& row) {
+    return {{"id", std::string(row.id)},
+            {"family", std::string(row.family)},
+            {"input", std::string(row.input)},
+            {"must_hold", std::string(row.must_hold)}};
+}
+
+nlohmann::ordered_json number(double value) {
+    if (std::isfinite(value)) return value;
+    return nullptr;  // JSON has no word for it
+}
+
+nlohmann::ordered_json to_json(const selftest::RowResult& result) {
+    nlohmann::ordered_json object = describe(*result.row);
+    nlohmann::ordered_json figures = nlohmann::ordered_json::array();
+    for (const selftest::Figure& f : result.outcome.figures)
+        figures.push_back({{"name", f.name},
+                           {"value", number(f.value)},
+                           {"relation", std::string(word(f.relation))},
+                           {"limit", number(f.limit)},
+                           {"unit", f.unit},
+                           {"holds", f.holds()}});
+    object["verdict"] = std::string(word(result.verdict));
+    object["figures"] = figures;
+    object["scaled"] = result.outcome.scaled;
+    object["not_run"] = result.outcome.not_run;
+    object["triangles"] = result.outcome.triangles;
+    object["cut_hash"] = fmt::format("{:016x}", result.outcome.cut_hash);
+    object["digest"] = fmt::format("{:016x}", result.outcome.digest);
+    object["seconds"] = std::round(result.seconds * 1000) / 1000;
+    return object;
+}
+
+int list_rows(const SelftestArguments& a, std::span<const selftest::Row* const> selection) {
+    if (a.json) {
+        nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+        for (const selftest::Row* row : selection) rows.push_back(describe(*row));
+        print_json({{"rows", rows}});
+        return exit_success;
+    }
+    for (const selftest::Row* row : selection) fmt::print("{:<5} {}\n      must hold: {}\n", row->id, row->input, row->must_hold);
+    return exit_success;
+}
+
+bool all_well(std::span<const selftest::RowResult> results) {
+    for (const selftest::RowResult& r : results)
+        if (r.verdict == selftest::Verdict::broken) return false;
+    return true;
+}
+
+int run_selftest(const SelftestArguments& a, const Context& context) {
+    if (!a.hard) return misuse({"selftest", "does not say what to test", "surefoot selftest --hard"});
+    const auto selection = selftest::select_rows(a.rows);
+    if (!selection) return misuse(selection.error());
+    if (a.list) return list_rows(a, *selection);
+    std::vector<selftest::RowResult> results;
+    const Progress progress = terminal_progress(context);
+    for (const selftest::Row* row : *selection) {
+        progress.say(row->id, static_cast<double>(results.size()) / static_cast<double>(selection->size()));
+        results.push_back(selftest::run_row(*row, {a.scale, &progress}));
+        end_progress(context);
+        if (context.stop->load()) {
+            return fail(
+                {"selftest",
+                 fmt::format("stopped by the user in row {}, after {} of {}", row->id, results.size() - 1, selection->size()),
+                 "single rows take less: surefoot selftest --hard " + std::string(row->id)});
+        }
+        if (!a.json) fmt::print("{}", selftest::text_of(results.back()));
+        if (!a.json) std::fflush(stdout);
+    }
+    const std::string summary = selftest::summary_of(results);
+    if (a.json) {
+        nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+        for (const selftest::RowResult& r : results) rows.push_back(to_json(r));
+        print_json({{"rows", rows},
+                    {"scale", a.scale},
+                    {"digest", fmt::format("{:016x}", selftest::digest_of(results))},
+                    {"summary", summary}});
+    } else {
+        fmt::print("{}\n", summary);
+    }
+    return all_well(results) ? exit_success : exit_failure;
+}
+
+}  // namespace
+
+void add_selftest(CLI::App& app, Context& context) {
+    auto a = std::make_shared<SelftestArguments>();
+    CLI::App* c = add_command(
+        app, "selftest", "Do the numbers hold in hard cases, on this machine? Each with what was measured and its limit",
+        "surefoot selftest --hard\n  surefoot selftest --hard N9 F1 --scale 10\n\nExit status: 0 no row is broken, 1 one "
+        "is, 2 wrong use. A row that cannot run (no software GL) is neither, and the last line names it.",
+        a->json);
+    c->add_flag("--hard", a->hard, "The hard cases: far from the origin, inside boxes, broken meshes and files, endless runs");
+    c->add_flag("--list", a->list, "Only say which rows there are");
+    c->add_option("ROW", a->rows, "Rows to run (N9 is N9a and N9b); all, if none is named");
+    c->add_option("--scale", a->scale, "Times the usual number of samples")
+        ->check(number_within(0.001, 100))
+        ->capture_default_str();
+    c->callback([&context, a] { context.run = [&context, a] { return run_selftest(*a, context); }; });
+}
+
+}  // namespace surefoot::cli

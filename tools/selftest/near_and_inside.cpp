@@ -1,0 +1,234 @@
+// Rows: the eye near and inside things, boxes against frustums of every shape, views of every size.
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "render/model/pixels.hpp"
+#include "rt/base/random.hpp"
+#include "tools/selftest/families.hpp"
+#include "tools/selftest/look.hpp"
+#include "tools/selftest/separating.hpp"
+#include "tools/selftest/shapes.hpp"
+
+namespace surefoot::selftest {
+
+namespace {
+
+constexpr double pi = 3.141592653589793;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double touching = 1e-6;  ///< share of the sizes compared; the oracle reads its pyramid off a float matrix
+
+dquat any_turn(Random& random) {
+    const dquat q(random.range(-1, 1), random.range(-1, 1), random.range(-1, 1), random.range(-1, 1));
+    return glm::length(q) > 1e-3 ? glm::normalize(q) : dquat(1, 0, 0, 0);
+}
+
+/// Fields of view from 1 to 179 degrees, views from 1x1 to 8192x1.
+Pose any_pose(Random& random, double reach_m) {
+    Pose pose;
+    pose.position = {random.range(-reach_m, reach_m), random.range(-reach_m, reach_m), random.range(-reach_m, reach_m)};
+    pose.orientation = any_turn(random);
+    pose.fov_y_rad =
+        random.below(4) == 0 ? (random.below(2) == 0 ? pi / 180 : 179 * pi / 180) : random.range(pi / 180, 179 * pi / 180);
+    return pose;
+}
+
+constexpr std::array<model::Viewport, 6> viewports = {{{1280, 720}, {1, 1}, {8192, 1}, {1, 8192}, {640, 480}, {16384, 16384}}};
+
+/// From crumbs to boxes that hold the whole frustum, flat ones and points among them.
+Box any_box(Random& random) {
+    const double size = std::pow(10.0, random.range(-3, 6)), reach = std::pow(10.0, random.range(-1, 4));
+    dvec3 half(random.range(0, size), random.range(0, size), random.range(0, size));
+    if (random.below(8) == 0) half[static_cast<int>(random.below(3))] = 0;
+    if (random.below(16) == 0) half = dvec3(0);
+    const dvec3 centre(random.range(-reach, reach), random.range(-reach, reach), random.range(-reach, reach));
+    return {centre - half, centre + half};
+}
+
+void random_boxes(const Effort& effort, Outcome& out) {
+    const std::uint64_t wanted = effort.count(10'000'000, 1000);
+    Random random(9);
+    std::uint64_t lost = 0, seen = 0, tried = 0;
+    while (tried < wanted && !effort.stopped()) {
+        const Pose pose = any_pose(random, 1000);
+        const model::Viewport viewport = viewports[random.below(viewports.size())];
+        const model::Frustum frustum = model::make_frustum(pose, viewport, 1000);
+        const Pyramid pyramid = pyramid_of(pose, viewport);
+        for (int i = 0; i < 100 && tried < wanted; ++i, ++tried) {
+            Box box = any_box(random);
+            box.min += pose.position;
+            box.max += pose.position;
+            const bool touches = overlap(pyramid, box) > touching;
+            seen += touches ? 1 : 0;
+            lost += touches && !model::visible(frustum, box) ? 1 : 0;
+        }
+    }
+    out.none_of("visible boxes lost", lost);
+    out.at_least("boxes that the exact test sees", static_cast<double>(seen), 0.1 * static_cast<double>(wanted));
+    if (wanted < 10'000'000) out.scaled = std::to_string(wanted) + " boxes of 10000000";
+    out.digest_of(seen);
+    out.digest_of(lost);
+}
+
+/// Against the six planes alone, which keep large boxes beside the view.
+void large_boxes(const Effort& effort, Outcome& out) {
+    const std::uint64_t wanted = effort.count(300'000, 5000);
+    Random random(10);
+    std::uint64_t kept = 0, kept_by_planes = 0, unseen = 0;
+    for (std::uint64_t i = 0; i < wanted && !effort.stopped(); ++i) {
+        Pose pose;
+        pose.position = {random.range(-50, 50), random.range(0, 20), random.range(-50, 50)};
+        pose.orientation = any_turn(random);
+        const dvec3 half(random.range(5, 100), random.range(5, 100), random.range(5, 100));
+        const dvec3 centre(random.range(-200, 200), random.range(-200, 200), random.range(-200, 200));
+        const Box box{centre - half, centre + half};
+        if (overlap(pyramid_of(pose, {1280, 720}), box) > -touching) continue;
+        ++unseen;
+        const model::Frustum frustum = model::make_frustum(pose, {1280, 720}, 1000);
+        kept += model::visible(frustum, box) ? 1 : 0;
+        bool planes = true;
+        for (const dvec4& p : frustum.planes) {
+            const double reach = glm::dot(glm::abs(dvec3(p)), half);
+            planes = planes && glm::dot(dvec3(p), centre) + p.w + reach >= 0;
+        }
+        kept_by_planes += planes ? 1 : 0;
+    }
+    out.at_least("large boxes outside the view", static_cast<double>(unseen), 0.1 * static_cast<double>(wanted));
+    out.at_most("of them kept", static_cast<double>(kept) / static_cast<double>(std::max<std::uint64_t>(1, unseen)), 0.03);
+    out.at_most("of those that the planes alone keep",
+                static_cast<double>(kept) / static_cast<double>(std::max<std::uint64_t>(1, kept_by_planes)), 0.85);
+}
+
+/// Fields of view, sizes and poses at the ends of what numbers can say: what follows from a view must be finite.
+void odd_views(const Effort&, Outcome& out) {
+    std::uint64_t bad = 0, tried = 0;
+    const double nan = std::nan("");
+    for (const double fov : {0.0, -1.0, 1e-300, 1e-9, pi / 180, 1.0, 179 * pi / 180, pi, 4.0, 1e300, infinity, -infinity, nan}) {
+        for (const model::Viewport viewport :
+             {model::Viewport{0, 0}, {1, 1}, {8192, 1}, {1, 8192}, {16384, 16384}, {0xffffffffU, 1}, {1, 0xffffffffU}}) {
+            Pose pose;
+            pose.fov_y_rad = fov;
+            ++tried;
+            const mat4 p = model::projection(pose, viewport);
+            bool fine = p[0][0] > 0 && p[1][1] > 0 && p[3][2] > 0;
+            for (int c = 0; c < 4; ++c)
+                for (int r = 0; r < 4; ++r) fine = fine && std::isfinite(p[c][r]);
+            const double angle = model::pixel_angle(pose, viewport);
+            fine = fine && std::isfinite(angle) && angle > 0;
+            const model::ViewScale scale = model::make_view_scale(pose, viewport);
+            for (const float v : {scale.tan_half_x, scale.tan_half_y, scale.pixels_per_radian, scale.viewport_pixels})
+                fine = fine && std::isfinite(v) && v > 0;
+            const model::Frustum frustum = model::make_frustum(pose, viewport, 1000, 1, 0.1);
+            for (const dvec4& plane : frustum.planes) fine = fine && std::isfinite(plane.x + plane.y + plane.z + plane.w);
+            for (const dvec3& corner : frustum.corners) fine = fine && std::isfinite(corner.x + corner.y + corner.z);
+            fine = fine &&
+                   model::visible(model::make_frustum(pose, viewport, 1000), {dvec3(-0.01, -0.01, -12), dvec3(0.01, 0.01, -10)});
+            bad += fine ? 0 : 1;
+        }
+    }
+    out.none_of("views with a number that is not finite and positive, or that lose what is straight ahead", bad);
+    out.at_least("views", static_cast<double>(tried), 91);
+    out.digest_of(bad);
+}
+
+struct Placed {
+    Pose pose;
+    model::Viewport viewport;
+};
+
+/// At what can divide by nothing: on faces, corners, centres and in the insides of the boxes of nodes.
+std::vector<Placed> awkward_places(const model::Model& model, std::uint64_t most) {
+    std::vector<Placed> places;
+    Random random(11);
+    while (places.size() < most) {
+        const model::Node& node = model.nodes[random.below(static_cast<std::uint32_t>(model.nodes.size()))];
+        const dvec3 size = node.box.max - node.box.min;
+        dvec3 at;
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::array<double, 6> spots{0, 0.5, 1, random.unit(), -1e-9, 1 + 1e-9};
+            at[axis] = node.box.min[axis] + spots[random.below(6)] * size[axis];
+        }
+        Placed placed{any_pose(random, 1), viewports[random.below(viewports.size())]};
+        placed.pose.position = at;
+        places.push_back(placed);
+    }
+    return places;
+}
+
+void inside_boxes(const Effort& effort, Outcome& out) {
+    auto model = import_and_bake(hard_town());
+    if (!model) return out.none_of("bakes refused (" + model.error().text() + ")", 1);
+    Look look(*model);
+    std::uint64_t numbers = 0, cuts = 0, differ = 0, made = 0;
+    for (const Placed& place : awkward_places(*model, effort.count(1000, 50))) {
+        if (effort.stopped()) break;
+        const prepare::PreparedFrame& frame = look.prepare({place.pose, 0, 0}, place.viewport);
+        numbers += unsound(frame, look.costs());
+        for (const std::string_view selector : select::selector_names()) {
+            for (const double budget_us : {0.0, 2500.0, infinity}) {
+                look.forget();
+                const select::Cut& cut = look.select(selector, budget_us);
+                cuts += illegal(frame, cut);
+                const std::uint64_t hash = cut.hash;
+                look.forget();
+                differ += look.select(selector, budget_us).hash != hash ? 1 : 0;
+                ++made;
+                if (selector == "two-stage") out.digest_of(hash);
+            }
+        }
+    }
+    out.none_of("costs, errors and benefits that are not finite or out of order", numbers);
+    out.none_of("cuts that are illegal or not finite", cuts);
+    out.none_of("cuts that come out otherwise the second time", differ);
+    out.at_least("cuts", static_cast<double>(made), 1000);
+    out.cut_hash = out.digest;
+    out.triangles = model->triangles();
+}
+
+/// Every leaf that the oracle sees is under some item of the cut.
+void nothing_lost(const Effort& effort, Outcome& out) {
+    auto model = import_and_bake(hard_town());
+    if (!model) return out.none_of("bakes refused (" + model.error().text() + ")", 1);
+    Look look(*model);
+    std::uint64_t lost = 0, seen = 0;
+    for (const Placed& place : awkward_places(*model, effort.count(3000, 100))) {
+        if (effort.stopped()) break;
+        look.prepare({place.pose, 0, 0}, place.viewport);
+        const select::Cut& cut = look.select("two-stage", 4000);
+        std::vector<bool> shown(model->nodes.size(), false);
+        for (const select::CutItem& item : cut.items) shown[item.node] = true;
+        const Pyramid pyramid = pyramid_of(place.pose, place.viewport);
+        for (model::Index n = 0; n < model->nodes.size(); ++n) {
+            if (n > 0) shown[n] = shown[n] || shown[model->nodes[n].parent];
+            if (model->nodes[n].child_count > 0 || !(overlap(pyramid, model->nodes[n].box) > touching)) continue;
+            ++seen;
+            lost += shown[n] ? 0 : 1;
+        }
+    }
+    out.none_of("visible leaves that no item of the cut stands for", lost);
+    out.at_least("visible leaves", static_cast<double>(seen), 500);
+    out.digest_of(seen);
+}
+
+}  // namespace
+
+std::span<const Row> near_and_inside_rows() {
+    static constexpr std::array<Row, 5> table = {{
+        {"N9a", "near_and_inside",
+         "random boxes, from points to 1000 km, against views of 1 to 179 degrees and 1x1 to 16384x16384 pixels",
+         "no box that the exact separating-axis test sees is dropped", random_boxes},
+        {"N9b", "near_and_inside", "boxes of 10 to 200 m beside the view",
+         "few of those outside are kept, and fewer than by the planes alone", large_boxes},
+        {"N10", "near_and_inside",
+         "fields of view and sizes at the ends: 0, 1 and 179 degrees, not a number; 1x1, 8192x1, 2^32 pixels",
+         "every number of the view is finite and positive, and what is straight ahead is seen", odd_views},
+        {"N11a", "near_and_inside",
+         "eye on faces, corners, centres and inside of every box of a baked town, all selectors, three budgets",
+         "finite costs and benefits in order, legal cuts, the same cut twice", inside_boxes},
+        {"N11b", "near_and_inside", "the same eyes, each with a view of its own",
+         "every leaf that the exact test sees is under an item of the cut", nothing_lost},
+    }};
+    return table;
+}
+
+}  // namespace surefoot::selftest

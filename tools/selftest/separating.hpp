@@ -1,0 +1,24 @@
+// Whether a box and a camera's pyramid touch, decided by every separating axis: the slow, sure oracle for visibility.
+#pragma once
+
+#include <array>
+
+#include "render/model/view.hpp"
+#include "rt/base/geometry.hpp"
+
+namespace surefoot::selftest {
+
+/// The pyramid that the picture shows, its angles read off the projection matrix that draws it, not from the planes under test;
+/// without end.
+struct Pyramid {
+    dvec3 eye{0};
+    dvec3 forward{0, 0, -1}, right{1, 0, 0}, up{0, 1, 0};
+    double tan_x = 1, tan_y = 1;
+};
+Pyramid pyramid_of(const Pose& pose, model::Viewport viewport);
+
+/// How far the two reach into each other along the axis that parts them best, relative to the box's distance and size: > 0 they
+/// overlap, < 0 they are apart. Sure to about 1e-7: the matrix is float.
+double overlap(const Pyramid& pyramid, const Box& box);
+
+}  // namespace surefoot::selftest
