@@ -1,10 +1,12 @@
-// hidapi's list, and sysfs beside it: hidapi 0.13 (Debian 12) gives no report descriptor, and sysfs gives it without opening the
-// device, so that keyboards and mice are left alone and a device without permission is still known.
+// udev's list of hidraw nodes, and sysfs beside it. Not hid_enumerate(): hidapi 0.13 (Debian 12) takes the length of no text
+// where a device goes while the list is made (mended in 0.14, libusb/hidapi#580), so that a pulled cable would end the walk; and
+// it gives no report descriptor, which sysfs gives without opening the device: keyboards and mice are left alone, and a device
+// without permission is still known.
 #include "input/devices/hid_list.hpp"
 
 #include <fmt/format.h>
-#include <hidapi.h>
 #include <libudev.h>
+#include <linux/input.h>
 
 #include <algorithm>
 #include <charconv>
@@ -40,20 +42,36 @@ std::uint16_t hex_part(std::string_view& text) {
     return static_cast<std::uint16_t>(value);
 }
 
+/// Lines "KEY=value" of the HID device above a node; empty where it is gone.
+std::string hid_facts(udev_device* node) {
+    udev_device* hid = udev_device_get_parent_with_subsystem_devtype(node, "hid", nullptr);
+    return hid == nullptr ? std::string() : text_or_empty(udev_device_get_sysattr_value(hid, "uevent"));
+}
+
+/// On a bus that hidapi opens.
+bool is_real(std::string_view facts) {
+    std::string_view id = value_of(facts, "HID_ID");
+    const std::uint16_t bus = hex_part(id);
+    return bus == BUS_USB || bus == BUS_BLUETOOTH || bus == BUS_I2C || bus == BUS_SPI;
+}
+
 }  // namespace
 
 std::vector<ListedNode> list_nodes(udev* context) {
     std::vector<ListedNode> nodes;
-    hid_device_info* list = hid_enumerate(0, 0);
-    for (const hid_device_info* i = list; i != nullptr; i = i->next) {
-        if (i->path == nullptr) continue;
-        const std::string node = i->path;
-        if (std::any_of(nodes.begin(), nodes.end(), [&](const ListedNode& n) { return n.node == node; })) continue;
-        const std::string sysname = node.substr(node.rfind('/') + 1);
-        const UdevDevice device(udev_device_new_from_subsystem_sysname(context, "hidraw", sysname.c_str()), udev_device_unref);
-        if (device) nodes.push_back({node, text_or_empty(udev_device_get_syspath(device.get()))});
+    const std::unique_ptr<udev_enumerate, udev_enumerate* (*)(udev_enumerate*)> all(udev_enumerate_new(context),
+                                                                                    udev_enumerate_unref);
+    if (!all || udev_enumerate_add_match_subsystem(all.get(), "hidraw") < 0 || udev_enumerate_scan_devices(all.get()) < 0)
+        return nodes;
+    udev_list_entry* entry = nullptr;
+    udev_list_entry_foreach(entry, udev_enumerate_get_list_entry(all.get())) {
+        const char* place = udev_list_entry_get_name(entry);
+        if (place == nullptr) continue;
+        const UdevDevice device(udev_device_new_from_syspath(context, place), udev_device_unref);
+        if (!device) continue;  // gone meanwhile
+        const std::string node = text_or_empty(udev_device_get_devnode(device.get()));
+        if (!node.empty() && is_real(hid_facts(device.get()))) nodes.push_back({node, place});
     }
-    hid_free_enumeration(list);
     return nodes;
 }
 
@@ -62,9 +80,8 @@ PluggedDevice read_node(udev* context, const ListedNode& node, std::optional<Err
     p.node = node.node;
     p.place = node.place;
     const UdevDevice device(udev_device_new_from_syspath(context, node.place.c_str()), udev_device_unref);
-    udev_device* hid = device ? udev_device_get_parent_with_subsystem_devtype(device.get(), "hid", nullptr) : nullptr;
-    if (hid != nullptr) {
-        const std::string facts = text_or_empty(udev_device_get_sysattr_value(hid, "uevent"));
+    if (device) {
+        const std::string facts = hid_facts(device.get());
         p.name = value_of(facts, "HID_NAME");
         p.socket = value_of(facts, "HID_PHYS");
         p.serial = value_of(facts, "HID_UNIQ");

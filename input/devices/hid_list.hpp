@@ -1,4 +1,4 @@
-// What is plugged in: hidapi's list made one entry a node, with what sysfs knows of it. Opens no device.
+// What is plugged in: an entry a hidraw node, with what sysfs knows of it. Opens no device.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@ struct udev;
 
 namespace surefoot::input {
 
-/// A node of hidapi's list, without the repetitions that it makes for each usage.
+/// /dev/hidraw3, and its folder in sysfs.
 struct ListedNode {
     std::string node, place;
 };

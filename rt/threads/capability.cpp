@@ -39,6 +39,14 @@ bool fifo_granted(int priority) {
     return granted;
 }
 
+/// isolcpus= takes its cores from the first process's mask, and so from everybody's, yet every thread may ask for one.
+bool core_granted(int cpu) {
+    bool granted = false;
+    std::thread([&] { granted = place_thread(0, {.policy = Policy::other, .priority = 0, .cpus = CpuMask{cpu}, .name = {}}).ok(); })
+        .join();
+    return granted;
+}
+
 int highest_fifo(int wanted) {
     if (fifo_granted(wanted)) return wanted;
     rlimit limit{};
@@ -75,7 +83,7 @@ CpuMask isolated_cpus(const CpuMask& allowed, const std::string& root) {
     CpuMask isolated;
     if (auto listed = CpuMask::parse(first_line(root + "/sys/devices/system/cpu/isolated"))) {
         for (const int cpu : listed->cpus()) {
-            if (allowed.has(cpu)) isolated.add(cpu);
+            if (allowed.has(cpu) || core_granted(cpu)) isolated.add(cpu);
         }
     }
     return isolated;
@@ -83,9 +91,7 @@ CpuMask isolated_cpus(const CpuMask& allowed, const std::string& root) {
 
 int default_frame_core(const CpuMask& allowed, const CpuMask& isolated) {
     const std::vector<int> all = allowed.cpus(), kept_free = isolated.cpus();
-    for (auto cpu = kept_free.rbegin(); cpu != kept_free.rend(); ++cpu) {
-        if (allowed.has(*cpu)) return *cpu;
-    }
+    if (!kept_free.empty()) return kept_free.back();
     return all.empty() ? -1 : all.back();
 }
 

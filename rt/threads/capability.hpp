@@ -21,7 +21,7 @@ struct Capabilities {
     int fifo_priority = 0;            ///< highest SCHED_FIFO priority granted, tried out; 0: refused
     bool can_lock = false;            ///< mlock granted without a limit that matters (1 GiB)
     std::int64_t memlock_bytes = -1;  ///< RLIMIT_MEMLOCK, soft; -1: unlimited, or privileged
-    CpuMask allowed, isolated;        ///< isolated: kernel's list, within allowed
+    CpuMask allowed, isolated;        ///< isolated: as isolated_cpus(), so it may lie outside of `allowed`
     std::int64_t rt_runtime_us = -1;  ///< -1: no throttling
     std::int64_t rt_period_us = 1000000;
     std::int64_t rttime_us = -1;  ///< RLIMIT_RTTIME, soft; -1 unlimited
@@ -30,9 +30,10 @@ struct Capabilities {
     std::vector<Lack> lacking;  ///< from the above; empty: nothing is missing
 };
 
-/// The kernel's list of isolated cores, within `allowed`.
+/// Of the kernel's list of isolated cores those in `allowed`, and those that a thread of this process gets when it asks: tried, on
+/// one made for it.
 CpuMask isolated_cpus(const CpuMask& allowed, const std::string& root = "");
-/// Where the frame thread goes unless a core is named: the last isolated core that is allowed, else the last allowed; -1: none is.
+/// Pure: where the frame thread goes unless a core is named: the last of isolated_cpus(), else the last allowed; -1: none is.
 int default_frame_core(const CpuMask& allowed, const CpuMask& isolated);
 
 /// Tries FIFO on a thread made for it, and reads limits, /proc and /sys. wanted_priority: what the frame thread asks for.

@@ -132,6 +132,9 @@ TEST(Doctor, TheFrameCoreIsTheLastIsolatedOneThatMayBeUsed) {
     const FakeRoot isolated({allowed, {"/sys/devices/system/cpu/isolated", "1-2,7\n"}});
     EXPECT_EQ(Machine(isolated.path(), {}, {}).frame_core(), 2);
     EXPECT_EQ(Machine(isolated.path(), on_core_one(), {}).frame_core(), 1);
+    Probed probed;
+    probed.isolated = rt::CpuMask{7};
+    EXPECT_EQ(Machine(isolated.path(), {}, probed).frame_core(), 7) << "isolcpus= takes it from the mask, and it is granted";
     const FakeRoot online(FakeFiles{{"/sys/devices/system/cpu/online", "0-1\n"}});
     EXPECT_EQ(Machine(online.path(), {}, {}).frame_core(), 1);
 }

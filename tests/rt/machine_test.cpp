@@ -163,6 +163,23 @@ TEST(Capability, SaysWhatIsMissingAndHowToGrantIt) {
     EXPECT_EQ(find_lacking(c, 20).size(), 0U) << "no throttling at all is not a lack";
 }
 
+TEST(Capability, AnIsolatedCoreOutsideOfTheMaskIsTheFrameCoreWhereItIsGranted) {
+    EXPECT_EQ(default_frame_core(CpuMask{0}, CpuMask{1}), 1);
+    EXPECT_EQ(default_frame_core(CpuMask{0, 1, 2}, CpuMask{1}), 1);
+    EXPECT_EQ(default_frame_core(CpuMask{0, 1, 2}, {}), 2);
+    EXPECT_EQ(default_frame_core({}, {}), -1);
+    // As after boot with isolcpus=: the last core is isolated, and taken from this process's mask.
+    const std::vector<int> all = allowed_cpus().cpus();
+    if (all.size() < 2) GTEST_SKIP() << "one core";
+    const PlacementScope scope;
+    CpuMask rest;
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) rest.add(all[i]);
+    ASSERT_TRUE(place_thread(0, {.policy = Policy::other, .priority = 0, .cpus = rest, .name = {}}).ok());
+    const FakeRoot root;
+    root.file("/sys/devices/system/cpu/isolated", std::to_string(all.back()) + ",1000\n");
+    EXPECT_EQ(isolated_cpus(rest, root.path), CpuMask{all.back()}) << "1000 is not there";
+}
+
 TEST(Capability, ReadsTheSystemsFilesAndKeepsToAllowedCores) {
     const FakeRoot root;
     const int core = allowed_cpus().cpus().front();

@@ -104,6 +104,7 @@ private:
 struct WalkKind {
     std::string name, backend, more;
     int limit_s = 0;
+    int longer = 1;  ///< times as long, where frames take their time
 };
 
 /// Moves, pulls, replugs deflected, releases, moves: and what the ledger says of it. The ledger's clock is ours.
@@ -121,18 +122,18 @@ void walk_with(Checks& checks, const Guest& guest, const WalkKind& kind) {
     until_steers(1);
     hold(*device, 128, 1000);
     const std::int64_t pushed = now_ns();
-    hold(*device, 0, 2500);
+    hold(*device, 0, 2500 * kind.longer);
     const std::int64_t pulled = now_ns();
     device->unplug();
-    sleep_ms(2000);
+    sleep_ms(2000 * kind.longer);
     const std::int64_t back = now_ns();
     device = std::make_unique<UhidDevice>(pad, "walk");
     until_steers(2);
-    hold(*device, 0, 1500);  // deflected since it came
+    hold(*device, 0, 1500 * kind.longer);  // deflected since it came
     const std::int64_t neutral = now_ns();
     hold(*device, 128, 500);
     const std::int64_t again = now_ns();
-    hold(*device, 0, 2500);
+    hold(*device, 0, 2500 * kind.longer);
     const std::int64_t released = now_ns();
     hold(*device, 128, 500);
     const int status = walk.end();
@@ -156,8 +157,10 @@ void check_walk(Checks& checks, const Guest& guest) {
     if (!std::filesystem::exists(guest.model)) return checks.not_run("walk", "no model came with it");
     walk_with(checks, guest, {"walk", "null", "--rate 10 --seconds 25", 120});
     const std::string pictures = guest.keep + "/pictures";
+    // Emulated, a frame of this size takes up to half a second, and one of what the built-in cost table would allow ten.
     walk_with(checks, guest,
-              {"walk.drawn", "egl", "--rate 3 --size 320x240 --seconds 40 --snap " + pictures + " --every 10", 200});
+              {"walk.drawn", "egl", "--rate 3 --size 160x120 --cost-scale 100 --seconds 30 --snap " + pictures + " --every 10",
+               200, 2});
     std::size_t count = 0, least = SIZE_MAX;
     std::error_code problem;
     for (const auto& entry : std::filesystem::directory_iterator(pictures, problem))

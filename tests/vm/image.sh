@@ -1,17 +1,18 @@
-# Read by tests/vm/run: makes what the guest boots from, once, in the cache. Not run by itself.
+# Read by tests/vm/guest.sh: makes what the guests boot from, once, in the cache. Not run by itself.
 #
 #   kernel/     Debian 12's real-time kernel and its modules, unpacked, never installed, with gpio-sim built beside them
-#   root.img    Debian 12 with udev and the libraries that the tool needs
+#   root.img    Debian 12 with systemd, udev and the libraries that the package needs
 #   trixie/     Debian 13 with a compiler and libgpiod 2: its programs are built here, in a chroot
 #   trixie.img  the same as a disk
-#   initrd.gz   finds the disk and the shared folder, and starts guest-init there
-# Each is made under another name and moved into place whole, so an interrupted run leaves nothing half made.
+#   initrd.gz   finds the disk and the shared folder, and starts guest-init there, or systemd with the unit guest-service
+# Each is made under another name and moved into place whole, so an interrupted run leaves nothing half made; NAME.from beside it
+# says what it was made from, so a change of one makes only that one anew.
 # shellcheck shell=bash
 
 mirror="${SUREFOOT_DEBIAN_MIRROR:-http://deb.debian.org/debian}"
 guest_packages=(
-  udev kmod util-linux procps gpiod libgpiod2 libhidapi-hidraw0 libudev1 libtbb12 libtbbmalloc2 libfmt9 libpng16-16 libjpeg62-turbo
-  libmeshoptimizer2d libtomlplusplus3 libzstd1 libegl1 libgl1-mesa-dri
+  systemd-sysv udev kmod util-linux procps gpiod libgpiod2 libhidapi-hidraw0 libudev1 libtbb12 libtbbmalloc2 libfmt9 libpng16-16 libjpeg62-turbo
+  libmeshoptimizer2d libtomlplusplus3 libzstd1 libegl1 libgl1-mesa-dri libosmesa6
 )
 trixie_packages=(g++ libc6-dev libfmt-dev libglm-dev libtomlplusplus-dev libgpiod-dev)
 # What the initrd needs to see the disks and the shared folder; with what each depends on.
@@ -105,7 +106,7 @@ make_initrd() {
   sed -i 's#.*/##' "$to/modules/order"
   cat >"$to/init" <<'INIT'
 #!/bin/busybox sh
-# Finds the disk and the shared folder, and starts what is in there.
+# Finds the disk and the shared folder, and starts what is in there: the first process itself, or a unit of systemd.
 /bin/busybox --install -s /bin
 mount -t proc proc /proc; mount -t sysfs sysfs /sys; mount -t devtmpfs dev /dev
 while read -r module; do insmod "/modules/$module"; done </modules/order
@@ -113,7 +114,15 @@ tries=0
 while [ ! -b /dev/vda ] && [ $tries -lt 50 ]; do sleep 0.1; tries=$((tries + 1)); done
 mount -t ext4 /dev/vda /root || { echo "guest: no root disk"; poweroff -f; }
 mount -t 9p -o trans=virtio,version=9p2000.L,msize=262144 share /root/surefoot || { echo "guest: no shared folder"; poweroff -f; }
+systemd=no
+case " $(cat /proc/cmdline) " in *" surefoot.init=systemd "*) systemd=yes ;; esac
 mount --move /dev /root/dev; mount --move /proc /root/proc; mount --move /sys /root/sys
+if [ $systemd = yes ]; then
+  cp /root/surefoot/in/guest-service.service /root/etc/systemd/system/
+  mkdir -p /root/etc/systemd/system/multi-user.target.wants
+  ln -s ../guest-service.service /root/etc/systemd/system/multi-user.target.wants/
+  exec switch_root /root /sbin/init
+fi
 exec switch_root /root /bin/bash /surefoot/in/guest-init
 INIT
   chmod +x "$to/init"
@@ -122,22 +131,47 @@ INIT
   moved initrd.gz
 }
 
-# make_image: what is missing in the cache, or was made by another version of this file or for another kernel.
+# made_from NAME RELEASE: a sum over all that the part is made from.
+made_from() {
+  {
+    echo "$2"
+    declare -f unpack "make_$1"
+    case $1 in
+      kernel) declare -f make_gpio_sim ;;
+      root) echo "${guest_packages[*]}" ;;
+      trixie) echo "${trixie_packages[*]}" ;;
+      initrd) echo "${initrd_modules[*]}" ;;
+    esac
+  } | sha256sum | cut -d' ' -f1
+}
+
+# make_part NAME RELEASE
+make_part() {
+  rm -f "$cache/$1.from"
+  "make_$1" "$2" && made_from "$1" "$2" >"$cache/$1.from"
+}
+
+# make_image: what is missing in the cache, or was made from something else.
 make_image() {
-  local release stamp
+  local release name missing=' '
   release=$(kernel_release)
   [[ -n "$release" ]] || return 1
-  stamp="$release $(sha256sum "${BASH_SOURCE[0]}" | cut -d' ' -f1)"
   mkdir -p "$cache"
-  if [[ -f "$cache/stamp" && "$(cat "$cache/stamp")" == "$stamp" ]]; then image_was=cached; return; fi
+  for name in kernel root initrd; do
+    [[ "$(cat "$cache/$name.from" 2>/dev/null)" == "$(made_from "$name" "$release")" ]] || missing+="$name "
+  done
+  # Debian 13 has no part of the kernel.
+  [[ "$(cat "$cache/trixie.from" 2>/dev/null)" == "$(made_from trixie none)" ]] || missing+='trixie '
+  image_was=cached
+  if [[ "$missing" == ' ' ]]; then return; fi
   # shellcheck disable=SC2034  # for who reads this file
   image_was=made
-  rm -f "$cache/stamp"
-  say "Making the guest's image in $cache (once; 400 MB to download, about 4 GB of disk)"
-  make_trixie &
-  local trixie=$! made=1
-  { make_kernel "$release" && make_root && make_initrd; } || made=0
-  wait "$trixie" || made=0
-  (( made )) || return 1
-  echo "$stamp" >"$cache/stamp"
+  say "Making of the guest's image, in $cache:$missing(once; 400 MB to download and 4 GB of disk for all of it)"
+  local trixie='' made=1
+  if [[ "$missing" == *' trixie '* ]]; then make_part trixie none & trixie=$!; fi
+  for name in kernel root initrd; do
+    if (( made )) && [[ "$missing" == *" $name "* ]]; then make_part "$name" "$release" || made=0; fi
+  done
+  if [[ -n "$trixie" ]]; then wait "$trixie" || made=0; fi
+  (( made ))
 }

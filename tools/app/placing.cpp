@@ -14,9 +14,11 @@ namespace surefoot::app {
 Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted) {
     PlacingPlan plan;
     plan.all = rt::allowed_cpus();
-    plan.frame_core = rt::default_frame_core(plan.all, rt::isolated_cpus(plan.all));
-    if (!plan.all.has(plan.frame_core)) return Error{"cores", "this process may use none", "look at its affinity (taskset -p)"};
-    if (request.frame_core >= 0) (plan.all.has(request.frame_core) ? plan.frame_core : plan.absent_core) = request.frame_core;
+    const rt::CpuMask isolated = rt::isolated_cpus(plan.all);
+    plan.frame_core = rt::default_frame_core(plan.all, isolated);
+    if (plan.all.empty()) return Error{"cores", "this process may use none", "look at its affinity (taskset -p)"};
+    if (const int wanted = request.frame_core; wanted >= 0)
+        (plan.all.has(wanted) || isolated.has(wanted) ? plan.frame_core : plan.absent_core) = wanted;
     plan.fifo = request.fifo && fifo_granted;
     plan.frame_priority = request.frame_priority;
     plan.raster_priority = request.raster_priority;
@@ -46,7 +48,7 @@ Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan) {
 std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_t>& rasterisers) {
     // They move: on average one core's part of their work is done on the frame core, and that is what one of them does.
     std::vector<pid_t> sharing;
-    if (!rasterisers.empty() && plan.all.count() <= static_cast<int>(rasterisers.size())) sharing.push_back(rasterisers.back());
+    if (plan.all.has(plan.frame_core) && !rasterisers.empty() && plan.all.count() <= static_cast<int>(rasterisers.size())) sharing.push_back(rasterisers.back());
     return sharing;
 }
 
@@ -83,7 +85,7 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
     const auto priority = [&](int p) { return plan.fifo ? p : 0; };
     std::vector<rt::DeclaredThread> table;
     // The main thread and what the driver makes for itself (its shader and disk caches lower themselves to BATCH).
-    table.push_back({.name = program_name,
+    table.push_back({.name = program_name.substr(0, 15),  // as much as the kernel keeps
                      .whole_name = true,
                      .policy = rt::Policy::other,
                      .cpus = plan.all,

@@ -16,7 +16,7 @@ struct PlacingPlan {
     bool fifo = false;  ///< asked for and granted
     int frame_core = 0;
     int absent_core = -1;  ///< asked for as the frame core, and not there (or not ours): another one serves; -1: none
-    rt::CpuMask all;
+    rt::CpuMask all;       ///< of every other thread; the frame core is outside of it where the kernel isolates that one
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
     bool input = false;                        ///< an input thread steers
     bool devices = false;                      ///< and another one finds its devices

@@ -23,7 +23,9 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
 
 PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
                              rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places)
-    : engine_(engine), grid_(grid), poses_(poses), prepared_(prepared), places_(places), thread_([this] { run(); }) {}
+    : engine_(engine), grid_(grid), poses_(poses), prepared_(prepared), places_(places), thread_([this] { run(); }) {
+    named_.wait(false);  // by its name it is found and placed
+}
 
 PrepareThread::~PrepareThread() { stop(); }
 
@@ -50,6 +52,8 @@ void PrepareThread::prepare_newest() {
 
 void PrepareThread::run() {
     (void)rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-prepare"});
+    named_.store(true);
+    named_.notify_one();
     rt::RealClock clock;
     // A fortieth of a period after the frame's start: the pose is there by then, and most of the period is left.
     const std::int64_t offset_ns = grid_.period_ns / 40;

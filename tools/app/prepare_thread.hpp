@@ -41,7 +41,7 @@ using PlaceBuffer = rt::TripleBuffer<PoseSample>;
 
 class PrepareThread {
 public:
-    /// Start from a neutral thread; the thread is named sf-prepare. The buffers must outlive it. `places`: null where nothing
+    /// Start from a neutral thread; the thread is named sf-prepare when this returns. The buffers must outlive it. `places`: null where nothing
     /// puts the eye elsewhere; else looked at eight times a period.
     PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
                   rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places);
@@ -59,7 +59,7 @@ private:
     rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
     PlaceBuffer* places_;
     std::uint64_t seen_ = ~0ULL;  ///< frame prepared after last
-    std::atomic<bool> stopping_{false};
+    std::atomic<bool> stopping_{false}, named_{false};
     std::thread thread_;
 };
 

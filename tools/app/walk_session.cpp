@@ -101,7 +101,8 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     options.device.sky = r.sky;
     options.null.cost_scale = r.cost_scale;
     options.null.noise = r.cost_noise;
-    options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, s.plan.all.count() - 1);
+    const int others = s.plan.all.count() - (s.plan.all.has(s.plan.frame_core) ? 1 : 0);
+    options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);
     options.selector = r.selector;
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);

@@ -40,7 +40,7 @@ bool by_number(const std::string& a, const std::string& b) {
     return x && y ? *x < *y : a < b;
 }
 
-std::optional<int> choose_core(const Machine& machine, const std::optional<int>& asked) {
+std::optional<int> choose_core(const Machine& machine, const std::optional<int>& asked, const rt::CpuMask& granted) {
     if (asked) return asked;
     const auto list = machine.own_status("Cpus_allowed_list");
     auto allowed = list ? rt::CpuMask::parse(*list) : Result<rt::CpuMask>(Error{});
@@ -49,7 +49,11 @@ std::optional<int> choose_core(const Machine& machine, const std::optional<int>&
         if (!online) return std::nullopt;
         allowed = *online;
     }
-    const int core = rt::default_frame_core(*allowed, machine.isolated());
+    rt::CpuMask isolated;
+    for (const int cpu : machine.isolated().cpus()) {
+        if (allowed->has(cpu) || granted.has(cpu)) isolated.add(cpu);
+    }
+    const int core = rt::default_frame_core(*allowed, isolated);
     return core < 0 ? std::nullopt : std::optional<int>(core);
 }
 
@@ -61,7 +65,7 @@ Machine::Machine(std::string root, Wanted wanted, Probed probed)
     if (!build_configuration_) {
         if (const auto release = text("/proc/sys/kernel/osrelease")) build_configuration_ = text("/boot/config-" + *release);
     }
-    frame_core_ = choose_core(*this, wanted_.frame_core);
+    frame_core_ = choose_core(*this, wanted_.frame_core, probed_.isolated);
 }
 
 std::optional<std::string> Machine::text(std::string_view path) const {

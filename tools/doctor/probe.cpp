@@ -83,7 +83,9 @@ std::optional<std::uint64_t> free_bytes(std::filesystem::path folder) {
 Probed probe_machine(const Wanted& wanted) {
     Probed probed;
     const rt::SavedLimits limits = rt::raise_limits(wanted.frame_priority);
-    probed.fifo_priority = rt::probe_capabilities(wanted.frame_priority).fifo_priority;
+    const rt::Capabilities capable = rt::probe_capabilities(wanted.frame_priority);
+    probed.fifo_priority = capable.fifo_priority;
+    probed.isolated = capable.isolated;
     probed.locks_memory = locks(1U << 30U);
     rt::restore_limits(limits);
     probed.holds_c_states = opens_for_writing("/dev/cpu_dma_latency");
