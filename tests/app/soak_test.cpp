@@ -53,7 +53,9 @@ TEST(Soak, TwentyVirtualMinutesHoldAndLeaveAPageAndTheirFigures) {
     EXPECT_EQ(page->find("nan"), std::string::npos);
     EXPECT_EQ(page->find("http"), std::string::npos) << "the page asks the network for something";
     const auto json = nlohmann::json::parse(*read_text(request.report_dir + "/soak.json"));
-    if (memory_counts) EXPECT_EQ(json["verdict"], "holds");
+    if (memory_counts) {
+        EXPECT_EQ(json["verdict"], "holds");
+    }
     EXPECT_EQ(json["walk"]["frames"], minutes * 60 * 30);
     EXPECT_EQ(json["grid"]["drift_ns"], 0);
     for (const char* key : {"kernel", "kernel_command_line", "interrupts", "pressure", "steal_ms"})
