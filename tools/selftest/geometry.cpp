@@ -62,6 +62,13 @@ void judge(const std::string& name, importer::Scene scene, std::uint64_t wanted,
         tally.complain(name + " has " + std::to_string(model->triangles()) + " triangles, not " + std::to_string(wanted));
     std::uint64_t hash = out.cut_hash;
     if (unsound_views(*model, hash) > 0) tally.complain(name + " has unsound numbers or cuts");
+    for (const model::Vertex& v : model->vertices) {
+        const double length = glm::length(dvec3(v.normal[0], v.normal[1], v.normal[2]));
+        if (length < 120 || length > 130) {
+            tally.complain(name + " has a normal of no length");
+            break;
+        }
+    }
     out.cut_hash = hash;
     out.digest_of(model->triangles());
     out.digest_of(hash);
