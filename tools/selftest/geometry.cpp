@@ -347,7 +347,7 @@ void transforms(const Effort&, Outcome& out) {
     bad("two axes alike", rank_one);
     dmat4 two = dmat4(1.0);  // one good object beside one that is none
     importer::Scene scene = scene_of(ball, two);
-    place(scene, ball, "flat", scaled({0, 1, 1}));
+    place(scene, ball, "flat", rank_one);
     judge("one good beside one singular", scene, n, tally, out);
     report(tally, 10, out);
 }
