@@ -46,3 +46,6 @@ mutation F5 render/measure/calibrate_file.cpp 's/if \(first != fmt::format.*?\n 
 mutation F6 config/values.cpp 's/!\(\*number >= entry.min && \*number <= entry.max\)/false/' "limits of settings"
 mutation F7 input/hid/decoder.cpp 's/value = std::clamp\(value, v.min, v.max\);//' "values held in their range"
 mutation N21 render/import/image.cpp 's/png_image_finish_read\(.*?\) == 0/false/' "a picture that cannot be unpacked is refused"
+mutation N13c render/prepare/prepare.cpp 's/begin < end;\)/begin < end && begin < 4096;)/' "levels walked to the last"
+mutation N13d render/select/steps.hpp 's/return refined \? benefit \* hysteresis_ : benefit;/return refined ? benefit \/ hysteresis_ : benefit;/' "what was shown is preferred (turned round)" \
+  render/select/search.cpp render/select/benefit_search.cpp render/select/fixed.cpp render/select/published.cpp render/select/cover.cpp

@@ -156,6 +156,20 @@ void ostf_files(const Effort& effort, Outcome& out) {
     attack({*fixture, read}, effort, out);
 }
 
+/// One element more than the buffer view holds: an importer that does not compare reads what lies behind it.
+void accessor_beyond(const Reader& reader, Outcome& out) {
+    std::string text(reinterpret_cast<const char*>(reader.fixture.data()), reader.fixture.size());
+    const std::string count = R"("count":3)";
+    std::uint64_t taken = 0, tried = 0;
+    for (std::size_t at = text.find(count); at != std::string::npos; at = text.find(count, at + 1), ++tried) {
+        std::string more = text;
+        more[at + count.size() - 1] = '4';
+        taken += reader.read(bytes_of(more)).taken ? 1 : 0;
+    }
+    out.none_of("accessors beyond their view that are read", taken);
+    out.exactly("accessors", static_cast<double>(tried), 2);
+}
+
 void gltf_files(const Effort& effort, Outcome& out) {
     MemoryFile file;
     const auto read = [&](const Bytes& bytes) -> Answer {
@@ -171,6 +185,7 @@ void gltf_files(const Effort& effort, Outcome& out) {
         }
         return {true, sound};
     };
+    accessor_beyond({glb_fixture(), read}, out);
     attack({glb_fixture(), read, 1}, effort, out);
 }
 
@@ -270,7 +285,8 @@ std::span<const Row> files_rows() {
          walk_files},
         {"F2", "files", "OSTF of two objects: every truncation, random corruptions, a pipe named as its texture", sound,
          ostf_files},
-        {"F3", "files", "glTF (GLB) of two nodes: every truncation, random corruptions", sound, gltf_files},
+        {"F3", "files", "glTF (GLB) of two nodes: every truncation, random corruptions, accessors beyond their views", sound,
+         gltf_files},
         {"F4", "files", "path of twenty poses: every truncation, random corruptions", sound, path_files},
         {"F5", "files",
          "cost table of two classes: every truncation, random corruptions, every second one with its checksum put right", checked,

@@ -86,7 +86,8 @@ void rotations(const Effort&, Outcome& out) {
     if (!device) return;
     const auto here = import_and_bake(hard_town());
     if (!here) return out.none_of("bakes refused (" + here.error().text() + ")", 1);
-    // The sun is the world's and does not turn with the model: unlit, so that only places are compared.
+    // Sun and sky are the world's and do not turn with the model: without them only places are compared, by the vertices'
+    // colours.
     const auto unlit = [](model::Model model) {
         for (model::Material& m : model.materials) m.effects &= ~static_cast<model::EffectMask>(model::effect_sun);
         for (model::Representation& r : model.reps) r.effects &= ~static_cast<model::EffectMask>(model::effect_sun);
