@@ -150,9 +150,9 @@ Bytes settings_fixture() {
 }
 
 Bytes recording_fixture() {
-    // A pad of two axes and eight buttons.
+    // A pad of two axes up to 200, whose reports say more, and of eight buttons.
     std::string text =
-        "# by hand\nD: 0\nR: 44 05 01 09 04 a1 01 15 00 26 ff 00 75 08 95 02 09 30 09 31 81 02 05 09 19 01 29 08 15 00 25 01 75 "
+        "# by hand\nD: 0\nR: 44 05 01 09 04 a1 01 15 00 26 c8 00 75 08 95 02 09 30 09 31 81 02 05 09 19 01 29 08 15 00 25 01 75 "
         "01 95 08 81 02 c0 00 00 00 00 00 00\nN: pad\nP: usb-1\nI: 3 046d c626\n";
     for (int i = 0; i < 40; ++i)
         text += fmt::format("E: 00000{}.{:06} 3 {:02x} {:02x} {:02x}\n", i / 10, 16000 * i % 1000000, 6 * i, 255 - i, i % 4);

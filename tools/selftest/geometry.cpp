@@ -62,6 +62,13 @@ void judge(const std::string& name, importer::Scene scene, std::uint64_t wanted,
         tally.complain(name + " has " + std::to_string(model->triangles()) + " triangles, not " + std::to_string(wanted));
     std::uint64_t hash = out.cut_hash;
     if (unsound_views(*model, hash) > 0) tally.complain(name + " has unsound numbers or cuts");
+    for (const model::Vertex& v : model->vertices) {
+        const double length = glm::length(dvec3(v.normal[0], v.normal[1], v.normal[2]));
+        if (length < 120 || length > 130) {
+            tally.complain(name + " has a normal of no length");
+            break;
+        }
+    }
     out.cut_hash = hash;
     out.digest_of(model->triangles());
     out.digest_of(hash);
@@ -340,7 +347,7 @@ void transforms(const Effort&, Outcome& out) {
     bad("two axes alike", rank_one);
     dmat4 two = dmat4(1.0);  // one good object beside one that is none
     importer::Scene scene = scene_of(ball, two);
-    place(scene, ball, "flat", scaled({0, 1, 1}));
+    place(scene, ball, "flat", rank_one);
     judge("one good beside one singular", scene, n, tally, out);
     report(tally, 10, out);
 }

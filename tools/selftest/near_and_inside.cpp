@@ -159,7 +159,7 @@ void inside_boxes(const Effort& effort, Outcome& out) {
     auto model = import_and_bake(hard_town());
     if (!model) return out.none_of("bakes refused (" + model.error().text() + ")", 1);
     Look look(*model);
-    std::uint64_t numbers = 0, cuts = 0, differ = 0, made = 0;
+    std::uint64_t numbers = 0, cuts = 0, differ = 0, coarse = 0, made = 0;
     for (const Placed& place : awkward_places(*model, effort.count(1000, 50))) {
         if (effort.stopped()) break;
         const prepare::PreparedFrame& frame = look.prepare({place.pose, 0, 0}, place.viewport);
@@ -174,12 +174,15 @@ void inside_boxes(const Effort& effort, Outcome& out) {
                 differ += look.select(selector, budget_us).hash != hash ? 1 : 0;
                 ++made;
                 if (selector == "two-stage") out.digest_of(hash);
+                if (selector == "two-stage" && budget_us == infinity)
+                    coarse += cut.worst_error_rad <= 1.00001F * frame.target_error_rad ? 0 : 1;
             }
         }
     }
     out.none_of("costs, errors and benefits that are not finite or out of order", numbers);
     out.none_of("cuts that are illegal or not finite", cuts);
     out.none_of("cuts that come out otherwise the second time", differ);
+    out.none_of("unlimited cuts that stay coarser than was asked", coarse);
     out.at_least("cuts", static_cast<double>(made), 1000);
     out.cut_hash = out.digest;
     out.triangles = model->triangles();

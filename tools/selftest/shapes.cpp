@@ -7,6 +7,7 @@
 
 #include "render/bake/bake.hpp"
 #include "render/import/finish.hpp"
+#include "rt/base/random.hpp"
 
 namespace surefoot::selftest {
 
@@ -63,8 +64,13 @@ importer::Scene hard_town(const dvec3& at, const dquat& turn) {
     importer::Scene scene;
     scene.materials.resize(2);
     scene.materials[1].colour = {0.8F, 0.2F, 0.1F, 1};
-    const auto ground =
+    importer::Primitive ground =
         surface(40, 40, [](double u, double v) { return vec3(dvec3(100 * v, 3 * std::sin(9 * u) * std::cos(7 * v), 100 * u)); });
+    Random random(16);  // colours all over, so that a picture shows where it lies
+    for (std::size_t i = 0; i < ground.positions.size(); ++i) {
+        const auto byte = [&] { return static_cast<std::uint8_t>(random.below(256)); };
+        ground.colours.push_back({byte(), byte(), byte(), 255});
+    }
     place(scene, ground, "ground", root);
     importer::Primitive ball = bumpy_ball(16, 1);
     ball.material = 1;
