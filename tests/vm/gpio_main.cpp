@@ -227,18 +227,18 @@ void check_dead_man(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
 /// The dead-man's contact let go and pressed through bounces of 0.2 to 5 ms, 1 to 20 edges: it stops at the first edge of a
 /// release, stays stopped through all others, and walks again only after 20 ms of quiet.
 void check_bounces(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
-    constexpr int wanted = 40, most_tries = 160;
-    constexpr double quiet_ms = 20;
+    constexpr int wanted = 40;
+    constexpr double quiet_ms = 20, longest_bounce_ms = 5, most_ms = 45'000;
     Random random(14);
     int rounds = 0, late = 0, walked = 0, early = 0, stuck = 0;
     double slowest_ms = 0;
     const auto bounce = [&](int edges, bool level) {
         for (int i = 0; i < edges; ++i, level = !level) {
             chip.pull(dead_man, level);
-            rig.serve(random.range(0.2, 5.0));
+            rig.serve(random.range(0.2, longest_bounce_ms));
         }
     };
-    for (int i = 0; i < most_tries && rounds < wanted; ++i) {
+    for (const std::int64_t from = now_ns(); rounds < wanted && ms_since(from) < most_ms;) {
         (void)rig.until([&] { return !rig.stop(); }, 500);
         rig.last_ns = 0;
         rig.longest_gap_ms = 0;
@@ -255,7 +255,8 @@ void check_bounces(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
         const std::int64_t pressed = now_ns();
         const double walks_ms = rig.until([&] { return !rig.stop(); }, 500);
         // Where the guest was kept from running, a bounce may have been quiet for so long: no round.
-        if (rig.longest_gap_ms > quiet_ms / 2 || ms_since(pressed) - std::max(walks_ms, 0.0) > quiet_ms) continue;
+        if (rig.longest_gap_ms > quiet_ms - longest_bounce_ms - 1 || ms_since(pressed) - std::max(walks_ms, 0.0) > quiet_ms)
+            continue;
         ++rounds;
         late += stopped_ms < 0 || stopped_ms > 50 ? 1 : 0;
         walked += bounced_through ? 1 : 0;

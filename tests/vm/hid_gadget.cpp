@@ -121,7 +121,7 @@ void check_gadget(Checks& checks, const Guest& guest) {
     }
     const double latest = rest.empty() ? -1 : *std::max_element(rest.begin(), rest.end());
     checks.check(
-        "usb_gadget.cable_pulled", rest.size() == times && moved == times && late == 0 && stood_still <= times / 2,
+        "usb_gadget.cable_pulled", rest.size() == times && moved >= times * 9 / 10 && late == 0 && stood_still <= times / 2,
         fmt::format("{} of {} at rest, {} were moving; at most {:.1f} ms after the hang-up (at most 50; {} later, and {} more "
                     "where the host held the loop for over 10 ms)",
                     rest.size(), times, moved, latest, late, stood_still));
