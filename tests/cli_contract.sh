@@ -17,6 +17,16 @@ json replay c.cap --selector best-first
 [ "$(wc -l < l.csv)" -eq 31 ] || complain "the ledger has not one row a frame"
 valid_json t.json || complain "the trace is not JSON"
 
+# Hard cases: named rows, one line at the end, wrong names are wrong use, Ctrl-C ends it.
+json selftest --hard N10 L4
+grep -q '"digest"' out || complain "selftest --json has no digest"
+"$surefoot" selftest --hard N7 >out 2>err || complain "exit $? of selftest --hard N7"
+tail -1 out | grep -q '^hard cases: 3 of 3 rows hold; broken: none' || complain "selftest ends with '$(tail -1 out)'"
+"$surefoot" selftest --hard --list >out 2>err || complain "exit $? of selftest --list"
+expect 2 "row 'N99'.*--list" selftest --hard N99
+expect 2 'selftest --hard' selftest
+expect 2 '--scale.*0.* 0.001 to' selftest --hard --scale 0
+
 # Wrong use is 2, bad input 1; what was there is still there.
 expect 2 'required|subcommand' --no-such-option
 expect 2 "no command 'wlak'; did you mean 'walk'" wlak f.walk
@@ -144,6 +154,8 @@ grep -q 'cut hash' out || complain "a stopped walk does not sum up"
 stop_after 0.4 bake big.glb -o f.walk; got=$?
 [ $got -eq 130 ] || complain "exit $got, not 130, of a stopped bake: $(cat err)"
 cmp -s f.walk kept.walk || complain "a stopped bake changed the model that was there"
+stop_after 1 selftest --hard L2 --scale 100; got=$?
+[ $got -eq 130 ] || complain "exit $got, not 130, of a stopped selftest: $(cat err)"
 for command in "calibrate --quick --state stopped" "accuracy f.walk --repeats 100 --poses 256 -o stopped"; do
   stop_after 1 $command; got=$?
   grep -qi 'egl\|gl ' err && continue  # no software GL on this machine: nothing to stop

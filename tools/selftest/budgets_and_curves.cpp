@@ -105,24 +105,37 @@ void deep_chain(const Effort&, Outcome& out) {
 /// All alike: what is refined may follow no chance, and may not change from frame to frame.
 void equal_benefits(const Effort&, Outcome& out) {
     Look look(star(1000, 3));
-    for (model::CostGrid& grid : look.costs().grids) std::fill(grid.cells.begin(), grid.cells.end(), model::ItemCost{10, 10});
     Pose pose;
-    pose.position = {0, 0, 1e6};  // so far away that every box looks the same
-    pose.fov_y_rad = 0.02;
+    pose.position = {48, 0.5, 1e6};  // so far away that every box looks the same
+    pose.fov_y_rad = 1e-3;
     const prepare::PreparedFrame& frame = look.prepare({pose, 0, 0});
+    const double budget_us = 0.75 * static_cast<double>(look.select("flat", infinity).predicted_us);
     std::uint64_t flicker = 0, bad = frame.candidates.empty() ? 1 : 0;
+    std::size_t fewest = 1000;
+    model::Index coarsest = 99, finest = 0;  // forms that two-stage shows
     for (const std::string_view selector : select::selector_names()) {
         look.forget();
-        const std::uint64_t first = look.select(selector, 6000).hash;
+        const select::Cut& first = look.select(selector, budget_us);
+        const std::uint64_t hash = first.hash;
+        fewest = std::min(fewest, selector == "flat" || selector == "distance" ? fewest : first.items.size());
+        if (selector == "two-stage") {
+            for (const select::CutItem& item : first.items) {
+                const model::Index form = item.rep - look.model().nodes[item.node].first_rep;
+                coarsest = std::min(coarsest, form);
+                finest = std::max(finest, form);
+            }
+        }
         for (int i = 0; i < 20; ++i) {
-            const select::Cut& cut = look.select(selector, 6000);
-            flicker += cut.hash != first || cut.switches != 0 ? 1 : 0;
+            const select::Cut& cut = look.select(selector, budget_us);
+            flicker += cut.hash != hash || cut.switches != 0 ? 1 : 0;
             bad += illegal(frame, cut);
         }
-        out.digest_of(first);
+        out.digest_of(hash);
     }
     out.none_of("frames that differ from the first", flicker);
     out.none_of("cuts that are illegal or not finite", bad);
+    out.at_least("items of the smallest cut", static_cast<double>(fewest), 1000);
+    out.at_least("forms between two-stage's coarsest and finest", static_cast<double>(finest) - static_cast<double>(coarsest), 1);
 }
 
 void odd_costs(const Effort&, Outcome& out) {

@@ -11,6 +11,7 @@ std::span<const Row> origin_rows();
 std::span<const Row> depth_rows();
 std::span<const Row> near_and_inside_rows();
 std::span<const Row> geometry_rows();
+std::span<const Row> transform_rows();
 std::span<const Row> polygon_rows();
 std::span<const Row> budgets_and_curves_rows();
 std::span<const Row> long_runs_rows();
