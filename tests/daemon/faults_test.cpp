@@ -3,6 +3,8 @@
 
 #include <sys/ptrace.h>
 
+#include <algorithm>
+
 #include "rt/threads/capability.hpp"
 #include "rt/threads/guard.hpp"
 #include "tests/daemon/running.hpp"
@@ -42,7 +44,10 @@ TEST(Faults, TheWatchdogStarvesWhileTheFrameThreadAloneIsFrozen) {
     daemon.socket.listen(1.5);
     ::kill(daemon.pid, SIGTERM);
     EXPECT_EQ(daemon.wait_exit(20), exit_success);
-    EXPECT_EQ(daemon.lines_with("missed"), 1) << "one line for the whole burst: " << daemon.said();
+    // A second or more of slots, in one line for the whole burst; a frame that the machine delays before has its own.
+    const std::string said = daemon.said(), after = said.substr(std::min(said.find("frames come again"), said.size()));
+    EXPECT_EQ(std::count(after.begin(), after.end(), '\n'), 3) << "itself, the burst, the end: " << said;
+    EXPECT_NE(after.find("slots skipped"), std::string::npos) << said;
 }
 
 TEST(Faults, AThreadThatNeverSleepsEndsItWithinASecond) {
