@@ -42,10 +42,11 @@ open_guest() {
   mkdir -p "$share/in/kept" "$share/kept"
 }
 
-# bake_room MODEL: a small room for the guest to walk through.
+# bake_room MODEL: a small room for the guest to walk through, and beside it the path that begins in it.
 bake_room() {
   "$build_dir/surefoot" scene room --scale 0.2 --seed 1 -o "$share/room.glb" >/dev/null 2>&1 &&
-    "$build_dir/surefoot" bake "$share/room.glb" --quality draft -o "$1" >/dev/null 2>&1
+    "$build_dir/surefoot" bake "$share/room.glb" --quality draft -o "$1" >/dev/null 2>&1 &&
+    cp "$share/room.path.csv" "${1%.walk}.path.csv"
 }
 
 # A /dev/kvm that opens and then runs nothing exists (inside some virtual machines), so it has to show that it boots.
