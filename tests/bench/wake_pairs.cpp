@@ -63,11 +63,13 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "pair {:2}: p99 {:.1f} us, cyclictest {:.1f} us\n", pair + 1, ours.p99_us, theirs_p99.back());
     }
     const double middle = median(difference);
-    fmt::print("{{\"pairs\": {}, \"block_s\": {}, \"period_us\": {}, \"core\": {}, \"priority\": {}, \"p99_us\": {{\"surefoot\": {:.1f}, "
-               "\"cyclictest\": {:.1f}}}, \"max_us\": {{\"surefoot\": {:.0f}, \"cyclictest\": {:.0f}}}, "
-               "\"p99_difference_us\": {{\"median\": {:.1f}, \"blocks\": [{}]}}, \"steal_ms\": {:.0f}}}\n",
-               pairs, options.seconds, options.period_ns / 1000, options.core, options.priority, median(ours_p99), median(theirs_p99),
-               *std::max_element(ours_max.begin(), ours_max.end()), *std::max_element(theirs_max.begin(), theirs_max.end()), middle,
-               list(difference), steal_ms);
+    fmt::print(
+        "{{\"pairs\": {}, \"block_s\": {}, \"period_us\": {}, \"core\": {}, \"priority\": {}, \"p99_us\": {{\"surefoot\": "
+        "{:.1f}, "
+        "\"cyclictest\": {:.1f}}}, \"max_us\": {{\"surefoot\": {:.0f}, \"cyclictest\": {:.0f}}}, "
+        "\"p99_difference_us\": {{\"median\": {:.1f}, \"blocks\": [{}]}}, \"steal_ms\": {:.0f}}}\n",
+        pairs, options.seconds, options.period_ns / 1000, options.core, options.priority, median(ours_p99), median(theirs_p99),
+        *std::max_element(ours_max.begin(), ours_max.end()), *std::max_element(theirs_max.begin(), theirs_max.end()), middle,
+        list(difference), steal_ms);
     return middle <= 50 ? 0 : 1;
 }

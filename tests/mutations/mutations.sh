@@ -5,6 +5,7 @@ eye='s/const dvec3 origin = placed.origin - eye;/const dvec3 origin = dvec3(vec3
 mutation N16a render/gl/tables.cpp "$eye" "origins made relative to the eye in double"
 mutation N16b render/gl/tables.cpp "$eye" "the same"
 mutation N16c render/gl/tables.cpp "$eye" "the same"
+mutation N16e render/gl/tables.cpp "$eye" "the same"
 mutation N16d render/bake/emit.cpp 's/placement.origin = dvec3\(world \* dvec4\(emitted.centre, 1.0\)\);/placement.origin = dvec3(0);/' "a placed object's own origin"
 mutation N17a render/gl/ties.cpp 's/return out;/for (std::size_t i = 0; i < out.ranks.size(); ++i) out.ranks[i] = i % 32; return out;/' "ranks only for what lies in one place"
 mutation N17b render/gl/ties.cpp 's/ranks\[now.rank_at\] = rank;//' "ranks of what lies in one place"

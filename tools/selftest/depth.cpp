@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<float, 3> red{1, 0, 0}, green{0, 1, 0};
 constexpr std::array<std::uint8_t, 3> red_byte{255, 0, 0}, green_byte{0, 255, 0};
-constexpr model::Viewport view{200, 150};
+constexpr model::Viewport depth_view{200, 150};
 
 /// An oblique view, so that depths vary over the picture.
 Pose oblique() {
@@ -49,9 +49,11 @@ std::uint64_t pixels_other_than(const gl::PixelImage& image, std::array<std::uin
 /// A green sheet `gap` before a red one, both over the whole picture: every pixel is green, whichever is drawn first and whatever
 /// numbers the two have.
 void planes_apart(const Effort&, Outcome& out) {
-    const auto device = open_picture(view, out);
+    const auto device = open_picture(depth_view, out);
     if (!device) return;
-    for (const auto& [distance, gap] : {std::pair{1.0, 1e-5}, {1000.0, 1e-3}, {10'000.0, 1e-2}, {100'000.0, 1.0}}) {
+    // The near plane is 50 mm. A view with one of 1 mm is the same view of a world fifty times as large: 50 and 500 km.
+    for (const auto& [distance, gap] :
+         {std::pair{1.0, 1e-5}, {1000.0, 1e-3}, {10'000.0, 1e-2}, {100'000.0, 1.0}, {50'000.0, 0.05}, {500'000.0, 0.5}}) {
         std::uint64_t wrong = 0;
         for (const double tilt : {0.0, 0.3, 0.7}) {
             for (std::uint32_t others = 0; others < 32; ++others) {  // how many objects lie between the two in the model
@@ -75,7 +77,7 @@ void planes_apart(const Effort&, Outcome& out) {
 
 /// Two sheets in exactly one place, cut into triangles alike or otherwise; the eye moves by millimetres.
 void in_one_place(const Effort& effort, Outcome& out) {
-    const auto device = open_picture(view, out);
+    const auto device = open_picture(depth_view, out);
     if (!device) return;
     std::uint64_t flicker = 0, sky = 0, mixed = 0, frames = 0;
     for (const double distance : {1.0, 10.0, 100.0, 1000.0, 10'000.0}) {
@@ -107,7 +109,7 @@ void in_one_place(const Effort& effort, Outcome& out) {
 
 /// Which object shows where several are in one place is decided by their numbers, at every distance alike.
 void order_by_number(const Effort&, Outcome& out) {
-    const auto device = open_picture(view, out);
+    const auto device = open_picture(depth_view, out);
     if (!device) return;
     std::uint64_t wrong = 0;
     std::array<std::uint8_t, 3> winner{};
@@ -132,7 +134,7 @@ void order_by_number(const Effort&, Outcome& out) {
 
 /// Two walls that cross: the picture changes sides where they do, within a pixel.
 void through_each_other(const Effort&, Outcome& out) {
-    const auto device = open_picture(view, out);
+    const auto device = open_picture(depth_view, out);
     if (!device) return;
     std::uint64_t wrong = 0, crossings = 0;
     for (const double distance : {2.0, 100.0, 5000.0}) {
@@ -149,11 +151,11 @@ void through_each_other(const Effort&, Outcome& out) {
             const dvec3 n = glm::cross(dvec3(s.along), dvec3(s.up));
             return glm::dot(n, s.origin) / glm::dot(n, ray);
         };
-        const double tan_y = std::tan(0.5 * Pose{}.fov_y_rad), tan_x = tan_y * view.width / view.height;
-        for (std::uint32_t y = 0; y < view.height; ++y) {
-            for (std::uint32_t x = 0; x < view.width; ++x) {
+        const double tan_y = std::tan(0.5 * Pose{}.fov_y_rad), tan_x = tan_y * depth_view.width / depth_view.height;
+        for (std::uint32_t y = 0; y < depth_view.height; ++y) {
+            for (std::uint32_t x = 0; x < depth_view.width; ++x) {
                 const auto ray_at = [&](double px) {
-                    return dvec3((2 * px / view.width - 1) * tan_x, (1 - 2 * (y + 0.5) / view.height) * tan_y, -1);
+                    return dvec3((2 * px / depth_view.width - 1) * tan_x, (1 - 2 * (y + 0.5) / depth_view.height) * tan_y, -1);
                 };
                 const auto nearer = [&](double px) { return depth(left, ray_at(px)) < depth(right, ray_at(px)); };
                 const bool side_here = nearer(x + 0.5);
@@ -172,7 +174,8 @@ void through_each_other(const Effort&, Outcome& out) {
 std::span<const Row> depth_rows() {
     static constexpr std::array<Row, 4> table = {{
         {"N17a", "depth",
-         "parallel planes 0.01 mm apart at 1 m, 1 mm at 1 km, 1 cm at 10 km, 1 m at 100 km; any numbers, either order",
+         "parallel planes 0.01 mm apart at 1 m, 1 mm at 1 km, 1 cm at 10 km, 1 m at 100 km; the second and third as with a near "
+         "plane of 1 mm, fifty times as large; any numbers, either order",
          "the nearer one at every pixel", planes_apart},
         {"N17b", "depth", "two sheets in one place at 1 m to 10 km, drawn in turns, the eye moving by millimetres",
          "the same one at every pixel of every frame", in_one_place},

@@ -31,7 +31,7 @@ struct Answer {
     bool sound = true;  ///< taken: what was read can be worked with; refused: place and fault are named
 };
 
-Answer refused(const Error& error) { return {false, !error.place.empty() && !error.what.empty()}; }
+Answer refusal(const Error& error) { return {false, !error.place.empty() && !error.what.empty()}; }
 
 struct Reader {
     Bytes fixture;
@@ -117,7 +117,7 @@ void walk_files(const Effort& effort, Outcome& out) {
     const auto read = [&](const Bytes& bytes) -> Answer {
         file.set(bytes);
         auto model = model::read_walk(file.name());
-        if (!model) return refused(model.error());
+        if (!model) return refusal(model.error());
         prepare::PrepareOptions options;
         options.max_candidates = 1U << 12U;
         Look look(std::move(*model), options);
@@ -150,7 +150,7 @@ void ostf_files(const Effort& effort, Outcome& out) {
     const auto read = [&](const Bytes& bytes) -> Answer {
         file.set(bytes);
         auto scene = importer::import_ostf(file.name(), {});
-        return scene ? Answer{true, scene->triangles() > 0} : refused(scene.error());
+        return scene ? Answer{true, scene->triangles() > 0} : refusal(scene.error());
     };
     pipe_as_texture({*fixture, read}, out);
     attack({*fixture, read}, effort, out);
@@ -175,7 +175,7 @@ void gltf_files(const Effort& effort, Outcome& out) {
     const auto read = [&](const Bytes& bytes) -> Answer {
         file.set(bytes);
         auto scene = importer::import_gltf(file.name(), {});
-        if (!scene) return refused(scene.error());
+        if (!scene) return refusal(scene.error());
         bool sound = scene->triangles() > 0;
         for (const importer::Mesh& mesh : scene->meshes) {
             for (const importer::Primitive& p : mesh.primitives) {
@@ -194,7 +194,7 @@ void path_files(const Effort& effort, Outcome& out) {
     const auto read = [&](const Bytes& bytes) -> Answer {
         file.set(bytes);
         auto path = read_path(file.name());
-        if (!path) return refused(path.error());
+        if (!path) return refusal(path.error());
         bool sound = !path->samples.empty();
         double before = -std::numeric_limits<double>::infinity();
         for (const PathSample& s : path->samples) {
@@ -214,7 +214,7 @@ void cost_files(const Effort& effort, Outcome& out) {
     const auto read = [&](const Bytes& bytes) -> Answer {
         file.set(bytes);
         auto costs = measure::read_costs(file.name(), "");
-        if (!costs) return refused(costs.error());
+        if (!costs) return refusal(costs.error());
         bool sound = !costs->grids.empty();
         for (const float n : {0.0F, 1.0F, 1e3F, 1e9F}) {
             const model::ItemCost cost = costs->item(n, n, costs->grid_for(model::effect_sun));
@@ -230,7 +230,7 @@ void settings_files(const Effort& effort, Outcome& out) {
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         config::Configuration configuration;
         const auto loaded = config::load_text(configuration, text, "fixture.toml", "kiosk");
-        if (!loaded) return refused(loaded.error());
+        if (!loaded) return refusal(loaded.error());
         const config::Settings& s = configuration.values;
         return {true, s.rate_hz >= 1 && s.rate_hz <= 1000 && s.budget_ms >= 0 && s.budget_ms <= 1000 && s.workers >= 0};
     };
@@ -241,9 +241,9 @@ void recordings(const Effort& effort, Outcome& out) {
     const auto read = [&](const Bytes& bytes) -> Answer {
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         auto recording = input::parse_recording(text, "fixture.hid");
-        if (!recording) return refused(recording.error());
+        if (!recording) return refusal(recording.error());
         auto layout = input::read_descriptor(recording->descriptor, "fixture.hid");
-        if (!layout) return refused(layout.error());
+        if (!layout) return refusal(layout.error());
         const input::HidDevice device = input::describe_device(std::move(*layout), {recording->vendor, recording->product});
         input::ReportDecoder decoder(device);
         input::DeviceState state;
@@ -267,7 +267,7 @@ void pictures(const Effort& effort, Outcome& out) {
     const auto view = std::as_bytes(std::span(png));
     const auto read = [](const Bytes& bytes) -> Answer {
         auto image = importer::decode_image(bytes, "fixture.png");
-        if (!image) return refused(image.error());
+        if (!image) return refusal(image.error());
         return {true, image->rgba.size() == 4ULL * image->width * image->height && image->width > 0 && image->height > 0};
     };
     attack({Bytes(view.begin(), view.end()), read, 0.9}, effort, out);  // the end mark holds nothing

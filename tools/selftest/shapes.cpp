@@ -99,6 +99,12 @@ importer::Scene hard_town(const dvec3& at, const dquat& turn) {
     return scene;
 }
 
+model::Model moved_model(model::Model model, const dvec3& by) {
+    for (model::Placement& p : model.placements) p.origin += by;
+    for (model::Node& n : model.nodes) n.box = {n.box.min + by, n.box.max + by};
+    return model;
+}
+
 Result<model::Model> import_and_bake(importer::Scene scene) {
     if (auto finished = importer::finish(scene, "by hand", {}); !finished) return finished.error();
     bake::BakeOptions options;

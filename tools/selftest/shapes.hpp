@@ -27,6 +27,9 @@ dmat4 scaled(const dvec3& by);
 /// `turn`. The same shape wherever it stands.
 importer::Scene hard_town(const dvec3& at = dvec3(0), const dquat& turn = dquat(1, 0, 0, 0));
 
+/// All of the model moved after the bake: the very same nodes and forms, so that a cut can be drawn of both.
+model::Model moved_model(model::Model model, const dvec3& by);
+
 /// The scene as files bring it: cleaned and finished as every importer's is, then baked (draft, one worker). An error names what
 /// is wrong.
 Result<model::Model> import_and_bake(importer::Scene scene);
