@@ -15,6 +15,12 @@
 namespace surefoot {
 namespace {
 
+#ifdef SUREFOOT_SANITIZED
+constexpr double town_scale = 0.03;  // the sanitizers take ten times as long
+#else
+constexpr double town_scale = 0.1;
+#endif
+
 importer::Scene scene_of(const char* name, double scale) {
     auto generated = scenes::generate(name, scale, 1);
     EXPECT_TRUE(generated.ok());
@@ -117,7 +123,7 @@ TEST(Bake, TheSameBitsAtAnyWorkerCount) {
 
 TEST(Bake, EveryTriangleOfTheSceneIsInTheLeaves) {
     for (const char* name : {"forest", "room", "town"}) {
-        const importer::Scene scene = scene_of(name, 0.1);
+        const importer::Scene scene = scene_of(name, town_scale);
         const model::Model m = bake_of(scene);
         std::uint64_t leaves = 0;
         for (const model::Node& node : m.nodes) {
@@ -129,7 +135,7 @@ TEST(Bake, EveryTriangleOfTheSceneIsInTheLeaves) {
 }
 
 TEST(Bake, LeavesAreSplitBelowASixteenthOfAFrame) {
-    const importer::Scene scene = scene_of("town", 0.1);
+    const importer::Scene scene = scene_of("town", town_scale);
     bake::BakeOptions options;
     model::CostModel slow = model::default_costs();  // a machine on which 1/16 frame is few triangles
     for (model::CostGrid& grid : slow.grids) {
