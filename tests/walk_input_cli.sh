@@ -65,6 +65,7 @@ head -c 1990 walk-and-turn.hid >cut.hid; refuse 1 '^surefoot: cut.hid: line [0-9
 refuse 1 'boot-keyboard.hid: .*does not steer: class reject' walk f.walk $virtual --input "$devices/boot-keyboard.hid"
 refuse 1 '^surefoot: f.glb' walk f.walk $virtual --input f.glb
 refuse 1 '^surefoot: absent.toml' walk f.walk $virtual --input buttons.hid --steering absent.toml
+refuse 2 'input' walk f.walk $virtual --input ''
 printf '[motion]\nwalk_speed = 9\n' >bad.toml
 refuse 1 '^surefoot: bad.toml:2: .*walk_speed' walk f.walk $virtual --input buttons.hid --steering bad.toml
 sed 's/button-5/button-55/' stop.toml >other.toml

@@ -237,6 +237,10 @@ DescriptorParser::Outcome DescriptorParser::add_field(const Item& item, ReportKi
         note(item.offset, "a field outside every collection; it is laid out, but gives no control");
     if (g.size == 0 || g.count == 0) note(item.offset, "a field without bits; it is laid out, but gives no control");
     if (g.size > 32) note(item.offset, fmt::format("elements of {} bits; more than 32 give no control", g.size));
+    if (g.logical_min >= 0 && g.logical_max < 0 && !f.constant()) {
+        note(item.offset, fmt::format("a range up to {}; above 2147483647 only buttons give a control",
+                                      static_cast<std::uint32_t>(g.logical_max)));
+    }
     layout_.fields.push_back(f);
     return std::nullopt;
 }

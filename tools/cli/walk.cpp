@@ -145,11 +145,15 @@ void add_walk(CLI::App& app, Context& context) {
                   "Poses over time, CSV (else MODEL.path.csv, else a tour). With --input it is not followed: "
                   "its first pose is the start, poses at equal times are the viewpoints, and `tour` follows it");
     c->add_option(
-        "--input", r.input_file,
-        "Who steers in place of the path. `devices`: what is plugged in, and what will be (a file of that name is ./devices); "
-        "ends with --seconds or --frames, else after the path's length; needs the real clock. Else a file: a device's reports in "
-        "hid-recorder's text format, each in its recorded time; ends a second after the last report, or with --seconds or "
-        "--frames. Check it with `surefoot devices describe`");
+         "--input", r.input_file,
+         "Who steers in place of the path. `devices`: what is plugged in, and what will be (a file of that name is ./devices); "
+         "ends with --seconds or --frames, else after the path's length; needs the real clock. Else a file: a device's reports "
+         "in "
+         "hid-recorder's text format, each in its recorded time; ends a second after the last report, or with --seconds or "
+         "--frames. Check it with `surefoot devices describe`")
+        ->check([](const std::string& given) {
+            return given.empty() ? std::string("names nothing: leave it out, or give a file") : std::string();
+        });
     c->add_option("--steering", r.steering_file,
                   "How --input steers, TOML: [motion], [safety], [[device]], [[gpio]] (else the default of the device's class)");
     c->add_flag("--clear-stop", r.clear_stop,
