@@ -7,8 +7,8 @@
 
 namespace surefoot::capture {
 
-Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis,
-             std::vector<select::Shown> memory, const select::Cut& cut) {
+Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<select::Shown> memory,
+             const select::Cut& cut) {
     Capture c;
     c.prepared = *input.prepared;
     c.selector = selector;

@@ -30,8 +30,8 @@ struct Capture {
 };
 
 /// Puts a frame together; `memory`: SelectState::before, after `cut` was made. Allocates: not for the frame thread.
-Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis,
-             std::vector<select::Shown> memory, const select::Cut& cut);
+Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<select::Shown> memory,
+             const select::Cut& cut);
 
 /// Little-endian; magic, version, sizes and a checksum, then one zstd frame. Replaces the file only when complete.
 Result<void> write_capture(const std::string& file, const Capture& capture);

@@ -35,7 +35,8 @@ void reserve(Cut& cut, std::uint32_t max_candidates) { cut.items.reserve(max_can
 
 bool has_room(const SelectInput& input, const SelectState& state, const Cut& cut) {
     const std::size_t n = input.prepared->candidates.size();
-    return n > 0 && n <= state.scratch_a.size() && n <= state.touched.capacity() && n <= state.before.capacity() && n <= cut.items.capacity();
+    return n > 0 && n <= state.scratch_a.size() && n <= state.touched.capacity() && n <= state.before.capacity() &&
+           n <= cut.items.capacity();
 }
 
 Cover::Cover(const SelectInput& input, SelectState& state)

@@ -42,8 +42,9 @@ bool fifo_granted(int priority) {
 /// isolcpus= takes its cores from the first process's mask, and so from everybody's, yet every thread may ask for one.
 bool core_granted(int cpu) {
     bool granted = false;
-    std::thread([&] { granted = place_thread(0, {.policy = Policy::other, .priority = 0, .cpus = CpuMask{cpu}, .name = {}}).ok(); })
-        .join();
+    std::thread([&] {
+        granted = place_thread(0, {.policy = Policy::other, .priority = 0, .cpus = CpuMask{cpu}, .name = {}}).ok();
+    }).join();
     return granted;
 }
 

@@ -30,8 +30,8 @@ struct Capabilities {
     std::vector<Lack> lacking;  ///< from the above; empty: nothing is missing
 };
 
-/// Of the kernel's list of isolated cores those in `allowed`, and those that a thread of this process gets when it asks: tried, on
-/// one made for it.
+/// Of the kernel's list of isolated cores those in `allowed`, and those that a thread of this process gets when it asks: tried,
+/// on one made for it.
 CpuMask isolated_cpus(const CpuMask& allowed, const std::string& root = "");
 /// Pure: where the frame thread goes unless a core is named: the last of isolated_cpus(), else the last allowed; -1: none is.
 int default_frame_core(const CpuMask& allowed, const CpuMask& isolated);

@@ -228,9 +228,6 @@ TEST(BakeByHand, TenThousandObjects) {
 }
 
 TEST(BakeByHand, RealScenesKeepTheirBounds) {
-#ifdef SUREFOOT_SANITIZED
-    GTEST_SKIP() << "the sanitizers find no more in it than in the scenes by hand, and take half a minute";
-#endif
     const char* data = std::getenv("SUREFOOT_DATA");
     if (data == nullptr) GTEST_SKIP() << "SUREFOOT_DATA is not set";
     const auto scene = importer::import_files({std::string(data) + "/interior/hospital/hospital_three_floors.glb"}, {});

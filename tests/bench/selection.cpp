@@ -6,16 +6,13 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/bench/statistics.hpp"
 #include "tests/select/scene.hpp"
 
 namespace {
 
 using namespace surefoot;
-
-double quantile(std::vector<double> v, double q) {
-    std::sort(v.begin(), v.end());
-    return v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
-}
+using bench::quantile;
 
 template <class Work>
 double milliseconds(Work work) {

@@ -9,18 +9,14 @@
 
 #include "rt/threads/capability.hpp"
 #include "rt/threads/placement.hpp"
+#include "tests/bench/statistics.hpp"
 #include "tools/doctor/cyclictest.hpp"
 #include "tools/doctor/wake_up.hpp"
 
 namespace {
 
 using namespace surefoot;
-
-double median(std::vector<double> v) {
-    std::sort(v.begin(), v.end());
-    const std::size_t half = v.size() / 2;
-    return v.size() % 2 == 1 ? v[half] : (v[half - 1] + v[half]) / 2;
-}
+using bench::median;
 
 std::string list(const std::vector<double>& v) {
     std::string text;

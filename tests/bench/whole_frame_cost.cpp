@@ -13,6 +13,7 @@
 #include "rt/base/random.hpp"
 #include "rt/threads/memory.hpp"
 #include "rt/threads/placement.hpp"
+#include "tests/bench/statistics.hpp"
 #include "tools/app/path_source.hpp"
 #include "tools/app/placing.hpp"
 #include "tools/app/state.hpp"
@@ -20,14 +21,10 @@
 namespace {
 
 using namespace surefoot;
+using bench::quantile;
 
 std::int64_t now_ns(void* /*context*/) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double quantile(std::vector<double> v, double q) {
-    std::sort(v.begin(), v.end());
-    return v[std::min(v.size() - 1, static_cast<std::size_t>(q * static_cast<double>(v.size())))];
 }
 
 int fail(const Error& error) {
@@ -38,7 +35,9 @@ int fail(const Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 2) return fmt::print(stderr, "bench_whole_frame_cost MODEL.walk [POSES] [PATH.csv] [STATE_DIR] [fitted|table] [LIFT_M]\n"), 2;
+    if (argc < 2)
+        return fmt::print(stderr, "bench_whole_frame_cost MODEL.walk [POSES] [PATH.csv] [STATE_DIR] [fitted|table] [LIFT_M]\n"),
+               2;
     const int poses = argc > 2 ? std::atoi(argv[2]) : 500;
     model::WalkFileInfo info;
     auto model = model::read_walk(argv[1], &info);
@@ -94,10 +93,13 @@ int main(int argc, char** argv) {
     const double speed = quantile(ratios, 0.5);
     std::vector<double> shape;
     for (const double ratio : ratios) shape.push_back(std::abs(speed / ratio - 1));
-    fmt::print("{{\"model\": \"{}\", \"poses\": {}, \"error\": {{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}, "
-               "\"error_at_the_runs_speed\": {{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}, "
-               "\"actual_over_predicted\": {{\"p10\": {:.3f}, \"p50\": {:.3f}, \"p90\": {:.3f}}}, \"frame_ms\": {{\"p50\": {:.2f}, \"p90\": {:.2f}}}}}\n",
-               argv[1], poses, quantile(errors, 0.5), quantile(errors, 0.9), quantile(errors, 0.99), quantile(shape, 0.5), quantile(shape, 0.9),
-               quantile(shape, 0.99), quantile(ratios, 0.1), speed, quantile(ratios, 0.9), quantile(frame_ms, 0.5), quantile(frame_ms, 0.9));
+    fmt::print(
+        "{{\"model\": \"{}\", \"poses\": {}, \"error\": {{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}, "
+        "\"error_at_the_runs_speed\": {{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}, "
+        "\"actual_over_predicted\": {{\"p10\": {:.3f}, \"p50\": {:.3f}, \"p90\": {:.3f}}}, \"frame_ms\": {{\"p50\": {:.2f}, "
+        "\"p90\": {:.2f}}}}}\n",
+        argv[1], poses, quantile(errors, 0.5), quantile(errors, 0.9), quantile(errors, 0.99), quantile(shape, 0.5),
+        quantile(shape, 0.9), quantile(shape, 0.99), quantile(ratios, 0.1), speed, quantile(ratios, 0.9), quantile(frame_ms, 0.5),
+        quantile(frame_ms, 0.9));
     return 0;
 }

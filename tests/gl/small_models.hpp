@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/model/flat_root.hpp"
 #include "render/model/model.hpp"
 
 namespace surefoot::test {
@@ -105,15 +106,7 @@ public:
     }
     /// The root shows the first object's representation.
     model::Model finish() {
-        model::Node& root = model_.nodes[0];
-        root.first_child = 1;
-        root.child_count = static_cast<std::uint32_t>(model_.nodes.size() - 1);
-        root.rep_count = 1;
-        for (std::size_t i = 1; i < model_.nodes.size(); ++i) {
-            root.box.grow(model_.nodes[i].box);
-            root.triangles += model_.nodes[i].triangles;
-        }
-        model_.object_count = root.child_count;
+        model::make_flat_root(model_);
         return model_;
     }
     model::Model& model() { return model_; }

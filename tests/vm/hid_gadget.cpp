@@ -101,7 +101,8 @@ void check_gadget(Checks& checks, const Guest& guest) {
         const HangUp hang_up(attended.front().plugged->node.substr(5));  // without "/dev/"
         walker.hold([&] { gadget.send(pad_at(128, 128)); }, 60);
         const auto report = pad_at(static_cast<int>(random.below(70)), static_cast<int>(random.below(70)));
-        walker.hold([&] { gadget.send(report); }, 150);
+        // Until it moves: emulated, a report's way through the USB stack takes its time.
+        for (int tries = 0; tries < 10 && walker.speed() <= 0.01; ++tries) walker.hold([&] { gadget.send(report); }, 150);
         moved += walker.speed() > 0.01 ? 1 : 0;
         walker.longest_gap_ns = 0;
         std::thread cable([&] { gadget.pull(); });
@@ -121,7 +122,7 @@ void check_gadget(Checks& checks, const Guest& guest) {
     }
     const double latest = rest.empty() ? -1 : *std::max_element(rest.begin(), rest.end());
     checks.check(
-        "usb_gadget.cable_pulled", rest.size() == times && moved >= times * 9 / 10 && late == 0 && stood_still <= times / 2,
+        "usb_gadget.cable_pulled", rest.size() == times && moved == times && late == 0 && stood_still <= times / 2,
         fmt::format("{} of {} at rest, {} were moving; at most {:.1f} ms after the hang-up (at most 50; {} later, and {} more "
                     "where the host held the loop for over 10 ms)",
                     rest.size(), times, moved, latest, late, stood_still));

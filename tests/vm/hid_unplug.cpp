@@ -21,7 +21,7 @@ int deflected(Random& random) {
 
 struct Pull {
     bool plugged = false, moved = false, rested = false;
-    double stood_still_ms = 0;  ///< how long in all the guest did not run the loop, from the pull to rest
+    double stood_still_ms = 0;  ///< longest time in which the guest did not run the loop, from the pull to rest
     double after_hang_up_ms = 1e9, after_pull_ms = 1e9;
 };
 
@@ -38,7 +38,7 @@ Pull pull_once(Walker& walker, const input::Recording& pad, Random& random, int 
     walker.hold([&] { device->send(report); }, random.range(15, 150));
     result.moved = walker.speed() > 0.01;
     std::atomic<std::int64_t> pulled_ns = 0;
-    walker.held_ns = 0;
+    walker.longest_gap_ns = 0;
     std::thread cable([&] {
         for (int i = 0; i < 3; ++i) device->send(report);
         pulled_ns = now_ns();
@@ -52,7 +52,7 @@ Pull pull_once(Walker& walker, const input::Recording& pad, Random& random, int 
         },
         2000);
     cable.join();
-    result.stood_still_ms = static_cast<double>(walker.held_ns) * 1e-6;
+    result.stood_still_ms = static_cast<double>(walker.longest_gap_ns) * 1e-6;
     if (rest_ns != 0) {
         result.after_pull_ms = static_cast<double>(rest_ns - pulled_ns) * 1e-6;
         if (hang_up.at_ns() != 0) result.after_hang_up_ms = static_cast<double>(rest_ns - hang_up.at_ns()) * 1e-6;
@@ -100,7 +100,7 @@ void check_unplug(Checks& checks, const Guest& guest) {
                              "most 50; {} later); from "
                              "the pull max {:.1f} ms; {} velocities that are no numbers; {} more at rest, but later where the "
                              "host held the loop for "
-                             "over 10 ms in all, and pulled again",
+                             "over 10 ms, and pulled again",
                              rested, times, moved, not_plugged, hang_up[hang_up.size() / 2], hang_up.back(), late, pull.back(),
                              walker.wrong, stood_still));
     checks.check("unplug.descriptors", before == after, fmt::format("{} before, {} after {} times", before, after, times));

@@ -36,7 +36,6 @@ public:
     double step() {
         const std::int64_t began = now_ns();
         if (last_ns != 0) longest_gap_ns = std::max(longest_gap_ns, began - last_ns);
-        if (last_ns != 0) held_ns += std::max<std::int64_t>(0, began - last_ns - 2'000'000);
         last_ns = began;
         source->wait(now_ns() + 1'000'000);
         for (const input::DeviceEvent& e : source->take()) {
@@ -78,7 +77,6 @@ public:
     input::NavigationSample sample;
     std::int64_t added_ns = 0, removed_ns = 0, first_report_ns = 0;
     std::int64_t last_ns = 0, longest_gap_ns = 0;  ///< between two steps; set it to 0 to begin anew
-    std::int64_t held_ns = 0;  ///< all that steps came later than 2 ms after the one before; set it to 0 as well
     double greatest = 0;
     int wrong = 0;
 };

@@ -10,7 +10,7 @@ void KeptFrame::reserve(const Engine& engine) {
 }
 
 capture::Capture capture_of(const KeptFrame& kept, const WalkRequest& request, const Engine& engine) {
-    const select::SelectInput input{&engine.model(),       &kept.prepared,        &engine.costs(), kept.budget_us,
+    const select::SelectInput input{&engine.model(),        &kept.prepared,        &engine.costs(),  kept.budget_us,
                                     kept.correction.factor, kept.target_error_rad, request.slice_us, kept.correction.upper};
     capture::Capture taken =
         capture::take(input, request.selector, static_cast<float>(request.hysteresis), kept.memory, kept.cut);

@@ -48,7 +48,8 @@ Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan) {
 std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_t>& rasterisers) {
     // They move: on average one core's part of their work is done on the frame core, and that is what one of them does.
     std::vector<pid_t> sharing;
-    if (plan.all.has(plan.frame_core) && !rasterisers.empty() && plan.all.count() <= static_cast<int>(rasterisers.size())) sharing.push_back(rasterisers.back());
+    if (plan.all.has(plan.frame_core) && !rasterisers.empty() && plan.all.count() <= static_cast<int>(rasterisers.size()))
+        sharing.push_back(rasterisers.back());
     return sharing;
 }
 

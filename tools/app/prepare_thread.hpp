@@ -22,9 +22,9 @@ struct Foresight {
 
 /// What the frame thread publishes at each frame's start.
 struct PoseSample {
-    std::uint64_t frame = 0;    ///< walked frames, from 0
-    std::int64_t time_ns = 0;   ///< when it was due
-    Pose pose, before;          ///< now, and one frame ago
+    std::uint64_t frame = 0;   ///< walked frames, from 0
+    std::int64_t time_ns = 0;  ///< when it was due
+    Pose pose, before;         ///< now, and one frame ago
     double dt_s = 0;
     Foresight foresight;  ///< not known: the last two poses say where the walk goes
     bool valid = false;
@@ -41,8 +41,8 @@ using PlaceBuffer = rt::TripleBuffer<PoseSample>;
 
 class PrepareThread {
 public:
-    /// Start from a neutral thread; the thread is named sf-prepare when this returns. The buffers must outlive it. `places`: null where nothing
-    /// puts the eye elsewhere; else looked at eight times a period.
+    /// Start from a neutral thread; the thread is named sf-prepare when this returns. The buffers must outlive it. `places`: null
+    /// where nothing puts the eye elsewhere; else looked at eight times a period.
     PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
                   rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places);
     ~PrepareThread();

@@ -24,9 +24,9 @@ struct WalkStagesOptions {
     double limit_us = 0;   ///< of the in-frame check, from the due time
     double target_error_rad = 0;
     bool correct_costs = true;
-    bool control = false;        ///< bare blocks lie between: the path's time is counted in walked frames
-    bool virtual_clock = false;  ///< prepare inline, charge the device's virtual time
-    double cost_scale = 1;       ///< virtual clock with a device that charges nothing
+    bool control = false;                 ///< bare blocks lie between: the path's time is counted in walked frames
+    bool virtual_clock = false;           ///< prepare inline, charge the device's virtual time
+    double cost_scale = 1;                ///< virtual clock with a device that charges nothing
     std::uint64_t capture_frame = ~0ULL;  ///< kept, or else (capture_missed) the first missed one that nobody has taken yet
     bool capture_missed = false;
     const FaultHook* inject = nullptr;  ///< null: no faults

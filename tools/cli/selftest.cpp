@@ -17,16 +17,6 @@ struct SelftestArguments {
     bool hard = false, list = false, json = false;
 };
 
-std::string_view word(selftest::Verdict verdict) {
-    return verdict == selftest::Verdict::holds ? "holds" : verdict == selftest::Verdict::broken ? "broken" : "not run";
-}
-
-std::string_view word(selftest::Relation relation) {
-    return relation == selftest::Relation::at_most    ? "at most"
-           : relation == selftest::Relation::at_least ? "at least"
-                                                      : "exactly";
-}
-
 nlohmann::ordered_json describe(const selftest::Row& row) {
     return {{"id", std::string(row.id)},
             {"family", std::string(row.family)},
@@ -45,11 +35,11 @@ nlohmann::ordered_json to_json(const selftest::RowResult& result) {
     for (const selftest::Figure& f : result.outcome.figures)
         figures.push_back({{"name", f.name},
                            {"value", number(f.value)},
-                           {"relation", std::string(word(f.relation))},
+                           {"relation", std::string(selftest::word(f.relation))},
                            {"limit", number(f.limit)},
                            {"unit", f.unit},
                            {"holds", f.holds()}});
-    object["verdict"] = std::string(word(result.verdict));
+    object["verdict"] = std::string(selftest::word(result.verdict));
     object["figures"] = figures;
     object["scaled"] = result.outcome.scaled;
     object["not_run"] = result.outcome.not_run;
@@ -82,33 +72,26 @@ int run_selftest(const SelftestArguments& a, const Context& context) {
     const auto selection = selftest::select_rows(a.rows);
     if (!selection) return misuse(selection.error());
     if (a.list) return list_rows(a, *selection);
-    std::vector<selftest::RowResult> results;
-    const Progress progress = terminal_progress(context);
-    for (const selftest::Row* row : *selection) {
-        progress.say(row->id, static_cast<double>(results.size()) / static_cast<double>(selection->size()));
-        results.push_back(selftest::run_row(*row, {a.scale, &progress}));
+    const auto results = selftest::run_rows(*selection, a.scale, terminal_progress(context), [&](const selftest::RowResult& r) {
         end_progress(context);
-        if (context.stop->load()) {
-            return fail(
-                {"selftest",
-                 fmt::format("stopped by the user in row {}, after {} of {}", row->id, results.size() - 1, selection->size()),
-                 "single rows take less: surefoot selftest --hard " + std::string(row->id)});
-        }
-        if (!a.json) fmt::print("{}", selftest::text_of(results.back()));
-        if (!a.json) std::fflush(stdout);
-    }
-    const std::string summary = selftest::summary_of(results);
+        if (a.json) return;
+        fmt::print("{}", selftest::text_of(r));
+        std::fflush(stdout);
+    });
+    end_progress(context);
+    if (!results) return fail(results.error());
+    const std::string summary = selftest::summary_of(*results);
     if (a.json) {
         nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-        for (const selftest::RowResult& r : results) rows.push_back(to_json(r));
+        for (const selftest::RowResult& r : *results) rows.push_back(to_json(r));
         print_json({{"rows", rows},
                     {"scale", a.scale},
-                    {"digest", fmt::format("{:016x}", selftest::digest_of(results))},
+                    {"digest", fmt::format("{:016x}", selftest::digest_of(*results))},
                     {"summary", summary}});
     } else {
         fmt::print("{}\n", summary);
     }
-    return all_well(results) ? exit_success : exit_failure;
+    return all_well(*results) ? exit_success : exit_failure;
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ struct MissedFrame {
     std::function<Result<void>(const std::string& file)> write;
 };
 
-/// DIR/incident-20260102T030405Z-000017/{incident.json, ledger.csv, trace.json, frame.capture}: a folder is there whole or not at all. Others'
-/// files in DIR are left alone.
+/// DIR/incident-20260102T030405Z-000017/{incident.json, ledger.csv, trace.json, frame.capture}: a folder is there whole or not at
+/// all. Others' files in DIR are left alone.
 class IncidentWriter {
 public:
     /// Makes the folder where it is missing, and clears away what an earlier process left half-written. Its thread, sf-incidents,
@@ -61,8 +61,8 @@ private:
     std::thread thread_;
 };
 
-/// One incident into `dir`, within the limits; the new folder's name. `unix_s`: now, seconds since 1970. `missed`: written too, if
-/// it is one of the burst; may be null.
+/// One incident into `dir`, within the limits; the new folder's name. `unix_s`: now, seconds since 1970. `missed`: written too,
+/// if it is one of the burst; may be null.
 Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::Incident& incident, const IncidentLimits& limits,
                                    std::int64_t unix_s, const MissedFrame* missed = nullptr);
 

@@ -41,9 +41,9 @@ struct CostTableFound {
 
 /// What only system calls tell. Absent: not asked (another root, --quick), or not to be known.
 struct Probed {
-    std::optional<int> fifo_priority;    ///< highest SCHED_FIFO priority granted up to the wanted one; 0: refused
-    rt::CpuMask isolated;                ///< isolated cores that a thread gets when it asks, though outside of this process's mask
-    std::optional<bool> locks_memory;    ///< 1 GiB of address space may be locked
+    std::optional<int> fifo_priority;  ///< highest SCHED_FIFO priority granted up to the wanted one; 0: refused
+    rt::CpuMask isolated;              ///< isolated cores that a thread gets when it asks, though outside of this process's mask
+    std::optional<bool> locks_memory;  ///< 1 GiB of address space may be locked
     std::optional<bool> holds_c_states;  ///< /dev/cpu_dma_latency may be opened for writing
     std::optional<RendererFound> renderer;
     std::optional<CostTableFound> costs;

@@ -44,9 +44,8 @@ bool Figure::holds() const {
 }
 
 std::string Figure::text() const {
-    const char* const words = relation == Relation::at_most ? "at most" : relation == Relation::at_least ? "at least" : "exactly";
     const std::string of = unit.empty() ? "" : " " + unit;
-    return fmt::format("{} {:.6g}{} ({} {:.6g}{})", name, value, of, words, limit, of);
+    return fmt::format("{} {:.6g}{} ({} {:.6g}{})", name, value, of, word(relation), limit, of);
 }
 
 std::uint64_t Effort::count(std::uint64_t full, std::uint64_t least) const {
@@ -121,14 +120,28 @@ Result<std::vector<const Row*>> select_rows(std::span<const std::string> ids) {
                  "surefoot selftest --hard --list"};
 }
 
-Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, double share, const Progress& progress) {
+Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, double share, const Progress& progress,
+                                        const std::function<void(const RowResult&)>& each) {
     std::vector<RowResult> results;
     for (const Row* row : selection) {
         progress.say(row->id, static_cast<double>(results.size()) / static_cast<double>(selection.size()));
-        results.push_back(run_row(*row, {share, &progress}));
-        if (progress.stopped()) return Error{"selftest", "stopped by the user", "name single rows for a shorter one"};
+        RowResult result = run_row(*row, {share, &progress});
+        if (progress.stopped())
+            return Error{"selftest",
+                         fmt::format("stopped by the user in row {}, after {} of {}", row->id, results.size(), selection.size()),
+                         "single rows take less: surefoot selftest --hard " + std::string(row->id)};
+        each(result);
+        results.push_back(std::move(result));
     }
     return results;
+}
+
+std::string_view word(Verdict verdict) {
+    return verdict == Verdict::holds ? "holds" : verdict == Verdict::broken ? "broken" : "not run";
+}
+
+std::string_view word(Relation relation) {
+    return relation == Relation::at_most ? "at most" : relation == Relation::at_least ? "at least" : "exactly";
 }
 
 std::uint64_t digest_of(std::span<const RowResult> results) {
@@ -139,10 +152,8 @@ std::uint64_t digest_of(std::span<const RowResult> results) {
 
 std::string text_of(const RowResult& result) {
     const Row& row = *result.row;
-    const char* const word = result.verdict == Verdict::holds    ? "holds"
-                             : result.verdict == Verdict::broken ? "BROKEN"
-                                                                 : "not run";
-    std::string text = fmt::format("{:<5} {:<8}{}\n      must hold: {}\n", row.id, word, row.input, row.must_hold);
+    const std::string_view verdict = result.verdict == Verdict::broken ? "BROKEN" : word(result.verdict);
+    std::string text = fmt::format("{:<5} {:<8}{}\n      must hold: {}\n", row.id, verdict, row.input, row.must_hold);
     for (const Figure& f : result.outcome.figures) text += fmt::format("      {} {}\n", f.holds() ? " " : "!", f.text());
     if (!result.outcome.scaled.empty()) text += fmt::format("        tried: {}\n", result.outcome.scaled);
     if (!result.outcome.not_run.empty()) text += fmt::format("        not run: {}\n", result.outcome.not_run);

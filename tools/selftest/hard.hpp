@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -81,8 +82,12 @@ RowResult run_row(const Row& row, const Effort& effort);
 /// Error: an id that is not there, with the nearest one.
 Result<std::vector<const Row*>> select_rows(std::span<const std::string> ids);
 
-/// One after the other. Error: stopped by the user.
-Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, double share, const Progress& progress);
+/// One after the other; `each`: called after every one. Error: stopped by the user; which row, and how to go on.
+Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, double share, const Progress& progress,
+                                        const std::function<void(const RowResult&)>& each);
+
+std::string_view word(Verdict verdict);    ///< "holds", "broken", "not run"
+std::string_view word(Relation relation);  ///< "at most", ...
 
 /// Of all rows' digests, in order.
 std::uint64_t digest_of(std::span<const RowResult> results);
