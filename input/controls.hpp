@@ -40,8 +40,9 @@ struct ControlInfo {
 struct DeviceState {
     std::array<std::int32_t, max_controls> value{};
     std::bitset<max_controls> has_value;
-    std::int64_t stamp_ns = 0;  ///< CLOCK_MONOTONIC when its newest report was read; 0: none yet
-    std::uint64_t reports = 0;  ///< accepted; short, long and undeclared ones are counted apart and change nothing
+    std::bitset<max_controls> carried_over;  ///< not in its newest report (another id's): the value is an earlier one's
+    std::int64_t stamp_ns = 0;               ///< CLOCK_MONOTONIC when its newest report was read; 0: none yet
+    std::uint64_t reports = 0;               ///< accepted; short, long and undeclared ones are counted apart and change nothing
     bool connected = false;
 };
 

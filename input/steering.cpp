@@ -16,6 +16,11 @@ Steering::Steering(const MotionLimits& motion, const SafetyLimits& safety, bool 
     safety_.latched = stop_latched;
 }
 
+/// Where every report comes again and again, one that does not is old, whatever the device's other reports say.
+std::int64_t Steering::age_limit_ns(const Source& source) const {
+    return source.reporting == Reporting::streaming ? safety_limits_.age_limit_ns : 0;
+}
+
 int Steering::attach(Mapper&& mapper, std::size_t controls, Reporting reporting, int again) {
     std::size_t at = 0;
     if (again >= 0 && static_cast<std::size_t>(again) < max_devices && !sources_[static_cast<std::size_t>(again)].connected)
@@ -66,14 +71,16 @@ void Steering::report(int number, const DeviceState& state, std::int64_t now_ns)
         std::copy(state.value.begin(), end, device.newest.value.begin());
         device.newest.has_value = state.has_value;
     }
+    device.newest.carried_over = state.carried_over;
     device.newest.stamp_ns = state.stamp_ns;
     device.newest.reports = source.reports + 1;
-    const Asked asked = ask(device.mapper, device.newest, now_ns);
+    const Asked asked = ask(device.mapper, device.newest, now_ns, age_limit_ns(source));
     source.asked = device.ticked ? asked : absorbed(source.asked, asked);
     device.ticked = false;
     ++source.reports;
     source.stamp_ns = state.stamp_ns;
     source.equal_report = source.equal_report || equal;
+    source.moved = source.moved || !(equal || device.mapper.still);
     source.seen_neutral = source.seen_neutral || asked.neutral;
 }
 
@@ -86,11 +93,12 @@ void Steering::drained(int number, std::uint32_t reports, bool lost) {
 NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const Ground& ground) {
     for (std::size_t i = 0; i < max_devices; ++i) {
         // Smoothing and settling run on between reports.
-        if (sources_[i].connected && devices_[i].ticked) sources_[i].asked = ask(devices_[i].mapper, devices_[i].newest, now_ns);
+        if (sources_[i].connected && devices_[i].ticked)
+            sources_[i].asked = ask(devices_[i].mapper, devices_[i].newest, now_ns, age_limit_ns(sources_[i]));
     }
     const Command command = step(safety_, safety_limits_, sources_, lines, now_ns);
     for (std::size_t i = 0; i < max_devices; ++i) {
-        sources_[i].equal_report = sources_[i].seen_neutral = sources_[i].lost = false;
+        sources_[i].equal_report = sources_[i].moved = sources_[i].seen_neutral = sources_[i].lost = false;
         sources_[i].drained = 0;
         devices_[i].ticked = true;
     }

@@ -51,6 +51,8 @@ private:
         DeviceState newest;
         bool ticked = true;  ///< nothing was asked since the last tick
     };
+    [[nodiscard]] std::int64_t age_limit_ns(const Source& source) const;
+
     MotionLimits motion_limits_;
     SafetyLimits safety_limits_;
     MotionState motion_;

@@ -44,6 +44,18 @@ printf '# no descriptor\nE: 0.0 1 00\n' >none.hid
 expect 1 'none.hid: no R: line' devices describe none.hid
 head -c 5000 /dev/zero >long.bin
 expect 1 'long.bin: byte 4096: ' devices describe long.bin
+printf '# nothing moved\n' >still.hid
+expect 1 'still.hid: holds no reports' devices describe stick.bin --reports still.hid
+printf '\xef\xbb\xbfE: 0.5 1 81\nE: 0.1 1 7f\n' >marked.hid
+says '2 accepted.*1 of them bear a time before' devices describe stick.bin --reports marked.hid
+says '"before_the_last": 1' devices describe stick.bin --reports marked.hid --json
+seq -f 'E: %.0f.0 1 11' 400000 >long.hid
+# The sanitizers' own memory is larger than any such limit: there only the answer is checked.
+limit=500000
+(ulimit -v $limit; "$surefoot" --version >/dev/null 2>&1) || limit=unlimited
+(ulimit -v $limit; "$surefoot" devices describe stick.bin --reports long.hid --json >out 2>err) ||
+  complain "400 000 reports within $limit KiB: exit $?: $(head -c 200 err)"
+tail -9 out | grep -q '"accepted": 400000' || complain "the object of 400 000 reports does not end with their counts"
 expect 0 'another descriptor' devices describe stick.bin --reports "$nav"
 
 # Live devices: what holds whatever is plugged in. With devices: tests/input/testbed.

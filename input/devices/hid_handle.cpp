@@ -41,7 +41,10 @@ int twin_of(int not_this) {
 }  // namespace
 
 HidHandle::HidHandle(HidHandle&& other) noexcept
-    : device_(std::exchange(other.device_, nullptr)), fd_(std::exchange(other.fd_, -1)), code_(other.code_), what_(std::move(other.what_)) {}
+    : device_(std::exchange(other.device_, nullptr)),
+      fd_(std::exchange(other.fd_, -1)),
+      code_(other.code_),
+      what_(std::move(other.what_)) {}
 
 HidHandle& HidHandle::operator=(HidHandle&& other) noexcept {
     if (this == &other) return *this;

@@ -100,6 +100,7 @@ std::vector<std::uint16_t> ReportDecoder::controls_in(std::uint8_t id) const {
 }
 
 void ReportDecoder::read_variable(const Variable& v, std::span<const std::byte> data, DeviceState& state) const {
+    state.carried_over.reset(v.control);
     const std::uint32_t raw = extract_bits(data, v.bit, v.size);
     std::int32_t value = v.min < 0 ? sign_extend(raw, v.size) : static_cast<std::int32_t>(raw);
     if (v.min < v.max) {
@@ -123,6 +124,7 @@ void ReportDecoder::read_variable(const Variable& v, std::span<const std::byte> 
 void ReportDecoder::read_array(const Array& a, std::span<const std::byte> data, DeviceState& state) const {
     std::bitset<max_controls> pressed;
     const auto* buttons = buttons_.data() + a.first_button;
+    for (std::uint32_t k = 0; k < a.button_count; ++k) state.carried_over.reset(buttons[k].control);
     const auto* rollovers = rollovers_.data() + a.first_rollover;
     for (std::uint32_t n = 0; n < a.count; ++n) {
         const std::uint32_t raw = extract_bits(data, a.bit + n * a.size, a.size);
@@ -131,7 +133,6 @@ void ReportDecoder::read_array(const Array& a, std::span<const std::byte> data, 
         const std::int64_t index = std::int64_t{value} - a.min;
         if (index >= a.usages) continue;
         if (std::binary_search(rollovers, rollovers + a.rollover_count, static_cast<std::uint32_t>(index))) return;
-        if (raw == 0) continue;
         const auto* found = std::lower_bound(buttons, buttons + a.button_count, index,
                                              [](const ArrayButton& b, std::int64_t i) { return std::int64_t{b.index} < i; });
         if (found != buttons + a.button_count && found->index == index) pressed.set(found->control);
@@ -149,6 +150,7 @@ ReportFate ReportDecoder::decode(std::span<const std::byte> report, std::int64_t
     if (report.size() < s.bytes) return ++counts_.too_short, ReportFate::too_short;
     if (report.size() > s.bytes) return ++counts_.too_long, ReportFate::too_long;
     const auto data = numbered_ ? report.subspan(1) : report;
+    state.carried_over.set();
     for (std::uint32_t i = 0; i < s.variable_count; ++i) read_variable(variables_[s.first_variable + i], data, state);
     for (std::uint32_t i = 0; i < s.array_count; ++i) read_array(arrays_[s.first_array + i], data, state);
     ++counts_.accepted;

@@ -6,8 +6,7 @@
 //   - short, long and undeclared reports change nothing (the kernel fills short ones with zeros: full deflection on an
 //     unsigned axis) and are counted;
 //   - a null state of an axis or button is "no value", where evdev keeps the last one;
-//   - a hat is 0..7 and centred for *any* value outside its range (the kernel's division rounds some to north);
-//   - a zero in an array is nothing pressed, even where the first usage has index zero.
+//   - a hat is 0..7 and centred for *any* value outside its range (the kernel's division rounds some to north).
 #pragma once
 
 #include <array>

@@ -42,6 +42,7 @@ public:
         Binding b;
         b.source = controls_[*at].relative ? Binding::Source::relative : Binding::Source::axis;
         b.counts_per_s = from.counts_per_s;
+        b.own_interlock = from.rest != Rest::centre;
         set(b, 0, *at, from.action, from.invert ? -from.scale : from.scale, from.rest);
         shape(b, from.shape);
         push(b);
@@ -64,6 +65,10 @@ public:
                 return;
             }
             set(b, i, *at, from.actions[i], from.invert[i] ? -from.scale : from.scale, Rest::centre);
+        }
+        if (b.control[0] == b.control[1]) {
+            errors_.push_back({from.controls[0].text(), "is named twice for one stick", "a stick has two axes"});
+            return;
         }
         shape(b, from.shape);
         push(b);

@@ -1,5 +1,6 @@
 // Mappings for devices that nobody configured, by usages (HID Usage Tables 1.5, pages 0x01, 0x02, 0x09).
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 #include "input/map/mapping.hpp"
@@ -8,9 +9,13 @@ namespace surefoot::input {
 
 namespace {
 
-constexpr std::uint16_t desktop = 0x01, simulation = 0x02;
+constexpr std::uint16_t desktop = 0x01, simulation = 0x02, game = 0x05;
 constexpr std::uint16_t x = 0x30, y = 0x31, z = 0x32, rx = 0x33, ry = 0x34, rz = 0x35, slider = 0x36;
-constexpr std::uint16_t rudder = 0xba, throttle = 0xbb, accelerator = 0xc4, brake = 0xc5;
+constexpr std::array six_usages = {x, y, z, rx, ry, rz};
+constexpr double puck_reports_per_s = 125;  // of the pucks that report every 8 ms while deflected
+constexpr std::uint16_t aileron = 0xb0, elevator = 0xb8, rudder = 0xba, throttle = 0xbb, accelerator = 0xc4, brake = 0xc5,
+                        wheel_turn = 0xc8;
+constexpr std::uint16_t game_turn = 0x21, game_pitch = 0x22, game_side = 0x24, game_forward = 0x25, game_up = 0x26;
 
 class Rules {
 public:
@@ -20,11 +25,22 @@ public:
         mapping_.name = "default: none";
         if (class_ == DeviceClass::reject || class_ == DeviceClass::trackball) return mapping_;
         const bool any_axis = axis(x) || axis(y) || axis(z) || axis(rx) || axis(ry) || axis(rz) || simulated(rudder) ||
-                              simulated(accelerator) || simulated(brake);
-        if (class_ == DeviceClass::buttons || !any_axis)
+                              simulated(accelerator) || simulated(brake) || simulated(wheel_turn) || simulated(aileron) ||
+                              simulated(elevator);
+        if (class_ == DeviceClass::navigation && is_relative_six_axis())
+            relative_six_axis();
+        else if (class_ == DeviceClass::navigation && !any_axis && (gaming(game_forward) || gaming(game_turn)))
+            game_controller();
+        else if (!any_axis && has_hat())
+            hat_alone();
+        else if (class_ == DeviceClass::buttons || !any_axis)
             mapping_.name = "default: buttons";
         else if (is_six_axis())
             six_axis();
+        else if (in_collection("multiaxis"))
+            fewer_axes();
+        else if (is_wheel())
+            wheel();
         else if (is_pedals())
             pedals();
         else if (is_gamepad())
@@ -36,15 +52,38 @@ public:
     }
 
 private:
-    [[nodiscard]] const ControlInfo* find(std::uint16_t page, std::uint16_t usage) const {
+    [[nodiscard]] const ControlInfo* find(std::uint16_t page, std::uint16_t usage, bool relative = false) const {
         const auto found = std::find_if(controls_.begin(), controls_.end(), [&](const ControlInfo& c) {
-            return c.kind == ControlKind::axis && c.usage_page == page && c.usage == usage && !c.relative &&
+            return c.kind == ControlKind::axis && c.usage_page == page && c.usage == usage && c.relative == relative &&
                    c.logical_min < c.logical_max;
         });
         return found == controls_.end() ? nullptr : &*found;
     }
     [[nodiscard]] bool axis(std::uint16_t usage) const { return find(desktop, usage) != nullptr; }
     [[nodiscard]] bool simulated(std::uint16_t usage) const { return find(simulation, usage) != nullptr; }
+    [[nodiscard]] bool gaming(std::uint16_t usage) const { return find(game, usage) != nullptr; }
+    /// One range for all of them, as the two sticks of a pad have.
+    [[nodiscard]] bool alike(std::initializer_list<std::uint16_t> usages) const {
+        const ControlInfo* first = find(desktop, *usages.begin());
+        return first != nullptr && std::all_of(usages.begin(), usages.end(), [&](std::uint16_t usage) {
+                   const ControlInfo* c = find(desktop, usage);
+                   return c != nullptr && c->logical_min == first->logical_min && c->logical_max == first->logical_max;
+               });
+    }
+    /// The right stick of a pad with two further pairs is Z and Rz (Sony's), or Rx and Ry (Microsoft's): the pair with the left
+    /// stick's range; where both have it, Z and Rz only if the descriptor names them together, before the others.
+    [[nodiscard]] bool right_stick_is_z() const {
+        if (!axis(z) || !axis(rz)) return false;
+        if (!axis(rx) || !axis(ry)) return true;
+        const bool z_like = alike({x, y, z, rz}), r_like = alike({x, y, rx, ry});
+        if (z_like != r_like) return z_like;
+        return find(desktop, rz) == find(desktop, z) + 1 && find(desktop, z) < find(desktop, rx);
+    }
+    [[nodiscard]] bool counts_both_ways() const {
+        return std::any_of(controls_.begin(), controls_.end(), [](const ControlInfo& c) {
+            return c.kind == ControlKind::axis && c.usage_page == desktop && c.logical_min < 0;
+        });
+    }
     [[nodiscard]] std::size_t buttons_count() const {
         return static_cast<std::size_t>(std::count_if(controls_.begin(), controls_.end(),
                                                       [](const ControlInfo& c) { return c.kind == ControlKind::button; }));
@@ -63,15 +102,28 @@ private:
     [[nodiscard]] bool is_six_axis() const {
         if (!(axis(x) && axis(y) && axis(z) && axis(rx) && axis(ry) && axis(rz))) return false;
         if (in_collection("multiaxis")) return true;
-        const bool hat =
-            std::any_of(controls_.begin(), controls_.end(), [](const auto& c) { return c.kind == ControlKind::hat; });
-        return !hat && !in_collection("gamepad") && !in_collection("joystick");
+        return !has_hat() && !in_collection("gamepad") && !in_collection("joystick");
+    }
+    /// Of a maker that no quirk names, and so taken at its word.
+    [[nodiscard]] bool is_relative_six_axis() const {
+        return in_collection("multiaxis") && std::all_of(six_usages.begin(), six_usages.end(), [&](std::uint16_t usage) {
+                   return find(desktop, usage, true) != nullptr;
+               });
+    }
+    [[nodiscard]] bool has_hat() const {
+        return std::any_of(controls_.begin(), controls_.end(), [](const auto& c) { return c.kind == ControlKind::hat; });
     }
     [[nodiscard]] bool is_pedals() const {
         if (in_collection("gamepad") || (buttons_count() > 0 && !in_collection("pedal"))) return false;
         const bool drives = simulated(accelerator) || simulated(brake);
-        return simulated(rudder) || drives || in_collection("pedal") || (axis(z) && !axis(slider) && !axis(rz)) ||
+        const bool toes = axis(z) && !axis(slider) && !axis(rz) && !counts_both_ways();
+        const bool flies = simulated(aileron) || simulated(elevator);
+        return (simulated(rudder) && !flies) || drives || in_collection("pedal") || toes ||
                (axis(rx) && axis(ry) && axis(rz) && !axis(x));
+    }
+    [[nodiscard]] bool is_wheel() const {
+        if (in_collection("gamepad")) return false;
+        return simulated(wheel_turn) || (simulated(accelerator) && axis(x) && buttons_count() > 0);
     }
     [[nodiscard]] bool is_gamepad() const {
         if (!axis(x) || !axis(y)) return false;
@@ -83,6 +135,7 @@ private:
 
     [[nodiscard]] ControlRef ref(std::uint16_t page, std::uint16_t usage) const {
         const ControlInfo* control = find(page, usage);
+        if (control == nullptr) control = find(page, usage, true);
         return {control->name, page, usage, control->collection};
     }
     AxisMapping& add(std::uint16_t page, std::uint16_t usage, Action action, bool invert = false, Rest rest = Rest::centre) {
@@ -93,6 +146,10 @@ private:
         m.rest = rest;
         mapping_.axes.push_back(m);
         return mapping_.axes.back();
+    }
+    /// Where the device has it, relative or not.
+    void add_present(std::uint16_t page, std::uint16_t usage, Action action, bool invert = false) {
+        if (find(page, usage) != nullptr || find(page, usage, true) != nullptr) add(page, usage, action, invert);
     }
     StickMapping& add_stick(std::uint16_t a, std::uint16_t b, Action first, bool invert_a, Action second, bool invert_b) {
         StickMapping m;
@@ -120,26 +177,70 @@ private:
     void six_axis() {
         mapping_.name = "default: six axes";
         mapping_.reporting = Reporting::streaming;  // every 8 ms while deflected, zeros on release, then nothing
-        add(desktop, x, Action::side);
-        add(desktop, y, Action::forward, true);
-        add(desktop, z, Action::up, true);
-        add(desktop, rx, Action::look);
-        add(desktop, rz, Action::turn, true);
+        add_present(desktop, x, Action::side);
+        add_present(desktop, y, Action::forward, true);
+        add_present(desktop, z, Action::up, true);
+        add_present(desktop, rx, Action::look);
+        add_present(desktop, rz, Action::turn, true);
+    }
+
+    /// At full deflection such a device, too, sends its largest count in every report: that pace is full response.
+    void relative_six_axis() {
+        six_axis();
+        mapping_.name = "default: six relative axes";
+        for (AxisMapping& m : mapping_.axes) {
+            const ControlInfo* control = find(m.control.usage_page, m.control.usage, true);
+            m.counts_per_s = puck_reports_per_s * control->logical_max;
+        }
+    }
+
+    /// Of a puck's six those that are there.
+    void fewer_axes() {
+        six_axis();
+        mapping_.name = "default: multi-axis";
+    }
+
+    /// Game Controls page (HID Usage Tables, 0x05): named by what they do, to the right and forwards.
+    void game_controller() {
+        mapping_.name = "default: 3D game controller";
+        add_present(game, game_forward, Action::forward);
+        add_present(game, game_side, Action::side);
+        add_present(game, game_up, Action::up);
+        add_present(game, game_turn, Action::turn, true);
+        add_present(game, game_pitch, Action::look);
+    }
+
+    void wheel() {
+        mapping_.name = "default: wheel";
+        if (simulated(wheel_turn))
+            add(simulation, wheel_turn, Action::turn, true);
+        else
+            add(desktop, x, Action::turn, true);
+        if (simulated(accelerator)) add(simulation, accelerator, Action::forward, false, Rest::min);
+        if (simulated(brake)) add(simulation, brake, Action::forward, true, Rest::min);
+    }
+
+    void hat_alone() {
+        mapping_.name = "default: hat";
+        add_hat(Action::turn, true, Action::forward);
     }
 
     /// Stick axes count to the right and towards the user: forward and look are inverted, and so is turn (to the left).
     void gamepad() {
         mapping_.name = "default: gamepad";
         add_stick(x, y, Action::side, false, Action::forward, true);
-        const bool z_stick = axis(z) && axis(rz);
+        const bool z_stick = right_stick_is_z();
         if (z_stick)
             add_stick(z, rz, Action::turn, true, Action::look, true);
         else
             add_stick(rx, ry, Action::turn, true, Action::look, true);
-        // Triggers: Sony's Rx/Ry beside sticks on Z/Rz. One trigger axis for both (xusb's Z) rests in its middle.
+        // Triggers: the pair that is no stick. One trigger axis for both (xusb's Z) rests in its middle.
         if (z_stick && axis(rx) && axis(ry)) {
             add(desktop, rx, Action::up, true, Rest::min);
             add(desktop, ry, Action::up, false, Rest::min);
+        } else if (!z_stick && axis(z) && axis(rz)) {
+            add(desktop, z, Action::up, true, Rest::min);
+            add(desktop, rz, Action::up, false, Rest::min);
         } else if (simulated(accelerator) && simulated(brake)) {
             add(simulation, brake, Action::up, true, Rest::min);
             add(simulation, accelerator, Action::up, false, Rest::min);
@@ -159,6 +260,8 @@ private:
             add(desktop, y, Action::forward, true);
         else if (axis(x))
             add(desktop, x, Action::turn, true);
+        if (!axis(x) && simulated(aileron)) add(simulation, aileron, twist ? Action::side : Action::turn, !twist);
+        if (!axis(y) && simulated(elevator)) add(simulation, elevator, Action::forward, true);
         if (twist) {
             AxisMapping& m = axis(rz) ? add(desktop, rz, Action::turn, true) : add(simulation, rudder, Action::turn, true);
             m.shape.dead_zone = 0.15;  // a hand that pushes also twists a little

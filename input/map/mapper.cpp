@@ -25,11 +25,12 @@ void smooth(Binding& b, double dt_s) {
     if (b.answer == dvec2(0.0) && glm::length(b.smoothed) < smooth_rest) b.smoothed = dvec2(0.0);
 }
 
-void ask_axes(Binding& b, const DeviceState& state, std::int64_t now_ns) {
+void ask_axes(Binding& b, const DeviceState& state, std::int64_t now_ns, std::int64_t oldest_ns) {
     const std::size_t count = b.source == From::stick ? 2 : 1;
     dvec2 deflection{0.0};
     for (std::size_t i = 0; i < count; ++i) {
-        if (!state.has_value[b.control[i]]) {  // nothing known, or nothing meant: rest
+        const bool stale = b.told_ns[i] >= 0 && b.told_ns[i] < oldest_ns;
+        if (stale || !state.has_value[b.control[i]]) {  // nothing known, or nothing meant: rest
             b.answer = b.held = dvec2(0.0);
             return;
         }
@@ -52,7 +53,9 @@ void ask_axes(Binding& b, const DeviceState& state, std::int64_t now_ns) {
 void ask_relative(Binding& b, const DeviceState& state, bool fresh, double dt_s) {
     b.armed = true;
     b.travelled *= std::exp(-dt_s / pace_window_s);
-    if (fresh && state.has_value[b.control[0]]) b.travelled += state.value[b.control[0]] / b.counts_per_s;
+    // Only once: reports of another id leave it standing.
+    if (fresh && state.has_value[b.control[0]] && !state.carried_over[b.control[0]])
+        b.travelled += state.value[b.control[0]] / b.counts_per_s;
     if (std::abs(b.travelled) < smooth_rest * pace_window_s) b.travelled = 0;
     // A heavy burst must not make a long tail.
     b.travelled = std::clamp(b.travelled, -2 * pace_window_s, 2 * pace_window_s);
@@ -144,18 +147,44 @@ void do_button(Binding& b, Asked& asked, const DeviceState& state, std::int64_t 
 
 }  // namespace
 
-Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns) {
+/// Notes when a report carried the binding's controls.
+void note_told(Binding& b, const DeviceState& state, std::int64_t now_ns) {
+    for (std::size_t i = 0; i < 2; ++i)
+        if (!state.carried_over[b.control[i]]) b.told_ns[i] = now_ns;
+}
+
+/// What ask() finds out about all bindings together for Mapper::still.
+struct Stillness {
+    static constexpr double fine_counts = 512;  ///< of half the travel: ten bits
+    bool deflected = false, moved = false, fine = true;
+    void look(Binding& b, bool pressed_before) {
+        const bool creeps = glm::length(b.held - b.still_at) <= b.response.play / 4;
+        if (!creeps) b.still_at = b.held;
+        moved |= !creeps || b.pressed != pressed_before;
+        if (b.source == From::button || b.answer == dvec2(0.0)) return;
+        deflected = true;
+        fine = fine && (b.source == From::axis || b.source == From::stick) && b.rest[0].half_travel_counts() >= fine_counts;
+    }
+};
+
+Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns, std::int64_t age_limit_ns) {
     Asked asked;
     const std::int64_t passed = mapper.last_ns < 0 ? 0 : std::max<std::int64_t>(0, now_ns - mapper.last_ns);
     const double dt_s = static_cast<double>(passed) * 1e-9;
     const bool fresh = state.reports != mapper.last_reports;
     mapper.last_ns = std::max(mapper.last_ns, now_ns);
     mapper.last_reports = state.reports;
+    if (fresh) mapper.last_report_ns = now_ns;
+    // Against the newest report: where none comes at all, safety/ brakes.
+    const std::int64_t oldest_ns = age_limit_ns > 0 ? mapper.last_report_ns - age_limit_ns : -1;
+    Stillness stillness;
     for (Binding& b : mapper.bindings) {
+        const bool pressed = b.pressed;
+        if (fresh) note_told(b, state, now_ns);
         switch (b.source) {
             case From::axis:
             case From::stick:
-                ask_axes(b, state, now_ns);
+                ask_axes(b, state, now_ns, oldest_ns);
                 break;
             case From::relative:
                 ask_relative(b, state, fresh, dt_s);
@@ -168,14 +197,17 @@ Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns) {
                 break;
         }
         smooth(b, dt_s);
+        stillness.look(b, pressed);
         for (std::size_t i = 0; i < 2; ++i) {
             const double size = b.smoothed[static_cast<int>(i)];
             if (double* sum = member(asked.wish, b.action[i])) *sum += b.gain[i] * size;
-            const bool deflected = b.source == From::button ? b.pressed : b.answer[static_cast<int>(i)] != 0 || !b.armed;
+            const bool waits = !b.armed && !b.own_interlock;
+            const bool deflected = b.source == From::button ? b.pressed : b.answer[static_cast<int>(i)] != 0 || waits;
             const bool seen = b.armed || state.has_value[b.control[i]];
             if (moves(b.action[i]) && seen && deflected) asked.neutral = false;
         }
     }
+    mapper.still = stillness.deflected && stillness.fine && !stillness.moved;
     bound(asked.wish);
     return asked;
 }
@@ -185,10 +217,13 @@ void forget(Mapper& mapper) {
         b.held = b.answer = b.smoothed = dvec2(0.0);
         b.travelled = 0;
         b.armed = b.pressed = false;
+        b.told_ns = {-1, -1};
         b.open_since_ns = -1;
     }
+    mapper.still = false;
     mapper.last_ns = -1;
     mapper.last_reports = 0;
+    mapper.last_report_ns = -1;
 }
 
 double mapping_lag_s(const Mapper& mapper) {

@@ -35,10 +35,13 @@ struct Binding {
 
     std::array<RestFinder, 2> rest;
     dvec2 held{0.0};       ///< deflection after play
+    dvec2 still_at{0.0};   ///< `held` when it last moved by more than a quarter of the play: noise makes it creep
     dvec2 answer{0.0};     ///< response before smoothing
     dvec2 smoothed{0.0};   ///< what goes out
     double travelled = 0;  ///< relative: leaky sum, in seconds of full response
-    bool armed = false;    ///< seen at rest since the device came: until then it asks for nothing
+    std::array<std::int64_t, 2> told_ns{-1, -1};  ///< when a report last carried the control
+    bool own_interlock = false;  ///< a control that rests at an end holds itself back until seen at rest, not its whole device
+    bool armed = false;          ///< seen at rest since the device came: until then it asks for nothing
     bool pressed = false;
     std::int64_t open_since_ns = -1;  ///< of a pressed button whose contact has opened
 };
@@ -48,6 +51,10 @@ struct Mapper {
     std::vector<std::string> notes;  ///< controls that the mapping names and that cannot be bound, for the log
     std::int64_t last_ns = -1;
     std::uint64_t last_reports = 0;
+    std::int64_t last_report_ns = -1;  ///< when ask() saw the newest one
+    /// In the last ask(): something is deflected, nothing was moved beyond its play, and what is deflected is fine enough for a
+    /// hand's or a converter's noise to show in it.
+    bool still = false;
 };
 
 /// Binds by name or by usage and collection. A control that the device has not got is an error with the nearest name.
@@ -57,7 +64,8 @@ Mapper compile_what_fits(const DeviceMapping& mapping, std::span<const ControlIn
 
 /// Call after each accepted report, and at least once a tick (smoothing runs on). `now_ns` does not go back; where it does, time
 /// stands still. A control without a value (never seen, or a null state) is at rest; one out of its range is clamped.
-Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns);
+/// age_limit_ns, where not 0: a deflection is at rest while reports come that have not carried it for longer.
+Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns, std::int64_t age_limit_ns = 0);
 
 /// The device was lost or comes anew: everything at rest and unarmed; the found rests are kept.
 void forget(Mapper& mapper);

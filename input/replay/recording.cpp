@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::int64_t max_time_s = 1'000'000'000'000;  ///< 30 000 years: far from the end of 64 bits of microseconds
 
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  ///< of editors on other systems
+
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 /// Words of one line, from the left.
@@ -71,6 +73,7 @@ public:
     RecordingParser(std::string_view text, const std::string& place) : text_(text), place_(place) {}
 
     Result<Recording> run() {
+        if (text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
         while (!text_.empty()) {
             const auto end = text_.find('\n');
             const auto line = text_.substr(0, end);
@@ -205,6 +208,8 @@ Result<Recording> read_recording(const std::string& file) {
 bool looks_like_recording(std::span<const std::byte> bytes) {
     const auto at = [&](std::size_t i) { return i < bytes.size() ? static_cast<char>(bytes[i]) : '\0'; };
     std::size_t i = 0;
+    while (i < byte_order_mark.size() && at(i) == byte_order_mark[i]) ++i;
+    if (i != byte_order_mark.size()) i = 0;
     while (is_space(at(i)) || at(i) == '\n') ++i;
     if (at(i) != '#' && !(at(i) >= 'A' && at(i) <= 'Z' && at(i + 1) == ':')) return false;
     return std::none_of(bytes.begin(), bytes.end(), [](std::byte b) {

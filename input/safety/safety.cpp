@@ -55,8 +55,8 @@ Held judge(SafetyState& state, SafetyState::Device& device, const SafetyLimits& 
     } else if (fresh) {
         device.overflow = false;
     }
-    const bool quiet = silent(device.habit, source.reporting, fresh, source.equal_report, !source.asked.neutral, source.stamp_ns,
-                              now_ns, limits.age_limit_ns);
+    const News news{fresh, source.equal_report, !source.moved, !source.asked.neutral, source.stamp_ns};
+    const bool quiet = silent(device.habit, source.reporting, news, now_ns, limits.age_limit_ns);
     if (!device.overflow && source.reports > 0 && (source.seen_neutral || source.asked.neutral)) device.interlocked = false;
     if (device.overflow) return Held::overflow;
     if (device.interlocked) return Held::not_neutral;

@@ -36,6 +36,7 @@ struct Source {
     std::uint64_t reports = 0;     ///< accepted since it was connected
     std::uint32_t drained = 0;     ///< most reports that one drain of this step read (every drain reads until nothing is left)
     bool equal_report = false;     ///< one of them was equal to its forerunner
+    bool moved = false;            ///< one of them moved something, or nothing can be told from its noise (Mapper::still)
     bool lost = false;             ///< its reader knows that reports were lost (a ring of our own overflowed)
     bool seen_neutral = false;     ///< in some report of this step
     std::int64_t stamp_ns = 0;     ///< of the newest report

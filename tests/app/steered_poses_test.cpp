@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "tools/app/steered_poses.hpp"
 #include "tests/time_units.hpp"
+#include "tools/app/steered_poses.hpp"
 
 namespace surefoot::app {
 namespace {

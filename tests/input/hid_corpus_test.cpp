@@ -118,6 +118,8 @@ TEST(HidCorpus, LayoutsEqualTheKernelsDumps) {
         if (entry.path().filename() != "kernel-rdesc.txt") continue;
         const auto dumped = read_dump(entry.path());
         const auto bytes = descriptor_beside(entry.path());
+        EXPECT_FALSE(bytes.empty()) << "no descriptor beside " << entry.path();
+        EXPECT_FALSE(dumped.empty()) << "no field is read from " << entry.path();
         if (bytes.empty() || dumped.empty()) continue;
         SCOPED_TRACE(entry.path().string());
         Layout l;
@@ -137,6 +139,7 @@ TEST(HidCorpus, LayoutsEqualTheKernelsDumps) {
         }
         ++devices;
     }
+    EXPECT_GE(devices, 1U) << "nothing was compared";
     std::cout << devices << " devices, " << fields << " fields\n";
 }
 

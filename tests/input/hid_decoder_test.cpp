@@ -25,9 +25,11 @@ TEST(HidDecoder, SpaceNavigatorMovesFullRange) {
     EXPECT_EQ(d["x"], 350);
     EXPECT_EQ(d["y"], -350);
     EXPECT_EQ(d["rx"], std::nullopt) << "its own report has not come";
+    EXPECT_FALSE(d.state.carried_over[0]);
     d.feed("02 01 00 ff ff 10 00");
     EXPECT_EQ(d["ry"], -1);
     EXPECT_EQ(d["x"], 350) << "held";
+    EXPECT_TRUE(d.state.carried_over[0]) << "by another report";
     d.feed("01 00 10 00 80 ff 7f");
     EXPECT_EQ(d["x"], 350) << "clamped";
     EXPECT_EQ(d["y"], -350);
@@ -36,6 +38,26 @@ TEST(HidDecoder, SpaceNavigatorMovesFullRange) {
     EXPECT_EQ(d["button-2"], 1);
     EXPECT_EQ(d.state.reports, 4U);
     EXPECT_EQ(d.state.stamp_ns, 4);
+}
+
+TEST(HidDecoder, AnArraysIndexCountsFromItsLogicalMinimumZeroToo) {
+    // Buttons 1 to 8 as an array of one byte, 0 to 7 (HID 1.11, 6.2.2.5): what is out of range is nothing pressed.
+    Layout layout;
+    ASSERT_FALSE(parse_descriptor(hex("05 01 09 04 a1 01 05 09 19 01 29 08 15 00 25 07 75 08 95 01 81 00 c0"), layout));
+    const HidDevice pad = describe_device(std::move(layout), {});
+    ReportDecoder decoder(pad);
+    DeviceState state;
+    const auto pressed = [&](unsigned index) {
+        const std::byte report[] = {static_cast<std::byte>(index)};
+        EXPECT_EQ(decoder.decode(report, 1, state), ReportFate::accepted);
+        std::string names;
+        for (std::size_t c = 0; c < pad.controls.size(); ++c)
+            if (state.value[c] != 0) names += pad.controls[c].name + " ";
+        return names;
+    };
+    EXPECT_EQ(pressed(0), "button-1 ");
+    EXPECT_EQ(pressed(7), "button-8 ");
+    EXPECT_EQ(pressed(8), "");
 }
 
 TEST(HidDecoder, ShortLongAndUndeclaredReportsChangeNothing) {

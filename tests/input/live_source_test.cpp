@@ -11,9 +11,9 @@ namespace surefoot::input {
 namespace {
 
 using test::at;
-using test::stick;
 using test::FakeChip;
 using test::FakeDevices;
+using test::stick;
 
 constexpr std::int64_t tick_ns = 2'000'000;
 

@@ -103,6 +103,106 @@ TEST(Defaults, ASpaceMouseMovesInSixAxes) {
     EXPECT_NEAR(g.at(5, -350).turn, 1, 1e-4);
 }
 
+TEST(Defaults, SixRelativeAxesOfAStrangerMoveAtTheirPaceAndStopWithTheReports) {
+    std::vector<ControlInfo> controls;
+    for (int i = 0; i < 6; ++i) {
+        controls.push_back(
+            axis(std::string(1, "xyzabc"[i]), static_cast<std::uint16_t>(0x30 + i), -350, 350, "Multi-axis Controller/Physical"));
+        controls.back().relative = true;
+    }
+    const DeviceMapping mapping = default_mapping(controls, DeviceClass::navigation);
+    EXPECT_EQ(mapping.name, "default: six relative axes");
+    auto mapper = *compile(mapping, controls);
+    DeviceState state;
+    Wish wish;
+    const auto pushed = [&](int y, int ms) {
+        const bool reports = ms % 8 == 0;
+        return reports ? after(mapper, state, 1, y, ms * 1'000'000LL).wish : ask(mapper, state, ms * 1'000'000LL).wish;
+    };
+    for (int ms = 0; ms < 800; ++ms) wish = pushed(-350, ms);
+    EXPECT_GT(wish.forward, 0.9);
+    for (int ms = 800; ms < 1600; ++ms) wish = pushed(-175, ms);
+    EXPECT_LT(wish.forward, 0.6) << "half pushed is slower";
+    EXPECT_GT(wish.forward, 0.2);
+    for (int ms = 1601; ms < 2200; ++ms) wish = ask(mapper, state, ms * 1'000'000LL).wish;
+    EXPECT_EQ(wish.forward, 0);
+    EXPECT_TRUE(default_mapping(controls, DeviceClass::reject).axes.empty());
+}
+
+TEST(Defaults, AHatAloneSteers) {
+    Given pad({test::hat(), button(1)}, DeviceClass::navigation, {8, 0});
+    EXPECT_EQ(pad.mapping.name, "default: hat");
+    EXPECT_EQ(pad.mapping.buttons.size(), 1U);
+    const auto held = [&](int direction, int from_ms) {
+        Wish wish;
+        for (int ms = from_ms; ms < from_ms + 1000; ++ms)
+            wish = after(pad.mapper, pad.state, 0, direction, ms * 1'000'000LL).wish;
+        return wish;
+    };
+    EXPECT_NEAR(held(0, 0).forward, 0.5, 1e-3) << "half pace: a hat has no half way";
+    EXPECT_NEAR(held(6, 1000).turn, 0.5, 1e-3) << "to the left";
+    EXPECT_EQ(held(8, 2000).turn, 0);
+}
+
+TEST(Defaults, TheRightStickIsThePairThatIsLikeTheLeftOne) {
+    const auto named = [](const char* name, std::uint16_t usage, int max) { return axis(name, usage, 0, max, "GamePad"); };
+    // Triggers of their own range on Z and Rz; they rest at their ends, and the pad steers before they were ever pressed.
+    Given wide({named("x", 0x30, 65535), named("y", 0x31, 65535), named("rx", 0x33, 65535), named("ry", 0x34, 65535),
+                named("z", 0x32, 1023), named("rz", 0x35, 1023)},
+               DeviceClass::navigation, {32768, 32768, 32768, 32768, 0, 0});
+    EXPECT_NEAR(wide.at(1, 0).forward, 1, 1e-4);
+    EXPECT_NEAR(wide.at(2, 0).turn, 1, 1e-4);
+    EXPECT_NEAR(wide.at(5, 1023).up, 1, 1e-4);
+    // One range for all: in the order of their usages Rx and Ry are the stick, named Z, Rz first they are.
+    Given plain({named("x", 0x30, 255), named("y", 0x31, 255), named("z", 0x32, 255), named("rx", 0x33, 255),
+                 named("ry", 0x34, 255), named("rz", 0x35, 255)},
+                DeviceClass::navigation, {128, 128, 0, 128, 128, 0});
+    EXPECT_NEAR(plain.at(3, 0).turn, 1, 1e-4);
+    Given sony({named("x", 0x30, 255), named("y", 0x31, 255), named("z", 0x32, 255), named("rz", 0x35, 255),
+                named("rx", 0x33, 255), named("ry", 0x34, 255)},
+               DeviceClass::navigation, {128, 128, 128, 128, 0, 0});
+    EXPECT_NEAR(sony.at(2, 0).turn, 1, 1e-4);
+    EXPECT_NEAR(sony.at(5, 255).up, 1, 1e-4);
+    // A "trigger" that rests in its middle is never seen released: it does nothing, and the sticks steer all the same.
+    Given odd({named("x", 0x30, 255), named("y", 0x31, 255), named("z", 0x32, 255), named("rz", 0x35, 255),
+               named("rx", 0x33, 255), named("ry", 0x34, 255)},
+              DeviceClass::navigation, {128, 128, 128, 128, 128, 128});
+    EXPECT_NEAR(odd.at(1, 0).forward, 1, 1e-4);
+    EXPECT_EQ(odd.at(1, 0).up, 0);
+}
+
+TEST(Defaults, WheelsYokesAndGameControllersSteer) {
+    const auto on = [](std::uint16_t page, const char* name, std::uint16_t usage, int min, int max) {
+        auto control = axis(name, usage, min, max, "Simulation");
+        control.usage_page = page;
+        return control;
+    };
+    Given wheel({on(2, "steering", 0xc8, 0, 65535), on(2, "accelerator", 0xc4, 0, 255), on(2, "brake", 0xc5, 0, 255), button(1)},
+                DeviceClass::navigation, {32768, 0, 0, 0});
+    EXPECT_EQ(wheel.mapping.name, "default: wheel");
+    EXPECT_NEAR(wheel.at(0, 0).turn, 1, 1e-3);
+    EXPECT_NEAR(wheel.at(1, 255).forward, 1, 1e-4);
+    EXPECT_NEAR(wheel.at(2, 255).forward, -1, 1e-4);
+    Given yoke({on(2, "aileron", 0xb0, -127, 127), on(2, "elevator", 0xb8, -127, 127), on(2, "rudder", 0xba, -127, 127)},
+               DeviceClass::navigation, {0, 0, 0});
+    EXPECT_EQ(yoke.mapping.name, "default: joystick");
+    EXPECT_NEAR(yoke.at(1, -127).forward, 1, 1e-4);
+    EXPECT_NEAR(yoke.at(0, 127).side, 1, 1e-4);
+    EXPECT_NEAR(yoke.at(2, -127).turn, 1, 1e-4);
+    Given game({on(5, "turn", 0x21, -127, 127), on(5, "forward", 0x25, -127, 127)}, DeviceClass::navigation, {0, 0});
+    EXPECT_NEAR(game.at(1, 127).forward, 1, 1e-4);
+    EXPECT_NEAR(game.at(0, -127).turn, 1, 1e-4);
+    // Three axes that count both ways are no pedals.
+    const std::string c = "Multi-axis Controller/Physical";
+    Given puck({axis("x", 0x30, -350, 350, c), axis("y", 0x31, -350, 350, c), axis("z", 0x32, -350, 350, c)},
+               DeviceClass::navigation, {0, 0, 0});
+    EXPECT_EQ(puck.mapping.name, "default: multi-axis");
+    EXPECT_NEAR(puck.at(1, -350).forward, 1, 1e-4);
+    Given stick({axis("x", 0x30, -127, 127), axis("y", 0x31, -127, 127), axis("z", 0x32, -127, 127)}, DeviceClass::navigation,
+                {0, 0, 0});
+    EXPECT_EQ(stick.mapping.name, "default: joystick");
+}
+
 TEST(Defaults, PedalsAndButtonBoxesWorkAndOthersDoNothing) {
     Given pedals({axis("x", 0x30, 0, 1023), axis("y", 0x31, 0, 1023), axis("z", 0x32, 0, 1023)}, DeviceClass::navigation,
                  {0, 0, 512});
@@ -192,7 +292,8 @@ TEST(Mapper, StopsAreAssertedByOpenContactsAndUnknownOnes) {
     EXPECT_TRUE(after(mapper, state, 2, 0).stop);
 }
 
-TEST(Mapper, RelativeControlsBecomeAPaceAndRestByThemselves) {
+/// A ball that turns: 1000 counts a second are full response.
+Mapper relative_turn() {
     auto control = axis("x", 0x30, -127, 127, "Trackball");
     control.relative = true;
     DeviceMapping m;
@@ -201,13 +302,38 @@ TEST(Mapper, RelativeControlsBecomeAPaceAndRestByThemselves) {
     a.action = Action::turn;
     a.counts_per_s = 1000;
     m.axes = {a};
-    auto mapper = *compile(m, std::vector{control});
+    return *compile(m, std::vector{control});
+}
+
+TEST(Mapper, RelativeControlsBecomeAPaceAndRestByThemselves) {
+    auto mapper = relative_turn();
     DeviceState state;
     Wish wish;
     for (int i = 0; i < 500; ++i) wish = after(mapper, state, 0, 1, i * 1'000'000LL).wish;  // 1000 counts a second
     EXPECT_GT(wish.turn, 0.95);
     for (int i = 500; i < 700; ++i) wish = ask(mapper, state, i * 1'000'000LL).wish;
     EXPECT_EQ(wish.turn, 0);
+}
+
+TEST(Mapper, ADisplacementIsWalkedOnceThoughReportsOfOtherIdsFollow) {
+    auto mapper = relative_turn();
+    DeviceState state;
+    after(mapper, state, 0, 20);
+    state.carried_over.set(0);
+    Wish wish;
+    for (int ms = 1; ms < 1000; ++ms) {
+        ++state.reports;
+        wish = ask(mapper, state, ms * 1'000'000LL).wish;
+    }
+    EXPECT_EQ(wish.turn, 0);
+}
+
+TEST(Mapper, AStickHasTwoAxes) {
+    DeviceMapping m = test::stick_mapping();
+    m.sticks[0].controls[1] = m.sticks[0].controls[0];
+    const auto twice = compile(m, test::stick_controls());
+    ASSERT_FALSE(twice.ok());
+    EXPECT_NE(twice.error().text().find("named twice"), std::string::npos) << twice.error().text();
 }
 
 TEST(Mapper, SmoothingLagsAsStatedAndEndsExactlyAtRest) {

@@ -158,6 +158,66 @@ TEST(Silence, StreamingIsLearnedFromEqualReportsAndUnlearnedFromGaps) {
     EXPECT_TRUE(other.steering.safety().devices[0].habit.learned_streaming);
 }
 
+/// 16 bits at 125 Hz: a second at rest, one pushed forward, each with noise of a few counts; then nothing more for a second.
+double speed_after_silence(int noise, int drift) {
+    const std::vector controls = {test::axis("x", 0x30, 0, 65535), test::axis("y", 0x31, 0, 65535)};
+    Steering steering(MotionLimits{}, SafetyLimits{});
+    const int device = steering.attach(*compile(test::stick_mapping(), controls), controls.size(), Reporting::learn);
+    DeviceState state;
+    state.connected = true;
+    NavigationSample last;
+    for (int ms = 0; ms < 3000; ++ms) {
+        const std::int64_t now_ns = ms * 1'000'000LL;
+        if (ms % 8 == 0 && ms < 2000) {
+            const int moved = drift * (ms - 1000) / 8, shaken = noise * ((ms / 8) % 3 - 1);
+            test::set(state, 0, 32768 + shaken);
+            test::set(state, 1, ms < 1000 ? 32768 + shaken : (drift != 0 ? 25000 : 2000) + shaken + moved);
+            ++state.reports;
+            state.stamp_ns = now_ns;
+            steering.report(device, state, now_ns);
+            steering.drained(device, 1);
+        }
+        last = steering.tick({}, now_ns);
+    }
+    return glm::length(last.velocity_m_s);
+}
+
+TEST(Silence, AFineSticksNoiseProvesStreamingAsEqualReportsDo) {
+    EXPECT_EQ(speed_after_silence(20, 0), 0);
+    EXPECT_GT(speed_after_silence(20, -150), 0.5) << "a hand that moves on proves nothing: such a stick may report changes only";
+}
+
+TEST(Silence, OneReportIdsStreamDoesNotKeepAnothersDeflection) {
+    std::vector<ControlInfo> controls;
+    for (int i = 0; i < 6; ++i)
+        controls.push_back(test::axis(std::string(1, "xyzabc"[i]), static_cast<std::uint16_t>(0x30 + i), -350, 350,
+                                      "Multi-axis Controller/Physical"));
+    Steering steering(MotionLimits{}, SafetyLimits{});
+    const DeviceMapping mapping = default_mapping(controls, DeviceClass::navigation);
+    const int device = steering.attach(*compile(mapping, controls), controls.size(), mapping.reporting);
+    DeviceState state;
+    double fastest = 0;
+    NavigationSample last;
+    for (int ms = 0; ms < 1200; ++ms) {
+        const std::int64_t now_ns = ms * 1'000'000LL;
+        if (ms % 8 == 0) {  // translation until 600 ms, the last of it pushed forward; rotation always, at rest
+            const bool translation = (ms / 8) % 2 == 0 && ms < 600;
+            if ((ms / 8) % 2 == 0 && !translation) continue;
+            for (std::size_t i = 0; i < 6; ++i) state.carried_over.set(i, translation != (i < 3));
+            for (std::size_t i = translation ? 0 : 3; i < (translation ? 3U : 6U); ++i)
+                test::set(state, i, i == 1 && ms > 100 ? -350 : 0);
+            ++state.reports;
+            state.stamp_ns = now_ns;
+            steering.report(device, state, now_ns);
+            steering.drained(device, 1);
+        }
+        last = steering.tick({}, now_ns);
+        fastest = std::max(fastest, glm::length(last.velocity_m_s));
+    }
+    EXPECT_GT(fastest, 1.0);
+    EXPECT_EQ(glm::length(last.velocity_m_s), 0);
+}
+
 TEST(Stall, ASleepOfHalfASecondEndsInTheNewestState) {
     Walk walk;
     const int device = walking(walk);

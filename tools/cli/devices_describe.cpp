@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
 #include <map>
 
 #include "input/hid/decoder.hpp"
@@ -75,6 +76,8 @@ Result<Material> gather(const DescribeArguments& a) {
     if (!a.reports.empty()) {
         auto recording = input::read_recording(a.reports);
         if (!recording) return recording.error();
+        if (recording->reports.empty())
+            return Error{a.reports, "holds no reports (E: lines)", "record it again while the device is moved"};
         if (!recording->descriptor.empty() && recording->descriptor != m.descriptor) {
             note(a.reports + " was recorded from a device with another descriptor");
         }
@@ -199,12 +202,13 @@ const char* fate_text(input::ReportFate fate) {
     return "unknown";
 }
 
-/// Every report with what it changed; `counts` is filled on the way.
-ordered_json decoded_json(const input::HidDevice& d, const input::Recording& recording, ordered_json& counts) {
+/// Hands every report with what it changed to `each`, one at a time: hours of them would not fit. Returns the counts.
+ordered_json decode_each(const input::HidDevice& d, const input::Recording& recording,
+                         const std::function<void(const ordered_json&)>& each) {
     input::ReportDecoder decoder(d);
     input::DeviceState state;
     std::map<std::uint8_t, std::vector<std::uint16_t>> carried;
-    ordered_json list = ordered_json::array();
+    std::size_t backward = 0;
     for (std::size_t i = 0; i < recording.reports.size(); ++i) {
         const auto bytes = recording.report(i);
         const auto id =
@@ -223,11 +227,15 @@ ordered_json decoded_json(const input::HidDevice& d, const input::Recording& rec
             }
             report["values"] = std::move(values);
         }
-        list.push_back(std::move(report));
+        if (i > 0 && recording.reports[i].time_us < recording.reports[i - 1].time_us) ++backward;
+        each(report);
     }
     const auto& n = decoder.counts();
-    counts = {{"accepted", n.accepted}, {"short", n.too_short}, {"long", n.too_long}, {"unknown", n.undeclared}};
-    return list;
+    return {{"accepted", n.accepted},
+            {"short", n.too_short},
+            {"long", n.too_long},
+            {"unknown", n.undeclared},
+            {"before_the_last", backward}};
 }
 
 ordered_json notes_json(const input::Layout& l) {
@@ -273,20 +281,36 @@ void print_tables(const input::HidDevice& d) {
     if (d.controls_left_out > 0) fmt::print("and {} more, which are left out\n", d.controls_left_out);
 }
 
-void print_decoded(const ordered_json& decoded, const ordered_json& counts) {
-    fmt::print("\n{:>12} {:>3} {:<8} values\n", "time", "id", "status");
-    for (const auto& r : decoded) {
-        std::string values;
-        if (r.contains("values")) {
-            for (const auto& [name, value] : r["values"].items())
-                if (!value.is_null() && (value.get<std::int64_t>() != 0 || !name.starts_with("button")))
-                    values += fmt::format(" {}={}", name, value.get<std::int64_t>());
-        }
-        fmt::print("{:>12.6f} {:>3} {:<8}{}\n", r["time_s"].get<double>(), r["report_id"].get<unsigned>(),
-                   r["status"].get<std::string>(), values);
+void print_report(const ordered_json& r) {
+    std::string values;
+    if (r.contains("values")) {
+        for (const auto& [name, value] : r["values"].items())
+            if (!value.is_null() && (value.get<std::int64_t>() != 0 || !name.starts_with("button")))
+                values += fmt::format(" {}={}", name, value.get<std::int64_t>());
     }
-    fmt::print("reports: {} accepted, {} short, {} long, {} unknown\n", counts["accepted"].get<std::uint64_t>(),
-               counts["short"].get<std::uint64_t>(), counts["long"].get<std::uint64_t>(), counts["unknown"].get<std::uint64_t>());
+    fmt::print("{:>12.6f} {:>3} {:<8}{}\n", r["time_s"].get<double>(), r["report_id"].get<unsigned>(),
+               r["status"].get<std::string>(), values);
+}
+
+void print_decoded(const input::HidDevice& d, const input::Recording& recording) {
+    fmt::print("\n{:>12} {:>3} {:<8} values\n", "time", "id", "status");
+    const ordered_json counts = decode_each(d, recording, print_report);
+    const auto count = [&](const char* name) { return counts[name].get<std::uint64_t>(); };
+    fmt::print("reports: {} accepted, {} short, {} long, {} unknown\n", count("accepted"), count("short"), count("long"),
+               count("unknown"));
+    if (count("before_the_last") > 0) fmt::print("{} of them bear a time before the last one's\n", count("before_the_last"));
+}
+
+/// `head`'s object, with the decoded reports and their counts as its last members.
+void print_json_with_reports(const ordered_json& head, const input::HidDevice& d, const input::Recording& recording) {
+    const std::string text = json_text(head, 2);
+    fmt::print("{},\n  \"reports\": [", std::string_view(text).substr(0, text.rfind("\n}")));
+    bool first = true;
+    const ordered_json counts = decode_each(d, recording, [&](const ordered_json& report) {
+        fmt::print("{}\n{}", first ? "" : ",", json_text(report, 2));
+        first = false;
+    });
+    fmt::print("\n  ],\n  \"counts\": {}\n}}\n", json_text(counts, 2));
 }
 
 /// A refused descriptor is a failure, but with --json its place and reason are in the object as well.
@@ -307,32 +331,29 @@ int run_describe(const DescribeArguments& a) {
     input::Layout layout;
     if (auto refusal = input::parse_descriptor(m->descriptor, layout)) return refuse(a, *m, *refusal);
     const input::HidDevice d = input::describe_device(std::move(layout), {m->vendor, m->product, m->name});
-    ordered_json counts, decoded;
-    const bool reports = !a.reports.empty() || !m->recording.reports.empty();
-    if (reports) decoded = decoded_json(d, m->recording, counts);
+    const bool reports = !m->recording.reports.empty();
     if (!a.json) {
         print_tables(d);
-        if (reports) print_decoded(decoded, counts);
+        if (reports) print_decoded(d, m->recording);
         return exit_success;
     }
-    ordered_json object = {{"file", a.file},
-                           {"bytes", m->descriptor.size()},
-                           {"name", m->name},
-                           {"vid_pid", fmt::format("{:04x}:{:04x}", m->vendor, m->product)},
-                           {"class", input::class_name(d.device_class)},
-                           {"reason", d.reason},
-                           {"quirks", d.quirks},
-                           {"notes", notes_json(d.layout)},
-                           {"note_count", d.layout.note_count},
-                           {"layout", layout_json(d.layout)},
-                           {"reports_declared", reports_json(d.layout)},
-                           {"controls", controls_json(d)},
-                           {"controls_left_out", d.controls_left_out}};
-    if (reports) {
-        object["reports"] = std::move(decoded);
-        object["counts"] = std::move(counts);
-    }
-    print_json(object);
+    const ordered_json object = {{"file", a.file},
+                                 {"bytes", m->descriptor.size()},
+                                 {"name", m->name},
+                                 {"vid_pid", fmt::format("{:04x}:{:04x}", m->vendor, m->product)},
+                                 {"class", input::class_name(d.device_class)},
+                                 {"reason", d.reason},
+                                 {"quirks", d.quirks},
+                                 {"notes", notes_json(d.layout)},
+                                 {"note_count", d.layout.note_count},
+                                 {"layout", layout_json(d.layout)},
+                                 {"reports_declared", reports_json(d.layout)},
+                                 {"controls", controls_json(d)},
+                                 {"controls_left_out", d.controls_left_out}};
+    if (reports)
+        print_json_with_reports(object, d, m->recording);
+    else
+        print_json(object);
     return exit_success;
 }
 

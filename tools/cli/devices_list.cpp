@@ -18,7 +18,7 @@ struct ListArguments {
 
 bool permitted(const input::PluggedDevice& d) { return access(d.node.c_str(), R_OK | W_OK) == 0; }
 
-ordered_json controls_json(const input::HidDevice& device) {
+ordered_json control_names_json(const input::HidDevice& device) {
     ordered_json list = ordered_json::array();
     for (const auto& c : device.controls)
         list.push_back({{"name", c.name},
@@ -44,7 +44,7 @@ ordered_json list_json(const std::vector<input::Discovery>& all) {
         if (whole) {
             device["mapping"] = default_name(*d.plugged);
             device["quirks"] = d.plugged->device.quirks;
-            device["controls"] = controls_json(d.plugged->device);
+            device["controls"] = control_names_json(d.plugged->device);
         } else {
             device["reason"] = d.why.text();
         }

@@ -163,7 +163,8 @@ int run_map(const MapArguments& a, const Context& context) {
     Session session(a, context, **source);
     if (!session.run()) {
         if (context.stop->load()) return fail({"map", "was stopped: nothing is written", ""});
-        return fail({"map", "no device is there: nothing is written", "plug one in; `surefoot devices` tells why one is not taken"});
+        return fail(
+            {"map", "no device is there: nothing is written", "plug one in; `surefoot devices` tells why one is not taken"});
     }
     const auto shown = session.teach().mappings();
     if (shown.empty()) return fail({"map", "no control was shown: nothing is written", "move each control as it is asked for"});

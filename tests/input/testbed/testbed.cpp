@@ -142,7 +142,8 @@ bool Testbed::send(Plug& plug, std::span<const std::byte> report) {
 }
 
 bool Testbed::taken(const Plug& plug, int within_ms) {
-    // Past the preloaded library: it takes a descriptor's number for the device that had it before, and waits for an answer for ever.
+    // Past the preloaded library: it takes a descriptor's number for the device that had it before, and waits for an answer for
+    // ever.
     int waiting = 0;
     for (Patience patience(within_ms); syscall(SYS_ioctl, plug.tail, FIONREAD, &waiting) == 0 && waiting > 0; usleep(500))
         if (patience.over()) return false;
