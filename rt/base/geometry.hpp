@@ -30,15 +30,19 @@ struct Box {
     [[nodiscard]] dvec3 centre() const { return 0.5 * (min + max); }
     [[nodiscard]] dvec3 half() const { return 0.5 * (max - min); }
     [[nodiscard]] double diagonal() const { return empty() ? 0.0 : glm::length(max - min); }
-    void grow(const dvec3& p) { min = glm::min(min, p); max = glm::max(max, p); }
-    void grow(const Box& b) { min = glm::min(min, b.min); max = glm::max(max, b.max); }
+    void grow(const dvec3& p) {
+        min = glm::min(min, p);
+        max = glm::max(max, p);
+    }
+    void grow(const Box& b) {
+        min = glm::min(min, b.min);
+        max = glm::max(max, b.max);
+    }
     [[nodiscard]] bool contains(const Box& b) const {
         return glm::all(glm::lessThanEqual(min, b.min)) && glm::all(glm::greaterThanEqual(max, b.max));
     }
     /// Distance from p to the box, 0 inside; metres.
-    [[nodiscard]] double distance(const dvec3& p) const {
-        return glm::length(glm::max(glm::max(min - p, p - max), dvec3(0.0)));
-    }
+    [[nodiscard]] double distance(const dvec3& p) const { return glm::length(glm::max(glm::max(min - p, p - max), dvec3(0.0))); }
 };
 
 /// Where the eye is and where it looks. Orientation is a unit quaternion, camera to world.

@@ -15,8 +15,7 @@ public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
     template <class T>
-        requires std::is_trivially_copyable_v<T>
-    T read() {
+    requires std::is_trivially_copyable_v<T> T read() {
         T value{};
         if (!take(sizeof(T))) return value;
         std::memcpy(&value, bytes_.data() + at_ - sizeof(T), sizeof(T));

@@ -32,8 +32,6 @@ void CostController::update_upper(double error) {
     upper_ = std::max(sorted[rank], upper_ / upper_slew);
 }
 
-double CostController::upper(double of_table) const {
-    return std::min(std::max(upper_, least_upper), std::max(of_table, 1.0));
-}
+double CostController::upper(double of_table) const { return std::min(std::max(upper_, least_upper), std::max(of_table, 1.0)); }
 
 }  // namespace surefoot::rt

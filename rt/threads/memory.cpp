@@ -38,27 +38,6 @@ std::uint64_t status_bytes(std::string_view key) {
     return kb << 10U;
 }
 
-/// Many blocks, so that the heap grows by them whatever the allocator's bins do; given back to it touched.
-void prefault_heap(std::size_t bytes) {
-    constexpr std::size_t block = 64U << 10U;
-    struct Link {
-        Link* next;
-    };
-    Link* first = nullptr;
-    for (std::size_t done = 0; done < bytes; done += block) {
-        auto* memory = static_cast<Link*>(std::malloc(block));  // NOLINT: the allocator itself is what is being exercised
-        if (memory == nullptr) break;
-        std::memset(static_cast<void*>(memory), 0, block);
-        memory->next = first;
-        first = memory;
-    }
-    while (first != nullptr) {
-        Link* const next = first->next;
-        std::free(first);  // NOLINT
-        first = next;
-    }
-}
-
 Result<void> lock_all(std::uint64_t growth_bytes) {
     rlimit limit{};
     getrlimit(RLIMIT_MEMLOCK, &limit);
@@ -79,6 +58,27 @@ Result<void> lock_all(std::uint64_t growth_bytes) {
 }
 
 }  // namespace
+
+// Many blocks, so that the heap grows by them whatever the allocator's bins do; given back to it touched.
+void prefault_heap(std::size_t bytes) {
+    constexpr std::size_t block = 64U << 10U;
+    struct Link {
+        Link* next;
+    };
+    Link* first = nullptr;
+    for (std::size_t done = 0; done < bytes; done += block) {
+        auto* memory = static_cast<Link*>(std::malloc(block));  // NOLINT: the allocator itself is what is being exercised
+        if (memory == nullptr) break;
+        std::memset(static_cast<void*>(memory), 0, block);
+        memory->next = first;
+        first = memory;
+    }
+    while (first != nullptr) {
+        Link* const next = first->next;
+        std::free(first);  // NOLINT
+        first = next;
+    }
+}
 
 Result<void> prepare_memory(const MemoryOptions& options) {
     mallopt(M_TRIM_THRESHOLD, -1);

@@ -21,6 +21,10 @@ Result<void> prepare_memory(const MemoryOptions& options);
 /// Undoes prepare_memory(): unlocks, and lets the allocator trim again (touched pages stay until it does).
 void release_memory();
 
+/// Grows and touches the calling thread's heap, which keeps it once prepare_memory() has been called: each thread may have one of
+/// its own, and a driver's busiest frame comes late in a walk.
+void prefault_heap(std::size_t bytes = 16U << 20U);
+
 /// Touches the calling thread's stack below here. At most half of the stack is touched.
 void prefault_stack(std::size_t bytes = 256U << 10U);
 

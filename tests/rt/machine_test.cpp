@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -10,7 +11,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <thread>
+#include <vector>
 
 #include "rt/clock/clock.hpp"
 #include "rt/clock/grid.hpp"
@@ -218,6 +221,46 @@ TEST(Memory, IsLockedAndReleased) {
     if (!locked) GTEST_SKIP() << locked.error().text();
     EXPECT_GT(bytes, 4U << 20U);
     EXPECT_EQ(locked_bytes(), 0U);
+}
+
+/// Page faults of the calling thread while it takes 4 MiB in blocks, writes to them and gives them back.
+std::uint64_t faults_of_four_mib() {
+    constexpr std::size_t block = 48U << 10U;
+    std::vector<std::unique_ptr<char[]>> blocks((4U << 20U) / block);
+    const ThreadUsage before = read_own_usage();
+    for (auto& memory : blocks) {
+        memory = std::make_unique<char[]>(block);  // zeroed, and so touched
+        *const_cast<volatile char*>(memory.get()) = 1;
+    }
+    return (read_own_usage() - before).minor_faults;
+}
+
+TEST(Memory, AThreadsOwnHeapIsGrownBeforehand) {
+    if (!guard_active()) GTEST_SKIP() << "the sanitizers have an allocator of their own";
+    ASSERT_EQ(prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0), 0);  // a huge page would be one fault for 512
+    (void)prepare_memory({.lock = false, .heap_bytes = 0});
+    // Two at once, so that each has a heap of its own; the one that is given nothing shows that there is something to fault.
+    std::uint64_t grown = 0, bare = 0;
+    std::atomic<int> ready = 0;
+    const auto together = [&] {
+        for (++ready; ready < 2;) std::this_thread::yield();
+    };
+    std::thread with([&] {
+        prefault_heap(8U << 20U);
+        together();
+        grown = faults_of_four_mib();
+    });
+    std::thread without([&] {
+        (void)std::make_unique<char[]>(1000);
+        together();
+        bare = faults_of_four_mib();
+    });
+    with.join();
+    without.join();
+    release_memory();
+    (void)prctl(PR_SET_THP_DISABLE, 0, 0, 0, 0);
+    EXPECT_LE(grown, 8U);
+    EXPECT_GE(bare, 512U) << "the other's would prove nothing";
 }
 
 TEST(Memory, AFiniteLimitThatLeavesNoRoomToGrowIsRefusedWithTheRemedy) {
