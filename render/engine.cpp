@@ -151,8 +151,8 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.use_coarse = false;
     e.prepared = &prepared;
     e.correction = correction;
-    const select::SelectInput input{&e.model,         &prepared,          &e.costs,        budget_us, correction.factor,
-                                    target_error_rad, e.options.slice_us, correction.upper};
+    const select::SelectInput input{&e.model,          &prepared,        &e.costs,           budget_us,
+                                    correction.factor, target_error_rad, e.options.slice_us, correction.upper};
     e.upper_factor = select::upper_factor_of(input);
     e.selector->run(input, e.state, e.cut);
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);

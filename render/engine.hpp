@@ -23,18 +23,18 @@ namespace surefoot {
 
 struct EngineOptions {
     gl::DeviceOptions device;
-    gl::NullOptions null;                 ///< used by the null backend; costs are filled in by the engine
+    gl::NullOptions null;  ///< used by the null backend; costs are filled in by the engine
     prepare::PrepareOptions prepare;
     std::string selector = "two-stage";
-    double slice_us = 1000;               ///< predicted length of a slice
+    double slice_us = 1000;  ///< predicted length of a slice
     float hysteresis = 1.25F;
-    bool in_frame_check = true;           ///< DESIGN 1.2; off only to show what it is worth
+    bool in_frame_check = true;  ///< DESIGN 1.2; off only to show what it is worth
 };
 
 /// What one frame may spend and against which clock it is checked.
 struct SubmitLimits {
-    double elapsed_us = 0;                       ///< already spent in this frame when submit is called
-    double limit_us = 0;                         ///< when the frame must be done, from its start
+    double elapsed_us = 0;                            ///< already spent in this frame when submit is called
+    double limit_us = 0;                              ///< when the frame must be done, from its start
     std::int64_t (*now_ns)(void* context) = nullptr;  ///< null: the device's charged time (virtual)
     void* now_context = nullptr;
 };
@@ -47,14 +47,14 @@ struct Correction {
 
 /// What the submission did. Times in us from the call.
 struct SubmitReport {
-    double submitted_us = 0;        ///< last slice handed to the driver
-    double finished_us = 0;         ///< last fence passed
-    double predicted_us = 0;        ///< of what was drawn, uncorrected, median (not the upper quantile)
-    model::ItemCost predicted;      ///< the sums that predicted_us follows from, slices included
+    double submitted_us = 0;    ///< last slice handed to the driver
+    double finished_us = 0;     ///< last fence passed
+    double predicted_us = 0;    ///< of what was drawn, uncorrected, median (not the upper quantile)
+    model::ItemCost predicted;  ///< the sums that predicted_us follows from, slices included
     std::uint32_t slices = 0, downgraded_slices = 0, items = 0, draws = 0;
-    std::uint32_t culled = 0;       ///< of the region's cut, outside this pose's view
+    std::uint32_t culled = 0;  ///< of the region's cut, outside this pose's view
     std::uint64_t triangles = 0;
-    float worst_error_rad = 0;      ///< of what was drawn, stand-ins included
+    float worst_error_rad = 0;  ///< of what was drawn, stand-ins included
     double benefit_mean = 0;
 };
 
@@ -74,7 +74,8 @@ public:
     [[nodiscard]] const EngineOptions& options() const;
 
     void reserve(prepare::PreparedFrame& frame) const;
-    void prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps, prepare::PreparedFrame& out);
+    void prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
+                 prepare::PreparedFrame& out);
 
     /// Takes another selector from the next select() on.
     Result<void> set_selector(std::string_view name);

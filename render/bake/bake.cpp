@@ -57,8 +57,8 @@ struct Bakery {
     const BakeOptions& options;
     const Progress& progress;
     model::Model model;
-    model::Index proxy = 0;          ///< a material with vertex colours
-    model::Index proxy_or_none = 0;  ///< the same, or none where every colour is a material's own
+    model::Index proxy = 0;             ///< a material with vertex colours
+    model::Index proxy_or_none = 0;     ///< the same, or none where every colour is a material's own
     std::vector<PlacedObject> objects;  ///< pieces count each
     std::uint32_t object_count = 0;     ///< conceptual ones
     std::vector<MeshForm> forms;
@@ -81,7 +81,8 @@ struct Bakery {
 Box placed_box(const Box& box, const dmat4& world) {
     Box out;
     for (unsigned c = 0; c < 8; ++c) {
-        const dvec3 corner((c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y, (c & 4U) != 0 ? box.max.z : box.min.z);
+        const dvec3 corner((c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y,
+                           (c & 4U) != 0 ? box.max.z : box.min.z);
         out.grow(dvec3(world * dvec4(corner, 1.0)));
     }
     return out;
@@ -159,7 +160,9 @@ bool Bakery::make_forms() {
     ChainOptions chain = chain_options(options, proxy_or_none);
     for (const model::Material& material : model.materials) {
         const bool none = material.texture == model::none;
-        chain.pictures.push_back(none ? Picture::none : model.textures[material.texture].clamp ? Picture::clamped : Picture::repeats);
+        chain.pictures.push_back(none                                     ? Picture::none
+                                 : model.textures[material.texture].clamp ? Picture::clamped
+                                                                          : Picture::repeats);
     }
     tbb::parallel_for(std::size_t{0}, scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
@@ -236,7 +239,8 @@ bool Bakery::make_object_boxes() {
     tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
         if (!go) return;
         const MeshForm& form = forms[objects[i].mesh];
-        if (form.triangles > 500 && form.chain.levels.front().triangles > 12) object_boxes[i] = make_object_box(input, objects[i], 16);
+        if (form.triangles > 500 && form.chain.levels.front().triangles > 12)
+            object_boxes[i] = make_object_box(input, objects[i], 16);
         if (!stage.step()) go = false;
     });
     return go;
@@ -272,7 +276,8 @@ void Bakery::emit_object(model::Index index, std::uint32_t which, const std::vec
     const std::uint32_t faces = faces_of(box);
     const auto coarsest_error_m = static_cast<float>(coarsest.error_m * largest_stretch(dmat3(object.world)));
     // A box carries its colours in vertices or a picture: in a scene that calls for neither it would be the only one to.
-    if (proxy_or_none != model::none && faces > 0 && 2 * faces < coarsest.triangles && box.error_m > coarsest_error_m) emit_box(box, proxy, model);
+    if (proxy_or_none != model::none && faces > 0 && 2 * faces < coarsest.triangles && box.error_m > coarsest_error_m)
+        emit_box(box, proxy, model);
     emit_representations(chains[object.mesh], object.world, model);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
 }
@@ -283,7 +288,8 @@ void Bakery::emit_cluster(model::Index index, std::uint32_t which, std::vector<s
     model.nodes[index].box = cluster.box;
     model.nodes[index].first_rep = static_cast<model::Index>(model.reps.size());
     const std::uint32_t faces = faces_of(form.box);
-    if (proxy_or_none != model::none && form.has_box && faces > 0 && 2 * faces < form.chain.levels.front().triangles) emit_box(form.box, proxy, model);
+    if (proxy_or_none != model::none && form.has_box && faces > 0 && 2 * faces < form.chain.levels.front().triangles)
+        emit_box(form.box, proxy, model);
     emit_representations(emit_chain(form.chain, model), dmat4(1.0), model);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
     const auto first = static_cast<model::Index>(model.nodes.size());
@@ -304,7 +310,8 @@ void Bakery::emit() {
         if (forms[m].triangles > 0) chains[m] = emit_chain(forms[m].chain, model);
     }
     for (const PlacedObject& object : objects) {
-        for (const GeometryPart& part : forms[object.mesh].chain.levels.back().parts) material_triangles[part.material] += part.indices.size() / 3;
+        for (const GeometryPart& part : forms[object.mesh].chain.levels.back().parts)
+            material_triangles[part.material] += part.indices.size() / 3;
     }
     model.object_count = object_count;
     model.nodes.resize(1);
@@ -323,7 +330,8 @@ void Bakery::emit() {
         if (parent.kind == model::NodeKind::cluster) parent.triangles += node.triangles;
         parent.box.grow(node.box);
     }
-    tbb::parallel_for(std::size_t{0}, model.reps.size(), [&](std::size_t r) { model.reps[r].area_m2 = model::rasterised_area(model, model.reps[r]); });
+    tbb::parallel_for(std::size_t{0}, model.reps.size(),
+                      [&](std::size_t r) { model.reps[r].area_m2 = model::rasterised_area(model, model.reps[r]); });
     std::vector<bool> used(model.materials.size(), false);
     for (const model::Part& part : model.parts) used[part.material] = true;
     for (std::size_t m = 0; m < used.size(); ++m) {  // what nothing is drawn with calls for nothing
@@ -346,7 +354,8 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     bakery.proxy_or_none = coloured ? bakery.proxy : model::none;
     bakery.place_objects();
     bool done = true;
-    const int workers = options.workers > 0 ? options.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int workers =
+        options.workers > 0 ? options.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     tbb::task_arena arena(workers);
     arena.execute([&] {
         done = bakery.make_forms();
@@ -354,7 +363,8 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     });
     if (!done) return stopped_by_user(scene);
     if (bakery.objects.empty()) {
-        return Error{scene.sources.empty() ? "bake" : scene.sources.front(), "there is nothing to draw in it", "check that its nodes have meshes with triangles"};
+        return Error{scene.sources.empty() ? "bake" : scene.sources.front(), "there is nothing to draw in it",
+                     "check that its nodes have meshes with triangles"};
     }
     progress.say("write", 0.0);
     arena.execute([&] { bakery.emit(); });

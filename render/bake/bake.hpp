@@ -15,8 +15,8 @@ enum class Quality { draft, full };
 
 struct BakeOptions {
     Quality quality = Quality::draft;
-    int workers = 0;                       ///< 0: all cores
-    double frame_us = 33333;               ///< the frame of the 1/16 rule, at 30 Hz
+    int workers = 0;                          ///< 0: all cores
+    double frame_us = 33333;                  ///< the frame of the 1/16 rule, at 30 Hz
     const model::CostModel* costs = nullptr;  ///< calibrated; null: default_costs()
 };
 

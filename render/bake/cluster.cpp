@@ -86,7 +86,8 @@ ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t most) {
                 continue;
             }
             const dvec3 at = last ? dvec3(0) : glm::floor((box.centre() - world.min) / cell);
-            cells[{static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y), static_cast<std::int64_t>(at.z)}].push_back(e);
+            cells[{static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y), static_cast<std::int64_t>(at.z)}].push_back(
+                e);
         }
         for (auto& [key, members] : cells) next.push_back(grower.make(std::move(members)));
         std::sort(next.begin(), next.end());

@@ -64,7 +64,8 @@ void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
         for (std::uint32_t f = 0; f < 6; ++f) {
             for (std::uint32_t y = 0; y < n; ++y) {
                 const std::uint8_t* row = form.faces[f].rgba.data() + static_cast<std::size_t>(y) * n * 4;
-                std::copy_n(row, n * 4, atlas.begin() + static_cast<std::ptrdiff_t>((((f / 3) * n + y) * 3 * n + (f % 3) * n) * 4));
+                std::copy_n(row, n * 4,
+                            atlas.begin() + static_cast<std::ptrdiff_t>((((f / 3) * n + y) * 3 * n + (f % 3) * n) * 4));
             }
         }
         model::Material m;
@@ -86,7 +87,8 @@ void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
     rep.first_part = static_cast<model::Index>(model.parts.size());
     rep.part_count = 1;
     rep.effects = model.materials[material].effects;
-    model::Part part{material, static_cast<std::uint32_t>(model.indices.size()), 0, static_cast<std::uint32_t>(model.vertices.size()), 0};
+    model::Part part{material, static_cast<std::uint32_t>(model.indices.size()), 0,
+                     static_cast<std::uint32_t>(model.vertices.size()), 0};
     for (std::uint32_t f = 0; f < 6; ++f) {
         if (form.faces[f].covered <= 0) continue;
         const int axis = static_cast<int>(f) / 2, u = (axis + 1) % 3, w = (axis + 2) % 3;

@@ -48,14 +48,14 @@ constexpr double least_proxy_error = 1.0 / 64;
 enum class Picture : std::uint8_t { none, repeats, clamped };
 
 struct ChainOptions {
-    bool lock_border = false;      ///< pieces of one object: their common borders stay equal
-    std::uint32_t smallest = 16;   ///< triangles at which the chain ends
-    float slack = 0.25F;           ///< how far, relative, the bound may lie over what is proven
+    bool lock_border = false;         ///< pieces of one object: their common borders stay equal
+    std::uint32_t smallest = 16;      ///< triangles at which the chain ends
+    float slack = 0.25F;              ///< how far, relative, the bound may lie over what is proven
     model::Index proxy_material = 0;  ///< vertex colours only: for the coarsest levels; none: they keep their materials
-    std::uint32_t proxy_below = 40;  ///< triangles; coarser levels carry baked colours in one part
-    std::vector<Picture> pictures;   ///< by material: what baked colours at a few vertices lose
-    double first_share = 1;        ///< share of the triangles that the finest simplified level may have (1: as ratio says)
-    double ratio = 0.45;           ///< of triangles from one level to the next coarser
+    std::uint32_t proxy_below = 40;   ///< triangles; coarser levels carry baked colours in one part
+    std::vector<Picture> pictures;    ///< by material: what baked colours at a few vertices lose
+    double first_share = 1;           ///< share of the triangles that the finest simplified level may have (1: as ratio says)
+    double ratio = 0.45;              ///< of triangles from one level to the next coarser
 };
 
 /// meshoptimizer proposes, mesh_distance bounds. A chain of one level where nothing coarser is worth keeping.

@@ -49,16 +49,17 @@ namespace {
 
 /// One material's triangles at about `share` of their number. The simplifier sees a mesh that was recentred in double.
 std::vector<std::uint32_t> simplify_part(const Geometry& g, const GeometryPart& part, double share, bool lock, bool sloppy) {
-    const std::size_t target = std::max<std::size_t>(2, static_cast<std::size_t>(static_cast<double>(part.indices.size() / 3) * share)) * 3;
+    const std::size_t target =
+        std::max<std::size_t>(2, static_cast<std::size_t>(static_cast<double>(part.indices.size() / 3) * share)) * 3;
     if (target >= part.indices.size()) return part.indices;
     std::vector<std::uint32_t> out(part.indices.size());
     float unused = 0;  // its own error is no bound
     const float* positions = g.vertices[0].position;
-    const std::size_t n =
-        sloppy ? meshopt_simplifySloppy(out.data(), part.indices.data(), part.indices.size(), positions, g.vertices.size(),
-                                        sizeof(model::Vertex), target, 1.0F, &unused)
-               : meshopt_simplify(out.data(), part.indices.data(), part.indices.size(), positions, g.vertices.size(),
-                                  sizeof(model::Vertex), target, 1.0F, lock ? static_cast<unsigned>(meshopt_SimplifyLockBorder) : 0U, &unused);
+    const std::size_t n = sloppy ? meshopt_simplifySloppy(out.data(), part.indices.data(), part.indices.size(), positions,
+                                                          g.vertices.size(), sizeof(model::Vertex), target, 1.0F, &unused)
+                                 : meshopt_simplify(out.data(), part.indices.data(), part.indices.size(), positions,
+                                                    g.vertices.size(), sizeof(model::Vertex), target, 1.0F,
+                                                    lock ? static_cast<unsigned>(meshopt_SimplifyLockBorder) : 0U, &unused);
     out.resize(n);
     return out;
 }
@@ -109,8 +110,9 @@ void to_proxy(Geometry& g, Level& level, model::Index material) {
 
 /// Twelve triangles round everything: valid from everywhere, whatever the shape.
 Level box_level(Geometry& g, const Box& box, std::size_t own_vertices, model::Index proxy_material) {
-    const auto most = std::max_element(g.parts.begin(), g.parts.end(),
-                                       [](const GeometryPart& a, const GeometryPart& b) { return a.indices.size() < b.indices.size(); });
+    const auto most = std::max_element(g.parts.begin(), g.parts.end(), [](const GeometryPart& a, const GeometryPart& b) {
+        return a.indices.size() < b.indices.size();
+    });
     const model::Index material = proxy_material != model::none ? proxy_material : most->material;
     const std::array<std::uint8_t, 4> mean = mean_colour(g, own_vertices);
     Level level;
@@ -162,7 +164,8 @@ struct Reference {
     /// Upper bound of the two-sided distance.
     [[nodiscard]] float bound(const Geometry& g, const Level& level) const {
         const Surface coarse(g.vertices, level.parts);
-        const measure::DistanceBounds there = measure::directed_distance(surface.view(), measure::TriangleTree(coarse.view()), limits);
+        const measure::DistanceBounds there =
+            measure::directed_distance(surface.view(), measure::TriangleTree(coarse.view()), limits);
         measure::DistanceLimits back = limits;
         back.known_lower = there.lower;
         return std::max(there.upper, measure::directed_distance(coarse.view(), tree, back).upper);
@@ -191,15 +194,15 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     const Box box = full.box();
     const std::size_t own_vertices = full.vertices.size();
     const float floor_m = static_cast<float>(box.diagonal()) * 0.002F;
-    const auto bound = [&](const Level& level) {
-        return std::max(reference.bound(full, level), pictures.shift_m(level));
-    };
+    const auto bound = [&](const Level& level) { return std::max(reference.bound(full, level), pictures.shift_m(level)); };
     while (levels.back().triangles > options.smallest) {
         const Level& before = levels.back();
         const double share = levels.size() == 1 ? std::min(options.ratio, options.first_share) : options.ratio;
-        // Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives way.
+        // Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives
+        // way.
         Level next = simplify(full, before.parts, share, true, false);
-        if (!options.lock_border && next.triangles > before.triangles * share * 1.4) next = simplify(full, before.parts, share, false, false);
+        if (!options.lock_border && next.triangles > before.triangles * share * 1.4)
+            next = simplify(full, before.parts, share, false, false);
         if (next.triangles == 0 || next.triangles > before.triangles * std::max(share * 1.5, share + 0.02)) {
             if (options.lock_border) break;
             next = simplify(full, finest.parts, share * before.triangles / total, false, true);
@@ -207,8 +210,12 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         if (next.triangles == 0 || next.triangles > before.triangles * 0.8) break;
         next.error_m = bound(next);
         if (next.error_m <= before.error_m) {  // coarser for nothing lost: the finer one has no use
-            if (levels.size() == 1) next.error_m = std::nextafter(before.error_m, 1.0F) + floor_m * 1e-3F;
-            else { next.error_m = before.error_m; levels.pop_back(); }
+            if (levels.size() == 1)
+                next.error_m = std::nextafter(before.error_m, 1.0F) + floor_m * 1e-3F;
+            else {
+                next.error_m = before.error_m;
+                levels.pop_back();
+            }
         }
         levels.push_back(std::move(next));
     }

@@ -37,8 +37,8 @@ std::vector<std::uint8_t> halve(std::span<const std::uint8_t> rgba, std::uint32_
 
 }  // namespace
 
-model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height, bool clamp,
-                         std::uint32_t most_levels) {
+model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height,
+                         bool clamp, std::uint32_t most_levels) {
     model::Texture texture;
     texture.width = width;
     texture.height = height;
@@ -79,7 +79,8 @@ model::Index add_materials(const importer::Scene& scene, model::Model& model) {
     model::Material proxy;
     proxy.two_sided = true;  // a simplified crowd has no inside to hide
     proxy.effects = model::effect_vertex_colour;
-    const bool lit = std::any_of(scene.materials.begin(), scene.materials.end(), [](const importer::Material& m) { return !m.unlit; });
+    const bool lit =
+        std::any_of(scene.materials.begin(), scene.materials.end(), [](const importer::Material& m) { return !m.unlit; });
     if (lit) proxy.effects |= model::effect_sun;
     model.materials.push_back(proxy);
     return static_cast<model::Index>(model.materials.size() - 1);
@@ -96,16 +97,19 @@ void mark_vertex_colours(const importer::Scene& scene, model::Model& model) {
     }
 }
 
-std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material, const model::Vertex& vertex) {
+std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material,
+                                         const model::Vertex& vertex) {
     std::array<float, 4> colour{};
     for (std::size_t c = 0; c < 4; ++c) {
-        const float own = (material.effects & model::effect_vertex_colour) != 0 ? static_cast<float>(vertex.colour[c]) / 255.0F : 1.0F;
+        const float own =
+            (material.effects & model::effect_vertex_colour) != 0 ? static_cast<float>(vertex.colour[c]) / 255.0F : 1.0F;
         colour[c] = own * material.colour[c];
     }
     if (material.texture != model::none) {
         const model::Texture& t = model.textures[material.texture];
-        // The level of about 8 texels across: an average about the place, not the texel there. Of what is cut out or transparent, the
-        // whole picture's mean, weighted by alpha: a leaf's corners lie where there is no leaf, and are black in most pictures.
+        // The level of about 8 texels across: an average about the place, not the texel there. Of what is cut out or transparent,
+        // the whole picture's mean, weighted by alpha: a leaf's corners lie where there is no leaf, and are black in most
+        // pictures.
         const std::uint32_t across = material.alpha == model::AlphaMode::opaque ? 8 : 1;
         std::uint32_t level = 0, w = t.width, h = t.height;
         std::uint64_t at = t.first_byte;
@@ -119,21 +123,25 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
         const std::uint32_t x = std::min(w - 1, static_cast<std::uint32_t>(u * static_cast<float>(w)));
         const std::uint32_t y = std::min(h - 1, static_cast<std::uint32_t>(v * static_cast<float>(h)));
         for (std::size_t c = 0; c < 3; ++c) {
-            colour[c] *= static_cast<float>(std::to_integer<std::uint8_t>(model.texels[at + (static_cast<std::uint64_t>(y) * w + x) * 4 + c])) / 255.0F;
+            colour[c] *= static_cast<float>(
+                             std::to_integer<std::uint8_t>(model.texels[at + (static_cast<std::uint64_t>(y) * w + x) * 4 + c])) /
+                         255.0F;
         }
     }
     std::array<std::uint8_t, 4> out{};
-    for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(colour[c], 0.0F, 1.0F)));
+    for (std::size_t c = 0; c < 3; ++c)
+        out[c] = static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(colour[c], 0.0F, 1.0F)));
     out[3] = 255;
     return out;
 }
 
-std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material) {
+std::vector<model::EffectFinding> find_effects(const model::Model& model,
+                                               const std::vector<std::uint64_t>& triangles_of_material) {
     constexpr std::array<const char*, model::effect_count> absent = {
-        "no material has an image", "all vertex colours are white or absent", "every material is unlit", "no material has alpha mode MASK",
-        "no material has alpha mode BLEND"};
+        "no material has an image", "all vertex colours are white or absent", "every material is unlit",
+        "no material has alpha mode MASK", "no material has alpha mode BLEND"};
     constexpr std::array<const char*, model::effect_count> what = {"have an image", "have vertex colours", "are lit",
-                                                                  "are cut out by alpha", "are transparent"};
+                                                                   "are cut out by alpha", "are transparent"};
     std::vector<model::EffectFinding> findings;
     for (std::size_t e = 0; e < model::effect_count; ++e) {
         model::EffectFinding f;

@@ -18,13 +18,14 @@ model::Index add_materials(const importer::Scene& scene, model::Model& model);
 void mark_vertex_colours(const importer::Scene& scene, model::Model& model);
 
 /// Adds RGBA8 with all its mip levels; returns its index.
-model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height, bool clamp,
-                         std::uint32_t most_levels);
+model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height,
+                         bool clamp, std::uint32_t most_levels);
 
 /// Colour of a vertex as seen from afar: its own, times the material's, times the texture about its uv.
 std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material, const model::Vertex& vertex);
 
 /// One finding an effect, with the reason, from materials and full-detail triangles a material.
-std::vector<model::EffectFinding> find_effects(const model::Model& model, const std::vector<std::uint64_t>& triangles_of_material);
+std::vector<model::EffectFinding> find_effects(const model::Model& model,
+                                               const std::vector<std::uint64_t>& triangles_of_material);
 
 }  // namespace surefoot::bake

@@ -54,7 +54,8 @@ Geometry mesh_geometry(const importer::Mesh& mesh, const model::Model& model) {
         }
         GeometryPart part{p.material, p.indices};
         for (std::uint32_t& index : part.indices) index += base;
-        const auto same = std::find_if(g.parts.begin(), g.parts.end(), [&](const GeometryPart& q) { return q.material == p.material; });
+        const auto same =
+            std::find_if(g.parts.begin(), g.parts.end(), [&](const GeometryPart& q) { return q.material == p.material; });
         if (same != g.parts.end()) {
             same->indices.insert(same->indices.end(), part.indices.begin(), part.indices.end());
         } else {
@@ -117,7 +118,8 @@ std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
         const auto& indices = whole.parts[p].indices;
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
             Loose t{p, {indices[i], indices[i + 1], indices[i + 2]}, {}};
-            t.centre = position_of(whole.vertices[t.corner[0]]) + position_of(whole.vertices[t.corner[1]]) + position_of(whole.vertices[t.corner[2]]);
+            t.centre = position_of(whole.vertices[t.corner[0]]) + position_of(whole.vertices[t.corner[1]]) +
+                       position_of(whole.vertices[t.corner[2]]);
             triangles.push_back(t);
         }
     }

@@ -18,12 +18,12 @@ struct MeshForm {
 };
 
 struct PlacedObject {
-    std::uint32_t mesh = 0;        ///< in the list of forms
+    std::uint32_t mesh = 0;  ///< in the list of forms
     dmat4 world{1};
     std::string name;
     float importance = 1;
-    Box box;                       ///< world
-    std::uint32_t object = 0;      ///< the conceptual object it is, or is a piece of
+    Box box;                   ///< world
+    std::uint32_t object = 0;  ///< the conceptual object it is, or is a piece of
     bool piece = false;
 };
 

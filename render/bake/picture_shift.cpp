@@ -82,9 +82,11 @@ PictureReference::~PictureReference() = default;
 
 float PictureReference::shift_m(const Level& level) const {
     std::vector<Sample> samples;
-    constexpr std::array<vec3, 4> places = {vec3(1.0F / 3), vec3(0.6F, 0.2F, 0.2F), vec3(0.2F, 0.6F, 0.2F), vec3(0.2F, 0.2F, 0.6F)};
+    constexpr std::array<vec3, 4> places = {vec3(1.0F / 3), vec3(0.6F, 0.2F, 0.2F), vec3(0.2F, 0.6F, 0.2F),
+                                            vec3(0.2F, 0.2F, 0.6F)};
     for (const GeometryPart& part : level.parts) {
-        const auto own = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const auto& s) { return s->material == part.material; });
+        const auto own =
+            std::find_if(surfaces_.begin(), surfaces_.end(), [&](const auto& s) { return s->material == part.material; });
         if (own == surfaces_.end()) continue;
         const Surface& surface = **own;
         std::uint32_t hint = 0xffffffffU;
@@ -96,7 +98,8 @@ float PictureReference::shift_m(const Level& level) const {
                 const vec3 p = coarse[0].p * at.x + coarse[1].p * at.y + coarse[2].p * at.z;
                 const vec2 uv = coarse[0].uv * at.x + coarse[1].uv * at.y + coarse[2].uv * at.z;
                 hint = surface.tree.nearest(p, hint).triangle;
-                const Triangle fine = triangle_of(full_.vertices, std::span(surface.indices).subspan(3 * surface.tree.in_mesh(hint), 3));
+                const Triangle fine =
+                    triangle_of(full_.vertices, std::span(surface.indices).subspan(3 * surface.tree.in_mesh(hint), 3));
                 vec2 step = uv - uv_near(fine, p);
                 if (surface.repeats) step -= glm::round(step);
                 const float shift = metres(fine, step);

@@ -20,6 +20,11 @@ namespace {
 constexpr std::uint32_t largest_side = 16384;
 /// No deflate stream unpacks to more than this many times its size: a smaller file cannot hold the picture it promises.
 constexpr std::uint64_t most_unpacked = 1040;
+/// Nor does a JPEG of 1 bit for 8 x 8 texels of brightness hold more than these texels a byte. (Arithmetic coding could, of
+/// one colour throughout.)
+constexpr std::uint64_t most_jpeg_texels_a_byte = 8 * 64;
+/// Of a progressive JPEG: each goes over the whole picture, and a file of some kilobytes could ask for thousands.
+constexpr int most_jpeg_scans = 200;
 
 Error bad_image(const std::string& place, std::string what) {
     return Error{place, std::move(what), "re-export the picture as PNG or JPEG"};
@@ -65,6 +70,7 @@ struct JpegErrors {
     jpeg_error_mgr base;
     std::jmp_buf jump;
     bool truncated;
+    jpeg_progress_mgr progress;
     std::array<char, JMSG_LENGTH_MAX> message;
 };
 
@@ -82,10 +88,19 @@ void jpeg_message(j_common_ptr state, int level) {
         errors->truncated = true;
 }
 
+void jpeg_scanned(j_common_ptr state) {
+    auto* errors = reinterpret_cast<JpegErrors*>(state->err);
+    if (reinterpret_cast<j_decompress_ptr>(state)->input_scan_number <= most_jpeg_scans) return;
+    *fmt::format_to_n(errors->message.begin(), errors->message.size() - 1, "more than {} scans", most_jpeg_scans).out = '\0';
+    std::longjmp(errors->jump, 1);
+}
+
 /// Reads the header; false on error. No object with a destructor may live in a function that setjmp returns to twice.
 bool jpeg_begin(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::span<const std::byte> bytes) {
     if (setjmp(errors.jump) != 0) return false;
     jpeg_create_decompress(&jpeg);
+    errors.progress.progress_monitor = jpeg_scanned;
+    jpeg.progress = &errors.progress;
     jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
     jpeg_read_header(&jpeg, TRUE);
     const bool inks = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
@@ -125,6 +140,10 @@ Result<Image> decode_jpeg(std::span<const std::byte> bytes, const std::string& p
         if (auto fits = check_size(place, jpeg.image_width, jpeg.image_height); !fits) {
             jpeg_destroy_decompress(&jpeg);
             return fits.error();
+        }
+        if (std::uint64_t{jpeg.image_width} * jpeg.image_height > most_jpeg_texels_a_byte * bytes.size()) {
+            jpeg_destroy_decompress(&jpeg);
+            return bad_image(place, "JPEG is truncated");
         }
         image.width = jpeg.image_width;
         image.height = jpeg.image_height;

@@ -137,9 +137,7 @@ Result<model::CostModel> costs_of(const toml::table& table, const std::string& f
 
 }  // namespace
 
-std::uint64_t hash_of(const model::CostModel& costs) {
-    return hash_bytes(std::as_bytes(std::span<const char>(body_of(costs))));
-}
+std::uint64_t hash_of(const model::CostModel& costs) { return hash_bytes(std::as_bytes(std::span<const char>(body_of(costs)))); }
 
 Result<void> write_costs(const std::string& file, const model::CostModel& costs) {
     const std::string body = body_of(costs);

@@ -10,10 +10,10 @@ namespace surefoot::measure {
 /// SNR = 10 log10(VAR / MSE) over the image's R, G, B bytes (Pasman & Jansen 2002, 4.2). VAR is of the simplified image s
 /// as published; `var_reference_db` uses the reference's instead.
 struct Snr {
-    double db = 0;                ///< +inf where MSE = 0 (even if VAR = 0)
+    double db = 0;  ///< +inf where MSE = 0 (even if VAR = 0)
     double var_reference_db = 0;
     double mse = 0;
-    bool defined = true;          ///< false where VAR = 0 and MSE > 0: excluded from means and counted
+    bool defined = true;  ///< false where VAR = 0 and MSE > 0: excluded from means and counted
 };
 /// Both RGBA8 of the same size; alpha ignored. Sizes differ: not defined.
 Snr snr(std::span<const std::uint8_t> simplified, std::span<const std::uint8_t> reference);

@@ -38,15 +38,17 @@ struct FrameCombine {
 };
 
 struct CostModel {
-    std::vector<CostGrid> grids;      ///< at least one; class looked up by exact mask, else the grid with the most bits in common above it
+    std::vector<CostGrid>
+        grids;  ///< at least one; class looked up by exact mask, else the grid with the most bits in common above it
     FrameCombine combine;
-    float upper_factor = 1.25F;       ///< p90 of actual / predicted whole-frame cost at calibration: what the budget spends
-    float slice_us = 30;              ///< cost of ending a slice (flush and fence)
-    std::string machine;              ///< CPU and renderer, rasteriser count: a table of another machine is refused
+    float upper_factor = 1.25F;  ///< p90 of actual / predicted whole-frame cost at calibration: what the budget spends
+    float slice_us = 30;         ///< cost of ending a slice (flush and fence)
+    std::string machine;         ///< CPU and renderer, rasteriser count: a table of another machine is refused
     bool timer_query_honest = false;
-    bool calibrated = false;          ///< false: built-in defaults
+    bool calibrated = false;  ///< false: built-in defaults
 
-    /// Interpolated; arguments below 1 count as 1, beyond the grid are extrapolated linearly in the argument. Never negative, NaN in: the largest cell.
+    /// Interpolated; arguments below 1 count as 1, beyond the grid are extrapolated linearly in the argument. Never negative, NaN
+    /// in: the largest cell.
     [[nodiscard]] ItemCost item(float triangles, float pixels, const CostGrid& grid) const;
     [[nodiscard]] const CostGrid& grid_for(EffectMask effects) const;
 };

@@ -18,11 +18,11 @@ constexpr Index none = 0xffffffffU;
 
 /// 32 bytes, one layout for all meshes: a program reads only the attributes that its effects need.
 struct Vertex {
-    float position[3];          ///< in the geometry's own frame, metres before its Placement
-    std::int8_t normal[4];      ///< unit normal * 127; w unused
-    std::uint8_t colour[4];     ///< RGBA, sRGB-encoded as in the source; white where the source has none
-    float uv[2];                ///< texture coordinates, repeat
-    std::uint32_t spare = 0;    ///< zero; keeps the stride a power of two
+    float position[3];        ///< in the geometry's own frame, metres before its Placement
+    std::int8_t normal[4];    ///< unit normal * 127; w unused
+    std::uint8_t colour[4];   ///< RGBA, sRGB-encoded as in the source; white where the source has none
+    float uv[2];              ///< texture coordinates, repeat
+    std::uint32_t spare = 0;  ///< zero; keeps the stride a power of two
 };
 static_assert(sizeof(Vertex) == 32);
 
@@ -37,10 +37,10 @@ enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 struct Material {
     std::array<float, 4> colour{1, 1, 1, 1};  ///< RGBA factor
     Index texture = none;
-    float alpha_cutoff = 0.5F;                ///< used when alpha == mask
+    float alpha_cutoff = 0.5F;  ///< used when alpha == mask
     AlphaMode alpha = AlphaMode::opaque;
     bool two_sided = false;
-    EffectMask effects = 0;                   ///< what drawing with it calls for (sun, vertex colour included)
+    EffectMask effects = 0;  ///< what drawing with it calls for (sun, vertex colour included)
 };
 
 /// RGBA8, sRGB-encoded; all mip levels, largest first, level i of max(1, w >> i) x max(1, h >> i), tightly packed.
@@ -53,7 +53,7 @@ struct Texture {
 /// A range of triangles with one material: the unit of drawing.
 struct Part {
     Index material = 0;
-    std::uint32_t first_index = 0, index_count = 0;   ///< in Model::indices; count % 3 == 0; counter-clockwise front
+    std::uint32_t first_index = 0, index_count = 0;    ///< in Model::indices; count % 3 == 0; counter-clockwise front
     std::uint32_t first_vertex = 0, vertex_count = 0;  ///< indices are relative to first_vertex and < vertex_count
 };
 
@@ -62,14 +62,14 @@ enum class RepKind : std::uint8_t { mesh, colour_box, textured_box };
 /// One drawable form of a node (DESIGN 4, 5).
 struct Representation {
     RepKind kind = RepKind::mesh;
-    bool everywhere = true;         ///< valid with the eye anywhere, inside included; boxes are not
-    float error_m = 0;              ///< upper bound of the two-sided distance to the node's full detail, world metres
-    float min_distance_m = 0;       ///< valid only when the eye is at least this far from the node's box (0: everywhere)
+    bool everywhere = true;    ///< valid with the eye anywhere, inside included; boxes are not
+    float error_m = 0;         ///< upper bound of the two-sided distance to the node's full detail, world metres
+    float min_distance_m = 0;  ///< valid only when the eye is at least this far from the node's box (0: everywhere)
     Index placement = 0;
     Index first_part = 0;
     std::uint32_t part_count = 0;
     std::uint32_t triangles = 0;
-    EffectMask effects = 0;         ///< union over its parts: the state class for cost
+    EffectMask effects = 0;  ///< union over its parts: the state class for cost
     /// Rasterised area in m^2 seen along +-x, +-y, +-z (world axes), hidden layers included: sum over triangles of
     /// area * |n_axis|, halved where back faces are culled. Pixels ~ area / distance^2 (overdraw is in it).
     std::array<float, 3> area_m2{};
@@ -79,24 +79,24 @@ enum class NodeKind : std::uint8_t { cluster, object, piece };
 
 /// A node of the hierarchy. Children are contiguous and come after their parent; node 0 is the root.
 struct Node {
-    Box box;                         ///< world, of the full detail below
+    Box box;  ///< world, of the full detail below
     Index parent = none;
     Index first_child = none;
-    std::uint32_t child_count = 0;   ///< 0: a leaf; its finest representation is the full detail
+    std::uint32_t child_count = 0;  ///< 0: a leaf; its finest representation is the full detail
     Index first_rep = 0;
-    std::uint32_t rep_count = 0;     ///< >= 1; coarse to fine: error falls, triangles rise; >= 1 is valid everywhere
-    Index name = none;               ///< offset in Model::names
-    Index object = none;             ///< index of the conceptual object (leaves and pieces), none for clusters
-    float importance = 1.0F;         ///< 0..1
+    std::uint32_t rep_count = 0;  ///< >= 1; coarse to fine: error falls, triangles rise; >= 1 is valid everywhere
+    Index name = none;            ///< offset in Model::names
+    Index object = none;          ///< index of the conceptual object (leaves and pieces), none for clusters
+    float importance = 1.0F;      ///< 0..1
     NodeKind kind = NodeKind::cluster;
-    std::uint64_t triangles = 0;     ///< full detail below
+    std::uint64_t triangles = 0;  ///< full detail below
 };
 
 /// What was imported, repaired, dropped; how it was baked. Shown by `inspect`.
 struct Provenance {
     std::vector<std::string> sources;
-    std::string quality;                 ///< draft | full
-    std::vector<std::string> warnings;   ///< one line each, e.g. "dropped 12 triangles of zero area in mesh 'lamp'"
+    std::string quality;                ///< draft | full
+    std::vector<std::string> warnings;  ///< one line each, e.g. "dropped 12 triangles of zero area in mesh 'lamp'"
     double bake_s = 0;
 };
 
@@ -110,8 +110,8 @@ struct Model {
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
     std::vector<std::byte> texels;
-    std::string names;                      ///< zero-terminated strings, offset 0 is ""
-    std::vector<EffectFinding> effects;     ///< one an effect, bit order
+    std::string names;                   ///< zero-terminated strings, offset 0 is ""
+    std::vector<EffectFinding> effects;  ///< one an effect, bit order
     std::uint32_t object_count = 0;
     dvec3 sun_direction{0.36, 0.80, 0.48};  ///< towards the sun, unit
     Provenance provenance;

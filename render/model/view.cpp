@@ -2,12 +2,14 @@
 #include "render/model/view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace surefoot::model {
 
 namespace {
 
+constexpr double large_share = 16;  ///< a box is large from a quarter of its distance on (squared)
 constexpr double widest_half_angle_rad = 89.0 / 180.0 * 3.14159265358979323846 - 1e-6;
 
 struct HalfAngles {
@@ -25,6 +27,30 @@ double widen(double half, double other, double angle_rad) {
     const double cos_corner = 1.0 / std::sqrt(1.0 + std::pow(std::tan(other) * std::cos(half), 2));
     const double by = std::asin(std::min(1.0, std::sin(std::min(angle_rad, widest_half_angle_rad)) / cos_corner));
     return std::min(half + by, widest_half_angle_rad);
+}
+
+/// Across an edge of the box and one of the pyramid: what is left for large boxes beside the view. Source: Gottschalk, Lin &
+/// Manocha 1996 (OBBTree), for a pyramid without end.
+bool separated_across_edges(const Frustum& frustum, const dvec3& centre, const dvec3& half) {
+    const auto& at = frustum.corners;
+    const std::array<dvec3, 6> edges = {glm::normalize(at[1] - at[0]), glm::normalize(at[2] - at[0]),
+                                        glm::normalize(at[3] - at[0]), glm::normalize(at[4] - at[0]),
+                                        glm::normalize(at[2] - at[1]), glm::normalize(at[3] - at[1])};
+    const dvec3 to_apex = at[0] - centre;
+    // The box lies within `scale` of the apex: up to there an edge that seems parallel, but for rounding, stays within the slack.
+    const double scale = glm::length(to_apex) + glm::length(half);
+    const double slack = 1e-9 * scale + 1e-14 * glm::length(at[0]), parallel = -1e-10;
+    for (const dvec3& e : edges) {
+        for (const dvec3& axis : {dvec3(0, -e.z, e.y), dvec3(e.z, 0, -e.x), dvec3(-e.y, e.x, 0)}) {
+            const double along = glm::dot(axis, to_apex);
+            if (!(std::abs(along) > glm::dot(glm::abs(axis), half) + slack)) continue;
+            const dvec3 away = along > 0 ? axis : -axis;
+            if (glm::dot(away, edges[0]) >= parallel && glm::dot(away, edges[1]) >= parallel &&
+                glm::dot(away, edges[2]) >= parallel && glm::dot(away, edges[3]) >= parallel)
+                return true;
+        }
+    }
+    return false;
 }
 
 }  // namespace
@@ -63,11 +89,14 @@ Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double r
 bool visible(const Frustum& frustum, const Box& box) {
     if (box.empty()) return false;
     const dvec3 centre = box.centre(), half = box.half();
+    bool inside = true;
     for (const dvec4& p : frustum.planes) {
         const double reach = std::abs(p.x) * half.x + std::abs(p.y) * half.y + std::abs(p.z) * half.z;
         const double away = p.x * centre.x + p.y * centre.y + p.z * centre.z + p.w;
         if (away + reach < -1e-9 * (std::abs(p.w) + reach)) return false;  // the slack covers rounding far from the origin
+        inside = inside && away >= reach;
     }
+    if (inside) return true;
     // The far plane is infinite: a face separates only if the apex is beyond it and no edge ray comes back.
     for (int axis = 0; axis < 3; ++axis) {
         const double apex = frustum.corners[0][axis];
@@ -79,7 +108,10 @@ bool visible(const Frustum& frustum, const Box& box) {
         }
         if (below || above) return false;
     }
-    return true;
+    // Small boxes hardly ever pass so far from outside, and the time is better spent on their children.
+    const dvec3 to_centre = centre - frustum.corners[0];
+    const bool large = large_share * glm::dot(half, half) > glm::dot(to_centre, to_centre);
+    return !(large && separated_across_edges(frustum, centre, half));
 }
 
 mat4 view_rotation(const Pose& pose) { return mat4(glm::mat4_cast(glm::conjugate(glm::normalize(pose.orientation)))); }

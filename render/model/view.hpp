@@ -29,7 +29,7 @@ double half_angle_y(const Pose& pose);
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m = 0.0, double angle_rad = 0.0);
 
 /// Conservative: never false for a box that some point of the frustum touches. Planes against the box, then the frustum's
-/// corners against the box's faces (DESIGN 8).
+/// corners against the box's faces (DESIGN 8), then, of large boxes, edges across edges.
 bool visible(const Frustum& frustum, const Box& box);
 
 /// Eye-relative view matrix (rotation only: positions are made relative to the eye in double first).

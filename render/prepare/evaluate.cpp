@@ -122,7 +122,8 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
         choice.rep = r;
         choice.cost = costs_.item(static_cast<float>(rep.triangles), pixels, costs_.grids[grid_of_rep_[r]]);
         choice.error_rad = error_rad;
-        choice.benefit = benefit_of(weight.weight, accuracy_gain(error_rad, view.pixel_angle_rad), wrongness(weight.size, error_rad));
+        choice.benefit =
+            benefit_of(weight.weight, accuracy_gain(error_rad, view.pixel_angle_rad), wrongness(weight.size, error_rad));
         choice.subtree_benefit = choice.benefit;
         choice.triangles = rep.triangles;
     };

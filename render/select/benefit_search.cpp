@@ -227,7 +227,8 @@ public:
         const Budget budget(input);
         Cover cover(input, state);
         cover.take_floor();
-        if (full_detail_fits(input, state, budget)) return cover.finish(budget, cover.take_finest(), cut);
+        if (full_detail_fits(input, state, budget) || cover.finest_is_cheapest(budget))
+            return cover.finish(budget, cover.take_finest(), cut);
         cover.finish(budget, ThresholdSearch(input, state, cover, budget, subtree_).run(), cut);
     }
 

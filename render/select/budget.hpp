@@ -43,8 +43,9 @@ public:
     [[nodiscard]] double predicted_us(const Sum& sum) const { return (fixed_us_ + items_us(sum) * per_item_us_) * factor_; }
     /// Within `share` of the budget. The margin of a millionth covers rounding: the cut's own sum, taken afresh and in float,
     /// is still within it.
-    [[nodiscard]] bool fits(const Sum& sum, double share = 1.0) const {
-        return predicted_us(sum) * (1.0 + 1e-6) <= budget_us_ * share;
+    [[nodiscard]] bool fits(const Sum& sum, double share = 1.0) const { return fits_us(predicted_us(sum), share); }
+    [[nodiscard]] bool fits_us(double predicted_us, double share = 1.0) const {
+        return predicted_us * (1.0 + 1e-6) <= budget_us_ * share;
     }
     [[nodiscard]] double budget_us() const { return budget_us_; }
 

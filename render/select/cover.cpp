@@ -79,6 +79,12 @@ std::uint32_t Cover::take_finest() {
     return steps;
 }
 
+bool Cover::finest_is_cheapest(const Budget& budget) const {
+    Sum full;
+    full.add(prepared_.full_cost);
+    return budget.predicted_us(full) * (1.0 + 1e-6) < budget.predicted_us(floor_);
+}
+
 void Cover::take_root(std::uint32_t offset) {
     take_floor();  // for its cost
     std::fill(chosen_.begin(), chosen_.end(), none);
@@ -131,8 +137,9 @@ void Cover::remember() {
 
 void Cover::finish(const Budget& budget, std::uint32_t refinements, Cut& cut) {
     list_items(budget, cut);
-    cut.floor_us = static_cast<float>(budget.predicted_us(floor_));
-    cut.floor_binds = !budget.fits(floor_);
+    // What is drawn is a legal cut: if it is cheaper than the floor, it is the floor.
+    cut.floor_us = std::min(static_cast<float>(budget.predicted_us(floor_)), cut.predicted_us);
+    cut.floor_binds = !budget.fits_us(static_cast<double>(cut.floor_us));
     cut.refinements = refinements;
     remember();
 }

@@ -17,6 +17,9 @@ public:
     std::span<std::uint32_t> take_floor();
     /// From the floor to full detail: every leaf's finest choice. Returns the number of steps that a search would have taken.
     std::uint32_t take_finest();
+    /// Full detail costs less than the floor: the floor is made bottom-up, each family by itself, and the larger of two sums
+    /// does not add up so. To be asked after take_floor().
+    [[nodiscard]] bool finest_is_cheapest(const Budget& budget) const;
     /// Starts with the root alone at choice `offset`.
     void take_root(std::uint32_t offset);
 

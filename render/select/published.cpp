@@ -40,6 +40,7 @@ public:
         std::uint32_t refinements = 0;
         if (!budget.fits(total)) {
             cover.take_floor();  // not in the source: a root beyond the budget leaves it nothing to say
+            if (cover.finest_is_cheapest(budget)) refinements = cover.take_finest();
         } else if (order_ == Order::depth) {
             refinements = depth_first(cover, budget, threshold, total);
         } else {

@@ -66,7 +66,8 @@ public:
         Cover cover(input, state);
         const Steps steps(input, state, false);
         const auto floor = cover.take_floor();
-        if (full_detail_fits(input, state, budget)) return cover.finish(budget, cover.take_finest(), cut);
+        if (full_detail_fits(input, state, budget) || cover.finest_is_cheapest(budget))
+            return cover.finish(budget, cover.take_finest(), cut);
         const auto key = [&](Index c) {
             const prepare::Choice& now = cover.current(c);
             return steps.key(now, Steps::was_refined(steps.shown(cover.candidate(c).node), now));
