@@ -150,6 +150,19 @@ stop_after 1 walk f.walk $virtual --frames 4000000 --ledger stopped.csv; got=$?
 [ $got -eq 130 ] || complain "exit $got, not 130, of a stopped walk"
 grep -q 'stopped by the user after' err || complain "a stopped walk says '$(head -c 300 err)'"
 grep -q 'cut hash' out || complain "a stopped walk does not sum up"
+# Whenever it comes: outputs are of the frames that ran, or what was there before.
+for after in 0.05 0.1 0.2 0.3 0.5; do
+  echo 'of an earlier walk' >earlier.csv
+  stop_after $after walk f.walk --backend null --no-fifo --seconds 20 --ledger earlier.csv
+  if grep -q 'of an earlier walk' earlier.csv; then
+    grep -q 'stopped by the user after [1-9]' err && complain "a walk stopped after $after s says that frames ran, and writes none"
+  else
+    [ "$(wc -l <earlier.csv)" -gt 1 ] || complain "a walk stopped after $after s replaces a ledger by an empty one: $(cat err)"
+  fi
+done
+for option in --report --ledger --trace --snap --capture --incidents --input; do
+  expect 2 "$option.*names nothing" walk f.walk $virtual $option ""
+done
 "$surefoot" scene town --scale 0.5 -o big.glb >/dev/null
 stop_after 0.4 bake big.glb -o f.walk; got=$?
 [ $got -eq 130 ] || complain "exit $got, not 130, of a stopped bake: $(cat err)"

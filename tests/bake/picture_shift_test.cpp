@@ -8,7 +8,8 @@
 namespace surefoot::bake {
 namespace {
 
-/// A plate of 8 x 8 squares, 2 m wide, its picture laid on by `uv` of 0..1; and as coarse level its two triangles from corner to corner.
+/// A plate of 8 x 8 squares, 2 m wide, its picture laid on by `uv` of 0..1; and as coarse level its two triangles from corner to
+/// corner.
 struct Plate {
     Geometry full;
     Level coarse;

@@ -34,8 +34,12 @@ rt::Placement on_core(int core, int priority, const char* name) {
 
 }  // namespace
 
-BlameStages::BlameStages(rt::Cause cause, int frame_core, Helper& rasteriser, Stopper& stopper)
-    : cause_(cause), rasteriser_(rasteriser), stopper_(stopper), blocker_(on_core(frame_core, blocker_priority, "blocker")) {}
+BlameStages::BlameStages(rt::Cause cause, int wanted, int frame_core, Helper& rasteriser, Stopper& stopper)
+    : cause_(cause),
+      wanted_(wanted),
+      rasteriser_(rasteriser),
+      stopper_(stopper),
+      blocker_(on_core(frame_core, blocker_priority, "blocker")) {}
 
 /// 14 to 30 ms, other for every frame.
 std::int64_t BlameStages::extra_ns(std::uint64_t frame) const {
@@ -101,6 +105,7 @@ void BlameStages::finish(rt::FrameRecord& r) {
 }
 
 void BlameStages::account(rt::FrameRecord& r) {
+    if (counts(r) && --wanted_ == 0) enough_ = true;
     // The preparation falls behind for as long as it takes to make a set too old just at the injected frame.
     const bool stalled =
         cause_ == rt::Cause::prepared_too_old && r.frame % frames_apart < frames_apart / 2 && r.frame >= frames_apart;
@@ -129,11 +134,12 @@ Named inject(rt::Cause cause, int times, int core, Stopper& stopper) {
     std::thread([&] {
         (void)rt::place_thread(0, on_core(core, frame_priority, "frame"));
         rt::RealClock clock;
-        BlameStages stages(cause, core, rasteriser, stopper);
+        BlameStages stages(cause, times, core, rasteriser, stopper);
         const std::array<pid_t, 1> rasterisers = {rasteriser.tid()};
         rt::FrameLoopOptions options;
         options.period_ns = period_ns;
         options.frames = static_cast<std::uint64_t>(times * 3 / 2) * frames_apart;
+        options.stop = &stages.enough();
         options.continued = rt::count_continues();
         options.limits.minor_fault_ns = rt::minor_fault_cost_ns();
         options.rasterisers = rasterisers;
@@ -144,7 +150,7 @@ Named inject(rt::Cause cause, int times, int core, Stopper& stopper) {
     while (ring.try_pop(r)) {
         if (!BlameStages::injected(r.frame) || r.frame < 2 * frames_apart || named.missed == times) continue;
         ++named.injected;
-        if (!r.missed || r.candidates == 0) continue;
+        if (!BlameStages::counts(r)) continue;
         ++named.missed;
         if (r.cause == cause) {
             ++named.right;

@@ -151,7 +151,8 @@ constexpr std::uint64_t frames_apart = 6;  ///< from one injection to the next
 /// At 60 Hz a frame takes about 7 of its 16.7 ms. Every frames_apart frames one takes 14 to 30 ms more, by one cause.
 class BlameStages final : public rt::FrameStages {
 public:
-    BlameStages(rt::Cause cause, int frame_core, Helper& rasteriser, Stopper& stopper);
+    /// Wants `wanted` frames that missed by the cause.
+    BlameStages(rt::Cause cause, int wanted, int frame_core, Helper& rasteriser, Stopper& stopper);
 
     void sample(rt::FrameRecord& record) override;
     void select(rt::FrameRecord& record) override;
@@ -159,6 +160,12 @@ public:
     void finish(rt::FrameRecord& record) override;
     void account(rt::FrameRecord& record) override;
     [[nodiscard]] static bool injected(std::uint64_t frame) { return frame % frames_apart == frames_apart / 2; }
+    /// An injection that was carried out and made its frame miss.
+    [[nodiscard]] static bool counts(const rt::FrameRecord& record) {
+        return injected(record.frame) && record.frame >= 2 * frames_apart && record.missed && record.candidates != 0;
+    }
+    /// Set as soon as the wanted number is there.
+    [[nodiscard]] const std::atomic<bool>& enough() const { return enough_; }
     [[nodiscard]] bool blocked() const { return !blocker_.misplaced(); }
 
 private:
@@ -169,6 +176,8 @@ private:
     bool stopped_for(std::int64_t ns);
 
     rt::Cause cause_;
+    int wanted_;
+    std::atomic<bool> enough_{false};
     Helper& rasteriser_;
     Stopper& stopper_;
     Helper blocker_;  ///< above the frame thread, on its core

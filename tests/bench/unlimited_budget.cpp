@@ -54,7 +54,9 @@ int main(int argc, char** argv) {
         worst = std::min(worst, share);
         sum += share;
     }
-    fmt::print("{{\"model\": \"{}\", \"poses\": {}, \"share_within_1\": {{\"min\": {:.6f}, \"mean\": {:.6f}}}, \"triangles\": {{\"cut\": {}, \"flat\": {}}}}}\n",
-               argv[1], poses, worst, sum / poses, cut_triangles / poses, full_triangles / poses);
+    fmt::print(
+        "{{\"model\": \"{}\", \"poses\": {}, \"share_within_1\": {{\"min\": {:.6f}, \"mean\": {:.6f}}}, \"triangles\": "
+        "{{\"cut\": {}, \"flat\": {}}}}}\n",
+        argv[1], poses, worst, sum / poses, cut_triangles / poses, full_triangles / poses);
     return worst >= 0.999 ? 0 : 1;
 }

@@ -1,7 +1,7 @@
 // A program for callgrind: draws frames of one small scene on software GL, rasterised in this thread, and prints nothing else.
 // frame_instructions bare|plain|sun FRAMES: `plain` has no effects and Surefoot's programs; `bare` the same scene with a program
-// written here by hand, with nothing in it that an effect could have left behind; `sun` calls for an effect, to show that one costs.
-// Three frames warm up what is compiled late; then FRAMES run inside surefoot_counted_frame, which callgrind counts alone.
+// written here by hand, with nothing in it that an effect could have left behind; `sun` calls for an effect, to show that one
+// costs. Three frames warm up what is compiled late; then FRAMES run inside surefoot_counted_frame, which callgrind counts alone.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -18,21 +18,22 @@ namespace {
 using namespace surefoot;
 
 gl::ProgramSource bare_program(model::EffectMask) {
-    return {"#version 430 core\n"
-            "in vec3 position;\n"
-            "in vec4 world_rows[3];\n"
-            "in vec4 material_colour;\n"
-            "uniform mat4 view_projection;\n"
-            "flat out vec3 colour;\n"
-            "void main() {\n"
-            "    vec4 p = vec4(position, 1.0);\n"
-            "    colour = material_colour.rgb;\n"
-            "    gl_Position = view_projection * vec4(dot(world_rows[0], p), dot(world_rows[1], p), dot(world_rows[2], p), 1.0);\n"
-            "}\n",
-            "#version 430 core\n"
-            "flat in vec3 colour;\n"
-            "out vec4 pixel;\n"
-            "void main() { pixel = vec4(colour, 1.0); }\n"};
+    return {
+        "#version 430 core\n"
+        "in vec3 position;\n"
+        "in vec4 world_rows[3];\n"
+        "in vec4 material_colour;\n"
+        "uniform mat4 view_projection;\n"
+        "flat out vec3 colour;\n"
+        "void main() {\n"
+        "    vec4 p = vec4(position, 1.0);\n"
+        "    colour = material_colour.rgb;\n"
+        "    gl_Position = view_projection * vec4(dot(world_rows[0], p), dot(world_rows[1], p), dot(world_rows[2], p), 1.0);\n"
+        "}\n",
+        "#version 430 core\n"
+        "flat in vec3 colour;\n"
+        "out vec4 pixel;\n"
+        "void main() { pixel = vec4(colour, 1.0); }\n"};
 }
 
 /// A ball of 2 x rings x sides triangles.

@@ -110,7 +110,8 @@ TEST(RealData, TruncatedGlbIsAnErrorAtManyLengths) {
     const auto data = data_folder();
     if (!data) GTEST_SKIP() << "SUREFOOT_DATA does not name a folder";
     const Folder folder;
-    for (const auto& [file, step] : {std::pair{"hard/trimesh/boolean.glb", 331U}, {"interior/hospital/hospital_three_floors.glb", 100003U}}) {
+    for (const auto& [file, step] :
+         {std::pair{"hard/trimesh/boolean.glb", 331U}, {"interior/hospital/hospital_three_floors.glb", 100003U}}) {
         std::ifstream in(*data / file, std::ios::binary);
         const std::string whole((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
         for (std::size_t length = 0; length < whole.size(); length += length < 200 ? 1 : step) {

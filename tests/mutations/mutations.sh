@@ -12,7 +12,7 @@ mutation N17b render/gl/ties.cpp 's/ranks\[now.rank_at\] = rank;//' "ranks of wh
 mutation N17c render/gl/ties.cpp 's/ranks\[now.rank_at\] = rank;//' "the same"
 mutation N17d render/gl/gl_draw.cpp 's/gl_.Enable\(GL_DEPTH_TEST\);/gl_.Disable(GL_DEPTH_TEST);/' "the depth test"
 mutation N9a render/model/view.cpp 's/below = below && step <= 0;/below = below;/' "no face separates if an edge ray comes back"
-mutation N9b render/model/view.cpp 's/if \(below \|\| above\) return false;//' "the corners against the box's faces"
+mutation N9b render/model/view.cpp 's/return !\(large && separated_across_edges.*?;/return true;/' "edges across edges, of large boxes"
 mutation N10 render/model/view.cpp 's/std::isnan\(pose.fov_y_rad\) \? Pose\{\}.fov_y_rad : pose.fov_y_rad/pose.fov_y_rad/' "a field of view that is no number"
 mutation N11a render/prepare/evaluate.cpp 's/return std::max\(nearest_m, near_m\);/return nearest_m;/' "distances clamped at the near plane"
 mutation N11b render/model/view.cpp 's/below = below && step <= 0;/below = below;/' "no face separates if an edge ray comes back"
@@ -46,7 +46,9 @@ mutation F4 rt/base/path.cpp 's/if \(!std::isfinite\(\*value\)\) return.*?;//; s
 mutation F5 render/measure/calibrate_file.cpp 's/if \(first != fmt::format.*?\n    \}//s' "the cost table's checksum"
 mutation F6 config/values.cpp 's/!\(\*number >= entry.min && \*number <= entry.max\)/false/' "limits of settings"
 mutation F7 input/hid/decoder.cpp 's/value = std::clamp\(value, v.min, v.max\);//' "values held in their range"
-mutation N21 render/import/image.cpp 's/png_image_finish_read\(.*?\) == 0/false/' "a picture that cannot be unpacked is refused"
+mutation N21a render/import/image.cpp 's/png_image_finish_read\(.*?\) == 0/false/' "a picture that cannot be unpacked is refused"
+mutation N21b render/import/image.cpp 's/if \(errors.truncated\) return/if (false) return/' "a JPEG that ends early is refused"
+mutation N21c render/import/image.cpp 's/ > most_jpeg_texels_a_byte \* bytes.size\(\)/ > UINT64_MAX - 1/' "a JPEG that is too small for its size is refused before memory is taken"
 mutation N13c render/prepare/prepare.cpp 's/begin < end;\)/begin < end && begin < 4096;)/' "levels walked to the last"
 mutation N13d render/select/steps.hpp 's/return refined \? benefit \* hysteresis_ : benefit;/return refined ? benefit \/ hysteresis_ : benefit;/' "what was shown is preferred (turned round)" \
   render/select/search.cpp render/select/benefit_search.cpp render/select/fixed.cpp render/select/published.cpp render/select/cover.cpp

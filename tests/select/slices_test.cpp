@@ -114,14 +114,23 @@ TEST(Slices, MostBeneficialSubtreesComeFirst) {
 TEST(StillFits, ZeroCasesAreDefined) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_TRUE(still_fits({.elapsed_us = 9e9, .next_us = 0, .next_stand_in_us = 0}));
-    EXPECT_TRUE(still_fits({.elapsed_us = 0, .predicted_so_far_us = 0, .next_us = 400, .next_stand_in_us = 10, .limit_us = 1000}));
-    EXPECT_FALSE(still_fits({.elapsed_us = nan, .predicted_so_far_us = 1, .next_us = 400, .next_stand_in_us = 10, .limit_us = 1000}));
-    EXPECT_FALSE(still_fits({.elapsed_us = 10, .predicted_so_far_us = 10, .next_us = 100, .next_stand_in_us = 10, .limit_us = nan}));
-    EXPECT_TRUE(still_fits({.elapsed_us = 999, .predicted_so_far_us = 1, .next_us = 500, .next_stand_in_us = 500, .limit_us = 1000}));
+    EXPECT_TRUE(
+        still_fits({.elapsed_us = 0, .predicted_so_far_us = 0, .next_us = 400, .next_stand_in_us = 10, .limit_us = 1000}));
+    EXPECT_FALSE(
+        still_fits({.elapsed_us = nan, .predicted_so_far_us = 1, .next_us = 400, .next_stand_in_us = 10, .limit_us = 1000}));
+    EXPECT_FALSE(
+        still_fits({.elapsed_us = 10, .predicted_so_far_us = 10, .next_us = 100, .next_stand_in_us = 10, .limit_us = nan}));
+    EXPECT_TRUE(
+        still_fits({.elapsed_us = 999, .predicted_so_far_us = 1, .next_us = 500, .next_stand_in_us = 500, .limit_us = 1000}));
 }
 
 TEST(StillFits, ScalesTheRestByHowWrongTheFrameHasBeen) {
-    CheckInput in{.elapsed_us = 400, .predicted_so_far_us = 400, .next_us = 300, .next_stand_in_us = 5, .rest_stand_in_us = 200, .limit_us = 1000};
+    CheckInput in{.elapsed_us = 400,
+                  .predicted_so_far_us = 400,
+                  .next_us = 300,
+                  .next_stand_in_us = 5,
+                  .rest_stand_in_us = 200,
+                  .limit_us = 1000};
     EXPECT_TRUE(still_fits(in));
     in.predicted_so_far_us = 200;  // twice as slow as said
     EXPECT_FALSE(still_fits(in));

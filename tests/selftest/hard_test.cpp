@@ -6,6 +6,11 @@
 #include <set>
 
 namespace surefoot::selftest {
+
+/// How GoogleTest names a row where it would print its bytes.
+void PrintTo(const Row& row, std::ostream* out);
+void PrintTo(const Row& row, std::ostream* out) { *out << row.id; }
+
 namespace {
 
 /// Of what the command tries. Every check is made; what is random is tried less often.

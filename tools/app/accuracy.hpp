@@ -14,7 +14,7 @@ namespace surefoot::app {
 struct AccuracyRequest {
     std::string model_file, path_file, state_dir, backend = "egl";
     std::uint32_t width = 1280, height = 720, poses = 16;
-    int repeats = 3;              ///< submissions a pose and budget; the median counts
+    int repeats = 3;  ///< submissions a pose and budget; the median counts
     int workers = 0, rasterisers = 0;
     double lift_m = 0;
     std::vector<std::string> selectors{"distance", "depth-first", "best-first", "two-stage"};

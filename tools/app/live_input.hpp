@@ -37,7 +37,7 @@ private:
     std::unique_ptr<input::LiveSource> source_;
     input::LiveSource* live_ = nullptr;
     std::unique_ptr<input::StopKeeper> keeper_;
-    std::string unwritten_;  ///< why the stop could not be written, as it was said
+    std::string unwritten_;      ///< why the stop could not be written, as it was said
     bool stop_latched_ = false;  ///< as it was said last
 };
 

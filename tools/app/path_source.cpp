@@ -30,7 +30,8 @@ Path generated_tour(const model::Model& model) {
         const double reach = radius * (1.5 - 1.15 * t * t * (3.0 - 2.0 * t));
         PathSample sample;
         sample.time_s = 40.0 * t;
-        sample.pose.position = centre + dvec3(std::cos(angle) * reach, half.y * (1.2 - 0.7 * t) + 0.1 * radius * (1.0 - t), std::sin(angle) * reach);
+        sample.pose.position =
+            centre + dvec3(std::cos(angle) * reach, half.y * (1.2 - 0.7 * t) + 0.1 * radius * (1.0 - t), std::sin(angle) * reach);
         sample.pose.orientation = looking_at(sample.pose.position, centre - dvec3(0, 0.3 * half.y, 0));
         path.samples.push_back(sample);
     }
@@ -46,7 +47,8 @@ Pose random_pose(const Path& path, Random& random) {
     return pose;
 }
 
-Result<ChosenPath> choose_path(const std::string& asked, const std::string& model_file, const model::Model& model, double lift_m) {
+Result<ChosenPath> choose_path(const std::string& asked, const std::string& model_file, const model::Model& model,
+                               double lift_m) {
     if (!(std::abs(lift_m) <= 1e7)) return Error{"--lift", "is no height", "give metres, e.g. 1.5"};
     ChosenPath chosen;
     std::string file = asked;

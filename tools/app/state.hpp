@@ -32,6 +32,7 @@ std::string model_costs_file(const std::string& state_dir, const model::CostMode
 std::size_t drop_old_fits(const std::string& state_dir, const model::CostModel& table);
 
 /// The fit under these conditions where there is one (`surefoot calibrate MODEL.walk`), else `table` as it is.
-Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table, const FitConditions& conditions);
+Result<model::CostModel> fitted_costs(const std::string& state_dir, const model::CostModel& table,
+                                      const FitConditions& conditions);
 
 }  // namespace surefoot::app

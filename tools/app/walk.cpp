@@ -146,6 +146,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
                           : rt::place_thread(0, frame_placement(s.plan));
         if (!placed) misplaced = placed.error();
         rt::prefault_stack();
+        if (!s.virtual_clock) rt::prefault_heap();
         WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
         s.engine->device().bind();
         s.burn_ns = rt::run_frame_loop(options, clock, stages, ring).burn_ns;
@@ -230,6 +231,10 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
     if (request.control && !outcome.stopped && !s.lost)
         judge_control(s.plan, s.grid.period_ns, s.burn_ns, blocks, outcome, progress);
+    if (seen == 0 && outcome.stopped) {  // nothing to show: what an earlier walk left stays
+        outcome.notes.emplace_back("stopped before the first frame: nothing is written");
+        return outcome;
+    }
     s.engine->device().bind();
     write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
     s.engine->device().release();

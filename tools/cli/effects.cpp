@@ -22,8 +22,12 @@ int run_effects(const EffectsArguments& a) {
         for (const model::EffectFinding& f : m->effects) {
             if (f.bit != effect.bit) continue;
             if (a.json) {
-                list.push_back({{"effect", std::string(effect.name)}, {"what", std::string(effect.what)}, {"asked_by", std::string(effect.asked_by)},
-                                {"called_for", f.called_for}, {"triangles", f.triangles}, {"reason", f.reason}});
+                list.push_back({{"effect", std::string(effect.name)},
+                                {"what", std::string(effect.what)},
+                                {"asked_by", std::string(effect.asked_by)},
+                                {"called_for", f.called_for},
+                                {"triangles", f.triangles},
+                                {"reason", f.reason}});
             } else {
                 fmt::print("{:<14} {:<11} {:>12}  {}\n", effect.name, f.called_for ? "yes" : "no", f.triangles, f.reason);
             }

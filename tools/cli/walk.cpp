@@ -29,6 +29,13 @@ struct WalkArguments {
     bool no_correction = false, json = false;
 };
 
+/// An empty variable of a script is no wish for no output.
+const CLI::Validator names_something(
+    [](const std::string& given) {
+        return given.empty() ? std::string("names nothing: leave it out, or give a name") : std::string();
+    },
+    "");
+
 /// Options that say nothing without another one, or against it.
 Result<void> check_together(const app::WalkRequest& r, bool every_given, bool capture_frame_given) {
     const bool is_virtual = r.clock == "virtual";
@@ -151,9 +158,7 @@ void add_walk(CLI::App& app, Context& context) {
          "in "
          "hid-recorder's text format, each in its recorded time; ends a second after the last report, or with --seconds or "
          "--frames. Check it with `surefoot devices describe`")
-        ->check([](const std::string& given) {
-            return given.empty() ? std::string("names nothing: leave it out, or give a file") : std::string();
-        });
+        ->check(names_something);
     c->add_option("--steering", r.steering_file,
                   "How --input steers, TOML: [motion], [safety], [[device]], [[gpio]] (else the default of the device's class)");
     c->add_flag("--clear-stop", r.clear_stop,
@@ -189,18 +194,21 @@ void add_walk(CLI::App& app, Context& context) {
         ->check(whole_number_within(1, 100000))
         ->capture_default_str();
     c->add_option("--state", r.state_dir, "Folder with the calibrated cost table");
-    c->add_option("--ledger", r.ledger_file, "CSV, a row a frame");
-    c->add_option("--trace", r.trace_file, "A trace that ui.perfetto.dev opens");
-    c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html");
+    c->add_option("--ledger", r.ledger_file, "CSV, a row a frame")->check(names_something);
+    c->add_option("--trace", r.trace_file, "A trace that ui.perfetto.dev opens")->check(names_something);
+    c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html")->check(names_something);
     c->add_option("--monitor", a->watch.address,
                   "Serve live figures while it walks, for `surefoot status`, `surefoot top` and Prometheus (/metrics): "
                   "unix:PATH, or 127.0.0.1:PORT (port 0: any)");
     c->add_option("--incidents", a->watch.incidents_dir,
                   "Folder in which bursts of misses are written down as they happen: the last minute's ledger and trace; "
-                  "the newest 20, at most 256 MiB");
-    c->add_option("--snap", r.snap_dir, "Pictures of what the walk drew: DIR/00000.png, ...; what 256 MiB of memory hold");
+                  "the newest 20, at most 256 MiB")
+        ->check(names_something);
+    c->add_option("--snap", r.snap_dir, "Pictures of what the walk drew: DIR/00000.png, ...; what 256 MiB of memory hold")
+        ->check(names_something);
     c->add_option("--every", r.snap_every, "A picture every N frames [30]")->check(whole_number_within(1, 1'000'000'000));
-    c->add_option("--capture", r.capture_file, "One frame's prepared arrays and cut, for `surefoot replay`");
+    c->add_option("--capture", r.capture_file, "One frame's prepared arrays and cut, for `surefoot replay`")
+        ->check(names_something);
     c->add_option("--capture-frame", r.capture_frame, "Which frame to capture [0]")->check(whole_number_within(0, 4'000'000));
     c->callback([&context, a] { context.run = [a, &context] { return run_walk_command(*a, context); }; });
 }

@@ -60,6 +60,7 @@ Result<std::unique_ptr<Monitor>> Monitor::open(MonitorOptions options) {
             *address, [m = monitor.get()](std::string_view path) { return m->page(path); }, o.server);
         if (!server) return server.error();
         monitor->server_ = std::move(*server);
+        monitor->serving_.store(monitor->server_.get(), std::memory_order_release);
     }
     return monitor;
 }
@@ -166,8 +167,8 @@ const report::MonitorPage& Monitor::fill_page(bool with_threads) {
         p.counts.incidents_written = writer_->written();
         p.counts.incidents_failed = writer_->failed();
     }
-    if (server_) {
-        const ServerCounts c = server_->counts();
+    if (const Server* server = serving_.load(std::memory_order_acquire)) {
+        const ServerCounts c = server->counts();
         p.counts.scrapes = c.answered;
         p.counts.refused = c.refused;
         p.counts.dropped_slow = c.dropped_slow;

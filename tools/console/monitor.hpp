@@ -95,6 +95,8 @@ private:
     std::int64_t started_ns_ = 0;
 
     std::unique_ptr<IncidentWriter> writer_;
+    /// The same for its own thread, which may ask before the pointer below is set and while it is being taken back.
+    std::atomic<const Server*> serving_{nullptr};
     std::unique_ptr<Server> server_;  ///< last: its thread uses all the others
 };
 

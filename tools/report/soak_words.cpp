@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/report/text_table.hpp"
 #include "tools/report/soak.hpp"
 #include "tools/report/soak_words.hpp"
 #include "tools/report/svg.hpp"
+#include "tools/report/text_table.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace surefoot::report {

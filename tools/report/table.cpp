@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/text_table.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/svg.hpp"
+#include "tools/report/text_table.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace surefoot::report {

@@ -87,9 +87,8 @@ std::string frame_args(const FrameRecord& f) {
         "1f},"
         "\"budget_us\":{:.1f},\"nodes\":{},\"triangles\":{},\"switches\":{},\"downgraded_slices\":{},\"prepared_age\":{},"
         "\"stolen_us\":{:.1f}",
-        f.slot, rt::cause_of(f), f.missed, f.own_miss, slack_us(f), f.predicted_us,
-        f.actual_us, f.budget_us, f.items, f.triangles, f.switches, f.downgraded_slices, f.prepared_age,
-        us_between(0, f.stolen_ns));
+        f.slot, rt::cause_of(f), f.missed, f.own_miss, slack_us(f), f.predicted_us, f.actual_us, f.budget_us, f.items,
+        f.triangles, f.switches, f.downgraded_slices, f.prepared_age, us_between(0, f.stolen_ns));
 }
 
 void write_frame(TraceWriter& trace, const FrameRecord& f) {

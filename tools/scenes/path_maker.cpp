@@ -105,7 +105,9 @@ std::vector<Place> walk(const std::vector<Place>& curve, const std::vector<doubl
 /// Heading (0: -z, grows to the left) and lift of a look, radians.
 dvec2 angles_of(const dvec3& look) { return {std::atan2(-look.x, -look.z), std::atan2(look.y, std::hypot(look.x, look.z))}; }
 
-double nearest_turn(double angle, double to) { return angle - 2 * std::numbers::pi * std::round((angle - to) / (2 * std::numbers::pi)); }
+double nearest_turn(double angle, double to) {
+    return angle - 2 * std::numbers::pi * std::round((angle - to) / (2 * std::numbers::pi));
+}
 
 /// One looks where one will be in a second or so, or at what the waypoint names; from one to the next the head turns the
 /// way that was shorter when it began. Headings are unwrapped, so that they can be smoothed.

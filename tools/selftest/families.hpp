@@ -16,5 +16,6 @@ std::span<const Row> polygon_rows();
 std::span<const Row> budgets_and_curves_rows();
 std::span<const Row> long_runs_rows();
 std::span<const Row> files_rows();
+std::span<const Row> texture_rows();
 
 }  // namespace surefoot::selftest

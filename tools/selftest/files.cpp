@@ -260,18 +260,20 @@ void recordings(const Effort& effort, Outcome& out) {
     attack({recording_fixture(), read}, effort, out);
 }
 
-void pictures(const Effort& effort, Outcome& out) {
-    std::vector<std::uint8_t> texels;
-    for (int i = 0; i < 4 * 16 * 16; ++i) texels.push_back(static_cast<std::uint8_t>(i * 37));
-    const std::vector<std::uint8_t> png = importer::encode_png(16, 16, texels);
-    const auto view = std::as_bytes(std::span(png));
+void picture_files(const Bytes& fixture, double whole, const Effort& effort, Outcome& out) {
     const auto read = [](const Bytes& bytes) -> Answer {
-        auto image = importer::decode_image(bytes, "fixture.png");
+        auto image = importer::decode_image(bytes, "fixture");
         if (!image) return refusal(image.error());
         return {true, image->rgba.size() == 4ULL * image->width * image->height && image->width > 0 && image->height > 0};
     };
-    attack({Bytes(view.begin(), view.end()), read, 0.9}, effort, out);  // the end mark holds nothing
+    attack({fixture, read, whole}, effort, out);
 }
+
+void png_files(const Effort& effort, Outcome& out) {
+    picture_files(png_fixture(16, 16), 0.9, effort, out);  // the end mark holds nothing
+}
+
+void jpeg_files(const Effort& effort, Outcome& out) { picture_files(jpeg_fixture(16, 16, true), 1, effort, out); }
 
 }  // namespace
 
@@ -279,7 +281,7 @@ std::span<const Row> files_rows() {
     static constexpr std::string_view sound = "an answer that can be worked with, or an error with place and fault";
     static constexpr std::string_view checked =
         "an answer that can be worked with, or an error with place and fault; nothing changed is taken against its checksum";
-    static constexpr std::array<Row, 8> table = {{
+    static constexpr std::array<Row, 9> table = {{
         {"F1", "files",
          ".walk of two objects: every truncation, random corruptions, every second one with its checksums put right", checked,
          walk_files},
@@ -292,7 +294,8 @@ std::span<const Row> files_rows() {
          "cost table of two classes: every truncation, random corruptions, every second one with its checksum put right", checked,
          cost_files},
         {"F6", "files", "settings with a profile: every truncation, random corruptions", sound, settings_files},
-        {"N21", "files", "PNG picture: every truncation, random corruptions", sound, pictures},
+        {"N21a", "files", "PNG picture: every truncation, random corruptions", sound, png_files},
+        {"N21b", "files", "progressive JPEG picture: every truncation, random corruptions", sound, jpeg_files},
         {"F7", "files", "recording of a pad: every truncation, random corruptions, decoded", sound, recordings},
     }};
     return table;

@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <jpeglib.h>
 
 #include "render/import/ostf.hpp"
 #include "render/measure/calibrate.hpp"
@@ -184,6 +186,44 @@ void reseal_costs(Bytes& bytes) {
     if (line == std::string::npos) return;
     const std::string body = text.substr(line + 1);
     bytes = bytes_of(fmt::format("hash = \"{:016x}\"\n", hash_bytes(std::as_bytes(std::span<const char>(body)))) + body);
+}
+
+Bytes png_fixture(std::uint32_t width, std::uint32_t height) {
+    std::vector<std::uint8_t> texels(4ULL * width * height);
+    for (std::size_t i = 0; i < texels.size(); ++i) texels[i] = static_cast<std::uint8_t>(i * 37);
+    const std::vector<std::uint8_t> png = importer::encode_png(width, height, texels);
+    const auto view = std::as_bytes(std::span(png));
+    return {view.begin(), view.end()};
+}
+
+Bytes jpeg_fixture(std::uint32_t width, std::uint32_t height, bool progressive) {
+    jpeg_compress_struct jpeg{};
+    jpeg_error_mgr errors{};
+    jpeg.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&jpeg);
+    unsigned char* data = nullptr;
+    unsigned long size = 0;
+    jpeg_mem_dest(&jpeg, &data, &size);
+    jpeg.image_width = width;
+    jpeg.image_height = height;
+    jpeg.input_components = 3;
+    jpeg.in_color_space = JCS_RGB;
+    jpeg_set_defaults(&jpeg);
+    jpeg_set_quality(&jpeg, 60, TRUE);
+    if (progressive) jpeg_simple_progression(&jpeg);
+    jpeg_start_compress(&jpeg, TRUE);
+    std::vector<std::uint8_t> row(3ULL * width);
+    while (jpeg.next_scanline < jpeg.image_height) {
+        for (std::size_t i = 0; i < row.size(); ++i) row[i] = static_cast<std::uint8_t>(i * 37 + jpeg.next_scanline * 11);
+        JSAMPROW pointer = row.data();
+        jpeg_write_scanlines(&jpeg, &pointer, 1);
+    }
+    jpeg_finish_compress(&jpeg);
+    jpeg_destroy_compress(&jpeg);
+    const auto view = std::as_bytes(std::span(data, size));
+    Bytes out(view.begin(), view.end());
+    std::free(data);
+    return out;
 }
 
 }  // namespace surefoot::selftest

@@ -40,6 +40,9 @@ Bytes path_fixture();
 Result<Bytes> costs_fixture();
 Bytes settings_fixture();
 Bytes recording_fixture();
+/// Pictures of `width` x `height` texels, no two of a row alike.
+Bytes png_fixture(std::uint32_t width, std::uint32_t height);
+Bytes jpeg_fixture(std::uint32_t width, std::uint32_t height, bool progressive);
 
 /// Puts the checksums of a changed .walk or cost table right again, so that the change reaches what lies behind them. Leaves
 /// alone what has lost its form.

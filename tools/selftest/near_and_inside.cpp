@@ -19,7 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double touching = 1e-6;  ///< share of the sizes compared; the oracle reads its pyramid off a float matrix
 
 dquat any_turn(Random& random) {
-    const dquat q(random.range(-1, 1), random.range(-1, 1), random.range(-1, 1), random.range(-1, 1));
+    const dquat q{random.range(-1, 1), random.range(-1, 1), random.range(-1, 1), random.range(-1, 1)};
     return glm::length(q) > 1e-3 ? glm::normalize(q) : dquat(1, 0, 0, 0);
 }
 
@@ -38,10 +38,10 @@ constexpr std::array<model::Viewport, 6> viewports = {{{1280, 720}, {1, 1}, {819
 /// From crumbs to boxes that hold the whole frustum, flat ones and points among them.
 Box any_box(Random& random) {
     const double size = std::pow(10.0, random.range(-3, 6)), reach = std::pow(10.0, random.range(-1, 4));
-    dvec3 half(random.range(0, size), random.range(0, size), random.range(0, size));
+    dvec3 half{random.range(0, size), random.range(0, size), random.range(0, size)};
     if (random.below(8) == 0) half[static_cast<int>(random.below(3))] = 0;
     if (random.below(16) == 0) half = dvec3(0);
-    const dvec3 centre(random.range(-reach, reach), random.range(-reach, reach), random.range(-reach, reach));
+    const dvec3 centre{random.range(-reach, reach), random.range(-reach, reach), random.range(-reach, reach)};
     return {centre - half, centre + half};
 }
 
@@ -79,8 +79,8 @@ void large_boxes(const Effort& effort, Outcome& out) {
         Pose pose;
         pose.position = {random.range(-50, 50), random.range(0, 20), random.range(-50, 50)};
         pose.orientation = any_turn(random);
-        const dvec3 half(random.range(5, 100), random.range(5, 100), random.range(5, 100));
-        const dvec3 centre(random.range(-200, 200), random.range(-200, 200), random.range(-200, 200));
+        const dvec3 half{random.range(5, 100), random.range(5, 100), random.range(5, 100)};
+        const dvec3 centre{random.range(-200, 200), random.range(-200, 200), random.range(-200, 200)};
         const Box box{centre - half, centre + half};
         if (overlap(pyramid_of(pose, {1280, 720}), box) > -touching) continue;
         ++unseen;
@@ -96,7 +96,7 @@ void large_boxes(const Effort& effort, Outcome& out) {
     out.at_least("large boxes outside the view", static_cast<double>(unseen), 0.1 * static_cast<double>(wanted));
     out.at_most("of them kept", static_cast<double>(kept) / static_cast<double>(std::max<std::uint64_t>(1, unseen)), 0.03);
     out.at_most("of those that the planes alone keep",
-                static_cast<double>(kept) / static_cast<double>(std::max<std::uint64_t>(1, kept_by_planes)), 0.85);
+                static_cast<double>(kept) / static_cast<double>(std::max<std::uint64_t>(1, kept_by_planes)), 0.2);
 }
 
 /// Fields of view, sizes and poses at the ends of what numbers can say: what follows from a view must be finite.
