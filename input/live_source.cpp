@@ -59,6 +59,10 @@ Lines LiveSource::drain(Steering& steering, std::int64_t now_ns) {
     }
     steering_now_.store(attendant_->steering_now() + (panel_ && panel_->has_controls() ? 1 : 0), std::memory_order_relaxed);
     if (!somebody_) say_if_nobody_steers(now_ns);
+    if (!waiting_said_ && now_ns >= start_ns_ + look_for_ns) {
+        waiting_said_ = true;
+        attendant_->say_waiting([&](const DeviceMapping& m) { return panel_ && panel_->mapping() == m.name; });
+    }
     return lines;
 }
 

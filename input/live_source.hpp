@@ -59,7 +59,8 @@ private:
     StampLog log_;
     std::int64_t start_ns_ = 0;
     std::atomic<int> steering_now_{0};
-    bool somebody_ = false;  ///< steers, or its absence was said
+    bool somebody_ = false;      ///< steers, or its absence was said
+    bool waiting_said_ = false;  ///< of mappings that fit no device
 };
 
 /// Whether anything in the steering file can stop the walk for good: then that is remembered across restarts.

@@ -24,6 +24,7 @@ grep -q '"digest"' out || complain "selftest --json has no digest"
 tail -1 out | grep -q '^hard cases: 3 of 3 rows hold; broken: none' || complain "selftest ends with '$(tail -1 out)'"
 "$surefoot" selftest --hard --list >out 2>err || complain "exit $? of selftest --list"
 expect 2 "row 'N99'.*--list" selftest --hard N99
+expect 2 '--backend.*null.*osmesa' selftest --hard N17d --backend null
 expect 2 'selftest --hard' selftest
 expect 2 '--scale.*0.* 0.001 to' selftest --hard --scale 0
 
@@ -40,6 +41,15 @@ head -c 2000 f.glb > cut.glb; expect 1 'cut.glb' bake cut.glb -o f.walk
 : > empty.glb; expect 1 'empty.glb' bake empty.glb -o f.walk
 printf 'v 0 0 0\nv nan 1 0\nf 1 2 9\n' > bad.obj; expect 1 'bad.obj' bake bad.obj -o f.walk
 expect 1 'nonexistent' bake f.glb -o /nonexistent/f.walk
+triangle='v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n'
+printf 'newmtl a\nmap_Kd gone.png\n' > a.mtl; printf "mtllib a.mtl\nusemtl a\n$triangle" > picture.obj
+printf "mtllib gone.mtl\n$triangle" > material.obj; printf "${triangle}v inf 0 0\nf 1 2 4\n" > infinite.obj
+printf "${triangle}f 1 2 9\n" > index.obj
+for lack in picture:gone.png material:gone.mtl 'infinite:position not finite' 'index:index out of range'; do
+  expect 1 "${lack%%:*}.obj.*${lack#*:}.*--allow-incomplete" bake "${lack%%:*}.obj" -o f.walk
+  "$surefoot" bake "${lack%%:*}.obj" -o incomplete.walk --allow-incomplete >out 2>err || complain "${lack%%:*}.obj: not baked with --allow-incomplete: $(cat err)"
+  grep -q "${lack#*:}" err || complain "${lack%%:*}.obj: baked without a word of what it lacks"
+done
 cmp -s f.walk kept.walk || complain "a failed bake changed the model that was there"
 for at in 5 100 3000; do
   cp f.walk flipped.walk; printf '\xa5' | dd of=flipped.walk bs=1 seek=$at conv=notrunc status=none
@@ -81,6 +91,10 @@ refuse '--backend foo.*egl' walk f.walk --clock virtual --backend foo
 for command in "walk f.walk" "accuracy f.walk" calibrate; do refuse 'kms.*not in this version.*egl' $command --backend kms; done
 refuse '--profile fast.*--config' walk f.walk $virtual --profile fast
 refuse '--every.*--snap' walk f.walk $virtual --every 5
+refuse '--control-pairs.*--control' walk f.walk --control-pairs 3
+refuse '--frames.*--control-pairs' walk f.walk --control --frames 5
+refuse '--seconds.*--frames' walk f.walk $virtual --frames 5 --seconds 5
+refuse '--cost-noise.*--clock virtual' walk f.walk --backend null --cost-noise 0.1
 refuse '--strict' walk f.walk $virtual --strict
 
 # Outputs: asked for beforehand, never over an input; one that fails spoils no other.

@@ -9,13 +9,16 @@ namespace {
 
 constexpr std::size_t most_met = 64;
 
+/// A mapping without controls is there to switch a device off.
+bool steers(const DeviceMapping& m) { return !m.axes.empty() || !m.sticks.empty() || !m.hats.empty() || !m.buttons.empty(); }
+
 }  // namespace
 
 Wanted wanted_by(std::vector<DeviceMapping> mappings) {
     return [mappings = std::move(mappings)](const PluggedDevice& p) {
         const DeviceMapping* m = find_mapping(mappings, identity_for_mapping(p));
         if (m == nullptr) return steers_by_class(p);
-        return !m->axes.empty() || !m->sticks.empty() || !m->hats.empty() || !m->buttons.empty();
+        return steers(*m);
     };
 }
 
@@ -30,6 +33,7 @@ std::unique_ptr<ReadyDevice> make_ready(std::span<const DeviceMapping> mappings,
     ready->state.connected = true;
     ready->identity = p.identity();
     ready->mapping = mapping.name;
+    if (configured != nullptr) ready->configured = static_cast<int>(configured - mappings.data());
     ready->met = {ready->identity, {p.name, class_name(p.device.device_class), mapping.name}};
     return ready;
 }
@@ -39,7 +43,7 @@ std::function<std::unique_ptr<Readied>(const PluggedDevice&)> readier(std::vecto
 }
 
 Attendant::Attendant(std::vector<DeviceMapping> mappings, Steering& steering, Say say)
-    : mappings_(std::move(mappings)), steering_(steering), say_(std::move(say)) {
+    : mappings_(std::move(mappings)), fitted_(mappings_.size(), false), steering_(steering), say_(std::move(say)) {
     met_.reserve(most_met);
 }
 
@@ -98,6 +102,7 @@ void Attendant::added(const DeviceEvent& e) {
         ready = own.get();
     }
     for (const std::string& note : ready->mapper.notes) tell(say_, "{} ({}): {}", p.node, p.name, note);
+    if (ready->configured >= 0) fitted_[static_cast<std::size_t>(ready->configured)] = true;
     Slot* slot = find(-1);
     const int number = slot == nullptr ? -1
                                        : steering_.attach(std::move(ready->mapper), p.device.controls.size(), ready->reporting,
@@ -111,6 +116,14 @@ void Attendant::added(const DeviceEvent& e) {
     slot->plugged = e.plugged;
     meet(*ready);
     std::swap(identities_[static_cast<std::size_t>(number)], ready->identity);
+}
+
+void Attendant::say_waiting(const std::function<bool(const DeviceMapping&)>& elsewhere) const {
+    for (std::size_t i = 0; i < mappings_.size(); ++i) {
+        if (fitted_[i] || !steers(mappings_[i]) || elsewhere(mappings_[i])) continue;
+        tell(say_, "[[device]] {} \"{}\" fits none of the devices that are there, and waits for one (`surefoot devices list`)",
+             i + 1, mappings_[i].name);
+    }
 }
 
 void Attendant::removed(const DeviceEvent& e) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,7 +37,8 @@ struct ReadyDevice final : Readied {
     ReportDecoder decoder;
     DeviceState state;
     std::string identity, mapping;
-    MetDevice met;  ///< goes to the list of those that were met
+    int configured = -1;  ///< which of the mappings; -1: the default of its class
+    MetDevice met;        ///< goes to the list of those that were met
 };
 /// By the first mapping that fits, else the default of the device's class.
 std::unique_ptr<ReadyDevice> make_ready(std::span<const DeviceMapping> mappings, const PluggedDevice& device);
@@ -69,6 +71,8 @@ public:
     [[nodiscard]] int steering_now() const;
     /// How many pluggings have steered.
     [[nodiscard]] std::uint64_t pluggings() const { return pluggings_; }
+    /// Says which mappings have fitted no device yet, but for those that `elsewhere` knows to be in use.
+    void say_waiting(const std::function<bool(const DeviceMapping&)>& elsewhere) const;
     /// Short, long and undeclared reports: they changed nothing.
     [[nodiscard]] std::uint64_t refused_reports() const { return refused_reports_; }
     [[nodiscard]] std::uint64_t accepted_reports() const { return accepted_reports_; }
@@ -87,6 +91,7 @@ private:
     void meet(ReadyDevice& device);
 
     std::vector<DeviceMapping> mappings_;
+    std::vector<bool> fitted_;  ///< parallel to mappings_: some device came by it
     Steering& steering_;
     Say say_;
     std::array<Slot, max_devices> slots_;

@@ -15,6 +15,12 @@ namespace {
 /// One a core (ARCHITECTURE, measured decisions); beyond sixteen the barriers between scenes eat what they win.
 int default_rasterisers() { return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U)); }
 
+#ifdef __SANITIZE_THREAD__
+constexpr bool threads_are_watched = true;
+#else
+constexpr bool threads_are_watched = false;
+#endif
+
 }  // namespace
 
 int effective_rasterisers(int rasterisers) { return rasterisers > 0 ? rasterisers : default_rasterisers(); }
@@ -35,6 +41,11 @@ Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options) {
     // llvmpipe reads it when its screen is made; other drivers do not care.
     const std::string threads = std::to_string(effective_rasterisers(options.rasterisers));
     setenv("LP_NUM_THREADS", threads.c_str(), 1);
+    if (threads_are_watched && options.kind != BackendKind::null) {
+        return Error{"libEGL, libOSMesa",
+                     "are not opened where the thread sanitizer watches: the driver's threads are not built with it",
+                     "use --backend null"};
+    }
     switch (options.kind) {
         case BackendKind::egl:
             return open_egl_surfaceless();

@@ -159,15 +159,21 @@ void mend(Primitive& primitive, Mended& counts) {
     counts.normals += make_normals(primitive);
 }
 
-void say(const Mended& counts, const std::string& mesh_name, std::vector<std::string>& warnings) {
+void say(const Mended& counts, const std::string& mesh_name, Scene& scene) {
+    const auto text = [&](std::uint64_t count, const char* what) {
+        return fmt::format("mesh '{}': {} {}", mesh_name, count, what);
+    };
     const auto line = [&](std::uint64_t count, const char* what) {
-        if (count > 0) warnings.push_back(fmt::format("mesh '{}': {} {}", mesh_name, count, what));
+        if (count > 0) scene.warnings.push_back(text(count, what));
+    };
+    const auto broken = [&](std::uint64_t count, const char* what) {
+        if (count > 0) scene.damaged(text(count, what));
     };
     line(counts.arrays, "arrays of normals, coordinates or colours dropped: not as long as the positions");
     line(counts.partial, "incomplete last triangles dropped");
-    line(counts.out_of_range, "triangles dropped: index out of range");
-    line(counts.non_finite, "triangles dropped: position not finite");
-    line(counts.enormous, "triangles dropped: coordinate beyond 1e12 m");
+    broken(counts.out_of_range, "triangles dropped: index out of range");
+    broken(counts.non_finite, "triangles dropped: position not finite");
+    broken(counts.enormous, "triangles dropped: coordinate beyond 1e12 m");
     line(counts.repeated, "triangles dropped: repeated index");
     line(counts.zero_area, "triangles dropped: zero area");
     line(counts.uvs, "texture coordinates not finite: set to 0");
@@ -177,7 +183,9 @@ void say(const Mended& counts, const std::string& mesh_name, std::vector<std::st
 void clean(Primitive& primitive, const std::string& mesh_name, std::vector<std::string>& warnings) {
     Mended counts;
     mend(primitive, counts);
-    say(counts, mesh_name, warnings);
+    Scene said;
+    say(counts, mesh_name, said);
+    warnings.insert(warnings.end(), said.warnings.begin(), said.warnings.end());
 }
 
 }  // namespace surefoot::importer

@@ -63,7 +63,7 @@ void clean_meshes(Scene& scene, const Progress& progress) {
             mend(primitive, counts);
             if (primitive.material >= scene.materials.size()) primitive.material = 0;
         }
-        say(counts, mesh.name, scene.warnings);
+        say(counts, mesh.name, scene);
         std::erase_if(mesh.primitives, [](const Primitive& p) { return p.indices.empty(); });
         progress.say("clean", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
     }
@@ -101,7 +101,7 @@ Index load_texture(Scene& scene, const std::string& file, const std::string& nam
     auto bytes = plain ? read_file(beside.string()) : plain.error();
     auto image = bytes ? decode_image(*bytes, beside.string()) : Result<Image>(bytes.error());
     if (!image) {
-        scene.warnings.push_back(fmt::format("texture '{}' left white: {}", name, image.error().text()));
+        scene.damaged(fmt::format("texture '{}' left white: {}", name, image.error().text()));
         return none;
     }
     image->name = name;

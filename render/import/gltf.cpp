@@ -74,13 +74,12 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
 
 /// The attributes beside positions: one that cannot be read is left out with a warning, the triangles stay.
 void read_attributes(const Context& context, const tinygltf::Primitive& from, const std::string& place, Primitive& to) {
-    auto& warnings = context.scene.warnings;
     if (const int at = attribute(from, "NORMAL"); at >= 0) {
         auto normals = read_vectors<vec3>(context.model, at, 3, place);
         if (normals)
             to.normals = std::move(*normals);
         else
-            warnings.push_back("normals left out: " + normals.error().text());
+            context.scene.damaged("normals left out: " + normals.error().text());
     }
     const TextureUse& use = context.uses[to.material];
     if (const int at = attribute(from, fmt::format("TEXCOORD_{}", use.set)); at >= 0) {
@@ -88,7 +87,7 @@ void read_attributes(const Context& context, const tinygltf::Primitive& from, co
         if (uvs)
             to.uvs = std::move(*uvs);
         else
-            warnings.push_back("texture coordinates left out: " + uvs.error().text());
+            context.scene.damaged("texture coordinates left out: " + uvs.error().text());
         if (!use.identity()) std::transform(to.uvs.begin(), to.uvs.end(), to.uvs.begin(), [&](vec2 uv) { return use.apply(uv); });
     }
     if (const int at = attribute(from, "COLOR_0"); at >= 0) {
@@ -96,7 +95,7 @@ void read_attributes(const Context& context, const tinygltf::Primitive& from, co
         if (colours)
             to.colours = std::move(*colours);
         else
-            warnings.push_back("colours left out: " + colours.error().text());
+            context.scene.damaged("colours left out: " + colours.error().text());
     }
 }
 
@@ -138,7 +137,7 @@ void read_mesh(const Context& context, const tinygltf::Mesh& from, Mesh& to) {
         if (read) {
             to.primitives.push_back(std::move(*read));
         } else {
-            warnings.push_back("primitive dropped: " + read.error().text());
+            context.scene.damaged("primitive dropped: " + read.error().text());
         }
     }
     if (not_triangles > 0)

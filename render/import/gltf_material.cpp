@@ -84,7 +84,7 @@ public:
 
 private:
     Index missing(const std::string& material, const std::string& why) {
-        scene_.warnings.push_back(fmt::format("material '{}' left white: {}", material, why));
+        scene_.damaged(fmt::format("material '{}' left white: {}", material, why));
         return none;
     }
 
@@ -100,7 +100,7 @@ private:
         const std::string name = image.name.empty() ? fmt::format("image {}", source) : image.name;
         auto picture = decode_image(encoded(image), file_ + ": " + name);
         if (!picture) {
-            scene_.warnings.push_back(fmt::format("texture '{}' left white: {}", name, picture.error().text()));
+            scene_.damaged(fmt::format("texture '{}' left white: {}", name, picture.error().text()));
             return none;
         }
         picture->name = name;

@@ -109,7 +109,7 @@ private:
 
     Result<void> enter(int node, Index parent) {
         if (node < 0 || static_cast<std::size_t>(node) >= model_.nodes.size()) {
-            scene_.warnings.push_back(
+            scene_.damaged(
                 fmt::format("child {} of '{}' does not exist", node, parent == none ? "the scene" : scene_.nodes[parent].name));
             return {};
         }
@@ -134,7 +134,7 @@ private:
         to.importance = importance_of(from);
         if (from.mesh >= 0 && static_cast<std::size_t>(from.mesh) < scene_.meshes.size()) to.mesh = static_cast<Index>(from.mesh);
         if (from.mesh >= 0 && to.mesh == none)
-            scene_.warnings.push_back(fmt::format("node '{}': mesh {} does not exist", to.name, from.mesh));
+            scene_.damaged(fmt::format("node '{}': mesh {} does not exist", to.name, from.mesh));
         if (from.skin >= 0) scene_.warnings.push_back(fmt::format("node '{}': taken in its rest pose (skin)", to.name));
         const auto index = static_cast<Index>(scene_.nodes.size());
         const auto instancing = from.extensions.find("EXT_mesh_gpu_instancing");
@@ -146,7 +146,7 @@ private:
     void add_instances(Index node, const tinygltf::Value& extension) {
         auto matrices = instances_of(model_, extension, file_ + ": node '" + scene_.nodes[node].name + "'");
         if (!matrices) {
-            scene_.warnings.push_back("instances dropped: " + matrices.error().text());
+            scene_.damaged("instances dropped: " + matrices.error().text());
             return;
         }
         const Node parent = scene_.nodes[node];

@@ -273,11 +273,14 @@ private:
     }
 
     void say_skipped() {
-        const auto say = [&](const Skipped& skipped, const char* what) {
-            if (skipped.count > 0)
-                scene_.warnings.push_back(fmt::format("{} {} (first in line {})", skipped.count, what, skipped.first_line));
+        const auto text = [](const Skipped& skipped, const char* what) {
+            return fmt::format("{} {} (first in line {})", skipped.count, what, skipped.first_line);
         };
-        say(bad_faces_, "faces dropped: index out of range, or fewer than three corners");
+        const auto say = [&](const Skipped& skipped, const char* what) {
+            if (skipped.count > 0) scene_.warnings.push_back(text(skipped, what));
+        };
+        const char* bad_faces = "faces dropped: index out of range, or fewer than three corners";
+        if (bad_faces_.count > 0) scene_.damaged(text(bad_faces_, bad_faces));
         say(crossing_, "polygons that cross themselves: triangles may overlap");
         say(points_and_lines_, "points or lines dropped");
         say(unknown_, "statements not understood");

@@ -135,7 +135,7 @@ void read_mtl(const std::string& obj_file, const std::string& library, Scene& sc
     const auto plain = require_plain(place);
     auto text = plain ? read_text(place) : plain.error();
     if (!text) {
-        scene.warnings.push_back(fmt::format("materials left white: {}", text.error().text()));
+        scene.damaged(fmt::format("materials left white: {}", text.error().text()));
         return;
     }
     Reading reading{obj_file, place, scene, {}, none, {}};

@@ -70,9 +70,15 @@ void append(Scene& to, Scene&& from) {
     move_all(to.images, from.images);
     move_all(to.sources, from.sources);
     move_all(to.warnings, from.warnings);
+    move_all(to.damage, from.damage);
 }
 
 }  // namespace
+
+void Scene::damaged(std::string line) {
+    warnings.push_back(line);
+    damage.push_back(std::move(line));
+}
 
 std::uint64_t Scene::triangles() const {
     std::vector<std::uint64_t> of_mesh(meshes.size(), 0);

@@ -67,11 +67,13 @@ struct Scene {
     std::vector<Image> images;
     std::vector<std::string> sources;
     std::vector<std::string> warnings;              ///< what was repaired or dropped, one line each with counts
+    std::vector<std::string> damage;                ///< those of `warnings` that name what the files ask for and have not got
+    void damaged(std::string line);                 ///< a line of both
     [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
 };
 
 /// By ending: .gltf .glb .obj .ostf. Several files become one scene.
-/// Errors: missing, empty or truncated file, unknown ending, nothing drawable in it. Missing textures: a warning and white.
+/// Errors: missing, empty or truncated file, unknown ending, nothing drawable in it. Missing textures: damage, and white.
 Result<Scene> import_files(const std::vector<std::string>& files, const Progress& progress);
 
 Result<Scene> import_gltf(const std::string& file, const Progress& progress);

@@ -8,6 +8,7 @@
 
 #include "render/model/cost.hpp"
 #include "render/model/pixels.hpp"
+#include "rt/base/random_point.hpp"
 
 namespace surefoot::measure {
 
@@ -245,8 +246,8 @@ CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std
         const double depth = 20.0 * (1.0 + 0.002 * static_cast<double>(i));
         const double reach_x = std::max(0.0, static_cast<double>(scale.tan_half_x) - angular);
         const double reach_y = std::max(0.0, static_cast<double>(scale.tan_half_y) - angular);
-        const dvec3 centre(depth * builder.random().range(-reach_x, reach_x), depth * builder.random().range(-reach_y, reach_y),
-                           -depth);
+        const double y = depth * builder.random().range(-reach_y, reach_y), x = depth * builder.random().range(-reach_x, reach_x);
+        const dvec3 centre(x, y, -depth);
         const dvec3 radii(angular * depth);
         const Index node = builder.node(centre, radii);
         const Index rep = builder.rep(meshes[i % meshes.size()], materials[i % materials.size()]);
@@ -295,10 +296,11 @@ void make_town(Builder& builder, const Meshes& meshes, const std::vector<std::ve
                         dvec3(0.5 * block, 0.01, 0.5 * block), grounds.size(), scene);
         for (int i = 0; i < objects_a_block; ++i) {
             const double radius = 0.4 * std::exp(2.5 * random.unit());
-            const dvec3 radii = radius * dvec3(random.range(0.4, 1.0), random.range(0.3, 1.5), random.range(0.4, 1.0));
-            const dvec3 centre = corner + dvec3(block * random.unit(), radii.y * random.range(0.4, 1.0), block * random.unit());
+            const dvec3 radii = radius * any_in(random, {0.4, 0.3, 0.4}, {1.0, 1.5, 1.0});
+            const dvec3 centre = corner + any_in(random, {0, 0.4 * radii.y, 0}, {block, radii.y, block});
             const auto& list = materials[random.below(static_cast<std::uint32_t>(materials.size()))];
-            add_town_object(builder, meshes, any(list), centre, radii, 3 + random.below(4), scene);
+            const std::size_t levels = 3 + random.below(4);
+            add_town_object(builder, meshes, any(list), centre, radii, levels, scene);
         }
     }
 }
@@ -330,9 +332,9 @@ CalibrationScene make_calibration_scene(model::Viewport viewport, bool quick, st
 TownView random_town_view(const CalibrationScene& scene, model::Viewport viewport, Random& random) {
     TownView view;
     const Box& box = scene.town_box;
-    view.pose.position = dvec3(random.range(box.min.x, box.max.x), random.range(1.0, 12.0), random.range(box.min.z, box.max.z));
-    view.pose.orientation = glm::angleAxis(random.range(0, 2 * std::numbers::pi), dvec3(0, 1, 0)) *
-                            glm::angleAxis(random.range(-0.3, 0.2), dvec3(1, 0, 0));
+    view.pose.position = any_in(random, {box.min.x, 1.0, box.min.z}, {box.max.x, 12.0, box.max.z});
+    const double pitch = random.range(-0.3, 0.2), heading = random.range(0, 2 * std::numbers::pi);
+    view.pose.orientation = glm::angleAxis(heading, dvec3(0, 1, 0)) * glm::angleAxis(pitch, dvec3(1, 0, 0));
     const double reach = 25.0 * std::pow(16.0, random.unit());
     const auto detail = static_cast<double>(random.below(5));
     // Some frames of one class only: what a scene without the others looks like.

@@ -197,6 +197,12 @@ Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byt
     return {};
 }
 
+Result<void> AtomicFile::sync() {
+    if (fd_ < 0) return Error{path_, "synced after it was closed", {}};
+    if (::fsync(fd_) != 0) return system_error(path_, "cannot finish writing", errno);
+    return {};
+}
+
 // The order matters: contents reach the disk before the name does, and the name before we say that it is done.
 Result<void> AtomicFile::commit() {
     if (fd_ < 0) return Error{path_, "committed after it was closed", {}};
@@ -230,6 +236,43 @@ Result<void> probe_writable(const std::string& path, bool make_folders) {
     }
     const std::string tried = missing ? (folder / "surefoot-probe").string() : path;
     if (auto file = AtomicFile::create(tried); !file) return Error{path, file.error().what, file.error().remedy};
+    return {};
+}
+
+Result<FileSet> FileSet::create(const std::string& folder) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (failed) return Error{folder, "cannot make the folder: " + failed.message(), "choose a folder that you may write in"};
+    FileSet set;
+    set.folder_ = folder;
+    return set;
+}
+
+Result<AtomicFile*> FileSet::add(std::string_view name) {
+    auto file = AtomicFile::create((std::filesystem::path(folder_) / name).string());
+    if (!file) return file.error();
+    files_.push_back(std::move(*file));
+    return &files_.back();
+}
+
+Result<void> FileSet::add(std::string_view name, std::string_view text) {
+    auto file = add(name);
+    if (!file) return file.error();
+    return (*file)->write(text);
+}
+
+Result<void> FileSet::commit() {
+    for (AtomicFile& file : files_)
+        if (auto ok = file.sync(); !ok) return ok;
+    for (AtomicFile& file : files_)
+        if (auto ok = file.commit(); !ok) return ok;
+    files_.clear();
+    return {};
+}
+
+Result<void> FileSet::probe(const std::string& folder, std::initializer_list<std::string_view> names) {
+    for (const std::string_view name : names)
+        if (auto ok = probe_writable((std::filesystem::path(folder) / name).string(), true); !ok) return ok;
     return {};
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,6 +35,8 @@ public:
     Result<void> write(std::span<const std::byte> bytes);
     Result<void> write(std::string_view text);
     Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+    /// Contents reach the disk; what may still fail after it is the renaming.
+    Result<void> sync();
     Result<void> commit();
 
 private:
@@ -48,6 +51,23 @@ private:
 /// as made if the nearest one above them may be written in. To be asked before long work, so that it is not lost for a wrong
 /// name.
 Result<void> probe_writable(const std::string& path, bool make_folders = false);
+
+/// Files of one folder that belong together; the folder is made where it is missing. All are written and synced before the first
+/// takes its place, so that a full disk leaves the old ones as they were, all of them.
+class FileSet {
+public:
+    static Result<FileSet> create(const std::string& folder);
+    /// A file of that name, to be written; the reference holds until the next call.
+    Result<AtomicFile*> add(std::string_view name);
+    Result<void> add(std::string_view name, std::string_view text);
+    Result<void> commit();
+    /// Whether one with these could be made now: see probe_writable.
+    static Result<void> probe(const std::string& folder, std::initializer_list<std::string_view> names);
+
+private:
+    std::string folder_;
+    std::vector<AtomicFile> files_;
+};
 
 /// write + commit in one call.
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);

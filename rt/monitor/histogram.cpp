@@ -54,6 +54,22 @@ std::int64_t Histogram::bin_high(std::size_t bin) {
     return static_cast<std::int64_t>(low_of(bin) - 1);
 }
 
+// Outside the bins of its smallest and largest value a histogram is zero.
+Histogram& Histogram::operator=(const Histogram& other) {
+    if (this == &other) return *this;
+    const auto at = [](std::size_t bin) { return static_cast<std::ptrdiff_t>(bin); };
+    if (count_ > 0) std::fill(counts_.begin() + at(bin_of(min_)), counts_.begin() + at(bin_of(max_)) + 1, 0);
+    if (other.count_ > 0) {
+        const auto first = at(bin_of(other.min_)), end = at(bin_of(other.max_)) + 1;
+        std::copy(other.counts_.begin() + first, other.counts_.begin() + end, counts_.begin() + first);
+    }
+    count_ = other.count_;
+    min_ = other.min_;
+    max_ = other.max_;
+    sum_ = other.sum_;
+    return *this;
+}
+
 void Histogram::add(std::int64_t value_ns, std::uint64_t times) {
     if (times == 0) return;
     std::uint64_t& bin = counts_[bin_of(value_ns)];

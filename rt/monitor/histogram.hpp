@@ -14,6 +14,12 @@ public:
     static constexpr int sub_bits = 5;
     static constexpr std::size_t bins = 1 + ((64 - sub_bits) << sub_bits);
 
+    Histogram() = default;
+    Histogram(const Histogram&) = default;
+    /// Only the bins in use are copied: a walk's times lie within some dozens, and figures are published four times a second.
+    Histogram& operator=(const Histogram& other);
+    ~Histogram() = default;
+
     void add(std::int64_t value_ns, std::uint64_t times = 1);
     /// first, first + step, ... (`times` values, step > 0): the same as adding each, in at most one step a bin.
     /// Beyond the end of time: at its end.

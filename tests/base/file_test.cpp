@@ -2,9 +2,11 @@
 #include "rt/base/file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <string>
 
@@ -149,6 +151,35 @@ TEST_F(FileTest, ProbingSaysWhatWritingWouldAndLeavesNothing) {
     EXPECT_EQ(*read_text(good), "kept");
     fs::remove(good);
     EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(FileTest, FilesThatBelongTogetherTakeTheirPlacesTogether) {
+    const std::string set = in("set");
+    const auto write = [&](std::string_view first, std::string_view second) -> Result<void> {
+        auto files = FileSet::create(set);
+        if (!files) return files.error();
+        if (auto ok = files->add("a", first); !ok) return ok;
+        if (auto ok = files->add("b", second); !ok) return ok;
+        return files->commit();
+    };
+    ASSERT_TRUE(write("old a", "old b").ok());
+    rlimit before{};
+    ::signal(SIGXFSZ, SIG_IGN);
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    rlimit small = before;
+    small.rlim_cur = 16;
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+    const auto full = write("new a", "new b, and longer than the disk holds");
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+    ASSERT_FALSE(full.ok());
+    EXPECT_NE(full.error().text().find("set/b"), std::string::npos);
+    EXPECT_EQ(*read_text(in("set/a")), "old a");
+    EXPECT_EQ(*read_text(in("set/b")), "old b");
+    EXPECT_EQ(std::distance(fs::directory_iterator(set), fs::directory_iterator{}), 2) << "no temporary is left";
+    ASSERT_TRUE(write("new a", "new b").ok());
+    EXPECT_EQ(*read_text(in("set/a")) + *read_text(in("set/b")), "new anew b");
+    EXPECT_TRUE(FileSet::probe(in("other"), {"a", "b"}).ok());
+    EXPECT_FALSE(FileSet::probe(in("set/a"), {"b"}).ok());
 }
 
 TEST_F(FileTest, ReadOnlyFolderIsRefused) {

@@ -139,6 +139,27 @@ TEST(LiveSource, NobodyToSteerIsRestAndSaidOnce) {
     EXPECT_EQ(steered.times_said("no device is there"), 0) << "it was, and its going is said";
 }
 
+TEST(LiveSource, AMappingThatFitsNothingIsSaidOnceAndTheOthersAreNot) {
+    const auto named = [](const char* name, const char* product) {
+        DeviceMapping m;
+        m.name = name;
+        m.match.product_name = product;
+        AxisMapping forward;
+        forward.control.name = "y";
+        forward.action = Action::forward;
+        m.axes.push_back(forward);
+        return m;
+    };
+    DeviceMapping off = named("switched off", "Other");
+    off.axes.clear();
+    Rig rig({}, {named("typo", "Sitck"), off, named("ours", "")});
+    rig.devices->plug(stick());
+    rig.run(2000);
+    EXPECT_EQ(rig.times_said("[[device]] 1 \"typo\" fits none"), 1);
+    EXPECT_EQ(rig.times_said("fits none"), 1);
+    EXPECT_EQ(rig.violations, 0U);
+}
+
 TEST(LiveSource, ARefusedDeviceIsSaidWithItsRemedy) {
     Rig rig;
     Error why{"/dev/hidraw7 (pad)", "may not be opened: Permission denied", "install the rules"};

@@ -150,6 +150,30 @@ TEST(Control, TheDeadlineRuleWantsAllOfItsParts) {
     EXPECT_TRUE(judge(worse, 0.5).control_holds);
 }
 
+TEST(Histogram, AssignedIsEqualInEveryBinWhateverStoodThere) {
+    Random random(31);
+    const auto any = [&] {
+        Histogram h;
+        for (std::uint32_t n = random.below(40); n > 0; --n) {
+            const auto value = static_cast<std::int64_t>(random.next() >> random.below(64));
+            h.add(random.below(20) == 0 ? -1 : value & std::numeric_limits<std::int64_t>::max(), 1 + random.below(3));
+        }
+        return h;
+    };
+    Histogram to;
+    for (int i = 0; i < 2000; ++i) {
+        const Histogram from = any();
+        to = from;
+        std::uint64_t different = 0;
+        for (std::size_t b = 0; b < Histogram::bins; ++b) different += to.bin_count(b) == from.bin_count(b) ? 0 : 1;
+        ASSERT_EQ(different, 0U) << i;
+        ASSERT_EQ(to.count(), from.count());
+        ASSERT_EQ(to.min(), from.min());
+        ASSERT_EQ(to.max(), from.max());
+        ASSERT_EQ(to.sum(), from.sum());
+    }
+}
+
 TEST(Histogram, ClipsNothingAndItsQuantilesAreWithinABin) {
     Histogram h;
     std::vector<std::int64_t> values;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "render/model/view.hpp"
 #include "tools/scenes/scenes.hpp"
 
 namespace surefoot::scenes {
@@ -216,6 +217,71 @@ TEST(Paths, KeepClearOfWallsTrunksAndFurniture) {
             EXPECT_GT(nearest.distance, 0.22)
                 << name << " at " << scale << ", seed " << seed << ": '" << nearest.node << "' at " << nearest.time_s << " s";
         }
+    }
+}
+
+/// Of a path's views, one a second: what stands near, how far one sees, and how much there is to draw.
+struct Views {
+    double nearest_m = 1e9, farthest_m = 0;
+    std::uint64_t least_triangles = ~0ULL, most_triangles = 0;       ///< in view
+    std::uint64_t simplest_passed = ~0ULL, most_complex_passed = 0;  ///< triangles of a thing within three metres, in view
+    std::size_t most_near = 0;                                       ///< things within three metres and in view at once
+};
+
+Views views_of(const GeneratedScene& generated) {
+    struct Thing {
+        Box box;
+        std::uint64_t triangles = 0;
+    };
+    std::vector<Thing> things;
+    Box whole;
+    for (const importer::Node& node : generated.scene.nodes) {
+        if (node.mesh == none) continue;
+        Thing thing;
+        for (const importer::Primitive& p : generated.scene.meshes[node.mesh].primitives) {
+            for (const vec3& v : p.positions) thing.box.grow(dvec3(node.world * dvec4(v, 1)));
+            thing.triangles += p.indices.size() / 3;
+        }
+        whole.grow(thing.box.min);
+        whole.grow(thing.box.max);
+        things.push_back(thing);
+    }
+    Views views;
+    for (std::size_t s = 0; s < generated.path.samples.size(); s += 30) {
+        const Pose& pose = generated.path.samples[s].pose;
+        const model::Frustum frustum = model::make_frustum(pose, {1280, 720}, whole.diagonal());
+        std::uint64_t triangles = 0;
+        std::size_t near = 0;
+        for (const Thing& thing : things) {
+            if (!model::visible(frustum, thing.box)) continue;
+            triangles += thing.triangles;
+            const double distance = thing.box.distance(pose.position);
+            views.farthest_m = std::max(views.farthest_m, distance);
+            if (distance > 3) continue;
+            if (distance > 0) views.nearest_m = std::min(views.nearest_m, distance);  // 0: ground, walls about the eye
+            views.simplest_passed = std::min(views.simplest_passed, thing.triangles);
+            views.most_complex_passed = std::max(views.most_complex_passed, thing.triangles);
+            ++near;
+        }
+        views.most_near = std::max(views.most_near, near);
+        views.least_triangles = std::min(views.least_triangles, triangles);
+        views.most_triangles = std::max(views.most_triangles, triangles);
+    }
+    return views;
+}
+
+TEST(Paths, PassNearClutterAndFarViewsTheSimpleAndTheComplex) {
+    for (const auto& [name, far_m] : {std::pair{"forest", 40.0}, {"room", 5.0}, {"town", 100.0}}) {
+        const Views v = views_of(made(name, 1));
+        std::cout << name << ": " << v.nearest_m << " to " << v.farthest_m << " m; at most " << v.most_near
+                  << " things within 3 m, of " << v.simplest_passed << " to " << v.most_complex_passed << " triangles; "
+                  << v.least_triangles << " to " << v.most_triangles << " triangles in view\n";
+        EXPECT_LT(v.nearest_m, 1.0) << name;
+        EXPECT_GE(v.most_near, 5U) << name;
+        EXPECT_GT(v.farthest_m, far_m) << name;
+        EXPECT_LE(v.simplest_passed, 60U) << name;
+        EXPECT_GE(v.most_complex_passed, 900U) << name;
+        EXPECT_GE(v.most_triangles, 3 * v.least_triangles) << name;
     }
 }
 

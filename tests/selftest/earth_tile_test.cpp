@@ -29,7 +29,7 @@ TEST(EarthTile, LooksAsAtTheOrigin) {
 
     Outcome outcome;
     constexpr model::Viewport view{320, 240};
-    const auto device = open_picture(view, outcome);
+    const auto device = open_picture(view, {}, outcome);
     if (!device) GTEST_SKIP() << outcome.not_run;
     // From above the ground, which is whatever points away from the Earth's centre, obliquely down onto the tile's middle.
     const dvec3 up = glm::normalize(tile.centre()), aside = glm::normalize(glm::cross(up, dvec3(0.3, 0.2, 1)));

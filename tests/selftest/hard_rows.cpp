@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     bool fine = true;
-    const auto results = run_rows(*selection, scale, {}, [&](const RowResult& r) {
+    const auto results = run_rows(*selection, {scale}, [&](const RowResult& r) {
         std::fputs(text_of(r).c_str(), stdout);
         std::printf("        digest %016llx\n", static_cast<unsigned long long>(r.outcome.digest));
         fine = fine && r.verdict != Verdict::broken;

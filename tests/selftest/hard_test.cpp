@@ -23,7 +23,7 @@ constexpr double share_of_samples = 0.04;
 class Hard : public testing::TestWithParam<Row> {};
 
 TEST_P(Hard, Holds) {
-    const RowResult result = run_row(GetParam(), {share_of_samples, nullptr});
+    const RowResult result = run_row(GetParam(), {share_of_samples});
     if (result.verdict == Verdict::not_run) GTEST_SKIP() << result.outcome.not_run;
     EXPECT_EQ(result.verdict, Verdict::holds) << text_of(result);
 }

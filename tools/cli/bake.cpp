@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include "render/bake/bake.hpp"
@@ -21,13 +22,21 @@ struct BakeArguments {
     std::string out, quality = "draft", state;
     int workers = 0;
     double rate_hz = 30;
-    bool json = false;
+    bool allow_incomplete = false, json = false;
 };
 
 double peak_memory_mib() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+/// A kiosk whose wall is white for want of a picture is found out by its visitors: better by who bakes it.
+Error incomplete(const importer::Scene& scene) {
+    const std::string more =
+        scene.damage.size() > 1 ? fmt::format("; and {} more (all with --allow-incomplete)", scene.damage.size() - 1) : "";
+    return {fmt::to_string(fmt::join(scene.sources, ", ")), "incomplete: " + scene.damage.front() + more,
+            "mend the files, or bake what is left with --allow-incomplete"};
 }
 
 int run_bake(const BakeArguments& a, const Context& context) {
@@ -49,6 +58,7 @@ int run_bake(const BakeArguments& a, const Context& context) {
     if (!costs) return fail(costs.error());
     auto scene = importer::import_files(a.in, progress);
     if (!scene) return end_progress(context), fail(scene.error());
+    if (!a.allow_incomplete && !scene->damage.empty()) return end_progress(context), fail(incomplete(*scene));
     bake::BakeOptions options;
     options.quality = a.quality == "full" ? bake::Quality::full : bake::Quality::draft;
     options.workers = a.workers;
@@ -96,6 +106,8 @@ void add_bake(CLI::App& app, Context& context) {
     c->add_option("--rate", a->rate_hz, "Frame rate in Hz for the rule that no item costs over 1/16 of a frame")
         ->check(number_within(1, 240, "Hz"))
         ->capture_default_str();
+    c->add_flag("--allow-incomplete", a->allow_incomplete,
+                "Bake what is left where pictures, materials or coordinates are missing or broken, and say what");
     c->add_option("--state", a->state, "Folder with the calibrated cost table");
     c->callback([&context, a] { context.run = [a, &context] { return run_bake(*a, context); }; });
 }

@@ -13,6 +13,7 @@ namespace {
 
 struct SelftestArguments {
     std::vector<std::string> rows;
+    std::string backend;
     double scale = 1;
     bool hard = false, list = false, json = false;
 };
@@ -72,7 +73,8 @@ int run_selftest(const SelftestArguments& a, const Context& context) {
     const auto selection = selftest::select_rows(a.rows);
     if (!selection) return misuse(selection.error());
     if (a.list) return list_rows(a, *selection);
-    const auto results = selftest::run_rows(*selection, a.scale, terminal_progress(context), [&](const selftest::RowResult& r) {
+    const Progress progress = terminal_progress(context);
+    const auto results = selftest::run_rows(*selection, {a.scale, &progress, a.backend}, [&](const selftest::RowResult& r) {
         end_progress(context);
         if (a.json) return;
         fmt::print("{}", selftest::text_of(r));
@@ -109,6 +111,9 @@ void add_selftest(CLI::App& app, Context& context) {
     c->add_option("--scale", a->scale, "Times the usual number of samples")
         ->check(number_within(0.001, 100))
         ->capture_default_str();
+    c->add_option("--backend", a->backend,
+                  "Rows that draw: by egl, device, osmesa or window only (else egl, or osmesa where that is missing)")
+        ->check(drawing_backend());
     c->callback([&context, a] { context.run = [&context, a] { return run_selftest(*a, context); }; });
 }
 

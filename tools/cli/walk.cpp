@@ -27,6 +27,7 @@ struct WalkArguments {
     MonitorArguments watch;
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool no_correction = false, json = false;
+    const CLI::Option* control_pairs = nullptr;
 };
 
 /// An empty variable of a script is no wish for no output.
@@ -37,9 +38,17 @@ const CLI::Validator names_something(
     "");
 
 /// Options that say nothing without another one, or against it.
-Result<void> check_together(const app::WalkRequest& r, bool every_given, bool capture_frame_given) {
+Result<void> check_together(const app::WalkRequest& r, bool every_given, bool capture_frame_given, bool pairs_given) {
     const bool is_virtual = r.clock == "virtual";
     if (r.control && is_virtual) return Error{"--control", "judges real time", "leave out --clock virtual"};
+    if (pairs_given && !r.control)
+        return Error{"--control-pairs", "says how long the control is, and there is none", "add --control"};
+    if (r.control && (r.frames > 0 || r.seconds > 0))
+        return Error{r.frames > 0 ? "--frames" : "--seconds", "is not the control's length, which --control-pairs says",
+                     "leave it out"};
+    if (r.frames > 0 && r.seconds > 0) return Error{"--seconds", "and --frames say the length twice", "leave one of them out"};
+    if (r.cost_noise > 0 && !is_virtual)
+        return Error{"--cost-noise", "is of simulated costs, and these are real", "add --clock virtual"};
     if (r.strict && is_virtual) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
     if (!r.steering_file.empty() && r.input_file.empty()) {
         return Error{"--steering", "says how a device steers, and none does: the path is followed",
@@ -72,7 +81,8 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
         return Error{"MODEL.walk", "is not named", "surefoot walk MODEL.walk, or `model = ...` in the --config file"};
     r.correct_costs = !a.no_correction;
     r.config_file = a.settings->config_file;
-    if (auto ok = check_together(r, r.snap_every > 0, r.capture_frame != unset); !ok) return ok.error();
+    if (auto ok = check_together(r, r.snap_every > 0, r.capture_frame != unset, a.control_pairs->count() > 0); !ok)
+        return ok.error();
     if (!r.snap_dir.empty() && r.snap_every == 0) r.snap_every = 30;
     if (r.capture_frame == unset) r.capture_frame = 0;
     return r;
@@ -190,9 +200,9 @@ void add_walk(CLI::App& app, Context& context) {
     c->add_flag("--no-check", a->settings->no_check, "Without the in-frame check, to see what it is worth");
     c->add_flag("--no-correction", a->no_correction, "Predictions are not corrected online");
     c->add_flag("--control", r.control, "Alternate blocks of the walk and of a bare loop, and judge by the deadline rule");
-    c->add_option("--control-pairs", r.control_pairs, "Pairs of blocks; the rule wants 90")
-        ->check(whole_number_within(1, 100000))
-        ->capture_default_str();
+    a->control_pairs = c->add_option("--control-pairs", r.control_pairs, "Pairs of blocks; the rule wants 90")
+                           ->check(whole_number_within(1, 100000))
+                           ->capture_default_str();
     c->add_option("--state", r.state_dir, "Folder with the calibrated cost table");
     c->add_option("--ledger", r.ledger_file, "CSV, a row a frame")->check(names_something);
     c->add_option("--trace", r.trace_file, "A trace that ui.perfetto.dev opens")->check(names_something);

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <system_error>
 
 #include "rt/base/file.hpp"
 #include "tools/report/style.hpp"
@@ -117,17 +116,12 @@ std::string accuracy_json(const AccuracyRun& run) {
 }
 
 Result<void> probe_accuracy_page(const std::string& dir) {
-    for (const auto* name : {"accuracy.csv", "accuracy.json", "accuracy.svg", "accuracy-dark.svg", "index.html"}) {
-        if (auto ok = probe_writable((std::filesystem::path(dir) / name).string(), true); !ok) return ok;
-    }
-    return {};
+    return FileSet::probe(dir, {"accuracy.csv", "accuracy.json", "accuracy.svg", "accuracy-dark.svg", "index.html"});
 }
 
 Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run) {
-    std::error_code failed;
-    std::filesystem::create_directories(dir, failed);
-    if (failed) return Error{dir, "cannot make the folder: " + failed.message(), "choose a folder that you may write in"};
-    const std::filesystem::path folder(dir);
+    auto written = FileSet::create(dir);
+    if (!written) return written.error();
     const std::array<std::pair<std::string_view, std::string>, 5> files = {{
         {"accuracy.csv", accuracy_csv(run)},
         {"accuracy.json", accuracy_json(run)},
@@ -136,8 +130,8 @@ Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run)
         {"index.html", page("Surefoot: what accuracy costs in time", body_of(run))},
     }};
     for (const auto& [name, text] : files)
-        if (auto written = write_text((folder / name).string(), text); !written) return written;
-    return {};
+        if (auto ok = written->add(name, text); !ok) return ok;
+    return written->commit();
 }
 
 }  // namespace surefoot::report

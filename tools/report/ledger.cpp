@@ -91,9 +91,7 @@ constexpr std::array<Column, 59> columns = {{
 
 }  // namespace
 
-Result<void> write_ledger(const std::string& file, std::span<const FrameRecord> records) {
-    auto out = AtomicFile::create(file);
-    if (!out) return out.error();
+Result<void> write_ledger(AtomicFile& out, std::span<const FrameRecord> records) {
     fmt::memory_buffer rows;
     for (const Column& column : columns) add(rows, "{}{}", &column == columns.data() ? "" : ",", column.name);
     rows.push_back('\n');
@@ -104,10 +102,16 @@ Result<void> write_ledger(const std::string& file, std::span<const FrameRecord> 
         }
         rows.push_back('\n');
         if (rows.size() < (1U << 20U)) continue;
-        if (auto written = out->write(std::string_view(rows.data(), rows.size())); !written) return written;
+        if (auto written = out.write(std::string_view(rows.data(), rows.size())); !written) return written;
         rows.clear();
     }
-    if (auto written = out->write(std::string_view(rows.data(), rows.size())); !written) return written;
+    return out.write(std::string_view(rows.data(), rows.size()));
+}
+
+Result<void> write_ledger(const std::string& file, std::span<const FrameRecord> records) {
+    auto out = AtomicFile::create(file);
+    if (!out) return out.error();
+    if (auto written = write_ledger(*out, records); !written) return written;
     return out->commit();
 }
 

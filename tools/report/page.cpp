@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "rt/base/file.hpp"
@@ -105,14 +103,15 @@ std::string body_of(const WalkSummary& s, std::span<const FrameRecord> records, 
 
 Result<void> write_report(const std::string& dir, const WalkSummary& summary, std::span<const FrameRecord> records,
                           std::span<const ReportShot> shots) {
-    std::error_code failed;
-    std::filesystem::create_directories(dir, failed);
-    if (failed) return Error{dir, "cannot make the folder: " + failed.message(), "choose a folder that you may write in"};
-    const std::filesystem::path folder(dir);
-    if (auto written = write_ledger((folder / "ledger.csv").string(), records); !written) return written;
-    if (auto written = write_text((folder / "walk.json").string(), to_json(summary)); !written) return written;
+    auto files = FileSet::create(dir);
+    if (!files) return files.error();
+    auto ledger = files->add("ledger.csv");
+    if (!ledger) return ledger.error();
+    if (auto written = write_ledger(**ledger, records); !written) return written;
+    if (auto written = files->add("walk.json", to_json(summary)); !written) return written;
     const std::string title = fmt::format("Surefoot: {}", escaped(summary.model));
-    return write_text((folder / "index.html").string(), page(title, body_of(summary, records, shots)));
+    if (auto written = files->add("index.html", page(title, body_of(summary, records, shots))); !written) return written;
+    return files->commit();
 }
 
 }  // namespace surefoot::report

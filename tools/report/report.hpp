@@ -12,6 +12,10 @@
 #include "rt/frame/control.hpp"
 #include "rt/frame/record.hpp"
 
+namespace surefoot {
+class AtomicFile;
+}
+
 namespace surefoot::report {
 
 struct Quantiles {
@@ -101,6 +105,7 @@ std::string to_json(const WalkSummary& summary);
 std::string to_table(const WalkSummary& summary, bool colour);
 
 Result<void> write_ledger(const std::string& file, std::span<const rt::FrameRecord> records);
+Result<void> write_ledger(AtomicFile& out, std::span<const rt::FrameRecord> records);  ///< not committed
 /// Chrome trace events: opens in Perfetto. Expected and actual slices a frame, phases, misses with their cause.
 Result<void> write_trace(const std::string& file, std::span<const rt::FrameRecord> records);
 

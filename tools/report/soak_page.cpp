@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
-#include <system_error>
 
 #include "rt/base/file.hpp"
 #include "tools/report/charts.hpp"
@@ -155,23 +154,20 @@ constexpr std::string_view soak_footer =
 }  // namespace
 
 Result<void> probe_soak_page(const std::string& dir) {
-    for (const char* name : {"index.html", "soak.json"}) {
-        const std::string file = (std::filesystem::path(dir) / name).string();
-        if (auto ok = probe_writable(file, true); !ok)
-            return Error{"--report " + ok.error().place, ok.error().what, ok.error().remedy};
-    }
+    if (auto ok = FileSet::probe(dir, {"index.html", "soak.json"}); !ok)
+        return Error{"--report " + ok.error().place, ok.error().what, ok.error().remedy};
     return {};
 }
 
 Result<void> write_soak_page(const std::string& dir, const SoakSummary& s) {
-    std::error_code failed;
-    std::filesystem::create_directories(dir, failed);
-    if (failed) return Error{dir, "cannot make the folder: " + failed.message(), "choose a folder that you may write in"};
-    const std::filesystem::path folder(dir);
-    if (auto written = write_text((folder / "soak.json").string(), soak_json(s)); !written) return written;
+    auto files = FileSet::create(dir);
+    if (!files) return files.error();
+    if (auto written = files->add("soak.json", soak_json(s)); !written) return written;
     const std::string body = std::string(soak_rules) + header_of(s) + degraded_notes(s.walk) + check_list(s) + hours_section(s) +
                              load_section(s) + control_part(s.walk.control) + kernel_section(s) + std::string(soak_footer);
-    return write_text((folder / "index.html").string(), page(fmt::format("Surefoot soak: {}", model_name(s.walk.model)), body));
+    const std::string title = fmt::format("Surefoot soak: {}", model_name(s.walk.model));
+    if (auto written = files->add("index.html", page(title, body)); !written) return written;
+    return files->commit();
 }
 
 }  // namespace surefoot::report

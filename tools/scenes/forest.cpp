@@ -177,9 +177,10 @@ const Kind& kind_at(const std::vector<Kind>& kinds, const dvec2& p, std::uint64_
 }
 
 dmat4 standing(const Land& land, const dvec2& p, double size, Random& random) {
-    const dmat4 lean = turn(random.range(-0.035, 0.035), dvec3(1, 0, 0)) * turn(random.range(-0.035, 0.035), dvec3(0, 0, 1));
-    return move({p.x, land.height(p.x, p.y), p.y}) * lean * turn_y(random.range(0, 2 * pi)) *
-           stretch(dvec3(size, size * random.range(0.92, 1.1), size));
+    const double sideways = random.range(-0.035, 0.035), forward = random.range(-0.035, 0.035);
+    const double tall = random.range(0.92, 1.1), about = random.range(0, 2 * pi);
+    return move({p.x, land.height(p.x, p.y), p.y}) * turn(forward, dvec3(1, 0, 0)) * turn(sideways, dvec3(0, 0, 1)) *
+           turn_y(about) * stretch(dvec3(size, size * tall, size));
 }
 
 void plant_trees(SceneMaker& maker, const Land& land, const PlantMaterials& plants, const Scatter& path, std::size_t count,
@@ -189,7 +190,9 @@ void plant_trees(SceneMaker& maker, const Land& land, const PlantMaterials& plan
     double apart = 4.4;
     std::size_t refused = 0;
     for (std::size_t planted = 0; planted < count;) {
-        const dvec2 p(random.range(0.13 * land.side, 0.985 * land.side), random.range(0.015 * land.side, 0.985 * land.side));
+        const double z = random.range(0.015 * land.side, 0.985 * land.side),
+                     x = random.range(0.13 * land.side, 0.985 * land.side);
+        const dvec2 p(x, z);
         const Kind& kind = kind_at(kinds, p, land.seed, random);
         const bool fits = land.from_hilltop(p) > 0.42 && path.free(p, kind.clearance_m) && trees.free(p, apart);
         if (!fits) {
@@ -218,7 +221,8 @@ void plant_undergrowth(SceneMaker& maker, const Land& land, const PlantMaterials
         maker.node(fmt::format("{} {}", name, number++), group, mesh, where);
     };
     while (triangles >= 10) {
-        const dvec2 p(random.range(0.02, 0.98) * land.side, random.range(0.02, 0.98) * land.side);
+        const double z = random.range(0.02, 0.98) * land.side, x = random.range(0.02, 0.98) * land.side;
+        const dvec2 p(x, z);
         if (!path.free(p, 0.9) || !trees.free(p, 0.5)) continue;
         const bool shady = !trees.free(p, 4.0), beside_path = !path.free(p, 5.0);
         if (!beside_path && random.unit() < 0.6) continue;  // more where the walker sees it

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt/base/random_point.hpp"
+
 namespace surefoot::scenes {
 namespace {
 
@@ -27,7 +29,7 @@ std::vector<Clump> grow_wood(MeshMaker& maker, const TreeShape& s, Random& rando
     std::vector<dvec3> trunk;
     std::vector<double> radii;
     constexpr int rings = 6;
-    dvec3 bend(random.range(-0.25, 0.25), 0, random.range(-0.25, 0.25));
+    dvec3 bend = any_in(random, {-0.25, 0, -0.25}, {0.25, 0, 0.25});
     for (int i = 0; i <= rings; ++i) {
         const double f = static_cast<double>(i) / rings;
         trunk.push_back(dvec3(0, f * 0.9 * s.height - 0.3, 0) + bend * std::sin(f * 2.2) * (0.04 * s.height));
@@ -172,8 +174,8 @@ importer::Mesh rock(const PlantMaterials& materials, std::uint64_t seed) {
     MeshMaker maker("rock");
     maker.brush.material = materials.bark;
     maker.brush.colour = mix(rgb(112, 110, 104), rgb(140, 134, 122), random.unit());
-    maker.brush.frame = turn(random.range(-0.4, 0.4), dvec3(1, 0, 0)) *
-                        stretch({random.range(0.4, 0.8), random.range(0.25, 0.45), random.range(0.4, 0.7)});
+    const dmat4 size = stretch({random.range(0.4, 0.8), random.range(0.25, 0.45), random.range(0.4, 0.7)});
+    maker.brush.frame = turn(random.range(-0.4, 0.4), dvec3(1, 0, 0)) * size;
     maker.lathe(std::array{dvec2(0, -0.6), dvec2(0.95, -0.2), dvec2(0.8, 0.55), dvec2(0, 0.9)}, 5);
     return maker.take();
 }
@@ -206,9 +208,7 @@ importer::Mesh bush(const std::string& name, const PlantMaterials& materials, do
     shape.dark = dark;
     shape.light = light;
     std::vector<Clump> clumps;
-    for (int i = 0; i < 7; ++i)
-        clumps.push_back(
-            {dvec3(random.range(-0.4, 0.4), random.range(0.5, 0.95), random.range(-0.4, 0.4)) * radius, 0.5 * radius});
+    for (int i = 0; i < 7; ++i) clumps.push_back({any_in(random, {-0.4, 0.5, -0.4}, {0.4, 0.95, 0.4}) * radius, 0.5 * radius});
     grow_leaves(maker, clumps, shape, triangles / 2, random);
     return maker.take();
 }

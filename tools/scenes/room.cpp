@@ -127,12 +127,13 @@ void lay_table(const Placer& place, const Pieces& p, const dvec3& at) {
     const std::array<std::array<double, 3>, 6> seats{
         {{-0.45, 0.46, pi}, {0.45, 0.46, pi}, {-0.45, -0.46, 0}, {0.45, -0.46, 0}, {-0.86, 0, pi / 2}, {0.86, 0, -pi / 2}}};
     for (const auto& [x, z, angle] : seats) {
-        place.put("chair", p.chair, {place.about(x, 0.03), 0, place.about(z, 0.03)}, place.about(angle, 0.12), table);
+        const double turned = place.about(angle, 0.12);
+        place.put("chair", p.chair, {place.about(x, 0.03), 0, place.about(z, 0.03)}, turned, table);
         const dvec3 inwards = glm::normalize(dvec3(-x * (std::abs(z) < 0.1 ? 1 : 0), 0, -z));
         const dvec3 setting = dvec3(x, 0.752, z) + inwards * (std::abs(z) < 0.1 ? 0.14 : 0.22);
         place.put("plate", p.plate, setting, 0, table);
-        place.put("cup", p.cup, setting + dvec3(place.about(0.19, 0.02), 0, place.about(0.02, 0.04)), place.random.range(0, 6),
-                  table);
+        const double handle = place.random.range(0, 6), cup_z = place.about(0.02, 0.04), cup_x = place.about(0.19, 0.02);
+        place.put("cup", p.cup, setting + dvec3(cup_x, 0, cup_z), handle, table);
     }
     place.put("bowl of fruit", p.fruit, {0.0, 0.752, 0}, 0.4, table);
     place.put("teapot", p.teapot, {0.36, 0.752, 0.04}, place.random.range(0, 6), table);

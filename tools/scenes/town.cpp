@@ -160,9 +160,8 @@ void place_house(Town& town, Index parent, int kind, int number, const dmat4& wh
 }
 
 void plant(Town& town, Index parent, std::size_t tree, double x, double z) {
-    town.maker.node(
-        "tree", parent, town.trees[tree],
-        move({x, kerb - 0.05, z}) * turn_y(town.random.range(0, 2 * pi)) * stretch(dvec3(town.random.range(0.85, 1.15))));
+    const double size = town.random.range(0.85, 1.15), about = town.random.range(0, 2 * pi);
+    town.maker.node("tree", parent, town.trees[tree], move({x, kerb - 0.05, z}) * turn_y(about) * stretch(dvec3(size)));
 }
 
 /// Lamps and trees along the kerbs, none in front of the doors' middle.
@@ -186,10 +185,12 @@ void garden(Town& town, Index parent) {
         const double x = pavement + house_width_m * (plot + 0.5);
         if (town.random.unit() >= town.built) continue;
         for (const double z : {town.about(low + 2.6, 0.8), town.about(high - 2.6, 0.8)}) {
-            plant(town, parent, town.random.below(3) == 0 ? 1 : 2, town.about(x, 2), z);
-            for (int i = 0; i < 2; ++i)
-                town.maker.node("rose bush", parent, town.bush,
-                                move({town.about(x, 3.2), kerb, town.about(z, 2.0)}) * turn_y(town.random.range(0, 6)));
+            const double tree_x = town.about(x, 2);
+            plant(town, parent, town.random.below(3) == 0 ? 1 : 2, tree_x, z);
+            for (int i = 0; i < 2; ++i) {
+                const dmat4 turned = turn_y(town.random.range(0, 6));
+                town.maker.node("rose bush", parent, town.bush, move({town.about(x, 3.2), kerb, town.about(z, 2.0)}) * turned);
+            }
         }
         town.maker.node("hedge", parent, town.hedge, move({x - 4, kerb, 0.5 * block}));
         if (plot > 0)

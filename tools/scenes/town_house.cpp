@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "rt/base/hash.hpp"
-#include "rt/base/random.hpp"
+#include "rt/base/random_point.hpp"
 #include "tools/scenes/town.hpp"
 
 namespace surefoot::scenes {
@@ -164,7 +164,7 @@ void flower_box(MeshMaker& maker, const TownStuff& stuff, double x, double y, do
         const dvec3 base(x + width * (i + 0.5) / 14, y - 0.06, random.range(0.1, 0.22));
         maker.brush.material = stuff.plants.leaf;
         maker.brush.colour = {255, 255, 255, 255};
-        maker.leaf(base, base + dvec3(random.range(-0.1, 0.1), 0.24, random.range(0, 0.16)), {0.11, 0, 0.03},
+        maker.leaf(base, base + any_in(random, {-0.1, 0.24, 0}, {0.1, 0.24, 0.16}), {0.11, 0, 0.03},
                    glm::normalize(dvec3(0, 0.6, 1)));
         maker.brush.material = stuff.stuff.plain;
         maker.brush.colour = blossoms[random.below(3)];

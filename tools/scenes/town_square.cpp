@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "rt/base/random.hpp"
+#include "rt/base/random_point.hpp"
 #include "tools/scenes/town.hpp"
 
 namespace surefoot::scenes {
@@ -210,8 +210,8 @@ importer::Mesh hedge(const TownStuff& stuff, double length, std::uint64_t seed) 
     maker.brush = {stuff.plants.leaf, {255, 255, 255, 255}, dmat4(1.0), 1.0};
     const int count = static_cast<int>(length * 14);
     for (int i = 0; i < count; ++i) {
-        const dvec3 at(random.range(0, length), random.range(0.1, 1.0), random.range(-0.25, 0.25));
-        const dvec3 up(random.range(-0.2, 0.2), 0.35, random.range(-0.2, 0.2));
+        const dvec3 at = any_in(random, {0, 0.1, -0.25}, {length, 1.0, 0.25});
+        const dvec3 up = any_in(random, {-0.2, 0.35, -0.2}, {0.2, 0.35, 0.2});
         const double side = random.range(0, 2 * pi);
         maker.brush.colour = shade(rgb(225, 235, 215), 0.6 + 0.35 * at.y);
         maker.leaf(at, at + up, dvec3(0.26 * std::cos(side), 0, 0.26 * std::sin(side)), glm::normalize(dvec3(0, 0.7, at.z * 3)));

@@ -48,8 +48,8 @@ std::uint64_t pixels_other_than(const gl::PixelImage& image, std::array<std::uin
 
 /// A green sheet `gap` before a red one, both over the whole picture: every pixel is green, whichever is drawn first and whatever
 /// numbers the two have.
-void planes_apart(const Effort&, Outcome& out) {
-    const auto device = open_picture(depth_view, out);
+void planes_apart(const Effort& effort, Outcome& out) {
+    const auto device = open_picture(depth_view, effort, out);
     if (!device) return;
     // The near plane is 50 mm. A view with one of 1 mm is the same view of a world fifty times as large: 50 and 500 km.
     for (const auto& [distance, gap] :
@@ -77,7 +77,7 @@ void planes_apart(const Effort&, Outcome& out) {
 
 /// Two sheets in exactly one place, cut into triangles alike or otherwise; the eye moves by millimetres.
 void in_one_place(const Effort& effort, Outcome& out) {
-    const auto device = open_picture(depth_view, out);
+    const auto device = open_picture(depth_view, effort, out);
     if (!device) return;
     std::uint64_t flicker = 0, sky = 0, mixed = 0, frames = 0;
     for (const double distance : {1.0, 10.0, 100.0, 1000.0, 10'000.0}) {
@@ -108,8 +108,8 @@ void in_one_place(const Effort& effort, Outcome& out) {
 }
 
 /// Which object shows where several are in one place is decided by their numbers, at every distance alike.
-void order_by_number(const Effort&, Outcome& out) {
-    const auto device = open_picture(depth_view, out);
+void order_by_number(const Effort& effort, Outcome& out) {
+    const auto device = open_picture(depth_view, effort, out);
     if (!device) return;
     std::uint64_t wrong = 0;
     std::array<std::uint8_t, 3> winner{};
@@ -133,8 +133,8 @@ void order_by_number(const Effort&, Outcome& out) {
 }
 
 /// Two walls that cross: the picture changes sides where they do, within a pixel.
-void through_each_other(const Effort&, Outcome& out) {
-    const auto device = open_picture(depth_view, out);
+void through_each_other(const Effort& effort, Outcome& out) {
+    const auto device = open_picture(depth_view, effort, out);
     if (!device) return;
     std::uint64_t wrong = 0, crossings = 0;
     for (const double distance : {2.0, 100.0, 5000.0}) {

@@ -120,13 +120,14 @@ Result<std::vector<const Row*>> select_rows(std::span<const std::string> ids) {
                  "surefoot selftest --hard --list"};
 }
 
-Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, double share, const Progress& progress,
+Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, const Effort& effort,
                                         const std::function<void(const RowResult&)>& each) {
     std::vector<RowResult> results;
     for (const Row* row : selection) {
-        progress.say(row->id, static_cast<double>(results.size()) / static_cast<double>(selection.size()));
-        RowResult result = run_row(*row, {share, &progress});
-        if (progress.stopped())
+        if (effort.progress != nullptr)
+            effort.progress->say(row->id, static_cast<double>(results.size()) / static_cast<double>(selection.size()));
+        RowResult result = run_row(*row, effort);
+        if (effort.stopped())
             return Error{"selftest",
                          fmt::format("stopped by the user in row {}, after {} of {}", row->id, results.size(), selection.size()),
                          "single rows take less: surefoot selftest --hard " + std::string(row->id)};

@@ -32,6 +32,7 @@ struct Figure {
 struct Effort {
     double share = 1;
     const Progress* progress = nullptr;
+    std::string backend = {};  ///< rows that draw: with this one only; empty: EGL, else OSMesa
 
     [[nodiscard]] bool stopped() const { return progress != nullptr && progress->stopped(); }
     /// `full` times share, at least `least`.
@@ -83,7 +84,7 @@ RowResult run_row(const Row& row, const Effort& effort);
 Result<std::vector<const Row*>> select_rows(std::span<const std::string> ids);
 
 /// One after the other; `each`: called after every one. Error: stopped by the user; which row, and how to go on.
-Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, double share, const Progress& progress,
+Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, const Effort& effort,
                                         const std::function<void(const RowResult&)>& each);
 
 std::string_view word(Verdict verdict);    ///< "holds", "broken", "not run"

@@ -53,8 +53,8 @@ double share_drawn(const gl::PixelImage& image) {
     return image.rgba.empty() ? 0 : static_cast<double>(drawn) / static_cast<double>(image.width * image.height);
 }
 
-void translations(const Effort&, Outcome& out) {
-    const auto device = open_picture(view, out);
+void translations(const Effort& effort, Outcome& out) {
+    const auto device = open_picture(view, effort, out);
     if (!device) return;
     const auto here = import_and_bake(hard_town());
     if (!here) return out.none_of("bakes refused (" + here.error().text() + ")", 1);
@@ -77,8 +77,8 @@ void translations(const Effort&, Outcome& out) {
     out.triangles = here->triangles();
 }
 
-void rotations(const Effort&, Outcome& out) {
-    const auto device = open_picture(view, out);
+void rotations(const Effort& effort, Outcome& out) {
+    const auto device = open_picture(view, effort, out);
     if (!device) return;
     const auto here = import_and_bake(hard_town());
     if (!here) return out.none_of("bakes refused (" + here.error().text() + ")", 1);
@@ -104,8 +104,8 @@ void rotations(const Effort&, Outcome& out) {
 }
 
 /// The generator's town, from its path: baked once, and moved with the cut that was chosen at the origin.
-void streets(const Effort&, Outcome& out) {
-    const auto device = open_picture(view, out);
+void streets(const Effort& effort, Outcome& out) {
+    const auto device = open_picture(view, effort, out);
     if (!device) return;
     const auto town = scenes::generate("town", 0.05, 1);
     if (!town) return out.none_of("scenes refused (" + town.error().text() + ")", 1);
@@ -131,7 +131,7 @@ void streets(const Effort&, Outcome& out) {
 /// Where an edge that leans by a few pixels over the picture lies, read off how many pixels of each row it leaves: the mean over
 /// the rows is good to a hundredth of a pixel. Against the same worked out in extended precision.
 void creeping(const Effort& effort, Outcome& out) {
-    const auto device = open_picture(view, out);
+    const auto device = open_picture(view, effort, out);
     if (!device) return;
     double worst = 0;
     std::uint64_t frames = 0;

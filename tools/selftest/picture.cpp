@@ -9,12 +9,21 @@
 
 namespace surefoot::selftest {
 
-std::unique_ptr<gl::Device> open_picture(model::Viewport viewport, Outcome& outcome) {
+std::unique_ptr<gl::Device> open_picture(model::Viewport viewport, const Effort& effort, Outcome& outcome) {
     gl::DeviceOptions options;
     options.viewport = viewport;
     options.max_items = 1U << 14U;
     options.sky = {0, 0, 1};
-    for (const gl::BackendKind kind : {gl::BackendKind::egl, gl::BackendKind::osmesa}) {
+    std::vector<gl::BackendKind> kinds{gl::BackendKind::egl, gl::BackendKind::osmesa};
+    if (!effort.backend.empty()) {
+        const auto named = gl::parse_backend(effort.backend);
+        if (!named) {
+            outcome.not_run = named.error().text();
+            return nullptr;
+        }
+        kinds = {*named};
+    }
+    for (const gl::BackendKind kind : kinds) {
         options.kind = kind;
         auto device = gl::open_device(options);
         if (device) {

@@ -14,8 +14,8 @@
 
 namespace surefoot::selftest {
 
-/// EGL without a surface, else OSMesa. The outcome says why there is none.
-std::unique_ptr<gl::Device> open_picture(model::Viewport viewport, Outcome& outcome);
+/// What `effort` names, else EGL without a surface, else OSMesa. The outcome says why there is none.
+std::unique_ptr<gl::Device> open_picture(model::Viewport viewport, const Effort& effort, Outcome& outcome);
 
 /// Uploads the model; says in `outcome` if the device refuses it.
 bool load(gl::Device& device, const model::Model& model, Outcome& outcome);
