@@ -43,8 +43,12 @@ printf 'v 0 0 0\nv nan 1 0\nf 1 2 9\n' > bad.obj; expect 1 'bad.obj' bake bad.ob
 expect 1 'nonexistent' bake f.glb -o /nonexistent/f.walk
 triangle='v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n'
 printf 'newmtl a\nmap_Kd gone.png\n' > a.mtl; printf "mtllib a.mtl\nusemtl a\n$triangle" > picture.obj
-printf "mtllib gone.mtl\n$triangle" > material.obj; printf "${triangle}v inf 0 0\nf 1 2 4\n" > infinite.obj
+printf "mtllib gone.mtl\nusemtl a\n$triangle" > material.obj; printf "${triangle}v inf 0 0\nf 1 2 4\n" > infinite.obj
 printf "${triangle}f 1 2 9\n" > index.obj
+# What nobody draws may be missing: a library's other materials, loose edges, a library without a use.
+printf 'newmtl a\nKd 1 0 0\nnewmtl b\nmap_Kd gone.png\n' > b.mtl
+printf "mtllib b.mtl gone.mtl\nusemtl a\n${triangle}f 1 2\n" > sound.obj
+"$surefoot" bake sound.obj -o sound.walk >out 2>err || complain "a model that lacks nothing it draws is refused: $(cat err)"
 for lack in picture:gone.png material:gone.mtl 'infinite:position not finite' 'index:index out of range'; do
   expect 1 "${lack%%:*}.obj.*${lack#*:}.*--allow-incomplete" bake "${lack%%:*}.obj" -o f.walk
   "$surefoot" bake "${lack%%:*}.obj" -o incomplete.walk --allow-incomplete >out 2>err || complain "${lack%%:*}.obj: not baked with --allow-incomplete: $(cat err)"

@@ -121,8 +121,8 @@ void Attendant::added(const DeviceEvent& e) {
 void Attendant::say_waiting(const std::function<bool(const DeviceMapping&)>& elsewhere) const {
     for (std::size_t i = 0; i < mappings_.size(); ++i) {
         if (fitted_[i] || !steers(mappings_[i]) || elsewhere(mappings_[i])) continue;
-        tell(say_, "[[device]] {} \"{}\" fits none of the devices that are there, and waits for one (`surefoot devices list`)",
-             i + 1, mappings_[i].name);
+        tell(say_, "[[device]] {} \"{}\" steers none of the devices so far (`surefoot devices list` says what is there)", i + 1,
+             mappings_[i].name);
     }
 }
 

@@ -71,7 +71,7 @@ public:
     [[nodiscard]] int steering_now() const;
     /// How many pluggings have steered.
     [[nodiscard]] std::uint64_t pluggings() const { return pluggings_; }
-    /// Says which mappings have fitted no device yet, but for those that `elsewhere` knows to be in use.
+    /// Says which mappings no device has come by yet, but for those that `elsewhere` knows to be in use.
     void say_waiting(const std::function<bool(const DeviceMapping&)>& elsewhere) const;
     /// Short, long and undeclared reports: they changed nothing.
     [[nodiscard]] std::uint64_t refused_reports() const { return refused_reports_; }

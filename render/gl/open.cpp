@@ -15,7 +15,7 @@ namespace {
 /// One a core (ARCHITECTURE, measured decisions); beyond sixteen the barriers between scenes eat what they win.
 int default_rasterisers() { return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U)); }
 
-#ifdef __SANITIZE_THREAD__
+#ifdef SUREFOOT_WATCHES_THREADS
 constexpr bool threads_are_watched = true;
 #else
 constexpr bool threads_are_watched = false;
@@ -44,7 +44,7 @@ Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options) {
     if (threads_are_watched && options.kind != BackendKind::null) {
         return Error{"libEGL, libOSMesa",
                      "are not opened where the thread sanitizer watches: the driver's threads are not built with it",
-                     "use --backend null"};
+                     "use a build without it, or walk with --backend null"};
     }
     switch (options.kind) {
         case BackendKind::egl:

@@ -159,15 +159,14 @@ void mend(Primitive& primitive, Mended& counts) {
     counts.normals += make_normals(primitive);
 }
 
-void say(const Mended& counts, const std::string& mesh_name, Scene& scene) {
-    const auto text = [&](std::uint64_t count, const char* what) {
-        return fmt::format("mesh '{}': {} {}", mesh_name, count, what);
-    };
+void say(const Mended& counts, const std::string& mesh_name, std::vector<std::string>& warnings,
+         std::vector<std::string>& lacks) {
     const auto line = [&](std::uint64_t count, const char* what) {
-        if (count > 0) scene.warnings.push_back(text(count, what));
+        if (count > 0) warnings.push_back(fmt::format("mesh '{}': {} {}", mesh_name, count, what));
     };
     const auto broken = [&](std::uint64_t count, const char* what) {
-        if (count > 0) scene.damaged(text(count, what));
+        line(count, what);
+        if (count > 0) lacks.push_back(warnings.back());
     };
     line(counts.arrays, "arrays of normals, coordinates or colours dropped: not as long as the positions");
     line(counts.partial, "incomplete last triangles dropped");
@@ -176,16 +175,15 @@ void say(const Mended& counts, const std::string& mesh_name, Scene& scene) {
     broken(counts.enormous, "triangles dropped: coordinate beyond 1e12 m");
     line(counts.repeated, "triangles dropped: repeated index");
     line(counts.zero_area, "triangles dropped: zero area");
-    line(counts.uvs, "texture coordinates not finite: set to 0");
+    broken(counts.uvs, "texture coordinates not finite: set to 0");
     line(counts.normals, "normals of no length or not finite: made from the triangles");
 }
 
 void clean(Primitive& primitive, const std::string& mesh_name, std::vector<std::string>& warnings) {
     Mended counts;
     mend(primitive, counts);
-    Scene said;
-    say(counts, mesh_name, said);
-    warnings.insert(warnings.end(), said.warnings.begin(), said.warnings.end());
+    std::vector<std::string> lacks;
+    say(counts, mesh_name, warnings, lacks);
 }
 
 }  // namespace surefoot::importer

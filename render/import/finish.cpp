@@ -27,10 +27,17 @@ Box box_of(const Mesh& mesh) {
     return box;
 }
 
+bool is_finite(const dmat4& m) {
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r)
+            if (!std::isfinite(m[c][r])) return false;
+    return true;
+}
+
 std::string why_not_drawable(const dmat4& world) {
+    if (!is_finite(world)) return "transform is not finite";
     for (int c = 0; c < 4; ++c) {
         for (int r = 0; r < 4; ++r) {
-            if (!std::isfinite(world[c][r])) return "transform is not finite";
             if (std::abs(world[c][r]) > farthest_m) return "transform is beyond 1e12 m";
         }
     }
@@ -63,10 +70,31 @@ void clean_meshes(Scene& scene, const Progress& progress) {
             mend(primitive, counts);
             if (primitive.material >= scene.materials.size()) primitive.material = 0;
         }
-        say(counts, mesh.name, scene);
+        say(counts, mesh.name, scene.warnings, mesh.lacks);
         std::erase_if(mesh.primitives, [](const Primitive& p) { return p.indices.empty(); });
         progress.say("clean", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
     }
+}
+
+/// What things that are drawn lack. A library of materials may name pictures that nobody uses.
+void collect_damage(Scene& scene, const std::string& file) {
+    std::vector<bool> mesh_drawn(scene.meshes.size(), false), material_drawn(scene.materials.size(), false);
+    for (const Node& node : scene.nodes)
+        if (node.mesh != none) mesh_drawn[node.mesh] = true;
+    const auto take = [&](std::vector<std::string>& lacks) {
+        for (std::string& what : lacks) {
+            const auto known = [&](const Damage& d) { return d.what == what; };
+            if (std::none_of(scene.damage.begin(), scene.damage.end(), known)) scene.damage.push_back({{}, std::move(what)});
+        }
+    };
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+        if (!mesh_drawn[i]) continue;
+        take(scene.meshes[i].lacks);
+        for (const Primitive& primitive : scene.meshes[i].primitives) material_drawn[primitive.material] = true;
+    }
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        if (material_drawn[i]) take(scene.materials[i].lacks);
+    for (Damage& d : scene.damage) d.file = file;
 }
 
 }  // namespace
@@ -74,6 +102,7 @@ void clean_meshes(Scene& scene, const Progress& progress) {
 Result<void> finish(Scene& scene, const std::string& file, const Progress& progress) {
     if (scene.materials.empty()) scene.materials.push_back(Material{.name = "white"});
     clean_meshes(scene, progress);
+    collect_damage(scene, file);
     std::vector<Box> boxes;
     for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh));
     for (Node& node : scene.nodes) {
@@ -82,6 +111,7 @@ Result<void> finish(Scene& scene, const std::string& file, const Progress& progr
             node.mesh = none;
         } else if (const std::string why = why_not_drawable(boxes[node.mesh], node.world); !why.empty()) {
             scene.warnings.push_back(fmt::format("node '{}' dropped: its {}", node.name, why));
+            if (!is_finite(node.world)) scene.damage.push_back({file, scene.warnings.back()});
             node.mesh = none;
         }
     }
@@ -93,20 +123,24 @@ Result<void> finish(Scene& scene, const std::string& file, const Progress& progr
     return Error{file, "nothing drawable in it" + why, "export the model with its triangles"};
 }
 
-Index load_texture(Scene& scene, const std::string& file, const std::string& name) {
+Picture load_texture(Scene& scene, const std::string& file, const std::string& name) {
     std::string portable = name;
     std::replace(portable.begin(), portable.end(), '\\', '/');
     const std::filesystem::path beside = std::filesystem::path(file).parent_path() / portable;
     const auto plain = require_plain(beside.string());
     auto bytes = plain ? read_file(beside.string()) : plain.error();
     auto image = bytes ? decode_image(*bytes, beside.string()) : Result<Image>(bytes.error());
+    return add_picture(scene, name, std::move(image));
+}
+
+Picture add_picture(Scene& scene, const std::string& name, Result<Image> image) {
     if (!image) {
-        scene.damaged(fmt::format("texture '{}' left white: {}", name, image.error().text()));
-        return none;
+        scene.warnings.push_back(fmt::format("texture '{}' left white: {}", name, image.error().text()));
+        return {none, scene.warnings.back()};
     }
     image->name = name;
     scene.images.push_back(std::move(*image));
-    return static_cast<Index>(scene.images.size() - 1);
+    return {static_cast<Index>(scene.images.size() - 1), {}};
 }
 
 }  // namespace surefoot::importer

@@ -72,14 +72,21 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
     return found == primitive.attributes.end() ? -1 : found->second;
 }
 
-/// The attributes beside positions: one that cannot be read is left out with a warning, the triangles stay.
-void read_attributes(const Context& context, const tinygltf::Primitive& from, const std::string& place, Primitive& to) {
+void lack(const Context& context, Mesh& mesh, std::string what) {
+    context.scene.warnings.push_back(what);
+    mesh.lacks.push_back(std::move(what));
+}
+
+/// The attributes beside positions: one that cannot be read is left out, and the mesh lacks it; the triangles stay.
+void read_attributes(const Context& context, const tinygltf::Primitive& from, const std::string& place, Mesh& mesh,
+                     Primitive& to) {
+    const auto left_out = [&](const char* what, const Error& why) { lack(context, mesh, what + why.text()); };
     if (const int at = attribute(from, "NORMAL"); at >= 0) {
         auto normals = read_vectors<vec3>(context.model, at, 3, place);
         if (normals)
             to.normals = std::move(*normals);
         else
-            context.scene.damaged("normals left out: " + normals.error().text());
+            left_out("normals left out: ", normals.error());
     }
     const TextureUse& use = context.uses[to.material];
     if (const int at = attribute(from, fmt::format("TEXCOORD_{}", use.set)); at >= 0) {
@@ -87,7 +94,7 @@ void read_attributes(const Context& context, const tinygltf::Primitive& from, co
         if (uvs)
             to.uvs = std::move(*uvs);
         else
-            context.scene.damaged("texture coordinates left out: " + uvs.error().text());
+            left_out("texture coordinates left out: ", uvs.error());
         if (!use.identity()) std::transform(to.uvs.begin(), to.uvs.end(), to.uvs.begin(), [&](vec2 uv) { return use.apply(uv); });
     }
     if (const int at = attribute(from, "COLOR_0"); at >= 0) {
@@ -95,15 +102,17 @@ void read_attributes(const Context& context, const tinygltf::Primitive& from, co
         if (colours)
             to.colours = std::move(*colours);
         else
-            context.scene.damaged("colours left out: " + colours.error().text());
+            left_out("colours left out: ", colours.error());
     }
 }
 
-Result<Primitive> read_primitive(const Context& context, const tinygltf::Primitive& from, const std::string& place) {
+Result<Primitive> read_primitive(const Context& context, const tinygltf::Primitive& from, const std::string& place, Mesh& mesh) {
     const tinygltf::Model& model = context.model;
     Primitive to;
     const auto plain = static_cast<Index>(context.scene.materials.size() - 1);
     to.material = from.material >= 0 && static_cast<Index>(from.material) < plain ? static_cast<Index>(from.material) : plain;
+    if (from.material >= 0 && static_cast<Index>(from.material) >= plain)
+        lack(context, mesh, fmt::format("{}: material {} does not exist: left white", place, from.material));
     const int positions_at = attribute(from, "POSITION");
     if (positions_at < 0) return Error{place, "has no positions", export_again};
     auto positions = read_vectors<vec3>(model, positions_at, 3, place);
@@ -119,7 +128,7 @@ Result<Primitive> read_primitive(const Context& context, const tinygltf::Primiti
         for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
     }
     to.indices = expand(corners, from.mode);
-    read_attributes(context, from, place, to);
+    read_attributes(context, from, place, mesh, to);
     return to;
 }
 
@@ -133,11 +142,11 @@ void read_mesh(const Context& context, const tinygltf::Mesh& from, Mesh& to) {
             ++not_triangles;
             continue;
         }
-        auto read = read_primitive(context, primitive, fmt::format("{}: mesh '{}' primitive {}", context.file, to.name, i));
+        auto read = read_primitive(context, primitive, fmt::format("{}: mesh '{}' primitive {}", context.file, to.name, i), to);
         if (read) {
             to.primitives.push_back(std::move(*read));
         } else {
-            context.scene.damaged("primitive dropped: " + read.error().text());
+            lack(context, to, "primitive dropped: " + read.error().text());
         }
     }
     if (not_triangles > 0)

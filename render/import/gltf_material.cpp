@@ -66,26 +66,36 @@ class Pictures {
 public:
     Pictures(const tinygltf::Model& model, const std::string& file, Scene& scene) : model_(model), file_(file), scene_(scene) {}
 
-    Index of_texture(int texture, const std::string& material) {
+    Index of_texture(int texture, Material& material) {
         if (texture < 0) return none;
         if (static_cast<std::size_t>(texture) >= model_.textures.size())
             return missing(material, fmt::format("texture {} does not exist", texture));
         const tinygltf::Texture& wanted = model_.textures[static_cast<std::size_t>(texture)];
-        if (wanted.source < 0 || static_cast<std::size_t>(wanted.source) >= model_.images.size()) {
-            return missing(material, fmt::format("texture {} has no picture that can be read", texture));
-        }
+        if (wanted.source < 0 || static_cast<std::size_t>(wanted.source) >= model_.images.size())
+            return missing(material, fmt::format("texture {} {}", texture, why_no_picture(wanted)));
         const bool clamp = clamps(wanted.sampler);
-        const auto key = std::pair(wanted.source, clamp);
-        if (const auto found = done_.find(key); found != done_.end()) return found->second;
-        const Index image = decode(wanted.source);
-        if (image != none) scene_.images[image].clamp = clamp;
-        return done_[key] = image;
+        const auto [found, added] = done_.try_emplace(std::pair(wanted.source, clamp));
+        if (added) {
+            found->second = decode(wanted.source);
+            if (found->second.image != none) scene_.images[found->second.image].clamp = clamp;
+        }
+        return picture_for(material, found->second);
     }
 
 private:
-    Index missing(const std::string& material, const std::string& why) {
-        scene_.damaged(fmt::format("material '{}' left white: {}", material, why));
+    Index missing(Material& material, const std::string& why) {
+        scene_.warnings.push_back(fmt::format("material '{}' left white: {}", material.name, why));
+        material.lacks.push_back(scene_.warnings.back());
         return none;
+    }
+
+    static std::string why_no_picture(const tinygltf::Texture& wanted) {
+        for (const auto& [extension, kind] :
+             {std::pair{"KHR_texture_basisu", "KTX2"}, {"EXT_texture_webp", "WebP"}, {"MSFT_texture_dds", "DDS"}}) {
+            if (wanted.extensions.contains(extension))
+                return fmt::format("has only a {} picture, which is not read: convert it to PNG or JPEG", kind);
+        }
+        return "has no picture that can be read";
     }
 
     [[nodiscard]] bool clamps(int sampler) const {
@@ -94,18 +104,11 @@ private:
         return s.wrapS == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE && s.wrapT == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     }
 
-    Index decode(int source) {
+    Picture decode(int source) {
         const tinygltf::Image& image = model_.images[static_cast<std::size_t>(source)];
         if (!image.uri.empty()) return load_texture(scene_, file_, decode_uri(image.uri));
         const std::string name = image.name.empty() ? fmt::format("image {}", source) : image.name;
-        auto picture = decode_image(encoded(image), file_ + ": " + name);
-        if (!picture) {
-            scene_.damaged(fmt::format("texture '{}' left white: {}", name, picture.error().text()));
-            return none;
-        }
-        picture->name = name;
-        scene_.images.push_back(std::move(*picture));
-        return static_cast<Index>(scene_.images.size() - 1);
+        return add_picture(scene_, name, decode_image(encoded(image), file_ + ": " + name));
     }
 
     /// Views of images were checked by load_gltf.
@@ -119,7 +122,7 @@ private:
     const tinygltf::Model& model_;
     const std::string& file_;
     Scene& scene_;
-    std::map<std::pair<int, bool>, Index> done_;
+    std::map<std::pair<int, bool>, Picture> done_;
 };
 
 void set_colour(Material& material, const std::vector<double>& linear) {
@@ -150,7 +153,7 @@ std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::
             set_colour(material, numbers_of(old->second, "diffuseFactor"));
             if (old->second.Has("diffuseTexture")) reference = extension_reference(old->second.Get("diffuseTexture"));
         }
-        material.image = pictures.of_texture(reference.texture, material.name);
+        material.image = pictures.of_texture(reference.texture, material);
         material.alpha = from.alphaMode == "MASK"    ? model::AlphaMode::mask
                          : from.alphaMode == "BLEND" ? model::AlphaMode::blend
                                                      : model::AlphaMode::opaque;

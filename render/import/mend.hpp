@@ -19,7 +19,7 @@ struct Mended {
 
 /// Cleans the primitive and adds to the counts.
 void mend(Primitive& primitive, Mended& counts);
-/// One line for each kind that is not zero, in the scene's warnings; what is broken, not only useless, in its damage.
-void say(const Mended& counts, const std::string& mesh_name, Scene& scene);
+/// One line for each kind that is not zero; what is broken, not only useless, is what the mesh lacks, too.
+void say(const Mended& counts, const std::string& mesh_name, std::vector<std::string>& warnings, std::vector<std::string>& lacks);
 
 }  // namespace surefoot::importer

@@ -1,6 +1,7 @@
 // Wavefront OBJ to a Scene: a node and mesh an object or group, a primitive a material, corners shared.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <unordered_map>
 
@@ -140,15 +141,18 @@ private:
         return index == 0 || at < 0 || at >= static_cast<std::int64_t>(size) ? none : static_cast<std::uint32_t>(at);
     }
 
-    /// v, v/vt, v//vn or v/vt/vn; an empty or wrong vt or vn counts as not given. False: no position there.
-    bool corner(TextCursor& cursor, Corner& corner) const {
+    /// v, v/vt, v//vn or v/vt/vn; an empty vt or vn counts as not given, and so, noted, does a wrong one. False: no position
+    /// there.
+    bool corner(TextCursor& cursor, std::uint64_t line, Corner& corner) {
         std::int64_t index = 0;
         corner = {none, none, none};
         if (!cursor.integer(index)) return false;
         corner.position = resolve(index, positions_.size());
         if (cursor.take('/')) {
-            if (cursor.integer(index)) corner.uv = resolve(index, uvs_.size());
-            if (cursor.take('/') && cursor.integer(index)) corner.normal = resolve(index, normals_.size());
+            bool wrong = false;
+            if (cursor.integer(index)) wrong = (corner.uv = resolve(index, uvs_.size())) == none;
+            if (cursor.take('/') && cursor.integer(index)) wrong |= (corner.normal = resolve(index, normals_.size())) == none;
+            if (wrong) bad_corners_.note(line);
         }
         return corner.position != none;
     }
@@ -157,8 +161,9 @@ private:
         polygon_.clear();
         while (!cursor.at_line_end()) {
             Corner c{};
-            if (!corner(cursor, c)) {
+            if (!corner(cursor, line, c)) {
                 bad_faces_.note(line);
+                lost_.note(line);
                 return {};
             }
             if (!cursor.at_word_end()) return wrong(line, "a face's corner is none of v, v/vt, v//vn, v/vt/vn");
@@ -203,16 +208,29 @@ private:
         return group.parts[found->second];
     }
 
+    /// One name, which may have spaces in it; or several.
     void library(const std::string& names) {
+        std::error_code ignored;
+        if (std::filesystem::exists(std::filesystem::path(file_).parent_path() / names, ignored) ||
+            names.find(' ') == std::string::npos)
+            return one_library(names);
+        for (TextCursor cursor(names); !cursor.at_line_end();) one_library(std::string(cursor.word()));
+    }
+
+    void one_library(const std::string& name) {
         const std::size_t before = scene_.materials.size();
-        read_mtl(file_, names, scene_);
+        if (const std::string lack = read_mtl(file_, name, scene_); !lack.empty()) library_lack_ = lack;
         for (std::size_t i = before; i < scene_.materials.size(); ++i)
             material_of_name_.try_emplace(scene_.materials[i].name, static_cast<Index>(i));
     }
 
+    /// One that no library has is white: damage where a library is missing, usual where none was named.
     void use_material(const std::string& name) {
         const auto [found, added] = material_of_name_.try_emplace(name, static_cast<Index>(scene_.materials.size()));
-        if (added) scene_.materials.push_back(Material{.name = name, .two_sided = true});
+        if (added) {
+            scene_.materials.push_back(Material{.name = name, .two_sided = true});
+            if (!library_lack_.empty()) scene_.materials.back().lacks.push_back(library_lack_);
+        }
         material_ = found->second;
     }
 
@@ -279,8 +297,11 @@ private:
         const auto say = [&](const Skipped& skipped, const char* what) {
             if (skipped.count > 0) scene_.warnings.push_back(text(skipped, what));
         };
-        const char* bad_faces = "faces dropped: index out of range, or fewer than three corners";
-        if (bad_faces_.count > 0) scene_.damaged(text(bad_faces_, bad_faces));
+        say(bad_faces_, "faces dropped: index out of range, or fewer than three corners");
+        // Loose edges are useless, not broken.
+        if (lost_.count > 0) scene_.damage.push_back({file_, text(lost_, "faces dropped: index out of range")});
+        if (bad_corners_.count > 0)
+            scene_.damaged(text(bad_corners_, "faces name a texture coordinate or normal that is not there"));
         say(crossing_, "polygons that cross themselves: triangles may overlap");
         say(points_and_lines_, "points or lines dropped");
         say(unknown_, "statements not understood");
@@ -300,7 +321,8 @@ private:
     std::vector<Corner> polygon_;
     std::vector<dvec3> outline_;
     std::vector<std::uint32_t> triples_;
-    Skipped bad_faces_, crossing_, points_and_lines_, unknown_;
+    Skipped bad_faces_, lost_, bad_corners_, crossing_, points_and_lines_, unknown_;
+    std::string library_lack_;  ///< of the last library that could not be read
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Reading {
     const std::string& obj_file;
     std::string place;  ///< the library's own file
     Scene& scene;
-    std::map<std::string, Index> pictures;
+    std::map<std::string, Picture> pictures;
     Index current = none;
     std::string opacity_map;  ///< of the current material
 };
@@ -42,10 +42,10 @@ std::string texture_name(TextCursor& cursor, bool& clamp) {
     return std::string(cursor.line_text());
 }
 
-Index picture(Reading& reading, const std::string& name) {
-    const auto found = reading.pictures.find(name);
-    if (found != reading.pictures.end()) return found->second;
-    return reading.pictures[name] = load_texture(reading.scene, reading.place, name);
+Index picture(Reading& reading, Material& material, const std::string& name) {
+    const auto [found, added] = reading.pictures.try_emplace(name);
+    if (added) found->second = load_texture(reading.scene, reading.place, name);
+    return picture_for(material, found->second);
 }
 
 /// Masked when nearly every texel is either there or not; blended when many lie between.
@@ -61,7 +61,7 @@ model::AlphaMode alpha_of(const Image& image) {
 
 /// A separate picture of opacities goes into the alpha of a copy of the colours (or of plain white).
 void merge_opacity(Reading& reading, Material& material, const std::string& name) {
-    const Index source = picture(reading, name);
+    const Index source = picture(reading, material, name);
     if (source == none) return;
     Image merged = reading.scene.images[source];
     bool own_alpha = false;
@@ -121,7 +121,7 @@ void read_statement(Reading& reading, TextCursor& cursor) {
     } else if (key == "Tr") {
         if (cursor.number(value)) material.colour[3] = std::clamp(1.0F - value, 0.0F, 1.0F);
     } else if (key == "map_Kd") {
-        material.image = picture(reading, texture_name(cursor, clamp));
+        material.image = picture(reading, material, texture_name(cursor, clamp));
         if (material.image != none && clamp) reading.scene.images[material.image].clamp = true;
     } else if (key == "map_d") {
         reading.opacity_map = texture_name(cursor, clamp);
@@ -130,19 +130,22 @@ void read_statement(Reading& reading, TextCursor& cursor) {
 
 }  // namespace
 
-void read_mtl(const std::string& obj_file, const std::string& library, Scene& scene) {
-    const std::string place = (std::filesystem::path(obj_file).parent_path() / library).string();
+std::string read_mtl(const std::string& obj_file, const std::string& library, Scene& scene) {
+    std::string portable = library;
+    std::replace(portable.begin(), portable.end(), '\\', '/');
+    const std::string place = (std::filesystem::path(obj_file).parent_path() / portable).string();
     const auto plain = require_plain(place);
     auto text = plain ? read_text(place) : plain.error();
     if (!text) {
-        scene.damaged(fmt::format("materials left white: {}", text.error().text()));
-        return;
+        scene.warnings.push_back(fmt::format("materials left white: {}", text.error().text()));
+        return scene.warnings.back();
     }
     Reading reading{obj_file, place, scene, {}, none, {}};
     for (TextCursor cursor(*text); !cursor.done(); cursor.next_line()) {
         if (!cursor.at_line_end()) read_statement(reading, cursor);
     }
     end_material(reading);
+    return {};
 }
 
 }  // namespace surefoot::importer

@@ -97,7 +97,7 @@ public:
             Material material;
             material.name = name.empty() ? "plain" : name;
             material.two_sided = true;  // the format says nothing of facing
-            if (!name.empty()) material.image = load_texture(scene_, file_, name);
+            if (!name.empty()) material.image = picture_for(material, load_texture(scene_, file_, name));
             scene_.materials.push_back(std::move(material));
         }
         return found->second;

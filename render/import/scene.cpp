@@ -77,7 +77,7 @@ void append(Scene& to, Scene&& from) {
 
 void Scene::damaged(std::string line) {
     warnings.push_back(line);
-    damage.push_back(std::move(line));
+    damage.push_back({{}, std::move(line)});
 }
 
 std::uint64_t Scene::triangles() const {

@@ -33,6 +33,7 @@ struct Material {
     model::AlphaMode alpha = model::AlphaMode::opaque;
     bool two_sided = false;
     bool unlit = false;
+    std::vector<std::string> lacks = {};  ///< what the file asks for and has not got: pictures, the material itself
 };
 
 /// Triangles of one material. Optional arrays are empty or as long as positions. Colours are sRGB-encoded, as a Material's
@@ -49,6 +50,7 @@ struct Primitive {
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<std::string> lacks = {};  ///< what of it is broken or left out
 };
 
 /// parent < own index (parents come first), none for roots.
@@ -60,6 +62,11 @@ struct Node {
     float importance = 1.0F;
 };
 
+/// Something drawn that a file asks for and has not got.
+struct Damage {
+    std::string file, what;
+};
+
 struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;
@@ -67,8 +74,8 @@ struct Scene {
     std::vector<Image> images;
     std::vector<std::string> sources;
     std::vector<std::string> warnings;              ///< what was repaired or dropped, one line each with counts
-    std::vector<std::string> damage;                ///< those of `warnings` that name what the files ask for and have not got
-    void damaged(std::string line);                 ///< a line of both
+    std::vector<Damage> damage;                     ///< those of them that a person should mend: of things that are drawn
+    void damaged(std::string line);                 ///< a warning, and damage whatever is drawn
     [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
 };
 

@@ -128,8 +128,8 @@ struct CheckInput {
     double margin = 1.0;             ///< on top of the upper quantile
 };
 /// true: draw it in full; false: draw this and every later slice by its stand-ins. The predictions are scaled by how wrong the
-/// frame has been so far (1..8; a twentieth of the limit and half of the rest are taken as seen and right, so that the first
-/// slices do not speak for all).
+/// frame has been so far (1..8; a twentieth of the limit, and of the rest a half that melts with the time left, are taken as
+/// seen and right, so that the first slices do not speak for all).
 bool still_fits(const CheckInput& input);
 
 }  // namespace surefoot::select

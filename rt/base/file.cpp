@@ -68,6 +68,14 @@ std::string folder_of(const std::string& path) {
     return folder.empty() ? "." : folder;
 }
 
+/// A name is on the disk when its folder is. `path`: of the file, for the error.
+Result<void> sync_folder(const std::string& folder, const std::string& path) {
+    const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    // Some file systems refuse to sync a folder (EINVAL); the file itself is complete either way.
+    if (opened.fd >= 0 && ::fsync(opened.fd) != 0 && errno != EINVAL) return system_error(path, "cannot sync its folder", errno);
+    return {};
+}
+
 /// Reads to the end into a string or vector; the size hint only saves growing (a pipe has none).
 template <class Bytes>
 Result<Bytes> read_all(const std::string& path, std::uint64_t max_bytes) {
@@ -198,26 +206,28 @@ Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byt
 }
 
 Result<void> AtomicFile::sync() {
-    if (fd_ < 0) return Error{path_, "synced after it was closed", {}};
+    if (fd_ < 0) return Error{path_, "committed after it was closed", {}};
     if (::fsync(fd_) != 0) return system_error(path_, "cannot finish writing", errno);
     return {};
 }
 
-// The order matters: contents reach the disk before the name does, and the name before we say that it is done.
-Result<void> AtomicFile::commit() {
+Result<void> AtomicFile::take_place() {
     if (fd_ < 0) return Error{path_, "committed after it was closed", {}};
-    int error = ::fsync(fd_) != 0 ? errno : 0;
-    if (::close(std::exchange(fd_, -1)) != 0 && error == 0) error = errno;
+    int error = ::close(std::exchange(fd_, -1)) != 0 ? errno : 0;
     if (error == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) error = errno;
     if (error != 0) {
         discard();
         return system_error(path_, "cannot finish writing", error);
     }
     temporary_.clear();
-    const Descriptor folder(::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    // Some file systems refuse to sync a folder (EINVAL); the file itself is complete either way.
-    if (folder.fd >= 0 && ::fsync(folder.fd) != 0 && errno != EINVAL) return system_error(path_, "cannot sync its folder", errno);
     return {};
+}
+
+// The order matters: contents reach the disk before the name does, and the name before we say that it is done.
+Result<void> AtomicFile::commit() {
+    if (auto ok = sync(); !ok) return discard(), ok;
+    if (auto ok = take_place(); !ok) return ok;
+    return sync_folder(folder_of(path_), path_);
 }
 
 Result<void> probe_writable(const std::string& path, bool make_folders) {
@@ -264,10 +274,12 @@ Result<void> FileSet::add(std::string_view name, std::string_view text) {
 Result<void> FileSet::commit() {
     for (AtomicFile& file : files_)
         if (auto ok = file.sync(); !ok) return ok;
+    // From here on one that fails keeps none of the others back.
+    Result<void> done;
     for (AtomicFile& file : files_)
-        if (auto ok = file.commit(); !ok) return ok;
+        if (auto ok = file.take_place(); !ok && done) done = ok;
     files_.clear();
-    return {};
+    return done ? sync_folder(folder_, folder_) : done;
 }
 
 Result<void> FileSet::probe(const std::string& folder, std::initializer_list<std::string_view> names) {

@@ -35,11 +35,12 @@ public:
     Result<void> write(std::span<const std::byte> bytes);
     Result<void> write(std::string_view text);
     Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes);
-    /// Contents reach the disk; what may still fail after it is the renaming.
-    Result<void> sync();
     Result<void> commit();
 
 private:
+    friend class FileSet;
+    Result<void> sync();        ///< contents are on the disk
+    Result<void> take_place();  ///< renamed
     AtomicFile() = default;
     void discard() noexcept;
     std::string path_;
@@ -53,7 +54,8 @@ private:
 Result<void> probe_writable(const std::string& path, bool make_folders = false);
 
 /// Files of one folder that belong together; the folder is made where it is missing. All are written and synced before the first
-/// takes its place, so that a full disk leaves the old ones as they were, all of them.
+/// takes its place, so that a full disk leaves the old ones as they were, all of them. (A power cut between two renames may mix
+/// them.)
 class FileSet {
 public:
     static Result<FileSet> create(const std::string& folder);

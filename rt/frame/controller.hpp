@@ -7,14 +7,14 @@
 
 namespace surefoot::rt {
 
-/// factor = median of the last 15 ratios actual / predicted, within [0.25, 2], moving by at most 6 % a frame: a step of 2 in true
+/// factor = median of the last 15 ratios actual / predicted, within [0.5, 2], moving by at most 6 % a frame: a step of 2 in true
 /// cost is met within 8 + 12 frames, and up to 7 outliers in 15 frames change nothing.
 /// upper = 90 % quantile of the last 64 actual / (predicted x the factor then): what a frame may be planned to cost. A table's
 /// own upper factor is of any view of any scene; a walk's next frame is much like its last, and half of that was budget unspent.
 class CostController {
 public:
     static constexpr std::size_t window = 15, upper_window = 64;
-    static constexpr double lowest = 0.25, highest = 2.0, slew = 1.06;
+    static constexpr double lowest = 0.5, highest = 2.0, slew = 1.06;
     static constexpr double least_upper = 1.04, upper_slew = 1.01;  ///< falls by at most 1 % a frame, rises at once
 
     /// predicted_us: uncorrected (factor 1). Pairs that are not positive and finite are ignored.

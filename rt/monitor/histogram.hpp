@@ -16,7 +16,7 @@ public:
 
     Histogram() = default;
     Histogram(const Histogram&) = default;
-    /// Only the bins in use are copied: a walk's times lie within some dozens, and figures are published four times a second.
+    /// Only the bins from the smallest value's to the largest's are copied: figures are published four times a second.
     Histogram& operator=(const Histogram& other);
     ~Histogram() = default;
 

@@ -164,13 +164,14 @@ TEST_F(FileTest, FilesThatBelongTogetherTakeTheirPlacesTogether) {
     };
     ASSERT_TRUE(write("old a", "old b").ok());
     rlimit before{};
-    ::signal(SIGXFSZ, SIG_IGN);
+    const auto handler = ::signal(SIGXFSZ, SIG_IGN);
     ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
     rlimit small = before;
     small.rlim_cur = 16;
     ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
     const auto full = write("new a", "new b, and longer than the disk holds");
     ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+    ::signal(SIGXFSZ, handler);
     ASSERT_FALSE(full.ok());
     EXPECT_NE(full.error().text().find("set/b"), std::string::npos);
     EXPECT_EQ(*read_text(in("set/a")), "old a");
@@ -178,6 +179,18 @@ TEST_F(FileTest, FilesThatBelongTogetherTakeTheirPlacesTogether) {
     EXPECT_EQ(std::distance(fs::directory_iterator(set), fs::directory_iterator{}), 2) << "no temporary is left";
     ASSERT_TRUE(write("new a", "new b").ok());
     EXPECT_EQ(*read_text(in("set/a")) + *read_text(in("set/b")), "new anew b");
+    {  // a place that is taken away at the last moment keeps none of the others back
+        auto files = FileSet::create(set);
+        ASSERT_TRUE(files->add("a", "newer a").ok() && files->add("b", "newer b").ok() && files->add("c", "newer c").ok());
+        fs::remove(in("set/b"));
+        fs::create_directory(in("set/b"));
+        const auto done = files->commit();
+        ASSERT_FALSE(done.ok());
+        EXPECT_NE(done.error().text().find("set/b"), std::string::npos);
+        EXPECT_EQ(*read_text(in("set/a")) + *read_text(in("set/c")), "newer anewer c");
+        EXPECT_EQ(std::distance(fs::directory_iterator(set), fs::directory_iterator{}), 3) << "no temporary is left";
+        fs::remove(in("set/b"));
+    }
     EXPECT_TRUE(FileSet::probe(in("other"), {"a", "b"}).ok());
     EXPECT_FALSE(FileSet::probe(in("set/a"), {"b"}).ok());
 }

@@ -56,6 +56,7 @@ int main(int argc, char** argv) {
     double steal_ms = core_steal_ms();
     rt::RecorderOptions recording;
     recording.keep = false;
+    recording.poll_ns = 5'000'000;  // the steal clock is read as a record comes: soon after its frame
     recording.on_record = [&](const rt::FrameRecord& r) {
         if (!r.missed) return;
         ++missed;

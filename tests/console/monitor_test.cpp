@@ -209,6 +209,7 @@ double cost_us_per_frame(const std::string& address, const std::string& incident
     }
     recorder.stop();
     monitor->end_walk();
+    EXPECT_GT(cpu_ns.load(), 0) << "the last record was never seen";
     EXPECT_TRUE(!readers || readers->scrapes() > frames / 10) << "they were served meanwhile";
     return static_cast<double>(cpu_ns.load()) * 1e-3 / frames;
 }

@@ -84,6 +84,11 @@ struct TriangleGltf {
     std::string file() const { return glb(json(), bin()); }
 };
 
+inline bool lacks(const Scene& scene, const std::string& part) {
+    return std::any_of(scene.damage.begin(), scene.damage.end(),
+                       [&](const Damage& d) { return d.what.find(part) != std::string::npos && !d.file.empty(); });
+}
+
 inline bool warns(const Scene& scene, const std::string& part) {
     for (const std::string& warning : scene.warnings) {
         if (warning.find(part) != std::string::npos) return true;

@@ -123,6 +123,18 @@ TEST(Gltf, PointsAndLinesAreDroppedWithAWarning) {
     const Scene scene = import_good(gltf);
     EXPECT_EQ(scene.triangles(), 1U);
     EXPECT_TRUE(warns(scene, "2 primitives of points or lines dropped"));
+    EXPECT_TRUE(scene.damage.empty()) << "useless, not broken";
+}
+
+TEST(Gltf, WhatIsBrokenOfThingsThatAreDrawnIsDamage) {
+    TriangleGltf gltf;
+    gltf.primitive = R"(,"indices":1},{"attributes":{"POSITION":9})";
+    EXPECT_TRUE(lacks(import_good(gltf), "primitive dropped"));
+    gltf.primitive = R"(,"indices":1)";
+    gltf.nodes = R"([{"mesh":0,"children":[1]},{"mesh":7}])";
+    EXPECT_TRUE(lacks(import_good(gltf), "mesh 7 does not exist"));
+    gltf.nodes = R"([{"mesh":0,"children":[9]}])";
+    EXPECT_TRUE(lacks(import_good(gltf), "child 9 of"));
 }
 
 TEST(Gltf, AccessorsThatReachOutsideAreRefused) {
@@ -271,9 +283,19 @@ TEST(Gltf, MissingAndBadTexturesAreWhiteWithAWarning) {
     const Scene scene = import_good(gltf);
     EXPECT_EQ(scene.materials[0].image, none);
     EXPECT_TRUE(warns(scene, "texture 'not there.png' left white"));
+    EXPECT_TRUE(lacks(scene, "texture 'not there.png' left white"));
     gltf.more =
         R"(,"images":[{"uri":"data:image/png;base64,AAAA"}],"textures":[{"source":0}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
     EXPECT_TRUE(warns(import_good(gltf), "neither PNG nor JPEG"));
+    EXPECT_TRUE(lacks(import_good(gltf), "neither PNG nor JPEG"));
+    gltf.primitive = R"(,"indices":1)";
+    EXPECT_TRUE(import_good(gltf).damage.empty()) << "nothing that is drawn uses the material";
+    gltf.primitive = R"(,"indices":1,"material":7)";
+    EXPECT_TRUE(lacks(import_good(gltf), "material 7 does not exist"));
+    gltf.primitive = R"(,"indices":1,"material":0)";
+    gltf.more =
+        R"(,"textures":[{"extensions":{"EXT_texture_webp":{"source":0}}}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+    EXPECT_TRUE(lacks(import_good(gltf), "only a WebP picture, which is not read: convert it"));
     gltf.more = R"(,"materials":[{"name":"wall","pbrMetallicRoughness":{"baseColorTexture":{"index":4}}}])";
     EXPECT_TRUE(warns(import_good(gltf), "texture 4 does not exist"));
 }

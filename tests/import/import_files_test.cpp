@@ -45,6 +45,17 @@ TEST(ImportFiles, SeveralFilesBecomeOneScene) {
     EXPECT_EQ(scene->meshes[2].primitives[0].material, 2U);
 }
 
+TEST(ImportFiles, DamageIsOfTheFileThatHasIt) {
+    const Folder folder;
+    const std::string good = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const std::string bad = folder.write("b.obj", "mtllib gone.mtl\nusemtl red\n" + good);
+    const auto scene = import_files({folder.write("a.obj", good), bad, folder.write("c.obj", "mtllib gone.mtl\n" + good)}, {});
+    ASSERT_TRUE(scene.ok()) << scene.error().text();
+    ASSERT_EQ(scene->damage.size(), 1U) << "a library that nothing asks for is only a warning";
+    EXPECT_EQ(scene->damage[0].file, bad);
+    EXPECT_NE(scene->damage[0].what.find("gone.mtl"), std::string::npos);
+}
+
 TEST(ImportFiles, StopIsHeeded) {
     const Folder folder;
     std::atomic<bool> stop{true};

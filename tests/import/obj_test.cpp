@@ -106,6 +106,7 @@ TEST(Obj, TextureWithHolesIsMaskedAndMissingOnesAreWhite) {
     EXPECT_EQ(scene->materials[0].alpha, model::AlphaMode::mask);
     EXPECT_EQ(scene->materials[1].image, none);
     EXPECT_TRUE(warns(*scene, "texture 'no.png' left white"));
+    EXPECT_TRUE(lacks(*scene, "texture 'no.png' left white"));
 }
 
 TEST(Obj, VertexColoursAndNaNColours) {
@@ -135,6 +136,9 @@ TEST(Obj, FacesOutOfRangeAreDroppedWithTheFirstLine) {
     const Scene scene = import_text(square + "f 1 2 3\nf 1 2 9\nf 0 1 2\nf 1 2\nl 1 2\n");
     EXPECT_EQ(scene.triangles(), 1U);
     EXPECT_TRUE(warns(scene, "3 faces dropped"));
+    EXPECT_TRUE(lacks(scene, "2 faces dropped: index out of range")) << "an edge of two corners is none of them";
+    EXPECT_TRUE(import_text(square + "f 1 2 3\nf 1 2\nusemtl any\nf 1 3 4\n").damage.empty()) << "no library was named";
+    EXPECT_TRUE(lacks(import_text(square + "vt 0 0\nf 1/1 2/1 3/2\n"), "texture coordinate or normal that is not there"));
     EXPECT_TRUE(warns(scene, "first in line 6"));
     EXPECT_TRUE(warns(scene, "1 points or lines dropped"));
 }

@@ -129,6 +129,7 @@ TEST(Ostf, ImportWeldsVerticesAndWarnsOfMissingTextures) {
     EXPECT_EQ(scene->meshes[0].primitives[0].colours[0], (std::array<std::uint8_t, 4>{255, 0, 0, 255}));
     EXPECT_EQ(scene->meshes[0].primitives[0].uvs[0], vec2(0, 1));
     EXPECT_TRUE(warns(*scene, "texture 'gone.tex' left white"));
+    EXPECT_TRUE(lacks(*scene, "texture 'gone.tex' left white"));
 }
 
 TEST(Ostf, ErrorsCarryTheLine) {

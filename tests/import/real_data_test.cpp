@@ -61,6 +61,7 @@ TEST(RealData, GlbsHaveTheirTriangles) {
         EXPECT_EQ(scene->triangles(), known.triangles) << known.file;
         EXPECT_LE(scene->triangles(), known.in_origin);
         EXPECT_EQ(scene->meshes.size(), known.meshes);
+        EXPECT_TRUE(scene->damage.empty()) << known.file << ": " << scene->damage[0].what;
         expect_sound(*scene);
     }
 }

@@ -155,8 +155,8 @@ TEST(LiveSource, AMappingThatFitsNothingIsSaidOnceAndTheOthersAreNot) {
     Rig rig({}, {named("typo", "Sitck"), off, named("ours", "")});
     rig.devices->plug(stick());
     rig.run(2000);
-    EXPECT_EQ(rig.times_said("[[device]] 1 \"typo\" fits none"), 1);
-    EXPECT_EQ(rig.times_said("fits none"), 1);
+    EXPECT_EQ(rig.times_said("[[device]] 1 \"typo\" steers none"), 1);
+    EXPECT_EQ(rig.times_said("steers none"), 1);
     EXPECT_EQ(rig.violations, 0U);
 }
 

@@ -152,18 +152,28 @@ TEST(Control, TheDeadlineRuleWantsAllOfItsParts) {
 
 TEST(Histogram, AssignedIsEqualInEveryBinWhateverStoodThere) {
     Random random(31);
+    const auto value = [&] {
+        const auto shift = random.below(64);
+        const auto v = static_cast<std::int64_t>(random.next() >> shift) & std::numeric_limits<std::int64_t>::max();
+        return random.below(20) == 0 ? -1 : v;
+    };
     const auto any = [&] {
         Histogram h;
         for (std::uint32_t n = random.below(40); n > 0; --n) {
-            const auto value = static_cast<std::int64_t>(random.next() >> random.below(64));
-            h.add(random.below(20) == 0 ? -1 : value & std::numeric_limits<std::int64_t>::max(), 1 + random.below(3));
+            const auto times = random.below(30) == 0 ? std::numeric_limits<std::uint64_t>::max() : 1 + random.below(3);
+            h.add(value(), times);
         }
+        const std::int64_t first = random.below(1000), step = 1 + random.below(1'000'000);
+        if (random.below(3) == 0) h.add_progression(first, step, random.below(200));
         return h;
     };
     Histogram to;
     for (int i = 0; i < 2000; ++i) {
-        const Histogram from = any();
+        Histogram from = any();
+        if (random.below(4) == 0) from.merge(any());
         to = from;
+        const Histogram& itself = to;
+        to = itself;
         std::uint64_t different = 0;
         for (std::size_t b = 0; b < Histogram::bins; ++b) different += to.bin_count(b) == from.bin_count(b) ? 0 : 1;
         ASSERT_EQ(different, 0U) << i;

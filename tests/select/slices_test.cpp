@@ -166,6 +166,34 @@ double frame_us(Scene& s, double limit_us, double wrong, bool check) {
     return in.elapsed_us;
 }
 
+// Inside a building most stand-ins are no cheaper than the things: whatever share of the limit they truly take, a frame whose
+// costs are up to twice what was predicted ends within its period.
+TEST(StillFits, StandInsThatSaveLittleMissNoFrameEither) {
+    constexpr double limit_us = 29333, period_us = 33333, budget_us = 26667;
+    constexpr int slices = 26;
+    double worst_us = 0;
+    for (double wrong = 1; wrong <= 2; wrong += 0.125) {
+        for (double stand_in_share = 0.1; stand_in_share <= 0.8; stand_in_share += 0.05) {
+            const double full_us = budget_us / slices,
+                         stand_in_us = std::min(stand_in_share * limit_us / wrong / slices, full_us);
+            CheckInput in{.limit_us = limit_us};
+            bool full = true;
+            for (int i = 0; i < slices; ++i) {
+                in.next_us = full_us;
+                in.next_stand_in_us = stand_in_us;
+                in.rest_stand_in_us = (slices - 1 - i) * stand_in_us;
+                full = full && still_fits(in);
+                in.predicted_so_far_us += full ? full_us : stand_in_us;
+                in.elapsed_us += wrong * (full ? full_us : stand_in_us);
+            }
+            worst_us = std::max(worst_us, in.elapsed_us);
+            EXPECT_LE(in.elapsed_us, period_us) << wrong << " times, stand-ins " << stand_in_share << " of the limit";
+            EXPECT_TRUE(full || wrong > 1) << "as predicted, and nothing is coarse: " << stand_in_share;
+        }
+    }
+    EXPECT_GT(worst_us, 0.9 * limit_us) << "the time is used";
+}
+
 TEST(StillFits, CostsUnderPredictedTwofoldMissNoFrameOfSixHundred) {
     Scene s(test::town(7));
     constexpr double limit_us = 33333;

@@ -1,9 +1,10 @@
 // surefoot bake: imports model files, clusters, simplifies, captures, and writes a .walk model.
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <span>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include "render/bake/bake.hpp"
@@ -32,11 +33,11 @@ double peak_memory_mib() {
 }
 
 /// A kiosk whose wall is white for want of a picture is found out by its visitors: better by who bakes it.
-Error incomplete(const importer::Scene& scene) {
-    const std::string more =
-        scene.damage.size() > 1 ? fmt::format("; and {} more (all with --allow-incomplete)", scene.damage.size() - 1) : "";
-    return {fmt::to_string(fmt::join(scene.sources, ", ")), "incomplete: " + scene.damage.front() + more,
-            "mend the files, or bake what is left with --allow-incomplete"};
+Error incomplete(std::span<const importer::Damage> damage) {
+    std::string what = "incomplete: " + damage[0].what;
+    for (std::size_t i = 1; i < std::min<std::size_t>(damage.size(), 3); ++i) what += "; " + damage[i].what;
+    if (damage.size() > 3) what += fmt::format("; and {} more", damage.size() - 3);
+    return {damage[0].file, what, "mend it, or bake what is left with --allow-incomplete"};
 }
 
 int run_bake(const BakeArguments& a, const Context& context) {
@@ -58,7 +59,7 @@ int run_bake(const BakeArguments& a, const Context& context) {
     if (!costs) return fail(costs.error());
     auto scene = importer::import_files(a.in, progress);
     if (!scene) return end_progress(context), fail(scene.error());
-    if (!a.allow_incomplete && !scene->damage.empty()) return end_progress(context), fail(incomplete(*scene));
+    if (!a.allow_incomplete && !scene->damage.empty()) return end_progress(context), fail(incomplete(scene->damage));
     bake::BakeOptions options;
     options.quality = a.quality == "full" ? bake::Quality::full : bake::Quality::draft;
     options.workers = a.workers;

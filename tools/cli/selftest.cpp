@@ -72,6 +72,8 @@ int run_selftest(const SelftestArguments& a, const Context& context) {
     if (!a.hard) return misuse({"selftest", "does not say what to test", "surefoot selftest --hard"});
     const auto selection = selftest::select_rows(a.rows);
     if (!selection) return misuse(selection.error());
+    if (a.list && !a.backend.empty())
+        return misuse({"--backend", "says who draws, and --list runs nothing", "leave one of them out"});
     if (a.list) return list_rows(a, *selection);
     const Progress progress = terminal_progress(context);
     const auto results = selftest::run_rows(*selection, {a.scale, &progress, a.backend}, [&](const selftest::RowResult& r) {

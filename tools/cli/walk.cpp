@@ -45,10 +45,10 @@ Result<void> check_together(const app::WalkRequest& r, bool every_given, bool ca
         return Error{"--control-pairs", "says how long the control is, and there is none", "add --control"};
     if (r.control && (r.frames > 0 || r.seconds > 0))
         return Error{r.frames > 0 ? "--frames" : "--seconds", "is not the control's length, which --control-pairs says",
-                     "leave it out"};
+                     "leave it out, or --control (`control` of the --config file, where it stands there)"};
     if (r.frames > 0 && r.seconds > 0) return Error{"--seconds", "and --frames say the length twice", "leave one of them out"};
-    if (r.cost_noise > 0 && !is_virtual)
-        return Error{"--cost-noise", "is of simulated costs, and these are real", "add --clock virtual"};
+    if (r.cost_noise > 0 && !(is_virtual && r.backend == "null"))
+        return Error{"--cost-noise", "is of simulated costs, and these are real", "add --clock virtual --backend null"};
     if (r.strict && is_virtual) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
     if (!r.steering_file.empty() && r.input_file.empty()) {
         return Error{"--steering", "says how a device steers, and none does: the path is followed",

@@ -155,7 +155,8 @@ importer::Mesh vase_of_flowers(const Stuff& stuff, const Detail& detail, std::ui
     for (int i = 0; i < flowers; ++i) {
         const double angle = i * 2.39996;
         const dvec3 out(std::cos(angle), 0, std::sin(angle));
-        const dvec3 tip = out * random.range(0.03, 0.16) + dvec3(0, random.range(0.34, 0.5), 0);
+        const double high = random.range(0.34, 0.5), aside = random.range(0.03, 0.16);
+        const dvec3 tip = out * aside + dvec3(0, high, 0);
         maker.brush.colour = rgb(70, 116, 52);
         maker.tube(std::array{dvec3(0, 0.12, 0), 0.5 * tip + dvec3(0, 0.1, 0) + out * 0.01, tip}, std::array{0.003, 0.003, 0.003},
                    5, false);

@@ -73,7 +73,8 @@ void grow_leaves(MeshMaker& maker, const std::vector<Clump>& clumps, const TreeS
         const dvec3 normal = glm::normalize(0.6 * out + 0.8 * crown_out + dvec3(0, 0.35, 0));
         const dvec3 hang = s.needles ? glm::normalize(out + 0.4 * on_sphere(random))
                                      : glm::normalize(across(out, on_sphere(random)) + dvec3(0, -0.45, 0));
-        const dvec3 side = across(hang, s.needles ? on_sphere(random) : out) * s.leaf_width * random.range(0.8, 1.2);
+        const double wide = random.range(0.8, 1.2);
+        const dvec3 side = across(hang, s.needles ? on_sphere(random) : out) * s.leaf_width * wide;
         const double length = s.leaf_length * random.range(0.7, 1.25);
         const double light = 0.15 + 0.45 * (crown_out.y * 0.5 + 0.5) + 0.25 * (out.y * 0.5 + 0.5) + random.range(-0.12, 0.22);
         maker.brush.colour = mix(s.dark, s.light, light);

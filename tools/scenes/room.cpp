@@ -162,7 +162,8 @@ void furnish(SceneMaker& maker, const Pieces& p, Index room, Random& random) {
     fill_shelf(place, p, {3.6, 0, depth - 0.005});
     place.put("rug", p.rug, {5.25, 0, 2.0}, place.about(0, 0.06));
     place.put("sofa", p.sofa, {width - 0.02, 0, 2.1}, -pi / 2);
-    place.put("armchair", p.armchair, {place.about(5.0, 0.05), 0, 0.25}, place.about(0.15, 0.1));
+    const double turned = place.about(0.15, 0.1);
+    place.put("armchair", p.armchair, {place.about(5.0, 0.05), 0, 0.25}, turned);
     const Index coffee = place.put("coffee table", p.coffee, {5.35, 0.0, 2.1}, pi / 2);
     place.put("bowl of fruit", p.fruit, {-0.2, 0.43, 0.02}, 1.0, coffee);
     place.put("cup", p.cup, {0.2, 0.43, 0.1}, 2.0, coffee);

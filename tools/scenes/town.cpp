@@ -198,7 +198,8 @@ void garden(Town& town, Index parent) {
                             move({x - 0.5 * house_width_m, kerb, 0.5 * block - 0.2}) * turn_y(pi / 2));
         if (plot > 0) town.maker.node("hedge", parent, town.hedge, move({x - 0.5 * house_width_m, kerb, high}) * turn_y(pi / 2));
     }
-    town.maker.node("bench", parent, town.bench, move({town.about(0.5 * block, 6), kerb, low + 1}) * turn_y(town.about(pi, 0.4)));
+    const dmat4 turned = turn_y(town.about(pi, 0.4));
+    town.maker.node("bench", parent, town.bench, move({town.about(0.5 * block, 6), kerb, low + 1}) * turned);
 }
 
 void block_of_houses(Town& town, Index parent, bool first_block, int& number) {
