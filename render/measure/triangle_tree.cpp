@@ -36,7 +36,16 @@ double distance2(const vec3& point, const vec3& corner_a, const vec3& corner_b, 
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return to(b + along(d4 - d3, (d4 - d3) + (d5 - d6)) * (c - b));
     const double sum = va + vb + vc;
     const double v = along(vb, sum), w = std::min(along(vc, sum), 1.0 - v);
-    return to(a + v * ab + w * ac);
+    const double inside = to(a + v * ab + w * ac);
+    // Where all of it is what rounding left (and that differs with every compiler's way of rounding), the weights are anybody's:
+    // so thin a triangle is its edges.
+    const double terms =
+        std::abs(d1 * d4) + std::abs(d3 * d2) + std::abs(d5 * d2) + std::abs(d1 * d6) + std::abs(d3 * d6) + std::abs(d5 * d4);
+    if (sum > 1e-9 * terms) return inside;
+    const auto edge = [&](const dvec3& from, const dvec3& way) {
+        return to(from + along(glm::dot(p - from, way), glm::dot(way, way)) * way);
+    };
+    return std::min({inside, edge(a, ab), edge(a, ac), edge(b, c - b)});
 }
 
 float box_distance2(const vec3& p, const vec3& low, const vec3& high) {
