@@ -1,6 +1,7 @@
 // surefoot bake: imports model files, clusters, simplifies, captures, and writes a .walk model.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <span>
 
@@ -40,6 +41,45 @@ Error incomplete(std::span<const importer::Damage> damage) {
     return {damage[0].file, what, "mend it, or bake what is left with --allow-incomplete"};
 }
 
+/// How long each stage took, from what the work says of itself: what passes belongs to the stage that is told next.
+class StageTimes {
+public:
+    void see(std::string_view stage) {
+        const auto now = std::chrono::steady_clock::now();
+        if (seconds_.empty() || seconds_.back().first != stage) seconds_.emplace_back(stage, 0.0);
+        seconds_.back().second += std::chrono::duration<double>(now - last_).count();
+        last_ = now;
+    }
+    [[nodiscard]] nlohmann::ordered_json json() const {
+        nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+        for (const auto& [stage, seconds] : seconds_)
+            stages[stage] = (stages.contains(stage) ? stages[stage].get<double>() : 0.0) + seconds;
+        for (auto& seconds : stages) seconds = std::round(seconds.get<double>() * 1000) / 1000;
+        return stages;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+    std::vector<std::pair<std::string, double>> seconds_;
+};
+
+/// Each once with its number, the first dozen of them: the rest is in the model.
+void say_warnings(const std::vector<std::string>& warnings) {
+    constexpr std::size_t most = 12;
+    std::vector<std::pair<std::string, std::size_t>> kinds;
+    for (const std::string& warning : warnings) {
+        const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.first == warning; });
+        if (same == kinds.end()) {
+            kinds.emplace_back(warning, 1);
+        } else {
+            ++same->second;
+        }
+    }
+    for (std::size_t i = 0; i < std::min(kinds.size(), most); ++i)
+        note(kinds[i].second > 1 ? fmt::format("{} ({} times)", kinds[i].first, kinds[i].second) : kinds[i].first);
+    if (kinds.size() > most) note(fmt::format("and {} more: `surefoot inspect` lists all", kinds.size() - most));
+}
+
 int run_bake(const BakeArguments& a, const Context& context) {
     const auto begun = std::chrono::steady_clock::now();
     for (const std::string& in : a.in) {
@@ -53,7 +93,12 @@ int run_bake(const BakeArguments& a, const Context& context) {
         return misuse({"-o " + a.out, "does not end in .walk", "name the model to write MODEL.walk"});
     }
     if (auto ok = probe_writable(a.out); !ok) return fail(ok.error());
-    const Progress progress = terminal_progress(context);
+    Progress progress = terminal_progress(context);
+    StageTimes times;
+    progress.report = [&times, bar = progress.report](std::string_view stage, double done) {
+        times.see(stage);
+        if (bar) bar(stage, done);
+    };
     std::string cost_note;
     auto costs = app::load_costs(app::state_directory(a.state), "", cost_note);
     if (!costs) return fail(costs.error());
@@ -68,10 +113,11 @@ int run_bake(const BakeArguments& a, const Context& context) {
     auto model = bake::bake(*scene, options, progress);
     if (!model) return end_progress(context), fail(model.error());
     auto written = model::write_walk(a.out, *model);
+    times.see("write");
     end_progress(context);
     if (!written) return fail(written.error());
     if (!cost_note.empty()) note(cost_note);
-    for (const std::string& warning : model->provenance.warnings) note(warning);
+    say_warnings(model->provenance.warnings);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     if (a.json) {
         print_json({{"file", a.out},
@@ -81,6 +127,7 @@ int run_bake(const BakeArguments& a, const Context& context) {
                     {"triangles", model->triangles()},
                     {"bytes", written->bytes},
                     {"seconds", seconds},
+                    {"stages_s", times.json()},
                     {"peak_mib", peak_memory_mib()},
                     {"quality", a.quality},
                     {"warnings", model->provenance.warnings}});
