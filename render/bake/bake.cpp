@@ -16,6 +16,7 @@
 #include "render/bake/materials.hpp"
 #include "render/bake/proxies.hpp"
 #include "render/model/pixels.hpp"
+#include "rt/base/fork_join.hpp"
 
 namespace surefoot::bake {
 
@@ -23,6 +24,17 @@ namespace {
 
 Error stopped_by_user(const importer::Scene& scene) {
     return {scene.sources.empty() ? "bake" : scene.sources.front(), "stopped by the user", "nothing was written"};
+}
+
+/// body(0) to body(count - 1) on all threads of the arena.
+template <class Body>
+void for_all(std::size_t count, const Body& body) {
+    ForkJoin loop;
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        const ForkJoin::Task task(loop);
+        body(i);
+    });
+    loop.joined();
 }
 
 /// Progress from many threads, told about ten times a second; and the wish to stop.
@@ -164,7 +176,7 @@ bool Bakery::make_forms() {
                                  : model.textures[material.texture].clamp ? Picture::clamped
                                                                           : Picture::repeats);
     }
-    tbb::parallel_for(std::size_t{0}, scene.meshes.size(), [&](std::size_t m) {
+    for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
         CutLimits limits;
         limits.most_triangles = most;
@@ -221,7 +233,7 @@ bool Bakery::make_clusters() {
     Stage stage(progress, "clusters", tree.clusters.size());
     std::atomic<bool> go{true};
     for (const auto& same : by_height) {
-        tbb::parallel_for(std::size_t{0}, same.size(), [&](std::size_t i) {
+        for_all(same.size(), [&](std::size_t i) {
             if (!go) return;
             const std::uint32_t c = same[i];
             clusters[c] = make_cluster(input, tree.clusters[c], members[c]);
@@ -236,7 +248,7 @@ bool Bakery::make_object_boxes() {
     const ProxyInput input = proxy_input();
     Stage stage(progress, "boxes", objects.size());
     std::atomic<bool> go{true};
-    tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
+    for_all(objects.size(), [&](std::size_t i) {
         if (!go) return;
         const MeshForm& form = forms[objects[i].mesh];
         if (form.triangles > 500 && form.chain.levels.front().triangles > 12)
@@ -330,8 +342,7 @@ void Bakery::emit() {
         if (parent.kind == model::NodeKind::cluster) parent.triangles += node.triangles;
         parent.box.grow(node.box);
     }
-    tbb::parallel_for(std::size_t{0}, model.reps.size(),
-                      [&](std::size_t r) { model.reps[r].area_m2 = model::rasterised_area(model, model.reps[r]); });
+    for_all(model.reps.size(), [&](std::size_t r) { model.reps[r].area_m2 = model::rasterised_area(model, model.reps[r]); });
     std::vector<bool> used(model.materials.size(), false);
     for (const model::Part& part : model.parts) used[part.material] = true;
     for (std::size_t m = 0; m < used.size(); ++m) {  // what nothing is drawn with calls for nothing

@@ -18,6 +18,7 @@
 #include "render/prepare/passes.hpp"
 #include "render/prepare/prepared.hpp"
 #include "render/prepare/visibility.hpp"
+#include "rt/base/fork_join.hpp"
 
 namespace surefoot::prepare {
 
@@ -129,10 +130,12 @@ void Preparer::Impl::for_chunks(std::uint32_t count, const Body& body) {
         return;
     }
     const auto caller = pthread_self();
+    ForkJoin loop;
     arena->execute([&] {
         tbb::parallel_for(
             tbb::blocked_range<std::uint32_t>(0, count, 1),
             [&](const tbb::blocked_range<std::uint32_t>& range) {
+                const ForkJoin::Task task(loop);
                 const bool own = pthread_equal(pthread_self(), caller) != 0;
                 const double start = own ? 0.0 : seconds(CLOCK_THREAD_CPUTIME_ID);
                 for (std::uint32_t i = range.begin(); i < range.end(); ++i) body(i);
@@ -143,6 +146,7 @@ void Preparer::Impl::for_chunks(std::uint32_t count, const Body& body) {
             },
             tbb::simple_partitioner());
     });
+    loop.joined();
 }
 
 RegionView Preparer::Impl::view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps) const {
