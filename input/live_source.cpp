@@ -61,7 +61,8 @@ Lines LiveSource::drain(Steering& steering, std::int64_t now_ns) {
     if (!somebody_) say_if_nobody_steers(now_ns);
     if (!waiting_said_ && now_ns >= start_ns_ + look_for_ns) {
         waiting_said_ = true;
-        attendant_->say_waiting([&](const DeviceMapping& m) { return panel_ && panel_->mapping() == m.name; });
+        attendant_->say_waiting(
+            [&](const DeviceMapping& m) { return panel_ && panel_->has_controls() && panel_->mapping() == m.name; });
     }
     return lines;
 }

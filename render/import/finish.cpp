@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -81,11 +82,10 @@ void collect_damage(Scene& scene, const std::string& file) {
     std::vector<bool> mesh_drawn(scene.meshes.size(), false), material_drawn(scene.materials.size(), false);
     for (const Node& node : scene.nodes)
         if (node.mesh != none) mesh_drawn[node.mesh] = true;
-    const auto take = [&](std::vector<std::string>& lacks) {
-        for (std::string& what : lacks) {
-            const auto known = [&](const Damage& d) { return d.what == what; };
-            if (std::none_of(scene.damage.begin(), scene.damage.end(), known)) scene.damage.push_back({{}, std::move(what)});
-        }
+    std::set<std::string> known;
+    const auto take = [&](const std::vector<std::string>& lacks) {
+        for (const std::string& what : lacks)
+            if (known.insert(what).second) scene.damage.push_back({{}, what});
     };
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         if (!mesh_drawn[i]) continue;
@@ -123,13 +123,17 @@ Result<void> finish(Scene& scene, const std::string& file, const Progress& progr
     return Error{file, "nothing drawable in it" + why, "export the model with its triangles"};
 }
 
-Picture load_texture(Scene& scene, const std::string& file, const std::string& name) {
+std::string place_beside(const std::string& file, const std::string& name) {
     std::string portable = name;
     std::replace(portable.begin(), portable.end(), '\\', '/');
-    const std::filesystem::path beside = std::filesystem::path(file).parent_path() / portable;
-    const auto plain = require_plain(beside.string());
-    auto bytes = plain ? read_file(beside.string()) : plain.error();
-    auto image = bytes ? decode_image(*bytes, beside.string()) : Result<Image>(bytes.error());
+    return (std::filesystem::path(file).parent_path() / portable).string();
+}
+
+Picture load_texture(Scene& scene, const std::string& file, const std::string& name) {
+    const std::string place = place_beside(file, name);
+    const auto plain = require_plain(place);
+    auto bytes = plain ? read_file(place) : plain.error();
+    auto image = bytes ? decode_image(*bytes, place) : Result<Image>(bytes.error());
     return add_picture(scene, name, std::move(image));
 }
 

@@ -22,6 +22,9 @@ inline Index picture_for(Material& material, const Picture& picture) {
     return picture.image;
 }
 
+/// Where `name`, as it stands in `file`, lies: beside it, with either system's slashes.
+std::string place_beside(const std::string& file, const std::string& name);
+
 /// Loads a texture by name beside `file`. Missing or undecodable: a warning, and white.
 Picture load_texture(Scene& scene, const std::string& file, const std::string& name);
 

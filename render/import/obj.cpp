@@ -211,8 +211,7 @@ private:
     /// One name, which may have spaces in it; or several.
     void library(const std::string& names) {
         std::error_code ignored;
-        if (std::filesystem::exists(std::filesystem::path(file_).parent_path() / names, ignored) ||
-            names.find(' ') == std::string::npos)
+        if (std::filesystem::exists(place_beside(file_, names), ignored) || names.find(' ') == std::string::npos)
             return one_library(names);
         for (TextCursor cursor(names); !cursor.at_line_end();) one_library(std::string(cursor.word()));
     }

@@ -2,7 +2,6 @@
 #include "render/import/obj_material.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 
 #include <fmt/format.h>
@@ -131,9 +130,7 @@ void read_statement(Reading& reading, TextCursor& cursor) {
 }  // namespace
 
 std::string read_mtl(const std::string& obj_file, const std::string& library, Scene& scene) {
-    std::string portable = library;
-    std::replace(portable.begin(), portable.end(), '\\', '/');
-    const std::string place = (std::filesystem::path(obj_file).parent_path() / portable).string();
+    const std::string place = place_beside(obj_file, library);
     const auto plain = require_plain(place);
     auto text = plain ? read_text(place) : plain.error();
     if (!text) {

@@ -158,15 +158,13 @@ TEST(Defaults, TheRightStickIsThePairThatIsLikeTheLeftOne) {
                  named("ry", 0x34, 255), named("rz", 0x35, 255)},
                 DeviceClass::navigation, {128, 128, 0, 128, 128, 0});
     EXPECT_NEAR(plain.at(3, 0).turn, 1, 1e-4);
-    Given sony({named("x", 0x30, 255), named("y", 0x31, 255), named("z", 0x32, 255), named("rz", 0x35, 255),
-                named("rx", 0x33, 255), named("ry", 0x34, 255)},
-               DeviceClass::navigation, {128, 128, 128, 128, 0, 0});
+    const std::vector<ControlInfo> z_first = {named("x", 0x30, 255),  named("y", 0x31, 255),  named("z", 0x32, 255),
+                                              named("rz", 0x35, 255), named("rx", 0x33, 255), named("ry", 0x34, 255)};
+    Given sony(z_first, DeviceClass::navigation, {128, 128, 128, 128, 0, 0});
     EXPECT_NEAR(sony.at(2, 0).turn, 1, 1e-4);
     EXPECT_NEAR(sony.at(5, 255).up, 1, 1e-4);
     // A "trigger" that rests in its middle is never seen released: it does nothing, and the sticks steer all the same.
-    Given odd({named("x", 0x30, 255), named("y", 0x31, 255), named("z", 0x32, 255), named("rz", 0x35, 255),
-               named("rx", 0x33, 255), named("ry", 0x34, 255)},
-              DeviceClass::navigation, {128, 128, 128, 128, 128, 128});
+    Given odd(z_first, DeviceClass::navigation, {128, 128, 128, 128, 128, 128});
     EXPECT_NEAR(odd.at(1, 0).forward, 1, 1e-4);
     EXPECT_EQ(odd.at(1, 0).up, 0);
 }

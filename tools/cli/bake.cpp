@@ -1,8 +1,8 @@
 // surefoot bake: imports model files, clusters, simplifies, captures, and writes a .walk model.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
+#include <map>
 #include <span>
 
 #include <fmt/format.h>
@@ -46,37 +46,26 @@ class StageTimes {
 public:
     void see(std::string_view stage) {
         const auto now = std::chrono::steady_clock::now();
-        if (seconds_.empty() || seconds_.back().first != stage) seconds_.emplace_back(stage, 0.0);
-        seconds_.back().second += std::chrono::duration<double>(now - last_).count();
+        const std::string name(stage);
+        seconds_[name] = seconds_.value(name, 0.0) + std::chrono::duration<double>(now - last_).count();
         last_ = now;
     }
-    [[nodiscard]] nlohmann::ordered_json json() const {
-        nlohmann::ordered_json stages = nlohmann::ordered_json::object();
-        for (const auto& [stage, seconds] : seconds_)
-            stages[stage] = (stages.contains(stage) ? stages[stage].get<double>() : 0.0) + seconds;
-        for (auto& seconds : stages) seconds = std::round(seconds.get<double>() * 1000) / 1000;
-        return stages;
-    }
+    [[nodiscard]] const nlohmann::ordered_json& json() const { return seconds_; }
 
 private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-    std::vector<std::pair<std::string, double>> seconds_;
+    nlohmann::ordered_json seconds_ = nlohmann::ordered_json::object();
 };
 
 /// Each once with its number, the first dozen of them: the rest is in the model.
 void say_warnings(const std::vector<std::string>& warnings) {
     constexpr std::size_t most = 12;
-    std::vector<std::pair<std::string, std::size_t>> kinds;
-    for (const std::string& warning : warnings) {
-        const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.first == warning; });
-        if (same == kinds.end()) {
-            kinds.emplace_back(warning, 1);
-        } else {
-            ++same->second;
-        }
-    }
+    std::map<std::string_view, std::size_t> times;
+    std::vector<std::string_view> kinds;
+    for (const std::string& warning : warnings)
+        if (++times[warning] == 1) kinds.push_back(warning);
     for (std::size_t i = 0; i < std::min(kinds.size(), most); ++i)
-        note(kinds[i].second > 1 ? fmt::format("{} ({} times)", kinds[i].first, kinds[i].second) : kinds[i].first);
+        note(times[kinds[i]] > 1 ? fmt::format("{} ({} times)", kinds[i], times[kinds[i]]) : std::string(kinds[i]));
     if (kinds.size() > most) note(fmt::format("and {} more: `surefoot inspect` lists all", kinds.size() - most));
 }
 

@@ -37,11 +37,16 @@ const CLI::Validator names_something(
     },
     "");
 
+/// Options whose value does not tell whether they were given.
+struct Given {
+    bool every = false, capture_frame = false, control_pairs = false;
+};
+
 /// Options that say nothing without another one, or against it.
-Result<void> check_together(const app::WalkRequest& r, bool every_given, bool capture_frame_given, bool pairs_given) {
+Result<void> check_together(const app::WalkRequest& r, const Given& given) {
     const bool is_virtual = r.clock == "virtual";
     if (r.control && is_virtual) return Error{"--control", "judges real time", "leave out --clock virtual"};
-    if (pairs_given && !r.control)
+    if (given.control_pairs && !r.control)
         return Error{"--control-pairs", "says how long the control is, and there is none", "add --control"};
     if (r.control && (r.frames > 0 || r.seconds > 0))
         return Error{r.frames > 0 ? "--frames" : "--seconds", "is not the control's length, which --control-pairs says",
@@ -61,9 +66,9 @@ Result<void> check_together(const app::WalkRequest& r, bool every_given, bool ca
     if (r.clear_stop && !live) return Error{"--clear-stop", "is for devices, and none steers", "add --input devices"};
     if (r.control && !r.input_file.empty())
         return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
-    if (every_given && r.snap_dir.empty())
+    if (given.every && r.snap_dir.empty())
         return Error{"--every", "says how often pictures are taken, and none are", "add --snap DIR"};
-    if (capture_frame_given && r.capture_file.empty())
+    if (given.capture_frame && r.capture_file.empty())
         return Error{"--capture-frame", "needs a file to go to", "add --capture FILE"};
     return {};
 }
@@ -81,8 +86,8 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
         return Error{"MODEL.walk", "is not named", "surefoot walk MODEL.walk, or `model = ...` in the --config file"};
     r.correct_costs = !a.no_correction;
     r.config_file = a.settings->config_file;
-    if (auto ok = check_together(r, r.snap_every > 0, r.capture_frame != unset, a.control_pairs->count() > 0); !ok)
-        return ok.error();
+    const Given given{r.snap_every > 0, r.capture_frame != unset, a.control_pairs->count() > 0};
+    if (auto ok = check_together(r, given); !ok) return ok.error();
     if (!r.snap_dir.empty() && r.snap_every == 0) r.snap_every = 30;
     if (r.capture_frame == unset) r.capture_frame = 0;
     return r;
