@@ -31,6 +31,8 @@ struct CutLimits {
     std::uint32_t most_triangles = 8192;  ///< of a piece: the 1/16-frame rule
     double longest_m = 1e30;              ///< of a piece, mesh frame: no piece is drawn whole for one corner in view
     std::uint32_t least_triangles = 512;  ///< no piece is cut for its length alone below twice that: a draw costs as much as 50
+    /// The same of what is several layers deep (the walls of a storey): drawn whole, most of its pixels are behind its own front.
+    std::uint32_t least_hidden = 32;
 };
 
 /// Largest factor by which `linear` stretches a length: what errors grow by. An upper bound, within 1e-8.

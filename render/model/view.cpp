@@ -12,16 +12,6 @@ namespace {
 constexpr double large_share = 16;  ///< a box is large from a quarter of its distance on (squared)
 constexpr double widest_half_angle_rad = 89.0 / 180.0 * 3.14159265358979323846 - 1e-6;
 
-struct HalfAngles {
-    double x = 0, y = 0;
-};
-
-HalfAngles half_angles(const Pose& pose, Viewport viewport) {
-    const double y = half_angle_y(pose);
-    const double aspect = static_cast<double>(std::max(viewport.width, 1U)) / static_cast<double>(std::max(viewport.height, 1U));
-    return {std::min(std::atan(std::tan(y) * aspect), widest_half_angle_rad), y};
-}
-
 // A ray at elevation e on a side plane is only cos(e) * sin(w) away from the plane turned outwards by w: the corner rays decide.
 double widen(double half, double other, double angle_rad) {
     const double cos_corner = 1.0 / std::sqrt(1.0 + std::pow(std::tan(other) * std::cos(half), 2));
@@ -60,9 +50,16 @@ double half_angle_y(const Pose& pose) {
     return std::clamp(0.5 * fov, 1e-4, widest_half_angle_rad);
 }
 
+HalfAngles half_angles(const Pose& pose, Viewport viewport, double angle_rad) {
+    const double y = half_angle_y(pose);
+    const double aspect = static_cast<double>(std::max(viewport.width, 1U)) / static_cast<double>(std::max(viewport.height, 1U));
+    const double x = std::min(std::atan(std::tan(y) * aspect), widest_half_angle_rad);
+    if (!(angle_rad > 0)) return {x, y};
+    return {widen(x, y, angle_rad), widen(y, x, angle_rad)};
+}
+
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m, double angle_rad) {
-    HalfAngles half = half_angles(pose, viewport);
-    if (angle_rad > 0) half = {widen(half.x, half.y, angle_rad), widen(half.y, half.x, angle_rad)};
+    const HalfAngles half = half_angles(pose, viewport, angle_rad);
     const dvec3 forward = pose.forward(), up = pose.up(), right = pose.right();
     // Seen from this apex, the same angles hold the whole ball of eyes.
     const double pull = radius_m > 0 ? radius_m / std::sin(std::min(half.x, half.y)) : 0.0;

@@ -24,6 +24,13 @@ struct Frustum {
 /// default's where the pose's is not a number.
 double half_angle_y(const Pose& pose);
 
+/// Half fields of view across and up.
+struct HalfAngles {
+    double x = 0, y = 0;  ///< rad, below 89 degrees
+};
+/// Of the upright view that holds the pose's own turned by angle_rad any way. 0: its own.
+HalfAngles half_angles(const Pose& pose, Viewport viewport, double angle_rad = 0.0);
+
 /// The frustum that holds every pose of a region: widened by angle_rad on each side and pulled back by radius_m.
 /// radius 0 and angle 0: exactly the pose's own. Half angles are capped below 89 degrees.
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m = 0.0, double angle_rad = 0.0);

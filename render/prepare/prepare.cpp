@@ -15,6 +15,7 @@
 #include <tbb/task_arena.h>
 
 #include "render/prepare/evaluate.hpp"
+#include "render/prepare/occlusion.hpp"
 #include "render/prepare/passes.hpp"
 #include "render/prepare/prepared.hpp"
 #include "render/prepare/visibility.hpp"
@@ -69,13 +70,15 @@ struct Preparer::Impl {
     const model::CostModel& costs;
     PrepareOptions options;
     Evaluator evaluator;
+    Occluders occluders;
+    Occlusion occlusion;
     std::optional<tbb::global_control> more_than_cores;  ///< else the library caps its threads, and says so on stderr
     std::unique_ptr<tbb::task_arena> arena;              ///< none: one worker, the caller
 
     std::vector<Visit> visits;
     std::vector<Visit> slots;  ///< children of a block of parents, before they are closed up
     std::vector<Index> block;  ///< the block's parents that are opened
-    std::vector<std::uint32_t> slot_first, slot_count;
+    std::vector<std::uint32_t> slot_first, slot_count, slot_hidden;
     std::vector<Index> candidate_of;  ///< a visit
     std::vector<std::uint32_t> chunk_choice, chunk_candidate, chunk_count;
     std::vector<Weight> weights;     ///< a candidate
@@ -97,7 +100,12 @@ struct Preparer::Impl {
 };
 
 Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o)
-    : model(m), costs(c), options(o), evaluator(m, c) {
+    : model(m),
+      costs(c),
+      options(o),
+      evaluator(m, c),
+      occluders(o.occlusion ? find_occluders(m) : Occluders{}),
+      occlusion(occluders) {
     options.max_candidates = std::max(1U, options.max_candidates);
     std::uint32_t most_children = 0, most_reps = 1;
     for (const model::Node& node : m.nodes) {
@@ -111,6 +119,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     block.reserve(slots.size());
     slot_first.resize(slots.size());
     slot_count.resize(slots.size());
+    slot_hidden.resize(slots.size());
     candidate_of.resize(most);
     const std::size_t chunks = most / visits_a_chunk + 2;
     chunk_choice.resize(chunks);
@@ -182,18 +191,24 @@ Visit Preparer::Impl::visit_of(const RegionView& view, Index index, Index parent
 void Preparer::Impl::look_at_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j) {
     const Visit& parent = visits[block[j]];
     const model::Node& node = model.nodes[parent.node];
-    std::uint32_t at = slot_first[j];
+    std::uint32_t at = slot_first[j], hidden = 0;
     for (Index child = node.first_child; child < node.first_child + node.child_count; ++child) {
         const PlaneMask mask = narrow(frustum, model.nodes[child].box, parent.mask);
-        if (mask != culled) slots[at++] = visit_of(view, child, block[j], mask);
+        if (mask == culled) continue;
+        if (occlusion.hides(model.nodes[child].box))
+            ++hidden;
+        else
+            slots[at++] = visit_of(view, child, block[j], mask);
     }
     slot_count[j] = at - slot_first[j];
+    slot_hidden[j] = hidden;
 }
 
 // Children of the block are appended in order; a parent whose children no longer fit keeps its own choices.
 void Preparer::Impl::close_up_block(PreparedFrame& out) {
     for (std::uint32_t j = 0; j < block.size(); ++j) {
         Visit& parent = visits[block[j]];
+        out.hidden += slot_hidden[j];
         std::uint32_t reps = 0;
         for (std::uint32_t k = 0; k < slot_count[j]; ++k) reps += slots[slot_first[j] + k].rep_count;
         if (visits.size() + slot_count[j] > candidate_of.size() || choice_bound + reps > options.max_choices) {
@@ -324,7 +339,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     out.choices.clear();
     out.truncated = false;
     out.full_cost = {};
-    out.visits = 0;
+    out.visits = out.hidden = 0;
     if (s.model.nodes.empty()) return;
 
     const model::Node& root = s.model.nodes[0];
@@ -336,6 +351,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     const double far_m = 2.0 * root.box.diagonal() + 1000.0;
     const model::Frustum frustum = model::make_frustum(pose, viewport, far_m, view.radius_m, out.region.angle_rad);
     const PlaneMask mask = narrow(frustum, root.box, all_planes);
+    s.occlusion.draw(out.region, viewport);
     out.visits = 1;
     s.choice_bound = root.rep_count;
     if (mask != culled) s.visits.push_back(s.visit_of(view, 0, none, mask));

@@ -58,6 +58,7 @@ struct PreparedFrame {
     std::vector<Choice> choices;
     model::ItemCost full_cost;   ///< of every visible leaf's finest choice: full detail
     std::uint32_t visits = 0;    ///< nodes looked at, invisible ones included
+    std::uint32_t hidden = 0;    ///< of them, in the view but behind others; nodes below them were not looked at
     bool truncated = false;      ///< capacity reached: deeper detail left out, still a complete legal tree
     float target_error_rad = 0;  ///< nodes below it were not opened and their finer forms left out
     double cpu_us = 0;           ///< all workers together
@@ -71,6 +72,7 @@ struct PrepareOptions {
     std::uint32_t max_choices = 1U << 20U;
     double focus_strength = 0.5;  ///< 0: periphery counts as the centre
     int workers = 1;
+    bool occlusion = true;    ///< leave out what is hidden from the whole region
     bool full_depth = false;  ///< go down to the leaves, whatever their error (reference pictures, `flat`)
     /// Where a frame looked at more nodes than this, the next ones raise the error below which nodes are not opened, by a
     /// tenth a frame or more, and lower it again when there is room: bounds the CPU time on any model (a visit takes about

@@ -192,7 +192,9 @@ void inside_boxes(const Effort& effort, Outcome& out) {
 void nothing_lost(const Effort& effort, Outcome& out) {
     auto model = import_and_bake(hard_town());
     if (!model) return out.none_of("bakes refused (" + model.error().text() + ")", 1);
-    Look look(*model);
+    prepare::PrepareOptions options;
+    options.occlusion = false;  // the oracle knows views only; what others hide has rows of its own
+    Look look(*model, options);
     std::uint64_t lost = 0, seen = 0;
     for (const Placed& place : awkward_places(*model, effort.count(3000, 100))) {
         if (effort.stopped()) break;

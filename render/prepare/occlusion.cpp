@@ -1,0 +1,478 @@
+// Draws occluders into the buffer of depths: chooses, joins, fills, erodes.
+#include "render/prepare/occlusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::prepare {
+
+namespace {
+
+constexpr float behind_m = 0.01F;           ///< closer planes than this are closer than anything that is drawn
+constexpr float least_solid_angle = 6e-4F;  ///< about four pixels
+constexpr double margin_rad = 0.15;         ///< beside the view, for what is seen past its edge from beside the middle
+constexpr double widest_half_rad = 80.0 / 180.0 * 3.14159265358979323846;
+constexpr float edge_slack = 0.01F;   ///< of a pixel, for rounding
+constexpr float depth_slack = 1e-4F;  ///< of a depth
+constexpr float beyond = 1e9F;
+constexpr float deep_ratio = 1.25F;  ///< of depths in a box: beyond it, its parts are looked at
+constexpr int most_parts = 40;
+constexpr std::uint32_t no_triangle = 0xffffffffU;
+
+/// Tangents in a row at which from + slope * tangent >= 0 may hold, for all that were kept.
+struct Span {
+    float low, high;
+    void keep(float from, float slope) {
+        if (slope > 0)
+            low = std::max(low, -from / slope);
+        else if (slope < 0)
+            high = std::min(high, -from / slope);
+        else if (from < 0)
+            high = -beyond;
+    }
+};
+
+/// Columns of a row whose middles' tangents the span holds, one more on either side for rounding.
+struct Columns {
+    int first, last;
+    Columns(const Span& span, float wide, float half_column, int x0, int x1) : first(0), last(-1) {
+        if (!(span.low <= span.high)) return;
+        const float low = (std::max(span.low, -wide) + wide) / (2.0F * half_column) - 1.0F;
+        const float high = (std::min(span.high, wide) + wide) / (2.0F * half_column) + 1.0F;
+        first = std::max(x0, static_cast<int>(std::max(low, 0.0F)));
+        last = std::min(x1, static_cast<int>(high));
+    }
+};
+
+std::uint8_t side_of(std::uint32_t from, std::uint32_t to) { return from < to ? 1 : 2; }
+
+}  // namespace
+
+void Occlusion::Rect::grow(const Rect& r) {
+    x0 = std::min(x0, r.x0);
+    x1 = std::max(x1, r.x1);
+    y0 = std::min(y0, r.y0);
+    y1 = std::max(y1, r.y1);
+}
+
+Occlusion::Occlusion(const Occluders& occluders) : occluders_(occluders) {
+    if (occluders.triangles.empty()) return;
+    constexpr std::size_t pixel_count = static_cast<std::size_t>(columns) * rows;
+    for (auto* plane : {&depth_, &covered_, &crossed_, &eroded_, &length_}) plane->resize(pixel_count);
+    tiles_.resize(pixel_count / (tile * tile));
+    facing_.reserve(occluders.triangles.size());
+    drawn_.reserve(most_drawn);
+    order_.reserve(most_drawn);
+    surface_nearest_.resize(most_drawn);
+    first_at_edge_.resize(occluders.edge_count, no_triangle);
+    edge_sides_.resize(occluders.edge_count);
+}
+
+vec3 Occlusion::to_view(const dvec3& world) const {
+    const dvec3 d = world - eye_;
+    return {glm::dot(d, right_), glm::dot(d, up_), glm::dot(d, forward_)};
+}
+
+/// False where the view is too wide for one plane of pixels.
+bool Occlusion::aim(const Region& region, model::Viewport viewport) {
+    const Pose& pose = region.centre;
+    const model::HalfAngles half = model::half_angles(pose, viewport, region.angle_rad + margin_rad);
+    if (!(half.x < widest_half_rad && half.y < widest_half_rad)) return false;
+    eye_ = pose.position;
+    right_ = pose.right();
+    up_ = pose.up();
+    forward_ = pose.forward();
+    radius_m_ = static_cast<float>(region.radius_m);
+    clamp_from_m_ = static_cast<float>(region.radius_m / std::sin(margin_rad));
+    const auto wide = static_cast<float>(std::tan(half.x)), high = static_cast<float>(std::tan(half.y));
+    if (wide == wide_ && high == high_) return true;
+    wide_ = wide;
+    high_ = high;
+    half_column_ = wide_ / columns;
+    half_row_ = high_ / rows;
+    pixel_rad_ = std::sqrt(half_column_ * half_column_ + half_row_ * half_row_) * (1.0F + edge_slack);
+    corner_rad_ = std::atan(std::sqrt(wide_ * wide_ + high_ * high_));
+    for (int y = 0; y < rows; ++y) {
+        const float ty = static_cast<float>(2 * y + 1) * half_row_ - high_;
+        for (int x = 0; x < columns; ++x) {
+            const float tx = static_cast<float>(2 * x + 1) * half_column_ - wide_;
+            length_[static_cast<std::size_t>(y * columns + x)] = std::sqrt(tx * tx + ty * ty + 1.0F);
+        }
+    }
+    return true;
+}
+
+/// Those that face every eye of the region and fill most of the view; what they share is entered.
+void Occlusion::choose() {
+    facing_.clear();
+    drawn_.clear();
+    // Nearer than the near plane an occluder would not be drawn: it must be farther off than that from every eye.
+    const double least = static_cast<double>(radius_m_) +
+                         model::near_plane_m * std::sqrt(1.0 + static_cast<double>(wide_) * static_cast<double>(wide_) +
+                                                         static_cast<double>(high_) * static_cast<double>(high_));
+    for (std::uint32_t i = 0; i < occluders_.triangles.size(); ++i) {
+        const Occluder& o = occluders_.triangles[i];
+        const double away = glm::dot(o.normal, eye_) - o.offset;
+        const bool from_behind = away < 0;
+        if (!(std::abs(away) > least) || (from_behind && !o.two_sided)) continue;
+        const dvec3 d = o.centre - eye_;
+        const double square = glm::dot(d, d);
+        const auto solid_angle = static_cast<float>(o.area_m2 * std::abs(away) / (square * std::sqrt(square)));
+        if (solid_angle > least_solid_angle) facing_.push_back({solid_angle, i, from_behind});
+    }
+    const auto more = [](const Facing& a, const Facing& b) {
+        return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.triangle < b.triangle;
+    };
+    if (facing_.size() > most_drawn) {
+        std::nth_element(facing_.begin(), facing_.begin() + most_drawn, facing_.end(), more);
+        facing_.resize(most_drawn);
+        std::sort(facing_.begin(), facing_.end(), [](const Facing& a, const Facing& b) { return a.triangle < b.triangle; });
+    }
+    for (const Facing& facing : facing_) place(facing);
+}
+
+void Occlusion::place(const Facing& facing) {
+    const Occluder& o = occluders_.triangles[facing.triangle];
+    Drawn d;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t from = facing.from_behind ? 2 - k : k;
+        d.corner[k] = o.corners[from];
+        d.edge[k] = o.edges[facing.from_behind ? (from + 2) % 3 : from];
+        d.at[k] = to_view(occluders_.corners[d.corner[k]]);
+    }
+    const auto outside = [&](const vec3& plane) {
+        return glm::dot(plane, d.at[0]) < 0 && glm::dot(plane, d.at[1]) < 0 && glm::dot(plane, d.at[2]) < 0;
+    };
+    if (outside({0, 0, 1}) || outside({1, 0, wide_}) || outside({-1, 0, wide_}) || outside({0, 1, high_}) ||
+        outside({0, -1, high_}))
+        return;
+    const double away = glm::dot(o.normal, eye_) - o.offset;
+    d.inverse_depth = vec3(dvec3(glm::dot(o.normal, right_), glm::dot(o.normal, up_), glm::dot(o.normal, forward_)) / -away);
+    const float least = std::min({d.at[0].z, d.at[1].z, d.at[2].z}), most = std::max({d.at[0].z, d.at[1].z, d.at[2].z});
+    if (!(most > behind_m)) return;
+    d.nearest = 1.0F / std::max(least, behind_m);
+    d.farthest = 1.0F / most;
+    d.surface = static_cast<std::uint32_t>(drawn_.size());
+    for (std::size_t k = 0; k < 3; ++k) edge_sides_[d.edge[k]] |= side_of(d.corner[k], d.corner[(k + 1) % 3]);
+    drawn_.push_back(d);
+}
+
+std::uint32_t Occlusion::surface_of(std::uint32_t drawn) {
+    while (drawn_[drawn].surface != drawn) {
+        drawn_[drawn].surface = drawn_[drawn_[drawn].surface].surface;
+        drawn = drawn_[drawn].surface;
+    }
+    return drawn;
+}
+
+/// A surface goes on across an edge that has triangles on both sides, as seen; the order is nearest surface first.
+void Occlusion::join() {
+    order_.clear();
+    const auto count = static_cast<std::uint32_t>(drawn_.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+        order_.push_back(i);
+        for (const std::uint32_t edge : drawn_[i].edge) {
+            if (edge_sides_[edge] != 3) continue;
+            if (first_at_edge_[edge] == no_triangle)
+                first_at_edge_[edge] = i;
+            else
+                drawn_[surface_of(i)].surface = surface_of(first_at_edge_[edge]);
+        }
+    }
+    for (std::uint32_t i = 0; i < count; ++i) surface_nearest_[i] = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        for (const std::uint32_t edge : drawn_[i].edge) first_at_edge_[edge] = no_triangle;
+        float& nearest = surface_nearest_[surface_of(i)];
+        nearest = std::max(nearest, drawn_[i].nearest);
+        drawn_[i].surface = surface_of(i);
+    }
+    std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const std::uint32_t sa = drawn_[a].surface, sb = drawn_[b].surface;
+        if (sa == sb) return a < b;
+        return surface_nearest_[sa] != surface_nearest_[sb] ? surface_nearest_[sa] > surface_nearest_[sb] : sa < sb;
+    });
+}
+
+Occlusion::Rect Occlusion::pixels(float x0, float x1, float y0, float y1) const {
+    if (!(x1 >= -wide_ && x0 <= wide_ && y1 >= -high_ && y0 <= high_)) return {};
+    const auto at = [](float tangent, float limit, float half, int count) {
+        const float inside = (std::clamp(tangent, -limit, limit) + limit) / (2.0F * half);
+        return std::clamp(static_cast<int>(inside), 0, count - 1);
+    };
+    return {at(x0 - edge_slack * half_column_, wide_, half_column_, columns),
+            at(x1 + edge_slack * half_column_, wide_, half_column_, columns),
+            at(y0 - edge_slack * half_row_, high_, half_row_, rows), at(y1 + edge_slack * half_row_, high_, half_row_, rows)};
+}
+
+Occlusion::Rect Occlusion::rect_of(const Drawn& triangle) const {
+    float x0 = beyond, x1 = -beyond, y0 = beyond, y1 = -beyond;
+    const auto take = [&](const vec3& p) {
+        x0 = std::min(x0, p.x / p.z);
+        x1 = std::max(x1, p.x / p.z);
+        y0 = std::min(y0, p.y / p.z);
+        y1 = std::max(y1, p.y / p.z);
+    };
+    for (std::size_t k = 0; k < 3; ++k) {  // no point of the view that is nearer than behind_m lies on it
+        const vec3 &a = triangle.at[k], &b = triangle.at[(k + 1) % 3];
+        if (a.z >= behind_m) take(a);
+        if ((a.z >= behind_m) == (b.z >= behind_m)) continue;
+        vec3 cut = a + (behind_m - a.z) / (b.z - a.z) * (b - a);
+        cut.z = behind_m;
+        take(cut);
+    }
+    return pixels(x0, x1, y0, y1);
+}
+
+bool Occlusion::nearer_than(float inverse_depth, const Rect& rect) const {
+    for (int ty = rect.y0 / tile; ty <= rect.y1 / tile; ++ty) {
+        for (int tx = rect.x0 / tile; tx <= rect.x1 / tile; ++tx) {
+            if (tiles_[static_cast<std::size_t>(ty * (columns / tile) + tx)] > inverse_depth) continue;
+            const int y1 = std::min(rect.y1, ty * tile + tile - 1), x1 = std::min(rect.x1, tx * tile + tile - 1);
+            for (int y = std::max(rect.y0, ty * tile); y <= y1; ++y) {
+                for (int x = std::max(rect.x0, tx * tile); x <= x1; ++x) {
+                    if (!(depth_[static_cast<std::size_t>(y * columns + x)] > inverse_depth)) return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
+/// Which pixels it fills wholly or in part: half planes through the eye and its edges, so that nothing needs to be clipped.
+void Occlusion::fill(const Drawn& triangle, const Rect& rect) {
+    std::array<vec3, 3> edge;
+    for (std::size_t k = 0; k < 3; ++k) {
+        edge[k] = glm::cross(triangle.at[k], triangle.at[(k + 1) % 3]);
+        const float half = std::abs(edge[k].x) * half_column_ + std::abs(edge[k].y) * half_row_;
+        edge[k] = half > 0 ? edge[k] / half : vec3(0.0F);  // 1: a pixel just inside. An edge end on crosses every pixel
+    }
+    const vec3 w = triangle.inverse_depth;
+    const float slack = std::abs(w.x) * half_column_ + std::abs(w.y) * half_row_;
+    const float full = 1.0F + edge_slack;
+    for (int y = rect.y0; y <= rect.y1; ++y) {
+        const float ty = static_cast<float>(2 * y + 1) * half_row_ - high_;
+        const float e0 = edge[0].y * ty + edge[0].z, e1 = edge[1].y * ty + edge[1].z, e2 = edge[2].y * ty + edge[2].z;
+        const float w0 = w.y * ty + w.z - slack;
+        const std::size_t row = static_cast<std::size_t>(y) * columns;
+        float* __restrict covered = &covered_[row];
+        float* __restrict crossed = &crossed_[row];
+        Span span{-wide_, wide_};
+        span.keep(e0 + full, edge[0].x);
+        span.keep(e1 + full, edge[1].x);
+        span.keep(e2 + full, edge[2].x);
+        const Columns in(span, wide_, half_column_, rect.x0, rect.x1);
+        for (int x = in.first; x <= in.last; ++x) {
+            const float tx = static_cast<float>(2 * x + 1) * half_column_ - wide_;
+            const float inside = std::min(std::min(edge[0].x * tx + e0, edge[1].x * tx + e1), edge[2].x * tx + e2);
+            const float depth = std::max(triangle.farthest, w.x * tx + w0);
+            covered[x] = std::max(covered[x], inside >= full ? depth : 0.0F);
+            crossed[x] = std::min(crossed[x], inside > -full && inside < full ? depth : beyond);
+        }
+    }
+}
+
+/// Around a border: in pieces whose distances hardly differ, where that matters.
+void Occlusion::erode(const vec3& from, const vec3& to, const Rect& rect) {
+    struct Piece {
+        vec3 from, to;
+    };
+    std::array<Piece, 24> stack;
+    std::size_t top = 0;
+    stack[top++] = {from, to};
+    while (top > 0) {
+        const Piece piece = stack[--top];
+        const vec3 along = piece.to - piece.from;
+        const float square = glm::dot(along, along);
+        const float nearest = square > 0 ? std::clamp(-glm::dot(piece.from, along) / square, 0.0F, 1.0F) : 0.0F;
+        const float distance = glm::length(piece.from + nearest * along);
+        if (square > distance * distance && radius_m_ > 0.5F * pixel_rad_ * distance && top + 2 <= stack.size()) {
+            const vec3 middle = 0.5F * (piece.from + piece.to);
+            stack[top++] = {piece.from, middle};
+            stack[top++] = {middle, piece.to};
+            continue;
+        }
+        erode_piece(piece.from, piece.to, distance > radius_m_ ? radius_m_ / distance : 1.0F, rect);
+    }
+}
+
+void Occlusion::erode_piece(const vec3& from, const vec3& to, float sine, const Rect& rect) {
+    const vec3 a = glm::normalize(from), b = glm::normalize(to);
+    vec3 pole = glm::cross(a, b);
+    const float pole_length = glm::length(pole);
+    const float half = 0.5F * std::atan2(pole_length, glm::dot(a, b));
+    const float reach = std::asin(std::min(sine, 1.0F)) + pixel_rad_;
+    const vec3 middle = glm::normalize(a + b);
+    if (std::acos(std::clamp(middle.z, -1.0F, 1.0F)) > half + reach + corner_rad_ + pixel_rad_) return;
+    const float s = reach < 1.5F ? std::sin(reach) : 1.0F;
+    // The columns and rows that the piece may touch: along it, no point is farther off the plane than its ends by 1 / cos(half).
+    const auto range = [&](float a_side, float a_off, float b_side, float b_off, float a_front, float b_front, float& low,
+                           float& high) {
+        low = -beyond;
+        high = beyond;
+        const float off = std::max(std::abs(a_off), std::abs(b_off)) / std::cos(half);
+        const float flat = std::sqrt(std::max(0.0F, 1.0F - off * off));
+        if (!(flat > s)) return;
+        const float turn = std::asin(s / flat);
+        const float at_a = std::atan2(a_side, a_front), at_b = std::atan2(b_side, b_front);
+        const float first = std::min(at_a, at_b) - turn, last = std::max(at_a, at_b) + turn;
+        constexpr float quarter = 1.55F;  // beyond it a tangent is beyond any buffer
+        if (first > -quarter) low = first > quarter ? beyond : std::tan(first);
+        if (last < quarter) high = last < -quarter ? -beyond : std::tan(last);
+    };
+    Rect touched{0, columns - 1, 0, rows - 1};
+    if (half < 1.5F && s < 1.0F) {
+        float x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+        range(a.x, a.y, b.x, b.y, a.z, b.z, x0, x1);
+        range(a.y, a.x, b.y, b.x, a.z, b.z, y0, y1);
+        touched = pixels(x0 - 2 * half_column_, x1 + 2 * half_column_, y0 - 2 * half_row_, y1 + 2 * half_row_);
+    }
+    touched = {std::max(touched.x0, rect.x0), std::min(touched.x1, rect.x1), std::max(touched.y0, rect.y0),
+               std::min(touched.y1, rect.y1)};
+    // Within `reach` of the great circle through both ends, not beyond either end, not on the other side of the sphere.
+    const bool point = pole_length < 1e-5F;
+    pole = point ? vec3(0.0F) : pole / pole_length;
+    const vec3 onward = glm::cross(pole, a), back = glm::cross(b, pole);
+    const float round = half + reach < 1.5F ? std::cos(half + reach) : -1.0F;
+    for (int y = touched.y0; y <= touched.y1; ++y) {
+        const float ty = static_cast<float>(2 * y + 1) * half_row_ - high_;
+        const float p = pole.y * ty + pole.z, f = onward.y * ty + onward.z, g = back.y * ty + back.z,
+                    m = middle.y * ty + middle.z;
+        const std::size_t row = static_cast<std::size_t>(y) * columns;
+        float* __restrict eroded = &eroded_[row];
+        const float* __restrict length = &length_[row];
+        Span span{-wide_, wide_};
+        const float longest =
+            s * std::max(length[touched.x0], length[touched.x1]);  // of a row, the length is the greatest at an end
+        span.keep(longest + p, pole.x);
+        span.keep(longest - p, -pole.x);
+        span.keep(longest + f, onward.x);
+        span.keep(longest + g, back.x);
+        const Columns in(span, wide_, half_column_, touched.x0, touched.x1);
+        for (int x = in.first; x <= in.last; ++x) {
+            const float tx = static_cast<float>(2 * x + 1) * half_column_ - wide_;
+            const float l = s * length[x];
+            const float aside = l - std::abs(pole.x * tx + p);
+            const float ends = std::min(onward.x * tx + f, back.x * tx + g) + l;
+            const float near = middle.x * tx + m - round * length[x];
+            eroded[x] = std::max(eroded[x], std::min(std::min(aside, ends), near));
+        }
+    }
+}
+
+void Occlusion::draw_surface(std::span<const std::uint32_t> members) {
+    Rect rect;
+    for (const std::uint32_t i : members) rect.grow(rect_of(drawn_[i]));
+    if (rect.empty() || nearer_than(surface_nearest_[drawn_[members.front()].surface], rect)) return;
+    const auto count = static_cast<std::size_t>(rect.x1 - rect.x0 + 1);
+    for (int y = rect.y0; y <= rect.y1; ++y) {
+        const std::size_t at = static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(rect.x0);
+        std::fill_n(&covered_[at], count, 0.0F);
+        std::fill_n(&crossed_[at], count, beyond);
+        std::fill_n(&eroded_[at], count, -1.0F);
+    }
+    for (const std::uint32_t i : members) {
+        const Rect own = rect_of(drawn_[i]);
+        if (!own.empty()) fill(drawn_[i], own);
+    }
+    for (const std::uint32_t i : members) {
+        const Drawn& d = drawn_[i];
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (edge_sides_[d.edge[k]] != 3) erode(d.at[k], d.at[(k + 1) % 3], rect);
+        }
+    }
+    for (int y = rect.y0; y <= rect.y1; ++y) {
+        const std::size_t row = static_cast<std::size_t>(y) * columns;
+        for (int x = rect.x0; x <= rect.x1; ++x) {
+            const std::size_t at = row + static_cast<std::size_t>(x);
+            const float partly = crossed_[at] < beyond ? crossed_[at] : 0.0F;
+            const float depth = eroded_[at] < 0.0F ? std::max(covered_[at], partly) : 0.0F;
+            depth_[at] = std::max(depth_[at], depth);
+        }
+    }
+    for (int ty = rect.y0 / tile; ty <= rect.y1 / tile; ++ty) {
+        for (int tx = rect.x0 / tile; tx <= rect.x1 / tile; ++tx) {
+            std::array<float, tile> least;
+            least.fill(beyond);
+            for (int y = ty * tile; y < (ty + 1) * tile; ++y) {
+                const float* row = &depth_[static_cast<std::size_t>(y * columns + tx * tile)];
+                for (std::size_t x = 0; x < tile; ++x) least[x] = std::min(least[x], row[x]);
+            }
+            tiles_[static_cast<std::size_t>(ty * (columns / tile) + tx)] = *std::min_element(least.begin(), least.end());
+        }
+    }
+    empty_ = false;
+}
+
+void Occlusion::draw(const Region& region, model::Viewport viewport) {
+    empty_ = true;
+    if (occluders_.triangles.empty() || !aim(region, viewport)) return;
+    std::fill(depth_.begin(), depth_.end(), 0.0F);
+    std::fill(tiles_.begin(), tiles_.end(), 0.0F);
+    choose();
+    join();
+    for (std::size_t at = 0; at < order_.size();) {
+        std::size_t end = at;
+        while (end < order_.size() && drawn_[order_[end]].surface == drawn_[order_[at]].surface) ++end;
+        draw_surface(std::span(order_).subspan(at, end - at));
+        at = end;
+    }
+    for (const Drawn& d : drawn_)
+        for (const std::uint32_t edge : d.edge) edge_sides_[edge] = 0;
+}
+
+bool Occlusion::hides(const Box& box) const {
+    if (empty_ || box.empty()) return false;
+    if (!(box.distance(eye_) > static_cast<double>(radius_m_))) return false;
+    // A large box is hidden where its parts are, each at a depth of its own.
+    std::array<Box, 12> stack;
+    std::size_t top = 0;
+    stack[top++] = box;
+    for (int tests = 0; top > 0; ++tests) {
+        const Box part = stack[--top];
+        const Hidden found = look(part);
+        if (found == Hidden::yes) continue;
+        if (found == Hidden::no || tests == most_parts || top + 2 > stack.size()) return false;
+        const dvec3 size = part.max - part.min;
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.z >= size.y ? 2 : 1;
+        const double middle = 0.5 * (part.min[axis] + part.max[axis]);
+        Box low = part, high = part;
+        low.max[axis] = high.min[axis] = middle;
+        const bool low_first = eye_[axis] < middle;  // what is nearest is seen soonest
+        stack[top++] = low_first ? high : low;
+        stack[top++] = low_first ? low : high;
+    }
+    return true;
+}
+
+Occlusion::Hidden Occlusion::look(const Box& box) const {
+    const vec3 centre = to_view(box.centre());
+    const dvec3 half = box.half();
+    const auto extent = [&](const dvec3& axis) { return vec3(axis * half); };
+    const vec3 r = extent(right_), u = extent(up_), f = extent(forward_);
+    const auto reach = [](const vec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+    // What lies outside the buffer is seen by no eye of the region, unless it is so near that an eye beside the middle sees it.
+    const bool may_reach_out = box.distance(eye_) > static_cast<double>(clamp_from_m_) * 1.001;
+    const auto outside = [&](float side, const vec3& across, float limit) {
+        return side - limit * centre.z > reach(across - limit * f) || -side - limit * centre.z > reach(across + limit * f);
+    };
+    if (may_reach_out && (outside(centre.x, r, wide_) || outside(centre.y, u, high_))) return Hidden::yes;
+    const float nearest = centre.z - reach(f), farthest = centre.z + reach(f);
+    if (!(nearest > behind_m)) return Hidden::in_parts;
+    float x0 = beyond, x1 = -beyond, y0 = beyond, y1 = -beyond;
+    for (int corner = 0; corner < 8; ++corner) {
+        const vec3 sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
+        const float z = std::max(centre.z + glm::dot(sign, f), behind_m);
+        const float x = (centre.x + glm::dot(sign, r)) / z, y = (centre.y + glm::dot(sign, u)) / z;
+        x0 = std::min(x0, x);
+        x1 = std::max(x1, x);
+        y0 = std::min(y0, y);
+        y1 = std::max(y1, y);
+    }
+    const bool reaches_out = x0 < -wide_ || x1 > wide_ || y0 < -high_ || y1 > high_;
+    const Rect rect = pixels(x0, x1, y0, y1);
+    if ((may_reach_out || !reaches_out) && !rect.empty() && nearer_than(1.0F / (nearest * (1.0F - depth_slack)), rect))
+        return Hidden::yes;
+    return farthest > deep_ratio * nearest || reaches_out ? Hidden::in_parts : Hidden::no;
+}
+
+}  // namespace surefoot::prepare
