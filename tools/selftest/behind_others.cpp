@@ -186,13 +186,18 @@ void look_round(const model::Model& model, Random& random, const dmat4& root, st
             ++looks.in_view;
             if (!occlusion.hides(leaf.box)) continue;
             ++looks.hidden;
-            for (int k = 0; k < 12; ++k) {
+            for (int k = 0; k < 24; ++k) {
+                // Corners, from eyes moved as far as they may and across the line, see past an edge first.
+                const Face& face = leaf.faces[random.below(static_cast<std::uint32_t>(leaf.faces.size()))];
+                const bool corner = k % 4 != 0;
+                const dvec3 at = corner ? face.at[random.below(3)] : on(face, random);
+                dvec3 away = any_direction(random);
+                if (corner) away = glm::normalize(glm::cross(away, at - region.centre.position) + 1e-9 * away);
                 Pose pose = region.centre;
-                pose.position += any_direction(random) * (region.radius_m * (k % 3 == 0 ? random.unit() : 1.0));
+                pose.position += away * (region.radius_m * (corner ? 1.0 : random.unit()));
                 if (k % 2 == 1)
                     pose.orientation =
                         glm::angleAxis(random.range(0, region.angle_rad), any_direction(random)) * pose.orientation;
-                const dvec3 at = on(leaf.faces[random.below(static_cast<std::uint32_t>(leaf.faces.size()))], random);
                 if (!in_picture(pose, viewport, at)) continue;
                 ++looks.lines;
                 looks.broken += seen(leaves, pose.position, at, pose.forward()) ? 1 : 0;
@@ -212,7 +217,7 @@ void report_looks(const Looks& looks, Outcome& out) {
 void in_buildings(const dvec3& at, const Effort& effort, Outcome& out) {
     Random random(31);
     Looks looks;
-    const std::uint64_t buildings = effort.count(40, 2);
+    const std::uint64_t buildings = effort.count(40, 5);
     for (std::uint64_t b = 0; b < buildings && !effort.stopped(); ++b) {
         const dquat turn = glm::normalize(glm::angleAxis(b % 2 == 0 ? 0.0 : random.range(0, 3.1), any_direction(random)));
         auto model = import_and_bake(rooms(random, at, turn));
