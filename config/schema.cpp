@@ -37,7 +37,7 @@ constexpr Entry file_name(string_view key, string_view help, std::string S::*mem
     return {key, Kind::file, {}, 0, longest_name, {}, help, member};
 }
 
-const std::array<Entry, 32> entries = {
+const std::array<Entry, 33> entries = {
     file_name("model", "The .walk model that is walked through. Relative names here and below: relative to this file's folder.",
               &S::model),
     file_name("path",
@@ -73,6 +73,7 @@ const std::array<Entry, 32> entries = {
     flag("fifo", "Real-time scheduling (SCHED_FIFO) for the frame thread, rasterisers and workers.", &S::fifo),
     flag("strict", "Do not start where real-time scheduling or locked memory is refused.", &S::strict),
     flag("in_frame_check", "Between slices, draw stand-ins when the rest no longer fits the frame.", &S::in_frame_check),
+    flag("occlusion", "Leave out what other things hide from every pose that a frame may have.", &S::occlusion),
     flag("control", "Alternate the walk with a bare loop of the same cost, to judge misses against.", &S::control),
     integer("frame_core", "", -1, 4095, "Core of the frame thread; -1: chosen for the machine.", &S::frame_core),
     number("slice_us", "us", 50, 100000, "Predicted length of a slice of submission.", &S::slice_us),

@@ -32,7 +32,7 @@ struct Settings {
     std::string clock = "real";
     std::int64_t workers = 0;      ///< 0: one a core beside the frame thread's
     std::int64_t rasterisers = 0;  ///< 0: one a core
-    bool fifo = true, strict = false, in_frame_check = true, control = false;
+    bool fifo = true, strict = false, in_frame_check = true, occlusion = true, control = false;
     std::int64_t frame_core = -1;  ///< -1: chosen
     double slice_us = 1000;
     double hysteresis = 1.25;

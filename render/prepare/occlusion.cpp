@@ -44,9 +44,37 @@ struct Columns {
     }
 };
 
+// By value, so that the compiler sees no branch in loops over pixels.
+float least_of(float a, float b) { return a < b ? a : b; }
+float most_of(float a, float b) { return a > b ? a : b; }
+
 std::uint8_t side_of(std::uint32_t from, std::uint32_t to) { return from < to ? 1 : 2; }
 
 }  // namespace
+
+Occlusion::Turn Occlusion::Turn::of_sine(float sine) { return {sine, std::sqrt(std::max(0.0F, 1.0F - sine * sine))}; }
+
+Occlusion::Turn Occlusion::Turn::of_tangent(float tangent) {
+    const float cosine = 1.0F / std::sqrt(1.0F + tangent * tangent);
+    return {tangent * cosine, cosine};
+}
+
+Occlusion::Turn Occlusion::Turn::plus(const Turn& more) const {
+    const Turn sum{sine * more.cosine + cosine * more.sine, cosine * more.cosine - sine * more.sine};
+    return sum.sine >= 0.0F ? sum : Turn{0.0F, -1.0F};
+}
+
+/// Tangents between which two directions lie that are widened by a turn; front and side are their parts in a plane.
+struct Occlusion::Tangents {
+    float low = beyond, high = -beyond;
+    void take(float side, float front, const Turn& turn) {
+        low = std::min(low, tangent(side * turn.cosine - front * turn.sine, front * turn.cosine + side * turn.sine));
+        high = std::max(high, tangent(side * turn.cosine + front * turn.sine, front * turn.cosine - side * turn.sine));
+    }
+    static float tangent(float side, float front) {
+        return front > 1e-3F * std::abs(side) ? side / front : side > 0 ? beyond : -beyond;
+    }
+};
 
 void Occlusion::Rect::grow(const Rect& r) {
     x0 = std::min(x0, r.x0);
@@ -91,7 +119,9 @@ bool Occlusion::aim(const Region& region, model::Viewport viewport) {
     half_column_ = wide_ / columns;
     half_row_ = high_ / rows;
     pixel_rad_ = std::sqrt(half_column_ * half_column_ + half_row_ * half_row_) * (1.0F + edge_slack);
-    corner_rad_ = std::atan(std::sqrt(wide_ * wide_ + high_ * high_));
+    pixel_turn_ = Turn::of_sine(std::min(1.0F, pixel_rad_));
+    const float corner = std::sqrt(wide_ * wide_ + high_ * high_);  // a tangent
+    corner_turn_ = Turn::of_tangent(corner).plus(pixel_turn_);
     for (int y = 0; y < rows; ++y) {
         const float ty = static_cast<float>(2 * y + 1) * half_row_ - high_;
         for (int x = 0; x < columns; ++x) {
@@ -248,7 +278,9 @@ void Occlusion::fill(const Drawn& triangle, const Rect& rect) {
     }
     const vec3 w = triangle.inverse_depth;
     const float slack = std::abs(w.x) * half_column_ + std::abs(w.y) * half_row_;
-    const float full = 1.0F + edge_slack;
+    const float full = 1.0F + edge_slack, farthest = triangle.farthest;
+    const float half_column = half_column_, wide = wide_;
+    const std::array<float, 3> across = {edge[0].x, edge[1].x, edge[2].x};
     for (int y = rect.y0; y <= rect.y1; ++y) {
         const float ty = static_cast<float>(2 * y + 1) * half_row_ - high_;
         const float e0 = edge[0].y * ty + edge[0].z, e1 = edge[1].y * ty + edge[1].z, e2 = edge[2].y * ty + edge[2].z;
@@ -262,11 +294,12 @@ void Occlusion::fill(const Drawn& triangle, const Rect& rect) {
         span.keep(e2 + full, edge[2].x);
         const Columns in(span, wide_, half_column_, rect.x0, rect.x1);
         for (int x = in.first; x <= in.last; ++x) {
-            const float tx = static_cast<float>(2 * x + 1) * half_column_ - wide_;
-            const float inside = std::min(std::min(edge[0].x * tx + e0, edge[1].x * tx + e1), edge[2].x * tx + e2);
-            const float depth = std::max(triangle.farthest, w.x * tx + w0);
-            covered[x] = std::max(covered[x], inside >= full ? depth : 0.0F);
-            crossed[x] = std::min(crossed[x], inside > -full && inside < full ? depth : beyond);
+            const float tx = static_cast<float>(2 * x + 1) * half_column - wide;
+            const float inside = least_of(least_of(across[0] * tx + e0, across[1] * tx + e1), across[2] * tx + e2);
+            const float depth = most_of(farthest, w.x * tx + w0);
+            const float filled = inside >= full ? depth : 0.0F, touched = inside > -full ? depth : beyond;
+            covered[x] = most_of(covered[x], filled);
+            crossed[x] = least_of(crossed[x], inside >= full ? beyond : touched);
         }
     }
 }
@@ -297,42 +330,40 @@ void Occlusion::erode(const vec3& from, const vec3& to, const Rect& rect) {
 
 void Occlusion::erode_piece(const vec3& from, const vec3& to, float sine, const Rect& rect) {
     const vec3 a = glm::normalize(from), b = glm::normalize(to);
-    vec3 pole = glm::cross(a, b);
-    const float pole_length = glm::length(pole);
-    const float half = 0.5F * std::atan2(pole_length, glm::dot(a, b));
-    const float reach = std::asin(std::min(sine, 1.0F)) + pixel_rad_;
+    const float cosine = std::clamp(glm::dot(a, b), -1.0F, 1.0F);
+    const Turn half{std::sqrt(0.5F - 0.5F * cosine), std::sqrt(0.5F + 0.5F * cosine)};
+    const Turn reach = Turn::of_sine(sine).plus(pixel_turn_), round = half.plus(reach);
     const vec3 middle = glm::normalize(a + b);
-    if (std::acos(std::clamp(middle.z, -1.0F, 1.0F)) > half + reach + corner_rad_ + pixel_rad_) return;
-    const float s = reach < 1.5F ? std::sin(reach) : 1.0F;
+    const Turn widest = round.plus(corner_turn_);
+    if (middle.z < widest.cosine - 1e-5F) return;  // all of it beside the buffer
+    const bool all_round = reach.cosine < 0.07F || half.cosine < 0.07F;
+    const float s = all_round ? 1.0F : reach.sine;
     // The columns and rows that the piece may touch: along it, no point is farther off the plane than its ends by 1 / cos(half).
-    const auto range = [&](float a_side, float a_off, float b_side, float b_off, float a_front, float b_front, float& low,
-                           float& high) {
-        low = -beyond;
-        high = beyond;
-        const float off = std::max(std::abs(a_off), std::abs(b_off)) / std::cos(half);
+    const auto range = [&](float a_side, float a_off, float b_side, float b_off) {
+        const float off = std::max(std::abs(a_off), std::abs(b_off)) / half.cosine;
         const float flat = std::sqrt(std::max(0.0F, 1.0F - off * off));
-        if (!(flat > s)) return;
-        const float turn = std::asin(s / flat);
-        const float at_a = std::atan2(a_side, a_front), at_b = std::atan2(b_side, b_front);
-        const float first = std::min(at_a, at_b) - turn, last = std::max(at_a, at_b) + turn;
-        constexpr float quarter = 1.55F;  // beyond it a tangent is beyond any buffer
-        if (first > -quarter) low = first > quarter ? beyond : std::tan(first);
-        if (last < quarter) high = last < -quarter ? -beyond : std::tan(last);
+        if (!(flat > s)) return Tangents{-beyond, beyond};
+        Tangents tangents;
+        const Turn turn = Turn::of_sine(s / flat);
+        tangents.take(a_side, a.z, turn);
+        tangents.take(b_side, b.z, turn);
+        return tangents;
     };
     Rect touched{0, columns - 1, 0, rows - 1};
-    if (half < 1.5F && s < 1.0F) {
-        float x0 = 0, x1 = 0, y0 = 0, y1 = 0;
-        range(a.x, a.y, b.x, b.y, a.z, b.z, x0, x1);
-        range(a.y, a.x, b.y, b.x, a.z, b.z, y0, y1);
-        touched = pixels(x0 - 2 * half_column_, x1 + 2 * half_column_, y0 - 2 * half_row_, y1 + 2 * half_row_);
+    if (!all_round) {
+        const Tangents x = range(a.x, a.y, b.x, b.y), y = range(a.y, a.x, b.y, b.x);
+        touched = pixels(x.low - 2 * half_column_, x.high + 2 * half_column_, y.low - 2 * half_row_, y.high + 2 * half_row_);
     }
     touched = {std::max(touched.x0, rect.x0), std::min(touched.x1, rect.x1), std::max(touched.y0, rect.y0),
                std::min(touched.y1, rect.y1)};
     // Within `reach` of the great circle through both ends, not beyond either end, not on the other side of the sphere.
-    const bool point = pole_length < 1e-5F;
-    pole = point ? vec3(0.0F) : pole / pole_length;
+    vec3 pole = glm::cross(a, b);
+    const float pole_length = glm::length(pole);
+    pole = pole_length < 1e-5F ? vec3(0.0F) : pole / pole_length;
     const vec3 onward = glm::cross(pole, a), back = glm::cross(b, pole);
-    const float round = half + reach < 1.5F ? std::cos(half + reach) : -1.0F;
+    const float ahead = all_round || round.cosine < 0.07F ? -1.0F : round.cosine;
+    const float half_column = half_column_, wide = wide_;
+    const float pole_x = pole.x, onward_x = onward.x, back_x = back.x, middle_x = middle.x;
     for (int y = touched.y0; y <= touched.y1; ++y) {
         const float ty = static_cast<float>(2 * y + 1) * half_row_ - high_;
         const float p = pole.y * ty + pole.z, f = onward.y * ty + onward.z, g = back.y * ty + back.z,
@@ -349,12 +380,12 @@ void Occlusion::erode_piece(const vec3& from, const vec3& to, float sine, const 
         span.keep(longest + g, back.x);
         const Columns in(span, wide_, half_column_, touched.x0, touched.x1);
         for (int x = in.first; x <= in.last; ++x) {
-            const float tx = static_cast<float>(2 * x + 1) * half_column_ - wide_;
+            const float tx = static_cast<float>(2 * x + 1) * half_column - wide;
             const float l = s * length[x];
-            const float aside = l - std::abs(pole.x * tx + p);
-            const float ends = std::min(onward.x * tx + f, back.x * tx + g) + l;
-            const float near = middle.x * tx + m - round * length[x];
-            eroded[x] = std::max(eroded[x], std::min(std::min(aside, ends), near));
+            const float aside = l - std::abs(pole_x * tx + p);
+            const float ends = least_of(onward_x * tx + f, back_x * tx + g) + l;
+            const float near = middle_x * tx + m - ahead * length[x];
+            eroded[x] = most_of(eroded[x], least_of(least_of(aside, ends), near));
         }
     }
 }
@@ -382,11 +413,13 @@ void Occlusion::draw_surface(std::span<const std::uint32_t> members) {
     }
     for (int y = rect.y0; y <= rect.y1; ++y) {
         const std::size_t row = static_cast<std::size_t>(y) * columns;
+        const float* __restrict covered = &covered_[row];
+        const float* __restrict crossed = &crossed_[row];
+        const float* __restrict eroded = &eroded_[row];
+        float* __restrict depth = &depth_[row];
         for (int x = rect.x0; x <= rect.x1; ++x) {
-            const std::size_t at = row + static_cast<std::size_t>(x);
-            const float partly = crossed_[at] < beyond ? crossed_[at] : 0.0F;
-            const float depth = eroded_[at] < 0.0F ? std::max(covered_[at], partly) : 0.0F;
-            depth_[at] = std::max(depth_[at], depth);
+            const float partly = crossed[x] < beyond ? crossed[x] : 0.0F, found = most_of(covered[x], partly);
+            depth[x] = most_of(depth[x], eroded[x] < 0.0F ? found : 0.0F);
         }
     }
     for (int ty = rect.y0 / tile; ty <= rect.y1 / tile; ++ty) {

@@ -54,7 +54,7 @@ struct FrameRecord {
     std::uint32_t continued = 0;     ///< times the process was stopped and continued since the last frame
     std::uint32_t prepared_age = 0;  ///< frames; 1 is the newest possible
     std::uint32_t slices = 0, downgraded_slices = 0;
-    std::uint32_t items = 0, draws = 0, switches = 0, visits = 0, candidates = 0;
+    std::uint32_t items = 0, draws = 0, switches = 0, visits = 0, hidden = 0, candidates = 0;
     std::uint64_t triangles = 0;
     std::uint64_t cut_hash = 0;
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;

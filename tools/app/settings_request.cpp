@@ -39,6 +39,7 @@ void apply_settings(const config::Configuration& configuration, WalkRequest& r) 
     r.strict = s.strict;
     r.control = s.control;
     r.in_frame_check = s.in_frame_check;
+    r.occlusion = s.occlusion;
     r.frame_core = static_cast<int>(s.frame_core);
     r.frame_priority = static_cast<int>(s.frame_priority);
     r.raster_priority = static_cast<int>(s.raster_priority);

@@ -53,7 +53,7 @@ struct WalkRequest {
     double slice_us = 1000;
     double hysteresis = 1.25;
     bool correct_costs = true;  ///< online correction of predictions; false: frozen at 1
-    bool fifo = true, strict = false, in_frame_check = true;
+    bool fifo = true, strict = false, in_frame_check = true, occlusion = true;
     bool control = false;  ///< ABBA blocks against a bare loop
     std::uint32_t control_pairs = 90;
     double control_block_s = 2.0;

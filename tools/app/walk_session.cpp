@@ -107,6 +107,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
     options.in_frame_check = r.in_frame_check;
+    options.prepare.occlusion = r.occlusion;
     tell(s, WalkStep::device);
     progress.say("open", 0.5);
     auto engine = Engine::open(std::move(*model), s.costs, options);

@@ -110,6 +110,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.switches = cut.switches;
     record.cut_hash = cut.hash;
     record.visits = set.visits;
+    record.hidden = set.hidden;
     record.candidates = static_cast<std::uint32_t>(set.candidates.size());
     record.prepare_cpu_us = static_cast<float>(set.cpu_us);
     cut_ = &cut;

@@ -203,6 +203,7 @@ void add_walk(CLI::App& app, Context& context) {
                 "Do not start where anything that real time needs is refused: FIFO, locked memory, an isolated core, "
                 "placing, a cost table");
     c->add_flag("--no-check", a->settings->no_check, "Without the in-frame check, to see what it is worth");
+    c->add_flag("--no-occlusion", a->settings->no_occlusion, "Keep what other things hide, to see what leaving it out is worth");
     c->add_flag("--no-correction", a->no_correction, "Predictions are not corrected online");
     c->add_flag("--control", r.control, "Alternate blocks of the walk and of a bare loop, and judge by the deadline rule");
     a->control_pairs = c->add_option("--control-pairs", r.control_pairs, "Pairs of blocks; the rule wants 90")

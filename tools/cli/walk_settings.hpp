@@ -18,7 +18,7 @@ struct SettingArguments {
         std::string flag, key, text;
     };
     std::vector<Setting> values;  ///< in the order given
-    bool no_fifo = false, no_check = false;
+    bool no_fifo = false, no_check = false, no_occlusion = false;
 };
 
 /// --config, --profile, --size, --no-fifo, and an option for each flag and key.

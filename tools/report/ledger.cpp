@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 59> columns = {{
+constexpr std::array<Column, 60> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -52,6 +52,7 @@ constexpr std::array<Column, 59> columns = {{
     {"downgraded_slices", [](auto& r, auto& f) { add(r, "{}", f.downgraded_slices); }},
     {"candidates", [](auto& r, auto& f) { add(r, "{}", f.candidates); }},
     {"visits", [](auto& r, auto& f) { add(r, "{}", f.visits); }},
+    {"hidden", [](auto& r, auto& f) { add(r, "{}", f.hidden); }},
     {"prepared_age", [](auto& r, auto& f) { add(r, "{}", f.prepared_age); }},
     {"prepare_cpu_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.prepare_cpu_us); }},
     {"cpu_us", [](auto& r, auto& f) { add(r, "{:.3f}", us_between(0, f.cpu_ns)); }},

@@ -151,7 +151,7 @@ std::string figures_table(const WalkSummary& s) {
            row_of("Select, µs", s.select_us, 1, 0) + row_of("Submit, ms", s.submit_ms, 1, 2) +
            row_of("Raster, ms", s.raster_ms, 1, 2) + row_of("Prepare (workers' CPU), µs", s.prepare_cpu_us, 1, 0) +
            row_of("Age of prepared arrays, frames", s.prepared_age, 1, 0) + row_of("Nodes visited to prepare", s.visits, 1, 0) +
-           row_of("Error of predicted cost, %", s.cost_error, 100, 1);
+           row_of("Of them hidden by others", s.hidden, 1, 0) + row_of("Error of predicted cost, %", s.cost_error, 100, 1);
     if (s.input.given) out += row_of("Report to submitted frame, ms", s.input.age_ms, 1, 1);
     out += "</table></div>\n";
     out += fmt::format(

@@ -136,6 +136,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     summary.prepare_cpu_us = quantiles_of(frames, [](const FrameRecord& f) { return double{f.prepare_cpu_us}; });
     summary.prepared_age = quantiles_of(frames, [](const FrameRecord& f) { return double(f.prepared_age); });
     summary.visits = quantiles_of(frames, [](const FrameRecord& f) { return double(f.visits); });
+    summary.hidden = quantiles_of(frames, [](const FrameRecord& f) { return double(f.hidden); });
     summary.triangles_mean = quantiles_of(frames, [](const FrameRecord& f) { return static_cast<double>(f.triangles); }).mean;
     summary.switches_per_frame = quantiles_of(frames, [](const FrameRecord& f) { return double(f.switches); }).mean;
 }

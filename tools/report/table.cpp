@@ -47,6 +47,7 @@ void quality_rows(TextTable& table, const WalkSummary& s) {
         fmt::format("mean {}, most {}", short_number(s.triangles_mean), short_number(static_cast<double>(s.triangles_max)));
     if (s.model_triangles > 0)
         triangles += fmt::format(" of the model's {}", short_number(static_cast<double>(s.model_triangles)));
+    if (s.hidden.max > 0) triangles += fmt::format("; {:.0f} nodes a frame left out behind others", s.hidden.mean);
     table.row("triangles", triangles);
     table.row("stability", fmt::format("{:.2f} switches a frame, {} slices drawn coarser, floor bound {} frames",
                                        s.switches_per_frame, s.downgrades, s.floor_bound_frames));
