@@ -34,6 +34,8 @@ public:
 private:
     static constexpr int columns = 128, rows = 72, tile = 8;
     static constexpr std::size_t most_drawn = 512;
+    static constexpr float edge_slack = 0.01F;  ///< of a pixel, for rounding
+    static constexpr float beyond = 1e9F;       ///< any tangent, any 1/z
 
     struct Facing {
         float solid_angle;
@@ -70,6 +72,8 @@ private:
     void place(const Facing& facing);
     void join();
     void draw_surface(std::span<const std::uint32_t> members);
+    void begin_surface(const Rect& rect);
+    void end_surface(const Rect& rect);
     void fill(const Drawn& triangle, const Rect& rect);
     void erode(const vec3& from, const vec3& to, const Rect& rect);
     void erode_piece(const vec3& from, const vec3& to, float sine, const Rect& rect);
