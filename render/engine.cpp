@@ -310,7 +310,7 @@ bool covers(const prepare::Region& region, const Pose& pose) {
     const double turned = 2.0 * std::acos(w);
     // The acos of a rounded 1 is up to 2e-8: far below any region's angle, but not below 0.
     return moved <= region.radius_m + 1e-9 && turned <= region.angle_rad + 1e-6 &&
-           pose.fov_y_rad <= region.centre.fov_y_rad + 2.0 * region.angle_rad + 1e-9;
+           turned + std::max(0.0, pose.fov_y_rad - region.centre.fov_y_rad) <= region.angle_rad + 1e-6;
 }
 
 prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s) {

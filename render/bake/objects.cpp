@@ -84,10 +84,20 @@ bool hides_itself(const dvec3& size, const dvec3& area) {
     return false;
 }
 
-/// Whether drawing all of it for a part that is seen is a waste: too long for its triangles, or long and mostly behind itself.
-bool sprawls(const dvec3& size, const dvec3& area, std::size_t triangles, const CutLimits& limits) {
+/// Whether drawing all of it for a part that is seen is a waste: too many triangles, too long for them, or long and mostly behind
+/// itself, if the whole is made of few.
+bool is_cut(std::span<const Loose> triangles, const Geometry& whole, bool few, const CutLimits& limits, dvec3& size) {
+    Box box;
+    dvec3 area(0.0);
+    for (const Loose& t : triangles) {
+        for (const std::uint32_t c : t.corner) box.grow(dvec3(position_of(whole.vertices[c])));
+        area += dvec3(t.area);
+    }
+    size = box.max - box.min;
+    if (triangles.size() > std::max(limits.most_triangles, 32U)) return true;
     if (std::max({size.x, size.y, size.z}) <= limits.longest_m) return false;
-    return triangles >= 2 * limits.least_triangles || (triangles >= 2 * limits.least_hidden && hides_itself(size, area));
+    return triangles.size() >= 2 * limits.least_triangles ||
+           (few && triangles.size() >= 2 * limits.least_hidden && hides_itself(size, area));
 }
 
 Geometry gather(const Geometry& whole, std::span<const Loose> triangles) {
@@ -106,15 +116,9 @@ Geometry gather(const Geometry& whole, std::span<const Loose> triangles) {
     return piece;
 }
 
-void cut_range(const Geometry& whole, std::span<Loose> triangles, const CutLimits& limits, std::vector<Geometry>& out) {
-    Box box;
-    dvec3 area(0.0);
-    for (const Loose& t : triangles) {
-        for (const std::uint32_t c : t.corner) box.grow(dvec3(position_of(whole.vertices[c])));
-        area += dvec3(t.area);
-    }
-    const dvec3 size = box.max - box.min;
-    if (triangles.size() <= std::max(limits.most_triangles, 32U) && !sprawls(size, area, triangles.size(), limits)) {
+void cut_range(const Geometry& whole, std::span<Loose> triangles, bool few, const CutLimits& limits, std::vector<Geometry>& out) {
+    dvec3 size;
+    if (!is_cut(triangles, whole, few, limits, size)) {
         out.push_back(gather(whole, triangles));
         return;
     }
@@ -124,8 +128,8 @@ void cut_range(const Geometry& whole, std::span<Loose> triangles, const CutLimit
         if (a.centre[axis] != b.centre[axis]) return a.centre[axis] < b.centre[axis];
         return std::lexicographical_compare(a.corner, a.corner + 3, b.corner, b.corner + 3);
     });
-    cut_range(whole, triangles.first(static_cast<std::size_t>(half)), limits, out);
-    cut_range(whole, triangles.subspan(static_cast<std::size_t>(half)), limits, out);
+    cut_range(whole, triangles.first(static_cast<std::size_t>(half)), few, limits, out);
+    cut_range(whole, triangles.subspan(static_cast<std::size_t>(half)), few, limits, out);
 }
 
 }  // namespace
@@ -143,8 +147,10 @@ std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
             triangles.push_back(t);
         }
     }
+    const bool few = triangles.size() < 2 * limits.least_triangles;
     std::vector<Geometry> pieces;
-    cut_range(whole, triangles, limits, pieces);
+    dvec3 size;
+    if (is_cut(triangles, whole, few, limits, size)) cut_range(whole, triangles, few, limits, pieces);
     return pieces;
 }
 
@@ -165,7 +171,7 @@ MeshForm make_form(Geometry geometry, const ChainOptions& options) {
 std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options) {
     std::vector<Geometry> pieces = cut(geometry, limits);
     std::vector<MeshForm> forms;
-    if (pieces.size() < 2) {
+    if (pieces.empty()) {
         forms.push_back(make_form(std::move(geometry), options));
         return forms;
     }

@@ -112,6 +112,7 @@ Occluders find_occluders(const model::Model& model, std::uint32_t most) {
         o.normal = glm::normalize(glm::cross(found.at[1] - found.at[0], found.at[2] - found.at[0]));
         o.offset = glm::dot(o.normal, found.at[0]);
         o.centre = (found.at[0] + found.at[1] + found.at[2]) / 3.0;
+        for (const dvec3& at : found.at) o.radius_m = std::max(o.radius_m, glm::length(at - o.centre));
         o.area_m2 = found.area_m2;
         o.two_sided = found.two_sided;
         out.triangles.push_back(o);

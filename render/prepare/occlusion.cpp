@@ -8,13 +8,15 @@ namespace surefoot::prepare {
 
 namespace {
 
-constexpr float behind_m = 0.01F;           ///< closer planes than this are closer than anything that is drawn
-constexpr float least_solid_angle = 6e-4F;  ///< about four pixels
+constexpr float behind_m = 0.01F;           ///< what is drawn lies farther in front of the eye; here depths are cut off
+constexpr float least_solid_angle = 6e-4F;  ///< about a pixel: less fills none
 constexpr double margin_rad = 0.15;         ///< beside the view, for what is seen past its edge from beside the middle
 constexpr double widest_half_rad = 80.0 / 180.0 * 3.14159265358979323846;
-constexpr float depth_slack = 1e-4F;  ///< of a depth
+constexpr float depth_slack = 1e-4F;  ///< of a depth: rounding, and the 3e-5 by which gl/ties moves what shares a place
+constexpr float rounding = 1e-6F;     ///< of lengths in float
 constexpr float deep_ratio = 1.25F;   ///< of depths in a box: beyond it, its parts are looked at
 constexpr int most_parts = 40;
+constexpr double far_m = 1e6;  ///< for the frustum's second test only: it has no far plane
 constexpr std::uint32_t no_triangle = 0xffffffffU;
 
 std::uint8_t side_of(std::uint32_t from, std::uint32_t to) { return from < to ? 1 : 2; }
@@ -55,6 +57,7 @@ bool Occlusion::aim(const Region& region, model::Viewport viewport) {
     right_ = pose.right();
     up_ = pose.up();
     forward_ = pose.forward();
+    frustum_ = model::make_frustum(pose, viewport, far_m, region.radius_m, region.angle_rad);
     radius_m_ = static_cast<float>(region.radius_m);
     clamp_from_m_ = static_cast<float>(region.radius_m / std::sin(margin_rad));
     const auto wide = static_cast<float>(std::tan(half.x)), high = static_cast<float>(std::tan(half.y));
@@ -85,6 +88,12 @@ void Occlusion::choose() {
     const double least = static_cast<double>(radius_m_) +
                          model::near_plane_m * std::sqrt(1.0 + static_cast<double>(wide_) * static_cast<double>(wide_) +
                                                          static_cast<double>(high_) * static_cast<double>(high_));
+    const double side_x = std::sqrt(1.0 + static_cast<double>(wide_) * static_cast<double>(wide_)),
+                 side_y = std::sqrt(1.0 + static_cast<double>(high_) * static_cast<double>(high_));
+    const auto beside = [&](const vec3& at, double radius) {
+        return static_cast<double>(std::abs(at.x) - wide_ * at.z) > radius * side_x ||
+               static_cast<double>(std::abs(at.y) - high_ * at.z) > radius * side_y;
+    };
     for (std::uint32_t i = 0; i < occluders_.triangles.size(); ++i) {
         const Occluder& o = occluders_.triangles[i];
         const double away = glm::dot(o.normal, eye_) - o.offset;
@@ -93,7 +102,8 @@ void Occlusion::choose() {
         const dvec3 d = o.centre - eye_;
         const double square = glm::dot(d, d);
         const auto solid_angle = static_cast<float>(o.area_m2 * std::abs(away) / (square * std::sqrt(square)));
-        if (solid_angle > least_solid_angle) facing_.push_back({solid_angle, i, from_behind});
+        if (!(solid_angle > least_solid_angle) || beside(to_view(o.centre), o.radius_m)) continue;
+        facing_.push_back({solid_angle, i, from_behind});
     }
     const auto more = [](const Facing& a, const Facing& b) {
         return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.triangle < b.triangle;
@@ -239,7 +249,8 @@ void Occlusion::draw(const Region& region, model::Viewport viewport) {
     std::fill(tiles_.begin(), tiles_.end(), 0.0F);
     choose();
     join();
-    for (std::size_t at = 0; at < order_.size();) {
+    work_ = 0;
+    for (std::size_t at = 0; at < order_.size() && work_ < most_work;) {  // the nearest surfaces hide most
         std::size_t end = at;
         while (end < order_.size() && drawn_[order_[end]].surface == drawn_[order_[at]].surface) ++end;
         draw_surface(std::span(order_).subspan(at, end - at));
@@ -261,7 +272,8 @@ bool Occlusion::hides(const Box& box) const {
         const Hidden found = look(part);
         if (found == Hidden::yes) continue;
         if (found == Hidden::no || tests == most_parts || top + 2 > stack.size()) return false;
-        const dvec3 size = part.max - part.min;
+        // Across the axis that adds most to its depth.
+        const dvec3 size = (part.max - part.min) * (glm::abs(forward_) + 0.1);
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.z >= size.y ? 2 : 1;
         const double middle = 0.5 * (part.min[axis] + part.max[axis]);
         Box low = part, high = part;
@@ -279,14 +291,9 @@ Occlusion::Hidden Occlusion::look(const Box& box) const {
     const auto extent = [&](const dvec3& axis) { return vec3(axis * half); };
     const vec3 r = extent(right_), u = extent(up_), f = extent(forward_);
     const auto reach = [](const vec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
-    // What lies outside the buffer is seen by no eye of the region, unless it is so near that an eye beside the middle sees it.
-    const bool may_reach_out = box.distance(eye_) > static_cast<double>(clamp_from_m_) * 1.001;
-    const auto outside = [&](float side, const vec3& across, float limit) {
-        return side - limit * centre.z > reach(across - limit * f) || -side - limit * centre.z > reach(across + limit * f);
-    };
-    if (may_reach_out && (outside(centre.x, r, wide_) || outside(centre.y, u, high_))) return Hidden::yes;
-    const float nearest = centre.z - reach(f), farthest = centre.z + reach(f);
-    if (!(nearest > behind_m)) return Hidden::in_parts;
+    const float rough = rounding * (reach(centre) + reach(r) + reach(u) + reach(f));
+    const float nearest = centre.z - reach(f) - rough, farthest = centre.z + reach(f);
+    if (!(nearest > behind_m)) return model::visible(frustum_, box) ? Hidden::in_parts : Hidden::yes;
     float x0 = beyond, x1 = -beyond, y0 = beyond, y1 = -beyond;
     for (int corner = 0; corner < 8; ++corner) {
         const vec3 sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
@@ -297,10 +304,18 @@ Occlusion::Hidden Occlusion::look(const Box& box) const {
         y0 = std::min(y0, y);
         y1 = std::max(y1, y);
     }
+    const float rim = rough / nearest;
+    x0 -= rim;
+    x1 += rim;
+    y0 -= rim;
+    y1 += rim;
     const bool reaches_out = x0 < -wide_ || x1 > wide_ || y0 < -high_ || y1 > high_;
+    if (reaches_out && !model::visible(frustum_, box)) return Hidden::yes;
+    // What of it lies outside the buffer is seen by no eye of the region, unless it is so near that one beside the middle sees
+    // it.
+    const bool sure = !reaches_out || box.distance(eye_) > static_cast<double>(clamp_from_m_) * 1.001;
     const Rect rect = pixels(x0, x1, y0, y1);
-    if ((may_reach_out || !reaches_out) && !rect.empty() && nearer_than(1.0F / (nearest * (1.0F - depth_slack)), rect))
-        return Hidden::yes;
+    if (sure && !rect.empty() && nearer_than(1.0F / (nearest * (1.0F - depth_slack)), rect)) return Hidden::yes;
     return farthest > deep_ratio * nearest || reaches_out ? Hidden::in_parts : Hidden::no;
 }
 

@@ -22,9 +22,11 @@ class Occlusion {
 public:
     /// `occluders` outlives this. All memory is taken here.
     explicit Occlusion(const Occluders& occluders);
+    Occlusion(const Occlusion&) = delete;
+    Occlusion& operator=(const Occlusion&) = delete;
 
-    /// Draws the occluders that matter most to the region, at most 512; nothing where its view is wider than 160 degrees.
-    /// Half a millisecond. Bit-equal for equal input.
+    /// Draws the occluders that matter most to the region, at most 512, the nearest surfaces first; nothing where its view is
+    /// wider than 160 degrees. 0.2 to 0.4 ms, at most about 2. Bit-equal for equal input.
     void draw(const Region& region, model::Viewport viewport);
 
     /// False: something in the box may be seen from somewhere in the region. True: nothing. About 50 ns. Any thread.
@@ -33,9 +35,10 @@ public:
 
 private:
     static constexpr int columns = 128, rows = 72, tile = 8;
-    static constexpr std::size_t most_drawn = 512;
-    static constexpr float edge_slack = 0.01F;  ///< of a pixel, for rounding
-    static constexpr float beyond = 1e9F;       ///< any tangent, any 1/z
+    static constexpr std::size_t most_drawn = 320;
+    static constexpr std::size_t most_work = 3'000'000;  ///< pixels of triangles and borders: about 2 ms
+    static constexpr float edge_slack = 0.01F;           ///< of a pixel, for rounding
+    static constexpr float beyond = 1e9F;                ///< any tangent, any 1/z
 
     struct Facing {
         float solid_angle;
@@ -86,12 +89,14 @@ private:
 
     const Occluders& occluders_;
     dvec3 eye_{0.0}, right_{1, 0, 0}, up_{0, 1, 0}, forward_{0, 0, -1};
+    model::Frustum frustum_{};                  ///< of the region
     float radius_m_ = 0, wide_ = 0, high_ = 0;  ///< tangents of the half angles
     float half_column_ = 0, half_row_ = 0;      ///< half a pixel, as tangents
     float pixel_rad_ = 0;                       ///< half a pixel's diagonal
     Turn pixel_turn_, corner_turn_;
     float clamp_from_m_ = 0;  ///< what is at least this far may reach out of the buffer
     bool empty_ = true;
+    std::size_t work_ = 0;
 
     std::vector<float> depth_;    ///< 1/z of the farthest point that hides in a pixel; 0: none. The larger, the nearer
     std::vector<float> tiles_;    ///< the least of tile x tile pixels

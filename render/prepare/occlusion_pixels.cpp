@@ -1,14 +1,13 @@
 // The pixels that a surface fills, and those that its borders take away: the loops that occlusion spends its time in.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/prepare/occlusion.hpp"
 
 namespace surefoot::prepare {
 
 namespace {
-
-constexpr float nowhere = -1e9F;
 
 /// Tangents in a row at which from + slope * tangent >= 0 may hold, for all that were kept.
 struct Span {
@@ -19,7 +18,7 @@ struct Span {
         else if (slope < 0)
             high = std::min(high, -from / slope);
         else if (from < 0)
-            high = nowhere;
+            high = -std::numeric_limits<float>::max();
     }
 };
 
@@ -53,16 +52,18 @@ Occlusion::Turn Occlusion::Turn::plus(const Turn& more) const {
     return sum.sine >= 0.0F ? sum : Turn{0.0F, -1.0F};
 }
 
-/// Tangents between which two directions lie that are widened by a turn; front and side are their parts in a plane.
+/// Tangents between which two directions lie that are widened by a turn; front and side are their parts in a plane. What is
+/// turned out of the front half has none: its side before the turn says over which end it left.
 struct Occlusion::Tangents {
     float low = beyond, high = -beyond;
     void take(float side, float front, const Turn& turn) {
-        low = std::min(low, tangent(side * turn.cosine - front * turn.sine, front * turn.cosine + side * turn.sine));
-        high = std::max(high, tangent(side * turn.cosine + front * turn.sine, front * turn.cosine - side * turn.sine));
+        const float left = side * turn.cosine - front * turn.sine, left_front = front * turn.cosine + side * turn.sine;
+        const float right = side * turn.cosine + front * turn.sine, right_front = front * turn.cosine - side * turn.sine;
+        const bool behind_right = side > 0 && left > 0, behind_left = side < 0 && right < 0;
+        low = std::min(low, before(left, left_front) ? left / left_front : behind_right ? beyond : -beyond);
+        high = std::max(high, before(right, right_front) ? right / right_front : behind_left ? -beyond : beyond);
     }
-    static float tangent(float side, float front) {
-        return front > 1e-3F * std::abs(side) ? side / front : side > 0 ? beyond : -beyond;
-    }
+    static bool before(float side, float front) { return front > 1e-3F * std::abs(side); }
 };
 
 void Occlusion::begin_surface(const Rect& rect) {
@@ -126,6 +127,7 @@ void Occlusion::fill(const Drawn& triangle, const Rect& rect) {
         span.keep(e1 + full, edge[1].x);
         span.keep(e2 + full, edge[2].x);
         const Columns in(span, wide_, half_column_, rect.x0, rect.x1);
+        work_ += static_cast<std::size_t>(std::max(0, in.last - in.first + 1));
         for (int x = in.first; x <= in.last; ++x) {
             const float tx = static_cast<float>(2 * x + 1) * half_column - wide;
             const float inside = least_of(least_of(across[0] * tx + e0, across[1] * tx + e1), across[2] * tx + e2);
@@ -166,10 +168,9 @@ void Occlusion::erode_piece(const vec3& from, const vec3& to, float sine, const 
     const float cosine = std::clamp(glm::dot(a, b), -1.0F, 1.0F);
     const Turn half{std::sqrt(0.5F - 0.5F * cosine), std::sqrt(0.5F + 0.5F * cosine)};
     const Turn reach = Turn::of_sine(sine).plus(pixel_turn_), round = half.plus(reach);
-    const vec3 middle = glm::normalize(a + b);
-    const Turn widest = round.plus(corner_turn_);
-    if (middle.z < widest.cosine - 1e-5F) return;  // all of it beside the buffer
     const bool all_round = reach.cosine < 0.07F || half.cosine < 0.07F;
+    const vec3 middle = all_round ? vec3(0.0F) : glm::normalize(a + b);            // ends that are opposite have no middle
+    if (!all_round && middle.z < round.plus(corner_turn_).cosine - 1e-5F) return;  // all of it beside the buffer
     const float s = all_round ? 1.0F : reach.sine;
     // The columns and rows that the piece may touch: along it, no point is farther off the plane than its ends by 1 / cos(half).
     const auto range = [&](float a_side, float a_off, float b_side, float b_off) {
@@ -192,9 +193,9 @@ void Occlusion::erode_piece(const vec3& from, const vec3& to, float sine, const 
     // Within `reach` of the great circle through both ends, not beyond either end, not on the other side of the sphere.
     vec3 pole = glm::cross(a, b);
     const float pole_length = glm::length(pole);
-    pole = pole_length < 1e-5F ? vec3(0.0F) : pole / pole_length;
+    pole = pole_length < 1e-3F ? vec3(0.0F) : pole / pole_length;
     const vec3 onward = glm::cross(pole, a), back = glm::cross(b, pole);
-    const float ahead = all_round || round.cosine < 0.07F ? -1.0F : round.cosine;
+    const float ahead = all_round || round.cosine < 0.07F ? -1.0F : round.cosine - 1e-6F;
     const float half_column = half_column_, wide = wide_;
     const float pole_x = pole.x, onward_x = onward.x, back_x = back.x, middle_x = middle.x;
     for (int y = touched.y0; y <= touched.y1; ++y) {
@@ -212,6 +213,7 @@ void Occlusion::erode_piece(const vec3& from, const vec3& to, float sine, const 
         span.keep(longest + f, onward.x);
         span.keep(longest + g, back.x);
         const Columns in(span, wide_, half_column_, touched.x0, touched.x1);
+        work_ += static_cast<std::size_t>(std::max(0, in.last - in.first + 1));
         for (int x = in.first; x <= in.last; ++x) {
             const float tx = static_cast<float>(2 * x + 1) * half_column - wide;
             const float l = s * length[x];

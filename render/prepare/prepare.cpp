@@ -25,7 +25,7 @@ namespace surefoot::prepare {
 
 namespace {
 
-/// A node that the frustum did not cull. Children are contiguous visits.
+/// A node that the frustum did not cull and nothing hides. Children are contiguous visits.
 struct Visit {
     Index node = 0;
     Index parent = none;

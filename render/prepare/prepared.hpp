@@ -56,7 +56,7 @@ struct PreparedFrame {
     model::Viewport viewport;
     std::vector<Candidate> candidates;  ///< reserved at start; never grows after; empty: nothing is visible
     std::vector<Choice> choices;
-    model::ItemCost full_cost;   ///< of every visible leaf's finest choice: full detail
+    model::ItemCost full_cost;   ///< of every visible leaf's finest choice: full detail of what nothing hides
     std::uint32_t visits = 0;    ///< nodes looked at, invisible ones included
     std::uint32_t hidden = 0;    ///< of them, in the view but behind others; nodes below them were not looked at
     bool truncated = false;      ///< capacity reached: deeper detail left out, still a complete legal tree

@@ -72,7 +72,7 @@ bool seen(const std::vector<Leaf>& leaves, const dvec3& eye, const dvec3& at, co
 }
 
 /// Two storeys of rooms with doors and gaps of every width, boxes in them; walls of one face, of two, and of a box's six.
-importer::Scene rooms(Random& random, const dvec3& at, const dquat& turn) {
+importer::Scene rooms(Random& random, const dvec3& at, const dquat& turn, std::uint32_t planks) {
     constexpr int across = 5, storeys = 2;
     constexpr double cell = 4, high = 3;
     const dmat4 root = moved(at) * glm::mat4_cast(turn);
@@ -80,7 +80,7 @@ importer::Scene rooms(Random& random, const dvec3& at, const dquat& turn) {
     scene.materials.resize(2);
     scene.materials[1].two_sided = true;
     const auto face = [&](const dvec3& from, const dvec3& right, const dvec3& up, std::uint32_t material) {
-        importer::Primitive p = surface(3, 2, [&](double u, double v) { return vec3(from + u * right + v * up); });
+        importer::Primitive p = surface(3, planks, [&](double u, double v) { return vec3(from + u * right + v * up); });
         p.material = material;
         return p;
     };
@@ -170,13 +170,14 @@ void look_round(const model::Model& model, Random& random, const dmat4& root, st
     const std::vector<Leaf> leaves = leaves_of(model);
     const prepare::Occluders occluders = prepare::find_occluders(model);
     prepare::Occlusion occlusion(occluders);
-    constexpr std::array<double, 4> radii = {0, 0.05, 0.3, 0.8}, angles = {0, 0.05, 0.15, 0.4};
+    constexpr std::array<double, 5> radii = {0, 0.05, 0.3, 0.8, 2.5};
+    constexpr std::array<double, 4> angles = {0, 0.05, 0.15, 0.4};
     for (std::uint64_t r = 0; r < regions && !effort.stopped(); ++r, ++looks.regions) {
         prepare::Region region;
         region.centre.position = dvec3(root * dvec4(any_in(random, {0.5, 0.3, 0.5}, {19.5, 5.7, 19.5}), 1.0));
         region.centre.orientation = glm::normalize(glm::angleAxis(random.range(0, 6.28), any_direction(random)));
         region.centre.fov_y_rad = random.range(0.3, 1.6);
-        region.radius_m = radii[random.below(4)];
+        region.radius_m = radii[random.below(5)];
         region.angle_rad = angles[random.below(4)];
         const model::Viewport viewport{640, static_cast<std::uint32_t>(random.range(200, 900))};
         occlusion.draw(region, viewport);
@@ -210,17 +211,17 @@ void report_looks(const Looks& looks, Outcome& out) {
     out.none_of("lines of sight that reach what is called hidden", looks.broken);
     out.at_least("lines of sight that were tried", static_cast<double>(looks.lines), 100);
     out.at_least("share of the things in view that are found to be hidden",
-                 100.0 * static_cast<double>(looks.hidden) / static_cast<double>(std::max<std::uint64_t>(looks.in_view, 1)), 25,
+                 100.0 * static_cast<double>(looks.hidden) / static_cast<double>(std::max<std::uint64_t>(looks.in_view, 1)), 20,
                  "%");
 }
 
 void in_buildings(const dvec3& at, const Effort& effort, Outcome& out) {
     Random random(31);
     Looks looks;
-    const std::uint64_t buildings = effort.count(40, 5);
+    const std::uint64_t buildings = effort.count(15, 5);
     for (std::uint64_t b = 0; b < buildings && !effort.stopped(); ++b) {
         const dquat turn = glm::normalize(glm::angleAxis(b % 2 == 0 ? 0.0 : random.range(0, 3.1), any_direction(random)));
-        auto model = import_and_bake(rooms(random, at, turn));
+        auto model = import_and_bake(rooms(random, at, turn, b % 3 == 1 ? 8 : 2));
         if (!model) return out.none_of("bakes refused (" + model.error().text() + ")", 1);
         look_round(*model, random, moved(at) * glm::mat4_cast(turn), 60, effort, looks);
         out.digest_of(model->triangles());
@@ -236,9 +237,8 @@ void far_away(const Effort& effort, Outcome& out) { in_buildings(dvec3(4.2e6, -1
 std::span<const Row> behind_others_rows() {
     static constexpr std::array<Row, 2> table = {{
         {"O1a", "behind_others",
-         "rooms, doors and gaps of 1 cm to 1.2 m; regions of eyes up to 0.8 m and 23 degrees about any pose",
-         "nothing that is left out as hidden is on any line of sight from the region; a quarter and more is left out",
-         near_origin},
+         "rooms, doors and gaps of 1 cm to 1.2 m; regions of eyes up to 2.5 m and 23 degrees about any pose",
+         "nothing that is left out as hidden is on any line of sight from the region; a fifth and more is left out", near_origin},
         {"O1b", "behind_others", "the same, 7600 km from the origin", "the same", far_away},
     }};
     return table;
