@@ -109,6 +109,8 @@ private:
     }
     void reap() {
         std::erase_if(workers_, [](const Worker& w) { return waitpid(w.pid, nullptr, WNOHANG) != 0; });
+        while (waitpid(-1, nullptr, WNOHANG) > 0) {
+        }
     }
 
     LoadBoard& board_;
@@ -135,6 +137,9 @@ void keep_timetable(const LoadPlan& plan, const LoadSettings& settings, LoadBoar
         doze_20ms();
     }
     workers.match(0);
+    // What a worker had just forked when it was killed is ours since, and ends at once: nothing of the load outlives a soak.
+    while (waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {
+    }
 }
 
 }  // namespace
@@ -154,6 +159,7 @@ Result<LoadRunner> LoadRunner::start(const LoadPlan& plan, const LoadSettings& s
     }
     if (child == 0) {
         belong_to(soak, SIGTERM);
+        prctl(PR_SET_CHILD_SUBREAPER, 1);
         set_signals([](int) { told_to_end = 1; });
         be_ordinary();
         keep_timetable(plan, settings, *board, soak);
