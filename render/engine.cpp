@@ -304,13 +304,14 @@ std::vector<gl::DrawItem> Engine::full_detail(const Pose& pose) const {
     return items;
 }
 
-bool covers(const prepare::Region& region, const Pose& pose) {
+bool covers(const prepare::Region& region, const Pose& pose, model::Viewport viewport) {
     const double moved = glm::length(pose.position - region.centre.position);
     const double w = std::min(1.0, std::abs(glm::dot(pose.orientation, region.centre.orientation)));
     const double turned = 2.0 * std::acos(w);
     // The acos of a rounded 1 is up to 2e-8: far below any region's angle, but not below 0.
-    return moved <= region.radius_m + 1e-9 && turned <= region.angle_rad + 1e-6 &&
-           turned + std::max(0.0, pose.fov_y_rad - region.centre.fov_y_rad) <= region.angle_rad + 1e-6;
+    const model::HalfAngles now = model::half_angles(pose, viewport), then = model::half_angles(region.centre, viewport);
+    const double grown = std::max({0.0, now.x - then.x, now.y - then.y});
+    return moved <= region.radius_m + 1e-9 && turned + grown <= region.angle_rad + 1e-6;
 }
 
 prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s) {

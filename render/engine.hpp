@@ -108,8 +108,8 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// The eye is inside the region that a prepared frame was made for.
-bool covers(const prepare::Region& region, const Pose& pose);
+/// The region that a prepared frame was made for holds the pose's eye and all of its view.
+bool covers(const prepare::Region& region, const Pose& pose, model::Viewport viewport);
 
 /// The region for the next frames, from the last two samples: extrapolated by `horizon_s`, widened by what may change in it.
 prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s);

@@ -71,7 +71,34 @@ namespace {
 struct Loose {
     std::uint32_t part, corner[3];
     vec3 centre;
+    vec3 area;  ///< seen along each axis
 };
+
+/// Of triangles with this box and these areas: what is behind a part of them, and is not the far side of the same wall.
+bool hides_itself(const dvec3& size, const dvec3& area) {
+    constexpr double layers = 1.25;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double face = size[(axis + 1) % 3] * size[(axis + 2) % 3];
+        if (0.5 * area[axis] > layers * face && face > 0) return true;  // half of it faces the other way
+    }
+    return false;
+}
+
+/// Whether drawing all of it for a part that is seen is a waste: too many triangles, too long for them, or long and mostly behind
+/// itself, if the whole is made of few.
+bool is_cut(std::span<const Loose> triangles, const Geometry& whole, bool few, const CutLimits& limits, dvec3& size) {
+    Box box;
+    dvec3 area(0.0);
+    for (const Loose& t : triangles) {
+        for (const std::uint32_t c : t.corner) box.grow(dvec3(position_of(whole.vertices[c])));
+        area += dvec3(t.area);
+    }
+    size = box.max - box.min;
+    if (triangles.size() > std::max(limits.most_triangles, 32U)) return true;
+    if (std::max({size.x, size.y, size.z}) <= limits.longest_m) return false;
+    return triangles.size() >= 2 * limits.least_triangles ||
+           (few && triangles.size() >= 2 * limits.least_hidden && hides_itself(size, area));
+}
 
 Geometry gather(const Geometry& whole, std::span<const Loose> triangles) {
     Geometry piece;
@@ -89,14 +116,9 @@ Geometry gather(const Geometry& whole, std::span<const Loose> triangles) {
     return piece;
 }
 
-void cut_range(const Geometry& whole, std::span<Loose> triangles, const CutLimits& limits, std::vector<Geometry>& out) {
-    Box box;
-    for (const Loose& t : triangles) {
-        for (const std::uint32_t c : t.corner) box.grow(dvec3(position_of(whole.vertices[c])));
-    }
-    const dvec3 size = box.max - box.min;
-    const bool compact = std::max({size.x, size.y, size.z}) <= limits.longest_m || triangles.size() < 2 * limits.least_triangles;
-    if (triangles.size() <= std::max(limits.most_triangles, 32U) && compact) {
+void cut_range(const Geometry& whole, std::span<Loose> triangles, bool few, const CutLimits& limits, std::vector<Geometry>& out) {
+    dvec3 size;
+    if (!is_cut(triangles, whole, few, limits, size)) {
         out.push_back(gather(whole, triangles));
         return;
     }
@@ -106,8 +128,8 @@ void cut_range(const Geometry& whole, std::span<Loose> triangles, const CutLimit
         if (a.centre[axis] != b.centre[axis]) return a.centre[axis] < b.centre[axis];
         return std::lexicographical_compare(a.corner, a.corner + 3, b.corner, b.corner + 3);
     });
-    cut_range(whole, triangles.first(static_cast<std::size_t>(half)), limits, out);
-    cut_range(whole, triangles.subspan(static_cast<std::size_t>(half)), limits, out);
+    cut_range(whole, triangles.first(static_cast<std::size_t>(half)), few, limits, out);
+    cut_range(whole, triangles.subspan(static_cast<std::size_t>(half)), few, limits, out);
 }
 
 }  // namespace
@@ -117,14 +139,18 @@ std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
     for (std::uint32_t p = 0; p < whole.parts.size(); ++p) {
         const auto& indices = whole.parts[p].indices;
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-            Loose t{p, {indices[i], indices[i + 1], indices[i + 2]}, {}};
-            t.centre = position_of(whole.vertices[t.corner[0]]) + position_of(whole.vertices[t.corner[1]]) +
-                       position_of(whole.vertices[t.corner[2]]);
+            Loose t{p, {indices[i], indices[i + 1], indices[i + 2]}, {}, {}};
+            const vec3 a = position_of(whole.vertices[t.corner[0]]), b = position_of(whole.vertices[t.corner[1]]),
+                       c = position_of(whole.vertices[t.corner[2]]);
+            t.centre = a + b + c;
+            t.area = 0.5F * glm::abs(glm::cross(b - a, c - a));
             triangles.push_back(t);
         }
     }
+    const bool few = triangles.size() < limits.most_hidden;
     std::vector<Geometry> pieces;
-    cut_range(whole, triangles, limits, pieces);
+    dvec3 size;
+    if (is_cut(triangles, whole, few, limits, size)) cut_range(whole, triangles, few, limits, pieces);
     return pieces;
 }
 
@@ -143,18 +169,15 @@ MeshForm make_form(Geometry geometry, const ChainOptions& options) {
 }  // namespace
 
 std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options) {
-    const Box local = geometry.box();
-    const dvec3 size = local.max - local.min;
-    const double longest = std::max({size.x, size.y, size.z});
-    const std::size_t triangles = geometry.triangles();
+    std::vector<Geometry> pieces = cut(geometry, limits);
     std::vector<MeshForm> forms;
-    if (triangles <= limits.most_triangles && (longest <= limits.longest_m || triangles < 2 * limits.least_triangles)) {
+    if (pieces.empty()) {
         forms.push_back(make_form(std::move(geometry), options));
         return forms;
     }
     ChainOptions locked = options;
     locked.lock_border = true;
-    for (Geometry& piece : cut(geometry, limits)) forms.push_back(make_form(std::move(piece), locked));
+    for (Geometry& piece : pieces) forms.push_back(make_form(std::move(piece), locked));
     return forms;
 }
 

@@ -1,4 +1,4 @@
-// Draws occluders into the buffer of depths: chooses, joins, fills, erodes.
+// Which occluders are drawn, as which joined surfaces, and what boxes they hide; pixels are filled in occlusion_pixels.cpp.
 #include "render/prepare/occlusion.hpp"
 
 #include <algorithm>
@@ -85,11 +85,9 @@ void Occlusion::choose() {
     facing_.clear();
     drawn_.clear();
     // Nearer than the near plane an occluder would not be drawn: it must be farther off than that from every eye.
-    const double least = static_cast<double>(radius_m_) +
-                         model::near_plane_m * std::sqrt(1.0 + static_cast<double>(wide_) * static_cast<double>(wide_) +
-                                                         static_cast<double>(high_) * static_cast<double>(high_));
-    const double side_x = std::sqrt(1.0 + static_cast<double>(wide_) * static_cast<double>(wide_)),
-                 side_y = std::sqrt(1.0 + static_cast<double>(high_) * static_cast<double>(high_));
+    const double wide = wide_, high = high_;
+    const double least = static_cast<double>(radius_m_) + model::near_plane_m * std::sqrt(1.0 + wide * wide + high * high);
+    const double side_x = std::sqrt(1.0 + wide * wide), side_y = std::sqrt(1.0 + high * high);
     const auto beside = [&](const vec3& at, double radius) {
         return static_cast<double>(std::abs(at.x) - wide_ * at.z) > radius * side_x ||
                static_cast<double>(std::abs(at.y) - high_ * at.z) > radius * side_y;

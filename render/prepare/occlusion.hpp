@@ -29,7 +29,7 @@ public:
     /// wider than 160 degrees. 0.3 to 0.6 ms, at most about 2. Bit-equal for equal input.
     void draw(const Region& region, model::Viewport viewport);
 
-    /// False: something in the box may be seen from somewhere in the region. True: nothing. About 50 ns. Any thread.
+    /// False: something in the box may be seen from somewhere in the region. True: nothing. 0.1 to 1 us. Any thread.
     [[nodiscard]] bool hides(const Box& box) const;
     [[nodiscard]] bool empty() const { return empty_; }  ///< nothing hides
 

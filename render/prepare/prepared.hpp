@@ -76,7 +76,7 @@ struct PrepareOptions {
     bool full_depth = false;  ///< go down to the leaves, whatever their error (reference pictures, `flat`)
     /// Where a frame looked at more nodes than this, the next ones raise the error below which nodes are not opened, by a
     /// tenth a frame or more, and lower it again when there is room: bounds the CPU time on any model (a visit takes about
-    /// 0.2 us, so that this is 4 ms). 0: no limit.
+    /// 0.2 us, and 0.1 more where something may hide it, so that this is 4 to 6 ms). 0: no limit.
     std::uint32_t max_visits = 18000;
 };
 

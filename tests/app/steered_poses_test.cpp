@@ -66,12 +66,31 @@ TEST_F(SteeredPosesTest, EveryPoseOfTheNextThreeFramesIsForeseen) {
         for (const double a : {-limits.accel_m_s2, 0.0, limits.accel_m_s2}) {
             Pose there = pose.pose;
             there.position.x += 2 * t + 0.5 * a * t * t;
-            EXPECT_TRUE(covers(pose.foresight.region, there)) << "after " << t << " s at " << a << " m/s2";
+            EXPECT_TRUE(covers(pose.foresight.region, there, {1280, 720})) << "after " << t << " s at " << a << " m/s2";
         }
     }
     Pose beyond = pose.pose;
     beyond.position.x += 5;
-    EXPECT_FALSE(covers(pose.foresight.region, beyond)) << "a region of everything foresees nothing";
+    EXPECT_FALSE(covers(pose.foresight.region, beyond, {1280, 720})) << "a region of everything foresees nothing";
+}
+
+TEST(Covers, ZoomingOutUsesUpWhatIsLeftOfTurning) {
+    prepare::Region region;
+    region.radius_m = 0.25;
+    region.angle_rad = 0.06;
+    Pose pose = region.centre;
+    const auto holds = [&](double zoom_rad, double turn_rad, model::Viewport viewport) {
+        pose.fov_y_rad = region.centre.fov_y_rad + zoom_rad;
+        pose.orientation = glm::angleAxis(turn_rad, dvec3(0, 1, 0));
+        return covers(region, pose, viewport);
+    };
+    EXPECT_TRUE(holds(-0.5, 0.059, {1280, 720}));
+    EXPECT_TRUE(holds(0.05, 0.03, {1280, 720}));
+    EXPECT_FALSE(holds(0.05, 0.05, {1280, 720}));
+    EXPECT_FALSE(holds(0.13, 0, {1280, 720}));
+    region.centre.fov_y_rad = 0.1;  // narrow and very wide: zooming opens the sides three times as fast
+    EXPECT_TRUE(holds(0.03, 0, {1280, 720}));
+    EXPECT_FALSE(holds(0.06, 0, {3840, 720}));
 }
 
 TEST_F(SteeredPosesTest, JumpsAndStopsAreSaidAndATourIsNotForeseenByTheLimits) {

@@ -191,14 +191,19 @@ TEST(Occlusion, ViewsThatAreTooWideAndNumbersThatAreNoneHideNothing) {
     EXPECT_FALSE(occlusion.hides({dvec3(-1e300), dvec3(1e300)}));
 }
 
-TEST(Occlusion, DrawingAndLookingAllocateNothing) {
+model::Model many_sheets(double farthest_m) {
     Random random(5);
     std::vector<Sheet> sheets;
     for (int i = 0; i < 2000; ++i) {
-        const double x = random.range(-20, 20), y = random.range(-20, 20);
-        sheets.push_back(upright(x, x + random.range(0.5, 5), y, y + random.range(0.5, 5), random.range(-30, -1)));
+        const double x = random.range(-20, 20), y = random.range(-20, 20), z = random.range(-farthest_m, -1);
+        const double wide = random.range(0.5, 5), high = random.range(0.5, 5);
+        sheets.push_back(upright(x, x + wide, y, y + high, z));
     }
-    const model::Model m = model_of(sheets);
+    return model_of(sheets);
+}
+
+TEST(Occlusion, DrawingAndLookingAllocateNothing) {
+    const model::Model m = many_sheets(30);
     const prepare::Occluders occluders = prepare::find_occluders(m);
     Occlusion occlusion(occluders);
     std::size_t hidden_boxes = 0;
@@ -215,13 +220,7 @@ TEST(Occlusion, DrawingAndLookingAllocateNothing) {
 }
 
 TEST(Occlusion, TheSameIsHiddenHoweverManyWorkersLook) {
-    Random random(6);
-    std::vector<Sheet> sheets;
-    for (int i = 0; i < 1500; ++i) {
-        const double x = random.range(-20, 20), y = random.range(-20, 20);
-        sheets.push_back(upright(x, x + random.range(0.5, 5), y, y + random.range(0.5, 5), random.range(-60, -1)));
-    }
-    const model::Model m = model_of(sheets);
+    const model::Model m = many_sheets(60);
     const model::CostModel costs = model::default_costs();
     std::vector<model::Index> first;
     for (const int workers : {1, 2, 4}) {

@@ -78,7 +78,7 @@ void WalkStages::latch(rt::FrameRecord& record) {
     const rt::OwnScope own;  // the submission around it is the driver's, this is not
     FramePose newest;
     if (!pose_source_.latch(frame_time(record), newest)) return;
-    if (coarse_ || covers(prepared_.front().region, newest.pose)) take(newest, record);
+    if (coarse_ || covers(prepared_.front().region, newest.pose, prepared_.front().viewport)) take(newest, record);
 }
 
 void WalkStages::prepare_inline() {
@@ -95,7 +95,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.prepared_age = static_cast<std::uint32_t>(age);
     record.correction = static_cast<float>(options_.correct_costs ? controller_.factor() : 1.0);
     record.budget_us = static_cast<float>(options_.budget_us);
-    coarse_ = age > oldest_prepared || !covers(set.region, now_.pose);
+    coarse_ = age > oldest_prepared || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_coarse();
         return;

@@ -108,9 +108,8 @@ private:
         board_.of(kind).on_ns += rt::monotonic_ns() - started_ns_[static_cast<std::size_t>(kind)];
     }
     void reap() {
-        std::erase_if(workers_, [](const Worker& w) { return waitpid(w.pid, nullptr, WNOHANG) != 0; });
-        while (waitpid(-1, nullptr, WNOHANG) > 0) {
-        }
+        for (pid_t pid = waitpid(-1, nullptr, WNOHANG); pid > 0; pid = waitpid(-1, nullptr, WNOHANG))
+            std::erase_if(workers_, [pid](const Worker& w) { return w.pid == pid; });
     }
 
     LoadBoard& board_;

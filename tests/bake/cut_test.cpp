@@ -1,0 +1,57 @@
+// Which things the bake cuts: what hides itself, and not what one sees whole.
+#include <gtest/gtest.h>
+
+#include "render/bake/bake.hpp"
+#include "tests/bake/scenes.hpp"
+
+namespace surefoot::bake {
+namespace {
+
+/// Leaves of a scene of one thing, which hold all of its triangles.
+std::size_t leaves_of(importer::Primitive primitive) {
+    importer::Scene scene;
+    scene.sources = {"by hand"};
+    scene.materials.resize(1);
+    const std::uint64_t triangles = primitive.indices.size() / 3;
+    place(scene, add_mesh(scene, std::move(primitive), "thing"), dvec3(0));
+    const auto model = bake(scene, {}, {});
+    EXPECT_TRUE(model.ok()) << (model.ok() ? "" : model.error().text());
+    if (!model.ok()) return 0;
+    std::size_t leaves = 0;
+    std::uint64_t held = 0;
+    for (const model::Node& node : model->nodes) {
+        if (node.child_count > 0) continue;
+        ++leaves;
+        held += model->reps[node.first_rep + node.rep_count - 1].triangles;
+    }
+    EXPECT_EQ(held, triangles);
+    return leaves;
+}
+
+importer::Primitive walls(int count) {
+    importer::Primitive all;
+    for (int w = 0; w < count; ++w) {
+        const auto wall = grid_surface(5, 2, [=](float u, float v) { return vec3(20 * u, 3 * v, 2.5F * static_cast<float>(w)); });
+        const auto base = static_cast<std::uint32_t>(all.positions.size());
+        all.positions.insert(all.positions.end(), wall.positions.begin(), wall.positions.end());
+        all.normals.insert(all.normals.end(), wall.normals.begin(), wall.normals.end());
+        all.uvs.insert(all.uvs.end(), wall.uvs.begin(), wall.uvs.end());
+        for (const std::uint32_t i : wall.indices) all.indices.push_back(base + i);
+    }
+    return all;
+}
+
+TEST(Cut, WallsBehindWallsAreThingsOfTheirOwn) {
+    EXPECT_GE(leaves_of(walls(8)), 3U);
+    EXPECT_GE(leaves_of(walls(80)), 5U);  // 1600 triangles: two things by their length alone
+}
+
+TEST(Cut, ASheetAndABallAreLeftWhole) {
+    EXPECT_EQ(leaves_of(grid_surface(40, 2, [](float u, float v) { return vec3(20 * u, 3 * v, 0); })), 1U);
+    EXPECT_EQ(leaves_of(ball(10, 2)), 1U);
+}
+
+TEST(Cut, ThingsOfFewTrianglesAreLeftWholeHoweverDeep) { EXPECT_EQ(leaves_of(walls(3)), 1U); }
+
+}  // namespace
+}  // namespace surefoot::bake
