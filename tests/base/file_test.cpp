@@ -1,5 +1,6 @@
 // Files: clear errors, and an old file that survives every failed write.
 #include "rt/base/file.hpp"
+#include "tests/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -17,20 +18,11 @@ namespace fs = std::filesystem;
 
 class FileTest : public ::testing::Test {
 protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "surefoot-file-XXXXXX").string();
-        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override {
-        fs::permissions(folder_, fs::perms::owner_all);
-        fs::remove_all(folder_);
-    }
-    [[nodiscard]] std::string in(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] std::string in(const std::string& name) const { return folder_ / name; }
     [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator{}));
     }
-    fs::path folder_;
+    test::TemporaryFolder folder_;
 };
 
 TEST_F(FileTest, ErrorReadsAsPlaceWhatRemedy) {
@@ -47,7 +39,7 @@ TEST_F(FileTest, MissingFileIsNamed) {
 }
 
 TEST_F(FileTest, FolderIsRefused) {
-    const auto read = read_file(folder_.string());
+    const auto read = read_file(folder_.path());
     ASSERT_FALSE(read.ok());
     EXPECT_NE(read.error().what.find("folder"), std::string::npos);
 }
@@ -129,7 +121,7 @@ TEST_F(FileTest, LinkIsWrittenThrough) {
 
 TEST_F(FileTest, UnwritablePlacesAreNamed) {
     EXPECT_FALSE(AtomicFile::create("").ok());
-    EXPECT_FALSE(AtomicFile::create(folder_.string()).ok());
+    EXPECT_FALSE(AtomicFile::create(folder_.path()).ok());
     EXPECT_FALSE(AtomicFile::create("/dev/null").ok());
     const auto nowhere = AtomicFile::create(in("no/such/f"));
     ASSERT_FALSE(nowhere.ok());
@@ -137,20 +129,20 @@ TEST_F(FileTest, UnwritablePlacesAreNamed) {
 }
 
 TEST_F(FileTest, ProbingSaysWhatWritingWouldAndLeavesNothing) {
-    const std::string good = (folder_ / "new").string();
+    const std::string good = folder_ / "new";
     EXPECT_TRUE(probe_writable(good).ok());
-    EXPECT_FALSE(probe_writable((folder_ / "no" / "such" / "file").string()).ok());
-    EXPECT_TRUE(probe_writable((folder_ / "no" / "such" / "file").string(), true).ok());
-    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_FALSE(probe_writable(folder_ / "no/such/file").ok());
+    EXPECT_TRUE(probe_writable(folder_ / "no/such/file", true).ok());
+    EXPECT_TRUE(fs::is_empty(folder_.path()));
     ASSERT_TRUE(write_text(good, "kept").ok());
     EXPECT_TRUE(probe_writable(good).ok());
-    const auto below = probe_writable((folder_ / "new" / "file").string(), true);
+    const auto below = probe_writable(folder_ / "new/file", true);
     ASSERT_FALSE(below.ok());
     EXPECT_NE(below.error().text().find("not a folder"), std::string::npos);
-    EXPECT_FALSE(probe_writable(folder_.string()).ok());
+    EXPECT_FALSE(probe_writable(folder_.path()).ok());
     EXPECT_EQ(*read_text(good), "kept");
     fs::remove(good);
-    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
 TEST_F(FileTest, FilesThatBelongTogetherTakeTheirPlacesTogether) {
@@ -197,7 +189,7 @@ TEST_F(FileTest, FilesThatBelongTogetherTakeTheirPlacesTogether) {
 
 TEST_F(FileTest, ReadOnlyFolderIsRefused) {
     if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
-    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+    fs::permissions(folder_.path(), fs::perms::owner_read | fs::perms::owner_exec);
     const auto file = AtomicFile::create(in("f"));
     ASSERT_FALSE(file.ok());
     EXPECT_FALSE(file.error().remedy.empty());

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "rt/base/file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace surefoot {
 namespace {
@@ -20,14 +21,8 @@ constexpr double sixty_degrees = 1.0471975511965976;
 
 class PathTest : public ::testing::Test {
 protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "surefoot-path-XXXXXX").string();
-        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
     Result<Path> read(const std::string& text) {
-        file_ = (folder_ / "p.csv").string();
+        file_ = folder_ / "p.csv";
         EXPECT_TRUE(write_text(file_, text).ok());
         return read_path(file_);
     }
@@ -37,7 +32,7 @@ protected:
         EXPECT_EQ(path.error().place, place.empty() ? file_ : file_ + place) << text;
         EXPECT_NE(path.error().what.find(what), std::string::npos) << path.error().text();
     }
-    fs::path folder_;
+    test::TemporaryFolder folder_;
     std::string file_;
 };
 
@@ -95,7 +90,7 @@ TEST_F(PathTest, WrittenPathReadsBackTheSame) {
         s.pose.fov_y_rad = 0.9;
         path.samples.push_back(s);
     }
-    const auto file = (folder_ / "w.csv").string();
+    const auto file = folder_ / "w.csv";
     ASSERT_TRUE(write_path(file, path).ok());
     const auto back = read_path(file);
     ASSERT_TRUE(back.ok()) << back.error().text();

@@ -10,6 +10,7 @@
 
 #include "rt/base/file.hpp"
 #include "tests/select/scene.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace surefoot::capture {
 namespace {
@@ -17,8 +18,8 @@ namespace {
 using test::Scene;
 
 struct TempFile {
-    std::string path = (std::filesystem::temp_directory_path() / ("surefoot-capture-" + std::to_string(::getpid()))).string();
-    ~TempFile() { std::filesystem::remove(path); }
+    test::TemporaryFolder folder;
+    std::string path = folder / "capture";
 };
 
 Capture captured(std::string_view selector, std::uint32_t depth = 4) {

@@ -18,27 +18,6 @@
 
 namespace surefoot::test {
 
-/// A folder that goes away at the end.
-class OwnFolder {
-public:
-    OwnFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "surefoot-console-XXXXXX").string();
-        EXPECT_NE(::mkdtemp(name.data()), nullptr);
-        path_ = name;
-    }
-    OwnFolder(const OwnFolder&) = delete;
-    OwnFolder& operator=(const OwnFolder&) = delete;
-    ~OwnFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    [[nodiscard]] std::string operator/(std::string_view name) const { return path_ + "/" + std::string(name); }
-    [[nodiscard]] const std::string& path() const { return path_; }
-
-private:
-    std::string path_;
-};
-
 /// A connection that does what it is told, and nothing else.
 class RawReader {
 public:

@@ -13,13 +13,14 @@
 
 #include "rt/base/file.hpp"
 #include "tests/console/http.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/console/incidents.hpp"
 
 namespace surefoot::console {
 namespace {
 
 namespace fs = std::filesystem;
-using test::OwnFolder;
+using test::TemporaryFolder;
 
 rt::BlackBox::Incident an_incident(std::uint64_t number, int frames = 200) {
     rt::BlackBox::Incident incident;
@@ -50,7 +51,7 @@ std::set<std::string> names_in(const std::string& dir) {
 }
 
 TEST(Incidents, AreALedgerATraceAndASummary) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     const auto written = write_incident(folder.path(), an_incident(17), {}, 1'767'323'045);
     ASSERT_TRUE(written.ok()) << written.error().text();
     EXPECT_EQ(fs::path(*written).filename(), "incident-20260102T030405Z-000017");
@@ -78,7 +79,7 @@ TEST(Incidents, AreALedgerATraceAndASummary) {
 }
 
 TEST(Incidents, TheOldestMakeRoomByNumberAndByBytes) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     ASSERT_TRUE(write_text(folder / "mine.txt", "kept").ok());
     IncidentLimits limits;
     limits.folders = 3;
@@ -100,7 +101,7 @@ TEST(Incidents, TheOldestMakeRoomByNumberAndByBytes) {
 }
 
 TEST(Incidents, KeepTheMissedFrameThatIsTheirs) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     MissedFrame missed{100, [](const std::string& file) { return write_text(file, "the frame"); }};
     auto written = write_incident(folder.path(), an_incident(1), {}, 1'767'323'045, &missed);
     ASSERT_TRUE(written.ok()) << written.error().text();
@@ -116,7 +117,7 @@ TEST(Incidents, KeepTheMissedFrameThatIsTheirs) {
 }
 
 TEST(Incidents, AFullDiskIsSaidOnceAndSurvived) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     const std::string dir = folder / "incidents";
     rt::BlackBoxOptions box_options;
     box_options.between_s = 0;
@@ -167,7 +168,7 @@ TEST(Incidents, AFullDiskIsSaidOnceAndSurvived) {
 }
 
 TEST(Incidents, WhatAnEarlierProcessLeftHalfIsClearedAway) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     const std::string dir = folder / "incidents";
     fs::create_directories(dir + "/.incident-20260102T030405Z-000001");
     ASSERT_TRUE(write_text(dir + "/.incident-20260102T030405Z-000001/ledger.csv", "half").ok());

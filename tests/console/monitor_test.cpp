@@ -15,14 +15,15 @@
 #include "rt/threads/usage.hpp"
 #include "tests/console/http.hpp"
 #include "tests/report/exposition.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/console/client.hpp"
 #include "tools/console/monitor.hpp"
 
 namespace surefoot::console {
 namespace {
 
-using test::OwnFolder;
 using test::RawReader;
+using test::TemporaryFolder;
 
 constexpr std::int64_t period_60_ns = 16'666'667;
 
@@ -68,7 +69,7 @@ test::Exposed scrape(const Monitor& monitor) {
 }
 
 TEST(Monitor, ServesTheFiguresOfAWalkAndOfTheNext) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     MonitorOptions options;
     options.address = "unix:" + (folder / "m.sock");
     options.version = "9.9";
@@ -108,7 +109,7 @@ TEST(Monitor, ServesTheFiguresOfAWalkAndOfTheNext) {
 }
 
 TEST(Monitor, AnAddressThatIsTakenIsAnErrorBeforeAnythingRuns) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     MonitorOptions options;
     options.address = "unix:" + (folder / "m.sock");
     const auto first = opened(options);
@@ -122,7 +123,7 @@ TEST(Monitor, AnAddressThatIsTakenIsAnErrorBeforeAnythingRuns) {
 }
 
 TEST(Monitor, ABurstIsWrittenDownWhileReadersLook) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     MonitorOptions options;
     options.address = "unix:" + (folder / "m.sock");
     options.incidents_dir = folder / "incidents";
@@ -220,7 +221,7 @@ TEST(Monitor, CostsTheMonitorThreadAtMostTwentyMicrosecondsAFrame) {
 #endif
     constexpr double limit_us = 20;
     constexpr int frames = 240;
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     const double alone = cost_us_per_frame("", "", frames, false);
     const double read = cost_us_per_frame("unix:" + (folder / "m.sock"), folder / "incidents", frames, true);
     fmt::print(

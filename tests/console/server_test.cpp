@@ -15,14 +15,15 @@
 #include "rt/base/file.hpp"
 #include "rt/clock/clock.hpp"
 #include "tests/console/http.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/console/client.hpp"
 #include "tools/console/server.hpp"
 
 namespace surefoot::console {
 namespace {
 
-using test::OwnFolder;
 using test::RawReader;
+using test::TemporaryFolder;
 
 constexpr std::string_view ask_hello = "GET /hello HTTP/1.1\r\nHost: x\r\n\r\n";
 
@@ -34,7 +35,7 @@ Server::Pages hello_pages(std::size_t bytes = 0) {
     };
 }
 
-Address at_socket(const OwnFolder& folder) { return *parse_address("unix:" + (folder / "s.sock")); }
+Address at_socket(const TemporaryFolder& folder) { return *parse_address("unix:" + (folder / "s.sock")); }
 Address any_port() { return *parse_address("127.0.0.1:0"); }
 
 std::unique_ptr<Server> serving(const Address& address, Server::Pages pages, const ServerLimits& limits = {}) {
@@ -80,7 +81,7 @@ TEST(Address, TheDefaultIsInTheRuntimeDirectory) {
 }
 
 TEST(Server, ServesOnASocketAndOnAPort) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     for (const Address& address : {at_socket(folder), any_port(), *parse_address("[::1]:0")}) {
         auto server = Server::listen(address, hello_pages());
         if (!server && address.host == "::1") continue;  // a machine without IPv6
@@ -154,7 +155,7 @@ TEST(Server, AReaderThatStopsReadingHoldsNobodyUp) {
 TEST(Server, AFloodIsTurnedAwayAtItsRate) {
     ServerLimits limits;
     limits.accepts_per_s = 50;
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     const auto server = serving(at_socket(folder), hello_pages(), limits);
     std::atomic<bool> done{false};
     std::vector<std::thread> flood;
@@ -181,7 +182,7 @@ TEST(Server, WithoutDescriptorsItWaitsAndComesBack) {
     GTEST_SKIP()
         << "UBSan looks whether memory can be read through a pipe, and reports a false type where no descriptor is left for it";
 #endif
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     const auto server = serving(at_socket(folder), hello_pages());
     rlimit before{};
     getrlimit(RLIMIT_NOFILE, &before);
@@ -201,7 +202,7 @@ TEST(Server, WithoutDescriptorsItWaitsAndComesBack) {
 }
 
 TEST(Server, TakesADeadSocketsPlaceAndNobodyElses) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     const Address address = at_socket(folder);
     {
         // As a killed process leaves it: bound, and nobody listens.
@@ -231,7 +232,7 @@ TEST(Server, TakesADeadSocketsPlaceAndNobodyElses) {
 }
 
 TEST(Client, NamesThePlaceAndTheRemedy) {
-    const OwnFolder folder;
+    const TemporaryFolder folder;
     const auto nobody = fetch(at_socket(folder), "/hello");
     ASSERT_FALSE(nobody.ok());
     EXPECT_NE(nobody.error().place.find("s.sock"), std::string::npos);

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/temporary_folder.hpp"
+
 namespace surefoot::doctor {
 
 struct FakeFile {
@@ -21,21 +23,12 @@ using FakeFiles = std::vector<FakeFile>;
 class FakeRoot {
 public:
     explicit FakeRoot(const FakeFiles& files = {}) {
-        std::string name = (std::filesystem::temp_directory_path() / "surefoot-doctor-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) ADD_FAILURE() << "no temporary folder";
-        path_ = name;
         for (const FakeFile& file : files) add(file);
     }
-    ~FakeRoot() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    FakeRoot(const FakeRoot&) = delete;
-    FakeRoot& operator=(const FakeRoot&) = delete;
 
     /// A path that ends in '/' is a folder.
     void add(const FakeFile& file) const {
-        const std::filesystem::path at = path_ + file.path;
+        const std::filesystem::path at = path() + file.path;
         if (file.path.ends_with('/')) {
             std::filesystem::create_directories(at);
             return;
@@ -44,10 +37,10 @@ public:
         std::ofstream(at) << file.text;
         chmod(at.c_str(), file.mode);
     }
-    [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] const std::string& path() const { return folder_.path(); }
 
 private:
-    std::string path_;
+    test::TemporaryFolder folder_;
 };
 
 }  // namespace surefoot::doctor

@@ -10,27 +10,16 @@
 #include <vector>
 
 #include "render/import/scene.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace surefoot::importer::test {
 
-class Folder {
-public:
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "surefoot_import_XXXXXX").string();
-        path_ = ::mkdtemp(name.data());
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
+struct Folder : surefoot::test::TemporaryFolder {
+    std::string file(const std::string& name) const { return *this / name; }
     std::string write(const std::string& name, const std::string& content) const {
         std::ofstream(file(name), std::ios::binary) << content;
         return file(name);
     }
-
-private:
-    std::filesystem::path path_;
 };
 
 /// Appends values as they lie in memory.

@@ -5,6 +5,7 @@
 #include "input/steering.hpp"
 #include "rt/base/file.hpp"
 #include "tests/input/gamepad_session.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/time_units.hpp"
 
 namespace surefoot::input {
@@ -13,7 +14,8 @@ namespace {
 using test::GamepadSession;
 
 RecordedDevice device_of(const GamepadSession& session) {
-    const std::string file = ::testing::TempDir() + "replay-source-test.hid";
+    const surefoot::test::TemporaryFolder folder;
+    const std::string file = folder / "session.hid";
     EXPECT_TRUE(write_text(file, session.text()).ok());
     auto opened = open_recorded(file, {}, "");
     EXPECT_TRUE(opened.ok()) << (opened.ok() ? "" : opened.error().text());

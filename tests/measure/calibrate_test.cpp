@@ -13,6 +13,7 @@
 #include "render/measure/calibrate_run.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/random.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace surefoot {
 namespace {
@@ -115,15 +116,14 @@ TEST(GridFill, never_makes_more_work_cheaper) {
 class CostFile : public ::testing::Test {
 protected:
     void SetUp() override {
-        file_ = (std::filesystem::temp_directory_path() / "surefoot_costs_test.toml").string();
         costs_ = model::default_costs();
         costs_.machine = "a \"machine\" \\ of tests";
         costs_.calibrated = true;
         costs_.combine = {123.456F, 0.1F, 0.3333333F, 1e-7F};
         ASSERT_TRUE(measure::write_costs(file_, costs_).ok());
     }
-    void TearDown() override { std::filesystem::remove(file_); }
-    std::string file_;
+    test::TemporaryFolder folder_;
+    std::string file_ = folder_ / "costs.toml";
     model::CostModel costs_;
 };
 

@@ -12,6 +12,7 @@
 #include "rt/base/hash.hpp"
 #include "rt/base/random.hpp"
 #include "tests/model/two_triangles.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace surefoot::model {
 namespace {
@@ -19,10 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct WalkFile : testing::Test {
-    fs::path folder = fs::temp_directory_path() / ("surefoot_walk_" + std::to_string(getpid()));
-    std::string file = (folder / "m.walk").string();
-    void SetUp() override { fs::create_directories(folder); }
-    void TearDown() override { fs::remove_all(folder); }
+    test::TemporaryFolder folder;
+    std::string file = folder / "m.walk";
     void put(std::span<const std::byte> bytes) const {
         std::ofstream out(file, std::ios::binary | std::ios::trunc);
         out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -191,16 +190,16 @@ TEST_F(WalkFile, WhatIsNoModelIsSaid) {
     const auto read = read_walk(file);
     ASSERT_FALSE(read.ok());
     EXPECT_NE(read.error().what.find("not a .walk"), std::string::npos);
-    EXPECT_FALSE(read_walk((folder / "absent.walk").string()).ok());
-    EXPECT_FALSE(read_walk(folder.string()).ok());
+    EXPECT_FALSE(read_walk(folder / "absent.walk").ok());
+    EXPECT_FALSE(read_walk(folder.path()).ok());
 }
 
 TEST_F(WalkFile, FailedWriteLeavesTheOldFile) {
     ASSERT_TRUE(write_walk(file, two_triangles()).ok());
     const auto before = *read_file(file);
-    EXPECT_FALSE(write_walk((folder / "no" / "such" / "folder.walk").string(), two_triangles()).ok());
+    EXPECT_FALSE(write_walk(folder / "no/such/folder.walk", two_triangles()).ok());
     EXPECT_EQ(before, *read_file(file));
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator{}), 1);  // and no temporary beside it
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator{}), 1);  // and no temporary beside it
 }
 
 }  // namespace

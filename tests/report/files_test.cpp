@@ -13,6 +13,7 @@
 
 #include "rt/base/file.hpp"
 #include "tests/report/records.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/report/pictures.hpp"
 #include "tools/report/report.hpp"
 
@@ -23,14 +24,8 @@ namespace fs = std::filesystem;
 
 class ReportFiles : public ::testing::Test {
 protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "surefoot-report-XXXXXX").string();
-        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-    [[nodiscard]] std::string in(const std::string& name) const { return (folder_ / name).string(); }
-    fs::path folder_;
+    [[nodiscard]] std::string in(const std::string& name) const { return folder_ / name; }
+    test::TemporaryFolder folder_;
 };
 
 std::vector<std::string> split(const std::string& text, char by) {

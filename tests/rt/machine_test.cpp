@@ -23,30 +23,19 @@
 #include "rt/threads/memory.hpp"
 #include "rt/threads/placement.hpp"
 #include "rt/threads/usage.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/time_units.hpp"
 
 namespace surefoot::rt {
 namespace {
 
 /// A folder that stands for / with a few files in it.
-class FakeRoot {
-public:
-    FakeRoot() {
-        std::string name = (std::filesystem::temp_directory_path() / "surefoot-root-XXXXXX").string();
-        path = ::mkdtemp(name.data()) != nullptr ? name : std::string{};
-    }
-    ~FakeRoot() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    }
-    FakeRoot(const FakeRoot&) = delete;
-    FakeRoot& operator=(const FakeRoot&) = delete;
+struct FakeRoot : test::TemporaryFolder {
     void file(const std::string& name, const std::string& text) const {
-        const std::filesystem::path whole = path + name;
+        const std::filesystem::path whole = path() + name;
         std::filesystem::create_directories(whole.parent_path());
         std::ofstream(whole) << text;
     }
-    std::string path;
 };
 
 TEST(RealClock, NeverWakesEarlyThoughSignalsRainOnIt) {
@@ -176,7 +165,7 @@ TEST(Capability, AnIsolatedCoreOutsideOfTheMaskIsTakenWhereItIsGranted) {
     ASSERT_TRUE(place_thread(0, {.policy = Policy::other, .priority = 0, .cpus = rest, .name = {}}).ok());
     const FakeRoot root;
     root.file("/sys/devices/system/cpu/isolated", std::to_string(all.back()) + ",1000\n");
-    EXPECT_EQ(isolated_cpus(rest, root.path), CpuMask{all.back()}) << "1000 is not there";
+    EXPECT_EQ(isolated_cpus(rest, root.path()), CpuMask{all.back()}) << "1000 is not there";
 }
 
 TEST(Capability, ReadsTheSystemsFilesAndKeepsToAllowedCores) {
@@ -185,11 +174,11 @@ TEST(Capability, ReadsTheSystemsFilesAndKeepsToAllowedCores) {
     root.file("/sys/devices/system/cpu/isolated", std::to_string(core) + ",1000-1001\n");
     root.file("/proc/sys/kernel/sched_rt_runtime_us", "100000\n");
     root.file("/proc/cpuinfo", "flags\t\t: fpu hypervisor sse\n");
-    const Capabilities c = probe_capabilities(1, root.path);
+    const Capabilities c = probe_capabilities(1, root.path());
     EXPECT_EQ(c.isolated, CpuMask{core});
     EXPECT_EQ(c.rt_runtime_us, 100000);
     EXPECT_TRUE(c.virtual_machine);
-    const Capabilities blind = probe_capabilities(1, root.path + "/nowhere");
+    const Capabilities blind = probe_capabilities(1, root.path() + "/nowhere");
     EXPECT_TRUE(blind.isolated.empty());
     EXPECT_EQ(blind.rt_runtime_us, -1);
 }
@@ -295,7 +284,7 @@ TEST(Steal, ReadsTicksOfEachCoreAndSurvivesShortLines) {
     const FakeRoot root;
     root.file("/proc/stat",
               "cpu  1 2 3 4 5 6 7 30 0 0\ncpu0 1 2 3 4 5 6 7 10 0 0\ncpu3 1 2 3 4 5 6 7 20 0 0\ncpu4 1 2\nintr 5\n");
-    const auto steal = read_steal(root.path);
+    const auto steal = read_steal(root.path());
     ASSERT_TRUE(steal.ok());
     const double tick_ms = 1000.0 / static_cast<double>(sysconf(_SC_CLK_TCK));
     EXPECT_DOUBLE_EQ(steal->total_ms, 30 * tick_ms);
@@ -305,8 +294,8 @@ TEST(Steal, ReadsTicksOfEachCoreAndSurvivesShortLines) {
     EXPECT_DOUBLE_EQ(steal->cpu_ms[3], 20 * tick_ms);
     EXPECT_DOUBLE_EQ(steal->cpu_ms[4], 0);
     root.file("/proc/stat", "nothing\n");
-    EXPECT_FALSE(read_steal(root.path));
-    EXPECT_FALSE(read_steal(root.path + "/nowhere"));
+    EXPECT_FALSE(read_steal(root.path()));
+    EXPECT_FALSE(read_steal(root.path() + "/nowhere"));
 }
 
 TEST(Recorder, KeepsEveryRecordInOrderOnAThreadOfItsOwnName) {

@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "render/model/view.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/scenes/scenes.hpp"
 
 namespace surefoot::scenes {
@@ -16,21 +17,6 @@ namespace {
 
 using importer::none;
 namespace fs = std::filesystem;
-
-class Folder {
-public:
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "surefoot_scenes_XXXXXX").string();
-        path_ = ::mkdtemp(name.data());
-    }
-    ~Folder() { fs::remove_all(path_); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
-
-private:
-    fs::path path_;
-};
 
 GeneratedScene made(std::string_view name, double scale, std::uint64_t seed = 1) {
     auto scene = generate(name, scale, seed);
@@ -310,10 +296,10 @@ TEST(Paths, AreSmoothAndLastAMinute) {
 }
 
 TEST(WriteScene, GlbComesBackAsItWas) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     for (const std::string& name : scene_names()) {
         const GeneratedScene out = made(name, 0.1);
-        const std::string file = folder.file(name + ".glb");
+        const std::string file = (folder / name + ".glb");
         ASSERT_TRUE(write_scene(file, out).ok());
         const auto back = importer::import_files({file}, {});
         ASSERT_TRUE(back.ok()) << back.error().text();
@@ -338,20 +324,20 @@ TEST(WriteScene, GlbComesBackAsItWas) {
             EXPECT_EQ(back->materials[i].alpha, out.scene.materials[i].alpha);
             for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(back->materials[i].colour[c], out.scene.materials[i].colour[c], 1e-5);
         }
-        const auto path = read_path(folder.file(name + ".path.csv"));
+        const auto path = read_path((folder / name + ".path.csv"));
         ASSERT_TRUE(path.ok()) << path.error().text();
         EXPECT_EQ(path->samples.size(), out.path.samples.size());
     }
 }
 
 TEST(WriteScene, WritesTheSameBytesTwice) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     const GeneratedScene out = made("room", 0.05);
-    ASSERT_TRUE(write_scene(folder.file("a.glb"), out).ok());
-    ASSERT_TRUE(write_scene(folder.file("b.glb"), made("room", 0.05)).ok());
+    ASSERT_TRUE(write_scene((folder / "a.glb"), out).ok());
+    ASSERT_TRUE(write_scene((folder / "b.glb"), made("room", 0.05)).ok());
     const auto read = [&](const char* name) {
-        auto bytes = std::vector<char>(fs::file_size(folder.file(name)));
-        std::FILE* file = std::fopen(folder.file(name).c_str(), "rb");
+        auto bytes = std::vector<char>(fs::file_size((folder / name)));
+        std::FILE* file = std::fopen((folder / name).c_str(), "rb");
         EXPECT_EQ(std::fread(bytes.data(), 1, bytes.size(), file), bytes.size());
         (void)std::fclose(file);
         return bytes;
@@ -360,12 +346,12 @@ TEST(WriteScene, WritesTheSameBytesTwice) {
 }
 
 TEST(WriteScene, ObjAndOstfKeepTheTriangles) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     for (const char* ending : {".obj", ".ostf"}) {
         const GeneratedScene out = made("room", 0.05);
-        const std::string file = folder.file(std::string("room") + ending);
+        const std::string file = (folder / std::string("room") + ending);
         ASSERT_TRUE(write_scene(file, out).ok());
-        EXPECT_TRUE(fs::exists(folder.file("room.path.csv")));
+        EXPECT_TRUE(fs::exists((folder / "room.path.csv")));
         const auto back = importer::import_files({file}, {});
         ASSERT_TRUE(back.ok()) << back.error().text();
         EXPECT_EQ(back->triangles(), out.scene.triangles()) << ending;
@@ -380,9 +366,9 @@ TEST(WriteScene, ErrorsAreNamed) {
     EXPECT_FALSE(generate("forest", 0, 1).ok());
     EXPECT_FALSE(generate("forest", std::nan(""), 1).ok());
     EXPECT_FALSE(generate("forest", 1e9, 1).ok());
-    const Folder folder;
-    EXPECT_FALSE(write_scene(folder.file("a.dae"), made("forest", 0.01)).ok());
-    EXPECT_FALSE(write_scene(folder.file("no/such/folder.glb"), made("forest", 0.01)).ok());
+    const test::TemporaryFolder folder;
+    EXPECT_FALSE(write_scene((folder / "a.dae"), made("forest", 0.01)).ok());
+    EXPECT_FALSE(write_scene((folder / "no/such/folder.glb"), made("forest", 0.01)).ok());
 }
 
 }  // namespace
