@@ -74,6 +74,9 @@ struct Prediction {
     Pose pose;
     double uncertainty_m = 0, uncertainty_rad = 0;
 };
+/// The sample's pose, that much later at the same rates; earlier where negative.
+Pose carried(const NavigationSample& sample, double by_s);
+
 /// The pose `lead_s` after the sample if the hand stays as it is, and how far from it any pose can be that the limits allow by
 /// then: stopped at any moment, by order or by a wall, and driven off again in any direction. Holds for every hand and order but
 /// `brake` towards a moving wish. `stair_m`: the Ground's. The bound: |v(s) - v0| <= |v0| + A s, integrated over the lead t, with

@@ -13,17 +13,23 @@ double strayed(double rate, double speed, double t) { return speed * t + 0.5 * r
 
 }  // namespace
 
+Pose carried(const NavigationSample& sample, double by_s) {
+    Pose pose = sample.pose;
+    pose.position += sample.velocity_m_s * by_s;
+    const double turning = glm::length(sample.angular_rad_s);
+    if (turning > 0) {
+        const double half = 0.5 * turning * by_s;
+        const dvec3 axis = sample.angular_rad_s * (std::sin(half) / turning);
+        pose.orientation = glm::normalize(dquat(std::cos(half), axis.x, axis.y, axis.z) * pose.orientation);
+    }
+    return pose;
+}
+
 Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double stair_m) {
     const double t = std::clamp(std::isfinite(lead_s) ? lead_s : 0.0, 0.0, 1.0);
     const double speed = glm::length(sample.velocity_m_s), turning = glm::length(sample.angular_rad_s);
     Prediction ahead;
-    ahead.pose = sample.pose;
-    ahead.pose.position += sample.velocity_m_s * t;
-    if (turning > 0) {
-        const double half = 0.5 * turning * t;
-        const dvec3 axis = sample.angular_rad_s * (std::sin(half) / turning);
-        ahead.pose.orientation = glm::normalize(dquat(std::cos(half), axis.x, axis.y, axis.z) * sample.pose.orientation);
-    }
+    ahead.pose = carried(sample, t);
     const double accel = limits.accel_m_s2 + speed * (turning + 0.5 * limits.accel_rad_s2 * t);
     ahead.uncertainty_m = strayed(accel, speed, t) + stair_m;
     // Heading and pitch turn one after the other, the prediction about one axis: they differ by half their product.

@@ -106,6 +106,10 @@ TEST_F(SteeredPosesTest, JumpsAndStopsAreSaidAndATourIsNotForeseenByTheLimits) {
     EXPECT_TRUE(pose.jumped);
     EXPECT_TRUE(pose.stopped);
     EXPECT_FALSE(pose.foresight.known);
+    const auto step = pose.pose.position - pose.before.position;
+    EXPECT_LT(glm::length(step - next.nav.velocity_m_s * (static_cast<double>(period_ns) * 1e-9)), 1e-9)
+        << "its first frame knows";
+    EXPECT_GT(glm::length(step), 0.0) << "or the test shows nothing";
     EXPECT_FALSE(poses.sample({0, 12 * ms, 12 * ms}).jumped) << "said once";
 }
 

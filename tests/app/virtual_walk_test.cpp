@@ -3,7 +3,9 @@
 
 #include <unistd.h>
 
+#include "rt/base/file.hpp"
 #include "tests/app/walk_fixture.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace surefoot {
 namespace {
@@ -33,6 +35,19 @@ TEST(VirtualWalk, EverySlotIsRunOrSkippedExactly) {
     for (const rt::FrameRecord& r : outcome.records) skipped += r.skipped_before;
     EXPECT_EQ(outcome.records.back().slot + 1, outcome.records.size() + skipped);
     EXPECT_GT(skipped, 0U) << "costs of 2.3 times the budget must overrun slots, or the test shows nothing";
+}
+
+TEST(VirtualWalk, ATourThatStartsAtSpeedIsPreparedForFromItsFirstFrame) {
+    app::WalkRequest request = test::Forest::get().virtual_request(10);
+    const test::TemporaryFolder folder;
+    Path fast = *read_path(request.path_file);
+    for (auto& sample : fast.samples) sample.time_s /= 40;
+    const double speed_m_s = glm::length(sample_path(fast, 0.01).position - sample_path(fast, 0).position) / 0.01;
+    EXPECT_GT(speed_m_s, 25) << "or the test shows nothing";
+    request.path_file = folder / "fast.csv";
+    ASSERT_TRUE(write_path(request.path_file, fast).ok());
+    for (const rt::FrameRecord& r : walk(request).records)
+        EXPECT_GT(r.candidates, 0U) << "frame " << r.frame << " was drawn coarse";
 }
 
 TEST(VirtualWalk, CostsUnderPredictedTwofoldMissNothingWithTheInFrameCheckAndMissWithoutIt) {

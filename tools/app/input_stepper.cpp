@@ -38,7 +38,9 @@ void InputStepper::publish(const input::NavigationSample& sample, std::int64_t n
     if (visit_.jumps() != jumps_told_) {
         jumps_told_ = visit_.jumps();
         PoseSample& place = places_.back();
-        place.pose = place.before = sample.pose;
+        place.pose = sample.pose;
+        place.dt_s = static_cast<double>(input_tick_ns) * 1e-9;
+        place.before = input::carried(sample, -place.dt_s);  // a tour goes on from there at once
         place.time_ns = now_ns;
         places_.publish();
     }

@@ -5,9 +5,23 @@
 
 namespace surefoot::app {
 
+namespace {
+
+/// As far from `about` as `pose` is, the other way.
+Pose mirrored(const Pose& pose, const Pose& about) {
+    Pose out = about;
+    out.position += about.position - pose.position;
+    out.orientation = glm::normalize(about.orientation * glm::conjugate(pose.orientation) * about.orientation);
+    return out;
+}
+
+}  // namespace
+
 FramePose PathPoses::sample(const FrameTime& time) {
     FramePose out;
-    out.pose = pose_at(path_, static_cast<double>(time.path_slot) * period_s_);
+    const double now_s = static_cast<double>(time.path_slot) * period_s_;
+    out.pose = pose_at(path_, now_s);
+    out.before = time.path_slot > 0 ? pose_at(path_, now_s - period_s_) : mirrored(pose_at(path_, period_s_), out.pose);
     return out;
 }
 

@@ -11,8 +11,9 @@ namespace surefoot::app {
 /// The pose of one frame, and what is in it.
 struct FramePose {
     Pose pose;
+    Pose before;                ///< a period earlier, by the motion that goes on from here: asked where no frame has seen it
     Foresight foresight;        ///< where the eye can be in the next frames, where the source knows better than two poses do
-    bool jumped = false;        ///< put there since the last frame: no motion led to it
+    bool jumped = false;        ///< put there since the last frame: what that one saw says nothing about this one's motion
     bool stopped = false;       ///< stands still by order: emergency stop or dead-man
     std::int64_t stamp_ns = 0;  ///< of the newest report in it; 0: none
     std::uint64_t reports = 0;  ///< in it, since the walk began

@@ -42,7 +42,9 @@ void PrepareThread::prepare_newest() {
     if (!frame && !place) return;
     PoseSample sample = poses_.front();
     if (place) {  // the next frame is drawn there
-        sample.pose = sample.before = places_->front().pose;
+        sample.pose = places_->front().pose;
+        sample.before = places_->front().before;
+        sample.dt_s = places_->front().dt_s;
         sample.foresight = {};
     }
     seen_ = sample.frame;

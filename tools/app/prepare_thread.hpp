@@ -36,7 +36,7 @@ constexpr double horizon_periods = 3.0;
 /// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.
 void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out);
 
-/// Where the eye is being put, from the input thread; only pose and time count.
+/// Where the eye is being put, from the input thread; only poses and times count.
 using PlaceBuffer = rt::TripleBuffer<PoseSample>;
 
 class PrepareThread {

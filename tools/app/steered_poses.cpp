@@ -6,21 +6,6 @@
 
 namespace surefoot::app {
 
-namespace {
-
-/// The pose of the sample `by_ns` later, or earlier.
-Pose carried(const input::NavigationSample& nav, const input::MotionLimits& limits, std::int64_t by_ns) {
-    if (by_ns == 0) return nav.pose;
-    input::NavigationSample from = nav;
-    if (by_ns < 0) {
-        from.velocity_m_s = -from.velocity_m_s;
-        from.angular_rad_s = -from.angular_rad_s;
-    }
-    return input::predict(from, limits, std::abs(static_cast<double>(by_ns)) * 1e-9).pose;
-}
-
-}  // namespace
-
 SteeredPoses::SteeredPoses(rt::TripleBuffer<SteeredSample>& samples, const input::MotionLimits& limits, std::int64_t period_ns,
                            InputStepper* inline_stepper)
     : samples_(samples), limits_(limits), period_ns_(period_ns), inline_stepper_(inline_stepper) {}
@@ -43,7 +28,12 @@ bool SteeredPoses::latch(const FrameTime& time, FramePose& newest) {
 FramePose SteeredPoses::pose_of(const FrameTime& time) const {
     const SteeredSample& s = samples_.front();
     FramePose out;
-    out.pose = carried(s.nav, limits_, std::clamp(time.due_ns - s.time_ns, -carry_limit_ns, carry_limit_ns));
+    const std::int64_t by_ns = std::clamp(time.due_ns - s.time_ns, -carry_limit_ns, carry_limit_ns);
+    const auto carried_by = [&](std::int64_t ns) {
+        return ns == 0 ? s.nav.pose : input::carried(s.nav, static_cast<double>(ns) * 1e-9);
+    };
+    out.pose = carried_by(by_ns);
+    out.before = carried_by(by_ns - period_ns_);
     out.jumped = s.jumps != jumps_seen_;
     out.stopped = s.nav.stopped;
     out.stamp_ns = s.nav.stamp_ns;

@@ -9,6 +9,7 @@
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
 #include "tools/app/outputs.hpp"
+#include "tools/app/pose_source.hpp"
 #include "tools/app/real_time.hpp"
 #include "tools/app/state.hpp"
 
@@ -192,7 +193,12 @@ void warm_up(Session& s) {
     }
     engine.device().release();
     // Ready for the first frame: a complete set for where the path begins.
-    engine.prepare({pose_at(s.path.path, 0), 0.5, 0.2}, 0, 0, 0, s.prepared.back());
+    const double period_s = period_us * 1e-6;
+    const FramePose first = PathPoses(s.path.path, s.grid.period_ns).sample({});
+    prepare::Region region = predict_region(first.before, first.pose, period_s, horizon_periods * period_s);
+    region.radius_m = std::max(region.radius_m, 0.5);
+    region.angle_rad = std::max(region.angle_rad, 0.2);
+    engine.prepare(region, 0, 0, 0, s.prepared.back());
     s.prepared.publish();
 }
 

@@ -38,21 +38,19 @@ void WalkStages::sample(rt::FrameRecord& record) {
     // Beside a control the walk goes on where its last block ended: slots of the bare loop are no time of the path.
     path_slot_ = options_.control ? walked_ : record.slot;
     const FramePose newest = pose_source_.sample(frame_time(record));
+    const bool unseen = !now_.valid || newest.jumped;  // no frame has seen where this one's motion comes from
     if (options_.virtual_clock) {
-        if (!now_.valid) {
-            now_.pose = now_.before = newest.pose;
+        // From what was known one frame ago, as the workers would; where the eye is put elsewhere, the input has told them.
+        if (unseen) {
+            now_.pose = newest.pose;
+            now_.before = newest.before;
             now_.foresight = newest.foresight;
             now_.dt_s = period_s;
         }
-        // From what was known one frame ago, as the workers would; where the eye is put elsewhere, the input has told them.
-        if (newest.jumped) {
-            now_.pose = now_.before = newest.pose;
-            now_.foresight = newest.foresight;
-        }
         prepare_inline();
     }
-    now_.before = now_.valid && !newest.jumped ? now_.pose : newest.pose;
-    now_.dt_s = period_s * (1.0 + (options_.control ? 0 : record.skipped_before));
+    now_.before = unseen ? newest.before : now_.pose;
+    now_.dt_s = period_s * (1.0 + (options_.control || unseen ? 0 : record.skipped_before));
     now_.foresight = newest.foresight;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
