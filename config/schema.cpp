@@ -37,7 +37,7 @@ constexpr Entry file_name(string_view key, string_view help, std::string S::*mem
     return {key, Kind::file, {}, 0, longest_name, {}, help, member};
 }
 
-const std::array<Entry, 33> entries = {
+const std::array<Entry, 35> entries = {
     file_name("model", "The .walk model that is walked through. Relative names here and below: relative to this file's folder.",
               &S::model),
     file_name("path",
@@ -58,6 +58,11 @@ const std::array<Entry, 33> entries = {
     number("rate_hz", "Hz", 1, 1000, "Frames a second that the walk keeps.", &S::rate_hz),
     integer("width", "px", 16, 16384, "Width of the picture.", &S::width),
     integer("height", "px", 16, 16384, "Height of the picture.", &S::height),
+    number("shift_x", "half widths", -8, 8,
+           "Off axis: the picture's middle lies so far right of where the pose looks (a screen that is not straight before the "
+           "eye).",
+           &S::shift_x),
+    number("shift_y", "half heights", -8, 8, "The same, upwards.", &S::shift_y),
     number("budget_ms", "ms", 0, 1000, "Time that a frame may spend; 0: what the rate allows.", &S::budget_ms),
     number("accuracy", "1/rad", 0, 1e6, "Stop refining at this accuracy; 0: refine as far as the budget goes.", &S::accuracy),
     number("cost_scale", "", 0.01, 100, "Factor on the machine's cost table (to try under- and over-prediction).",

@@ -23,6 +23,7 @@ struct Settings {
     double open_limit_s = 600;                        ///< the daemon's: for how long opening a model may take
     double rate_hz = 30;
     std::int64_t width = 1280, height = 720;  ///< pixels
+    double shift_x = 0, shift_y = 0;          ///< off axis, in halves of the picture
     double budget_ms = 0;                     ///< 0: what the rate allows
     double accuracy = 0;                      ///< rad^-1 to stop at; 0: as far as the budget goes
     double cost_scale = 1;                    ///< on the machine's cost table

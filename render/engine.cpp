@@ -309,8 +309,8 @@ bool covers(const prepare::Region& region, const Pose& pose, model::Viewport vie
     const double w = std::min(1.0, std::abs(glm::dot(pose.orientation, region.centre.orientation)));
     const double turned = 2.0 * std::acos(w);
     // The acos of a rounded 1 is up to 2e-8: far below any region's angle, but not below 0.
-    const model::HalfAngles now = model::half_angles(pose, viewport), then = model::half_angles(region.centre, viewport);
-    const double grown = std::max({0.0, now.x - then.x, now.y - then.y});
+    const model::SideAngles now = model::side_angles(pose, viewport), then = model::side_angles(region.centre, viewport);
+    const double grown = std::max({0.0, now.right - then.right, then.left - now.left, now.up - then.up, then.down - now.down});
     return moved <= region.radius_m + 1e-9 && turned + grown <= region.angle_rad + 1e-6;
 }
 

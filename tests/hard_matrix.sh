@@ -16,7 +16,7 @@ while (( $# > 0 )); do
   esac
 done
 (( ${#names[@]} > 0 )) || names=(gcc-O2 gcc-O0 gcc-O3 gcc-fma clang-O2 clang-fma)
-rows=(O1 N9 N10 N11 N13 N1 N2 N3 N4 N5 N15 N22 N7 N20 L1 L6 F1 F2 F3 F4 F5 F6 F7 N21)
+rows=(O1 A1 A2 A3 A4 N9 N10 N11 N13 N1 N2 N3 N4 N5 N15 N22 N7 N20 L1 L6 F1 F2 F3 F4 F5 F6 F7 N21)
 
 flags_of() {
   case $1 in

@@ -20,7 +20,7 @@ using model::Index;
 using model::none;
 
 constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
-constexpr std::uint32_t version = 2;
+constexpr std::uint32_t version = 3;
 constexpr std::uint64_t most_bytes = 1ULL << 31U;  // unpacked
 constexpr std::uint32_t most_nodes = 1U << 26U;    // replay makes room for them
 constexpr std::size_t header_bytes = 40;
@@ -31,8 +31,8 @@ template <class Io, class Frame>
 void each_field(Io& io, Frame& f) {
     io(f.frame, f.region.centre.position.x, f.region.centre.position.y, f.region.centre.position.z, f.region.centre.orientation.w,
        f.region.centre.orientation.x, f.region.centre.orientation.y, f.region.centre.orientation.z, f.region.centre.fov_y_rad,
-       f.region.radius_m, f.region.angle_rad, f.viewport.width, f.viewport.height, f.visits, f.truncated, f.full_cost.submit_us,
-       f.full_cost.raster_us, f.target_error_rad, f.cpu_us, f.wall_us);
+       f.region.radius_m, f.region.angle_rad, f.viewport.width, f.viewport.height, f.viewport.shift_x, f.viewport.shift_y,
+       f.visits, f.truncated, f.full_cost.submit_us, f.full_cost.raster_us, f.target_error_rad, f.cpu_us, f.wall_us);
 }
 template <class Io, class C>
 void each_setting(Io& io, C& c) {

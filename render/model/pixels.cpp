@@ -54,7 +54,7 @@ float mean_crossings(const vec3& low, const vec3& high, const vec3& area, Slopes
         const float by_column = scale.right[axis] * step_x;
         const float by_row = scale.up[axis] * step_y;
         const float first =
-            scale.forward[axis] + scale.right[axis] * across.low + scale.up[axis] * up_down.low + 0.5F * (by_column + by_row);
+            scale.middle[axis] + scale.right[axis] * across.low + scale.up[axis] * up_down.low + 0.5F * (by_column + by_row);
         const float l = low[axis];
         const float h = high[axis];
         const float a = area[axis];
@@ -87,11 +87,16 @@ ViewScale make_view_scale(const Pose& pose, Viewport viewport, double angle_rad)
     scale.forward = vec3(pose.forward());
     const double width = std::max(1.0, static_cast<double>(viewport.width));
     const double height = std::max(1.0, static_cast<double>(viewport.height));
-    const double half_y = half_angle_y(pose);
-    const double half_x = std::atan(std::tan(half_y) * width / height);
-    scale.tan_half_y = static_cast<float>(std::tan(std::min(half_y + angle_rad, largest_half_angle_rad)));
-    scale.tan_half_x = static_cast<float>(std::tan(std::min(half_x + angle_rad, largest_half_angle_rad)));
-    scale.pixels_per_radian = static_cast<float>(0.5 * height / std::tan(half_y));
+    const SideAngles sides = side_angles(pose, viewport);
+    const auto turned = [&](double side) { return std::tan(std::min(side + angle_rad, largest_half_angle_rad)); };
+    const double left = -turned(-sides.left), right = turned(sides.right), down = -turned(-sides.down), up = turned(sides.up);
+    scale.tan_half_x = static_cast<float>(0.5 * (right - left));
+    scale.tan_half_y = static_cast<float>(0.5 * (up - down));
+    const auto middle_x = static_cast<float>(0.5 * (left + right)), middle_y = static_cast<float>(0.5 * (down + up));
+    scale.across = scale.right - middle_x * scale.forward;
+    scale.rise = scale.up - middle_y * scale.forward;
+    scale.middle = scale.forward + middle_x * scale.right + middle_y * scale.up;
+    scale.pixels_per_radian = static_cast<float>(0.5 * height / picture_extent(pose, viewport).half_y);
     scale.viewport_pixels = static_cast<float>(width * height);
     return scale;
 }
@@ -102,11 +107,11 @@ float rasterised_pixels(const Representation& rep, const Box& node_box, const dv
     vec3 half(node_box.half());
     const float largest = std::max({half.x, half.y, half.z});
     half = glm::max(half, vec3(1e-4F + 1e-4F * largest));  // what is flat still has an inside
-    const float x = glm::dot(centre, scale.right);
-    const float y = glm::dot(centre, scale.up);
+    const float x = glm::dot(centre, scale.across);
+    const float y = glm::dot(centre, scale.rise);
     const float z = glm::dot(centre, scale.forward);
-    const float hx = extent_along(half, scale.right);
-    const float hy = extent_along(half, scale.up);
+    const float hx = extent_along(half, scale.across);
+    const float hy = extent_along(half, scale.rise);
     const float hz = extent_along(half, scale.forward);
     const float near = std::max(z - hz, scale.near_m);
     const float far = z + hz;

@@ -10,11 +10,14 @@
 
 namespace surefoot::model {
 
-/// What the estimate needs of a view, made once a frame. Axes are unit vectors in world space.
+/// What the estimate needs of a view, made once a frame. Unit vectors in world space, and the same sheared so that a picture off
+/// axis lies evenly about 0: p is in it where |across . p| <= tan_half_x * (forward . p), and rise with tan_half_y.
 struct ViewScale {
     vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
-    float tan_half_x = 1, tan_half_y = 1;  ///< tangents of the half fields of view
-    float pixels_per_radian = 1;           ///< at the centre of the view
+    vec3 across{1, 0, 0}, rise{0, 1, 0};   ///< right and up, less the middle of the picture times forward
+    vec3 middle{0, 0, -1};                 ///< of the picture at depth 1
+    float tan_half_x = 1, tan_half_y = 1;  ///< half extents of the picture at depth 1
+    float pixels_per_radian = 1;           ///< where the pose looks
     float viewport_pixels = 1;             ///< width * height
     float near_m = static_cast<float>(near_plane_m);
 };

@@ -12,11 +12,18 @@ namespace {
 constexpr double large_share = 16;  ///< a box is large from a quarter of its distance on (squared)
 constexpr double widest_half_angle_rad = 89.0 / 180.0 * 3.14159265358979323846 - 1e-6;
 
+double held(double shift) { return std::isnan(shift) ? 0.0 : std::clamp(shift, -8.0, 8.0); }
+
+/// So that the farther side stays within the widest.
+double widest_half(double shift) {
+    return shift == 0 ? widest_half_angle_rad : std::atan(std::tan(widest_half_angle_rad) / (1.0 + std::abs(shift)));
+}
+
 // A ray at elevation e on a side plane is only cos(e) * sin(w) away from the plane turned outwards by w: the corner rays decide.
 double widen(double half, double other, double angle_rad) {
     const double cos_corner = 1.0 / std::sqrt(1.0 + std::pow(std::tan(other) * std::cos(half), 2));
     const double by = std::asin(std::min(1.0, std::sin(std::min(angle_rad, widest_half_angle_rad)) / cos_corner));
-    return std::min(half + by, widest_half_angle_rad);
+    return std::max(half, std::min(half + by, widest_half_angle_rad));  // a shifted side is only about within the widest
 }
 
 /// Across an edge of the box and one of the pyramid: what is left for large boxes beside the view. Source: Gottschalk, Lin &
@@ -45,40 +52,57 @@ bool separated_across_edges(const Frustum& frustum, const dvec3& centre, const d
 
 }  // namespace
 
-double half_angle_y(const Pose& pose) {
+PictureExtent picture_extent(const Pose& pose, Viewport viewport) {
     const double fov = std::isnan(pose.fov_y_rad) ? Pose{}.fov_y_rad : pose.fov_y_rad;  // clamp hands a NaN on
-    return std::clamp(0.5 * fov, 1e-4, widest_half_angle_rad);
+    const double aspect = static_cast<double>(std::max(viewport.width, 1U)) / static_cast<double>(std::max(viewport.height, 1U));
+    const double shift_x = held(viewport.shift_x), shift_y = held(viewport.shift_y);
+    const double y = std::clamp(0.5 * fov, 1e-4, widest_half(shift_y));
+    const double x = std::min(std::atan(std::tan(y) * aspect), widest_half(shift_x));
+    const double half_x = std::tan(x), half_y = std::tan(y);
+    return {half_x, half_y, shift_x * half_x, shift_y * half_y};
+}
+
+SideAngles side_angles(const Pose& pose, Viewport viewport, double angle_rad) {
+    const PictureExtent at = picture_extent(pose, viewport);
+    SideAngles sides{-std::atan(at.half_x - at.middle_x), std::atan(at.half_x + at.middle_x), -std::atan(at.half_y - at.middle_y),
+                     std::atan(at.half_y + at.middle_y)};
+    if (!(angle_rad > 0)) return sides;
+    const double farther_x = std::max(-sides.left, sides.right), farther_y = std::max(-sides.down, sides.up);
+    return {-widen(-sides.left, farther_y, angle_rad), widen(sides.right, farther_y, angle_rad),
+            -widen(-sides.down, farther_x, angle_rad), widen(sides.up, farther_x, angle_rad)};
 }
 
 HalfAngles half_angles(const Pose& pose, Viewport viewport, double angle_rad) {
-    const double y = half_angle_y(pose);
-    const double aspect = static_cast<double>(std::max(viewport.width, 1U)) / static_cast<double>(std::max(viewport.height, 1U));
-    const double x = std::min(std::atan(std::tan(y) * aspect), widest_half_angle_rad);
-    if (!(angle_rad > 0)) return {x, y};
-    return {widen(x, y, angle_rad), widen(y, x, angle_rad)};
+    const SideAngles sides = side_angles(pose, viewport, angle_rad);
+    return {std::max(-sides.left, sides.right), std::max(-sides.down, sides.up)};
 }
 
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m, double angle_rad) {
-    const HalfAngles half = half_angles(pose, viewport, angle_rad);
+    const SideAngles sides = side_angles(pose, viewport, angle_rad);
     const dvec3 forward = pose.forward(), up = pose.up(), right = pose.right();
-    // Seen from this apex, the same angles hold the whole ball of eyes.
-    const double pull = radius_m > 0 ? radius_m / std::sin(std::min(half.x, half.y)) : 0.0;
-    const dvec3 apex = pose.position - pull * forward;
+    // The eye is pulled back along the middle of the view: seen from there, the same angles hold the whole ball of eyes.
+    const double middle_x = std::tan(0.5 * (sides.left + sides.right)), middle_y = std::tan(0.5 * (sides.down + sides.up));
+    const dvec3 middle = forward + middle_x * right + middle_y * up;
+    const double clears = std::min(
+        {std::sin(sides.right) - std::cos(sides.right) * middle_x, std::cos(sides.left) * middle_x - std::sin(sides.left),
+         std::sin(sides.up) - std::cos(sides.up) * middle_y, std::cos(sides.down) * middle_y - std::sin(sides.down)});
+    const double pull = radius_m > 0 ? radius_m / clears : 0.0;
+    const dvec3 apex = pose.position - pull * middle;
 
     const auto plane = [](const dvec3& normal, const dvec3& through) { return dvec4(normal, -glm::dot(normal, through)); };
-    const double sx = std::sin(half.x), cx = std::cos(half.x), sy = std::sin(half.y), cy = std::cos(half.y);
+    const auto inwards = [&](double angle, const dvec3& axis) { return std::cos(angle) * axis - std::sin(angle) * forward; };
     const bool exact = !(radius_m > 0) && !(angle_rad > 0);
     // A turned near plane sweeps towards the eye: every region but a single pose keeps all that is in front of the ball.
     const dvec3 near_point = pose.position + (exact ? near_plane_m : -radius_m) * forward;
     Frustum frustum;
-    frustum.planes = {plane(cx * right + sx * forward, apex), plane(-cx * right + sx * forward, apex),
-                      plane(cy * up + sy * forward, apex), plane(-cy * up + sy * forward, apex), plane(forward, near_point)};
+    frustum.planes = {plane(inwards(sides.left, right), apex), plane(inwards(-sides.right, -right), apex),
+                      plane(inwards(sides.down, up), apex), plane(inwards(-sides.up, -up), apex), plane(forward, near_point)};
     frustum.corners[0] = apex;
     const double reach = std::max(far_m, 1.0) + pull;
     for (int i = 0; i < 4; ++i) {
-        const double side = (i & 1) != 0 ? 1.0 : -1.0, lift = (i & 2) != 0 ? 1.0 : -1.0;
-        frustum.corners[static_cast<std::size_t>(i) + 1] =
-            apex + reach * (forward + side * std::tan(half.x) * right + lift * std::tan(half.y) * up);
+        const double across = std::tan((i & 1) != 0 ? sides.right : sides.left),
+                     rise = std::tan((i & 2) != 0 ? sides.up : sides.down);
+        frustum.corners[static_cast<std::size_t>(i) + 1] = apex + reach * (forward + across * right + rise * up);
     }
     return frustum;
 }
@@ -114,17 +138,19 @@ bool visible(const Frustum& frustum, const Box& box) {
 mat4 view_rotation(const Pose& pose) { return mat4(glm::mat4_cast(glm::conjugate(glm::normalize(pose.orientation)))); }
 
 mat4 projection(const Pose& pose, Viewport viewport) {
-    const HalfAngles half = half_angles(pose, viewport);
+    const PictureExtent at = picture_extent(pose, viewport);
     mat4 m(0.0F);
-    m[0][0] = static_cast<float>(1.0 / std::tan(half.x));
-    m[1][1] = static_cast<float>(1.0 / std::tan(half.y));
+    m[0][0] = static_cast<float>(1.0 / at.half_x);
+    m[1][1] = static_cast<float>(1.0 / at.half_y);
+    m[2][0] = static_cast<float>(at.middle_x / at.half_x);
+    m[2][1] = static_cast<float>(at.middle_y / at.half_y);
     m[2][3] = -1.0F;
     m[3][2] = static_cast<float>(near_plane_m);
     return m;
 }
 
 double pixel_angle(const Pose& pose, Viewport viewport) {
-    return std::atan(2.0 * std::tan(half_angles(pose, viewport).y) / static_cast<double>(std::max(viewport.height, 1U)));
+    return std::atan(2.0 * picture_extent(pose, viewport).half_y / static_cast<double>(std::max(viewport.height, 1U)));
 }
 
 }  // namespace surefoot::model

@@ -10,6 +10,10 @@ namespace surefoot::model {
 
 struct Viewport {
     std::uint32_t width = 1280, height = 720;
+    /// Off axis, for a screen that is not straight before the eye (a channel of a simulator): the middle of the picture lies so
+    /// many of its half widths to the right, half heights above, of where the pose looks. Held within 8 either way; 0 if not a
+    /// number.
+    double shift_x = 0, shift_y = 0;
 };
 
 constexpr double near_plane_m = 0.05;  ///< reversed-Z, infinite far plane
@@ -20,19 +24,28 @@ struct Frustum {
     std::array<dvec3, 5> corners;  ///< the eye and the four far corners (at far_m)
 };
 
-/// Half of the field of view up and down as every part of the renderer takes it: capped below 89 degrees, at least 1e-4 rad; the
-/// default's where the pose's is not a number.
-double half_angle_y(const Pose& pose);
-
 /// Half fields of view across and up.
 struct HalfAngles {
     double x = 0, y = 0;  ///< rad, below 89 degrees
 };
-/// Of the upright view that holds the pose's own turned by angle_rad any way. 0: its own.
+/// Of the upright view about the pose's own direction that holds its picture, turned by angle_rad any way. 0 and no shift: its
+/// own.
 HalfAngles half_angles(const Pose& pose, Viewport viewport, double angle_rad = 0.0);
 
+/// The picture on the plane at depth 1: its half extents and its middle. Within 89 degrees of where the pose looks.
+struct PictureExtent {
+    double half_x = 0, half_y = 0, middle_x = 0, middle_y = 0;  ///< tangents
+};
+PictureExtent picture_extent(const Pose& pose, Viewport viewport);
+
+/// Angles between where the pose looks and the picture's sides, rad; turned by angle_rad any way, they are still held.
+struct SideAngles {
+    double left = 0, right = 0, down = 0, up = 0;  ///< left and down negative, unless shifted past the middle
+};
+SideAngles side_angles(const Pose& pose, Viewport viewport, double angle_rad = 0.0);
+
 /// The frustum that holds every pose of a region: widened by angle_rad on each side and pulled back by radius_m.
-/// radius 0 and angle 0: exactly the pose's own. Half angles are capped below 89 degrees.
+/// radius 0 and angle 0: exactly the pose's own. Sides are capped below 89 degrees from where it looks.
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m = 0.0, double angle_rad = 0.0);
 
 /// Conservative: never false for a box that some point of the frustum touches. Planes against the box, then the frustum's
@@ -44,7 +57,7 @@ mat4 view_rotation(const Pose& pose);
 /// Reversed-Z, infinite far, depth 1 at near_plane_m and 0 at infinity; clip space 0..1.
 mat4 projection(const Pose& pose, Viewport viewport);
 
-/// Angle of one pixel at the centre of the view, rad.
+/// Angle of one pixel where the pose looks, rad: nowhere in the picture is it larger.
 double pixel_angle(const Pose& pose, Viewport viewport);
 
 }  // namespace surefoot::model

@@ -41,7 +41,7 @@ struct Seen {
 Seen look(const RegionView& view, const Box& box, const dvec3& eye) {
     const model::ViewScale& s = view.wide;
     const vec3 centre(box.centre() - eye), half(box.half());
-    const Extent x = along(centre, half, s.right), y = along(centre, half, s.up), z = along(centre, half, s.forward);
+    const Extent x = along(centre, half, s.across), y = along(centre, half, s.rise), z = along(centre, half, s.forward);
     Seen seen;
     const float deepest = z.centre + z.half;
     if (!(deepest > near_m)) return {0.0F, 1.0F - view.focus_strength};

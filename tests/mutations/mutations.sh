@@ -16,6 +16,12 @@ mutation N9b render/model/view.cpp 's/return !\(large && separated_across_edges.
 mutation N10 render/model/view.cpp 's/std::isnan\(pose.fov_y_rad\) \? Pose\{\}.fov_y_rad : pose.fov_y_rad/pose.fov_y_rad/' "a field of view that is no number"
 mutation N11a render/prepare/evaluate.cpp 's/return std::max\(nearest_m, near_m\);/return nearest_m;/' "distances clamped at the near plane"
 mutation N11b render/model/view.cpp 's/below = below && step <= 0;/below = below;/' "no face separates if an edge ray comes back"
+sides='s/std::atan\(at.half_x \+ at.middle_x\)/std::atan(at.half_x)/'
+mutation A1 render/model/view.cpp "$sides" "each side of a shifted picture at its own angle"
+mutation A2 render/model/view.cpp 's/pose.position - pull \* middle;/pose.position - pull * forward;/' "the eye pulled back along the picture's middle"
+mutation A3 render/model/view.cpp 's/std::isnan\(shift\) \? 0.0 : std::clamp\(shift, -8.0, 8.0\)/std::clamp(shift, -8.0, 8.0)/' "a shift that is no number"
+mutation A5 render/model/view.cpp 's/m\[2\]\[1\] = .*?;//' "the picture's middle in the projection"
+mutation A4 render/model/view.cpp "$sides" "each side of a shifted picture at its own angle"
 mutation O1a render/prepare/occlusion_pixels.cpp 's/distance > radius_m_ \? radius_m_ \/ distance : 1.0F/0.0F/' "surfaces shrunk at their borders by what the eye may move"
 mutation O1b render/prepare/occlusion.cpp 's/d.at\[k\] = to_view\(occluders_.corners\[d.corner\[k\]\]\)/d.at[k] = to_view(dvec3(vec3(occluders_.corners[d.corner[k]])))/' "corners of what hides in double"
 mutation N1 render/import/clean.cpp 's/if \(!std::isfinite\(p.x\).*?return Verdict::non_finite;//; s/!has_area\(p, t.data\(\)\)/false/' "positions that are not finite, or make no area, dropped"

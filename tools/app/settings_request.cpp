@@ -26,6 +26,8 @@ void apply_settings(const config::Configuration& configuration, WalkRequest& r) 
     r.rate_hz = s.rate_hz;
     r.width = static_cast<std::uint32_t>(s.width);
     r.height = static_cast<std::uint32_t>(s.height);
+    r.shift_x = s.shift_x;
+    r.shift_y = s.shift_y;
     r.budget_ms = s.budget_ms;
     r.accuracy = s.accuracy;
     r.cost_scale = s.cost_scale;

@@ -55,8 +55,9 @@ void add_top_view(const Engine& engine, const Shot& shot, report::ReportShot& ou
     const dvec3 forward = shot.pose.forward();
     out.eye = {shot.pose.position.x, shot.pose.position.y, shot.pose.position.z};
     out.forward = {forward.x, forward.y, forward.z};
-    const model::Viewport viewport = engine.options().device.viewport;
-    out.fov_x_rad = 2.0 * std::atan(std::tan(shot.pose.fov_y_rad / 2.0) * viewport.width / viewport.height);
+    const model::SideAngles sides = model::side_angles(shot.pose, engine.options().device.viewport);
+    out.left_rad = sides.left;
+    out.right_rad = sides.right;
     out.drawn.reserve(shot.items.size());
     for (const gl::DrawItem& item : shot.items) {
         const model::Node& node = model.nodes[item.node];

@@ -38,6 +38,7 @@ struct WalkRequest {
     double lift_m = 0;                              ///< added to the path's heights
     double rate_hz = 30;
     std::uint32_t width = 1280, height = 720;
+    double shift_x = 0, shift_y = 0;  ///< off axis, as model::Viewport has it
     std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
     double seconds = 0;
     bool keep_records = true;  ///< false: records are handed to the watch only, and what is made of records is not made

@@ -97,7 +97,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     auto kind = gl::parse_backend(r.backend);
     if (!kind) return kind.error();
     options.device.kind = *kind;
-    options.device.viewport = {r.width, r.height};
+    options.device.viewport = {r.width, r.height, r.shift_x, r.shift_y};
     options.device.rasterisers = r.rasterisers;
     options.device.sky = r.sky;
     options.null.cost_scale = r.cost_scale;

@@ -106,6 +106,8 @@ void add_soak(CLI::App& app, Context& context) {
                   {"--selector", "selector"},
                   {"--late", "late"},
                   {"--backend", "backend"},
+                  {"--shift-x", "shift_x"},
+                  {"--shift-y", "shift_y"},
                   {"--clock", "clock"},
                   {"--workers", "workers"},
                   {"--rasterisers", "rasterisers"},

@@ -192,6 +192,8 @@ void add_walk(CLI::App& app, Context& context) {
                   {"--selector", "selector"},
                   {"--late", "late"},
                   {"--backend", "backend"},
+                  {"--shift-x", "shift_x"},
+                  {"--shift-y", "shift_y"},
                   {"--clock", "clock"},
                   {"--workers", "workers"},
                   {"--rasterisers", "rasterisers"},

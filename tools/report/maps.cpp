@@ -57,13 +57,12 @@ std::string view_cone(const Projection& p, const ReportShot& shot, double reach_
     const double length = std::hypot(shot.forward[0], shot.forward[2]);
     if (!(length > 1e-6)) return {};  // straight up or down
     const double heading = std::atan2(shot.forward[2], shot.forward[0]);
-    const double half = std::min(shot.fov_x_rad / 2, 1.5);
     const Point eye = p(shot.eye[0], shot.eye[2]);
     const auto edge = [&](double angle) {
         return Point{eye.x + reach_px * std::cos(angle), eye.y + reach_px * std::sin(angle), false};
     };
-    const Point a = edge(heading - half);
-    const Point b = edge(heading + half);
+    const Point a = edge(heading + std::max(shot.left_rad, -1.5));
+    const Point b = edge(heading + std::min(shot.right_rad, 1.5));
     return fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}Z\" class=\"cone\"/>", eye.x, eye.y, a.x, a.y, b.x,
                        b.y) +
            line_between(eye.x, eye.y, a.x, a.y, "cone-edge") + line_between(eye.x, eye.y, b.x, b.y, "cone-edge");

@@ -85,8 +85,9 @@ std::string page_header(const WalkSummary& s) {
                     badge(s), escaped(headline(s)), file_name(s.model));
     if (!s.path.empty()) out += fmt::format(" {} <b>{}</b>", s.input.given ? "from the start of" : "along", file_name(s.path));
     if (s.input.given) out += fmt::format(", steered by <b>{}</b>", file_name(s.input.source));
-    out += fmt::format(" for {:.0f} seconds at {:.4g} Hz and {}×{} pixels, chosen by <b>{}</b>, drawn by {}.", s.seconds,
-                       s.rate_hz, s.width, s.height, escaped(s.selector), escaped(s.renderer.empty() ? s.backend : s.renderer));
+    out += fmt::format(" for {:.0f} seconds at {:.4g} Hz and {}×{} pixels{}, chosen by <b>{}</b>, drawn by {}.", s.seconds,
+                       s.rate_hz, s.width, s.height, off_axis_words(s), escaped(s.selector),
+                       escaped(s.renderer.empty() ? s.backend : s.renderer));
     if (s.model_triangles > 0)
         out += fmt::format(" The model has {} triangles; a frame drew {} on average.",
                            grouped(static_cast<double>(s.model_triangles)), grouped(s.triangles_mean));

@@ -75,7 +75,8 @@ struct InputSummary {
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
     std::uint32_t width = 0, height = 0;
-    std::uint32_t rasterisers = 1;  ///< threads that share raster_cpu_ns; set before summarize
+    double shift_x = 0, shift_y = 0;  ///< off axis, in halves of the picture
+    std::uint32_t rasterisers = 1;    ///< threads that share raster_cpu_ns; set before summarize
     double rate_hz = 0, seconds = 0;
     std::uint64_t frames = 0, slots = 0, skipped = 0, misses = 0, own_misses = 0;
     std::map<std::string, std::uint64_t> miss_causes;
@@ -126,8 +127,8 @@ struct ReportShot {
     };  ///< kind: 0 cluster, 1 object, 2 piece; detail 0 coarse..1 full
     std::vector<Rect> drawn;
     std::array<double, 3> eye{}, forward{};
-    double fov_x_rad = 1;
-    std::array<double, 4> world_xz{};  ///< min x, min z, max x, max z
+    double left_rad = -0.5, right_rad = 0.5;  ///< of forward: the sides of the view
+    std::array<double, 4> world_xz{};         ///< min x, min z, max x, max z
 };
 
 /// DIR/index.html, self-contained (SVG and data-URI pictures, light and dark, no network), and DIR/ledger.csv, DIR/walk.json.

@@ -81,8 +81,8 @@ std::string to_table(const WalkSummary& s, bool colour) {
                        : s.input.given ? fmt::format("{} steered by {}, from the start of {}", s.model, s.input.source, s.path)
                                        : fmt::format("{} along {}", s.model, s.path));
     if (s.input.given) table.row("input", input_words(s.input), s.input.stopped_frames > 0 ? "33" : "");
-    table.row("drawn", fmt::format("{}x{} at {:.4g} Hz by {} on {} ({}), late: {}, clock: {}", s.width, s.height, s.rate_hz,
-                                   s.selector, s.backend, s.renderer, s.late_policy, s.clock));
+    table.row("drawn", fmt::format("{}x{}{} at {:.4g} Hz by {} on {} ({}), late: {}, clock: {}", s.width, s.height,
+                                   off_axis_words(s), s.rate_hz, s.selector, s.backend, s.renderer, s.late_policy, s.clock));
     table.raw("");
     timing_rows(table, s);
     table.raw("");

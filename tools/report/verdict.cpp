@@ -59,6 +59,11 @@ std::string control_words(const ControlSummary& c) {
     return text + (v.enough_pairs ? " The deadline rule is not judged." : " Too few pairs to judge the deadline rule.");
 }
 
+std::string off_axis_words(const WalkSummary& s) {
+    if (s.shift_x == 0 && s.shift_y == 0) return {};
+    return fmt::format(", off axis by {:.4g} halves right, {:.4g} up,", s.shift_x, s.shift_y);
+}
+
 std::string input_words(const InputSummary& in) {
     if (!in.given) return {};
     std::string text = counted(in.reports, "report", "reports");

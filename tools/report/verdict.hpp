@@ -18,6 +18,8 @@ bool rule_broken(const ControlSummary& control);
 std::string headline(const WalkSummary& summary);
 /// The control's part of the rule in words; empty where no control ran.
 std::string control_words(const ControlSummary& control);
+/// ", off axis by 0.5 halves right, 0 up,"; empty for a view that lies about where it looks.
+std::string off_axis_words(const WalkSummary& summary);
 /// What steered, how soon it was seen, and whether it stood still by order; empty where a path was followed.
 std::string input_words(const InputSummary& input);
 /// "sf-frame fifo 80 on 1; 2 llvmpipe- fifo 70 on 0-1".

@@ -10,6 +10,7 @@ namespace surefoot::selftest {
 std::span<const Row> origin_rows();
 std::span<const Row> depth_rows();
 std::span<const Row> near_and_inside_rows();
+std::span<const Row> off_axis_rows();
 std::span<const Row> behind_others_rows();
 std::span<const Row> geometry_rows();
 std::span<const Row> transform_rows();

@@ -13,7 +13,9 @@ namespace surefoot::selftest {
 struct Pyramid {
     dvec3 eye{0};
     dvec3 forward{0, 0, -1}, right{1, 0, 0}, up{0, 1, 0};
-    double tan_x = 1, tan_y = 1;
+    double tan_x = 1, tan_y = 1;          ///< half extents at depth 1
+    double middle_x = 0, middle_y = 0;    ///< of the picture there
+    double near_m = model::near_plane_m;  ///< where it begins; 0: at the eye
 };
 Pyramid pyramid_of(const Pose& pose, model::Viewport viewport);
 
