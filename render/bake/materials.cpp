@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+
+#include "render/bake/alpha_bleed.hpp"
 
 namespace surefoot::bake {
 
@@ -59,14 +63,54 @@ model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba
     return static_cast<model::Index>(model.textures.size() - 1);
 }
 
-model::Index add_materials(const importer::Scene& scene, model::Model& model) {
-    for (const importer::Image& image : scene.images) {
-        add_texture(model, image.rgba, image.width, image.height, image.clamp, 32);
+namespace {
+
+/// An image, and which of its texels are not shown (hidden_alpha).
+using Shown = std::pair<importer::Index, std::optional<std::uint8_t>>;
+
+model::Index add_shown(const importer::Scene& scene, const Shown& shown, model::Model& model) {
+    const importer::Image& image = scene.images[shown.first];
+    std::vector<std::uint8_t> bled;
+    if (shown.second) {
+        bled = image.rgba;
+        bleed_colours(bled, image.width, image.height, image.clamp, *shown.second);
     }
-    for (const importer::Material& from : scene.materials) {
+    return add_texture(model, bled.empty() ? image.rgba : bled, image.width, image.height, image.clamp, 32);
+}
+
+/// A material's texture. What one does not show another may: an image that is shown in several ways becomes as many textures,
+/// the first of which has the image's own index.
+std::vector<model::Index> add_images(const importer::Scene& scene, model::Model& model) {
+    std::map<Shown, model::Index> textures;
+    std::vector<Shown> wanted;
+    for (const importer::Material& material : scene.materials) {
+        const bool has = material.image != importer::none;
+        wanted.emplace_back(material.image, has ? hidden_alpha(material, scene.images[material.image]) : std::nullopt);
+        textures.emplace(wanted.back(), model::none);
+    }
+    for (importer::Index i = 0; i < scene.images.size(); ++i) {
+        const auto first = textures.lower_bound({i, std::nullopt});
+        const bool used = first != textures.end() && first->first.first == i;
+        const model::Index texture = add_shown(scene, used ? first->first : Shown{i, std::nullopt}, model);
+        if (used) first->second = texture;
+    }
+    for (auto& [shown, texture] : textures)
+        if (shown.first != importer::none && texture == model::none) texture = add_shown(scene, shown, model);
+    std::vector<model::Index> out;
+    out.reserve(wanted.size());
+    for (const Shown& shown : wanted) out.push_back(textures.at(shown));
+    return out;
+}
+
+}  // namespace
+
+model::Index add_materials(const importer::Scene& scene, model::Model& model) {
+    const std::vector<model::Index> textures = add_images(scene, model);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const importer::Material& from = scene.materials[i];
         model::Material to;
         to.colour = from.colour;
-        to.texture = from.image;
+        to.texture = textures[i];
         to.alpha = from.alpha;
         to.alpha_cutoff = from.alpha_cutoff;
         to.two_sided = from.two_sided;

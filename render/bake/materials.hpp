@@ -11,8 +11,9 @@
 
 namespace surefoot::bake {
 
-/// Fills model.materials and .textures (with mip levels). Effects a material calls for, sun included; vertex colour is set
-/// by mark_vertex_colours(). Appends the proxy material (vertex colours and sun) and returns its index.
+/// Fills model.materials and .textures (with mip levels; texels that are never shown have the nearest shown one's colour).
+/// Effects a material calls for, sun included; vertex colour is set by mark_vertex_colours(). Appends the proxy material (vertex
+/// colours and sun) and returns its index.
 model::Index add_materials(const importer::Scene& scene, model::Model& model);
 /// A material whose primitives have colours that are not all white calls for vertex colours.
 void mark_vertex_colours(const importer::Scene& scene, model::Model& model);

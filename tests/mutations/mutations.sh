@@ -60,3 +60,6 @@ mutation N21c render/import/image.cpp 's/ > most_jpeg_texels_a_byte \* bytes.siz
 mutation N13c render/prepare/prepare.cpp 's/begin < end;\)/begin < end && begin < 4096;)/' "levels walked to the last"
 mutation N13d render/select/steps.hpp 's/return refined \? benefit \* hysteresis_ : benefit;/return refined ? benefit \/ hysteresis_ : benefit;/' "what was shown is preferred (turned round)" \
   render/select/search.cpp render/select/benefit_search.cpp render/select/fixed.cpp render/select/published.cpp render/select/cover.cpp
+mutation N25a render/bake/materials.cpp 's/bleed_colours\(bled, .*?\);//' "texels that are never shown take the nearest shown one's colour"
+mutation N25b render/bake/alpha_bleed.cpp 's/material.alpha == model::AlphaMode::mask \? material.alpha_cutoff \* 0.9999F : 1e-9F/1e-9F/' "never shown is all below a mask's cutoff, not only what is clear"
+mutation N25c render/bake/alpha_bleed.cpp 's/if \(material.alpha == model::AlphaMode::opaque\) return \{\};//' "an opaque material shows every texel"

@@ -19,5 +19,6 @@ std::span<const Row> budgets_and_curves_rows();
 std::span<const Row> long_runs_rows();
 std::span<const Row> files_rows();
 std::span<const Row> texture_rows();
+std::span<const Row> alpha_edge_rows();
 
 }  // namespace surefoot::selftest
