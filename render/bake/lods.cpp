@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/bake/corners.hpp"
 #include "render/bake/geometry.hpp"
 #include "render/bake/picture_shift.hpp"
 #include "render/measure/mesh_distance.hpp"
@@ -76,16 +77,40 @@ Level simplify(const Geometry& g, const std::vector<GeometryPart>& from, double 
     return level;
 }
 
-/// What a box stands for: the mean of the baked colours, weighted by nothing (vertices are dense where detail is).
-std::array<std::uint8_t, 4> mean_colour(const Geometry& g, std::size_t count) {
-    std::array<std::uint64_t, 4> sum{};
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t c = 0; c < 4; ++c) sum[c] += g.baked[i][c];
+/// What the faces of a box show: of each, the mean of the baked colours of what faces that way, by area as seen from there; and
+/// of all where next to nothing does. In the order of box_level: down and up along x, y, z.
+std::array<std::array<std::uint8_t, 4>, 6> face_colours(const Geometry& g) {
+    constexpr double next_to_nothing = 0.01;
+    std::array<dvec3, 7> sum{};  // 6: of all
+    std::array<double, 7> area{};
+    for (const GeometryPart& part : g.parts) {
+        for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+            dvec3 colour(0.0);
+            std::array<dvec3, 3> at;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::array<std::uint8_t, 4>& baked = g.baked[part.indices[i + k]];
+                colour += dvec3(baked[0], baked[1], baked[2]) / 3.0;
+                at[k] = dvec3(position_of(g.vertices[part.indices[i + k]]));
+            }
+            const dvec3 facing = 0.5 * glm::cross(at[1] - at[0], at[2] - at[0]);
+            const auto add = [&](std::size_t face, double seen) {
+                sum[face] += seen * colour;
+                area[face] += seen;
+            };
+            for (int axis = 0; axis < 3; ++axis)
+                add(static_cast<std::size_t>(2 * axis) + (facing[axis] > 0 ? 1 : 0), std::abs(facing[axis]));
+            add(6, glm::length(facing));
+        }
     }
-    std::array<std::uint8_t, 4> mean{};
-    for (std::size_t c = 0; c < 3; ++c) mean[c] = static_cast<std::uint8_t>(sum[c] / std::max<std::size_t>(1, count));
-    mean[3] = 255;
-    return mean;
+    std::array<std::array<std::uint8_t, 4>, 6> out{};
+    for (std::size_t face = 0; face < 6; ++face) {
+        const std::size_t of = area[face] > next_to_nothing * area[6] ? face : 6;
+        const dvec3 mean = sum[of] / std::max(area[of], 1e-300);
+        for (std::size_t c = 0; c < 3; ++c)
+            out[face][c] = static_cast<std::uint8_t>(std::lround(std::clamp(mean[static_cast<int>(c)], 0.0, 255.0)));
+        out[face][3] = 255;
+    }
+    return out;
 }
 
 /// The level again in the proxy material: one part, its own vertices with the baked colours, no texture to bind.
@@ -109,17 +134,18 @@ void to_proxy(Geometry& g, Level& level, model::Index material) {
 }
 
 /// Twelve triangles round everything: valid from everywhere, whatever the shape.
-Level box_level(Geometry& g, const Box& box, std::size_t own_vertices, model::Index proxy_material) {
+Level box_level(Geometry& g, const Box& box, model::Index proxy_material) {
     const auto most = std::max_element(g.parts.begin(), g.parts.end(), [](const GeometryPart& a, const GeometryPart& b) {
         return a.indices.size() < b.indices.size();
     });
     const model::Index material = proxy_material != model::none ? proxy_material : most->material;
-    const std::array<std::uint8_t, 4> mean = mean_colour(g, own_vertices);
+    const auto colours = face_colours(g);
     Level level;
     GeometryPart part{material, {}};
     for (int face = 0; face < 6; ++face) {
         const int axis = face / 2, u = (axis + 1) % 3, w = (axis + 2) % 3;
         const bool high = face % 2 == 1;
+        const std::array<std::uint8_t, 4>& mean = colours[static_cast<std::size_t>(face)];
         const auto base = static_cast<std::uint32_t>(g.vertices.size());
         for (int corner = 0; corner < 4; ++corner) {
             model::Vertex v{};
@@ -191,24 +217,36 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     std::vector<Level> levels{finest};
     const Reference reference(full, options.slack);
     const PictureReference pictures(full, options.pictures);
+    const Places places(full);
     const Box box = full.box();
-    const std::size_t own_vertices = full.vertices.size();
     const float floor_m = static_cast<float>(box.diagonal()) * 0.002F;
     const auto bound = [&](const Level& level) { return std::max(reference.bound(full, level), pictures.shift_m(level)); };
+    std::vector<GeometryPart> parts = finest.parts;  // of the coarsest level so far, as the simplifier left them
+    bool torn = false;
     while (levels.back().triangles > options.smallest) {
         const Level& before = levels.back();
         const double share = levels.size() == 1 ? std::min(options.ratio, options.first_share) : options.ratio;
         // Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives
         // way.
-        Level next = simplify(full, before.parts, share, true, false);
+        Level next = simplify(full, parts, share, true, false);
         if (!options.lock_border && next.triangles > before.triangles * share * 1.4)
-            next = simplify(full, before.parts, share, false, false);
+            next = simplify(full, parts, share, false, false);
         if (next.triangles == 0 || next.triangles > before.triangles * std::max(share * 1.5, share + 0.02)) {
             if (options.lock_border) break;
             next = simplify(full, finest.parts, share * before.triangles / total, false, true);
+            torn = true;
         }
         if (next.triangles == 0 || next.triangles > before.triangles * 0.8) break;
-        next.error_m = bound(next);
+        parts = next.parts;
+        mend_corners(full, places, next);
+        if (torn && options.proxy_material != model::none) {
+            // Vertices from far apart in the picture are one now: in baked colours it looks like the thing, in the picture like
+            // anything.
+            to_proxy(full, next, options.proxy_material);
+            next.error_m = std::max(reference.bound(full, next), static_cast<float>(least_proxy_error * box.diagonal()));
+        } else {
+            next.error_m = bound(next);
+        }
         if (next.error_m <= before.error_m) {  // coarser for nothing lost: the finer one has no use
             if (levels.size() == 1)
                 next.error_m = std::nextafter(before.error_m, 1.0F) + floor_m * 1e-3F;
@@ -220,12 +258,13 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         levels.push_back(std::move(next));
     }
     if (levels.back().triangles > 48 && !options.lock_border) {
-        Level round = box_level(full, box, own_vertices, options.proxy_material);
+        Level round = box_level(full, box, options.proxy_material);
         round.error_m = std::max(bound(round), std::nextafter(levels.back().error_m, 1e30F));
         levels.push_back(std::move(round));
     }
     for (std::size_t i = 1; i < levels.size(); ++i) {  // never the full detail
         if (options.proxy_material == model::none || levels[i].triangles >= options.proxy_below) continue;
+        if (levels[i].parts.front().material == options.proxy_material) continue;  // already
         if (may_lose_pictures(levels[i], options, box.diagonal())) to_proxy(full, levels[i], options.proxy_material);
     }
     std::reverse(levels.begin(), levels.end());

@@ -141,42 +141,39 @@ void mark_vertex_colours(const importer::Scene& scene, model::Model& model) {
     }
 }
 
-std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material,
-                                         const model::Vertex& vertex) {
-    std::array<float, 4> colour{};
-    for (std::size_t c = 0; c < 4; ++c) {
+std::array<std::uint8_t, 4> tinted(const model::Material& material, const model::Vertex& vertex, const vec3& picture) {
+    std::array<std::uint8_t, 4> out{0, 0, 0, 255};
+    for (std::size_t c = 0; c < 3; ++c) {
         const float own =
             (material.effects & model::effect_vertex_colour) != 0 ? static_cast<float>(vertex.colour[c]) / 255.0F : 1.0F;
-        colour[c] = own * material.colour[c];
+        const float colour = own * material.colour[c] * picture[static_cast<int>(c)] / 255.0F;
+        out[c] = static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(colour, 0.0F, 1.0F)));
     }
-    if (material.texture != model::none) {
-        const model::Texture& t = model.textures[material.texture];
-        // The level of about 8 texels across: an average about the place, not the texel there. Of what is cut out or transparent,
-        // the whole picture's mean, weighted by alpha: a leaf's corners lie where there is no leaf, and are black in most
-        // pictures.
-        const std::uint32_t across = material.alpha == model::AlphaMode::opaque ? 8 : 1;
-        std::uint32_t level = 0, w = t.width, h = t.height;
-        std::uint64_t at = t.first_byte;
-        while (level + 1 < t.levels && std::max(w, h) > across) {
-            at += static_cast<std::uint64_t>(w) * h * 4;
-            w = std::max(1U, w / 2);
-            h = std::max(1U, h / 2);
-            ++level;
-        }
-        const float u = vertex.uv[0] - std::floor(vertex.uv[0]), v = vertex.uv[1] - std::floor(vertex.uv[1]);
-        const std::uint32_t x = std::min(w - 1, static_cast<std::uint32_t>(u * static_cast<float>(w)));
-        const std::uint32_t y = std::min(h - 1, static_cast<std::uint32_t>(v * static_cast<float>(h)));
-        for (std::size_t c = 0; c < 3; ++c) {
-            colour[c] *= static_cast<float>(
-                             std::to_integer<std::uint8_t>(model.texels[at + (static_cast<std::uint64_t>(y) * w + x) * 4 + c])) /
-                         255.0F;
-        }
-    }
-    std::array<std::uint8_t, 4> out{};
-    for (std::size_t c = 0; c < 3; ++c)
-        out[c] = static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(colour[c], 0.0F, 1.0F)));
-    out[3] = 255;
     return out;
+}
+
+std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material,
+                                         const model::Vertex& vertex) {
+    if (material.texture == model::none) return tinted(material, vertex, vec3(255));
+    const model::Texture& t = model.textures[material.texture];
+    // The level of about 8 texels across: an average about the place, not the texel there. Of what is cut out or transparent,
+    // the whole picture's mean, weighted by alpha: a leaf's corners lie where there is no leaf, and are black in most
+    // pictures.
+    const std::uint32_t across = material.alpha == model::AlphaMode::opaque ? 8 : 1;
+    std::uint32_t level = 0, w = t.width, h = t.height;
+    std::uint64_t at = t.first_byte;
+    while (level + 1 < t.levels && std::max(w, h) > across) {
+        at += static_cast<std::uint64_t>(w) * h * 4;
+        w = std::max(1U, w / 2);
+        h = std::max(1U, h / 2);
+        ++level;
+    }
+    const float u = vertex.uv[0] - std::floor(vertex.uv[0]), v = vertex.uv[1] - std::floor(vertex.uv[1]);
+    const std::uint32_t x = std::min(w - 1, static_cast<std::uint32_t>(u * static_cast<float>(w)));
+    const std::uint32_t y = std::min(h - 1, static_cast<std::uint32_t>(v * static_cast<float>(h)));
+    const std::byte* texel = model.texels.data() + at + (static_cast<std::uint64_t>(y) * w + x) * 4;
+    return tinted(material, vertex,
+                  {std::to_integer<int>(texel[0]), std::to_integer<int>(texel[1]), std::to_integer<int>(texel[2])});
 }
 
 std::vector<model::EffectFinding> find_effects(const model::Model& model,

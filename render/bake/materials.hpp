@@ -22,7 +22,9 @@ void mark_vertex_colours(const importer::Scene& scene, model::Model& model);
 model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height,
                          bool clamp, std::uint32_t most_levels);
 
-/// Colour of a vertex as seen from afar: its own, times the material's, times the texture about its uv.
+/// Colour of a vertex: its own, times the material's, times what its picture shows (0..255 each).
+std::array<std::uint8_t, 4> tinted(const model::Material& material, const model::Vertex& vertex, const vec3& picture);
+/// The same for a vertex of no triangle: with the texture about its uv.
 std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material, const model::Vertex& vertex);
 
 /// One finding an effect, with the reason, from materials and full-detail triangles a material.

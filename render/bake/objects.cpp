@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/bake/materials.hpp"
+#include "render/bake/baked_colours.hpp"
 
 namespace surefoot::bake {
 
@@ -49,9 +49,10 @@ Geometry mesh_geometry(const importer::Mesh& mesh, const model::Model& model) {
                 v.uv[0] = p.uvs[i].x;
                 v.uv[1] = p.uvs[i].y;
             }
-            g.baked.push_back(baked_colour(model, model.materials[p.material], v));
             g.vertices.push_back(v);
         }
+        const auto baked = baked_colours(model, p, std::span(g.vertices).subspan(base));
+        g.baked.insert(g.baked.end(), baked.begin(), baked.end());
         GeometryPart part{p.material, p.indices};
         for (std::uint32_t& index : part.indices) index += base;
         const auto same =

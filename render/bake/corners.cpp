@@ -1,0 +1,71 @@
+// Corners by their normals (corners.hpp).
+#include "render/bake/corners.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace surefoot::bake {
+
+Places::Places(const Geometry& g) {
+    std::vector<std::uint32_t> part(g.vertices.size());
+    for (std::uint32_t p = 0; p < g.parts.size(); ++p)
+        for (const std::uint32_t v : g.parts[p].indices) part[v] = p;
+    order_.resize(g.vertices.size());
+    std::iota(order_.begin(), order_.end(), 0U);
+    const auto key = [&](std::uint32_t v) {
+        const float* p = g.vertices[v].position;
+        return std::tuple(p[0], p[1], p[2], part[v], v);
+    };
+    std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    range_.resize(order_.size());
+    const auto together = [&](std::uint32_t a, std::uint32_t b) {
+        return part[a] == part[b] && position_of(g.vertices[a]) == position_of(g.vertices[b]);
+    };
+    for (std::uint32_t begin = 0, end = 0; begin < order_.size(); begin = end) {
+        while (end < order_.size() && together(order_[end], order_[begin])) ++end;
+        for (std::uint32_t i = begin; i < end; ++i) range_[order_[i]] = {begin, end};
+    }
+}
+
+void mend_corners(Geometry& g, const Places& places, Level& level) {
+    constexpr double across = 0.5;  // the cosine of 60 degrees
+    std::map<std::pair<std::uint32_t, std::array<std::int8_t, 3>>, std::uint32_t> turned;
+    for (GeometryPart& part : level.parts) {
+        for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+            const auto at = [&](std::size_t k) { return dvec3(position_of(g.vertices[part.indices[i + k]])); };
+            const dvec3 cross = glm::cross(at(1) - at(0), at(2) - at(0));
+            const double length = glm::length(cross);
+            if (!(length > 0)) continue;
+            const dvec3 facing = cross / length;
+            const auto fit = [&](std::uint32_t v) {
+                const dvec3 n(g.vertices[v].normal[0], g.vertices[v].normal[1], g.vertices[v].normal[2]);
+                return std::abs(glm::dot(n, facing)) / std::max(glm::length(n), 1.0);
+            };
+            for (std::size_t k = 0; k < 3; ++k) {
+                std::uint32_t& index = part.indices[i + k];
+                if (fit(index) >= across) continue;
+                for (const std::uint32_t other : places.with(index))
+                    if (fit(other) > fit(index)) index = other;
+                if (fit(index) >= across) continue;
+                std::array<std::int8_t, 3> normal{};
+                for (int c = 0; c < 3; ++c)
+                    normal[static_cast<std::size_t>(c)] = static_cast<std::int8_t>(std::lround(127.0 * facing[c]));
+                const auto [where, fresh] = turned.try_emplace({index, normal}, static_cast<std::uint32_t>(g.vertices.size()));
+                if (fresh) {
+                    model::Vertex v = g.vertices[index];
+                    std::copy(normal.begin(), normal.end(), v.normal);
+                    g.vertices.push_back(v);
+                    const std::array<std::uint8_t, 4> colour = g.baked[index];
+                    g.baked.push_back(colour);
+                }
+                index = where->second;
+            }
+        }
+    }
+}
+
+}  // namespace surefoot::bake
