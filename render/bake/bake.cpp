@@ -175,6 +175,7 @@ bool Bakery::make_forms() {
         chain.pictures.push_back(none                                     ? Picture::none
                                  : model.textures[material.texture].clamp ? Picture::clamped
                                                                           : Picture::repeats);
+        chain.cut_out.push_back(!none && material.alpha == model::AlphaMode::mask);
     }
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;

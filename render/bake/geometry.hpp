@@ -54,6 +54,7 @@ struct ChainOptions {
     model::Index proxy_material = 0;  ///< vertex colours only: for the coarsest levels; none: they keep their materials
     std::uint32_t proxy_below = 40;   ///< triangles; coarser levels carry baked colours in one part
     std::vector<Picture> pictures;    ///< by material: what baked colours at a few vertices lose
+    std::vector<bool> cut_out;        ///< by material: its picture's alpha cuts the shape out of its triangles
     double first_share = 1;           ///< share of the triangles that the finest simplified level may have (1: as ratio says)
     double ratio = 0.45;              ///< of triangles from one level to the next coarser
 };

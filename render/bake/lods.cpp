@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "render/bake/cards.hpp"
 #include "render/bake/corners.hpp"
 #include "render/bake/geometry.hpp"
 #include "render/bake/picture_shift.hpp"
@@ -48,8 +50,10 @@ void optimise(Geometry& geometry) {
 
 namespace {
 
-/// One material's triangles at about `share` of their number. The simplifier sees a mesh that was recentred in double.
-std::vector<std::uint32_t> simplify_part(const Geometry& g, const GeometryPart& part, double share, bool lock, bool sloppy) {
+/// One material's triangles at about `share` of their number. The simplifier sees a mesh that was recentred in double, and of its
+/// vertices the full detail's alone: it takes any.
+std::vector<std::uint32_t> simplify_part(const Geometry& g, std::size_t vertices, const GeometryPart& part, double share,
+                                         bool lock, bool sloppy) {
     const std::size_t target =
         std::max<std::size_t>(2, static_cast<std::size_t>(static_cast<double>(part.indices.size() / 3) * share)) * 3;
     if (target >= part.indices.size()) return part.indices;
@@ -57,18 +61,39 @@ std::vector<std::uint32_t> simplify_part(const Geometry& g, const GeometryPart& 
     float unused = 0;  // its own error is no bound
     const float* positions = g.vertices[0].position;
     const std::size_t n = sloppy ? meshopt_simplifySloppy(out.data(), part.indices.data(), part.indices.size(), positions,
-                                                          g.vertices.size(), sizeof(model::Vertex), target, 1.0F, &unused)
-                                 : meshopt_simplify(out.data(), part.indices.data(), part.indices.size(), positions,
-                                                    g.vertices.size(), sizeof(model::Vertex), target, 1.0F,
+                                                          vertices, sizeof(model::Vertex), target, 1.0F, &unused)
+                                 : meshopt_simplify(out.data(), part.indices.data(), part.indices.size(), positions, vertices,
+                                                    sizeof(model::Vertex), target, 1.0F,
                                                     lock ? static_cast<unsigned>(meshopt_SimplifyLockBorder) : 0U, &unused);
     out.resize(n);
     return out;
 }
 
-Level simplify(const Geometry& g, const std::vector<GeometryPart>& from, double share, bool lock, bool sloppy) {
+/// What is thinned out, by material.
+using Cards = std::map<model::Index, std::vector<std::vector<std::uint32_t>>>;
+
+Cards find_cards(const Geometry& g, const ChainOptions& options) {
+    Cards cards;
+    for (const GeometryPart& part : g.parts) {
+        if (part.material >= options.cut_out.size() || !options.cut_out[part.material]) continue;
+        if (auto found = cards_of(g, part); found.size() >= fewest_cards) cards[part.material] = std::move(found);
+    }
+    return cards;
+}
+
+Level simplify(const Geometry& g, std::size_t vertices, const Cards& cards, const std::vector<GeometryPart>& from, double share,
+               bool lock, bool sloppy) {
     Level level;
     for (const GeometryPart& part : from) {
-        GeometryPart smaller{part.material, simplify_part(g, part, share, lock, sloppy)};
+        GeometryPart smaller{part.material, {}};
+        if (const auto thinned = cards.find(part.material); thinned != cards.end()) {
+            const auto all =
+                std::find_if(g.parts.begin(), g.parts.end(), [&](const GeometryPart& p) { return p.material == part.material; });
+            smaller.indices = some_cards(
+                thinned->second, share * static_cast<double>(part.indices.size()) / static_cast<double>(all->indices.size()));
+        } else {
+            smaller.indices = simplify_part(g, vertices, part, share, lock, sloppy);
+        }
         if (smaller.indices.empty()) continue;
         meshopt_optimizeVertexCache(smaller.indices.data(), smaller.indices.data(), smaller.indices.size(), g.vertices.size());
         level.triangles += static_cast<std::uint32_t>(smaller.indices.size() / 3);
@@ -113,11 +138,17 @@ std::array<std::array<std::uint8_t, 4>, 6> face_colours(const Geometry& g) {
     return out;
 }
 
-/// The level again in the proxy material: one part, its own vertices with the baked colours, no texture to bind.
-void to_proxy(Geometry& g, Level& level, model::Index material) {
+/// The level again in the proxy material: one part, its own vertices with the baked colours, no texture to bind. But cards, which
+/// would be solid, stay as they are.
+void to_proxy(Geometry& g, const Cards& cards, Level& level, model::Index material) {
     GeometryPart part{material, {}};
+    std::vector<GeometryPart> kept;
     std::vector<std::uint32_t> map(g.vertices.size(), model::none);
     for (const GeometryPart& p : level.parts) {
+        if (cards.contains(p.material) || p.material == material) {
+            kept.push_back(p);
+            continue;
+        }
         for (const std::uint32_t index : p.indices) {
             if (map[index] == model::none) {
                 map[index] = static_cast<std::uint32_t>(g.vertices.size());
@@ -130,7 +161,8 @@ void to_proxy(Geometry& g, Level& level, model::Index material) {
             part.indices.push_back(map[index]);
         }
     }
-    level.parts = {std::move(part)};
+    if (!part.indices.empty()) kept.push_back(std::move(part));
+    level.parts = std::move(kept);
 }
 
 /// Twelve triangles round everything: valid from everywhere, whatever the shape.
@@ -216,8 +248,15 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     finest.triangles = total;
     std::vector<Level> levels{finest};
     const Reference reference(full, options.slack);
-    const PictureReference pictures(full, options.pictures);
+    const Cards cards = find_cards(full, options);
+    std::vector<Picture> laid_on = options.pictures;  // cards keep theirs, and miss it where they are left out
+    for (const auto& [material, thinned] : cards) laid_on[material] = Picture::none;
+    const PictureReference pictures(full, laid_on);
     const Places places(full);
+    const std::size_t own_vertices = full.vertices.size();
+    std::map<model::Index, double> card_area_m2;
+    for (const GeometryPart& part : full.parts)
+        if (cards.contains(part.material)) card_area_m2[part.material] = area_of(full, part.indices);
     const Box box = full.box();
     const float floor_m = static_cast<float>(box.diagonal()) * 0.002F;
     const auto bound = [&](const Level& level) { return std::max(reference.bound(full, level), pictures.shift_m(level)); };
@@ -228,21 +267,24 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         const double share = levels.size() == 1 ? std::min(options.ratio, options.first_share) : options.ratio;
         // Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives
         // way.
-        Level next = simplify(full, parts, share, true, false);
+        Level next = simplify(full, own_vertices, cards, parts, share, true, false);
         if (!options.lock_border && next.triangles > before.triangles * share * 1.4)
-            next = simplify(full, parts, share, false, false);
+            next = simplify(full, own_vertices, cards, parts, share, false, false);
         if (next.triangles == 0 || next.triangles > before.triangles * std::max(share * 1.5, share + 0.02)) {
             if (options.lock_border) break;
-            next = simplify(full, finest.parts, share * before.triangles / total, false, true);
+            next = simplify(full, own_vertices, cards, finest.parts, share * before.triangles / total, false, true);
             torn = true;
         }
         if (next.triangles == 0 || next.triangles > before.triangles * 0.8) break;
         parts = next.parts;
         mend_corners(full, places, next);
+        for (GeometryPart& part : next.parts) {
+            if (cards.contains(part.material)) enlarge_cards(full, part, card_area_m2[part.material]);
+        }
         if (torn && options.proxy_material != model::none) {
             // Vertices from far apart in the picture are one now: in baked colours it looks like the thing, in the picture like
             // anything.
-            to_proxy(full, next, options.proxy_material);
+            to_proxy(full, cards, next, options.proxy_material);
             next.error_m = std::max(reference.bound(full, next), static_cast<float>(least_proxy_error * box.diagonal()));
         } else {
             next.error_m = bound(next);
@@ -264,8 +306,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     }
     for (std::size_t i = 1; i < levels.size(); ++i) {  // never the full detail
         if (options.proxy_material == model::none || levels[i].triangles >= options.proxy_below) continue;
-        if (levels[i].parts.front().material == options.proxy_material) continue;  // already
-        if (may_lose_pictures(levels[i], options, box.diagonal())) to_proxy(full, levels[i], options.proxy_material);
+        if (may_lose_pictures(levels[i], options, box.diagonal())) to_proxy(full, cards, levels[i], options.proxy_material);
     }
     std::reverse(levels.begin(), levels.end());
     chain.full = std::move(full);

@@ -1,0 +1,30 @@
+// Levels of what many cards make up whose shape is cut out by their picture's alpha (leaves, grass): some of the cards, larger.
+//
+// Collapsing edges of cards, or colouring them, fills what is cut out: a bush becomes a dark solid. Fewer and larger ones keep
+// its look and its coverage. Source: Cook, Halstead, Planck & Ryu 2007, stochastic simplification of aggregate detail.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/bake/geometry.hpp"
+
+namespace surefoot::bake {
+
+/// Fewer are not thinned out.
+constexpr std::size_t fewest_cards = 8;
+
+/// The part's triangles by card: what hangs together by places.
+std::vector<std::vector<std::uint32_t>> cards_of(const Geometry& g, const GeometryPart& part);
+
+/// Whole cards with about `share` of the triangles, at least one. In an order of their own: those of a small share are among
+/// those of every larger one, so that none comes and goes.
+std::vector<std::uint32_t> some_cards(const std::vector<std::vector<std::uint32_t>>& cards, double share);
+
+/// Draws each card of the part out about its middle, so that their areas sum to `area_m2`; at most to 1.6 times its size.
+void enlarge_cards(Geometry& g, GeometryPart& part, double area_m2);
+
+/// Of the triangles of indices.
+double area_of(const Geometry& g, const std::vector<std::uint32_t>& indices);
+
+}  // namespace surefoot::bake
