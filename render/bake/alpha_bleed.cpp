@@ -74,12 +74,16 @@ void sweep_columns(Field& field, bool clamp) {
 
 }  // namespace
 
-std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const importer::Image& image) {
+Alphas alphas_of(const importer::Image& image) {
+    Alphas there{};
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) there[image.rgba[i]] = true;
+    return there;
+}
+
+std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const Alphas& there) {
     if (material.alpha == model::AlphaMode::opaque) return {};
     // Rounding leaves open on which side of the cutoff a texel lies that is at it: it counts as shown.
     const float cutoff = material.alpha == model::AlphaMode::mask ? material.alpha_cutoff * 0.9999F : 1e-9F;
-    std::array<bool, 256> there{};
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) there[image.rgba[i]] = true;
     for (std::size_t a = 256; a-- > 0;) {
         if (there[a] && material.colour[3] * static_cast<float>(a) / 255.0F < cutoff) return static_cast<std::uint8_t>(a);
     }

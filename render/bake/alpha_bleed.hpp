@@ -2,6 +2,7 @@
 // many pictures have anything there: white, black, magenta.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,9 +11,16 @@
 
 namespace surefoot::bake {
 
+/// Which alphas there are in a picture.
+using Alphas = std::array<bool, 256>;
+Alphas alphas_of(const importer::Image& image);
+
 /// The largest alpha in the picture with which the material shows nothing: below a mask's cutoff, or 0 of what fades. None where
 /// every texel is shown: of an opaque material, and of one without a picture.
-std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const importer::Image& image);
+std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const Alphas& there);
+inline std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const importer::Image& image) {
+    return hidden_alpha(material, alphas_of(image));
+}
 
 /// Gives texels with alpha at most `hidden` the colour of the nearest that has more (steps along rows and columns; on over the
 /// borders, unless `clamp`). Alphas stay, and so does all of a picture in which nothing has more. RGBA8, width * height texels,

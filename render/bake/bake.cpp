@@ -170,12 +170,12 @@ bool Bakery::make_forms() {
     Stage stage(progress, "levels of detail", scene.meshes.size());
     std::atomic<bool> go{true};
     ChainOptions chain = chain_options(options, proxy_or_none);
+    chain.cut_out = cut_out_materials(scene);
     for (const model::Material& material : model.materials) {
         const bool none = material.texture == model::none;
         chain.pictures.push_back(none                                     ? Picture::none
                                  : model.textures[material.texture].clamp ? Picture::clamped
                                                                           : Picture::repeats);
-        chain.cut_out.push_back(!none && material.alpha == model::AlphaMode::mask);
     }
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;

@@ -12,7 +12,7 @@ namespace surefoot::bake {
 
 namespace {
 
-constexpr int steps = 6;  ///< along an edge: 21 samples a triangle, 7 a corner
+constexpr int steps = 6;  ///< along an edge: 21 samples a triangle, about 7 a corner
 
 /// One mip level of a texture.
 struct MipLevel {

@@ -11,7 +11,7 @@
 
 namespace surefoot::bake {
 
-/// Fewer are not thinned out.
+/// Fewer are not thinned out, nor what is one large thing and crumbs: none may be more than this part of the whole.
 constexpr std::size_t fewest_cards = 8;
 
 /// The part's triangles by card: what hangs together by places.

@@ -10,6 +10,26 @@
 
 namespace surefoot::bake {
 
+namespace {
+
+constexpr double across = 0.5;  // the cosine of 60 degrees
+
+/// Of the triangle that begins at `i`; no length where it has no area.
+dvec3 facing_of(const Geometry& g, const GeometryPart& part, std::size_t i) {
+    const auto at = [&](std::size_t k) { return dvec3(position_of(g.vertices[part.indices[i + k]])); };
+    const dvec3 cross = glm::cross(at(1) - at(0), at(2) - at(0));
+    const double length = glm::length(cross);
+    return length > 0 ? cross / length : dvec3(0.0);
+}
+
+/// Cosine between a vertex's normal and the triangle's.
+double turn_of(const Geometry& g, std::uint32_t v, const dvec3& facing) {
+    const dvec3 n(g.vertices[v].normal[0], g.vertices[v].normal[1], g.vertices[v].normal[2]);
+    return glm::dot(n, facing) / std::max(glm::length(n), 1.0);
+}
+
+}  // namespace
+
 Places::Places(const Geometry& g) {
     std::vector<std::uint32_t> part(g.vertices.size());
     for (std::uint32_t p = 0; p < g.parts.size(); ++p)
@@ -25,45 +45,46 @@ Places::Places(const Geometry& g) {
     const auto together = [&](std::uint32_t a, std::uint32_t b) {
         return part[a] == part[b] && position_of(g.vertices[a]) == position_of(g.vertices[b]);
     };
-    for (std::uint32_t begin = 0, end = 0; begin < order_.size(); begin = end) {
+    bent_.resize(order_.size());
+    for (const GeometryPart& p : g.parts) {
+        for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
+            const dvec3 facing = facing_of(g, p, i);
+            if (facing == dvec3(0.0)) continue;
+            for (std::size_t k = 0; k < 3; ++k)
+                if (std::abs(turn_of(g, p.indices[i + k], facing)) < across) bent_[p.indices[i + k]] = true;
+        }
+    }
+    for (std::uint32_t begin = 0, end = 1; begin < order_.size(); begin = end++) {
         while (end < order_.size() && together(order_[end], order_[begin])) ++end;
         for (std::uint32_t i = begin; i < end; ++i) range_[order_[i]] = {begin, end};
     }
 }
 
-void mend_corners(Geometry& g, const Places& places, Level& level) {
-    constexpr double across = 0.5;  // the cosine of 60 degrees
+void mend_corners(Geometry& g, const Places& places, GeometryPart& part) {
     std::map<std::pair<std::uint32_t, std::array<std::int8_t, 3>>, std::uint32_t> turned;
-    for (GeometryPart& part : level.parts) {
-        for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
-            const auto at = [&](std::size_t k) { return dvec3(position_of(g.vertices[part.indices[i + k]])); };
-            const dvec3 cross = glm::cross(at(1) - at(0), at(2) - at(0));
-            const double length = glm::length(cross);
-            if (!(length > 0)) continue;
-            const dvec3 facing = cross / length;
-            const auto fit = [&](std::uint32_t v) {
-                const dvec3 n(g.vertices[v].normal[0], g.vertices[v].normal[1], g.vertices[v].normal[2]);
-                return std::abs(glm::dot(n, facing)) / std::max(glm::length(n), 1.0);
-            };
-            for (std::size_t k = 0; k < 3; ++k) {
-                std::uint32_t& index = part.indices[i + k];
-                if (fit(index) >= across) continue;
-                for (const std::uint32_t other : places.with(index))
-                    if (fit(other) > fit(index)) index = other;
-                if (fit(index) >= across) continue;
-                std::array<std::int8_t, 3> normal{};
-                for (int c = 0; c < 3; ++c)
-                    normal[static_cast<std::size_t>(c)] = static_cast<std::int8_t>(std::lround(127.0 * facing[c]));
-                const auto [where, fresh] = turned.try_emplace({index, normal}, static_cast<std::uint32_t>(g.vertices.size()));
-                if (fresh) {
-                    model::Vertex v = g.vertices[index];
-                    std::copy(normal.begin(), normal.end(), v.normal);
-                    g.vertices.push_back(v);
-                    const std::array<std::uint8_t, 4> colour = g.baked[index];
-                    g.baked.push_back(colour);
-                }
-                index = where->second;
+    for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+        const dvec3 facing = facing_of(g, part, i);
+        if (facing == dvec3(0.0)) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::uint32_t& index = part.indices[i + k];
+            if (std::abs(turn_of(g, index, facing)) >= across || places.bent(index)) continue;
+            // Of two that fit as well, front and back of a sheet, the front.
+            const auto fit = [&](std::uint32_t v) { return std::pair(std::abs(turn_of(g, v, facing)), turn_of(g, v, facing)); };
+            for (const std::uint32_t other : places.with(index))
+                if (fit(other) > fit(index)) index = other;
+            if (std::abs(turn_of(g, index, facing)) >= across) continue;
+            std::array<std::int8_t, 3> normal{};
+            for (int c = 0; c < 3; ++c)
+                normal[static_cast<std::size_t>(c)] = static_cast<std::int8_t>(std::lround(127.0 * facing[c]));
+            const auto [where, fresh] = turned.try_emplace({index, normal}, static_cast<std::uint32_t>(g.vertices.size()));
+            if (fresh) {
+                model::Vertex v = g.vertices[index];
+                std::copy(normal.begin(), normal.end(), v.normal);
+                g.vertices.push_back(v);
+                const std::array<std::uint8_t, 4> colour = g.baked[index];
+                g.baked.push_back(colour);
             }
+            index = where->second;
         }
     }
 }

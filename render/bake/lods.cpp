@@ -76,7 +76,10 @@ Cards find_cards(const Geometry& g, const ChainOptions& options) {
     Cards cards;
     for (const GeometryPart& part : g.parts) {
         if (part.material >= options.cut_out.size() || !options.cut_out[part.material]) continue;
-        if (auto found = cards_of(g, part); found.size() >= fewest_cards) cards[part.material] = std::move(found);
+        auto found = cards_of(g, part);
+        std::size_t most = 0;
+        for (const auto& card : found) most = std::max(most, card.size());
+        if (found.size() >= fewest_cards && most * fewest_cards <= part.indices.size()) cards[part.material] = std::move(found);
     }
     return cards;
 }
@@ -250,6 +253,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     const Reference reference(full, options.slack);
     const Cards cards = find_cards(full, options);
     std::vector<Picture> laid_on = options.pictures;  // cards keep theirs, and miss it where they are left out
+    laid_on.resize(std::max(laid_on.size(), options.cut_out.size()), Picture::none);
     for (const auto& [material, thinned] : cards) laid_on[material] = Picture::none;
     const PictureReference pictures(full, laid_on);
     const Places places(full);
@@ -277,11 +281,16 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         }
         if (next.triangles == 0 || next.triangles > before.triangles * 0.8) break;
         parts = next.parts;
-        mend_corners(full, places, next);
         for (GeometryPart& part : next.parts) {
-            if (cards.contains(part.material)) enlarge_cards(full, part, card_area_m2[part.material]);
+            if (cards.contains(part.material))
+                enlarge_cards(full, part, card_area_m2[part.material]);
+            else
+                mend_corners(full, places, part);
         }
-        if (torn && options.proxy_material != model::none) {
+        const bool pictured = std::any_of(next.parts.begin(), next.parts.end(), [&](const GeometryPart& part) {
+            return part.material < laid_on.size() && laid_on[part.material] != Picture::none;
+        });
+        if (torn && pictured && options.proxy_material != model::none) {
             // Vertices from far apart in the picture are one now: in baked colours it looks like the thing, in the picture like
             // anything.
             to_proxy(full, cards, next, options.proxy_material);
@@ -302,6 +311,8 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     if (levels.back().triangles > 48 && !options.lock_border) {
         Level round = box_level(full, box, options.proxy_material);
         round.error_m = std::max(bound(round), std::nextafter(levels.back().error_m, 1e30F));
+        if (options.proxy_material != model::none)
+            round.error_m = std::max(round.error_m, static_cast<float>(least_proxy_error * box.diagonal()));
         levels.push_back(std::move(round));
     }
     for (std::size_t i = 1; i < levels.size(); ++i) {  // never the full detail

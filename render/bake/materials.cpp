@@ -78,15 +78,35 @@ model::Index add_shown(const importer::Scene& scene, const Shown& shown, model::
     return add_texture(model, bled.empty() ? image.rgba : bled, image.width, image.height, image.clamp, 32);
 }
 
+/// Textures that one image becomes at most.
+constexpr std::uint32_t most_ways = 4;
+
+/// Of each material. An image that many share is looked at once.
+std::vector<std::optional<std::uint8_t>> hidden_alphas(const importer::Scene& scene) {
+    std::vector<std::optional<Alphas>> there(scene.images.size());
+    std::vector<std::optional<std::uint8_t>> out;
+    for (const importer::Material& material : scene.materials) {
+        out.emplace_back();
+        if (material.image == importer::none) continue;
+        if (!there[material.image]) there[material.image] = alphas_of(scene.images[material.image]);
+        out.back() = hidden_alpha(material, *there[material.image]);
+    }
+    return out;
+}
+
 /// A material's texture. What one does not show another may: an image that is shown in several ways becomes as many textures,
 /// the first of which has the image's own index.
 std::vector<model::Index> add_images(const importer::Scene& scene, model::Model& model) {
     std::map<Shown, model::Index> textures;
     std::vector<Shown> wanted;
-    for (const importer::Material& material : scene.materials) {
-        const bool has = material.image != importer::none;
-        wanted.emplace_back(material.image, has ? hidden_alpha(material, scene.images[material.image]) : std::nullopt);
-        textures.emplace(wanted.back(), model::none);
+    std::vector<std::uint32_t> ways(scene.images.size(), 0);
+    const std::vector<std::optional<std::uint8_t>> hidden = hidden_alphas(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        Shown shown{scene.materials[i].image, hidden[i]};
+        if (shown.first != importer::none && !textures.contains(shown) && ++ways[shown.first] > most_ways)
+            shown = textures.lower_bound({shown.first, std::nullopt})->first;  // rather a fringe than another copy
+        wanted.push_back(shown);
+        textures.emplace(shown, model::none);
     }
     for (importer::Index i = 0; i < scene.images.size(); ++i) {
         const auto first = textures.lower_bound({i, std::nullopt});
@@ -103,6 +123,14 @@ std::vector<model::Index> add_images(const importer::Scene& scene, model::Model&
 }
 
 }  // namespace
+
+std::vector<bool> cut_out_materials(const importer::Scene& scene) {
+    std::vector<bool> out;
+    for (const std::optional<std::uint8_t>& hidden : hidden_alphas(scene)) {
+        out.push_back(hidden && scene.materials[out.size()].alpha == model::AlphaMode::mask);
+    }
+    return out;
+}
 
 model::Index add_materials(const importer::Scene& scene, model::Model& model) {
     const std::vector<model::Index> textures = add_images(scene, model);

@@ -15,6 +15,8 @@ namespace surefoot::bake {
 /// Effects a material calls for, sun included; vertex colour is set by mark_vertex_colours(). Appends the proxy material (vertex
 /// colours and sun) and returns its index.
 model::Index add_materials(const importer::Scene& scene, model::Model& model);
+/// Those whose picture's alpha cuts the shape out of the triangles: masks with a texel that they drop. By material of the scene.
+std::vector<bool> cut_out_materials(const importer::Scene& scene);
 /// A material whose primitives have colours that are not all white calls for vertex colours.
 void mark_vertex_colours(const importer::Scene& scene, model::Model& model);
 

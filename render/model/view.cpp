@@ -23,7 +23,7 @@ double widest_half(double shift) {
 double widen(double half, double other, double angle_rad) {
     const double cos_corner = 1.0 / std::sqrt(1.0 + std::pow(std::tan(other) * std::cos(half), 2));
     const double by = std::asin(std::min(1.0, std::sin(std::min(angle_rad, widest_half_angle_rad)) / cos_corner));
-    return std::max(half, std::min(half + by, widest_half_angle_rad));  // a shifted side is only about within the widest
+    return half + by;
 }
 
 /// Across an edge of the box and one of the pyramid: what is left for large boxes beside the view. Source: Gottschalk, Lin &
@@ -80,6 +80,25 @@ HalfAngles half_angles(const Pose& pose, Viewport viewport, double angle_rad) {
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m, double angle_rad) {
     const SideAngles sides = side_angles(pose, viewport, angle_rad);
     const dvec3 forward = pose.forward(), up = pose.up(), right = pose.right();
+    const auto plane = [](const dvec3& normal, const dvec3& through) { return dvec4(normal, -glm::dot(normal, through)); };
+    const auto inwards = [&](double angle, const dvec3& axis) { return std::cos(angle) * axis - std::sin(angle) * forward; };
+    const bool exact = !(radius_m > 0) && !(angle_rad > 0);
+    // A turned near plane sweeps towards the eye: every region but a single pose keeps all that is in front of the ball.
+    const dvec3 near_point = pose.position + (exact ? near_plane_m : -radius_m) * forward;
+    Frustum frustum;
+    const std::array<double, 4> angles = {-sides.left, sides.right, -sides.down, sides.up};
+    if (!exact && *std::max_element(angles.begin(), angles.end()) > widest_half_angle_rad) {
+        const std::array<dvec3, 4> outwards = {-right, right, -up, up};
+        const dvec4 all(0, 0, 0, 1);
+        for (std::size_t i = 0; i < 4; ++i) {  // each clears the ball of eyes by itself
+            const dvec3 normal = inwards(-angles[i], -outwards[i]);
+            frustum.planes[i] = angles[i] > widest_half_angle_rad ? all : plane(normal, pose.position - radius_m * normal);
+        }
+        frustum.planes[4] = all;  // what is seen over that side may lie behind the middle's eye
+        frustum.corners.fill(pose.position);
+        frustum.open = true;
+        return frustum;
+    }
     // The eye is pulled back along the middle of the view: seen from there, the same angles hold the whole ball of eyes.
     const double middle_x = std::tan(0.5 * (sides.left + sides.right)), middle_y = std::tan(0.5 * (sides.down + sides.up));
     const dvec3 middle = forward + middle_x * right + middle_y * up;
@@ -89,12 +108,6 @@ Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double r
     const double pull = radius_m > 0 ? radius_m / clears : 0.0;
     const dvec3 apex = pose.position - pull * middle;
 
-    const auto plane = [](const dvec3& normal, const dvec3& through) { return dvec4(normal, -glm::dot(normal, through)); };
-    const auto inwards = [&](double angle, const dvec3& axis) { return std::cos(angle) * axis - std::sin(angle) * forward; };
-    const bool exact = !(radius_m > 0) && !(angle_rad > 0);
-    // A turned near plane sweeps towards the eye: every region but a single pose keeps all that is in front of the ball.
-    const dvec3 near_point = pose.position + (exact ? near_plane_m : -radius_m) * forward;
-    Frustum frustum;
     frustum.planes = {plane(inwards(sides.left, right), apex), plane(inwards(-sides.right, -right), apex),
                       plane(inwards(sides.down, up), apex), plane(inwards(-sides.up, -up), apex), plane(forward, near_point)};
     frustum.corners[0] = apex;
@@ -117,7 +130,7 @@ bool visible(const Frustum& frustum, const Box& box) {
         if (away + reach < -1e-9 * (std::abs(p.w) + reach)) return false;  // the slack covers rounding far from the origin
         inside = inside && away >= reach;
     }
-    if (inside) return true;
+    if (inside || frustum.open) return true;
     // The far plane is infinite: a face separates only if the apex is beyond it and no edge ray comes back.
     for (int axis = 0; axis < 3; ++axis) {
         const double apex = frustum.corners[0][axis];

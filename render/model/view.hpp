@@ -22,6 +22,7 @@ constexpr double near_plane_m = 0.05;  ///< reversed-Z, infinite far plane
 struct Frustum {
     std::array<dvec4, 5> planes;   ///< left, right, bottom, top, near; inside: dot(xyz, p) + w >= 0; unit normals
     std::array<dvec3, 5> corners;  ///< the eye and the four far corners (at far_m)
+    bool open = false;             ///< of a region turned so far that a side looks backwards: no corners, the planes alone decide
 };
 
 /// Half fields of view across and up.
@@ -38,14 +39,15 @@ struct PictureExtent {
 };
 PictureExtent picture_extent(const Pose& pose, Viewport viewport);
 
-/// Angles between where the pose looks and the picture's sides, rad; turned by angle_rad any way, they are still held.
+/// Angles between where the pose looks and the picture's sides, rad; turned by angle_rad any way, it lies within them. From 89
+/// degrees on a side says no more than that it is out there.
 struct SideAngles {
     double left = 0, right = 0, down = 0, up = 0;  ///< left and down negative, unless shifted past the middle
 };
 SideAngles side_angles(const Pose& pose, Viewport viewport, double angle_rad = 0.0);
 
 /// The frustum that holds every pose of a region: widened by angle_rad on each side and pulled back by radius_m.
-/// radius 0 and angle 0: exactly the pose's own. Sides are capped below 89 degrees from where it looks.
+/// radius 0 and angle 0: exactly the pose's own. Sides turned beyond 89 degrees hold nothing back.
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m = 0.0, double angle_rad = 0.0);
 
 /// Conservative: never false for a box that some point of the frustum touches. Planes against the box, then the frustum's

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
+#include "render/measure/mesh_distance.hpp"
 #include "rt/base/random.hpp"
 
 namespace surefoot::bake {
@@ -73,7 +75,6 @@ TEST(Cards, GrowAboutTheirMiddlesToTheAreaThatWasThereAndNoFurther) {
         const std::vector<std::uint32_t> before = part.indices;
         enlarge_cards(g, part, whole);
         EXPECT_NEAR(area_of(g, part.indices), std::min(whole, 1.6 * 1.6 * kept), 1e-3 * whole);
-        const auto cards = cards_of(g, part);
         std::set<std::uint32_t> own(before.begin(), before.end());
         for (const std::uint32_t i : part.indices) EXPECT_FALSE(own.contains(i)) << "the full detail stays as it is";
         // Each about its own middle: none is farther from a kept one than it grew.
@@ -104,6 +105,66 @@ TEST(Cards, StayCutOutOnEveryLevelAndTheRestIsColoured) {
     }
     EXPECT_LE(chain.levels.front().triangles, 48U);
     EXPECT_EQ(chain.levels.back().error_m, 0);
+}
+
+struct Surface {
+    std::vector<vec3> points;
+    std::vector<std::uint32_t> indices;
+    Surface(const Geometry& g, const std::vector<GeometryPart>& parts) {
+        for (const model::Vertex& v : g.vertices) points.push_back(position_of(v));
+        for (const GeometryPart& part : parts) indices.insert(indices.end(), part.indices.begin(), part.indices.end());
+    }
+    [[nodiscard]] measure::MeshView view() const { return {points, indices}; }
+};
+
+TEST(Cards, ThatAreLeftOutOrGrewLieWithinTheLevelsError) {
+    ChainOptions options;
+    options.proxy_material = 2;
+    options.pictures = {Picture::clamped, Picture::clamped, Picture::none};
+    options.cut_out = {true, false, false};
+    const LodChain chain = make_chain(crown(200), options);
+    const Surface full(chain.full, chain.levels.back().parts);
+    for (std::size_t l = 0; l + 1 < chain.levels.size(); ++l) {
+        EXPECT_GT(chain.levels[l].error_m, chain.levels[l + 1].error_m);
+        const Surface coarse(chain.full, chain.levels[l].parts);
+        for (const measure::DistanceBounds& found :
+             {measure::directed_distance(full.view(), measure::TriangleTree(coarse.view()), {}),
+              measure::directed_distance(coarse.view(), measure::TriangleTree(full.view()), {})}) {
+            EXPECT_LE(found.lower, chain.levels[l].error_m * 1.0001F);
+            EXPECT_GT(found.lower, 0.01F) << "or the test shows nothing";
+        }
+    }
+}
+
+TEST(Cards, OneLargeThingAmongCrumbsIsSimplifiedAsAnyOther) {
+    Geometry g = crown(8);
+    GeometryPart& part = g.parts[0];
+    constexpr std::uint32_t n = 20;  // a hedge's wall, a hundred times a card
+    const auto base = static_cast<std::uint32_t>(g.vertices.size());
+    for (std::uint32_t y = 0; y <= n; ++y) {
+        for (std::uint32_t x = 0; x <= n; ++x) {
+            model::Vertex v{};
+            v.position[0] = 10 + 0.2F * static_cast<float>(x);
+            v.position[1] = 0.2F * static_cast<float>(y);
+            v.position[2] = 0.3F * std::sin(0.5F * static_cast<float>(x));
+            v.normal[2] = 127;
+            g.vertices.push_back(v);
+            g.baked.push_back({20, 90, 30, 255});
+            if (x == n || y == n) continue;
+            const std::uint32_t a = base + y * (n + 1) + x, b = a + n + 1;
+            for (const std::uint32_t i : {a, a + 1, b, a + 1, b + 1, b}) part.indices.push_back(i);
+        }
+    }
+    ChainOptions options;
+    options.proxy_material = 2;
+    options.pictures = {Picture::none, Picture::none, Picture::none};
+    options.cut_out = {true, false, false};
+    const LodChain thinned = make_chain(g, options);
+    options.cut_out = {};
+    const LodChain plain = make_chain(g, options);
+    ASSERT_EQ(thinned.levels.size(), plain.levels.size());
+    for (std::size_t l = 0; l < plain.levels.size(); ++l) EXPECT_EQ(thinned.levels[l].error_m, plain.levels[l].error_m);
+    EXPECT_GE(plain.levels.size(), 4U);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ mutation N11b render/model/view.cpp 's/below = below && step <= 0;/below = below
 sides='s/std::atan\(at.half_x \+ at.middle_x\)/std::atan(at.half_x)/'
 mutation A1 render/model/view.cpp "$sides" "each side of a shifted picture at its own angle"
 mutation A2 render/model/view.cpp 's/pose.position - pull \* middle;/pose.position - pull * forward;/' "the eye pulled back along the picture's middle"
+mutation A2 render/model/view.cpp 's/frustum.open = true;//' "no corners where a side looks back"
 mutation A3 render/model/view.cpp 's/std::isnan\(shift\) \? 0.0 : std::clamp\(shift, -8.0, 8.0\)/std::clamp(shift, -8.0, 8.0)/' "a shift that is no number"
 mutation A5 render/model/view.cpp 's/m\[2\]\[1\] = .*?;//' "the picture's middle in the projection"
 mutation A4 render/model/view.cpp "$sides" "each side of a shifted picture at its own angle"

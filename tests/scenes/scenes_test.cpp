@@ -324,7 +324,7 @@ TEST(WriteScene, GlbComesBackAsItWas) {
             EXPECT_EQ(back->materials[i].alpha, out.scene.materials[i].alpha);
             for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(back->materials[i].colour[c], out.scene.materials[i].colour[c], 1e-5);
         }
-        const auto path = read_path((folder / name + ".path.csv"));
+        const auto path = read_path(folder / name + ".path.csv");
         ASSERT_TRUE(path.ok()) << path.error().text();
         EXPECT_EQ(path->samples.size(), out.path.samples.size());
     }
@@ -333,10 +333,10 @@ TEST(WriteScene, GlbComesBackAsItWas) {
 TEST(WriteScene, WritesTheSameBytesTwice) {
     const test::TemporaryFolder folder;
     const GeneratedScene out = made("room", 0.05);
-    ASSERT_TRUE(write_scene((folder / "a.glb"), out).ok());
-    ASSERT_TRUE(write_scene((folder / "b.glb"), made("room", 0.05)).ok());
+    ASSERT_TRUE(write_scene(folder / "a.glb", out).ok());
+    ASSERT_TRUE(write_scene(folder / "b.glb", made("room", 0.05)).ok());
     const auto read = [&](const char* name) {
-        auto bytes = std::vector<char>(fs::file_size((folder / name)));
+        auto bytes = std::vector<char>(fs::file_size(folder / name));
         std::FILE* file = std::fopen((folder / name).c_str(), "rb");
         EXPECT_EQ(std::fread(bytes.data(), 1, bytes.size(), file), bytes.size());
         (void)std::fclose(file);
@@ -351,7 +351,7 @@ TEST(WriteScene, ObjAndOstfKeepTheTriangles) {
         const GeneratedScene out = made("room", 0.05);
         const std::string file = (folder / std::string("room") + ending);
         ASSERT_TRUE(write_scene(file, out).ok());
-        EXPECT_TRUE(fs::exists((folder / "room.path.csv")));
+        EXPECT_TRUE(fs::exists(folder / "room.path.csv"));
         const auto back = importer::import_files({file}, {});
         ASSERT_TRUE(back.ok()) << back.error().text();
         EXPECT_EQ(back->triangles(), out.scene.triangles()) << ending;
@@ -367,8 +367,8 @@ TEST(WriteScene, ErrorsAreNamed) {
     EXPECT_FALSE(generate("forest", std::nan(""), 1).ok());
     EXPECT_FALSE(generate("forest", 1e9, 1).ok());
     const test::TemporaryFolder folder;
-    EXPECT_FALSE(write_scene((folder / "a.dae"), made("forest", 0.01)).ok());
-    EXPECT_FALSE(write_scene((folder / "no/such/folder.glb"), made("forest", 0.01)).ok());
+    EXPECT_FALSE(write_scene(folder / "a.dae", made("forest", 0.01)).ok());
+    EXPECT_FALSE(write_scene(folder / "no/such/folder.glb", made("forest", 0.01)).ok());
 }
 
 }  // namespace
