@@ -49,7 +49,7 @@ mutation L4 rt/monitor/histogram.cpp 's/return a > std::numeric_limits<std::uint
 mutation L5 rt/monitor/telemetry.cpp 's/if \(f.skipped_before > 0\) of\(Series::lateness\).*?;//' "skipped slots counted as late"
 mutation L6 rt/frame/loop.cpp 's/s.result.skipped \+= next.skipped;//' "skipped slots in the books"
 mutation F1 render/model/walk_file.cpp 's/if \(auto valid = validate\(model\); !valid\)/if (auto valid = Result<void>(); !valid)/' "models from files validated"
-mutation F2 render/import/finish.cpp 's/const auto plain = require_plain\(beside.string\(\)\);/const Result<void> plain;/' "named textures are plain files"
+mutation F2 render/import/finish.cpp 's/const auto plain = require_plain\(place\);/const Result<void> plain;/' "named textures are plain files"
 mutation F3 render/import/gltf_access.cpp 's/if \(count > 0 && \(!starts_inside.*?\)\) \{/if (false) {/' "accessors reach no further than their view"
 mutation F4 rt/base/path.cpp 's/if \(!std::isfinite\(\*value\)\) return.*?;//; s/if \(!\(length > 1e-9\).*?;//; s/if \(std::abs\(\*value\) > limit_of\(i\)\)\s*return.*?;//' "numbers of a path checked"
 mutation F5 render/measure/calibrate_file.cpp 's/if \(first != fmt::format.*?\n    \}//s' "the cost table's checksum"
