@@ -27,7 +27,7 @@ struct Frustum {
 
 /// Half fields of view across and up.
 struct HalfAngles {
-    double x = 0, y = 0;  ///< rad, below 89 degrees
+    double x = 0, y = 0;  ///< rad, below 89 degrees unless turned
 };
 /// Of the upright view about the pose's own direction that holds its picture, turned by angle_rad any way. 0 and no shift: its
 /// own.

@@ -82,20 +82,8 @@ void odd_views(const Effort&, Outcome& out) {
             Pose pose;
             pose.fov_y_rad = fov;
             ++tried;
-            const mat4 p = model::projection(pose, viewport);
-            bool fine = p[0][0] > 0 && p[1][1] > 0 && p[3][2] > 0;
-            for (int c = 0; c < 4; ++c)
-                for (int r = 0; r < 4; ++r) fine = fine && std::isfinite(p[c][r]);
-            const double angle = model::pixel_angle(pose, viewport);
-            fine = fine && std::isfinite(angle) && angle > 0;
-            const model::ViewScale scale = model::make_view_scale(pose, viewport);
-            for (const float v : {scale.tan_half_x, scale.tan_half_y, scale.pixels_per_radian, scale.viewport_pixels})
-                fine = fine && std::isfinite(v) && v > 0;
-            const model::Frustum frustum = model::make_frustum(pose, viewport, 1000, 1, 0.1);
-            for (const dvec4& plane : frustum.planes) fine = fine && std::isfinite(plane.x + plane.y + plane.z + plane.w);
-            for (const dvec3& corner : frustum.corners) fine = fine && std::isfinite(corner.x + corner.y + corner.z);
-            fine = fine &&
-                   model::visible(model::make_frustum(pose, viewport, 1000), {dvec3(-0.01, -0.01, -12), dvec3(0.01, 0.01, -10)});
+            const bool fine = sound_view(pose, viewport) && model::visible(model::make_frustum(pose, viewport, 1000),
+                                                                           {dvec3(-0.01, -0.01, -12), dvec3(0.01, 0.01, -10)});
             bad += fine ? 0 : 1;
         }
     }
@@ -149,15 +137,9 @@ void nothing_lost(const Effort& effort, Outcome& out) {
         if (effort.stopped()) break;
         look.prepare({place.pose, 0, 0}, place.viewport);
         const select::Cut& cut = look.select("two-stage", 4000);
-        std::vector<bool> shown(model->nodes.size(), false);
-        for (const select::CutItem& item : cut.items) shown[item.node] = true;
-        const Pyramid pyramid = pyramid_of(place.pose, place.viewport);
-        for (model::Index n = 0; n < model->nodes.size(); ++n) {
-            if (n > 0) shown[n] = shown[n] || shown[model->nodes[n].parent];
-            if (model->nodes[n].child_count > 0 || !(overlap(pyramid, model->nodes[n].box) > touching)) continue;
-            ++seen;
-            lost += shown[n] ? 0 : 1;
-        }
+        const LeavesInView leaves = leaves_in_view(*model, cut, place.pose, place.viewport);
+        seen += leaves.seen;
+        lost += leaves.lost;
     }
     out.none_of("visible leaves that no item of the cut stands for", lost);
     out.at_least("visible leaves", static_cast<double>(seen), 500);

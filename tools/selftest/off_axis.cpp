@@ -112,19 +112,10 @@ void odd_shifts(const Effort&, Outcome& out) {
                     Pose pose;
                     pose.fov_y_rad = fov;
                     ++tried;
-                    const mat4 p = model::projection(pose, viewport);
-                    bool fine = p[0][0] > 0 && p[1][1] > 0 && p[3][2] > 0;
-                    for (int c = 0; c < 4; ++c)
-                        for (int r = 0; r < 4; ++r) fine = fine && std::isfinite(p[c][r]);
-                    const model::ViewScale scale = model::make_view_scale(pose, viewport, 0.1);
-                    for (const float v : {scale.tan_half_x, scale.tan_half_y, scale.pixels_per_radian})
-                        fine = fine && std::isfinite(v) && v > 0;
-                    const model::Frustum frustum = model::make_frustum(pose, viewport, 1000, 1, 0.1);
-                    for (const dvec4& plane : frustum.planes) fine = fine && std::isfinite(plane.x + plane.y + plane.z + plane.w);
-                    for (const dvec3& corner : frustum.corners) fine = fine && std::isfinite(corner.x + corner.y + corner.z);
                     const Pyramid shown = pyramid_of(pose, viewport);  // what lies in the picture's middle is in view
                     const dvec3 middle = 11.0 * (shown.forward + shown.middle_x * shown.right + shown.middle_y * shown.up);
-                    fine = fine && model::visible(model::make_frustum(pose, viewport, 1000), {middle - 0.01, middle + 0.01});
+                    const bool fine = sound_view(pose, viewport) &&
+                                      model::visible(model::make_frustum(pose, viewport, 1000), {middle - 0.01, middle + 0.01});
                     bad += fine ? 0 : 1;
                 }
             }
@@ -155,15 +146,9 @@ void shifted_cuts(const Effort& effort, Outcome& out) {
         look.forget();
         const select::Cut& cut = look.select("two-stage", 4000);
         out.digest_of(cut.hash);
-        std::vector<bool> shown(model->nodes.size(), false);
-        for (const select::CutItem& item : cut.items) shown[item.node] = true;
-        const Pyramid pyramid = pyramid_of(place.pose, viewport);
-        for (model::Index n = 0; n < model->nodes.size(); ++n) {
-            if (n > 0) shown[n] = shown[n] || shown[model->nodes[n].parent];
-            if (model->nodes[n].child_count > 0 || !(overlap(pyramid, model->nodes[n].box) > touching)) continue;
-            ++seen;
-            lost += shown[n] ? 0 : 1;
-        }
+        const LeavesInView leaves = leaves_in_view(*model, cut, place.pose, viewport);
+        seen += leaves.seen;
+        lost += leaves.lost;
     }
     out.none_of("costs, errors and benefits that are not finite or out of order", numbers);
     out.none_of("cuts that are illegal or not finite", cuts);

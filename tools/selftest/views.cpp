@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include "render/model/pixels.hpp"
+#include "tools/selftest/separating.hpp"
+
 namespace surefoot::selftest {
 
 namespace {
@@ -50,6 +53,38 @@ std::vector<Placed> awkward_places(const model::Model& model, std::uint64_t most
         places.push_back(placed);
     }
     return places;
+}
+
+bool sound_view(const Pose& pose, model::Viewport viewport) {
+    const mat4 p = model::projection(pose, viewport);
+    bool fine = p[0][0] > 0 && p[1][1] > 0 && p[3][2] > 0;
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r) fine = fine && std::isfinite(p[c][r]);
+    const double angle = model::pixel_angle(pose, viewport);
+    fine = fine && std::isfinite(angle) && angle > 0;
+    for (const double turned : {0.0, 0.1}) {
+        const model::ViewScale scale = model::make_view_scale(pose, viewport, turned);
+        for (const float v : {scale.tan_half_x, scale.tan_half_y, scale.pixels_per_radian, scale.viewport_pixels})
+            fine = fine && std::isfinite(v) && v > 0;
+    }
+    const model::Frustum frustum = model::make_frustum(pose, viewport, 1000, 1, 0.1);
+    for (const dvec4& plane : frustum.planes) fine = fine && std::isfinite(plane.x + plane.y + plane.z + plane.w);
+    for (const dvec3& corner : frustum.corners) fine = fine && std::isfinite(corner.x + corner.y + corner.z);
+    return fine;
+}
+
+LeavesInView leaves_in_view(const model::Model& model, const select::Cut& cut, const Pose& pose, model::Viewport viewport) {
+    LeavesInView leaves;
+    std::vector<bool> shown(model.nodes.size(), false);
+    for (const select::CutItem& item : cut.items) shown[item.node] = true;
+    const Pyramid pyramid = pyramid_of(pose, viewport);
+    for (model::Index n = 0; n < model.nodes.size(); ++n) {
+        if (n > 0) shown[n] = shown[n] || shown[model.nodes[n].parent];
+        if (model.nodes[n].child_count > 0 || !(overlap(pyramid, model.nodes[n].box) > touching)) continue;
+        ++leaves.seen;
+        leaves.lost += shown[n] ? 0 : 1;
+    }
+    return leaves;
 }
 
 }  // namespace surefoot::selftest

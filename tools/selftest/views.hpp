@@ -1,4 +1,5 @@
-// Any view and any box: poses, sizes and places as hard as the numbers allow, for the rows that compare them with an oracle.
+// Any view and any box: poses, sizes and places as hard as the numbers allow, and what must hold of each, for the rows that
+// compare them with an oracle.
 #pragma once
 
 #include <array>
@@ -6,6 +7,7 @@
 
 #include "render/model/model.hpp"
 #include "render/model/view.hpp"
+#include "render/select/select.hpp"
 #include "rt/base/random.hpp"
 
 namespace surefoot::selftest {
@@ -27,5 +29,14 @@ struct Placed {
 
 /// At what can divide by nothing: on faces, corners, centres and in the insides of the boxes of nodes.
 std::vector<Placed> awkward_places(const model::Model& model, std::uint64_t most);
+
+/// Every number that follows from the view, and from a region about it, is finite; sizes are positive.
+bool sound_view(const Pose& pose, model::Viewport viewport);
+
+/// Leaves that the exact test sees, and of them those that no item of the cut stands for.
+struct LeavesInView {
+    std::uint64_t seen = 0, lost = 0;
+};
+LeavesInView leaves_in_view(const model::Model& model, const select::Cut& cut, const Pose& pose, model::Viewport viewport);
 
 }  // namespace surefoot::selftest
