@@ -77,6 +77,7 @@ struct Bakery {
     ClusterTree tree;
     std::vector<ClusterForm> clusters;
     std::vector<BoxForm> object_boxes;
+    std::vector<bool> cut_out;  ///< by material
 
     ProxyInput proxy_input() const;
     void place_objects();
@@ -128,8 +129,10 @@ ProxyInput Bakery::proxy_input() const {
     input.objects = objects;
     input.forms = forms;
     input.clusters = clusters;
+    input.model = &model;
     input.proxy_material = proxy_or_none;
     for (const model::Material& m : model.materials) input.two_sided.push_back(m.two_sided);
+    input.cut_out = cut_out;
     for (const importer::Material& m : scene.materials) input.textured_boxes |= m.image != importer::none;
     input.slack = chain_options(options, proxy_or_none).slack;
     return input;
@@ -170,7 +173,7 @@ bool Bakery::make_forms() {
     Stage stage(progress, "levels of detail", scene.meshes.size());
     std::atomic<bool> go{true};
     ChainOptions chain = chain_options(options, proxy_or_none);
-    chain.cut_out = cut_out_materials(scene);
+    chain.cut_out = cut_out;
     for (const model::Material& material : model.materials) {
         const bool none = material.texture == model::none;
         chain.pictures.push_back(none                                     ? Picture::none
@@ -356,7 +359,8 @@ void Bakery::emit() {
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
     const auto begun = std::chrono::steady_clock::now();
-    Bakery bakery{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}};
+    Bakery bakery{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}};
+    bakery.cut_out = cut_out_materials(scene);
     bakery.proxy = add_materials(scene, bakery.model);
     mark_vertex_colours(scene, bakery.model);
     bool coloured = false;

@@ -24,16 +24,20 @@ struct MipLevel {
         const float inside = clamp ? std::clamp(uv, 0.0F, 1.0F) : uv - std::floor(uv);
         return std::min(size - 1, static_cast<std::uint32_t>(inside * static_cast<float>(size)));
     }
+    [[nodiscard]] const std::byte* texel(const vec2& uv) const {
+        return texels + (place(uv.y, height) * width + place(uv.x, width)) * 4;
+    }
     [[nodiscard]] dvec3 at(const vec2& uv) const {
-        const std::byte* texel = texels + (place(uv.y, height) * width + place(uv.x, width)) * 4;
-        return {std::to_integer<int>(texel[0]), std::to_integer<int>(texel[1]), std::to_integer<int>(texel[2])};
+        const std::byte* c = texel(uv);
+        return {std::to_integer<int>(c[0]), std::to_integer<int>(c[1]), std::to_integer<int>(c[2])};
     }
 };
 
 /// The level whose texels are about as far apart as the samples of a triangle of that area (uv) across its narrower way: a
 /// coarser one shows what lies beside the triangle.
-MipLevel level_for(const model::Model& model, const model::Texture& texture, double uv_area) {
-    const double texels = uv_area * texture.width * texture.height;
+MipLevel level_for(const model::Model& model, const model::Texture& texture, const std::array<vec2, 3>& uv) {
+    const dvec2 a = dvec2(uv[1]) - dvec2(uv[0]), b = dvec2(uv[2]) - dvec2(uv[0]);
+    const double texels = 0.5 * std::abs(a.x * b.y - a.y * b.x) * texture.width * texture.height;
     double wide = std::sqrt(std::max(texels, 0.0)) / steps;
     std::uint64_t at = texture.first_byte;
     std::uint32_t w = texture.width, h = texture.height;
@@ -43,6 +47,16 @@ MipLevel level_for(const model::Model& model, const model::Texture& texture, dou
         h = std::max(1U, h / 2);
     }
     return {model.texels.data() + at, w, h, texture.clamp};
+}
+
+/// Barycentric places on an even grid of a triangle.
+template <class Visit>
+void each_sample(const Visit& visit) {
+    for (int i = 0; i < steps; ++i) {
+        for (int j = 0; i + j < steps; ++j)
+            visit(std::array<float, 3>{(static_cast<float>(i) + 1.0F / 3) / steps, (static_cast<float>(j) + 1.0F / 3) / steps,
+                                       (static_cast<float>(steps - 1 - i - j) + 1.0F / 3) / steps});
+    }
 }
 
 struct Mean {
@@ -57,19 +71,13 @@ void add_triangle(const model::Model& model, const model::Texture& texture, cons
     if (!(area > 0) || !std::isfinite(area)) return;
     std::array<vec2, 3> uv;
     for (std::size_t k = 0; k < 3; ++k) uv[k] = p.uvs[corners[k]];
-    const dvec2 a = dvec2(uv[1]) - dvec2(uv[0]), b = dvec2(uv[2]) - dvec2(uv[0]);
-    const MipLevel level = level_for(model, texture, 0.5 * std::abs(a.x * b.y - a.y * b.x));
+    const MipLevel level = level_for(model, texture, uv);
     std::array<Mean, 3> near;
-    for (int i = 0; i < steps; ++i) {
-        for (int j = 0; i + j < steps; ++j) {
-            const std::array<float, 3> share = {(static_cast<float>(i) + 1.0F / 3) / steps,
-                                                (static_cast<float>(j) + 1.0F / 3) / steps,
-                                                (static_cast<float>(steps - 1 - i - j) + 1.0F / 3) / steps};
-            Mean& corner = near[static_cast<std::size_t>(std::max_element(share.begin(), share.end()) - share.begin())];
-            corner.sum += level.at(share[0] * uv[0] + share[1] * uv[1] + share[2] * uv[2]);
-            corner.weight += 1;
-        }
-    }
+    each_sample([&](const std::array<float, 3>& share) {
+        Mean& corner = near[static_cast<std::size_t>(std::max_element(share.begin(), share.end()) - share.begin())];
+        corner.sum += level.at(share[0] * uv[0] + share[1] * uv[1] + share[2] * uv[2]);
+        corner.weight += 1;
+    });
     for (std::size_t k = 0; k < 3; ++k) {
         means[corners[k]].sum += near[k].sum * (area / near[k].weight);
         means[corners[k]].weight += area;
@@ -77,6 +85,19 @@ void add_triangle(const model::Model& model, const model::Texture& texture, cons
 }
 
 }  // namespace
+
+float share_shown(const model::Model& model, const model::Material& material, const std::array<vec2, 3>& uv) {
+    if (material.alpha != model::AlphaMode::mask || material.texture == model::none) return 1;
+    const MipLevel level = level_for(model, model.textures[material.texture], uv);
+    float shown = 0, all = 0;
+    each_sample([&](const std::array<float, 3>& share) {
+        const std::byte alpha = level.texel(share[0] * uv[0] + share[1] * uv[1] + share[2] * uv[2])[3];
+        shown +=
+            material.colour[3] * static_cast<float>(std::to_integer<int>(alpha)) / 255.0F >= material.alpha_cutoff ? 1.0F : 0.0F;
+        all += 1;
+    });
+    return shown / all;
+}
 
 std::vector<std::array<std::uint8_t, 4>> baked_colours(const model::Model& model, const importer::Primitive& primitive,
                                                        std::span<const model::Vertex> vertices) {

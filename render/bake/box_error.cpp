@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/bake/mesh_surface.hpp"
 #include "render/measure/mesh_distance.hpp"
 
 namespace surefoot::bake {
@@ -61,16 +62,12 @@ float box_error(const BoxForm& form, const Geometry& shown, const vec3& half, fl
     }
     const float diagonal = 2 * glm::length(half);
     if (box.indices.empty()) return diagonal;
-    std::vector<vec3> positions;
-    std::vector<std::uint32_t> indices;
-    for (const model::Vertex& v : shown.vertices) positions.push_back(position_of(v));
-    for (const GeometryPart& part : shown.parts) indices.insert(indices.end(), part.indices.begin(), part.indices.end());
+    const MeshSurface surface(shown.vertices, shown.parts);
     measure::DistanceLimits limits;
     limits.relative = slack;
     limits.max_queries = 2000;
     limits.known_lower = form.textured ? depth : 0.0F;  // what is below the parallax does not matter
-    const measure::DistanceBounds bounds =
-        measure::two_sided_distance({positions, indices}, {box.positions, box.indices}, limits);
+    const measure::DistanceBounds bounds = measure::two_sided_distance(surface.view(), {box.positions, box.indices}, limits);
     const float texel = form.textured ? diagonal / static_cast<float>(form.pixels) : 0.0F;
     return std::max(bounds.upper, limits.known_lower) + texel;
 }

@@ -17,8 +17,17 @@ struct Canvas {
 
 float edge(const vec2& a, const vec2& b, const vec2& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
 
+/// 0..1, other for every pixel and triangle: layers of leaves fill each other's holes, as they do in sight.
+float scattered(std::size_t pixel, std::size_t triangle) {
+    std::uint64_t x = (static_cast<std::uint64_t>(triangle) << 24U) + pixel + 1;
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;  // splitmix64
+    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
+    return static_cast<float>((x ^ (x >> 31U)) >> 40U) / static_cast<float>(1U << 24U);
+}
+
 /// p: corners in pixels and depth behind the face.
-void fill(Canvas& canvas, std::array<vec3, 3> p, std::array<std::array<std::uint8_t, 4>, 3> colours) {
+void fill(Canvas& canvas, std::array<vec3, 3> p, const ColouredTriangle& triangle, std::size_t number) {
+    const std::array<std::array<std::uint8_t, 4>, 3>& colours = triangle.colours;
     const vec2 a(p[0]), b(p[1]), c(p[2]);
     const float area = edge(a, b, c);
     if (std::abs(area) < 1e-12F) return;
@@ -38,6 +47,7 @@ void fill(Canvas& canvas, std::array<vec3, 3> p, std::array<std::array<std::uint
             const float depth = wa * p[0].z + wb * p[1].z + wc * p[2].z;
             const std::size_t pixel = y * canvas.pixels + x;
             if (depth >= canvas.depth[pixel] || depth > canvas.deepest) continue;
+            if (triangle.shown < 1 && scattered(pixel, number) >= triangle.shown) continue;
             canvas.depth[pixel] = depth;
             for (std::size_t k = 0; k < 3; ++k) {
                 const float value = wa * static_cast<float>(colours[0][k]) + wb * static_cast<float>(colours[1][k]) +
@@ -60,8 +70,10 @@ FaceCapture capture_face(std::span<const ColouredTriangle> triangles, const vec3
         return vec3((p[u] + half[u]) / std::max(2 * half[u], 1e-9F) * n, (p[v] + half[v]) / std::max(2 * half[v], 1e-9F) * n,
                     half[axis] - side * p[axis]);
     };
-    for (const ColouredTriangle& t : triangles)
-        fill(canvas, {project(t.corners[0]), project(t.corners[1]), project(t.corners[2])}, t.colours);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const ColouredTriangle& t = triangles[i];
+        fill(canvas, {project(t.corners[0]), project(t.corners[1]), project(t.corners[2])}, t, i);
+    }
     FaceCapture out;
     std::array<std::uint64_t, 3> sum{};
     std::uint64_t covered = 0;

@@ -13,6 +13,7 @@ namespace surefoot::bake {
 struct ColouredTriangle {
     std::array<vec3, 3> corners;  ///< relative to the box's centre
     std::array<std::array<std::uint8_t, 4>, 3> colours;
+    float shown = 1;  ///< share of it; less of what a mask cuts out, of which as many texels are painted, scattered
 };
 
 /// One face: what an eye far out along the axis sees, row 0 at the low end of the second in-plane axis.

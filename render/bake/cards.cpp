@@ -11,8 +11,6 @@ namespace surefoot::bake {
 
 namespace {
 
-constexpr double largest = 1.6;
-
 /// Neighbours in the file are neighbours in the tree: every bit of the number counts.
 std::uint32_t scattered(std::uint32_t x) {
     x = (x ^ (x >> 16U)) * 0x7feb352dU;
@@ -87,7 +85,7 @@ double area_of(const Geometry& g, const std::vector<std::uint32_t>& indices) {
     return area;
 }
 
-void enlarge_cards(Geometry& g, GeometryPart& part, double area_m2) {
+void enlarge_cards(Geometry& g, GeometryPart& part, double area_m2, double largest) {
     const double now_m2 = area_of(g, part.indices);
     if (!(now_m2 > 0) || !(area_m2 > now_m2)) return;
     const double scale = std::min(largest, std::sqrt(area_m2 / now_m2));

@@ -21,8 +21,9 @@ std::vector<std::vector<std::uint32_t>> cards_of(const Geometry& g, const Geomet
 /// those of every larger one, so that none comes and goes.
 std::vector<std::uint32_t> some_cards(const std::vector<std::vector<std::uint32_t>>& cards, double share);
 
-/// Draws each card of the part out about its middle, so that their areas sum to `area_m2`; at most to 1.6 times its size.
-void enlarge_cards(Geometry& g, GeometryPart& part, double area_m2);
+constexpr double largest_card = 1.6;  ///< times its size
+/// Draws each card of the part out about its middle, so that their areas sum to `area_m2`; at most to `largest` times its size.
+void enlarge_cards(Geometry& g, GeometryPart& part, double area_m2, double largest = largest_card);
 
 /// Of the triangles of indices.
 double area_of(const Geometry& g, const std::vector<std::uint32_t>& indices);

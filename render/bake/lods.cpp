@@ -8,6 +8,7 @@
 #include "render/bake/cards.hpp"
 #include "render/bake/corners.hpp"
 #include "render/bake/geometry.hpp"
+#include "render/bake/mesh_surface.hpp"
 #include "render/bake/picture_shift.hpp"
 #include "render/measure/mesh_distance.hpp"
 
@@ -141,6 +142,13 @@ std::array<std::array<std::uint8_t, 4>, 6> face_colours(const Geometry& g) {
     return out;
 }
 
+/// What is made of cards is seen through: a box would be a dark solid.
+bool mostly_cards(const Level& level, const Cards& cards) {
+    std::size_t of_cards = 0;
+    for (const GeometryPart& part : level.parts) of_cards += cards.contains(part.material) ? part.indices.size() / 3 : 0;
+    return 2 * of_cards >= level.triangles;
+}
+
 /// The level again in the proxy material: one part, its own vertices with the baked colours, no texture to bind. But cards, which
 /// would be solid, stay as they are.
 void to_proxy(Geometry& g, const Cards& cards, Level& level, model::Index material) {
@@ -200,21 +208,9 @@ Level box_level(Geometry& g, const Box& box, model::Index proxy_material) {
     return level;
 }
 
-/// Positions and indices of some parts, as the distance wants them.
-struct Surface {
-    std::vector<vec3> positions;
-    std::vector<std::uint32_t> indices;
-    Surface(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts) {
-        positions.reserve(vertices.size());
-        for (const model::Vertex& v : vertices) positions.push_back(position_of(v));
-        for (const GeometryPart& part : parts) indices.insert(indices.end(), part.indices.begin(), part.indices.end());
-    }
-    [[nodiscard]] measure::MeshView view() const { return {positions, indices}; }
-};
-
 /// The full detail, against which every level is bounded.
 struct Reference {
-    Surface surface;
+    MeshSurface surface;
     measure::TriangleTree tree;
     measure::DistanceLimits limits;
 
@@ -224,7 +220,7 @@ struct Reference {
     }
     /// Upper bound of the two-sided distance.
     [[nodiscard]] float bound(const Geometry& g, const Level& level) const {
-        const Surface coarse(g.vertices, level.parts);
+        const MeshSurface coarse(g.vertices, level.parts);
         const measure::DistanceBounds there =
             measure::directed_distance(surface.view(), measure::TriangleTree(coarse.view()), limits);
         measure::DistanceLimits back = limits;
@@ -308,7 +304,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         }
         levels.push_back(std::move(next));
     }
-    if (levels.back().triangles > 48 && !options.lock_border) {
+    if (levels.back().triangles > 48 && !options.lock_border && !mostly_cards(levels.back(), cards)) {
         Level round = box_level(full, box, options.proxy_material);
         round.error_m = std::max(bound(round), std::nextafter(levels.back().error_m, 1e30F));
         if (options.proxy_material != model::none)

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "render/bake/alpha_bleed.hpp"
+#include "render/bake/mask_coverage.hpp"
 
 namespace surefoot::bake {
 
@@ -39,25 +40,35 @@ std::vector<std::uint8_t> halve(std::span<const std::uint8_t> rgba, std::uint32_
     return out;
 }
 
+/// A level may show so much more or less than the picture, as a share of what is shown or of what is not, whichever is less:
+/// where a texel is wider than a mask's parts lie apart, it shows all or nothing, and the level before is better.
+constexpr double most_coverage_off = 0.5;
+
 }  // namespace
 
 model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height,
-                         bool clamp, std::uint32_t most_levels) {
+                         bool clamp, std::uint32_t most_levels, float cutoff) {
     model::Texture texture;
     texture.width = width;
     texture.height = height;
     texture.clamp = clamp;
     texture.first_byte = model.texels.size();
-    std::vector<std::uint8_t> level(rgba.begin(), rgba.end());
+    std::vector<std::uint8_t> level(rgba.begin(), rgba.end()), shown = level;
+    const double coverage = cutoff > 0 ? mask_coverage({shown, width, height, clamp}, cutoff) : 0;
     std::uint32_t w = width, h = height;
     while (true) {
-        const auto* bytes = reinterpret_cast<const std::byte*>(level.data());
-        model.texels.insert(model.texels.end(), bytes, bytes + level.size());
+        const auto* bytes = reinterpret_cast<const std::byte*>(shown.data());
+        model.texels.insert(model.texels.end(), bytes, bytes + shown.size());
         ++texture.levels;
         if ((w == 1 && h == 1) || texture.levels == most_levels) break;
+        // The next one from alphas as they were: factors must not pile up.
         level = halve(level, w, h);
         w = std::max(1U, w / 2);
         h = std::max(1U, h / 2);
+        shown = level;
+        if (cutoff > 0 &&
+            keep_coverage({shown, w, h, clamp}, cutoff, coverage) > most_coverage_off * std::min(coverage, 1 - coverage))
+            break;
     }
     model.textures.push_back(texture);
     return static_cast<model::Index>(model.textures.size() - 1);
@@ -65,17 +76,39 @@ model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba
 
 namespace {
 
-/// An image, and which of its texels are not shown (hidden_alpha).
-using Shown = std::pair<importer::Index, std::optional<std::uint8_t>>;
+/// An image, and how it is shown.
+struct Shown {
+    importer::Index image = importer::none;
+    std::optional<std::uint8_t> hidden;  ///< hidden_alpha()
+    bool masked = false;                 ///< by a mask that hides something
 
-model::Index add_shown(const importer::Scene& scene, const Shown& shown, model::Model& model) {
-    const importer::Image& image = scene.images[shown.first];
+    auto operator<=>(const Shown&) const = default;
+};
+
+/// A texture, and the alpha, 0..255, from which the first mask that shows it does so.
+struct ShownTexture {
+    float cutoff = 0;
+    model::Index index = model::none;
+};
+using ShownTextures = std::map<Shown, ShownTexture>;
+
+Shown shown_by(const importer::Material& material, std::optional<std::uint8_t> hidden) {
+    return {material.image, hidden, hidden && material.alpha == model::AlphaMode::mask && material.colour[3] > 0};
+}
+
+float cutoff_of(const importer::Material& material, const Shown& shown) {
+    // As hidden_alpha() has it: what is at the cutoff counts as shown.
+    return shown.masked ? material.alpha_cutoff * 0.9999F * 255.0F / material.colour[3] : 0.0F;
+}
+
+model::Index add_shown(const importer::Scene& scene, const Shown& shown, float cutoff, model::Model& model) {
+    const importer::Image& image = scene.images[shown.image];
     std::vector<std::uint8_t> bled;
-    if (shown.second) {
+    if (shown.hidden) {
         bled = image.rgba;
-        bleed_colours(bled, image.width, image.height, image.clamp, *shown.second);
+        bleed_colours(bled, image.width, image.height, image.clamp, *shown.hidden);
     }
-    return add_texture(model, bled.empty() ? image.rgba : bled, image.width, image.height, image.clamp, 32);
+    return add_texture(model, bled.empty() ? image.rgba : bled, image.width, image.height, image.clamp, 32, cutoff);
 }
 
 /// Textures that one image becomes at most.
@@ -94,31 +127,43 @@ std::vector<std::optional<std::uint8_t>> hidden_alphas(const importer::Scene& sc
     return out;
 }
 
+/// Of the same image, and a mask if this is one: rather a fringe than another copy.
+Shown nearest_way(const ShownTextures& textures, const Shown& shown) {
+    auto found = textures.end();
+    for (auto at = textures.lower_bound({shown.image, std::nullopt, false});
+         at != textures.end() && at->first.image == shown.image; ++at) {
+        if (found == textures.end() || at->first.masked == shown.masked) found = at;
+    }
+    return found->first;
+}
+
 /// A material's texture. What one does not show another may: an image that is shown in several ways becomes as many textures,
 /// the first of which has the image's own index.
 std::vector<model::Index> add_images(const importer::Scene& scene, model::Model& model) {
-    std::map<Shown, model::Index> textures;
+    ShownTextures textures;
     std::vector<Shown> wanted;
     std::vector<std::uint32_t> ways(scene.images.size(), 0);
     const std::vector<std::optional<std::uint8_t>> hidden = hidden_alphas(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        Shown shown{scene.materials[i].image, hidden[i]};
-        if (shown.first != importer::none && !textures.contains(shown) && ++ways[shown.first] > most_ways)
-            shown = textures.lower_bound({shown.first, std::nullopt})->first;  // rather a fringe than another copy
+        Shown shown = shown_by(scene.materials[i], hidden[i]);
+        if (shown.image != importer::none && !textures.contains(shown) && ++ways[shown.image] > most_ways)
+            shown = nearest_way(textures, shown);
         wanted.push_back(shown);
-        textures.emplace(shown, model::none);
+        textures.try_emplace(shown, ShownTexture{cutoff_of(scene.materials[i], shown), model::none});
     }
     for (importer::Index i = 0; i < scene.images.size(); ++i) {
-        const auto first = textures.lower_bound({i, std::nullopt});
-        const bool used = first != textures.end() && first->first.first == i;
-        const model::Index texture = add_shown(scene, used ? first->first : Shown{i, std::nullopt}, model);
-        if (used) first->second = texture;
+        const auto first = textures.lower_bound({i, std::nullopt, false});
+        const bool used = first != textures.end() && first->first.image == i;
+        const model::Index texture = used ? add_shown(scene, first->first, first->second.cutoff, model)
+                                          : add_shown(scene, {i, std::nullopt, false}, 0, model);
+        if (used) first->second.index = texture;
     }
     for (auto& [shown, texture] : textures)
-        if (shown.first != importer::none && texture == model::none) texture = add_shown(scene, shown, model);
+        if (shown.image != importer::none && texture.index == model::none)
+            texture.index = add_shown(scene, shown, texture.cutoff, model);
     std::vector<model::Index> out;
     out.reserve(wanted.size());
-    for (const Shown& shown : wanted) out.push_back(textures.at(shown));
+    for (const Shown& shown : wanted) out.push_back(textures.at(shown).index);
     return out;
 }
 
@@ -180,6 +225,24 @@ std::array<std::uint8_t, 4> tinted(const model::Material& material, const model:
     return out;
 }
 
+namespace {
+
+/// Mean of RGBA8 texels, weighted by alpha where there is any.
+vec3 mean_shown(std::span<const std::byte> rgba) {
+    vec3 sum(0), plain(0);
+    float alpha = 0;
+    for (std::size_t i = 0; i + 3 < rgba.size(); i += 4) {
+        const vec3 colour(std::to_integer<int>(rgba[i]), std::to_integer<int>(rgba[i + 1]), std::to_integer<int>(rgba[i + 2]));
+        const auto weight = static_cast<float>(std::to_integer<int>(rgba[i + 3]));
+        sum += weight * colour;
+        plain += colour;
+        alpha += weight;
+    }
+    return alpha > 0 ? sum / alpha : plain / (static_cast<float>(rgba.size()) / 4);
+}
+
+}  // namespace
+
 std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model::Material& material,
                                          const model::Vertex& vertex) {
     if (material.texture == model::none) return tinted(material, vertex, vec3(255));
@@ -187,7 +250,8 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
     // The level of about 8 texels across: an average about the place, not the texel there. Of what is cut out or transparent,
     // the whole picture's mean, weighted by alpha: a leaf's corners lie where there is no leaf, and are black in most
     // pictures.
-    const std::uint32_t across = material.alpha == model::AlphaMode::opaque ? 8 : 1;
+    const bool opaque = material.alpha == model::AlphaMode::opaque;
+    const std::uint32_t across = opaque ? 8 : 1;
     std::uint32_t level = 0, w = t.width, h = t.height;
     std::uint64_t at = t.first_byte;
     while (level + 1 < t.levels && std::max(w, h) > across) {
@@ -196,6 +260,7 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
         h = std::max(1U, h / 2);
         ++level;
     }
+    if (!opaque) return tinted(material, vertex, mean_shown({model.texels.data() + at, std::size_t{4} * w * h}));
     const float u = vertex.uv[0] - std::floor(vertex.uv[0]), v = vertex.uv[1] - std::floor(vertex.uv[1]);
     const std::uint32_t x = std::min(w - 1, static_cast<std::uint32_t>(u * static_cast<float>(w)));
     const std::uint32_t y = std::min(h - 1, static_cast<std::uint32_t>(v * static_cast<float>(h)));

@@ -20,9 +20,10 @@ std::vector<bool> cut_out_materials(const importer::Scene& scene);
 /// A material whose primitives have colours that are not all white calls for vertex colours.
 void mark_vertex_colours(const importer::Scene& scene, model::Model& model);
 
-/// Adds RGBA8 with all its mip levels; returns its index.
+/// Adds RGBA8 with its mip levels, as far as there are; returns its index. cutoff: the alpha (0..255) from which a mask shows it,
+/// or 0 of no mask. Levels of a mask show about as much as the picture does, and end where they no longer can.
 model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height,
-                         bool clamp, std::uint32_t most_levels);
+                         bool clamp, std::uint32_t most_levels, float cutoff = 0);
 
 /// Colour of a vertex: its own, times the material's, times what its picture shows (0..255 each).
 std::array<std::uint8_t, 4> tinted(const model::Material& material, const model::Vertex& vertex, const vec3& picture);

@@ -5,22 +5,26 @@
 #include <cmath>
 #include <limits>
 
+#include "render/bake/baked_colours.hpp"
 #include "render/bake/box_error.hpp"
+#include "render/bake/cluster_cards.hpp"
 #include "render/bake/vertex_clusters.hpp"
 
 namespace surefoot::bake {
 
 namespace {
 
-/// Appends a level of an object in the world frame relative to `centre`, in baked colours or in its own materials.
-void append(Geometry& to, const LodChain& chain, const Level& level, const dmat4& world, model::Index proxy_material) {
+/// Appends parts of an object in the world frame relative to `centre`, in baked colours (a proxy's material), or in their own.
+void append(Geometry& to, const LodChain& chain, std::span<const GeometryPart* const> parts, const dmat4& world,
+            model::Index proxy_material) {
+    if (parts.empty()) return;
     const dmat3 linear(world);
     // Normals by the cofactors: right under shear and mirroring, and no inverse of what may be singular.
     const dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
     const bool mirrored = glm::dot(linear[0], cofactor[0]) < 0;
     // Sorted, not a table over the chain's vertices: of a large object a few are used, and this runs for every level above it.
     std::vector<std::uint32_t> used;
-    for (const GeometryPart& part : level.parts) used.insert(used.end(), part.indices.begin(), part.indices.end());
+    for (const GeometryPart* part : parts) used.insert(used.end(), part->indices.begin(), part->indices.end());
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
     const auto base = static_cast<std::uint32_t>(to.vertices.size());
@@ -38,30 +42,34 @@ void append(Geometry& to, const LodChain& chain, const Level& level, const dmat4
         to.vertices.push_back(v);
         to.baked.push_back(chain.full.baked[index]);
     }
-    for (const GeometryPart& part : level.parts) {
-        const model::Index material = proxy_material != model::none ? proxy_material : part.material;
+    for (const GeometryPart* part : parts) {
+        const model::Index material = proxy_material != model::none ? proxy_material : part->material;
         auto same = std::find_if(to.parts.begin(), to.parts.end(), [&](const GeometryPart& q) { return q.material == material; });
         if (same == to.parts.end()) {
             to.parts.push_back({material, {}});
             same = to.parts.end() - 1;
         }
-        for (std::size_t i = 0; i < part.indices.size(); ++i) {
+        for (std::size_t i = 0; i < part->indices.size(); ++i) {
             const std::size_t corner = mirrored ? i - i % 3 + (3 - i % 3) % 3 : i;
-            const auto at = std::lower_bound(used.begin(), used.end(), part.indices[corner]) - used.begin();
+            const auto at = std::lower_bound(used.begin(), used.end(), part->indices[corner]) - used.begin();
             same->indices.push_back(base + static_cast<std::uint32_t>(at));
         }
     }
 }
 
-std::vector<ColouredTriangle> coloured(const Geometry& g) {
+std::vector<ColouredTriangle> coloured(const Geometry& g, const ProxyInput& input) {
     std::vector<ColouredTriangle> out;
     for (const GeometryPart& part : g.parts) {
         for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
             ColouredTriangle t;
+            std::array<vec2, 3> uv;
             for (std::size_t k = 0; k < 3; ++k) {
-                t.corners[k] = position_of(g.vertices[part.indices[i + k]]);
+                const model::Vertex& v = g.vertices[part.indices[i + k]];
+                t.corners[k] = position_of(v);
                 t.colours[k] = g.baked[part.indices[i + k]];
+                uv[k] = {v.uv[0], v.uv[1]};
             }
+            if (input.is_cut_out(part.material)) t.shown = share_shown(*input.model, input.model->materials[part.material], uv);
             out.push_back(t);
         }
     }
@@ -75,9 +83,13 @@ struct Merged {
     float error_m = 0;
 };
 
+/// Cards keep their material, in which alone they are cards.
 void append(Merged& to, const LodChain& chain, const Level& level, const dmat4& world, std::uint32_t owner,
-            model::Index proxy_material) {
-    append(to.geometry, chain, level, world, proxy_material);
+            const ProxyInput& input) {
+    std::vector<const GeometryPart*> solid, cards;
+    for (const GeometryPart& part : level.parts) (input.is_cut_out(part.material) ? cards : solid).push_back(&part);
+    append(to.geometry, chain, solid, world, input.proxy_material);
+    append(to.geometry, chain, cards, world, model::none);
     to.owners.resize(to.geometry.vertices.size(), owner);
     to.error_m = std::max(to.error_m, static_cast<float>(level.error_m * largest_stretch(dmat3(world))));
 }
@@ -107,8 +119,7 @@ Merged merge_objects(const ProxyInput& input, const Box& box, std::span<const st
     for (std::size_t i = 0; i < members.size(); ++i) {
         const PlacedObject& object = input.objects[members[i]];
         const LodChain& chain = input.forms[object.mesh].chain;
-        append(merged, chain, level_for(chain, allowed_m / stretch[i]), object.world, static_cast<std::uint32_t>(i),
-               input.proxy_material);
+        append(merged, chain, level_for(chain, allowed_m / stretch[i]), object.world, static_cast<std::uint32_t>(i), input);
     }
     return merged;
 }
@@ -130,7 +141,7 @@ Merged merge_children(const ProxyInput& input, const ClusterTree::Cluster& clust
         for (const Level& level : chain.levels) {
             if (level.triangles <= input.most_input / cluster.children.size()) finest = &level;
         }
-        append(merged, chain, *finest, world, owner++, input.proxy_material);
+        append(merged, chain, *finest, world, owner++, input);
     }
     return merged;
 }
@@ -142,9 +153,34 @@ BoxForm make_box(const Merged& merged, const Box& box, std::uint32_t pixels, con
     form.pixels = pixels;
     form.textured = input.textured_boxes;
     const vec3 half(glm::max(box.half(), dvec3(1e-4)));
-    form.faces = capture_faces(coloured(merged.geometry), half, pixels);
+    form.faces = capture_faces(coloured(merged.geometry, input), half, pixels);
     form.error_m = box_error(form, merged.geometry, half, input.slack) + merged.error_m;
     return form;
+}
+
+/// What is solid by a grid; cards, where there are, thinned out, with their share of the triangles.
+LodChain cluster_chain(Merged& merged, const ProxyInput& input, const ClusteringLimits& limits) {
+    Geometry& g = merged.geometry;
+    const auto all = static_cast<double>(g.triangles());
+    const std::vector<GeometryPart> cards = take_cards(g, input.cut_out, input.proxy_material, std::max(limits.most / 8, 2U));
+    if (cards.empty()) return cluster_vertices(g, merged.owners, input.two_sided, limits);
+    const double share = static_cast<double>(g.triangles()) / all;
+    const auto solid_of = [&](std::uint32_t triangles) { return static_cast<std::uint32_t>(share * triangles); };
+    ClusteringLimits solid = limits;
+    solid.most = std::max(solid_of(limits.most), 12U);
+    solid.least = std::max(solid_of(limits.least), 12U);
+    LodChain chain;
+    if (g.triangles() > 0) chain = cluster_vertices(g, merged.owners, input.two_sided, solid);
+    const std::uint32_t taken = chain.levels.empty() ? 0 : chain.levels.back().triangles;
+    CardLimits card;
+    card.most = std::max(limits.most - std::min(limits.most, taken), 4U);
+    card.least = std::max(limits.least - solid_of(limits.least), 4U);
+    card.slack = limits.slack;
+    chain = with_cards(std::move(chain), g, cards, card);
+    g.parts.insert(g.parts.end(), cards.begin(), cards.end());
+    // What is solid and every material's cards have a least number of triangles each; together these may be too many.
+    while (chain.levels.size() > 1 && chain.levels.back().triangles > limits.most) chain.levels.pop_back();
+    return chain;
 }
 
 }  // namespace
@@ -152,14 +188,14 @@ BoxForm make_box(const Merged& merged, const Box& box, std::uint32_t pixels, con
 ClusterForm make_cluster(const ProxyInput& input, const ClusterTree::Cluster& cluster, std::span<const std::uint32_t> members) {
     std::uint32_t children_coarsest = 0;
     for (const std::uint32_t e : cluster.children) children_coarsest += chain_of(input, e).levels.front().triangles;
-    const Merged merged =
+    Merged merged =
         16 * members.size() > input.most_input ? merge_children(input, cluster) : merge_objects(input, cluster.box, members);
     ClusteringLimits limits;
     limits.most = std::clamp(children_coarsest * 7 / 10, 12U, 2000U);
     limits.least = std::clamp(static_cast<std::uint32_t>(4 * members.size()), 32U, 128U);
     limits.slack = input.slack;
     ClusterForm out;
-    out.chain = cluster_vertices(merged.geometry, merged.owners, input.two_sided, limits);
+    out.chain = cluster_chain(merged, input, limits);
     float least_m = input.proxy_material == model::none ? 0.0F : static_cast<float>(least_proxy_error * cluster.box.diagonal());
     for (std::size_t i = out.chain.levels.size(); i-- > 0;) {  // fine to coarse: errors keep rising
         Level& level = out.chain.levels[i];

@@ -21,11 +21,15 @@ struct ProxyInput {
     std::span<const PlacedObject> objects;
     std::span<const MeshForm> forms;
     std::span<const ClusterForm> clusters;  ///< those below are made
+    const model::Model* model = nullptr;    ///< its materials and textures are made
     model::Index proxy_material = 0;
     std::vector<bool> two_sided;  ///< by material
+    std::vector<bool> cut_out;    ///< by material: cards (cards.hpp), kept in it
     bool textured_boxes = false;
     float slack = 0.25F;               ///< of bounds
     std::uint32_t most_input = 24000;  ///< triangles merged: objects come as coarse as that needs, their errors added
+
+    [[nodiscard]] bool is_cut_out(model::Index material) const { return material < cut_out.size() && cut_out[material]; }
 };
 
 /// `members`: the objects below the cluster; where they are too many to merge, its children (entities) stand for them.

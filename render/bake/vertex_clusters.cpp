@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "render/bake/mesh_surface.hpp"
 #include "render/bake/vertex_grid.hpp"
 #include "render/measure/mesh_distance.hpp"
 
@@ -34,22 +35,11 @@ std::vector<GridMesh> choose_grids(const ClusterSource& source, const Clustering
     return chosen;
 }
 
-struct Positions {
-    std::vector<vec3> points;
-    std::vector<std::uint32_t> indices;
-    Positions(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts) {
-        points.reserve(vertices.size());
-        for (const model::Vertex& v : vertices) points.push_back(position_of(v));
-        for (const GeometryPart& part : parts) indices.insert(indices.end(), part.indices.begin(), part.indices.end());
-    }
-    [[nodiscard]] measure::MeshView view() const { return {points, indices}; }
-};
-
-float bound(const Positions& source, const measure::TriangleTree& source_tree, const GridMesh& mesh, float slack) {
-    const Positions coarse(mesh.vertices, mesh.parts);
+float bound(const MeshSurface& source, const measure::TriangleTree& source_tree, const GridMesh& mesh, float slack) {
+    const MeshSurface coarse(mesh.vertices, mesh.parts);
     measure::DistanceLimits limits;
     limits.relative = slack;
-    limits.max_queries = 1000 + source.indices.size() / 24;  // the grid's own bounds are near the truth already
+    limits.max_queries = 1000 + source.view().triangles() / 8;  // the grid's own bounds are near the truth already
     const measure::DistanceBounds there =
         measure::directed_distance(source.view(), measure::TriangleTree(coarse.view()), limits, mesh.source_bound);
     limits.known_lower = there.lower;
@@ -78,7 +68,7 @@ void adopt(LodChain& chain, GridMesh&& mesh, float error_m) {
 LodChain cluster_vertices(const Geometry& g, std::span<const std::uint32_t> owners, const std::vector<bool>& two_sided,
                           const ClusteringLimits& limits) {
     std::vector<GridMesh> meshes = choose_grids(make_source(g, owners, two_sided), limits);
-    const Positions positions(g.vertices, g.parts);
+    const MeshSurface positions(g.vertices, g.parts);
     const measure::TriangleTree tree(positions.view());
     LodChain chain;
     chain.full.centre = g.centre;

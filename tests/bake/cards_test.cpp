@@ -6,9 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
-#include "render/measure/mesh_distance.hpp"
+#include "render/bake/bake.hpp"
+#include "render/bake/cluster_cards.hpp"
+#include "render/bake/mesh_surface.hpp"
+#include "render/bake/vertex_clusters.hpp"
 #include "rt/base/random.hpp"
+#include "tests/bake/scenes.hpp"
 
 namespace surefoot::bake {
 namespace {
@@ -107,26 +112,16 @@ TEST(Cards, StayCutOutOnEveryLevelAndTheRestIsColoured) {
     EXPECT_EQ(chain.levels.back().error_m, 0);
 }
 
-struct Surface {
-    std::vector<vec3> points;
-    std::vector<std::uint32_t> indices;
-    Surface(const Geometry& g, const std::vector<GeometryPart>& parts) {
-        for (const model::Vertex& v : g.vertices) points.push_back(position_of(v));
-        for (const GeometryPart& part : parts) indices.insert(indices.end(), part.indices.begin(), part.indices.end());
-    }
-    [[nodiscard]] measure::MeshView view() const { return {points, indices}; }
-};
-
 TEST(Cards, ThatAreLeftOutOrGrewLieWithinTheLevelsError) {
     ChainOptions options;
     options.proxy_material = 2;
     options.pictures = {Picture::clamped, Picture::clamped, Picture::none};
     options.cut_out = {true, false, false};
     const LodChain chain = make_chain(crown(200), options);
-    const Surface full(chain.full, chain.levels.back().parts);
+    const MeshSurface full(chain.full.vertices, chain.levels.back().parts);
     for (std::size_t l = 0; l + 1 < chain.levels.size(); ++l) {
         EXPECT_GT(chain.levels[l].error_m, chain.levels[l + 1].error_m);
-        const Surface coarse(chain.full, chain.levels[l].parts);
+        const MeshSurface coarse(chain.full.vertices, chain.levels[l].parts);
         for (const measure::DistanceBounds& found :
              {measure::directed_distance(full.view(), measure::TriangleTree(coarse.view()), {}),
               measure::directed_distance(coarse.view(), measure::TriangleTree(full.view()), {})}) {
@@ -165,6 +160,143 @@ TEST(Cards, OneLargeThingAmongCrumbsIsSimplifiedAsAnyOther) {
     ASSERT_EQ(thinned.levels.size(), plain.levels.size());
     for (std::size_t l = 0; l < plain.levels.size(); ++l) EXPECT_EQ(thinned.levels[l].error_m, plain.levels[l].error_m);
     EXPECT_GE(plain.levels.size(), 4U);
+}
+
+/// Nine crowns in three rows, merged.
+Geometry orchard() {
+    Geometry g;
+    g.parts = {{0, {}}, {1, {}}};
+    for (int tree = 0; tree < 9; ++tree) {
+        const Geometry one = crown(60);
+        const auto base = static_cast<std::uint32_t>(g.vertices.size());
+        for (model::Vertex v : one.vertices) {
+            v.position[0] += 6.0F * static_cast<float>(tree % 3);
+            v.position[2] += 6.0F * static_cast<float>(tree / 3);
+            g.vertices.push_back(v);
+        }
+        g.baked.insert(g.baked.end(), one.baked.begin(), one.baked.end());
+        for (std::size_t p = 0; p < 2; ++p)
+            for (const std::uint32_t i : one.parts[p].indices) g.parts[p].indices.push_back(base + i);
+    }
+    return g;
+}
+
+TEST(ClusterCards, OfManyCrownsAreSomeOfThemLargerWithinTheLevelsErrors) {
+    const Geometry all = orchard();
+    Geometry solid = all;
+    const std::vector<GeometryPart> cards = take_cards(solid, {true, false, false}, 2, 30);
+    ASSERT_EQ(cards.size(), 1U);
+    ASSERT_EQ(solid.parts.size(), 1U);
+    EXPECT_EQ(solid.parts[0].material, 1U);
+    const std::vector<std::uint32_t> owners(all.vertices.size(), 0);
+    ClusteringLimits limits;
+    limits.most = 40;
+    limits.least = 12;
+    const LodChain grid = cluster_vertices(solid, owners, {true, true, true}, limits);
+    const LodChain chain = with_cards(grid, solid, cards, {300, 20, 0.25F});
+    ASSERT_GE(chain.levels.size(), 4U);
+    EXPECT_LE(chain.levels.back().triangles, 300 + grid.levels.back().triangles);
+    const MeshSurface full(all.vertices, all.parts);
+    const double area_m2 = area_of(all, all.parts[0].indices);
+    for (std::size_t l = 0; l < chain.levels.size(); ++l) {
+        const Level& level = chain.levels[l];
+        std::size_t triangles = 0, leaves = 0, trunks = 0;
+        for (const GeometryPart& part : level.parts) {
+            triangles += part.indices.size() / 3;
+            (part.material == 0 ? leaves : trunks) += part.indices.size() / 3;
+            if (part.material != 0) continue;
+            const double kept = static_cast<double>(part.indices.size()) / static_cast<double>(all.parts[0].indices.size());
+            const double grown = area_of(chain.full, part.indices) / area_m2;
+            EXPECT_NEAR(grown, std::min(1.0, 2.5 * 2.5 * kept), 0.02) << "coverage is kept, or the cards grew as far as they may";
+        }
+        EXPECT_EQ(triangles, level.triangles);
+        EXPECT_GE(leaves, 2U);
+        EXPECT_GE(trunks, 2U);
+        if (l > 0) {
+            EXPECT_LT(level.error_m, chain.levels[l - 1].error_m);
+        }
+        const MeshSurface coarse(chain.full.vertices, level.parts);
+        for (const measure::DistanceBounds& found :
+             {measure::directed_distance(full.view(), measure::TriangleTree(coarse.view()), {}),
+              measure::directed_distance(coarse.view(), measure::TriangleTree(full.view()), {})})
+            EXPECT_LE(found.lower, level.error_m * 1.0001F);
+    }
+}
+
+TEST(ClusterCards, WithoutAnythingSolidAreLevelsOfTheirOwn) {
+    Geometry g = orchard();
+    g.parts.pop_back();
+    const std::vector<GeometryPart> cards = take_cards(g, {true}, 2, 30);
+    ASSERT_EQ(g.triangles(), 0U);
+    const LodChain chain = with_cards({}, g, cards, {256, 16, 0.25F});
+    EXPECT_GE(chain.levels.size(), 4U);
+    EXPECT_LE(chain.levels.back().triangles, 256U);
+    EXPECT_GE(chain.levels.front().triangles, 8U);
+}
+
+TEST(ClusterCards, ThatAreFewAreColouredAndSolid) {
+    Geometry g = crown(7);
+    EXPECT_TRUE(take_cards(g, {true, false, false}, 2, 30).empty());
+    ASSERT_EQ(g.parts.size(), 2U);
+    EXPECT_EQ(g.parts[1].material, 2U);
+    EXPECT_EQ(g.parts[1].indices.size(), 7U * 6);
+    for (const std::uint32_t i : g.parts[1].indices) EXPECT_EQ(g.vertices[i].colour[1], 90);
+}
+
+TEST(ClusterCards, LargerThanALevelMayBeAreColouredAndSolid) {
+    Geometry g = orchard();
+    EXPECT_TRUE(take_cards(g, {true, false, false}, 2, 1).empty());
+    EXPECT_EQ(g.triangles(), orchard().triangles());
+}
+
+TEST(ClusterCards, OfABakedWoodAreSeenThroughAtEveryDistance) {
+    importer::Scene scene;
+    scene.sources = {"by hand"};
+    importer::Image leaf;
+    leaf.width = leaf.height = 8;
+    for (int i = 0; i < 64; ++i)
+        leaf.rgba.insert(leaf.rgba.end(), {40, 120, 30, static_cast<std::uint8_t>((i / 8 + i) % 3 == 0 ? 255 : 0)});
+    scene.images.push_back(leaf);
+    scene.materials.resize(2);
+    scene.materials[0].image = 0;
+    scene.materials[0].alpha = model::AlphaMode::mask;
+    scene.materials[0].alpha_cutoff = 0.5F;
+    importer::Primitive leaves, trunk = tube(6, 0.2F, 4);
+    trunk.material = 1;
+    Random random(3);
+    for (std::uint32_t card = 0; card < 120; ++card) {
+        vec3 at(0);
+        for (int k = 0; k < 3; ++k) at[k] = static_cast<float>(random.range(-2, 2));
+        at.y += 5;
+        for (const vec2& corner : {vec2(0, 0), vec2(1, 0), vec2(1, 1), vec2(0, 1)}) {
+            leaves.positions.push_back(at + 0.6F * vec3(corner, 0));
+            leaves.normals.push_back({0, 0, 1});
+            leaves.uvs.push_back(corner);
+        }
+        for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) leaves.indices.push_back(4 * card + i);
+    }
+    scene.meshes.push_back({"tree", {leaves, trunk}});
+    for (int tree = 0; tree < 64; ++tree) place(scene, 0, dvec3(7 * (tree % 8), 0, 7 * (tree / 8)));
+    const auto model = bake(scene, {}, {});
+    ASSERT_TRUE(model.ok()) << model.error().text();
+    std::size_t clusters = 0, seen_through = 0;
+    for (const model::Node& node : model->nodes) {
+        if (node.kind != model::NodeKind::cluster) continue;
+        std::uint32_t children = 0;
+        for (model::Index c = node.first_child; c < node.first_child + node.child_count; ++c) {
+            // The coarsest mesh; before it there may be a box.
+            const model::Node& child = model->nodes[c];
+            const auto own = std::span(model->reps).subspan(child.first_rep, child.rep_count);
+            children += std::ranges::find(own, model::RepKind::mesh, &model::Representation::kind)->triangles;
+        }
+        EXPECT_LE(model->reps[node.first_rep + node.rep_count - 1].triangles, children) << "a parent costs less";
+        for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
+            ++clusters;
+            seen_through += (model->reps[r].effects & model::effect_alpha_mask) != 0 ? 1 : 0;
+        }
+    }
+    EXPECT_GE(clusters, 8U);
+    EXPECT_EQ(seen_through, clusters);
 }
 
 }  // namespace

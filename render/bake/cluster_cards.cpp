@@ -1,0 +1,157 @@
+// Each level: the grid's mesh of what is solid, and some of the cards (cluster_cards.hpp).
+#include "render/bake/cluster_cards.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "render/bake/cards.hpp"
+#include "render/bake/mesh_surface.hpp"
+#include "render/measure/mesh_distance.hpp"
+
+namespace surefoot::bake {
+
+namespace {
+
+constexpr double largest_in_clusters = 2.5;  ///< times its size; they are seen from farther than an object's own
+
+bool can_be_thinned(const Geometry& g, const GeometryPart& part, std::uint32_t largest_triangles) {
+    const auto cards = cards_of(g, part);
+    std::size_t most = 0;
+    for (const auto& card : cards) most = std::max(most, card.size());
+    return cards.size() >= fewest_cards && most * fewest_cards <= part.indices.size() && most / 3 <= largest_triangles;
+}
+
+void to_baked_colours(Geometry& g, GeometryPart&& part, model::Index material) {
+    for (const std::uint32_t index : part.indices) {
+        std::copy_n(g.baked[index].begin(), 3, g.vertices[index].colour);
+        g.vertices[index].colour[3] = 255;
+    }
+    const auto same = std::ranges::find(g.parts, material, &GeometryPart::material);
+    if (same == g.parts.end())
+        g.parts.push_back({material, std::move(part.indices)});
+    else
+        same->indices.insert(same->indices.end(), part.indices.begin(), part.indices.end());
+}
+
+/// What all levels of the cards are made and judged from.
+struct Thinning {
+    Thinning(const Geometry& geometry, const std::vector<GeometryPart>& parts, float slack) : g(geometry) {
+        limits.relative = slack;
+        for (const GeometryPart& part : parts) {
+            cards.push_back({part.material, cards_of(g, part), area_of(g, part.indices)});
+            triangles += part.indices.size() / 3;
+        }
+        source.add(g.vertices, parts);
+        MeshSurface everything;
+        everything.add(g.vertices, g.parts);
+        everything.add(g.vertices, parts);
+        all = std::make_unique<measure::TriangleTree>(everything.view());
+        limits.absolute = 0.0005F * all->diagonal();
+        limits.max_queries = 1000 + triangles / 8;
+    }
+
+    struct OfMaterial {
+        model::Index material;
+        std::vector<std::vector<std::uint32_t>> cards;
+        double area_m2;
+    };
+    const Geometry& g;
+    std::vector<OfMaterial> cards;
+    std::size_t triangles = 0;
+    MeshSurface source;  ///< the cards
+    std::unique_ptr<measure::TriangleTree> all;
+    measure::DistanceLimits limits;
+};
+
+/// About `budget` triangles of cards, with vertices of their own.
+Geometry some_of(const Thinning& from, double budget) {
+    Geometry out;
+    out.centre = from.g.centre;
+    const double share = budget / static_cast<double>(from.triangles);
+    for (const Thinning::OfMaterial& m : from.cards) {
+        GeometryPart part{m.material, {}};
+        std::map<std::uint32_t, std::uint32_t> taken;
+        for (const std::uint32_t index : some_cards(m.cards, share)) {
+            const auto [where, fresh] = taken.try_emplace(index, static_cast<std::uint32_t>(out.vertices.size()));
+            if (fresh) {
+                out.vertices.push_back(from.g.vertices[index]);
+                out.baked.push_back(from.g.baked[index]);
+            }
+            part.indices.push_back(where->second);
+        }
+        enlarge_cards(out, part, m.area_m2, largest_in_clusters);
+        out.parts.push_back(std::move(part));
+    }
+    optimise(out);
+    return out;
+}
+
+/// Upper bound of the two-sided distance: of all cards to what is left of them, and of that to all there was.
+float bound_of(const Thinning& from, const Geometry& some) {
+    const MeshSurface coarse(some.vertices, some.parts);
+    const measure::DistanceBounds there =
+        measure::directed_distance(from.source.view(), measure::TriangleTree(coarse.view()), from.limits);
+    measure::DistanceLimits back = from.limits;
+    back.known_lower = there.lower;
+    return std::max(there.upper, measure::directed_distance(coarse.view(), *from.all, back).upper);
+}
+
+void add_to(Geometry& to, Level& level, Geometry&& cards) {
+    const auto base = static_cast<std::uint32_t>(to.vertices.size());
+    to.vertices.insert(to.vertices.end(), cards.vertices.begin(), cards.vertices.end());
+    to.baked.insert(to.baked.end(), cards.baked.begin(), cards.baked.end());
+    for (GeometryPart& part : cards.parts) {
+        for (std::uint32_t& index : part.indices) index += base;
+        level.triangles += static_cast<std::uint32_t>(part.indices.size() / 3);
+        level.parts.push_back(std::move(part));
+    }
+}
+
+/// What is solid beside cards of that error: the coarsest level that is no worse, or the finest there is. The level's error is of
+/// both.
+Level solid_within(const std::vector<Level>& solid, float error_m) {
+    Level level;
+    if (!solid.empty()) {
+        const auto found = std::ranges::find_if(solid, [&](const Level& l) { return l.error_m <= error_m; });
+        level = found == solid.end() ? solid.back() : *found;
+    }
+    level.error_m = std::max(level.error_m, error_m);
+    return level;
+}
+
+}  // namespace
+
+std::vector<GeometryPart> take_cards(Geometry& g, const std::vector<bool>& cut_out, model::Index proxy_material,
+                                     std::uint32_t largest_triangles) {
+    std::vector<GeometryPart> parts = std::move(g.parts), cards;
+    g.parts.clear();
+    for (GeometryPart& part : parts) {
+        if (part.material >= cut_out.size() || !cut_out[part.material])
+            g.parts.push_back(std::move(part));
+        else if (can_be_thinned(g, part, largest_triangles))
+            cards.push_back(std::move(part));
+    }
+    for (GeometryPart& part : parts)  // what was not moved
+        if (!part.indices.empty()) to_baked_colours(g, std::move(part), proxy_material);
+    return cards;
+}
+
+LodChain with_cards(LodChain chain, const Geometry& g, const std::vector<GeometryPart>& cards, const CardLimits& limits) {
+    const Thinning from(g, cards, limits.slack);
+    std::vector<double> budgets{static_cast<double>(std::min<std::size_t>(limits.most, from.triangles))};
+    while (budgets.back() >= 2.0 * limits.least) budgets.push_back(budgets.back() / 2);
+    std::vector<Level> solid = std::move(chain.levels);
+    chain.levels.clear();
+    chain.full.centre = g.centre;
+    for (; !budgets.empty(); budgets.pop_back()) {  // from the coarsest: a finer one must be better, else it is left out
+        Geometry some = some_of(from, std::max(budgets.back(), 2.0));
+        Level level = solid_within(solid, bound_of(from, some));
+        if (!chain.levels.empty() && level.error_m >= chain.levels.back().error_m) continue;
+        add_to(chain.full, level, std::move(some));
+        chain.levels.push_back(std::move(level));
+    }
+    return chain;
+}
+
+}  // namespace surefoot::bake

@@ -1,0 +1,32 @@
+// Positions and indices of some parts, as distances between meshes want them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/bake/geometry.hpp"
+#include "render/measure/mesh_distance.hpp"
+
+namespace surefoot::bake {
+
+class MeshSurface {
+public:
+    MeshSurface() = default;
+    MeshSurface(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts) { add(vertices, parts); }
+
+    /// Parts over these vertices.
+    void add(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts) {
+        const auto base = static_cast<std::uint32_t>(positions_.size());
+        positions_.reserve(positions_.size() + vertices.size());
+        for (const model::Vertex& v : vertices) positions_.push_back(position_of(v));
+        for (const GeometryPart& part : parts)
+            for (const std::uint32_t index : part.indices) indices_.push_back(base + index);
+    }
+    [[nodiscard]] measure::MeshView view() const { return {positions_, indices_}; }
+
+private:
+    std::vector<vec3> positions_;
+    std::vector<std::uint32_t> indices_;
+};
+
+}  // namespace surefoot::bake
