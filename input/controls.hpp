@@ -33,6 +33,7 @@ struct ControlInfo {
     std::string unit;                           ///< "deg", "cm", ...; may be empty
     bool relative = false;                      ///< after quirks: a displacement, not a deflection
     bool wraps = false;
+    std::uint8_t port = 0;  ///< an adapter's socket, from 0: which of its like applications, each a pad with X and Y of its own
 };
 
 /// Newest raw values of one device, index-parallel to its ControlInfo list. Plain data: copied through exchanges.

@@ -16,9 +16,11 @@ Steering::Steering(const MotionLimits& motion, const SafetyLimits& safety, bool 
     safety_.latched = stop_latched;
 }
 
-/// Where every report comes again and again, one that does not is old, whatever the device's other reports say.
-std::int64_t Steering::age_limit_ns(const Source& source) const {
-    return source.reporting == Reporting::streaming ? safety_limits_.age_limit_ns : 0;
+/// Where every report comes again and again, one that does not is old, whatever the device's other reports say. Of an adapter
+/// whose pads were seen to stream, the reports of one that was pulled out end while the others' go on.
+std::int64_t Steering::age_limit_ns(std::size_t device) const {
+    const bool learned = devices_[device].mapper.adapter && safety_.devices[device].habit.learned_streaming;
+    return learned || sources_[device].reporting == Reporting::streaming ? safety_limits_.age_limit_ns : 0;
 }
 
 int Steering::attach(Mapper&& mapper, std::size_t controls, Reporting reporting, int again) {
@@ -74,7 +76,7 @@ void Steering::report(int number, const DeviceState& state, std::int64_t now_ns)
     device.newest.carried_over = state.carried_over;
     device.newest.stamp_ns = state.stamp_ns;
     device.newest.reports = source.reports + 1;
-    const Asked asked = ask(device.mapper, device.newest, now_ns, age_limit_ns(source));
+    const Asked asked = ask(device.mapper, device.newest, now_ns, age_limit_ns(at));
     source.asked = device.ticked ? asked : absorbed(source.asked, asked);
     device.ticked = false;
     ++source.reports;
@@ -94,7 +96,7 @@ NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const G
     for (std::size_t i = 0; i < max_devices; ++i) {
         // Smoothing and settling run on between reports.
         if (sources_[i].connected && devices_[i].ticked)
-            sources_[i].asked = ask(devices_[i].mapper, devices_[i].newest, now_ns, age_limit_ns(sources_[i]));
+            sources_[i].asked = ask(devices_[i].mapper, devices_[i].newest, now_ns, age_limit_ns(i));
     }
     const Command command = step(safety_, safety_limits_, sources_, lines, now_ns);
     for (std::size_t i = 0; i < max_devices; ++i) {

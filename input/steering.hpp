@@ -51,7 +51,7 @@ private:
         DeviceState newest;
         bool ticked = true;  ///< nothing was asked since the last tick
     };
-    [[nodiscard]] std::int64_t age_limit_ns(const Source& source) const;
+    [[nodiscard]] std::int64_t age_limit_ns(std::size_t device) const;
 
     MotionLimits motion_limits_;
     SafetyLimits safety_limits_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 #include <tuple>
 
 #include "input/hid/element.hpp"
@@ -105,6 +106,35 @@ ControlInfo control_of(const Layout& layout, const Element& e, std::string name,
     return c;
 }
 
+std::uint32_t outermost_of(const Layout& layout, std::uint32_t collection) {
+    while (layout.collections[collection].parent != no_collection) collection = layout.collections[collection].parent;
+    return collection;
+}
+
+/// The sockets of an adapter for several pads, in the descriptor's order: outermost collections of one usage, each with an X and
+/// a Y that deflect. Anything else has none.
+std::vector<std::uint32_t> ports_of(const Layout& layout, std::span<const Element> elements) {
+    constexpr std::uint32_t x = full_usage(page::generic_desktop, 0x30), y = full_usage(page::generic_desktop, 0x31);
+    std::map<std::uint32_t, unsigned> pairs;  // by collection: 1 for an X, 2 for a Y
+    std::uint32_t field = no_collection, outermost = 0;
+    for (const Element& e : elements) {
+        const Field& f = layout.fields[e.field];
+        if (e.application != Application::steering || f.relative() || (e.usage != x && e.usage != y)) continue;
+        // Once a field: hostile descriptors nest thousands deep, with thousands of elements.
+        if (e.field != field) outermost = outermost_of(layout, f.collection);
+        field = e.field;
+        pairs[outermost] |= e.usage == x ? 1U : 2U;
+    }
+    std::map<std::uint32_t, std::vector<std::uint32_t>> alike;  // by usage
+    for (const auto& [collection, found] : pairs) {
+        std::vector<std::uint32_t>& same = alike[layout.collections[collection].usage];
+        if (found == 3 && same.size() < max_ports) same.push_back(collection);
+    }
+    for (const auto& [usage, ports] : alike)
+        if (ports.size() > 1) return ports;
+    return {};
+}
+
 /// Steering first, axes first, numbered buttons before keys: where a device has too many, the least useful are left out.
 int rank(const Element& e) {
     const int kind = e.kind == ControlKind::axis ? 0 : e.kind == ControlKind::hat ? 1 : e.usage >> 16U == page::button ? 2 : 3;
@@ -158,6 +188,7 @@ HidDevice describe_device(Layout layout, DeviceId id) {
     }
 
     std::stable_sort(elements.begin(), elements.end(), [](const Element& a, const Element& b) { return rank(a) < rank(b); });
+    const std::vector<std::uint32_t> ports = ports_of(l, elements);
     Names names;
     bool corrected = false;
     for (const Element& e : elements) {
@@ -171,6 +202,9 @@ HidDevice describe_device(Layout layout, DeviceId id) {
         corrected |= f.relative() && six_axis && deflections != nullptr;
         device.controls.push_back(control_of(l, e, names.unique(e), six_axis && deflections != nullptr));
         device.sources.push_back({e.field, e.index});
+        if (ports.empty()) continue;
+        if (const auto port = std::ranges::find(ports, outermost_of(l, f.collection)); port != ports.end())
+            device.controls.back().port = static_cast<std::uint8_t>(port - ports.begin());
     }
     if (corrected) device.quirks.emplace_back(deflections->why);
     return device;

@@ -13,6 +13,7 @@ namespace surefoot::input {
 
 /// Elements looked at for controls; no real device comes near, and a hostile one costs no more time than this.
 constexpr std::uint32_t max_elements = 8192;
+constexpr std::size_t max_ports = 8;  ///< of an adapter; pads in further sockets are not mapped by default
 
 /// Where a control's value comes from: element `index` of a variable field, or usage `index` of an array.
 struct ControlSource {

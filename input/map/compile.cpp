@@ -34,7 +34,10 @@ Error not_found(const ControlRef& ref, std::span<const ControlInfo> controls, Co
 
 class Compiler {
 public:
-    explicit Compiler(std::span<const ControlInfo> controls) : controls_(controls) {}
+    explicit Compiler(std::span<const ControlInfo> controls)
+        : controls_(controls), adapter_(std::ranges::any_of(controls, [](const ControlInfo& c) { return c.port > 0; })) {
+        mapper.adapter = adapter_;
+    }
 
     void axis(const AxisMapping& from) {
         const auto at = find(from.control, ControlKind::axis);
@@ -121,6 +124,7 @@ private:
         b.gain[i] = gain;
         const ControlInfo& info = controls_[control];
         if (info.logical_min < info.logical_max) b.rest[i] = RestFinder(info.logical_min, info.logical_max, rest);
+        if (adapter_) b.own_interlock = true;
     }
     static void shape(Binding& b, const Shape& shape) {
         double half = b.rest[0].half_travel_counts();
@@ -133,6 +137,8 @@ private:
 
     std::span<const ControlInfo> controls_;
     std::vector<Error> errors_;
+    /// What one says of a socket without a pad need never be rest: that must not hold the pad in another.
+    bool adapter_ = false;
 };
 
 Compiler compiled(const DeviceMapping& mapping, std::span<const ControlInfo> controls) {

@@ -1,7 +1,11 @@
 // Mappings for devices that nobody configured, by usages (HID Usage Tables 1.5, pages 0x01, 0x02, 0x09).
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
+#include <vector>
 
 #include "input/map/mapping.hpp"
 
@@ -314,7 +318,25 @@ private:
 }  // namespace
 
 DeviceMapping default_mapping(std::span<const ControlInfo> controls, DeviceClass device_class) {
-    return Rules(controls, device_class).make();
+    std::uint8_t last = 0;
+    for (const ControlInfo& c : controls) last = std::max(last, c.port);
+    if (last == 0) return Rules(controls, device_class).make();
+    // An adapter: whichever socket the pad is in, it steers.
+    DeviceMapping all;
+    for (int port = 0; port <= last; ++port) {
+        std::vector<ControlInfo> of_port;
+        std::ranges::copy_if(controls, std::back_inserter(of_port), [&](const ControlInfo& c) { return c.port == port; });
+        DeviceMapping one = Rules(of_port, device_class).make();
+        if (port == 0) {
+            all.name = fmt::format("{}, {} ports", one.name, last + 1);
+            all.reporting = one.reporting;
+        }
+        std::ranges::move(one.axes, std::back_inserter(all.axes));
+        std::ranges::move(one.sticks, std::back_inserter(all.sticks));
+        std::ranges::move(one.hats, std::back_inserter(all.hats));
+        std::ranges::move(one.buttons, std::back_inserter(all.buttons));
+    }
+    return all;
 }
 
 }  // namespace surefoot::input

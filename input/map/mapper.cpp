@@ -62,6 +62,9 @@ void ask_relative(Binding& b, const DeviceState& state, bool fresh, double dt_s)
     b.answer.x = respond(b.response, std::clamp(b.travelled / pace_window_s, -1.0, 1.0));
 }
 
+/// A report has carried it: what another id's reports leave without a value is not at rest but unknown.
+bool was_told(const Binding& b) { return b.told_ns[0] >= 0; }
+
 void ask_hat(Binding& b, const DeviceState& state) {
     constexpr double s = 0.70710678118654752;  // diagonals are no faster
     constexpr std::array<std::array<double, 2>, 8> directions = {
@@ -69,7 +72,7 @@ void ask_hat(Binding& b, const DeviceState& state) {
     const std::int32_t value = state.value[b.control[0]];
     b.answer = dvec2(0.0);
     const bool centre = !state.has_value[b.control[0]] || value < 0 || value > 7;
-    if (centre) b.armed = b.armed || state.reports > 0;
+    if (centre) b.armed = b.armed || was_told(b);
     if (centre || !b.armed) return;
     const auto& direction = directions[static_cast<std::size_t>(value)];
     b.answer = {direction[0], direction[1]};
@@ -88,7 +91,7 @@ bool press(Binding& b, const DeviceState& state, std::int64_t now_ns) {
         if (b.open_since_ns < 0) b.open_since_ns = now_ns;
         if (now_ns - b.open_since_ns >= b.settle_ns) b.pressed = false;
     }
-    if (!asserted && state.reports > 0) b.armed = true;
+    if (!asserted && was_told(b)) b.armed = true;
     return b.pressed && !before && b.armed;
 }
 

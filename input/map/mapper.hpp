@@ -40,14 +40,17 @@ struct Binding {
     dvec2 smoothed{0.0};   ///< what goes out
     double travelled = 0;  ///< relative: leaky sum, in seconds of full response
     std::array<std::int64_t, 2> told_ns{-1, -1};  ///< when a report last carried the control
-    bool own_interlock = false;  ///< a control that rests at an end holds itself back until seen at rest, not its whole device
-    bool armed = false;          ///< seen at rest since the device came: until then it asks for nothing
+    /// A control that rests at an end, or of an adapter for several pads: it holds itself back until seen at rest, not its
+    /// whole device.
+    bool own_interlock = false;
+    bool armed = false;  ///< seen at rest since the device came: until then it asks for nothing
     bool pressed = false;
     std::int64_t open_since_ns = -1;  ///< of a pressed button whose contact has opened
 };
 
 struct Mapper {
     std::vector<Binding> bindings;
+    bool adapter = false;            ///< of one for several pads: each reports in its own way and time
     std::vector<std::string> notes;  ///< controls that the mapping names and that cannot be bound, for the log
     std::int64_t last_ns = -1;
     std::uint64_t last_reports = 0;

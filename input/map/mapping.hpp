@@ -123,7 +123,8 @@ const DeviceMapping* find_mapping(std::span<const DeviceMapping> mappings, const
 
 /// A mapping for a device that nobody configured, from its class, collections and usages: gamepads, joysticks with or without
 /// twist and throttle, six-axis controllers, pedals, button boxes. Trackballs, mice, keyboards and rejected devices get an empty
-/// one: they steer only when the configuration asks. `name` says which rule was used.
+/// one: they steer only when the configuration asks. An adapter's sockets are each mapped as a device of their own would be.
+/// `name` says which rule was used.
 DeviceMapping default_mapping(std::span<const ControlInfo> controls, DeviceClass device_class);
 
 }  // namespace surefoot::input
