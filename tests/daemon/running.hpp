@@ -64,9 +64,9 @@ public:
     Running& operator=(const Running&) = delete;
 
     /// Over the defaults of these tests; the model is the small forest.
-    void write_config(const std::string& more = "") const {
-        const std::string text =
-            "model = \"" + Forest::get().model_file + "\"\nbackend = \"null\"\nrate_hz = 50\nstate = \"" + dir + "\"\n" + more;
+    void write_config(const std::string& more = "", const std::string& backend = "null") const {
+        const std::string text = "model = \"" + Forest::get().model_file + "\"\nbackend = \"" + backend +
+                                 "\"\nrate_hz = 50\nstate = \"" + dir + "\"\n" + more;
         EXPECT_TRUE(write_text(config_file, text).ok());
     }
 
