@@ -224,7 +224,7 @@ int main(int argc, char** argv) {
             fmt::print("{}\n", records.error().text());
             return 1;
         }
-        all = bench::print_row("stolen (recorded)", bench::classify(*records, true), 15) && all;
+        all = bench::print_row("stolen (recorded)", bench::classify(*records, true), 50) && all;
         // Told, not judged: see clock_stood_still().
         (void)bench::print_row("  charged to us", bench::classify(*records, false), 0);
     }
