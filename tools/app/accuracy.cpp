@@ -114,7 +114,7 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
         return Error{"--backend null", "draws no pictures to compare", "use egl, device, osmesa or window"};
     }
     options.device.kind = *kind;
-    options.device.viewport = {request.width, request.height};
+    options.device.viewport = request.viewport();
     options.device.rasterisers = request.rasterisers;
     options.prepare.workers =
         request.workers > 0 ? request.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -144,6 +144,8 @@ Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const P
     run.path = chosen->source;
     run.width = request.width;
     run.height = request.height;
+    run.shift_x = request.shift_x;
+    run.shift_y = request.shift_y;
     run.poses = request.poses;
     auto opened = open_engine(request, std::move(*model), file.hash, run);
     if (!opened) return opened.error();
@@ -171,7 +173,7 @@ Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const P
     if (budgets.empty()) {
         for (const double share : {0.12, 0.18, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4}) budgets.push_back(share * run.full_frame_ms);
     }
-    const double pixel = model::pixel_angle(sweep.stations[0].pose, {request.width, request.height});
+    const double pixel = model::pixel_angle(sweep.stations[0].pose, request.viewport());
     const double points = static_cast<double>(request.selectors.size() * budgets.size());
     std::size_t done = 0;
     for (const std::string& selector : request.selectors) {

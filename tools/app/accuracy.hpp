@@ -17,8 +17,11 @@ struct AccuracyRequest {
     int repeats = 3;  ///< submissions a pose and budget; the median counts
     int workers = 0, rasterisers = 0;
     double lift_m = 0;
+    double shift_x = 0, shift_y = 0;  ///< off axis, as model::Viewport has it
     std::vector<std::string> selectors{"distance", "depth-first", "best-first", "two-stage"};
     std::vector<double> budgets_ms;  ///< empty: eight, from an eighth of the full frame's time to all of it
+
+    [[nodiscard]] model::Viewport viewport() const { return {width, height, shift_x, shift_y}; }
 };
 
 /// Every budget is spent on every pose by every selector; pictures are compared with full detail at the same pose.

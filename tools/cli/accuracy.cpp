@@ -64,6 +64,12 @@ void add_accuracy(CLI::App& app, Context& context) {
     c->add_option("--path", r.path_file, "Poses are taken along this path (else MODEL.path.csv, else a tour)");
     c->add_option("-o,--out", a->out, "Folder for index.html, accuracy.svg, accuracy.csv")->capture_default_str();
     c->add_option("--size", a->size, "Picture size")->capture_default_str();
+    c->add_option("--shift-x", r.shift_x, "Off axis: the picture's middle lies so far right of where the pose looks")
+        ->check(number_within(-8, 8, "half widths"))
+        ->capture_default_str();
+    c->add_option("--shift-y", r.shift_y, "The same, upwards")
+        ->check(number_within(-8, 8, "half heights"))
+        ->capture_default_str();
     c->add_option("--poses", r.poses, "Places along the path, 1..256")->check(whole_number_within(1, 256))->capture_default_str();
     c->add_option("--repeats", r.repeats, "Timed submissions a place; the median counts")
         ->check(whole_number_within(1, 100))

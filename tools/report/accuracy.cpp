@@ -44,6 +44,8 @@ std::string body_of(const AccuracyRun& run) {
     out += fmt::format("<p class=\"lead\"><b>{}</b> along <b>{}</b>: {} places, {}×{} pixels, on {}.", model,
                        escaped(std::filesystem::path(run.path).filename().string()), run.poses, run.width, run.height,
                        escaped(run.renderer));
+    if (run.shift_x != 0 || run.shift_y != 0)
+        out += fmt::format(" Off axis by {:+g} half widths, {:+g} half heights.", run.shift_x, run.shift_y);
     if (run.full_frame_ms > 0) out += fmt::format(" Full detail takes {:.1f} ms a frame.", run.full_frame_ms);
     out += "</p>\n</header>\n";
     if (!run.uncalibrated.empty())
@@ -108,6 +110,8 @@ std::string accuracy_json(const AccuracyRun& run) {
                        {"machine", run.machine},
                        {"width", run.width},
                        {"height", run.height},
+                       {"shift_x", run.shift_x},
+                       {"shift_y", run.shift_y},
                        {"poses", run.poses},
                        {"full_frame_ms", finite(run.full_frame_ms)},
                        {"calibrated", run.uncalibrated.empty()},

@@ -146,6 +146,7 @@ struct AccuracyRun {
     std::string model, path, renderer, machine;
     std::string uncalibrated;  ///< where this machine's cost table is missing: what, and the remedy
     std::uint32_t width = 0, height = 0, poses = 0;
+    double shift_x = 0, shift_y = 0;  ///< off axis, half widths and half heights
     double full_frame_ms = 0;
     std::vector<AccuracyPoint> points;
 };
