@@ -87,6 +87,7 @@ refuse '--accuracy nan.* 0 to' walk f.walk $virtual --accuracy nan
 refuse '--lift.*nan' walk f.walk $virtual --lift nan
 refuse '--cost-noise.*nan' walk f.walk $virtual --cost-noise nan
 refuse '--budget.*-1.* 0.001 to' accuracy f.walk --budget -1
+refuse '--shift-x.*9.* -8 to 8' accuracy f.walk --shift-x 9
 refuse '--selector.*best.*two-stage' accuracy f.walk --selector best
 refuse "nosuch.*forest, room, town" scene nosuch -o x.glb
 for value in 0 -1 1e9 nan; do refuse "--scale.*$value.* 0.01 to 200" scene forest --scale $value -o x.glb; done
