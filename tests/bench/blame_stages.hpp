@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstdint>
 #include <thread>
+#include <vector>
 
 #include "rt/clock/clock.hpp"
 #include "rt/frame/loop.hpp"
@@ -164,6 +165,9 @@ public:
     [[nodiscard]] static bool counts(const rt::FrameRecord& record) {
         return injected(record.frame) && record.frame >= 2 * frames_apart && record.missed && record.candidates != 0;
     }
+    /// Injected frames that the host stole from as well, by its own account (/proc/stat, in steps of 10 ms): they had two causes,
+    /// and which took more nobody knows.
+    [[nodiscard]] const std::vector<std::uint64_t>& two_causes() const { return two_causes_; }
     /// Set as soon as the wanted number is there.
     [[nodiscard]] const std::atomic<bool>& enough() const { return enough_; }
     [[nodiscard]] bool blocked() const { return !blocker_.misplaced(); }
@@ -178,6 +182,8 @@ private:
     rt::Cause cause_;
     int wanted_;
     std::atomic<bool> enough_{false};
+    std::vector<std::uint64_t> two_causes_;
+    double stolen_before_ms_ = 0;
     Helper& rasteriser_;
     Stopper& stopper_;
     Helper blocker_;  ///< above the frame thread, on its core

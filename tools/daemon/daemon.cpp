@@ -14,6 +14,7 @@
 #include <new>
 
 #include "rt/base/file.hpp"
+#include "rt/threads/memory.hpp"
 #include "rt/threads/runaway.hpp"
 #include "tools/app/state.hpp"
 #include "tools/console/watch.hpp"
@@ -136,6 +137,7 @@ ExitCode walk_on(config::Configuration current, const Options& options, Log& log
             standing.open(current.values);
         }
         const Ending ending = walk(current, options, log, standing, monitor, inject);
+        rt::release_memory();  // the next walk claims its own
         if (standing.leaving.load()) return exit_success;
         if (standing.walk_frames() > 0) good = current;
         if (!ending.failed) {
