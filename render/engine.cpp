@@ -236,7 +236,7 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
     model::ItemCost sum{.submit_us = costs.slice_us, .raster_us = 0};
     for (const gl::DrawItem& item : coarse) {
         const model::Representation& rep = model.reps[item.rep];
-        const float pixels = model::rasterised_pixels(rep, model.nodes[item.node].box, pose.position, scale);
+        const float pixels = preparer->surfaces().pixels(item.rep, rep, model.nodes[item.node].box, pose.position, scale);
         const model::ItemCost cost = costs.item(static_cast<float>(rep.triangles), pixels, costs.grid_for(rep.effects));
         sum.submit_us += cost.submit_us;
         sum.raster_us += cost.raster_us;

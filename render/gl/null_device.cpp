@@ -5,7 +5,7 @@
 
 #include "render/gl/program.hpp"
 #include "render/gl/tables.hpp"
-#include "render/model/pixels.hpp"
+#include "render/model/surfaces.hpp"
 #include "rt/base/random.hpp"
 
 namespace surefoot::gl {
@@ -61,6 +61,7 @@ private:
     std::vector<LoadedProgram> programs_;
     std::vector<Box> boxes_;
     std::vector<model::Representation> reps_;
+    model::Surfaces surfaces_;
     std::vector<std::uint32_t> grids_;  ///< a rep: index of its cost grid
     dvec3 eye_{0.0};
     model::ViewScale scale_;
@@ -76,6 +77,7 @@ Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& p
     boxes_.clear();
     for (const model::Node& node : model.nodes) boxes_.push_back(node.box);
     reps_ = model.reps;
+    surfaces_ = model::Surfaces(model);
     grids_.clear();
     for (const model::Representation& rep : reps_) {
         grids_.push_back(static_cast<std::uint32_t>(&costs_.grid_for(rep.effects) - costs_.grids.data()));
@@ -112,7 +114,7 @@ void NullDevice::begin_frame(const Pose& pose) {
 void NullDevice::draw(std::span<const DrawItem> items) {
     for (const DrawItem& item : items) {
         const model::Representation& rep = reps_[item.rep];
-        const float pixels = model::rasterised_pixels(rep, boxes_[item.node], eye_, scale_);
+        const float pixels = surfaces_.pixels(item.rep, rep, boxes_[item.node], eye_, scale_);
         const model::ItemCost cost = costs_.item(static_cast<float>(rep.triangles), pixels, costs_.grids[grids_[item.rep]]);
         submit_us_ += static_cast<double>(cost.submit_us);
         raster_us_ += static_cast<double>(cost.raster_us);

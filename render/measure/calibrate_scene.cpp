@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "render/model/cost.hpp"
-#include "render/model/pixels.hpp"
+#include "render/model/surfaces.hpp"
 #include "rt/base/random_point.hpp"
 
 namespace surefoot::measure {
@@ -252,13 +252,22 @@ CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std
         const Index node = builder.node(centre, radii);
         const Index rep = builder.rep(meshes[i % meshes.size()], materials[i % materials.size()]);
         cell.items.push_back({node, rep});
-        const model::Model& m = builder.model();
-        cell.pixels += static_cast<double>(model::rasterised_pixels(m.reps[rep], m.nodes[node].box, dvec3(0.0), scale));
-        cell.triangles += m.reps[rep].triangles;
+        cell.triangles += builder.model().reps[rep].triangles;
     }
-    cell.pixels /= static_cast<double>(count);
     cell.triangles /= static_cast<double>(count);
     return cell;
+}
+
+void count_pixels(const model::Model& model, model::Viewport viewport, std::vector<CalibrationCell>& cells) {
+    const model::Surfaces surfaces(model);
+    const model::ViewScale scale = model::make_view_scale(Pose{}, viewport);
+    for (CalibrationCell& cell : cells) {
+        for (const gl::DrawItem& item : cell.items) {
+            cell.pixels += static_cast<double>(
+                surfaces.pixels(item.rep, model.reps[item.rep], model.nodes[item.node].box, dvec3(0.0), scale));
+        }
+        cell.pixels /= static_cast<double>(cell.items.size());
+    }
 }
 
 constexpr double town_side_m = 400;
@@ -325,6 +334,7 @@ CalibrationScene make_calibration_scene(model::Viewport viewport, bool quick, st
         }
     }
     make_town(builder, meshes, materials, scene);
+    count_pixels(builder.model(), viewport, scene.cells);
     scene.model = std::move(builder.model());
     return scene;
 }

@@ -11,7 +11,6 @@ namespace surefoot::model {
 namespace {
 
 constexpr double largest_half_angle_rad = 89.0 * 3.14159265358979323846 / 180.0;
-constexpr float most_pixels = 1e9F;  // a thousand layers of a megapixel: costs beyond it mean nothing
 
 /// Half extent of the box along a unit axis.
 float extent_along(const vec3& half, const vec3& axis) {

@@ -10,6 +10,8 @@
 
 namespace surefoot::model {
 
+constexpr float most_pixels = 1e9F;  ///< a thousand layers of a megapixel: costs beyond it mean nothing
+
 /// What the estimate needs of a view, made once a frame. Unit vectors in world space, and the same sheared so that a picture off
 /// axis lies evenly about 0: p is in it where |across . p| <= tan_half_x * (forward . p), and rise with tan_half_y.
 struct ViewScale {

@@ -97,7 +97,7 @@ float finest_error(const model::Model& model, const model::Node& node, float nea
     return model.reps[node.first_rep].error_m;
 }
 
-Evaluator::Evaluator(const model::Model& model, const model::CostModel& costs) : model_(model), costs_(costs) {
+Evaluator::Evaluator(const model::Model& model, const model::CostModel& costs) : model_(model), costs_(costs), surfaces_(model) {
     grid_of_rep_.reserve(model.reps.size());
     for (const model::Representation& rep : model.reps) {
         const auto grid = &costs.grid_for(rep.effects) - costs.grids.data();
@@ -118,7 +118,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
 
     const auto fill = [&](Choice& choice, Index r, float error_rad) {
         const model::Representation& rep = model_.reps[r];
-        const float pixels = model::rasterised_pixels(rep, node.box, eye, view.scale);
+        const float pixels = surfaces_.pixels(r, rep, node.box, eye, view.scale);
         choice.rep = r;
         choice.cost = costs_.item(static_cast<float>(rep.triangles), pixels, costs_.grids[grid_of_rep_[r]]);
         choice.error_rad = error_rad;

@@ -8,6 +8,7 @@
 #include "render/model/cost.hpp"
 #include "render/model/model.hpp"
 #include "render/model/pixels.hpp"
+#include "render/model/surfaces.hpp"
 #include "render/prepare/prepared.hpp"
 
 namespace surefoot::prepare {
@@ -84,9 +85,13 @@ public:
     /// Choices have benefit = weight x accuracy, not yet thrift, nor monotone down the tree.
     std::uint32_t evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices, Weight& weight) const;
 
+    /// What costs are predicted by.
+    [[nodiscard]] const model::Surfaces& surfaces() const { return surfaces_; }
+
 private:
     const model::Model& model_;
     const model::CostModel& costs_;
+    model::Surfaces surfaces_;
     std::vector<std::uint8_t> grid_of_rep_;  ///< index of the cost grid: the look-up by state class is done once
 };
 

@@ -322,6 +322,8 @@ Preparer::Preparer(const model::Model& model, const model::CostModel& costs, con
     : impl_(new Impl(model, costs, options)) {}
 Preparer::~Preparer() { delete impl_; }
 
+const model::Surfaces& Preparer::surfaces() const { return impl_->evaluator.surfaces(); }
+
 void Preparer::reserve(PreparedFrame& frame) const {
     frame.candidates.reserve(impl_->visits.capacity());
     frame.choices.reserve(std::min<std::size_t>(impl_->options.max_choices, std::max<std::size_t>(impl_->model.reps.size(), 1)));

@@ -7,6 +7,7 @@
 
 #include "render/model/cost.hpp"
 #include "render/model/model.hpp"
+#include "render/model/surfaces.hpp"
 #include "render/model/view.hpp"
 
 namespace surefoot::prepare {
@@ -95,6 +96,9 @@ public:
     /// the motion term of the benefit.
     void run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
              PreparedFrame& out);
+
+    /// What costs are predicted by.
+    [[nodiscard]] const model::Surfaces& surfaces() const;
 
 private:
     struct Impl;

@@ -1,0 +1,245 @@
+// Thinning surfaces, and the pixels that they rasterise (surfaces.hpp).
+#include "render/model/surfaces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <span>
+#include <utility>
+
+namespace surefoot::model {
+
+namespace {
+
+constexpr std::size_t most = 128;  // triangles, and samples, of a surface
+constexpr float near_half_diagonals = 3.0F;
+constexpr float surface_share = 2.0F / 3.0F;
+
+struct Corners {
+    vec3 a, b, c;
+    bool both_sides;
+    [[nodiscard]] vec3 area() const { return 0.5F * glm::cross(b - a, c - a); }
+};
+
+template <class Use>
+void for_triangles(const Model& model, const Representation& rep, Use use) {
+    for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+        const Part& part = model.parts[p];
+        const bool both = model.materials[part.material].two_sided;
+        const auto corner = [&](std::uint32_t i) {
+            const float* v = model.vertices[part.first_vertex + model.indices[part.first_index + i]].position;
+            return vec3(v[0], v[1], v[2]);
+        };
+        for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) use(Corners{corner(i), corner(i + 1), corner(i + 2), both});
+    }
+}
+
+/// The n-th of a sequence that fills the unit square evenly, folded into a triangle.
+vec2 place_in_triangle(std::size_t n) {
+    const auto at = static_cast<double>(n);
+    double u = 0.5 + at * 0.7548776662466927, v = 0.5 + at * 0.5698402909980532;
+    u -= std::floor(u);
+    v -= std::floor(v);
+    if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+    }
+    return {static_cast<float>(u), static_cast<float>(v)};
+}
+
+/// A convex polygon as it is cut: a triangle and one corner more a plane.
+struct Polygon {
+    std::array<vec3, 8> points;
+    std::size_t count = 3;
+
+    /// Keeps where `inside` >= 0, linear in the point.
+    template <class Inside>
+    void cut(Inside inside) {
+        std::array<vec3, 8> kept;  // NOLINT: filled as far as it is read
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const vec3 &from = points[i], &to = points[i + 1 < count ? i + 1 : 0];
+            const float f = inside(from), t = inside(to);
+            if (f >= 0) kept[n++] = from;
+            if ((f >= 0) != (t >= 0) && n < kept.size()) kept[n++] = from + (f / (f - t)) * (to - from);
+            if (n == kept.size()) break;
+        }
+        points = kept;
+        count = n;
+    }
+};
+
+}  // namespace
+
+/// A view in the coordinates of a surface: x and y in the picture where they lie between -z and z.
+struct Surfaces::LocalView {
+    vec3 eye, x, y, z;
+    float side;  ///< -1 where the placement mirrors
+    float near_m;
+    float pixels;        ///< of the picture
+    float sample_scale;  ///< pixels of a sample's area at depth 1, seen from ahead
+    [[nodiscard]] vec3 seen(const vec3& at) const {
+        const vec3 d = at - eye;
+        return {glm::dot(x, d), glm::dot(y, d), glm::dot(z, d)};
+    }
+};
+
+Surfaces::Surfaces(const Model& model) {
+    // Measured first, so that the arrays are made once and as large as they must be: they stay locked for as long as there is a
+    // walk.
+    std::map<std::pair<Index, Index>, std::uint32_t> known;
+    std::vector<Index> shown_by;  // a surface: one representation that has it
+    std::vector<float> areas;
+    placed_.reserve(model.reps.size());
+    for (Index r = 0; r < model.reps.size(); ++r) {
+        const Representation& rep = model.reps[r];
+        const auto [found, fresh] =
+            known.try_emplace({rep.first_part, rep.part_count}, static_cast<std::uint32_t>(shown_by.size()));
+        if (fresh) shown_by.push_back(r);
+        placed_.push_back({found->second, rep.placement});
+    }
+    surfaces_.reserve(shown_by.size());
+    Surface next;
+    for (const Index r : shown_by) {
+        measure(model, model.reps[r], areas, next);
+        surfaces_.push_back(next);
+        next.first_triangle += next.triangles;
+        next.first_sample += next.samples;
+    }
+    triangles_.reserve(next.first_triangle);
+    samples_.reserve(next.first_sample);
+    for (std::size_t s = 0; s < shown_by.size(); ++s) fill(model, model.reps[shown_by[s]], surfaces_[s]);
+
+    places_.reserve(model.placements.size());
+    for (const Placement& p : model.placements) {
+        const glm::dmat3 linear(p.linear);
+        const double determinant = glm::determinant(linear);
+        Place place{p.origin, p.linear, mat3(1.0F), 0};
+        if (std::isnormal(static_cast<float>(determinant))) {
+            place.inverse = mat3(glm::inverse(linear));
+            place.determinant = static_cast<float>(determinant);
+        }
+        places_.push_back(place);
+    }
+}
+
+void Surfaces::measure(const Model& model, const Representation& rep, std::vector<float>& areas, Surface& surface) {
+    areas.clear();
+    double total = 0;
+    for_triangles(model, rep, [&](const Corners& t) {
+        areas.push_back(glm::length(t.area()));
+        total += static_cast<double>(areas.back());
+    });
+    surface.triangles = surface.samples = 0;
+    if (!std::isfinite(total)) return;  // beyond all measure: the box decides
+    // Whole: what is larger than a sample's share. Equal ones beyond `most` are sampled.
+    surface.whole_m2 = 0;
+    if (areas.size() > most) {
+        std::nth_element(areas.begin(), areas.begin() + most, areas.end(), std::greater<>());
+        surface.whole_m2 = std::max(areas[most], static_cast<float>(total / most));
+    }
+    double rest = 0;
+    for (const float area : areas) {
+        if (area > surface.whole_m2)
+            ++surface.triangles;
+        else
+            rest += static_cast<double>(area);
+    }
+    if (rest > 0) {
+        const double share = std::ceil(static_cast<double>(most) * rest / total);
+        surface.samples = static_cast<std::uint32_t>(std::clamp(share, 4.0, static_cast<double>(most)));
+    }
+    surface.sample_m2 = surface.samples > 0 ? static_cast<float>(rest / surface.samples) : 0.0F;
+}
+
+void Surfaces::fill(const Model& model, const Representation& rep, Surface& surface) {
+    if (surface.triangles + surface.samples == 0) return;
+    double passed = 0;
+    std::uint32_t n = 0;
+    for_triangles(model, rep, [&](const Corners& t) {
+        const float area = glm::length(t.area());
+        if (!(area > 0)) return;
+        if (area > surface.whole_m2) {
+            triangles_.push_back({t.a, t.b, t.c, t.both_sides});
+            return;
+        }
+        passed += static_cast<double>(area);
+        for (; n < surface.samples && (n + 0.5) * static_cast<double>(surface.sample_m2) < passed; ++n) {
+            const vec2 place = place_in_triangle(n);
+            samples_.push_back({t.a + place.x * (t.b - t.a) + place.y * (t.c - t.a), t.area() * (surface.sample_m2 / area),
+                                t.both_sides ? -1.0F : 0.0F});
+        }
+    });
+    // Areas so small that their sum is not what their shares add up to.
+    for (; n < surface.samples; ++n) samples_.push_back({vec3(0), vec3(0), 0.0F});
+}
+
+float Surfaces::pixels_of(const Triangle& t, const LocalView& view) {
+    const float behind = view.side * glm::dot(glm::cross(t.b - t.a, t.c - t.a), t.a - view.eye);
+    if (behind > 0 && !t.both_sides) return 0;
+    Polygon p{{view.seen(t.a), view.seen(t.b), view.seen(t.c)}};
+    const auto all_beyond = [&](auto inside) {
+        return inside(p.points[0]) < 0 && inside(p.points[1]) < 0 && inside(p.points[2]) < 0;
+    };
+    const auto ahead = [&](const vec3& v) { return v.z - view.near_m; };
+    const auto left = [](const vec3& v) { return v.z + v.x; };
+    const auto right = [](const vec3& v) { return v.z - v.x; };
+    const auto below = [](const vec3& v) { return v.z + v.y; };
+    const auto above = [](const vec3& v) { return v.z - v.y; };
+    if (all_beyond(ahead) || all_beyond(left) || all_beyond(right) || all_beyond(below) || all_beyond(above)) return 0;
+    p.cut(ahead);
+    p.cut(left);
+    p.cut(right);
+    p.cut(below);
+    p.cut(above);
+    float doubled = 0;
+    for (std::size_t i = 0; i < p.count; ++i) {
+        const vec3 &a = p.points[i], &b = p.points[i + 1 < p.count ? i + 1 : 0];
+        doubled += (a.x * b.y - b.x * a.y) / (a.z * b.z);
+    }
+    return 0.5F * std::abs(doubled) * 0.25F * view.pixels;  // the picture is 2 by 2
+}
+
+float Surfaces::pixels_of(const Sample& s, float sample_m2, const LocalView& view) {
+    const vec3 d = s.at - view.eye;
+    const float z = glm::dot(view.z, d);
+    if (!(z > view.near_m) || std::abs(glm::dot(view.x, d)) > z || std::abs(glm::dot(view.y, d)) > z) return 0;
+    const float ahead = -view.side * glm::dot(s.area, d);
+    const float square = glm::dot(d, d);
+    // A patch as large as its distance covers less than it would far away: about what a disc of its area does.
+    return std::max(ahead, ahead * s.back) * square / ((square + 0.5F * sample_m2) * z * z * z) * view.sample_scale;
+}
+
+float Surfaces::surface_pixels(Index r, const dvec3& eye, const ViewScale& scale) const {
+    if (r >= placed_.size()) return -1;
+    const Surface& surface = surfaces_[placed_[r].surface];
+    const Place& place = places_[placed_[r].place];
+    if (surface.triangles + surface.samples == 0 || place.determinant == 0) return -1;
+    const mat3 turned = glm::transpose(place.linear);
+    const float f = scale.pixels_per_radian;
+    const LocalView view{place.inverse * vec3(eye - place.origin),
+                         turned * scale.across / scale.tan_half_x,
+                         turned * scale.rise / scale.tan_half_y,
+                         turned * scale.forward,
+                         place.determinant < 0 ? -1.0F : 1.0F,
+                         scale.near_m,
+                         scale.viewport_pixels,
+                         f * f * std::abs(place.determinant)};
+    float pixels = 0;
+    for (std::uint32_t i = 0; i < surface.triangles; ++i) pixels += pixels_of(triangles_[surface.first_triangle + i], view);
+    for (std::uint32_t i = 0; i < surface.samples; ++i)
+        pixels += pixels_of(samples_[surface.first_sample + i], surface.sample_m2, view);
+    return pixels >= 0 ? std::min(pixels, most_pixels) : -1.0F;
+}
+
+float Surfaces::pixels(Index r, const Representation& rep, const Box& node_box, const dvec3& eye, const ViewScale& scale) const {
+    const float by_box = rasterised_pixels(rep, node_box, eye, scale);
+    if (node_box.empty()) return by_box;
+    const vec3 half(node_box.half()), away(node_box.centre() - eye);
+    if (!(glm::dot(away, away) < near_half_diagonals * near_half_diagonals * glm::dot(half, half))) return by_box;
+    const float by_surface = surface_pixels(r, eye, scale);
+    return by_surface < 0 ? by_box : by_box + surface_share * (by_surface - by_box);
+}
+
+}  // namespace surefoot::model

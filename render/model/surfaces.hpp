@@ -1,0 +1,70 @@
+// Where the surfaces of representations lie, thinned: how many pixels they rasterise seen from nearby, where it matters on which
+// side of its box a wall stands.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/model/model.hpp"
+#include "render/model/pixels.hpp"
+
+namespace surefoot::model {
+
+/// Of every representation at most 128 of its largest triangles as they are, and at most 128 samples that stand for all the
+/// others, each for the same area; once for representations that share their parts. No more of the model is needed afterwards.
+class Surfaces {
+public:
+    Surfaces() = default;
+    /// Allocates: 3.6 KiB at most for each different mesh. Three passes over the triangles, 30 ms a million.
+    explicit Surfaces(const Model& model);
+
+    /// rasterised_pixels() of the representation `r`; nearer than three half diagonals of the box two thirds of it are by the
+    /// surface. The box's third keeps what samples enter and leave from showing: along a path the two together err less than
+    /// either, and on random poses nearly as little as the surface alone (ARCHITECTURE, "Measured decisions"). At most about 8
+    /// us.
+    [[nodiscard]] float pixels(Index r, const Representation& rep, const Box& node_box, const dvec3& eye,
+                               const ViewScale& scale) const;
+    /// By the surface alone: triangles cut to the view, and samples that lie in it; what faces away and is culled counts nothing.
+    /// Negative where that is not known: no triangles, or a placement that cannot be turned back.
+    [[nodiscard]] float surface_pixels(Index r, const dvec3& eye, const ViewScale& scale) const;
+
+private:
+    struct Triangle {
+        vec3 a, b, c;
+        bool both_sides;
+    };
+    struct Sample {
+        vec3 at, area;  ///< m^2 along the normal
+        float back;     ///< what counts of it from behind: -1 all, 0 nothing
+    };
+    /// Of one run of parts, in their own coordinates.
+    struct Surface {
+        std::uint32_t first_triangle = 0, triangles = 0, first_sample = 0, samples = 0;
+        float whole_m2 = 0;   ///< larger triangles are kept as they are
+        float sample_m2 = 0;  ///< that one sample stands for
+    };
+    /// Of one representation.
+    struct Placed {
+        std::uint32_t surface = 0, place = 0;
+    };
+    struct Place {
+        dvec3 origin{0.0};
+        mat3 linear{1.0F}, inverse{1.0F};
+        float determinant = 0;  ///< 0: cannot be turned back, so the box decides
+    };
+    struct LocalView;
+
+    /// Its counts and shares; `areas` is scratch.
+    static void measure(const Model& model, const Representation& rep, std::vector<float>& areas, Surface& surface);
+    void fill(const Model& model, const Representation& rep, Surface& surface);
+    [[nodiscard]] static float pixels_of(const Triangle& triangle, const LocalView& view);
+    [[nodiscard]] static float pixels_of(const Sample& sample, float sample_m2, const LocalView& view);
+
+    std::vector<Triangle> triangles_;
+    std::vector<Sample> samples_;
+    std::vector<Surface> surfaces_;
+    std::vector<Placed> placed_;  ///< [representation]
+    std::vector<Place> places_;   ///< as the model's placements
+};
+
+}  // namespace surefoot::model

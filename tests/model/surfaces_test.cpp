@@ -1,0 +1,188 @@
+// Pixels of surfaces seen from nearby: what stands where, which way it faces, and how it is placed.
+#include "render/model/surfaces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "rt/base/random.hpp"
+
+namespace surefoot::model {
+namespace {
+
+constexpr Viewport viewport{640, 480};
+constexpr double pi = std::numbers::pi;
+
+/// A model of one representation, its corners given three by three.
+Model model_of(std::span<const dvec3> corners, bool two_sided = false, const mat3& linear = mat3(1.0F),
+               const dvec3& origin = dvec3(0)) {
+    Model m;
+    m.materials.emplace_back().two_sided = two_sided;
+    m.placements.push_back({origin, linear});
+    m.nodes.emplace_back();
+    for (const dvec3& corner : corners) {
+        Vertex v{};
+        for (int k = 0; k < 3; ++k) v.position[k] = static_cast<float>(corner[k]);
+        m.indices.push_back(static_cast<std::uint32_t>(m.vertices.size()));
+        m.vertices.push_back(v);
+        m.nodes[0].box.grow(origin + dvec3(linear * vec3(corner)));
+    }
+    const auto count = static_cast<std::uint32_t>(corners.size());
+    m.parts.push_back({0, 0, count, 0, count});
+    Representation rep;
+    rep.part_count = 1;
+    rep.triangles = count / 3;
+    rep.area_m2 = rasterised_area(m, rep);
+    m.reps.push_back(rep);
+    m.nodes[0].rep_count = 1;
+    return m;
+}
+
+float pixels(const Model& m, const Pose& pose) {
+    return Surfaces(m).surface_pixels(0, pose.position, make_view_scale(pose, viewport));
+}
+float mixed_pixels(const Model& m, const Pose& pose) {
+    return Surfaces(m).pixels(0, m.reps[0], m.nodes[0].box, pose.position, make_view_scale(pose, viewport));
+}
+float box_pixels(const Model& m, const Pose& pose) {
+    return rasterised_pixels(m.reps[0], m.nodes[0].box, pose.position, make_view_scale(pose, viewport));
+}
+
+Pose turned(const dvec3& at, double heading_rad) {
+    Pose pose;
+    pose.position = at;
+    pose.orientation = glm::angleAxis(heading_rad, dvec3(0, 1, 0));
+    return pose;
+}
+
+/// A wall of 20 by 20 m at z = -5 that faces +z, and a speck at z = 5: the box goes round the eye at 0.
+std::vector<dvec3> wall_and_speck() {
+    return {{-10, -10, -5}, {10, -10, -5}, {10, 10, -5}, {-10, -10, -5}, {10, 10, -5},
+            {-10, 10, -5},  {0, 0, 5},     {1e-3, 0, 5}, {0, 1e-3, 5}};
+}
+
+std::vector<dvec3> ball(int rings, double radius, const dvec3& radii = dvec3(1)) {
+    std::vector<dvec3> corners;
+    const auto at = [&](int ring, int segment) {
+        const double a = pi * ring / rings, b = pi * segment / rings;
+        return radius * radii * dvec3(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b));
+    };
+    for (int i = 0; i < rings; ++i) {
+        for (int j = 0; j < 2 * rings; ++j) {
+            if (i > 0) corners.insert(corners.end(), {at(i, j), at(i, j + 1), at(i + 1, j)});
+            if (i + 1 < rings) corners.insert(corners.end(), {at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
+        }
+    }
+    return corners;
+}
+
+TEST(Surfaces, OfAWallAreTheViewTowardsItAndNothingTheOtherWay) {
+    const Model m = model_of(wall_and_speck());
+    const double whole = 640 * 480;
+    EXPECT_NEAR(pixels(m, turned(dvec3(0), 0)), whole, 1e-3 * whole);
+    EXPECT_LT(pixels(m, turned(dvec3(0), pi)), 1.0F);
+    // By the box alone it is as much on either side.
+    EXPECT_GT(box_pixels(m, turned(dvec3(0), pi)), 0.2 * whole);
+}
+
+TEST(Surfaces, ThatFaceAwayCountOnlyWhereBothSidesAreDrawn) {
+    std::vector<dvec3> corners = wall_and_speck();
+    std::swap(corners[1], corners[2]);
+    std::swap(corners[4], corners[5]);
+    EXPECT_EQ(pixels(model_of(corners), turned(dvec3(0), 0)), 0.0F);
+    EXPECT_NEAR(pixels(model_of(corners, true), turned(dvec3(0), 0)), 640 * 480, 300);
+}
+
+TEST(Surfaces, OfAWallCutByTheViewAreWhatIsInIt) {
+    // Half of a wall: from the middle of the view to the right.
+    const std::vector<dvec3> corners = {{0, -10, -5}, {10, -10, -5}, {10, 10, -5}, {0, -10, -5}, {10, 10, -5}, {0, 10, -5}};
+    EXPECT_NEAR(pixels(model_of(corners), Pose{}), 0.5 * 640 * 480, 300);
+}
+
+TEST(Surfaces, OfABallOfManyTrianglesAreItsDisc) {
+    const Model m = model_of(ball(40, 1.0));
+    ASSERT_GT(m.reps[0].triangles, 3000U);  // sampled
+    const double f = 240.0 / std::tan(0.5 * Pose{}.fov_y_rad);
+    for (const double distance : {2.2, 3.0, 4.0, 5.0}) {
+        const double radius = f / std::sqrt(distance * distance - 1);
+        EXPECT_NEAR(pixels(m, turned({0, 0, distance}, 0)), pi * radius * radius, 0.1 * pi * radius * radius) << distance;
+    }
+    EXPECT_LT(pixels(m, turned({0, 0, 0}, 0)), 1.0F) << "from inside: all of it faces away";
+}
+
+TEST(Surfaces, AreWhereThePlacementPutsThem) {
+    const dvec3 origin(100, -20, 7);
+    for (const double mirror : {1.0, -1.0}) {
+        const mat3 linear(vec3(0, 0, 2 * mirror), vec3(0, 1.5F, 0), vec3(-2, 0, 0));
+        for (const int rings : {5, 24}) {  // whole, and sampled
+            // Squeezed one way and another, so that a wrong turn shows.
+            const std::vector<dvec3> corners = ball(rings, 1.0, rings == 5 ? dvec3(1.0, 0.6, 0.3) : dvec3(1.0, 0.8, 0.7));
+            std::vector<dvec3> there;
+            for (const dvec3& c : corners) there.push_back(origin + dvec3(linear * vec3(c)));
+            if (mirror < 0)
+                for (std::size_t i = 0; i + 2 < there.size(); i += 3) std::swap(there[i + 1], there[i + 2]);
+            const Model placed = model_of(corners, false, linear, origin), baked = model_of(there);
+            for (const double heading : {0.0, 0.4, 1.9, 3.3}) {
+                const Pose pose = turned(origin + dvec3(4 * std::sin(heading), 0.3, 4 * std::cos(heading)), heading);
+                const float expected = pixels(baked, pose);
+                ASSERT_GT(expected, 1000.0F);
+                // Samples are spread by area, and a stretched ball's are spread otherwise.
+                EXPECT_NEAR(pixels(placed, pose), expected, (rings == 5 ? 0.001F : 0.15F) * expected) << heading;
+            }
+        }
+    }
+}
+
+TEST(Surfaces, CountTwoThirdsNearbyAndNothingFarAwayOrWithoutTriangles) {
+    const Model m = model_of(wall_and_speck());
+    for (const double heading : {0.0, 1.0, pi}) {
+        const Pose inside = turned(dvec3(0), heading);
+        const float expected = (box_pixels(m, inside) + 2 * pixels(m, inside)) / 3;
+        EXPECT_NEAR(mixed_pixels(m, inside), expected, 1e-3F * expected);
+    }
+    const Pose far = turned({0, 0, 50}, 0);  // three half diagonals are 45
+    ASSERT_GT(pixels(m, far), 0.0F);
+    ASSERT_NE(pixels(m, far), box_pixels(m, far));
+    EXPECT_EQ(mixed_pixels(m, far), box_pixels(m, far));
+    Model bare = m;
+    bare.reps[0].part_count = 0;
+    EXPECT_LT(pixels(bare, Pose{}), 0.0F);
+    EXPECT_EQ(mixed_pixels(bare, Pose{}), box_pixels(m, Pose{}));
+    Model flat = m;
+    flat.placements[0].linear[2] = vec3(0);  // cannot be turned back
+    EXPECT_LT(pixels(flat, Pose{}), 0.0F);
+}
+
+TEST(Surfaces, AreFiniteWhereverTheEyeIs) {
+    Random random(7);
+    const auto any = [&] {
+        switch (random.below(4)) {
+            case 0:
+                return random.range(-1, 1);
+            case 1:
+                return random.range(-1, 1) * 1e-12;
+            case 2:
+                return random.range(-1, 1) * 1e12;
+            default:
+                return 0.0;
+        }
+    };
+    for (int i = 0; i < 3000; ++i) {
+        std::vector<dvec3> corners;
+        const std::uint32_t count = 3 * (1 + random.below(4));
+        for (std::uint32_t c = 0; c < count; ++c) {
+            const double x = any(), y = any();
+            corners.emplace_back(x, y, any());
+        }
+        const Model m = model_of(corners, i % 2 == 0);
+        const double x = any(), y = any(), z = any();
+        const float p = mixed_pixels(m, turned({x, y, z}, random.range(0, 6)));
+        ASSERT_TRUE(std::isfinite(p) && p >= 0 && p <= most_pixels) << i << ": " << p;
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::model
