@@ -99,10 +99,13 @@ void check_gadget(Checks& checks, const Guest& guest) {
         const auto attended = walker.attendant.attended();
         if (attended.empty()) break;
         const HangUp hang_up(attended.front().plugged->node.substr(5));  // without "/dev/"
-        walker.hold([&] { gadget.send(pad_at(128, 128)); }, 60);
         const auto report = pad_at(static_cast<int>(random.below(70)), static_cast<int>(random.below(70)));
-        // Until it moves: emulated, a report's way through the USB stack takes its time.
-        for (int tries = 0; tries < 10 && walker.speed() <= 0.01; ++tries) walker.hold([&] { gadget.send(report); }, 150);
+        // Until it moves: emulated, a report's way through the USB stack takes its time, and before neutral has been seen nothing
+        // moves.
+        for (int tries = 0; tries < 10 && walker.speed() <= 0.01; ++tries) {
+            walker.hold([&] { gadget.send(pad_at(128, 128)); }, 60 + 60 * tries);
+            walker.hold([&] { gadget.send(report); }, 150);
+        }
         moved += walker.speed() > 0.01 ? 1 : 0;
         walker.longest_gap_ns = 0;
         std::thread cable([&] { gadget.pull(); });
