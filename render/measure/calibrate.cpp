@@ -11,7 +11,6 @@
 #include "render/measure/calibrate_fit.hpp"
 #include "render/measure/calibrate_run.hpp"
 #include "render/measure/calibrate_scene.hpp"
-#include "render/model/surfaces.hpp"
 
 namespace surefoot::measure {
 
@@ -67,7 +66,6 @@ private:
     const Progress& progress_;
     Random random_;
     CalibrationScene scene_;
-    model::Surfaces surfaces_{scene_.model};
     RasteriserClocks clocks_;
     FrameTiming empty_;
 };
@@ -147,7 +145,7 @@ FrameSample Run::predict(const TownView& view, const model::CostModel& costs) co
     FrameSample sample;
     for (const gl::DrawItem& item : view.items) {
         const model::Representation& rep = scene_.model.reps[item.rep];
-        const float pixels = surfaces_.pixels(item.rep, rep, scene_.model.nodes[item.node].box, view.pose.position, scale);
+        const float pixels = scene_.surfaces.pixels(item.rep, rep, scene_.model.nodes[item.node].box, view.pose.position, scale);
         const model::ItemCost cost = costs.item(static_cast<float>(rep.triangles), pixels, costs.grid_for(rep.effects));
         sample.submit_us += static_cast<double>(cost.submit_us);
         sample.raster_us += static_cast<double>(cost.raster_us);

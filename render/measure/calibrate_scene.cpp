@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "render/model/cost.hpp"
-#include "render/model/surfaces.hpp"
 #include "rt/base/random_point.hpp"
 
 namespace surefoot::measure {
@@ -258,13 +257,13 @@ CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std
     return cell;
 }
 
-void count_pixels(const model::Model& model, model::Viewport viewport, std::vector<CalibrationCell>& cells) {
-    const model::Surfaces surfaces(model);
+void count_pixels(CalibrationScene& scene, model::Viewport viewport) {
+    const model::Model& model = scene.model;
     const model::ViewScale scale = model::make_view_scale(Pose{}, viewport);
-    for (CalibrationCell& cell : cells) {
+    for (CalibrationCell& cell : scene.cells) {
         for (const gl::DrawItem& item : cell.items) {
             cell.pixels += static_cast<double>(
-                surfaces.pixels(item.rep, model.reps[item.rep], model.nodes[item.node].box, dvec3(0.0), scale));
+                scene.surfaces.pixels(item.rep, model.reps[item.rep], model.nodes[item.node].box, dvec3(0.0), scale));
         }
         cell.pixels /= static_cast<double>(cell.items.size());
     }
@@ -334,8 +333,9 @@ CalibrationScene make_calibration_scene(model::Viewport viewport, bool quick, st
         }
     }
     make_town(builder, meshes, materials, scene);
-    count_pixels(builder.model(), viewport, scene.cells);
     scene.model = std::move(builder.model());
+    scene.surfaces = model::Surfaces(scene.model);
+    count_pixels(scene, viewport);
     return scene;
 }
 

@@ -7,6 +7,7 @@
 
 #include "render/gl/device.hpp"
 #include "render/model/model.hpp"
+#include "render/model/surfaces.hpp"
 #include "render/model/view.hpp"
 #include "rt/base/random.hpp"
 
@@ -32,6 +33,7 @@ struct TownObject {
 
 struct CalibrationScene {
     model::Model model;
+    model::Surfaces surfaces;  ///< of the model
     std::vector<CalibrationCell> cells;
     std::vector<TownObject> town;  ///< in blocks: neighbours in the list are neighbours in space
     Box town_box;

@@ -1,10 +1,12 @@
-// How many pixels a representation rasterises: the shared estimate (pixels.hpp).
+// How many pixels a representation rasterises, by its box (pixels.hpp).
 #include "render/model/pixels.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "render/model/triangles.hpp"
 
 namespace surefoot::model {
 
@@ -140,20 +142,16 @@ std::array<float, 3> rasterised_area(const Model& model, const Representation& r
     dvec3 total(0.0);
     dvec3 forth(0.0);
     dvec3 back(0.0);
-    for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-        const Part& part = model.parts[p];
-        const auto corner = [&](std::uint32_t i) {
-            const float* v = model.vertices[part.first_vertex + model.indices[part.first_index + i]].position;
-            return dvec3(linear * vec3(v[0], v[1], v[2]));
-        };
-        const bool both = model.materials[part.material].two_sided;
-        for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) {
-            const dvec3 a = corner(i);
-            const dvec3 area = 0.5 * glm::cross(corner(i + 1) - a, corner(i + 2) - a);
-            (both ? total : forth) += both ? glm::abs(area) : glm::max(area, dvec3(0.0));
-            if (!both) back += glm::max(-area, dvec3(0.0));
+    for_triangles(model, rep, [&](const Material& material, const vec3& a, const vec3& b, const vec3& c) {
+        const dvec3 first(linear * a);
+        const dvec3 area = 0.5 * glm::cross(dvec3(linear * b) - first, dvec3(linear * c) - first);
+        if (material.two_sided) {
+            total += glm::abs(area);
+        } else {
+            forth += glm::max(area, dvec3(0.0));
+            back += glm::max(-area, dvec3(0.0));
         }
-    }
+    });
     const dvec3 sum = total + glm::max(forth, back);
     return {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)};
 }

@@ -1,5 +1,5 @@
-// How many pixels a representation rasterises, seen from a pose: the one estimate that prepare, the null device and the
-// calibration share, so that what is predicted, charged and measured is the same quantity.
+// How many pixels a representation rasterises, seen from a pose, by its box and its areas alone: all that is needed far away, and
+// part of the estimate nearby (surfaces.hpp).
 #pragma once
 
 #include <array>
@@ -26,10 +26,10 @@ struct ViewScale {
 /// angle_rad widens the view on each side (a region of poses); half angles are capped below 89 degrees.
 ViewScale make_view_scale(const Pose& pose, Viewport viewport, double angle_rad = 0.0);
 
-/// Rasterised pixels, overdraw included, of `rep` of a node with box `node_box` seen from `eye`; 0 where the box is outside
-/// the view. The areas of the representation are taken as spread evenly over the box. Wholly in view and far: closed form at
-/// the box's centre, about 15 ns; else 16 rays through what is seen of the box, about 70 ns. Finite and >= 0 for all input;
-/// falls with distance for a box that stays in view.
+/// By the box alone: rasterised pixels, overdraw included, of `rep` of a node with box `node_box` seen from `eye`; 0 where the
+/// box is outside the view. The areas of the representation are taken as spread evenly over the box. Wholly in view and far:
+/// closed form at the box's centre, about 15 ns; else 16 rays through what is seen of the box, about 70 ns. Finite and >= 0 for
+/// all input; falls with distance for a box that stays in view.
 float rasterised_pixels(const Representation& rep, const Box& node_box, const dvec3& eye, const ViewScale& scale);
 
 /// Representation::area_m2 of its parts, in world axes: along each, the larger of the areas that face the two ways (a closed

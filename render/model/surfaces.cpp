@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "render/model/triangles.hpp"
+
 namespace surefoot::model {
 
 namespace {
@@ -16,24 +18,7 @@ constexpr std::size_t most = 128;  // triangles, and samples, of a surface
 constexpr float near_half_diagonals = 3.0F;
 constexpr float surface_share = 2.0F / 3.0F;
 
-struct Corners {
-    vec3 a, b, c;
-    bool both_sides;
-    [[nodiscard]] vec3 area() const { return 0.5F * glm::cross(b - a, c - a); }
-};
-
-template <class Use>
-void for_triangles(const Model& model, const Representation& rep, Use use) {
-    for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-        const Part& part = model.parts[p];
-        const bool both = model.materials[part.material].two_sided;
-        const auto corner = [&](std::uint32_t i) {
-            const float* v = model.vertices[part.first_vertex + model.indices[part.first_index + i]].position;
-            return vec3(v[0], v[1], v[2]);
-        };
-        for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) use(Corners{corner(i), corner(i + 1), corner(i + 2), both});
-    }
-}
+vec3 area_of(const vec3& a, const vec3& b, const vec3& c) { return 0.5F * glm::cross(b - a, c - a); }
 
 /// The n-th of a sequence that fills the unit square evenly, folded into a triangle.
 vec2 place_in_triangle(std::size_t n) {
@@ -127,8 +112,8 @@ Surfaces::Surfaces(const Model& model) {
 void Surfaces::measure(const Model& model, const Representation& rep, std::vector<float>& areas, Surface& surface) {
     areas.clear();
     double total = 0;
-    for_triangles(model, rep, [&](const Corners& t) {
-        areas.push_back(glm::length(t.area()));
+    for_triangles(model, rep, [&](const Material&, const vec3& a, const vec3& b, const vec3& c) {
+        areas.push_back(glm::length(area_of(a, b, c)));
         total += static_cast<double>(areas.back());
     });
     surface.triangles = surface.samples = 0;
@@ -157,18 +142,19 @@ void Surfaces::fill(const Model& model, const Representation& rep, Surface& surf
     if (surface.triangles + surface.samples == 0) return;
     double passed = 0;
     std::uint32_t n = 0;
-    for_triangles(model, rep, [&](const Corners& t) {
-        const float area = glm::length(t.area());
+    for_triangles(model, rep, [&](const Material& material, const vec3& a, const vec3& b, const vec3& c) {
+        const vec3 facing = area_of(a, b, c);
+        const float area = glm::length(facing);
         if (!(area > 0)) return;
         if (area > surface.whole_m2) {
-            triangles_.push_back({t.a, t.b, t.c, t.both_sides});
+            triangles_.push_back({a, b, c, material.two_sided});
             return;
         }
         passed += static_cast<double>(area);
         for (; n < surface.samples && (n + 0.5) * static_cast<double>(surface.sample_m2) < passed; ++n) {
             const vec2 place = place_in_triangle(n);
-            samples_.push_back({t.a + place.x * (t.b - t.a) + place.y * (t.c - t.a), t.area() * (surface.sample_m2 / area),
-                                t.both_sides ? -1.0F : 0.0F});
+            samples_.push_back({a + place.x * (b - a) + place.y * (c - a), facing * (surface.sample_m2 / area),
+                                material.two_sided ? -1.0F : 0.0F});
         }
     });
     // Areas so small that their sum is not what their shares add up to.

@@ -7,7 +7,6 @@
 
 #include "render/model/cost.hpp"
 #include "render/model/model.hpp"
-#include "render/model/pixels.hpp"
 #include "render/model/surfaces.hpp"
 #include "render/prepare/prepared.hpp"
 

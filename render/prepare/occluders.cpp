@@ -6,6 +6,8 @@
 #include <map>
 #include <tuple>
 
+#include "render/model/triangles.hpp"
+
 namespace surefoot::prepare {
 
 namespace {
@@ -43,28 +45,21 @@ private:
     std::vector<Found> heap_;
 };
 
-dvec3 placed(const model::Vertex& vertex, const model::Placement& placement) {
-    return placement.origin + dmat3(placement.linear) * dvec3(vertex.position[0], vertex.position[1], vertex.position[2]);
-}
-
 void offer_leaf(const model::Model& model, const model::Representation& rep, std::uint64_t& order, Largest& largest) {
     const model::Placement& placement = model.placements[rep.placement];
     const bool mirrored = glm::determinant(placement.linear) < 0;
-    for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-        const model::Part& part = model.parts[p];
-        const model::Material& material = model.materials[part.material];
-        if (material.alpha != model::AlphaMode::opaque) continue;
-        for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3, ++order) {
-            Found found;
-            for (std::uint32_t k = 0; k < 3; ++k)
-                found.at[k] = placed(model.vertices[part.first_vertex + model.indices[part.first_index + i + k]], placement);
-            if (mirrored) std::swap(found.at[1], found.at[2]);
-            found.area_m2 = 0.5 * glm::length(glm::cross(found.at[1] - found.at[0], found.at[2] - found.at[0]));
-            found.order = order;
-            found.two_sided = material.two_sided;
-            if (found.area_m2 > 0 && std::isfinite(found.area_m2)) largest.offer(found);
-        }
-    }
+    const dmat3 linear(placement.linear);
+    model::for_triangles(model, rep, [&](const model::Material& material, const vec3& a, const vec3& b, const vec3& c) {
+        if (material.alpha != model::AlphaMode::opaque) return;
+        Found found;
+        found.at = {placement.origin + linear * dvec3(a), placement.origin + linear * dvec3(b),
+                    placement.origin + linear * dvec3(c)};
+        if (mirrored) std::swap(found.at[1], found.at[2]);
+        found.area_m2 = 0.5 * glm::length(glm::cross(found.at[1] - found.at[0], found.at[2] - found.at[0]));
+        found.order = order++;
+        found.two_sided = material.two_sided;
+        if (found.area_m2 > 0 && std::isfinite(found.area_m2)) largest.offer(found);
+    });
 }
 
 /// Gives corners that fall into one cell of a fine grid one number. What a cell's border parts is not joined: less hides, no

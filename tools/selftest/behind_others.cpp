@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "render/model/triangles.hpp"
 #include "render/prepare/occlusion.hpp"
 #include "rt/base/random.hpp"
 #include "rt/base/random_point.hpp"
@@ -31,19 +32,15 @@ std::vector<Leaf> leaves_of(const model::Model& model) {
         const model::Representation& rep = model.reps[node.first_rep + node.rep_count - 1];
         const model::Placement& placement = model.placements[rep.placement];
         const bool mirrored = glm::determinant(placement.linear) < 0;
-        for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-            const model::Part& part = model.parts[p];
-            for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) {
-                Face face;
-                for (std::uint32_t k = 0; k < 3; ++k) {
-                    const auto& v = model.vertices[part.first_vertex + model.indices[part.first_index + i + k]].position;
-                    face.at[k] = placement.origin + dmat3(placement.linear) * dvec3(v[0], v[1], v[2]);
-                }
-                if (mirrored) std::swap(face.at[1], face.at[2]);
-                face.two_sided = model.materials[part.material].two_sided;
-                leaf.faces.push_back(face);
-            }
-        }
+        const dmat3 linear(placement.linear);
+        model::for_triangles(model, rep, [&](const model::Material& material, const vec3& a, const vec3& b, const vec3& c) {
+            Face face;
+            face.at = {placement.origin + linear * dvec3(a), placement.origin + linear * dvec3(b),
+                       placement.origin + linear * dvec3(c)};
+            if (mirrored) std::swap(face.at[1], face.at[2]);
+            face.two_sided = material.two_sided;
+            leaf.faces.push_back(face);
+        });
         leaves.push_back(std::move(leaf));
     }
     return leaves;
