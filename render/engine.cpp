@@ -235,12 +235,10 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
     const model::ViewScale scale = model::make_view_scale(pose, options.device.viewport);
     model::ItemCost sum{.submit_us = costs.slice_us, .raster_us = 0};
     for (const gl::DrawItem& item : coarse) {
-        const model::Representation& rep = model.reps[item.rep];
-        const float pixels = preparer->surfaces().pixels(item.rep, rep, model.nodes[item.node].box, pose.position, scale);
-        const model::ItemCost cost = costs.item(static_cast<float>(rep.triangles), pixels, costs.grid_for(rep.effects));
+        const model::ItemCost cost = preparer->item_costs().of(item.rep, model.nodes[item.node].box, pose.position, scale);
         sum.submit_us += cost.submit_us;
         sum.raster_us += cost.raster_us;
-        report.triangles += rep.triangles;
+        report.triangles += model.reps[item.rep].triangles;
     }
     report.predicted = sum;
     report.predicted_us = costs.combine.frame_us(sum.submit_us, sum.raster_us);

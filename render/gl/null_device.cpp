@@ -1,11 +1,12 @@
 // The null device: draws nothing, records counts, and charges every item to the virtual cost clock exactly as prepare
 // predicts it: same table, same pixel estimate, same combination of sums.
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "render/gl/program.hpp"
 #include "render/gl/tables.hpp"
-#include "render/model/surfaces.hpp"
+#include "render/model/item_costs.hpp"
 #include "rt/base/random.hpp"
 
 namespace surefoot::gl {
@@ -59,10 +60,8 @@ private:
         ProgramSource source;
     };
     std::vector<LoadedProgram> programs_;
-    std::vector<Box> boxes_;
-    std::vector<model::Representation> reps_;
-    model::Surfaces surfaces_;
-    std::vector<std::uint32_t> grids_;  ///< a rep: index of its cost grid
+    const model::Model* model_ = nullptr;
+    std::optional<model::ItemCosts> item_costs_;
     dvec3 eye_{0.0};
     model::ViewScale scale_;
     FrameStats stats_;
@@ -74,14 +73,8 @@ Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& p
     if (costs_.grids.empty()) return Error{"cost table", "holds no state class", "run `surefoot calibrate`"};
     programs_.clear();
     for (const model::EffectMask mask : make_tables(model).masks) programs_.push_back({mask, programs(mask)});
-    boxes_.clear();
-    for (const model::Node& node : model.nodes) boxes_.push_back(node.box);
-    reps_ = model.reps;
-    surfaces_ = model::Surfaces(model);
-    grids_.clear();
-    for (const model::Representation& rep : reps_) {
-        grids_.push_back(static_cast<std::uint32_t>(&costs_.grid_for(rep.effects) - costs_.grids.data()));
-    }
+    model_ = &model;
+    item_costs_.emplace(model, costs_);
     return {};
 }
 
@@ -113,9 +106,8 @@ void NullDevice::begin_frame(const Pose& pose) {
 
 void NullDevice::draw(std::span<const DrawItem> items) {
     for (const DrawItem& item : items) {
-        const model::Representation& rep = reps_[item.rep];
-        const float pixels = surfaces_.pixels(item.rep, rep, boxes_[item.node], eye_, scale_);
-        const model::ItemCost cost = costs_.item(static_cast<float>(rep.triangles), pixels, costs_.grids[grids_[item.rep]]);
+        const model::Representation& rep = model_->reps[item.rep];
+        const model::ItemCost cost = item_costs_->of(item.rep, model_->nodes[item.node].box, eye_, scale_);
         submit_us_ += static_cast<double>(cost.submit_us);
         raster_us_ += static_cast<double>(cost.raster_us);
         ++stats_.items;

@@ -11,6 +11,7 @@
 #include "render/measure/calibrate_fit.hpp"
 #include "render/measure/calibrate_run.hpp"
 #include "render/measure/calibrate_scene.hpp"
+#include "render/model/item_costs.hpp"
 
 namespace surefoot::measure {
 
@@ -34,7 +35,7 @@ std::vector<std::size_t> shuffled(std::size_t n, Random& random) {
     return order;
 }
 
-double median(const std::vector<double>& values) { return quantile_of(values, 0.5); }
+double least(const std::vector<double>& values) { return *std::min_element(values.begin(), values.end()); }
 
 class Run {
 public:
@@ -58,8 +59,7 @@ private:
         return run_frame(device_, clocks_, pose, items, slice_items);
     }
     [[nodiscard]] int repeats() const { return options_.quick ? 3 : 5; }
-    FrameSample predict(const TownView& view, const model::CostModel& costs) const;
-    double undisturbed_us(const TownView& view, std::size_t slice_items);
+    FrameSample predict(const TownView& view, const model::ItemCosts& costs) const;
 
     gl::Device& device_;
     const CalibrateOptions& options_;
@@ -91,18 +91,18 @@ void Run::slices(Calibration& out) {
     const std::span<const gl::DrawItem> items = small->items;
     constexpr std::size_t parts = 16;
     const std::size_t part = (items.size() + parts - 1) / parts;
-    std::vector<double> difference, empty_submit, empty_raster, empty_wall;
+    std::vector<double> whole, sliced, empty_submit, empty_raster, empty_wall;
     for (int i = 0; i < 5 * repeats(); ++i) {
-        const double one = timed(Pose{}, items, items.size()).submit_us;
-        const double many = timed(Pose{}, items, part).submit_us;
-        difference.push_back((many - one) / static_cast<double>(parts - 1));
+        whole.push_back(timed(Pose{}, items, items.size()).submit_us);
+        sliced.push_back(timed(Pose{}, items, part).submit_us);
         const FrameTiming empty = timed(Pose{}, {}, 1);
         empty_submit.push_back(empty.submit_us);
         empty_raster.push_back(empty.raster_us);
         empty_wall.push_back(empty.wall_us);
     }
-    out.costs.slice_us = static_cast<float>(std::clamp(median(difference), 0.0, 500.0));
-    empty_ = {median(empty_submit), median(empty_raster), median(empty_wall)};
+    out.costs.slice_us =
+        static_cast<float>(std::clamp((least(sliced) - least(whole)) / static_cast<double>(parts - 1), 0.0, 500.0));
+    empty_ = {least(empty_submit), least(empty_raster), least(empty_wall)};
 }
 
 Result<void> Run::cells(Calibration& out) {
@@ -126,8 +126,8 @@ Result<void> Run::cells(Calibration& out) {
             raster.push_back(std::max(0.0, t.raster_us - empty_.raster_us) / count);
             wall.push_back(std::max(0.0, t.wall_us - empty_.wall_us) / count);
         }
-        CalibrationPoint point{cell.effects, cell.triangles, cell.pixels, median(submit), median(raster), median(wall), 0};
-        point.spread = (quantile_of(wall, 0.9) - quantile_of(wall, 0.1)) / std::max(1e-3, point.wall_us);
+        CalibrationPoint point{cell.effects, cell.triangles, cell.pixels, least(submit), least(raster), least(wall), 0};
+        point.spread = (quantile_of(wall, 0.9) - quantile_of(wall, 0.1)) / std::max(1e-3, quantile_of(wall, 0.5));
         out.points.push_back(point);
     }
     for (const model::EffectMask effects : calibration_classes(options_.quick)) {
@@ -140,51 +140,51 @@ Result<void> Run::cells(Calibration& out) {
     return {};
 }
 
-FrameSample Run::predict(const TownView& view, const model::CostModel& costs) const {
+FrameSample Run::predict(const TownView& view, const model::ItemCosts& costs) const {
     const model::ViewScale scale = model::make_view_scale(view.pose, options_.device.viewport);
     FrameSample sample;
     for (const gl::DrawItem& item : view.items) {
-        const model::Representation& rep = scene_.model.reps[item.rep];
-        const float pixels = scene_.surfaces.pixels(item.rep, rep, scene_.model.nodes[item.node].box, view.pose.position, scale);
-        const model::ItemCost cost = costs.item(static_cast<float>(rep.triangles), pixels, costs.grid_for(rep.effects));
+        const model::ItemCost cost = costs.of(item.rep, scene_.model.nodes[item.node].box, view.pose.position, scale);
         sample.submit_us += static_cast<double>(cost.submit_us);
         sample.raster_us += static_cast<double>(cost.raster_us);
     }
     return sample;
 }
 
-/// The median wall time of three frames in which neither thread was kept from its core: wall time may not exceed the CPU time
-/// of both together. Where nine tries bring none, the shortest.
-double Run::undisturbed_us(const TownView& view, std::size_t slice_items) {
-    std::vector<double> good;
-    double shortest = run_frame(device_, clocks_, view.pose, view.items, slice_items).wall_us;
-    for (int tries = 0; tries < 9 && good.size() < 3; ++tries) {
-        const FrameTiming t = run_frame(device_, clocks_, view.pose, view.items, slice_items);
-        shortest = std::min(shortest, t.wall_us);
-        if (!clocks_.any() || t.wall_us <= 1.05 * (t.submit_us + t.raster_us) + 100) good.push_back(t.wall_us);
-    }
-    return good.empty() ? shortest : median(good);
-}
-
-/// Random views of the town: every other one teaches the weights, the rest judge them.
+/// Random views of the town, drawn in rounds: every other one teaches the weights, the rest judge them.
 Result<void> Run::frames(Calibration& out) {
-    const int wanted = options_.quick ? 80 : 240;
-    std::vector<FrameSample> taught, held_out;
+    const int wanted = options_.quick ? 80 : 240, rounds = options_.quick ? 3 : 5;
+    const model::ItemCosts item_costs(scene_.model, out.costs, scene_.surfaces);
+    std::vector<TownView> views;
+    std::vector<FrameSample> samples;
+    std::vector<std::size_t> slice_items;
     for (int i = 0; i < wanted; ++i) {
-        if (progress_.stopped()) return stopped;
-        const TownView view = random_town_view(scene_, options_.device.viewport, random_);
+        TownView view = random_town_view(scene_, options_.device.viewport, random_);
         if (view.items.empty()) continue;
-        FrameSample sample = predict(view, out.costs);
+        FrameSample sample = predict(view, item_costs);
         const double slices = std::max(1.0, std::round((sample.submit_us + sample.raster_us) / slice_target_us));
-        const auto slice_items = static_cast<std::size_t>(std::ceil(static_cast<double>(view.items.size()) / slices));
+        slice_items.push_back(static_cast<std::size_t>(std::ceil(static_cast<double>(view.items.size()) / slices)));
         sample.submit_us += slices * static_cast<double>(out.costs.slice_us);
-        sample.actual_us = undisturbed_us(view, slice_items);
-        (i % 2 == 0 ? taught : held_out).push_back(sample);
-        progress_.say("frames", static_cast<double>(i) / wanted);
+        samples.push_back(sample);
+        views.push_back(std::move(view));
+    }
+    std::vector<std::vector<double>> times(views.size());
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            if (progress_.stopped()) return stopped;
+            times[v].push_back(timed(views[v].pose, views[v].items, slice_items[v]).wall_us);
+            progress_.say("frames", (round + static_cast<double>(v) / static_cast<double>(views.size())) / rounds);
+        }
+    }
+    const Settled took = settle(times);
+    std::vector<FrameSample> taught, held_out;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        samples[v].actual_us = took.undisturbed[v];
+        (v % 2 == 0 ? taught : held_out).push_back(samples[v]);
     }
     out.costs.combine =
         fit_combine(taught, {static_cast<float>(empty_.wall_us), 0.5F, 0.5F, 0.5F});  // half way from sum to larger
-    out.costs.upper_factor = static_cast<float>(std::max(1.0, ratio(held_out, out.costs.combine, 0.9)));
+    out.costs.upper_factor = static_cast<float>(std::max(1.0, took.slowdown * ratio(held_out, out.costs.combine, 0.9)));
     out.frame_error_p50 = relative_error(held_out, out.costs.combine, 0.5);
     out.frame_error_p90 = relative_error(held_out, out.costs.combine, 0.9);
     out.frame_error_p99 = relative_error(held_out, out.costs.combine, 0.99);

@@ -142,6 +142,17 @@ double quantile_of(std::vector<double> values, double quantile) {
     return values[std::min(at, values.size() - 1)];
 }
 
+Settled settle(std::span<const std::vector<double>> rounds_of_frame) {
+    Settled settled;
+    std::vector<double> longer;
+    for (const std::vector<double>& rounds : rounds_of_frame) {
+        settled.undisturbed.push_back(*std::min_element(rounds.begin(), rounds.end()));
+        longer.push_back(quantile_of(rounds, 0.5) / std::max(1.0, settled.undisturbed.back()));
+    }
+    if (!longer.empty()) settled.slowdown = std::max(1.0, quantile_of(std::move(longer), 0.5));
+    return settled;
+}
+
 model::CostGrid fill_grid(model::EffectMask effects, std::span<const CalibrationPoint> points) {
     model::CostGrid grid{effects, triangle_steps, pixel_steps, {}};
     if (points.empty()) return grid;

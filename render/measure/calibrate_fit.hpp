@@ -30,4 +30,14 @@ double ratio(std::span<const FrameSample> samples, const model::FrameCombine& co
 
 double quantile_of(std::vector<double> values, double quantile);
 
+/// What frames take, from their times in several rounds.
+struct Settled {
+    std::vector<double> undisturbed;  ///< [frame]: its least
+    double slowdown = 1;              ///< by how much longer the middle one of a frame's rounds is, median over the frames
+};
+/// A machine's speed moves, by up to two where it shares cores with others, for a tenth of a second and more: frames measured at
+/// different moments compare only by what each takes undisturbed. Rounds lie far apart in time, so that one moment does not
+/// fall on all of a frame's; none is empty.
+Settled settle(std::span<const std::vector<double>> rounds_of_frame);
+
 }  // namespace surefoot::measure

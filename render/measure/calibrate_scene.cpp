@@ -262,8 +262,8 @@ void count_pixels(CalibrationScene& scene, model::Viewport viewport) {
     const model::ViewScale scale = model::make_view_scale(Pose{}, viewport);
     for (CalibrationCell& cell : scene.cells) {
         for (const gl::DrawItem& item : cell.items) {
-            cell.pixels += static_cast<double>(
-                scene.surfaces.pixels(item.rep, model.reps[item.rep], model.nodes[item.node].box, dvec3(0.0), scale));
+            cell.pixels +=
+                static_cast<double>(scene.surfaces.pixels(model, item.rep, model.nodes[item.node].box, dvec3(0.0), scale));
         }
         cell.pixels /= static_cast<double>(cell.items.size());
     }

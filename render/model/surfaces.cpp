@@ -15,8 +15,15 @@ namespace surefoot::model {
 namespace {
 
 constexpr std::size_t most = 128;  // triangles, and samples, of a surface
-constexpr float near_half_diagonals = 3.0F;
+constexpr float near_half_diagonals = 3.0F, close_half_diagonals = 1.5F;
+constexpr std::uint32_t most_each = 1024;  // triangles that are looked at one by one
 constexpr float surface_share = 2.0F / 3.0F;
+
+/// Nearer than so many half diagonals of the box.
+bool within(float half_diagonals, const Box& box, const dvec3& eye) {
+    const vec3 half(box.half()), away(box.centre() - eye);
+    return glm::dot(away, away) < half_diagonals * half_diagonals * glm::dot(half, half);
+}
 
 vec3 area_of(const vec3& a, const vec3& b, const vec3& c) { return 0.5F * glm::cross(b - a, c - a); }
 
@@ -59,11 +66,11 @@ struct Polygon {
 
 /// A view in the coordinates of a surface: x and y in the picture where they lie between -z and z.
 struct Surfaces::LocalView {
-    vec3 eye, x, y, z;
-    float side;  ///< -1 where the placement mirrors
-    float near_m;
-    float pixels;        ///< of the picture
-    float sample_scale;  ///< pixels of a sample's area at depth 1, seen from ahead
+    vec3 eye{0}, x{0}, y{0}, z{0};
+    float side = 1;  ///< -1 where the placement mirrors
+    float near_m = 0;
+    float pixels = 0;        ///< of the picture
+    float sample_scale = 0;  ///< pixels of a sample's area at depth 1, seen from ahead
     [[nodiscard]] vec3 seen(const vec3& at) const {
         const vec3 d = at - eye;
         return {glm::dot(x, d), glm::dot(y, d), glm::dot(z, d)};
@@ -197,21 +204,28 @@ float Surfaces::pixels_of(const Sample& s, float sample_m2, const LocalView& vie
     return std::max(ahead, ahead * s.back) * square / ((square + 0.5F * sample_m2) * z * z * z) * view.sample_scale;
 }
 
-float Surfaces::surface_pixels(Index r, const dvec3& eye, const ViewScale& scale) const {
-    if (r >= placed_.size()) return -1;
-    const Surface& surface = surfaces_[placed_[r].surface];
+bool Surfaces::look(Index r, const dvec3& eye, const ViewScale& scale, LocalView& view) const {
+    if (r >= placed_.size()) return false;
     const Place& place = places_[placed_[r].place];
-    if (surface.triangles + surface.samples == 0 || place.determinant == 0) return -1;
+    if (place.determinant == 0) return false;
     const mat3 turned = glm::transpose(place.linear);
     const float f = scale.pixels_per_radian;
-    const LocalView view{place.inverse * vec3(eye - place.origin),
-                         turned * scale.across / scale.tan_half_x,
-                         turned * scale.rise / scale.tan_half_y,
-                         turned * scale.forward,
-                         place.determinant < 0 ? -1.0F : 1.0F,
-                         scale.near_m,
-                         scale.viewport_pixels,
-                         f * f * std::abs(place.determinant)};
+    view = {place.inverse * vec3(eye - place.origin),
+            turned * scale.across / scale.tan_half_x,
+            turned * scale.rise / scale.tan_half_y,
+            turned * scale.forward,
+            place.determinant < 0 ? -1.0F : 1.0F,
+            scale.near_m,
+            scale.viewport_pixels,
+            f * f * std::abs(place.determinant)};
+    return true;
+}
+
+float Surfaces::surface_pixels(Index r, const dvec3& eye, const ViewScale& scale) const {
+    LocalView view;
+    if (!look(r, eye, scale, view)) return -1;
+    const Surface& surface = surfaces_[placed_[r].surface];
+    if (surface.triangles + surface.samples == 0) return -1;
     float pixels = 0;
     for (std::uint32_t i = 0; i < surface.triangles; ++i) pixels += pixels_of(triangles_[surface.first_triangle + i], view);
     for (std::uint32_t i = 0; i < surface.samples; ++i)
@@ -219,13 +233,29 @@ float Surfaces::surface_pixels(Index r, const dvec3& eye, const ViewScale& scale
     return pixels >= 0 ? std::min(pixels, most_pixels) : -1.0F;
 }
 
-float Surfaces::pixels(Index r, const Representation& rep, const Box& node_box, const dvec3& eye, const ViewScale& scale) const {
-    const float by_box = rasterised_pixels(rep, node_box, eye, scale);
-    if (node_box.empty()) return by_box;
-    const vec3 half(node_box.half()), away(node_box.centre() - eye);
-    if (!(glm::dot(away, away) < near_half_diagonals * near_half_diagonals * glm::dot(half, half))) return by_box;
+float Surfaces::pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const {
+    const float by_box = rasterised_pixels(model.reps[r], node_box, eye, scale);
+    if (node_box.empty() || !within(near_half_diagonals, node_box, eye)) return by_box;
     const float by_surface = surface_pixels(r, eye, scale);
     return by_surface < 0 ? by_box : by_box + surface_share * (by_surface - by_box);
+}
+
+bool Surfaces::part_pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale,
+                           std::span<float> of_part) const {
+    const Representation& rep = model.reps[r];
+    LocalView view;
+    if (rep.part_count == 0 || rep.part_count > of_part.size() || rep.triangles > most_each || node_box.empty() ||
+        !within(close_half_diagonals, node_box, eye) || !look(r, eye, scale, view))
+        return false;
+    float sum = 0;
+    for (std::uint32_t p = 0; p < rep.part_count; ++p) {
+        of_part[p] = 0;
+        for_triangles(model, rep.first_part + p, [&](const Material& material, const vec3& a, const vec3& b, const vec3& c) {
+            of_part[p] += pixels_of(Triangle{a, b, c, material.two_sided}, view);
+        });
+        sum += of_part[p];
+    }
+    return std::isfinite(sum);
 }
 
 }  // namespace surefoot::model

@@ -97,13 +97,8 @@ float finest_error(const model::Model& model, const model::Node& node, float nea
     return model.reps[node.first_rep].error_m;
 }
 
-Evaluator::Evaluator(const model::Model& model, const model::CostModel& costs) : model_(model), costs_(costs), surfaces_(model) {
-    grid_of_rep_.reserve(model.reps.size());
-    for (const model::Representation& rep : model.reps) {
-        const auto grid = &costs.grid_for(rep.effects) - costs.grids.data();
-        grid_of_rep_.push_back(static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(grid, 255)));
-    }
-}
+Evaluator::Evaluator(const model::Model& model, const model::CostModel& costs)
+    : model_(model), costs_(costs), item_costs_(model, costs) {}
 
 std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices,
                                   Weight& weight) const {
@@ -117,15 +112,13 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
     weight = {size * importance * seen.focus * motion_factor(view, distance), size * importance, distance};
 
     const auto fill = [&](Choice& choice, Index r, float error_rad) {
-        const model::Representation& rep = model_.reps[r];
-        const float pixels = surfaces_.pixels(r, rep, node.box, eye, view.scale);
         choice.rep = r;
-        choice.cost = costs_.item(static_cast<float>(rep.triangles), pixels, costs_.grids[grid_of_rep_[r]]);
+        choice.cost = item_costs_.of(r, node.box, eye, view.scale);
         choice.error_rad = error_rad;
         choice.benefit =
             benefit_of(weight.weight, accuracy_gain(error_rad, view.pixel_angle_rad), wrongness(weight.size, error_rad));
         choice.subtree_benefit = choice.benefit;
-        choice.triangles = rep.triangles;
+        choice.triangles = model_.reps[r].triangles;
     };
     const auto error_of = [&](Index r) { return std::clamp(model_.reps[r].error_m / distance, 0.0F, largest_error_rad); };
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "render/model/cost.hpp"
+#include "render/model/item_costs.hpp"
 #include "render/model/model.hpp"
-#include "render/model/surfaces.hpp"
 #include "render/prepare/prepared.hpp"
 
 namespace surefoot::prepare {
@@ -84,14 +84,12 @@ public:
     /// Choices have benefit = weight x accuracy, not yet thrift, nor monotone down the tree.
     std::uint32_t evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices, Weight& weight) const;
 
-    /// What costs are predicted by.
-    [[nodiscard]] const model::Surfaces& surfaces() const { return surfaces_; }
+    [[nodiscard]] const model::ItemCosts& item_costs() const { return item_costs_; }
 
 private:
     const model::Model& model_;
     const model::CostModel& costs_;
-    model::Surfaces surfaces_;
-    std::vector<std::uint8_t> grid_of_rep_;  ///< index of the cost grid: the look-up by state class is done once
+    model::ItemCosts item_costs_;
 };
 
 }  // namespace surefoot::prepare

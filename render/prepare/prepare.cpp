@@ -322,7 +322,7 @@ Preparer::Preparer(const model::Model& model, const model::CostModel& costs, con
     : impl_(new Impl(model, costs, options)) {}
 Preparer::~Preparer() { delete impl_; }
 
-const model::Surfaces& Preparer::surfaces() const { return impl_->evaluator.surfaces(); }
+const model::ItemCosts& Preparer::item_costs() const { return impl_->evaluator.item_costs(); }
 
 void Preparer::reserve(PreparedFrame& frame) const {
     frame.candidates.reserve(impl_->visits.capacity());

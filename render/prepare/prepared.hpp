@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "render/model/cost.hpp"
+#include "render/model/item_costs.hpp"
 #include "render/model/model.hpp"
-#include "render/model/surfaces.hpp"
 #include "render/model/view.hpp"
 
 namespace surefoot::prepare {
@@ -97,8 +97,8 @@ public:
     void run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
              PreparedFrame& out);
 
-    /// What costs are predicted by.
-    [[nodiscard]] const model::Surfaces& surfaces() const;
+    /// What the choices' costs are predicted by.
+    [[nodiscard]] const model::ItemCosts& item_costs() const;
 
 private:
     struct Impl;

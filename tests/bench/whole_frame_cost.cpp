@@ -1,4 +1,6 @@
 // Bench: predicted against measured whole-frame cost on random poses, online correction frozen at 1.
+// Each is drawn in eight rounds, and counts as measure::settled() says; beside it, how far apart two measurements of one frame
+// are here, once round for round and once settled over four rounds each: no prediction can be nearer than that.
 // bench_whole_frame_cost MODEL.walk [POSES 500] [PATH.csv] [STATE_DIR] [fitted|table] [LIFT_M] -> one JSON object.
 #include <fmt/format.h>
 
@@ -6,9 +8,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <string>
 #include <vector>
 
 #include "render/engine.hpp"
+#include "render/measure/calibrate_fit.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/random.hpp"
 #include "rt/threads/memory.hpp"
@@ -30,6 +34,56 @@ std::int64_t now_ns(void* /*context*/) {
 int fail(const Error& error) {
     fmt::print(stderr, "{}\n", error.text());
     return 1;
+}
+
+struct Frames {
+    std::vector<double> predicted_us;         ///< [pose]
+    std::vector<std::vector<double>> rounds;  ///< us: [pose][round]
+};
+
+/// Random poses at random budgets, drawn in `rounds` rounds.
+Frames drawn(Engine& engine, const Path& path, std::size_t poses, int rounds) {
+    constexpr std::size_t warm_up = 20;
+    prepare::PreparedFrame prepared;
+    engine.reserve(prepared);
+    SubmitLimits limits;
+    limits.limit_us = 1e12;
+    limits.now_ns = now_ns;
+    Frames frames{std::vector<double>(poses), std::vector<std::vector<double>>(poses)};
+    for (int round = 0; round < rounds; ++round) {
+        Random random(2026);  // the same poses again
+        for (std::size_t i = 0; i < poses + warm_up; ++i) {
+            const Pose pose = app::random_pose(path, random);
+            const double budget_us = random.range(3000, 28000);
+            engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);
+            engine.select(prepared, budget_us, {}, 0);
+            engine.submit(pose, limits);
+            const SubmitReport report = engine.submit(pose, limits);
+            if (i < warm_up) continue;
+            double& predicted = frames.predicted_us[i - warm_up];
+            if (round == 0) predicted = report.predicted_us;
+            if (report.predicted_us == predicted) frames.rounds[i - warm_up].push_back(report.finished_us);
+        }
+    }
+    return frames;
+}
+
+/// Of even rounds, or of odd ones.
+std::vector<double> half_of(const std::vector<double>& rounds, std::size_t which) {
+    std::vector<double> half;
+    for (std::size_t r = which; r < rounds.size(); r += 2) half.push_back(rounds[r]);
+    return half.empty() ? rounds : half;
+}
+
+std::vector<double> relative_errors(const std::vector<double>& of, const std::vector<double>& against) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < of.size(); ++i) errors.push_back(std::abs(of[i] - against[i]) / against[i]);
+    return errors;
+}
+
+std::string quantiles(const std::vector<double>& v) {
+    return fmt::format("{{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}", quantile(v, 0.5), quantile(v, 0.9),
+                       quantile(v, 0.99));
 }
 
 }  // namespace
@@ -64,42 +118,29 @@ int main(int argc, char** argv) {
     (void)rt::place_thread(0, app::frame_placement(*plan));
     (*engine)->device().bind();
 
-    Random random(2026);
-    prepare::PreparedFrame prepared;
-    (*engine)->reserve(prepared);
-    SubmitLimits limits;
-    limits.limit_us = 1e12;
-    limits.now_ns = now_ns;
-    std::vector<double> errors, ratios, frame_ms;
-    for (int i = 0; i < poses + 20; ++i) {
-        const Pose pose = app::random_pose(path->path, random);
-        const double budget_us = random.range(3000, 28000);
-        (*engine)->prepare({pose, 0, 0}, 0, 0, 0, prepared);
-        (*engine)->select(prepared, budget_us, {}, 0);
-        std::vector<double> times;
-        double predicted = 0;
-        for (int r = 0; r < 3; ++r) {
-            const SubmitReport report = (*engine)->submit(pose, limits);
-            times.push_back(report.finished_us);
-            predicted = report.predicted_us;
-        }
-        if (i < 20) continue;  // warm-up
-        std::sort(times.begin(), times.end());
-        errors.push_back(std::abs(predicted - times[1]) / times[1]);
-        ratios.push_back(times[1] / predicted);
-        frame_ms.push_back(times[1] * 1e-3);
+    const Frames frames = drawn(**engine, path->path, static_cast<std::size_t>(poses), 8);
+    const measure::Settled settled = measure::settle(frames.rounds);
+    const std::vector<double>& took = settled.undisturbed;
+    std::vector<double> ratios, at_speed, again, single;
+    std::vector<std::vector<double>> halves[2];
+    for (std::size_t i = 0; i < took.size(); ++i) {
+        ratios.push_back(took[i] / frames.predicted_us[i]);
+        for (const std::size_t half : {0, 1}) halves[half].push_back(half_of(frames.rounds[i], half));
+        single.push_back(frames.rounds[i].front());
+        again.push_back(frames.rounds[i].back());
     }
     // What a correction of the run's own speed would leave: the machine's speed moves between calibration and this run.
     const double speed = quantile(ratios, 0.5);
-    std::vector<double> shape;
-    for (const double ratio : ratios) shape.push_back(std::abs(speed / ratio - 1));
+    for (const double predicted : frames.predicted_us) at_speed.push_back(speed * predicted);
     fmt::print(
-        "{{\"model\": \"{}\", \"poses\": {}, \"error\": {{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}, "
-        "\"error_at_the_runs_speed\": {{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}, "
-        "\"actual_over_predicted\": {{\"p10\": {:.3f}, \"p50\": {:.3f}, \"p90\": {:.3f}}}, \"frame_ms\": {{\"p50\": {:.2f}, "
-        "\"p90\": {:.2f}}}}}\n",
-        argv[1], poses, quantile(errors, 0.5), quantile(errors, 0.9), quantile(errors, 0.99), quantile(shape, 0.5),
-        quantile(shape, 0.9), quantile(shape, 0.99), quantile(ratios, 0.1), speed, quantile(ratios, 0.9), quantile(frame_ms, 0.5),
-        quantile(frame_ms, 0.9));
+        "{{\"model\": \"{}\", \"poses\": {}, \"error\": {}, \"error_at_the_runs_speed\": {}, \"actual_over_predicted\": "
+        "{{\"p10\": {:.3f}, "
+        "\"p50\": {:.3f}, \"p90\": {:.3f}}}, \"frame_ms\": {{\"p50\": {:.2f}, \"p90\": {:.2f}}}, \"two_measurements\": "
+        "{{\"rounds_apart\": {}, "
+        "\"of_four_rounds_each\": {}}}}}\n",
+        argv[1], poses, quantiles(relative_errors(frames.predicted_us, took)), quantiles(relative_errors(at_speed, took)),
+        quantile(ratios, 0.1), speed, quantile(ratios, 0.9), 1e-3 * quantile(took, 0.5), 1e-3 * quantile(took, 0.9),
+        settled.slowdown, quantiles(relative_errors(again, single)),
+        quantiles(relative_errors(measure::settle(halves[0]).undisturbed, measure::settle(halves[1]).undisturbed)));
     return 0;
 }

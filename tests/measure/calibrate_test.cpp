@@ -71,6 +71,37 @@ TEST(FrameFit, of_nothing_is_the_prior) {
     EXPECT_EQ(measure::relative_error({}, fitted, 0.5), 0);
 }
 
+TEST(FrameFit, settles_on_the_least_and_says_how_much_longer_the_middle_is) {
+    const std::vector<std::vector<double>> rounds = {{150, 100, 120}, {200, 260, 900}, {50, 55, 50}};
+    const measure::Settled settled = measure::settle(rounds);
+    EXPECT_EQ(settled.undisturbed, (std::vector<double>{100, 200, 50}));
+    EXPECT_NEAR(settled.slowdown, 1.2, 1e-9);  // of 1.2, 1.3 and 1
+    EXPECT_EQ(measure::settle({}).slowdown, 1.0);
+}
+
+// A machine that runs at two speeds, in turns of some frames: what one round says of a frame is the turn that it fell into.
+TEST(FrameFit, of_rounds_is_the_same_whatever_turns_the_machine_takes) {
+    const model::FrameCombine truth{300, 0.2F, 0.1F, 0.8F};
+    const auto clean = frames_by(truth, 0, 5);
+    Random random(6);
+    std::vector<std::vector<double>> rounds(clean.size());
+    std::vector<measure::FrameSample> once = clean;
+    for (int round = 0; round < 8; ++round) {
+        double speed = 1;
+        for (std::size_t i = 0; i < clean.size(); ++i) {
+            if (random.below(12) == 0) speed = random.below(3) == 0 ? 1.0 : 1.8;  // mostly slow
+            rounds[i].push_back(speed * clean[i].actual_us);
+            if (round == 0) once[i].actual_us = rounds[i].back();
+        }
+    }
+    const measure::Settled settled = measure::settle(rounds);
+    std::vector<measure::FrameSample> taught = clean;
+    for (std::size_t i = 0; i < clean.size(); ++i) taught[i].actual_us = settled.undisturbed[i];
+    EXPECT_LT(measure::relative_error(clean, measure::fit_combine(taught, prior), 0.9), 0.02);
+    EXPECT_GT(measure::relative_error(clean, measure::fit_combine(once, prior), 0.9), 0.1) << "one round would have done";
+    EXPECT_GT(settled.slowdown, 1.2);
+}
+
 std::vector<measure::CalibrationPoint> affine_points() {
     std::vector<measure::CalibrationPoint> points;
     for (const double t : {6.0, 64.0, 1000.0, 60000.0}) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -45,7 +47,7 @@ float pixels(const Model& m, const Pose& pose) {
     return Surfaces(m).surface_pixels(0, pose.position, make_view_scale(pose, viewport));
 }
 float mixed_pixels(const Model& m, const Pose& pose) {
-    return Surfaces(m).pixels(0, m.reps[0], m.nodes[0].box, pose.position, make_view_scale(pose, viewport));
+    return Surfaces(m).pixels(m, 0, m.nodes[0].box, pose.position, make_view_scale(pose, viewport));
 }
 float box_pixels(const Model& m, const Pose& pose) {
     return rasterised_pixels(m.reps[0], m.nodes[0].box, pose.position, make_view_scale(pose, viewport));
@@ -156,8 +158,68 @@ TEST(Surfaces, CountTwoThirdsNearbyAndNothingFarAwayOrWithoutTriangles) {
     EXPECT_LT(pixels(flat, Pose{}), 0.0F);
 }
 
+/// As model_of(), a part for every `triangles` of them.
+Model in_parts(std::span<const dvec3> corners, std::uint32_t triangles) {
+    Model m = model_of(corners);
+    const Part whole = m.parts[0];
+    m.parts.clear();
+    for (std::uint32_t first = 0; first < whole.index_count; first += 3 * triangles)
+        m.parts.push_back({0, first, std::min(3 * triangles, whole.index_count - first), 0, whole.vertex_count});
+    m.reps[0].part_count = static_cast<std::uint32_t>(m.parts.size());
+    return m;
+}
+
+bool part_pixels(const Model& m, const Pose& pose, std::span<float> of_part) {
+    return Surfaces(m).part_pixels(m, 0, m.nodes[0].box, pose.position, make_view_scale(pose, viewport), of_part);
+}
+
+TEST(Surfaces, OfPartsAreEveryTriangleCutToTheView) {
+    // A tunnel of three rings about the eye, 4 by 4 m: of each ring what lies ahead is seen, and nothing of one that lies behind.
+    std::vector<dvec3> corners;
+    for (const double z : {-40.0, -20.0, 2.0}) {
+        for (int side = 0; side < 4; ++side) {
+            const auto at = [&](int corner, double depth) {
+                const double a = pi * (0.25 + 0.5 * corner);
+                return dvec3(2 * std::numbers::sqrt2 * std::cos(a), 2 * std::numbers::sqrt2 * std::sin(a), depth);
+            };
+            const double end = z + (z > 0 ? 20 : 10);
+            corners.insert(corners.end(), {at(side, z), at(side + 1, end), at(side + 1, z)});
+            corners.insert(corners.end(), {at(side, z), at(side, end), at(side + 1, end)});
+        }
+    }
+    const Model m = in_parts(corners, 8);
+    ASSERT_EQ(m.parts.size(), 3U);
+    std::array<float, Surfaces::most_parts> of_part{};
+    ASSERT_TRUE(part_pixels(m, Pose{}, of_part));
+    // A ring covers the frame between its near and its far opening; an opening at d is a square of 4 f / d.
+    const double f = 240.0 / std::tan(0.5 * Pose{}.fov_y_rad);
+    const auto opening = [&](double d) { return 16 * f * f / (d * d); };
+    EXPECT_NEAR(of_part[0], opening(30) - opening(40), 1e-3 * opening(30));
+    EXPECT_NEAR(of_part[1], opening(10) - opening(20), 1e-3 * opening(10));
+    EXPECT_EQ(of_part[2], 0.0F);
+    ASSERT_TRUE(part_pixels(m, turned(dvec3(0), pi), of_part));
+    EXPECT_EQ(of_part[0] + of_part[1], 0.0F);
+    EXPECT_NEAR(of_part[2], 640 * 480 - opening(22), 2);
+}
+
+TEST(Surfaces, OfPartsAreLeftToTheMixFarAwayAndOfMuch) {
+    std::array<float, Surfaces::most_parts> of_part{};
+    const Model few = in_parts(ball(15, 1.0), 100);  // 840 triangles; half a diagonal is 1.7 m
+    EXPECT_TRUE(part_pixels(few, turned({0, 0, 2.5}, 0), of_part));
+    EXPECT_FALSE(part_pixels(few, turned({0, 0, 2.7}, 0), of_part));
+    EXPECT_FALSE(part_pixels(few, turned({0, 0, 2.5}, 0), std::span(of_part).first(8))) << "of nine parts";
+    EXPECT_FALSE(part_pixels(in_parts(ball(24, 1.0), 100), turned({0, 0, 2.5}, 0), of_part)) << "more than 1024 triangles";
+    Model bare = few;
+    bare.reps[0].part_count = 0;
+    EXPECT_FALSE(part_pixels(bare, turned({0, 0, 2.5}, 0), of_part));
+    Model flat = few;
+    flat.placements[0].linear[2] = vec3(0);  // cannot be turned back
+    EXPECT_FALSE(part_pixels(flat, turned({0, 0, 2.5}, 0), of_part));
+}
+
 TEST(Surfaces, AreFiniteWhereverTheEyeIs) {
     Random random(7);
+    int by_part = 0;
     const auto any = [&] {
         switch (random.below(4)) {
             case 0:
@@ -181,7 +243,13 @@ TEST(Surfaces, AreFiniteWhereverTheEyeIs) {
         const double x = any(), y = any(), z = any();
         const float p = mixed_pixels(m, turned({x, y, z}, random.range(0, 6)));
         ASSERT_TRUE(std::isfinite(p) && p >= 0 && p <= most_pixels) << i << ": " << p;
+        float of_part = 0;
+        if (part_pixels(m, turned({x, y, z}, 0), std::span(&of_part, 1))) {
+            ++by_part;
+            ASSERT_TRUE(std::isfinite(of_part) && of_part >= 0) << i << ": " << of_part;
+        }
     }
+    EXPECT_GT(by_part, 300);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "tools/app/model_costs.hpp"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "render/measure/calibrate.hpp"
@@ -15,19 +14,16 @@ namespace surefoot::app {
 
 namespace {
 
-/// Median of three submissions: a stolen slice of time is no property of the model.
+constexpr std::uint32_t warm_up = 10;
+
+/// Drawn twice: the second finds warm caches, as a walk's frames do.
 measure::FrameSample measured(Engine& engine, const Pose& pose) {
     SubmitLimits limits;
     limits.limit_us = 1e12;
     limits.now_ns = [](void*) { return rt::monotonic_ns(); };
-    std::array<double, 3> us{};
-    SubmitReport report;
-    for (double& time : us) {
-        report = engine.submit(pose, limits);
-        time = report.finished_us;
-    }
-    std::sort(us.begin(), us.end());
-    return {static_cast<double>(report.predicted.submit_us), static_cast<double>(report.predicted.raster_us), us[1]};
+    engine.submit(pose, limits);
+    const SubmitReport report = engine.submit(pose, limits);
+    return {static_cast<double>(report.predicted.submit_us), static_cast<double>(report.predicted.raster_us), report.finished_us};
 }
 
 FrameErrors errors_of(std::span<const measure::FrameSample> samples, const model::FrameCombine& combine) {
@@ -50,23 +46,37 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     engine.device().bind();
     prepare::PreparedFrame prepared;
     engine.reserve(prepared);
-    Random random(options.seed);
+    std::vector<measure::FrameSample> samples(options.poses);
+    std::vector<std::vector<double>> times(options.poses);
+    const std::uint32_t a_round = options.poses + warm_up;
+    for (std::uint32_t round = 0; round < options.rounds; ++round) {
+        Random random(options.seed);  // the same views again
+        for (std::uint32_t i = 0; i < a_round; ++i) {
+            if (progress.stopped()) return Error{"calibration", "stopped: nothing was written", "run it again"};
+            const Pose pose = random_pose(path, random);
+            const double budget_us = random.range(0.1, 0.85) * options.frame_us;
+            engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);
+            engine.select(prepared, budget_us, {}, 0);
+            const measure::FrameSample sample = measured(engine, pose);
+            progress.say("frames", (round + static_cast<double>(i) / a_round) / options.rounds);
+            if (i < warm_up) continue;
+            measure::FrameSample& first = samples[i - warm_up];
+            if (round == 0) first = sample;
+            // What was shown before the first view of all differs between rounds, and may still show in the next few.
+            if (sample.submit_us == first.submit_us && sample.raster_us == first.raster_us)
+                times[i - warm_up].push_back(sample.actual_us);
+        }
+    }
+    const measure::Settled took = measure::settle(times);
     std::vector<measure::FrameSample> taught, held_out;
-    constexpr std::uint32_t warm_up = 10;
-    for (std::uint32_t i = 0; i < options.poses + warm_up; ++i) {
-        if (progress.stopped()) return Error{"calibration", "stopped: nothing was written", "run it again"};
-        const Pose pose = random_pose(path, random);
-        const double budget_us = random.range(0.1, 0.85) * options.frame_us;
-        engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);
-        engine.select(prepared, budget_us, {}, 0);
-        const measure::FrameSample sample = measured(engine, pose);
-        if (i >= warm_up) (i % 2 == 0 ? taught : held_out).push_back(sample);
-        progress.say("frames", static_cast<double>(i) / (options.poses + warm_up));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        samples[i].actual_us = took.undisturbed[i];
+        (i % 2 == 0 ? taught : held_out).push_back(samples[i]);
     }
     ModelFit fit;
     fit.costs = table;
     fit.costs.combine = measure::fit_combine(taught, table.combine);
-    fit.costs.upper_factor = static_cast<float>(std::max(1.0, measure::ratio(held_out, fit.costs.combine, 0.9)));
+    fit.costs.upper_factor = static_cast<float>(std::max(1.0, took.slowdown * measure::ratio(held_out, fit.costs.combine, 0.9)));
     fit.before = errors_of(held_out, table.combine);
     fit.after = errors_of(held_out, fit.costs.combine);
     fit.frames = options.poses;

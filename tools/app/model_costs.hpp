@@ -15,6 +15,7 @@ struct ModelFitOptions {
     gl::DeviceOptions device;
     double frame_us = 1e6 / 30;  ///< budgets are drawn from a tenth of it up to 85 %
     std::uint32_t poses = 240;
+    std::uint32_t rounds = 4;  ///< that each pose is drawn in, at least 1
     std::uint64_t seed = 7;
     std::function<void()> opened;  ///< called once, when the driver's threads exist: place them as a walk does
 };
@@ -32,8 +33,9 @@ struct ModelFit {
     double seconds = 0;
 };
 
-/// Draws random views near the path at random budgets; every other one teaches the weights, the rest judge them. The table
-/// itself stays: its cells are of single items, and what differs between models is how these overlap and what hides what.
+/// Draws random views near the path at random budgets, in several rounds (measure::settle); every other one teaches the weights,
+/// the rest judge them. The table itself stays: its cells are of single items, and what differs between models is how these
+/// overlap and what hides what.
 Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
                               const Progress& progress);
 

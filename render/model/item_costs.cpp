@@ -1,0 +1,84 @@
+// Predicting what a representation costs (item_costs.hpp).
+#include "render/model/item_costs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "render/model/triangles.hpp"
+
+namespace surefoot::model {
+
+ItemCosts::ItemCosts(const Model& model, const CostModel& costs) : ItemCosts(model, costs, Surfaces(model)) {}
+
+ItemCosts::ItemCosts(const Model& model, const CostModel& costs, Surfaces surfaces)
+    : model_(model), costs_(costs), surfaces_(std::move(surfaces)) {
+    const auto grid_of = [&](EffectMask effects) {
+        return static_cast<std::uint32_t>(&costs.grid_for(effects) - costs.grids.data());
+    };
+    grid_of_part_.reserve(model.parts.size());
+    for (const Part& part : model.parts) grid_of_part_.push_back(grid_of(model.materials[part.material].effects));
+    std::vector<Class> found;
+    std::map<std::pair<Index, Index>, Classes> known;  // by their parts
+    classes_of_.reserve(model.reps.size());
+    for (const Representation& rep : model.reps) {
+        if (rep.part_count == 0) {  // by what it says of itself
+            classes_of_.push_back({static_cast<std::uint32_t>(found.size()), 1});
+            found.push_back({grid_of(rep.effects), static_cast<float>(rep.triangles), 1});
+            continue;
+        }
+        const auto [entry, fresh] = known.try_emplace({rep.first_part, rep.part_count});
+        if (fresh) entry->second = gather(rep, found);
+        classes_of_.push_back(entry->second);
+    }
+    classes_ = std::vector<Class>(found.begin(), found.end());  // what stays, locked, is as large as it must be
+}
+
+ItemCosts::Classes ItemCosts::gather(const Representation& rep, std::vector<Class>& found) const {
+    const std::size_t first = found.size();
+    double total = 0;
+    for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+        std::size_t c = first;
+        while (c < found.size() && found[c].grid != grid_of_part_[p]) ++c;
+        if (c == found.size()) found.push_back({grid_of_part_[p], 0, 0});
+        for_triangles(model_, p, [&](const Material&, const vec3& a, const vec3& b, const vec3& corner) {
+            const float area = 0.5F * glm::length(glm::cross(b - a, corner - a));
+            found[c].triangles += 1;
+            found[c].share += area;
+            total += static_cast<double>(area);
+        });
+    }
+    const std::size_t count = found.size() - first;
+    const bool measurable = total > 0 && std::isfinite(total);
+    for (std::size_t c = first; c < found.size(); ++c)
+        found[c].share = measurable ? static_cast<float>(found[c].share / total) : 1.0F / static_cast<float>(count);
+    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)};
+}
+
+ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const {
+    const Representation& rep = model_.reps[r];
+    const auto classes = std::span(classes_).subspan(classes_of_[r].first, classes_of_[r].count);
+    std::array<float, Surfaces::most_parts> of_part;  // NOLINT: filled as far as it is read
+    ItemCost sum;
+    const auto add = [&](const Class& c, float pixels) {
+        const ItemCost cost = costs_.item(c.triangles, pixels, costs_.grids[c.grid]);
+        sum.submit_us += cost.submit_us;
+        sum.raster_us += cost.raster_us;
+    };
+    if (surfaces_.part_pixels(model_, r, node_box, eye, scale, of_part)) {
+        for (const Class& c : classes) {
+            float pixels = 0;
+            for (std::uint32_t p = 0; p < rep.part_count; ++p)
+                if (grid_of_part_[rep.first_part + p] == c.grid) pixels += of_part[p];
+            add(c, std::min(pixels, most_pixels));
+        }
+    } else {
+        const float pixels = surfaces_.pixels(model_, r, node_box, eye, scale);
+        for (const Class& c : classes) add(c, pixels * c.share);
+    }
+    return sum;
+}
+
+}  // namespace surefoot::model
