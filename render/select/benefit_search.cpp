@@ -1,7 +1,8 @@
 // Best-first and two-stage best-first (Maciel 3.5), mended: each step priced as what it changes, in the order of its benefit.
 // Benefits fall monotonely down the tree, so that this order needs no queue: the steps' costs are summed by benefit, the sums say
 // at which benefit the budget ends, and only the steps of that one bucket are tried in turn (by candidate, then by form), to the
-// first that does not fit. A bucket is 1/128 octave wide: what lies closer counts as equal.
+// first that does not fit. What the first walk sees of a candidate is noted, so that the second reads little more than that. A
+// bucket is 1/128 octave wide: what lies closer counts as equal.
 #include <algorithm>
 
 #include "render/select/cover.hpp"
@@ -50,6 +51,7 @@ public:
           budget_(budget),
           steps_(input, state, subtree),
           sums_(state.scratch_sums),
+          notes_(cover.scratch()),
           share_(fresh_share(state)),
           put_off_(state.scratch_next) {}
 
@@ -86,22 +88,24 @@ private:
     }
 
     void sum_up() {
-        const auto open_below = cover_.scratch();  // only read where a target error may keep a node shut
         for (Index c = 0; c < cover_.size(); ++c) {
             if (cover_.chosen(c) == SelectState::opened) continue;  // above the floor
             const prepare::Candidate& candidate = cover_.candidate(c);
-            if (steps_.has_target() && cover_.chosen(c) == none && open_below[candidate.parent] == 0) {
-                open_below[c] = 0;
-                continue;
-            }
             const auto choices = cover_.choices(c);
             const Index shown = steps_.shown(candidate.node);
+            const std::uint32_t note = Steps::was_refined(shown, choices[0]) ? refined_before : 0;
+            if (steps_.has_target() && cover_.chosen(c) == none && (notes_[candidate.parent] & opens_below) == 0) {
+                notes_[c] = note;
+                continue;
+            }
+            std::uint32_t last = 0;
             const bool passed = for_steps(c, [&](std::uint32_t k, bool opens) {
                 const Step step = step_of(choices[k], shown);
+                last = step.bucket;
                 sums_.add(step.bucket, step.refined, choices[k].cost, opens ? candidate.children_cost : choices[k + 1].cost);
                 return true;
             });
-            if (steps_.has_target()) open_below[c] = passed ? 1 : 0;
+            notes_[c] = note | last | (passed ? opens_below : 0);
         }
     }
 
@@ -132,14 +136,13 @@ private:
         bool fresh_closed = edge.bucket == buckets;
         for (Index c = 0; c < cover_.size(); ++c) {
             if (cover_.chosen(c) == SelectState::opened) continue;
-            const prepare::Candidate& candidate = cover_.candidate(c);
-            const auto choices = cover_.choices(c);
-            const Index shown = steps_.shown(candidate.node);
             if (cover_.chosen(c) == none) {  // below what is taken; what it was refined to may still come in
-                if (Steps::was_refined(shown, choices[0])) put_off_[put_off_count_++] = c;
+                if ((notes_[c] & refined_before) != 0) put_off_[put_off_count_++] = c;
                 continue;
             }
-            if (take_all(c, choices, shown, edge)) continue;
+            if (take_all(c, edge)) continue;
+            const auto choices = cover_.choices(c);
+            const Index shown = steps_.shown(cover_.candidate(c).node);
             for_steps(c, [&](std::uint32_t k, bool opens) {
                 const Step step = step_of(choices[k], shown);
                 bool take = step.bucket < edge.bucket;
@@ -155,12 +158,13 @@ private:
     }
 
     /// Where a candidate's last step lies below the edge, so do all: taken without a look at each.
-    bool take_all(Index c, std::span<const prepare::Choice> choices, Index shown, const Edge& edge) {
+    bool take_all(Index c, const Edge& edge) {
         if (steps_.has_target()) return false;
-        const bool opens = cover_.candidate(c).child_count > 0;
-        const auto steps = static_cast<std::uint32_t>(choices.size()) - (opens ? 0U : 1U);
+        const prepare::Candidate& candidate = cover_.candidate(c);
+        const bool opens = candidate.child_count > 0;
+        const std::uint32_t steps = candidate.choice_count - (opens ? 0U : 1U);
         if (steps == 0) return true;
-        if (step_of(choices[steps - 1], shown).bucket >= edge.bucket) return false;
+        if ((notes_[c] & last_bucket) >= edge.bucket) return false;
         taken_ += steps - 1;
         return do_step(c, steps - 1, opens);
     }
@@ -204,10 +208,16 @@ private:
         return true;
     }
 
+    /// What summing up finds of a candidate, so that taking need not look again.
+    static constexpr std::uint32_t last_bucket = buckets - 1;   ///< of its last step
+    static constexpr std::uint32_t opens_below = 1U << 16U;     ///< no target error keeps it shut
+    static constexpr std::uint32_t refined_before = 1U << 17U;  ///< from its first form on, in the last frame
+
     Cover& cover_;
     const Budget& budget_;
     Steps steps_;
     StepSums sums_;
+    std::span<std::uint32_t> notes_;
     double share_;
     std::span<std::uint32_t> put_off_;  ///< candidates that were shown finer than the common edge allows, ascending
     std::uint32_t put_off_count_ = 0;

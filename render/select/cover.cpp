@@ -43,9 +43,7 @@ Cover::Cover(const SelectInput& input, SelectState& state)
     : prepared_(*input.prepared),
       state_(state),
       chosen_(std::span(state.scratch_a).first(input.prepared->candidates.size())),
-      scratch_(std::span(state.scratch_b).first(input.prepared->candidates.size())) {
-    std::fill(chosen_.begin(), chosen_.end(), none);
-}
+      scratch_(std::span(state.scratch_b).first(input.prepared->candidates.size())) {}
 
 // Candidates are in breadth-first order, so a first-in first-out walk meets them ascending.
 std::span<std::uint32_t> Cover::take_floor() {
@@ -123,15 +121,18 @@ void Cover::list_items(const Budget& budget, Cut& cut) {
     cut.predicted_us = static_cast<float>(budget.predicted_us(sum));
 }
 
-void Cover::remember() {
+void Cover::remember(const Cut& cut) {
     for (const Shown& last : state_.touched) state_.shown[last.node] = none;
     std::swap(state_.before, state_.touched);
     state_.touched.clear();
+    const CutItem* item = cut.items.data();  // one a candidate that is drawn, in order
     for (Index c = 0; c < chosen_.size(); ++c) {
         if (chosen_[c] == none) continue;
-        const Index node = prepared_.candidates[c].node;
-        state_.shown[node] = chosen_[c] == SelectState::opened ? SelectState::opened : current(c).rep;
-        state_.touched.push_back({node, state_.shown[node]});
+        const bool open = chosen_[c] == SelectState::opened;
+        const Shown now = open ? Shown{prepared_.candidates[c].node, SelectState::opened} : Shown{item->node, item->rep};
+        if (!open) ++item;
+        state_.shown[now.node] = now.form;
+        state_.touched.push_back(now);
     }
 }
 
@@ -141,7 +142,7 @@ void Cover::finish(const Budget& budget, std::uint32_t refinements, Cut& cut) {
     cut.floor_us = std::min(static_cast<float>(budget.predicted_us(floor_)), cut.predicted_us);
     cut.floor_binds = !budget.fits_us(static_cast<double>(cut.floor_us));
     cut.refinements = refinements;
-    remember();
+    remember(cut);
 }
 
 std::string check_legal(const prepare::PreparedFrame& prepared, const Cut& cut) {

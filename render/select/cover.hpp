@@ -46,7 +46,7 @@ public:
 private:
     [[nodiscard]] bool switched(Index c, Index rep) const;
     void list_items(const Budget& budget, Cut& cut);
-    void remember();
+    void remember(const Cut& cut);
 
     const prepare::PreparedFrame& prepared_;
     SelectState& state_;

@@ -22,11 +22,11 @@ public:
         : head_(heads.first(buckets)), tail_(heads.subspan(buckets, buckets)), next_(next) {
         std::fill(head_.begin(), head_.end(), model::none);
     }
-    static std::uint32_t bucket_of(float key) {
-        if (!(key > 0.0F)) return buckets - 1;
-        if (key >= 2.0F) return 0;
-        constexpr std::uint32_t top = std::bit_cast<std::uint32_t>(2.0F) >> 16U;
-        return std::min(top - (std::bit_cast<std::uint32_t>(key) >> 16U), buckets - 1);
+    static std::uint32_t bucket_of(float key) {  // without a branch: it is asked for every step
+        const float at_least_zero = key > 0.0F ? key : 0.0F;
+        constexpr auto top = static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(2.0F) >> 16U);
+        const auto below = top - static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(at_least_zero) >> 16U);
+        return static_cast<std::uint32_t>(std::clamp(below, 0, static_cast<std::int32_t>(buckets) - 1));
     }
     void push(float key, std::uint32_t id) {
         const std::uint32_t bucket = std::max(bucket_of(key), current_);
