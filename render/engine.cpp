@@ -232,6 +232,9 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
 /// Predicted as the items of a prepared frame are: no array holds these, and they are few.
 void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
     drawn.assign(coarse.begin(), coarse.end());
+    device->draw(drawn);
+    device->end_slice();
+    // What it was predicted to cost is worked out while the driver draws.
     const model::ViewScale scale = model::make_view_scale(pose, options.device.viewport);
     model::ItemCost sum{.submit_us = costs.slice_us, .raster_us = 0};
     for (const gl::DrawItem& item : coarse) {
@@ -245,8 +248,6 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
     report.slices = 1;
     report.downgraded_slices = 1;
     report.worst_error_rad = std::numeric_limits<float>::infinity();  // the eye may be inside any of them
-    device->draw(drawn);
-    device->end_slice();
 }
 
 SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {

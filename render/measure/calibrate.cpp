@@ -168,23 +168,21 @@ Result<void> Run::frames(Calibration& out) {
         samples.push_back(sample);
         views.push_back(std::move(view));
     }
-    std::vector<std::vector<double>> times(views.size());
+    std::vector<std::vector<FrameSample>> drawn(views.size());
     for (int round = 0; round < rounds; ++round) {
         for (std::size_t v = 0; v < views.size(); ++v) {
             if (progress_.stopped()) return stopped;
-            times[v].push_back(timed(views[v].pose, views[v].items, slice_items[v]).wall_us);
+            samples[v].actual_us = timed(views[v].pose, views[v].items, slice_items[v]).wall_us;
+            drawn[v].push_back(samples[v]);
             progress_.say("frames", (round + static_cast<double>(v) / static_cast<double>(views.size())) / rounds);
         }
     }
-    const Settled took = settle(times);
+    const Settled settled = settle(drawn);
     std::vector<FrameSample> taught, held_out;
-    for (std::size_t v = 0; v < views.size(); ++v) {
-        samples[v].actual_us = took.undisturbed[v];
-        (v % 2 == 0 ? taught : held_out).push_back(samples[v]);
-    }
+    for (std::size_t v = 0; v < views.size(); ++v) (v % 2 == 0 ? taught : held_out).push_back(settled.frames[v]);
     out.costs.combine =
         fit_combine(taught, {static_cast<float>(empty_.wall_us), 0.5F, 0.5F, 0.5F});  // half way from sum to larger
-    out.costs.upper_factor = static_cast<float>(std::max(1.0, took.slowdown * ratio(held_out, out.costs.combine, 0.9)));
+    out.costs.upper_factor = static_cast<float>(std::max(1.0, ratio(held_out, out.costs.combine, 0.9)));
     out.frame_error_p50 = relative_error(held_out, out.costs.combine, 0.5);
     out.frame_error_p90 = relative_error(held_out, out.costs.combine, 0.9);
     out.frame_error_p99 = relative_error(held_out, out.costs.combine, 0.99);

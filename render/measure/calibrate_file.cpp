@@ -19,6 +19,7 @@ namespace {
 constexpr std::string_view hash_key = "hash = \"";
 constexpr std::uint32_t most_steps = 32;
 constexpr int format_version = 1;
+constexpr int estimate = 2;  // what is counted: 1 by boxes and whole representations, at a median; 2 as model::ItemCosts does
 const char* const remedy = "run `surefoot calibrate` on this machine";
 
 std::string hash_text(std::string_view body) {
@@ -46,10 +47,11 @@ std::string quoted(const std::string& text) {
 std::string body_of(const model::CostModel& costs) {
     const model::FrameCombine& c = costs.combine;
     std::string text = fmt::format(
-        "version = {}\nmachine = {}\ncalibrated = {}\ntimer_query_honest = {}\nupper_factor = {:.9g}\nslice_us = {:.9g}\n\n"
+        "version = {}\nestimate = {}\nmachine = {}\ncalibrated = {}\ntimer_query_honest = {}\nupper_factor = {:.9g}\nslice_us = "
+        "{:.9g}\n\n"
         "# frame_us = fixed_us + submit_weight * S + raster_weight * R + max_weight * max(S, R)\n[combine]\n"
         "fixed_us = {:.9g}\nsubmit_weight = {:.9g}\nraster_weight = {:.9g}\nmax_weight = {:.9g}\n",
-        format_version, quoted(costs.machine), costs.calibrated, costs.timer_query_honest,
+        format_version, estimate, quoted(costs.machine), costs.calibrated, costs.timer_query_honest,
         static_cast<double>(costs.upper_factor), static_cast<double>(costs.slice_us), static_cast<double>(c.fixed_us),
         static_cast<double>(c.submit_weight), static_cast<double>(c.raster_weight), static_cast<double>(c.max_weight));
     for (const model::CostGrid& grid : costs.grids) {
@@ -103,6 +105,8 @@ Result<model::CostModel> costs_of(const toml::table& table, const std::string& f
     Values top(table);
     if (top.count("version", 1000) != format_version) return refuse("version");
     costs.machine = table["machine"].value_or(std::string());
+    // Then no machine's own: walks say so, and what to do.
+    if (table["estimate"].value_or(1) != estimate) costs.machine += ", by another version of the estimate";
     costs.calibrated = table["calibrated"].value_or(false);
     costs.timer_query_honest = table["timer_query_honest"].value_or(false);
     costs.upper_factor = top.number("upper_factor", 0.1, 100);

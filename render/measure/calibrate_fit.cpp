@@ -142,14 +142,23 @@ double quantile_of(std::vector<double> values, double quantile) {
     return values[std::min(at, values.size() - 1)];
 }
 
-Settled settle(std::span<const std::vector<double>> rounds_of_frame) {
+Settled settle(std::span<const std::vector<FrameSample>> rounds) {
     Settled settled;
     std::vector<double> longer;
-    for (const std::vector<double>& rounds : rounds_of_frame) {
-        settled.undisturbed.push_back(*std::min_element(rounds.begin(), rounds.end()));
-        longer.push_back(quantile_of(rounds, 0.5) / std::max(1.0, settled.undisturbed.back()));
+    for (const std::vector<FrameSample>& of_frame : rounds) {
+        const FrameSample& last = of_frame.back();
+        std::vector<double> times;
+        for (const FrameSample& s : of_frame)
+            if (s.submit_us == last.submit_us && s.raster_us == last.raster_us) times.push_back(s.actual_us);
+        std::sort(times.begin(), times.end());
+        settled.frames.push_back({last.submit_us, last.raster_us, times.front()});
+        if (times.size() < 2) continue;
+        ++settled.repeated;
+        const double median = 0.5 * (times[(times.size() - 1) / 2] + times[times.size() / 2]);
+        longer.push_back(median / std::max(1.0, times.front()));
     }
     if (!longer.empty()) settled.slowdown = std::max(1.0, quantile_of(std::move(longer), 0.5));
+    for (FrameSample& frame : settled.frames) frame.actual_us *= settled.slowdown;
     return settled;
 }
 

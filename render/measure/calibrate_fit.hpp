@@ -30,14 +30,16 @@ double ratio(std::span<const FrameSample> samples, const model::FrameCombine& co
 
 double quantile_of(std::vector<double> values, double quantile);
 
-/// What frames take, from their times in several rounds.
+/// Frames, from several measurements of each.
 struct Settled {
-    std::vector<double> undisturbed;  ///< [frame]: its least
-    double slowdown = 1;              ///< by how much longer the middle one of a frame's rounds is, median over the frames
+    std::vector<FrameSample> frames;  ///< as last drawn; actual_us: its least, times `slowdown`
+    double slowdown = 1;              ///< by how much longer a frame's median is than its least, median over the frames
+    std::size_t repeated = 0;         ///< frames that were drawn alike at least twice
 };
-/// A machine's speed moves, by up to two where it shares cores with others, for a tenth of a second and more: frames measured at
-/// different moments compare only by what each takes undisturbed. Rounds lie far apart in time, so that one moment does not
-/// fall on all of a frame's; none is empty.
-Settled settle(std::span<const std::vector<double>> rounds_of_frame);
+/// A machine's speed moves by up to two within milliseconds where it shares cores with others: frames measured at different
+/// moments compare only by what each takes undisturbed. rounds: [frame][round], none empty, and far apart in time, so that one
+/// moment does not fall on all of a frame's. What was shown before the first frame of all differs between rounds and may still
+/// show in the next few: only rounds with the sums of the last one count.
+Settled settle(std::span<const std::vector<FrameSample>> rounds);
 
 }  // namespace surefoot::measure

@@ -37,24 +37,28 @@ ItemCosts::ItemCosts(const Model& model, const CostModel& costs, Surfaces surfac
 }
 
 ItemCosts::Classes ItemCosts::gather(const Representation& rep, std::vector<Class>& found) const {
-    const std::size_t first = found.size();
+    struct Sum {
+        std::uint32_t triangles = 0;
+        double area = 0;
+    };
+    std::map<std::uint32_t, Sum> sums;  // by grid
     double total = 0;
     for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-        std::size_t c = first;
-        while (c < found.size() && found[c].grid != grid_of_part_[p]) ++c;
-        if (c == found.size()) found.push_back({grid_of_part_[p], 0, 0});
-        for_triangles(model_, p, [&](const Material&, const vec3& a, const vec3& b, const vec3& corner) {
-            const float area = 0.5F * glm::length(glm::cross(b - a, corner - a));
-            found[c].triangles += 1;
-            found[c].share += area;
-            total += static_cast<double>(area);
+        Sum& sum = sums[grid_of_part_[p]];
+        for_triangles(model_, p, [&](const Material&, const vec3& a, const vec3& b, const vec3& c) {
+            const auto area = static_cast<double>(0.5F * glm::length(glm::cross(b - a, c - a)));
+            ++sum.triangles;
+            sum.area += area;
+            total += area;
         });
     }
-    const std::size_t count = found.size() - first;
+    const Classes classes{static_cast<std::uint32_t>(found.size()), static_cast<std::uint32_t>(sums.size())};
     const bool measurable = total > 0 && std::isfinite(total);
-    for (std::size_t c = first; c < found.size(); ++c)
-        found[c].share = measurable ? static_cast<float>(found[c].share / total) : 1.0F / static_cast<float>(count);
-    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)};
+    for (const auto& [grid, sum] : sums) {
+        const double share = measurable ? sum.area / total : 1.0 / classes.count;
+        found.push_back({grid, static_cast<float>(sum.triangles), static_cast<float>(share)});
+    }
+    return classes;
 }
 
 ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const {

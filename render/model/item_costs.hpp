@@ -15,12 +15,15 @@ namespace surefoot::model {
 /// with one masked poster on it costs what walls cost, and a poster.
 class ItemCosts {
 public:
-    /// Allocates; `model` and `costs` outlive it, and change neither their arrays nor their grids.
+    /// Allocates, and passes over every triangle; `model` and `costs` outlive it, and change neither their arrays nor their
+    /// grids.
     ItemCosts(const Model& model, const CostModel& costs);
     ItemCosts(const Model& model, const CostModel& costs, Surfaces surfaces);
+    ItemCosts(Model&&, const CostModel&) = delete;
+    ItemCosts(const Model&, CostModel&&) = delete;
 
-    /// Of the representation `r` of a node with box `node_box` seen from `eye`. Finite and >= 0. 0.1 us; nearby, where
-    /// triangles are looked at, 3 to 10 us.
+    /// Of the representation `r` of a node with box `node_box` seen from `eye`. Finite and >= 0. 0.1 us; nearby 1 to 4 us,
+    /// and where each triangle is looked at (Surfaces::part_pixels) up to 25.
     [[nodiscard]] ItemCost of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const;
 
 private:
@@ -28,7 +31,7 @@ private:
     struct Class {
         std::uint32_t grid = 0;  ///< in CostModel::grids
         float triangles = 0;
-        float share = 0;  ///< of the representation's area
+        float share = 0;  ///< of the area of its parts, as they are stored
     };
     /// Some of classes_.
     struct Classes {

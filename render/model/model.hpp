@@ -69,7 +69,7 @@ struct Representation {
     Index first_part = 0;
     std::uint32_t part_count = 0;
     std::uint32_t triangles = 0;
-    EffectMask effects = 0;  ///< union over its parts: the state class for cost
+    EffectMask effects = 0;  ///< union over its parts
     /// Rasterised area in m^2 seen along +-x, +-y, +-z (world axes), hidden layers included: sum over triangles of
     /// area * |n_axis|, halved where back faces are culled. Pixels ~ area / distance^2 (overdraw is in it).
     std::array<float, 3> area_m2{};

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -75,6 +76,11 @@ struct Surfaces::LocalView {
         const vec3 d = at - eye;
         return {glm::dot(x, d), glm::dot(y, d), glm::dot(z, d)};
     }
+    /// A bit for each plane of the view that a point as seen lies beyond.
+    [[nodiscard]] std::uint32_t beyond(const vec3& v) const {
+        const auto bit = [](bool is, std::uint32_t n) { return static_cast<std::uint32_t>(is) << n; };
+        return bit(v.z < near_m, 0) | bit(v.z < -v.x, 1) | bit(v.z < v.x, 2) | bit(v.z < -v.y, 3) | bit(v.z < v.y, 4);
+    }
 };
 
 Surfaces::Surfaces(const Model& model) {
@@ -102,6 +108,15 @@ Surfaces::Surfaces(const Model& model) {
     triangles_.reserve(next.first_triangle);
     samples_.reserve(next.first_sample);
     for (std::size_t s = 0; s < shown_by.size(); ++s) fill(model, model.reps[shown_by[s]], surfaces_[s]);
+
+    each_.assign(model.reps.size(), false);
+    for (const Node& node : model.nodes) {
+        const auto reps = std::span(model.reps).subspan(node.first_rep, node.rep_count);
+        const bool each = std::all_of(reps.begin(), reps.end(), [](const Representation& rep) {
+            return rep.part_count > 0 && rep.part_count <= most_parts && rep.triangles <= most_each;
+        });
+        std::fill_n(each_.begin() + node.first_rep, node.rep_count, each);
+    }
 
     places_.reserve(model.placements.size());
     for (const Placement& p : model.placements) {
@@ -169,29 +184,25 @@ void Surfaces::fill(const Model& model, const Representation& rep, Surface& surf
 }
 
 float Surfaces::pixels_of(const Triangle& t, const LocalView& view) {
-    const float behind = view.side * glm::dot(glm::cross(t.b - t.a, t.c - t.a), t.a - view.eye);
-    if (behind > 0 && !t.both_sides) return 0;
     Polygon p{{view.seen(t.a), view.seen(t.b), view.seen(t.c)}};
-    const auto all_beyond = [&](auto inside) {
-        return inside(p.points[0]) < 0 && inside(p.points[1]) < 0 && inside(p.points[2]) < 0;
-    };
-    const auto ahead = [&](const vec3& v) { return v.z - view.near_m; };
-    const auto left = [](const vec3& v) { return v.z + v.x; };
-    const auto right = [](const vec3& v) { return v.z - v.x; };
-    const auto below = [](const vec3& v) { return v.z + v.y; };
-    const auto above = [](const vec3& v) { return v.z - v.y; };
-    if (all_beyond(ahead) || all_beyond(left) || all_beyond(right) || all_beyond(below) || all_beyond(above)) return 0;
-    p.cut(ahead);
-    p.cut(left);
-    p.cut(right);
-    p.cut(below);
-    p.cut(above);
+    const vec3 a = p.points[0], b = p.points[1], c = p.points[2];
+    const float towards = glm::dot(glm::cross(b - a, c - a), a);
+    if (towards < 0 && !t.both_sides) return 0;
+    const std::uint32_t beyond_a = view.beyond(a), beyond_b = view.beyond(b), beyond_c = view.beyond(c);
+    if ((beyond_a & beyond_b & beyond_c) != 0) return 0;
+    const float picture = 0.25F * view.pixels;  // it is 2 by 2
+    if ((beyond_a | beyond_b | beyond_c) == 0) return 0.5F * std::abs(towards) / (a.z * b.z * c.z) * picture;
+    p.cut([&](const vec3& v) { return v.z - view.near_m; });
+    p.cut([](const vec3& v) { return v.z + v.x; });
+    p.cut([](const vec3& v) { return v.z - v.x; });
+    p.cut([](const vec3& v) { return v.z + v.y; });
+    p.cut([](const vec3& v) { return v.z - v.y; });
     float doubled = 0;
     for (std::size_t i = 0; i < p.count; ++i) {
-        const vec3 &a = p.points[i], &b = p.points[i + 1 < p.count ? i + 1 : 0];
-        doubled += (a.x * b.y - b.x * a.y) / (a.z * b.z);
+        const vec3 &from = p.points[i], &to = p.points[i + 1 < p.count ? i + 1 : 0];
+        doubled += (from.x * to.y - to.x * from.y) / (from.z * to.z);
     }
-    return 0.5F * std::abs(doubled) * 0.25F * view.pixels;  // the picture is 2 by 2
+    return 0.5F * std::abs(doubled) * picture;
 }
 
 float Surfaces::pixels_of(const Sample& s, float sample_m2, const LocalView& view) {
@@ -234,6 +245,11 @@ float Surfaces::surface_pixels(Index r, const dvec3& eye, const ViewScale& scale
 }
 
 float Surfaces::pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const {
+    std::array<float, most_parts> of_part;  // NOLINT: filled as far as it is read
+    if (part_pixels(model, r, node_box, eye, scale, of_part)) {
+        const auto end = of_part.begin() + model.reps[r].part_count;
+        return std::min(std::accumulate(of_part.begin(), end, 0.0F), most_pixels);
+    }
     const float by_box = rasterised_pixels(model.reps[r], node_box, eye, scale);
     if (node_box.empty() || !within(near_half_diagonals, node_box, eye)) return by_box;
     const float by_surface = surface_pixels(r, eye, scale);
@@ -244,7 +260,7 @@ bool Surfaces::part_pixels(const Model& model, Index r, const Box& node_box, con
                            std::span<float> of_part) const {
     const Representation& rep = model.reps[r];
     LocalView view;
-    if (rep.part_count == 0 || rep.part_count > of_part.size() || rep.triangles > most_each || node_box.empty() ||
+    if (r >= each_.size() || !each_[r] || rep.part_count > of_part.size() || node_box.empty() ||
         !within(close_half_diagonals, node_box, eye) || !look(r, eye, scale, view))
         return false;
     float sum = 0;

@@ -1,5 +1,5 @@
 // Bench: predicted against measured whole-frame cost on random poses, online correction frozen at 1.
-// Each is drawn in eight rounds, and counts as measure::settled() says; beside it, how far apart two measurements of one frame
+// Each is drawn in eight rounds, and counts as measure::settle() says; beside it, how far apart two measurements of one frame
 // are here, once round for round and once settled over four rounds each: no prediction can be nearer than that.
 // bench_whole_frame_cost MODEL.walk [POSES 500] [PATH.csv] [STATE_DIR] [fitted|table] [LIFT_M] -> one JSON object.
 #include <fmt/format.h>
@@ -36,20 +36,17 @@ int fail(const Error& error) {
     return 1;
 }
 
-struct Frames {
-    std::vector<double> predicted_us;         ///< [pose]
-    std::vector<std::vector<double>> rounds;  ///< us: [pose][round]
-};
+using Rounds = std::vector<std::vector<measure::FrameSample>>;  // [pose][round]
 
 /// Random poses at random budgets, drawn in `rounds` rounds.
-Frames drawn(Engine& engine, const Path& path, std::size_t poses, int rounds) {
+Rounds drawn(Engine& engine, const Path& path, std::size_t poses, int rounds) {
     constexpr std::size_t warm_up = 20;
     prepare::PreparedFrame prepared;
     engine.reserve(prepared);
     SubmitLimits limits;
     limits.limit_us = 1e12;
     limits.now_ns = now_ns;
-    Frames frames{std::vector<double>(poses), std::vector<std::vector<double>>(poses)};
+    Rounds frames(poses);
     for (int round = 0; round < rounds; ++round) {
         Random random(2026);  // the same poses again
         for (std::size_t i = 0; i < poses + warm_up; ++i) {
@@ -60,19 +57,34 @@ Frames drawn(Engine& engine, const Path& path, std::size_t poses, int rounds) {
             engine.submit(pose, limits);
             const SubmitReport report = engine.submit(pose, limits);
             if (i < warm_up) continue;
-            double& predicted = frames.predicted_us[i - warm_up];
-            if (round == 0) predicted = report.predicted_us;
-            if (report.predicted_us == predicted) frames.rounds[i - warm_up].push_back(report.finished_us);
+            frames[i - warm_up].push_back({static_cast<double>(report.predicted.submit_us),
+                                           static_cast<double>(report.predicted.raster_us), report.finished_us});
         }
     }
     return frames;
 }
 
-/// Of even rounds, or of odd ones.
-std::vector<double> half_of(const std::vector<double>& rounds, std::size_t which) {
-    std::vector<double> half;
-    for (std::size_t r = which; r < rounds.size(); r += 2) half.push_back(rounds[r]);
-    return half.empty() ? rounds : half;
+/// Even rounds, or odd ones.
+Rounds half_of(const Rounds& frames, std::size_t which) {
+    Rounds half(frames.size());
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        for (std::size_t r = which; r < frames[i].size(); r += 2) half[i].push_back(frames[i][r]);
+    return half;
+}
+
+/// |a - b| / b of the frames that both drew alike.
+std::vector<double> apart(const std::vector<measure::FrameSample>& a, const std::vector<measure::FrameSample>& b) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (a[i].submit_us == b[i].submit_us && a[i].raster_us == b[i].raster_us)
+            errors.push_back(std::abs(a[i].actual_us - b[i].actual_us) / b[i].actual_us);
+    return errors;
+}
+
+std::vector<measure::FrameSample> round_of(const Rounds& frames, std::size_t round) {
+    std::vector<measure::FrameSample> of;
+    for (const auto& frame : frames) of.push_back(frame[round]);
+    return of;
 }
 
 std::vector<double> relative_errors(const std::vector<double>& of, const std::vector<double>& against) {
@@ -118,29 +130,27 @@ int main(int argc, char** argv) {
     (void)rt::place_thread(0, app::frame_placement(*plan));
     (*engine)->device().bind();
 
-    const Frames frames = drawn(**engine, path->path, static_cast<std::size_t>(poses), 8);
-    const measure::Settled settled = measure::settle(frames.rounds);
-    const std::vector<double>& took = settled.undisturbed;
-    std::vector<double> ratios, at_speed, again, single;
-    std::vector<std::vector<double>> halves[2];
-    for (std::size_t i = 0; i < took.size(); ++i) {
-        ratios.push_back(took[i] / frames.predicted_us[i]);
-        for (const std::size_t half : {0, 1}) halves[half].push_back(half_of(frames.rounds[i], half));
-        single.push_back(frames.rounds[i].front());
-        again.push_back(frames.rounds[i].back());
+    constexpr int rounds = 8;
+    const Rounds frames = drawn(**engine, path->path, static_cast<std::size_t>(poses), rounds);
+    const measure::Settled settled = measure::settle(frames);
+    std::vector<double> took, predicted, ratios, at_speed;
+    for (const measure::FrameSample& f : settled.frames) {
+        took.push_back(f.actual_us);
+        predicted.push_back(
+            static_cast<double>(costs->combine.frame_us(static_cast<float>(f.submit_us), static_cast<float>(f.raster_us))));
+        ratios.push_back(took.back() / predicted.back());
     }
     // What a correction of the run's own speed would leave: the machine's speed moves between calibration and this run.
     const double speed = quantile(ratios, 0.5);
-    for (const double predicted : frames.predicted_us) at_speed.push_back(speed * predicted);
+    for (const double us : predicted) at_speed.push_back(speed * us);
     fmt::print(
         "{{\"model\": \"{}\", \"poses\": {}, \"error\": {}, \"error_at_the_runs_speed\": {}, \"actual_over_predicted\": "
-        "{{\"p10\": {:.3f}, "
-        "\"p50\": {:.3f}, \"p90\": {:.3f}}}, \"frame_ms\": {{\"p50\": {:.2f}, \"p90\": {:.2f}}}, \"two_measurements\": "
-        "{{\"rounds_apart\": {}, "
-        "\"of_four_rounds_each\": {}}}}}\n",
-        argv[1], poses, quantiles(relative_errors(frames.predicted_us, took)), quantiles(relative_errors(at_speed, took)),
+        "{{\"p10\": {:.3f}, \"p50\": {:.3f}, \"p90\": {:.3f}}}, \"frame_ms\": {{\"p50\": {:.2f}, \"p90\": {:.2f}}}, "
+        "\"slowdown\": {:.3f}, \"repeated\": {}, \"two_measurements\": {{\"of_a_round_each\": {}, \"of_four_rounds_each\": "
+        "{}}}}}\n",
+        argv[1], poses, quantiles(relative_errors(predicted, took)), quantiles(relative_errors(at_speed, took)),
         quantile(ratios, 0.1), speed, quantile(ratios, 0.9), 1e-3 * quantile(took, 0.5), 1e-3 * quantile(took, 0.9),
-        settled.slowdown, quantiles(relative_errors(again, single)),
-        quantiles(relative_errors(measure::settle(halves[0]).undisturbed, measure::settle(halves[1]).undisturbed)));
+        settled.slowdown, settled.repeated, quantiles(apart(round_of(frames, 1), round_of(frames, rounds - 1))),
+        quantiles(apart(measure::settle(half_of(frames, 0)).frames, measure::settle(half_of(frames, 1)).frames)));
     return 0;
 }

@@ -1,10 +1,12 @@
 // The null device: the virtual cost clock gives the same numbers on every run, and exactly those that were predicted.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 
 #include "render/effects/effects.hpp"
 #include "render/gl/device.hpp"
+#include "render/model/item_costs.hpp"
 #include "render/model/pixels.hpp"
 #include "tests/gl/small_models.hpp"
 
@@ -73,6 +75,44 @@ TEST(NullDevice, charges_exactly_what_the_table_predicts) {
     submit += static_cast<double>(costs.slice_us);
     EXPECT_DOUBLE_EQ(charged,
                      2.0 * static_cast<double>(costs.combine.frame_us(static_cast<float>(submit), static_cast<float>(raster))));
+}
+
+// Near, and of two state classes: the virtual clock is what prepare predicts, to the bit.
+TEST(NullDevice, charges_exactly_what_prepare_predicts_of_parts) {
+    SmallModel small;
+    const auto bare = small.material(plain(1, 0, 0));
+    model::Material sunny = plain(0, 1, 0);
+    sunny.effects = model::effect_sun;
+    const auto lit = small.material(sunny);
+    const auto node = small.square(bare, at(0, 0, -1));
+    small.square(lit, at(0, 0, -1));
+    Scene scene{small.finish(), {{node, node - 1}}};
+    model::Representation& rep = scene.model.reps[node - 1];
+    rep.part_count = 2;  // both squares
+    rep.triangles = 4;
+    rep.effects = model::effect_sun;
+    model::CostModel costs = model::default_costs();
+    model::CostGrid dear = costs.grids[0];
+    for (model::ItemCost& cell : dear.cells) cell.raster_us *= 5;
+    costs.grids[0].effects = 0;
+    dear.effects = model::effect_sun;
+    costs.grids = {costs.grids[0], dear};
+    gl::NullOptions options;
+    options.costs = &costs;
+    const double charged = charge_of(*null_device(scene, options), scene, 1);
+    const auto scale = model::make_view_scale(Pose{}, {1280, 720});
+    const Box& box = scene.model.nodes[node].box;
+    const model::ItemCosts item_costs(scene.model, costs);
+    const auto frame_us = [&](const model::ItemCost& item) {
+        const double submit_us = static_cast<double>(item.submit_us) + static_cast<double>(costs.slice_us);
+        return static_cast<double>(costs.combine.frame_us(static_cast<float>(submit_us), item.raster_us));
+    };
+    EXPECT_DOUBLE_EQ(charged, frame_us(item_costs.of(node - 1, box, dvec3(0), scale)));
+    std::array<float, 2> of_part{};
+    ASSERT_TRUE(model::Surfaces(scene.model).part_pixels(scene.model, node - 1, box, dvec3(0), scale, of_part));
+    const float whole = of_part[0] + of_part[1];
+    ASSERT_GT(whole, 1e5F);
+    EXPECT_LT(charged, 0.8 * frame_us(costs.item(4, whole, dear))) << "not all of it by the dear class";
 }
 
 TEST(NullDevice, the_same_seed_charges_the_same_noise) {

@@ -135,11 +135,13 @@ TEST(ItemCosts, OfPartsWithoutAreaAreSharedEvenly) {
     Model m = wall_and_poster();
     for (Vertex& v : m.vertices) v.position[0] = 0;  // all of them lines
     const CostModel prices = priced();
-    for (const Pose& pose : {at({0, 0, 60}), at({0, 0, 1})}) {
-        const ItemCost found = cost(ItemCosts(m, prices), m, pose);
-        EXPECT_TRUE(std::isfinite(found.raster_us) && found.raster_us >= 0);
-        EXPECT_NEAR(found.submit_us, 4, 1e-3);
-    }
+    const ItemCosts costs(m, prices);
+    const Pose far = at({0, 0, 60});
+    const float pixels = rasterised_pixels(m.reps[0], m.nodes[0].box, far.position, make_view_scale(far, picture));
+    ASSERT_GT(pixels, 1000.0F);
+    EXPECT_NEAR(cost(costs, m, far).raster_us, pixels * (0.5F * 0.001F + 0.5F * 0.01F), 1e-5F * pixels);
+    EXPECT_NEAR(cost(costs, m, far).submit_us, 4, 1e-3);
+    EXPECT_LT(cost(costs, m, at({0, 0, 1})).raster_us, 0.02) << "nearby, where they are looked at, they cover nothing";
 }
 
 }  // namespace

@@ -140,12 +140,14 @@ TEST(Surfaces, AreWhereThePlacementPutsThem) {
 
 TEST(Surfaces, CountTwoThirdsNearbyAndNothingFarAwayOrWithoutTriangles) {
     const Model m = model_of(wall_and_speck());
-    for (const double heading : {0.0, 1.0, pi}) {
-        const Pose inside = turned(dvec3(0), heading);
-        const float expected = (box_pixels(m, inside) + 2 * pixels(m, inside)) / 3;
-        EXPECT_NEAR(mixed_pixels(m, inside), expected, 1e-3F * expected);
+    const Pose near = turned({0, 0, 30}, 0);  // half a diagonal is 15 m, three are 45
+    for (const double heading : {0.0, 0.3, pi}) {
+        const Pose pose = turned(near.position, heading);
+        const float expected = (box_pixels(m, pose) + 2 * pixels(m, pose)) / 3;
+        EXPECT_NEAR(mixed_pixels(m, pose), expected, 1e-3F * expected);
     }
-    const Pose far = turned({0, 0, 50}, 0);  // three half diagonals are 45
+    ASSERT_NE(pixels(m, near), box_pixels(m, near));
+    const Pose far = turned({0, 0, 50}, 0);
     ASSERT_GT(pixels(m, far), 0.0F);
     ASSERT_NE(pixels(m, far), box_pixels(m, far));
     EXPECT_EQ(mixed_pixels(m, far), box_pixels(m, far));
@@ -156,6 +158,15 @@ TEST(Surfaces, CountTwoThirdsNearbyAndNothingFarAwayOrWithoutTriangles) {
     Model flat = m;
     flat.placements[0].linear[2] = vec3(0);  // cannot be turned back
     EXPECT_LT(pixels(flat, Pose{}), 0.0F);
+}
+
+TEST(Surfaces, CountEveryTriangleWhereTheEyeIsCloseOrInside) {
+    const Model m = model_of(wall_and_speck());
+    for (const double heading : {0.0, 0.4, 1.0, pi}) {
+        const Pose inside = turned(dvec3(0), heading);
+        EXPECT_EQ(mixed_pixels(m, inside), pixels(m, inside)) << "three triangles: by the surface they are whole, too";
+    }
+    EXPECT_NE(mixed_pixels(m, Pose{}), box_pixels(m, Pose{}));
 }
 
 /// As model_of(), a part for every `triangles` of them.
@@ -208,7 +219,16 @@ TEST(Surfaces, OfPartsAreLeftToTheMixFarAwayAndOfMuch) {
     EXPECT_TRUE(part_pixels(few, turned({0, 0, 2.5}, 0), of_part));
     EXPECT_FALSE(part_pixels(few, turned({0, 0, 2.7}, 0), of_part));
     EXPECT_FALSE(part_pixels(few, turned({0, 0, 2.5}, 0), std::span(of_part).first(8))) << "of nine parts";
-    EXPECT_FALSE(part_pixels(in_parts(ball(24, 1.0), 100), turned({0, 0, 2.5}, 0), of_part)) << "more than 1024 triangles";
+    const Model many = in_parts(ball(24, 1.0), 100);
+    ASSERT_GT(many.reps[0].triangles, 1024U);
+    EXPECT_FALSE(part_pixels(many, turned({0, 0, 2.5}, 0), of_part));
+    // A coarse form of a node whose fine one is not looked at is not either: which is dearer must not hang on how it was counted.
+    Model both = few;
+    both.reps.push_back(both.reps[0]);
+    both.nodes[0].rep_count = 2;
+    EXPECT_TRUE(part_pixels(both, turned({0, 0, 2.5}, 0), of_part));
+    both.reps[1].triangles = 1025;
+    EXPECT_FALSE(part_pixels(both, turned({0, 0, 2.5}, 0), of_part));
     Model bare = few;
     bare.reps[0].part_count = 0;
     EXPECT_FALSE(part_pixels(bare, turned({0, 0, 2.5}, 0), of_part));

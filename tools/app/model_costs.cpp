@@ -46,10 +46,9 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     engine.device().bind();
     prepare::PreparedFrame prepared;
     engine.reserve(prepared);
-    std::vector<measure::FrameSample> samples(options.poses);
-    std::vector<std::vector<double>> times(options.poses);
-    const std::uint32_t a_round = options.poses + warm_up;
-    for (std::uint32_t round = 0; round < options.rounds; ++round) {
+    std::vector<std::vector<measure::FrameSample>> drawn(options.poses);
+    const std::uint32_t a_round = options.poses + warm_up, rounds = std::max(1U, options.rounds);
+    for (std::uint32_t round = 0; round < rounds; ++round) {
         Random random(options.seed);  // the same views again
         for (std::uint32_t i = 0; i < a_round; ++i) {
             if (progress.stopped()) return Error{"calibration", "stopped: nothing was written", "run it again"};
@@ -58,28 +57,22 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
             engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);
             engine.select(prepared, budget_us, {}, 0);
             const measure::FrameSample sample = measured(engine, pose);
-            progress.say("frames", (round + static_cast<double>(i) / a_round) / options.rounds);
-            if (i < warm_up) continue;
-            measure::FrameSample& first = samples[i - warm_up];
-            if (round == 0) first = sample;
-            // What was shown before the first view of all differs between rounds, and may still show in the next few.
-            if (sample.submit_us == first.submit_us && sample.raster_us == first.raster_us)
-                times[i - warm_up].push_back(sample.actual_us);
+            if (i >= warm_up) drawn[i - warm_up].push_back(sample);
+            progress.say("frames", (round + static_cast<double>(i) / a_round) / rounds);
         }
     }
-    const measure::Settled took = measure::settle(times);
+    const measure::Settled settled = measure::settle(drawn);
     std::vector<measure::FrameSample> taught, held_out;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        samples[i].actual_us = took.undisturbed[i];
-        (i % 2 == 0 ? taught : held_out).push_back(samples[i]);
-    }
+    for (std::size_t i = 0; i < settled.frames.size(); ++i) (i % 2 == 0 ? taught : held_out).push_back(settled.frames[i]);
     ModelFit fit;
     fit.costs = table;
     fit.costs.combine = measure::fit_combine(taught, table.combine);
-    fit.costs.upper_factor = static_cast<float>(std::max(1.0, took.slowdown * measure::ratio(held_out, fit.costs.combine, 0.9)));
+    fit.costs.upper_factor = static_cast<float>(std::max(1.0, measure::ratio(held_out, fit.costs.combine, 0.9)));
     fit.before = errors_of(held_out, table.combine);
     fit.after = errors_of(held_out, fit.costs.combine);
     fit.frames = options.poses;
+    fit.repeated = settled.repeated;
+    fit.slowdown = settled.slowdown;
     fit.machine = measure::machine_identity(engine.device().renderer(), options.device.rasterisers);
     fit.seconds = static_cast<double>(rt::monotonic_ns() - begun) * 1e-9;
     return fit;

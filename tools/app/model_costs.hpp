@@ -30,6 +30,8 @@ struct ModelFit {
     FrameErrors before, after;  ///< on the half of the frames that taught nothing
     std::string machine;        ///< that drew it, as a table names its own
     std::uint32_t frames = 0;
+    std::size_t repeated = 0;  ///< of them, drawn alike in at least two rounds
+    double slowdown = 1;       ///< measure::Settled's
     double seconds = 0;
 };
 

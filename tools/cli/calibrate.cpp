@@ -132,6 +132,8 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
         print_json({{"model", a.model},
                     {"table", file},
                     {"frames", fit->frames},
+                    {"repeated", fit->repeated},
+                    {"slowdown", fit->slowdown},
                     {"seconds", fit->seconds},
                     {"frame", to_json(fit->costs)},
                     {"frame_error_before", to_json(fit->before)},
@@ -142,9 +144,10 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
     print_frame(k);
     fmt::print(
         "  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; by the machine's table alone {:.0f} %, {:.0f} %, "
-        "{:.0f} %; the budget spends x{:.2f}\n",
+        "{:.0f} %; the budget spends x{:.2f}\n  a frame's median time is {:.2f} of its best here ({} of {} frames were drawn "
+        "alike)\n",
         100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->after.p99, 100 * fit->before.p50, 100 * fit->before.p90,
-        100 * fit->before.p99, fit->costs.upper_factor);
+        100 * fit->before.p99, fit->costs.upper_factor, fit->slowdown, fit->repeated, fit->frames);
     return exit_success;
 }
 

@@ -68,7 +68,8 @@ void translations(const Effort& effort, Outcome& out) {
         const Pose pose = moved_pose(over_town(), by, dquat(1, 0, 0, 0));
         if (!load(*device, *there, out)) return;
         worst_full = std::min(worst_full, share_equal(full, draw(*device, finest_of(*there), pose)));
-        if (!load(*device, moved_model(*here, by), out)) return;
+        const model::Model moved = moved_model(*here, by);
+        if (!load(*device, moved, out)) return;
         worst_cut = std::min(worst_cut, share_equal(coarse, draw(*device, cut, pose)));
     }
     out.at_least("pixels within 1/255, baked there, full detail", worst_full, 0.999);
@@ -89,14 +90,16 @@ void rotations(const Effort& effort, Outcome& out) {
         for (model::Representation& r : model.reps) r.effects &= ~static_cast<model::EffectMask>(model::effect_sun);
         return model;
     };
-    if (!load(*device, unlit(*here), out)) return;
+    const model::Model unlit_here = unlit(*here);
+    if (!load(*device, unlit_here, out)) return;
     const gl::PixelImage full = draw(*device, finest_of(*here), over_town());
     double worst = 1;
     for (const auto& [angle, axis] : {std::pair{0.7, dvec3(1, 2, 3)}, {2.9, dvec3(-1, 0.1, 0.2)}, {1e-4, dvec3(0, 0, 1)}}) {
         const dquat turn = glm::angleAxis(angle, glm::normalize(axis));
         const auto there = import_and_bake(hard_town(on_earth, turn));
         if (!there) return out.none_of("bakes refused (" + there.error().text() + ")", 1);
-        if (!load(*device, unlit(*there), out)) return;
+        const model::Model unlit_there = unlit(*there);
+        if (!load(*device, unlit_there, out)) return;
         worst = std::min(worst, share_equal(full, draw(*device, finest_of(*there), moved_pose(over_town(), on_earth, turn))));
     }
     out.at_least("pixels within 1/255, turned", worst, 0.99);
@@ -119,7 +122,8 @@ void streets(const Effort& effort, Outcome& out) {
         const gl::PixelImage image = draw(*device, cut, pose);
         least_drawn = std::min(least_drawn, share_drawn(image));
         for (const dvec3& by : {dvec3(1e6 + 0.3, 0, 0), on_earth}) {
-            if (!load(*device, moved_model(*here, by), out)) return;
+            const model::Model moved = moved_model(*here, by);
+            if (!load(*device, moved, out)) return;
             worst = std::min(worst, share_equal(image, draw(*device, cut, moved_pose(pose, by, dquat(1, 0, 0, 0)))));
         }
     }
