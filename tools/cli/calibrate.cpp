@@ -121,9 +121,11 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
         return fail({a.model, "was drawn on \"" + fit->machine + "\", the table was measured on \"" + table->machine + "\"",
                      "run `surefoot calibrate` with the same backend and rasterisers first"});
     }
-    if (fit->after.p50 > fit->before.p50) {
-        note(fmt::format("the fit is no better (held-out p50 {:.0f} %) than the table (p50 {:.0f} %): nothing was written",
-                         100 * fit->after.p50, 100 * fit->before.p50));
+    if (fit->after.p50 + fit->after.p90 >= fit->before.p50 + fit->before.p90) {
+        note(
+            fmt::format("the fit is no better (held-out p50 {:.0f} %, p90 {:.0f} %) than the table (p50 {:.0f} %, p90 {:.0f} %), "
+                        "which stays",
+                        100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->before.p50, 100 * fit->before.p90));
         fit->costs = *table;
     }
     if (auto written = measure::write_costs(file, fit->costs); !written) return fail(written.error());
