@@ -11,14 +11,25 @@
 
 namespace surefoot::bake {
 
-/// Fewer are not thinned out, nor what is one large thing and crumbs: none may be more than this part of the whole.
+/// Fewer are not thinned out.
 constexpr std::size_t fewest_cards = 8;
+/// Nor what is one large thing and crumbs: none may be more of the whole.
+constexpr double largest_card_share = 0.25;
 
 /// The part's triangles by card: what hangs together by places.
 std::vector<std::vector<std::uint32_t>> cards_of(const Geometry& g, const GeometryPart& part);
 
-/// Whole cards with about `share` of the triangles, at least one. In an order of their own: those of a small share are among
-/// those of every larger one, so that none comes and goes.
+/// The same if the part is one to be thinned out, else none. A card of more than an eighth of it comes apart where its picture
+/// has seams: bunches of twigs touch.
+std::vector<std::vector<std::uint32_t>> thinnable_cards(const Geometry& g, const GeometryPart& part);
+
+/// Orders cards, as far as `most_triangles` reach: the middle one, then always the one that is farthest from those before it, by
+/// the square root of its triangles (many small ones for one large one). A few then stand for all, out to the tips. Time: cards
+/// times those that are ordered. Source: Gonzalez 1985, farthest-point clustering.
+void spread(const Geometry& g, std::vector<std::vector<std::uint32_t>>& cards, std::size_t most_triangles);
+
+/// The first cards, with about `share` of the triangles, at least one: those of a small share are among those of every larger
+/// one, so that none comes and goes.
 std::vector<std::uint32_t> some_cards(const std::vector<std::vector<std::uint32_t>>& cards, double share);
 
 constexpr double largest_card = 1.6;  ///< times its size

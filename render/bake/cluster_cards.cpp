@@ -16,10 +16,8 @@ namespace {
 constexpr double largest_in_clusters = 2.5;  ///< times its size; they are seen from farther than an object's own
 
 bool can_be_thinned(const Geometry& g, const GeometryPart& part, std::uint32_t largest_triangles) {
-    const auto cards = cards_of(g, part);
-    std::size_t most = 0;
-    for (const auto& card : cards) most = std::max(most, card.size());
-    return cards.size() >= fewest_cards && most * fewest_cards <= part.indices.size() && most / 3 <= largest_triangles;
+    const auto cards = thinnable_cards(g, part);
+    return !cards.empty() && std::ranges::all_of(cards, [&](const auto& card) { return card.size() / 3 <= largest_triangles; });
 }
 
 void to_baked_colours(Geometry& g, GeometryPart&& part, model::Index material) {
@@ -36,10 +34,11 @@ void to_baked_colours(Geometry& g, GeometryPart&& part, model::Index material) {
 
 /// What all levels of the cards are made and judged from.
 struct Thinning {
-    Thinning(const Geometry& geometry, const std::vector<GeometryPart>& parts, float slack) : g(geometry) {
-        limits.relative = slack;
+    Thinning(const Geometry& geometry, const std::vector<GeometryPart>& parts, const CardLimits& wanted) : g(geometry) {
+        limits.relative = wanted.slack;
         for (const GeometryPart& part : parts) {
-            cards.push_back({part.material, cards_of(g, part), area_of(g, part.indices)});
+            cards.push_back({part.material, thinnable_cards(g, part), area_of(g, part.indices)});
+            spread(g, cards.back().cards, wanted.most);
             triangles += part.indices.size() / 3;
         }
         source.add(g.vertices, parts);
@@ -138,7 +137,7 @@ std::vector<GeometryPart> take_cards(Geometry& g, const std::vector<bool>& cut_o
 }
 
 LodChain with_cards(LodChain chain, const Geometry& g, const std::vector<GeometryPart>& cards, const CardLimits& limits) {
-    const Thinning from(g, cards, limits.slack);
+    const Thinning from(g, cards, limits);
     std::vector<double> budgets{static_cast<double>(std::min<std::size_t>(limits.most, from.triangles))};
     while (budgets.back() >= 2.0 * limits.least) budgets.push_back(budgets.back() / 2);
     std::vector<Level> solid = std::move(chain.levels);

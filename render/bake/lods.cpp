@@ -70,6 +70,9 @@ std::vector<std::uint32_t> simplify_part(const Geometry& g, std::size_t vertices
     return out;
 }
 
+/// A level whose picture lies off by more of its size shows baked colours instead, and counts as wrong by that much.
+constexpr double squeezed_picture_error = 1.0 / 16;
+
 /// What is thinned out, by material.
 using Cards = std::map<model::Index, std::vector<std::vector<std::uint32_t>>>;
 
@@ -77,12 +80,26 @@ Cards find_cards(const Geometry& g, const ChainOptions& options) {
     Cards cards;
     for (const GeometryPart& part : g.parts) {
         if (part.material >= options.cut_out.size() || !options.cut_out[part.material]) continue;
-        auto found = cards_of(g, part);
-        std::size_t most = 0;
-        for (const auto& card : found) most = std::max(most, card.size());
-        if (found.size() >= fewest_cards && most * fewest_cards <= part.indices.size()) cards[part.material] = std::move(found);
+        auto found = thinnable_cards(g, part);
+        if (found.empty()) continue;
+        spread(g, found, part.indices.size() / 3);
+        cards[part.material] = std::move(found);
     }
     return cards;
+}
+
+/// Beside cards, whose pixels cost most, what is solid goes by smaller steps: a trunk of a few spikes shows in any crown.
+double solid_share(const Cards& cards, double share) { return cards.empty() ? share : std::sqrt(share); }
+
+/// Of the triangles of `parts`, those that simplify() is to leave.
+double expected_share(const Cards& cards, const std::vector<GeometryPart>& parts, double share) {
+    double all = 0, left = 0;
+    for (const GeometryPart& part : parts) {
+        const auto n = static_cast<double>(part.indices.size());
+        all += n;
+        left += n * (cards.contains(part.material) ? share : solid_share(cards, share));
+    }
+    return all > 0 ? left / all : share;
 }
 
 Level simplify(const Geometry& g, std::size_t vertices, const Cards& cards, const std::vector<GeometryPart>& from, double share,
@@ -90,14 +107,15 @@ Level simplify(const Geometry& g, std::size_t vertices, const Cards& cards, cons
     Level level;
     for (const GeometryPart& part : from) {
         GeometryPart smaller{part.material, {}};
-        if (const auto thinned = cards.find(part.material); thinned != cards.end()) {
-            const auto all =
-                std::find_if(g.parts.begin(), g.parts.end(), [&](const GeometryPart& p) { return p.material == part.material; });
-            smaller.indices = some_cards(
-                thinned->second, share * static_cast<double>(part.indices.size()) / static_cast<double>(all->indices.size()));
-        } else {
-            smaller.indices = simplify_part(g, vertices, part, share, lock, sloppy);
-        }
+        const auto all =
+            std::find_if(g.parts.begin(), g.parts.end(), [&](const GeometryPart& p) { return p.material == part.material; });
+        const double left = static_cast<double>(part.indices.size()) / static_cast<double>(all->indices.size());
+        if (const auto thinned = cards.find(part.material); thinned != cards.end())
+            smaller.indices = some_cards(thinned->second, share * left);
+        else if (sloppy)  // it takes a mesh with its seams whole
+            smaller.indices = simplify_part(g, vertices, *all, solid_share(cards, share) * left, lock, sloppy);
+        else
+            smaller.indices = simplify_part(g, vertices, part, solid_share(cards, share), lock, sloppy);
         if (smaller.indices.empty()) continue;
         meshopt_optimizeVertexCache(smaller.indices.data(), smaller.indices.data(), smaller.indices.size(), g.vertices.size());
         level.triangles += static_cast<std::uint32_t>(smaller.indices.size() / 3);
@@ -142,11 +160,15 @@ std::array<std::array<std::uint8_t, 4>, 6> face_colours(const Geometry& g) {
     return out;
 }
 
-/// What is made of cards is seen through: a box would be a dark solid.
-bool mostly_cards(const Level& level, const Cards& cards) {
-    std::size_t of_cards = 0;
-    for (const GeometryPart& part : level.parts) of_cards += cards.contains(part.material) ? part.indices.size() / 3 : 0;
-    return 2 * of_cards >= level.triangles;
+/// What is half or more of cards is seen through: a box would be a dark solid.
+bool mostly_cards(const Geometry& g, const Cards& cards) {
+    double of_cards = 0, all = 0;
+    for (const GeometryPart& part : g.parts) {
+        const double area = area_of(g, part.indices);
+        all += area;
+        if (cards.contains(part.material)) of_cards += area;
+    }
+    return of_cards > 0 && 2 * of_cards >= all;
 }
 
 /// The level again in the proxy material: one part, its own vertices with the baked colours, no texture to bind. But cards, which
@@ -267,15 +289,17 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         const double share = levels.size() == 1 ? std::min(options.ratio, options.first_share) : options.ratio;
         // Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives
         // way.
+        const double wanted = before.triangles * expected_share(cards, parts, share);
         Level next = simplify(full, own_vertices, cards, parts, share, true, false);
-        if (!options.lock_border && next.triangles > before.triangles * share * 1.4)
+        const double most = 0.8 * before.triangles;  // else it is no level of its own
+        if (!options.lock_border && next.triangles > std::min(wanted * 1.4, most))
             next = simplify(full, own_vertices, cards, parts, share, false, false);
-        if (next.triangles == 0 || next.triangles > before.triangles * std::max(share * 1.5, share + 0.02)) {
+        if (next.triangles == 0 || next.triangles > std::min(std::max(wanted * 1.5, wanted + 0.02 * before.triangles), most)) {
             if (options.lock_border) break;
-            next = simplify(full, own_vertices, cards, finest.parts, share * before.triangles / total, false, true);
+            next = simplify(full, own_vertices, cards, parts, share, false, true);
             torn = true;
         }
-        if (next.triangles == 0 || next.triangles > before.triangles * 0.8) break;
+        if (next.triangles == 0 || next.triangles > most) break;
         parts = next.parts;
         for (GeometryPart& part : next.parts) {
             if (cards.contains(part.material))
@@ -286,13 +310,18 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         const bool pictured = std::any_of(next.parts.begin(), next.parts.end(), [&](const GeometryPart& part) {
             return part.material < laid_on.size() && laid_on[part.material] != Picture::none;
         });
-        if (torn && pictured && options.proxy_material != model::none) {
-            // Vertices from far apart in the picture are one now: in baked colours it looks like the thing, in the picture like
-            // anything.
-            to_proxy(full, cards, next, options.proxy_material);
-            next.error_m = std::max(reference.bound(full, next), static_cast<float>(least_proxy_error * box.diagonal()));
-        } else {
-            next.error_m = bound(next);
+        next.error_m = reference.bound(full, next);
+        if (pictured) {
+            const auto without = static_cast<float>((torn ? least_proxy_error : squeezed_picture_error) * box.diagonal());
+            const float shift_m = torn ? without : pictures.shift_m(next);
+            if (options.proxy_material != model::none && (torn || shift_m > std::max(without, next.error_m))) {
+                // Vertices from far apart in the picture are one now, or the picture is squeezed: in baked colours it looks like
+                // the thing, in the picture like anything.
+                to_proxy(full, cards, next, options.proxy_material);
+                next.error_m = std::max(next.error_m, without);
+            } else {
+                next.error_m = std::max(next.error_m, shift_m);
+            }
         }
         if (next.error_m <= before.error_m) {  // coarser for nothing lost: the finer one has no use
             if (levels.size() == 1)
@@ -304,7 +333,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         }
         levels.push_back(std::move(next));
     }
-    if (levels.back().triangles > 48 && !options.lock_border && !mostly_cards(levels.back(), cards)) {
+    if (levels.back().triangles > 48 && !options.lock_border && !mostly_cards(full, cards)) {
         Level round = box_level(full, box, options.proxy_material);
         round.error_m = std::max(bound(round), std::nextafter(levels.back().error_m, 1e30F));
         if (options.proxy_material != model::none)

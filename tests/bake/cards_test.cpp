@@ -60,7 +60,8 @@ TEST(Cards, AreWhatHangsTogetherByPlace) {
 
 TEST(Cards, OfASmallerShareAreAmongThoseOfALargerOne) {
     const Geometry g = crown(50);
-    const auto cards = cards_of(g, g.parts[0]);
+    auto cards = cards_of(g, g.parts[0]);
+    spread(g, cards, 1000);
     std::vector<std::uint32_t> before = some_cards(cards, 1);
     EXPECT_EQ(before.size(), 300U);
     for (const double share : {0.5, 0.2, 0.05, 0.0}) {
@@ -69,6 +70,59 @@ TEST(Cards, OfASmallerShareAreAmongThoseOfALargerOne) {
         EXPECT_TRUE(std::equal(fewer.begin(), fewer.end(), before.begin()));
         before = fewer;
     }
+}
+
+/// How far the middle of any card lies from the nearest of the first `kept`.
+float farthest(const Geometry& g, const std::vector<std::vector<std::uint32_t>>& cards, std::size_t kept) {
+    const auto middle = [&](const std::vector<std::uint32_t>& card) {
+        vec3 sum(0);
+        for (const std::uint32_t i : card) sum += position_of(g.vertices[i]) / static_cast<float>(card.size());
+        return sum;
+    };
+    float most = 0;
+    for (const auto& card : cards) {
+        float nearest = 1e9F;
+        for (std::size_t k = 0; k < kept; ++k) nearest = std::min(nearest, glm::length(middle(card) - middle(cards[k])));
+        most = std::max(most, nearest);
+    }
+    return most;
+}
+
+TEST(Cards, TheFirstOfThemReachEverywhere) {
+    const Geometry g = crown(200);
+    const auto as_they_came = cards_of(g, g.parts[0]);
+    auto cards = as_they_came;
+    spread(g, cards, 100);  // as far as 50 of two triangles
+    for (const std::size_t kept : {4U, 10U, 25U, 50U})
+        EXPECT_LT(farthest(g, cards, kept), 0.8F * farthest(g, as_they_came, kept)) << kept;
+    auto all = cards;
+    std::sort(all.begin(), all.end());
+    auto before = as_they_came;
+    std::sort(before.begin(), before.end());
+    EXPECT_EQ(all, before) << "each once, none lost";
+}
+
+TEST(Cards, ThatTouchComeApartWhereTheirPictureHasSeams) {
+    Geometry g = crown(10);
+    GeometryPart& part = g.parts[0];
+    // Four squares side by side: one bunch by places, 8 of 28 triangles; each shows the whole picture.
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        const auto base = static_cast<std::uint32_t>(g.vertices.size());
+        for (std::uint32_t corner = 0; corner < 4; ++corner) {
+            model::Vertex v{};
+            v.uv[0] = corner == 1 || corner == 2 ? 1.0F : 0.0F;
+            v.uv[1] = corner >= 2 ? 1.0F : 0.0F;
+            v.position[0] = 10 + static_cast<float>(i) + v.uv[0];
+            v.position[1] = v.uv[1];
+            g.vertices.push_back(v);
+            g.baked.push_back({20, 90, 30, 255});
+        }
+        for (const std::uint32_t k : {0U, 1U, 2U, 0U, 2U, 3U}) part.indices.push_back(base + k);
+    }
+    ASSERT_EQ(cards_of(g, part).size(), 11U);
+    EXPECT_EQ(thinnable_cards(g, part).size(), 14U);
+    for (std::size_t i = g.vertices.size() - 16; i < g.vertices.size(); ++i) g.vertices[i].uv[0] = g.vertices[i].uv[1] = 0;
+    EXPECT_TRUE(thinnable_cards(g, part).empty()) << "without seams it is one, of more than a quarter";
 }
 
 TEST(Cards, GrowAboutTheirMiddlesToTheAreaThatWasThereAndNoFurther) {
@@ -110,6 +164,42 @@ TEST(Cards, StayCutOutOnEveryLevelAndTheRestIsColoured) {
     }
     EXPECT_LE(chain.levels.front().triangles, 48U);
     EXPECT_EQ(chain.levels.back().error_m, 0);
+}
+
+TEST(Cards, LeaveTheTrunkItsShapeAndAreNeverBoxed) {
+    Geometry g = crown(100);
+    GeometryPart& trunk = g.parts[1];
+    constexpr std::uint32_t around = 12, up = 12;  // 288 triangles, and bent: no level of it is exact
+    const auto base = static_cast<std::uint32_t>(g.vertices.size());
+    for (std::uint32_t y = 0; y <= up; ++y) {
+        for (std::uint32_t x = 0; x < around; ++x) {
+            const float turn = 6.2831853F * static_cast<float>(x) / around, height = static_cast<float>(y) / 3;
+            model::Vertex v{};
+            v.position[0] = 0.3F * std::cos(turn) + 0.2F * std::sin(2 * height);
+            v.position[1] = height;
+            v.position[2] = 0.3F * std::sin(turn);
+            g.vertices.push_back(v);
+            g.baked.push_back({90, 60, 20, 255});
+            if (y == up) continue;
+            const std::uint32_t a = base + y * around + x, b = base + y * around + (x + 1) % around;
+            for (const std::uint32_t i : {a, b, a + around, b, b + around, a + around}) trunk.indices.push_back(i);
+        }
+    }
+    ChainOptions options;
+    options.proxy_material = 2;
+    options.cut_out = {true, false, false};
+    const LodChain chain = make_chain(g, options);
+    ASSERT_GE(chain.levels.size(), 4U);
+    EXPECT_LE(chain.levels.front().triangles, 60U) << "the trunk did not keep it from getting small";
+    for (const Level& level : chain.levels) {
+        double leaves = 0, solid = 0;
+        for (const GeometryPart& part : level.parts)
+            (part.material == 0 ? leaves : solid) += static_cast<double>(part.indices.size() / 3);
+        EXPECT_GT(leaves, 0) << "a box of " << solid;
+        if (leaves > 2) {
+            EXPECT_GE(solid / 290, leaves / 200);
+        }
+    }
 }
 
 TEST(Cards, ThatAreLeftOutOrGrewLieWithinTheLevelsError) {

@@ -75,6 +75,35 @@ TEST(PictureShift, IsAWholePictureWhereOneThatIsClampedLiesOneFurther) {
     EXPECT_NEAR(shift(p, Picture::clamped), 2, 1e-4);  // metres: the plate's width
 }
 
+TEST(PictureShift, ALevelThatSqueezesItsPictureShowsColoursInstead) {
+    for (const bool squeezed : {false, true}) {
+        Geometry g = plate([&](vec2 t) { return vec2(squeezed ? t.x * t.x : t.x, t.y); }).full;
+        for (std::size_t i = 0; i < g.vertices.size(); ++i) {
+            g.vertices[i].position[2] = 0.02F * static_cast<float>(i % 3);  // else the first level is exact
+            g.baked.push_back({10, 20, 30, 255});
+        }
+        const double diagonal_m = g.box().diagonal();
+        ChainOptions options;
+        options.pictures = {Picture::clamped, Picture::none};
+        options.proxy_material = 1;
+        options.proxy_below = 0;
+        options.smallest = 2;
+        const LodChain chain = make_chain(g, options);
+        ASSERT_GE(chain.levels.size(), 3U);
+        const PictureReference pictures(chain.full, options.pictures);
+        std::size_t coloured = 0;
+        for (const Level& level : chain.levels) {
+            EXPECT_GE(level.error_m, pictures.shift_m(level) - 1e-6F) << "of those that kept it";
+            if (level.parts[0].material != 1) continue;
+            ++coloured;
+            EXPECT_GE(level.error_m, diagonal_m / 16);
+            EXPECT_EQ(chain.full.vertices[level.parts[0].indices[0]].colour[1], 20);
+        }
+        EXPECT_EQ(coloured > 0, squeezed);
+        EXPECT_EQ(chain.levels.back().parts[0].material, 0U) << "never the full detail";
+    }
+}
+
 TEST(PictureShift, IsFiniteForPicturesWithoutExtentAndForNothing) {
     EXPECT_EQ(shift(plate([](vec2) { return vec2(0.5F); })), 0);
     EXPECT_EQ(PictureReference({}, {Picture::repeats}).shift_m({}), 0);
