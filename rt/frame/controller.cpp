@@ -29,7 +29,7 @@ void CostController::update_upper(double error) {
     std::fill(sorted.begin() + static_cast<std::ptrdiff_t>(errors_count_), sorted.end(), highest);
     constexpr std::size_t rank = upper_window * 9 / 10;
     std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
-    upper_ = std::max(sorted[rank], upper_ / upper_slew);
+    upper_ = sorted[rank];
 }
 
 double CostController::upper(double of_table) const { return std::min(std::max(upper_, least_upper), std::max(of_table, 1.0)); }

@@ -15,12 +15,13 @@ class CostController {
 public:
     static constexpr std::size_t window = 15, upper_window = 64;
     static constexpr double lowest = 0.5, highest = 2.0, slew = 1.06;
-    static constexpr double least_upper = 1.04, upper_slew = 1.01;  ///< falls by at most 1 % a frame, rises at once
+    static constexpr double least_upper = 1.04;
 
     /// predicted_us: uncorrected (factor 1). Pairs that are not positive and finite are ignored.
     void update(double predicted_us, double actual_us);
     [[nodiscard]] double factor() const { return factor_; }
-    /// At most the table's, which it is until 58 frames have passed and it has then fallen that far, 1 % a frame.
+    /// At most the table's, which it is until 58 frames have passed. It falls as it rises: held up where it had been (down by 1 % a
+    /// frame) it stood at the 97 % quantile, left a tenth of the budget unspent, and the slowest frames were as slow.
     [[nodiscard]] double upper(double of_table) const;
 
 private:

@@ -136,6 +136,8 @@ TEST(Controller, UpperIsTheNinetiethPercentileOfRecentFrames) {
     EXPECT_EQ(c.upper(1.4), CostController::least_upper);
     for (int i = 0; i < 7; ++i) c.update(100, 150);  // rises as soon as a tenth of the window says so
     EXPECT_GT(c.upper(2), 1.4);
+    for (int i = 0; i < 64; ++i) c.update(100, 100);  // and falls with the window, not long after it
+    EXPECT_EQ(c.upper(2), CostController::least_upper);
 }
 
 TEST(Controller, MeetsADoubledCostAndIsDeafToOutliers) {
