@@ -15,6 +15,9 @@ namespace {
 
 using test::Forest;
 
+/// Long enough for every kind of load and some hundreds of frames; a sanitizer makes a second ten times as long.
+const double a_while_s = rt::guard_active() ? 60 : 20;
+
 SoakRequest virtual_soak(double seconds) {
     SoakRequest r;
     r.walk = Forest::get().virtual_request(0);
@@ -25,7 +28,7 @@ SoakRequest virtual_soak(double seconds) {
 TEST(Soak, TwentyVirtualMinutesHoldAndLeaveAPageAndTheirFigures) {
     // The sanitizers keep freed memory, which a soak rightly calls growth: all but that is judged there.
     const bool memory_counts = rt::guard_active();
-    const std::uint64_t minutes = memory_counts ? 20 : 5;  // they are also ten times slower
+    const std::uint64_t minutes = memory_counts ? 20 : 2;  // they are also ten times slower
     SoakRequest request = virtual_soak(static_cast<double>(minutes) * 60);
     request.report_dir = Forest::get().dir + "/soak";
     auto outcome = run_soak(request, {});
@@ -64,7 +67,7 @@ TEST(Soak, TwentyVirtualMinutesHoldAndLeaveAPageAndTheirFigures) {
 TEST(Soak, IsTheSameTwice) {
     report::SoakSummary two[2];
     for (report::SoakSummary& s : two) {
-        auto outcome = run_soak(virtual_soak(60), {});
+        auto outcome = run_soak(virtual_soak(a_while_s), {});
         ASSERT_TRUE(outcome.ok());
         s = outcome->summary;
     }
@@ -75,7 +78,7 @@ TEST(Soak, IsTheSameTwice) {
 }
 
 TEST(Soak, CostsThatAreThreeTimesWhatIsPredictedBreakItsVerdict) {
-    SoakRequest request = virtual_soak(60);
+    SoakRequest request = virtual_soak(a_while_s);
     request.walk.cost_scale = 3;
     request.walk.correct_costs = false;
     request.walk.in_frame_check = false;
