@@ -4,16 +4,17 @@
 set -u
 surefoot=$(realpath "$1")
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/contract.sh"
-"$surefoot" scene forest --scale 0.3 -o f.glb >/dev/null && "$surefoot" bake f.glb -o f.walk >/dev/null 2>&1 || complain "no model"
+# A small room, and not much more than what a verdict needs: the length is what costs.
+"$surefoot" scene room --scale 0.2 -o f.glb >/dev/null && "$surefoot" bake f.glb -o f.walk >/dev/null 2>&1 || complain "no model"
 virtual="--clock virtual --backend null"
 # The load names its processes so; those of other soaks on this machine are not ours.
 load_of() { pgrep -x sf-load -s "$1" 2>/dev/null | wc -l; }
 
 # A virtual soak holds, and leaves its page and figures.
-expect 0 '' soak f.walk $virtual --seconds 900 --rate 60 --report page
+expect 0 '' soak f.walk $virtual --seconds 780 --rate 60 --report page
 grep -q 'the verdict holds' out || complain "the table has no verdict: $(cat out)"
 [ -s page/index.html ] && valid_json page/soak.json || complain "no page"
-expect 0 '' soak f.walk $virtual --seconds 900 --json; valid_json out || complain "soak --json is not one object"
+expect 0 '' soak f.walk $virtual --seconds 780 --json; valid_json out || complain "soak --json is not one object"
 grep -q '"verdict": "holds"' out || complain "no verdict in the JSON"
 expect 0 '' soak --help; grep -q 'surefoot soak' out || complain "no example"
 
