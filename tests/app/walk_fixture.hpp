@@ -1,4 +1,4 @@
-// A small forest, baked once a build of the test program and copied to a folder of its own that goes away at the end.
+// A small forest, baked once a build (baked_forest.cpp) and copied to a folder of its own that goes away at the end.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,15 +7,13 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
-#include "render/bake/bake.hpp"
-#include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/path.hpp"
 #include "tools/app/walk.hpp"
-#include "tools/scenes/scenes.hpp"
 
 namespace surefoot::test {
 
@@ -49,12 +47,12 @@ private:
         std::filesystem::copy_file(baked + "/forest.walk", model_file);
         std::filesystem::copy_file(baked + "/forest.path.csv", path_file);
     }
-    /// Every test is a process of its own, and a bake takes seconds: the first one bakes for all that run this very program.
+    /// Every test is a process of its own, and a bake takes seconds: the first one has it baked for all programs of this build.
     static std::string shared_folder() {
-        const auto program = std::filesystem::read_symlink("/proc/self/exe");
-        const auto built = std::filesystem::last_write_time(program).time_since_epoch().count();
-        const std::string folder = program.string() + ".forest";
-        const std::string of = std::to_string(built), done = folder + "/baked-by-" + of;
+        const auto baker = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "baked_forest";
+        const auto built = std::filesystem::last_write_time(baker).time_since_epoch().count();
+        const std::string folder = baker.string() + ".kept";
+        const std::string done = folder + "/baked-by-" + std::to_string(built);
         std::filesystem::create_directories(folder);
         const int lock = ::open((folder + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
         EXPECT_EQ(::flock(lock, LOCK_EX), 0);
@@ -62,12 +60,7 @@ private:
             for (const auto& old : std::filesystem::directory_iterator(folder)) {
                 if (old.path().filename().string().starts_with("baked-by-")) std::filesystem::remove(old.path());
             }
-            auto scene = scenes::generate("forest", 4, 1);
-            EXPECT_TRUE(scene.ok());
-            auto model = bake::bake(scene->scene, {}, {});
-            EXPECT_TRUE(model.ok()) << (model.ok() ? "" : model.error().text());
-            EXPECT_TRUE(model::write_walk(folder + "/forest.walk", *model).ok());
-            EXPECT_TRUE(write_path(folder + "/forest.path.csv", scene->path).ok());
+            EXPECT_EQ(std::system(("'" + baker.string() + "' '" + folder + "'").c_str()), 0);
             EXPECT_TRUE(write_text(done, "").ok());
         }
         ::close(lock);

@@ -11,7 +11,8 @@ namespace surefoot::cli {
 
 namespace {
 
-constexpr double judged_from_s = 750;  ///< 90 pairs of blocks, and ten minutes of memory after the warm-up
+/// 90 pairs of blocks, and ten minutes of memory from the first sample after the warm-up to the last; they are 10 s apart.
+constexpr double judged_from_s = 780;
 
 struct SoakArguments {
     app::SoakRequest request;
