@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <numeric>
+#include <span>
 #include <tuple>
+#include <utility>
 
 namespace surefoot::bake {
 
@@ -30,28 +31,28 @@ private:
 
 }  // namespace
 
-namespace {
-
-using Cards = std::vector<std::vector<std::uint32_t>>;
-
-/// Runs of triangles that share what `key` says of a vertex.
-template <class Key>
-Cards connected(const std::vector<std::uint32_t>& indices, Key key) {
-    std::map<decltype(key(0U)), std::uint32_t> numbers;
+Cards cards_of(const Geometry& g, const GeometryPart& part) {
+    std::map<std::tuple<float, float, float>, std::uint32_t> places;
     std::vector<std::uint32_t> place;
-    place.reserve(indices.size());
-    for (const std::uint32_t index : indices)
-        place.push_back(numbers.try_emplace(key(index), static_cast<std::uint32_t>(numbers.size())).first->second);
-    Sets sets(numbers.size());
-    for (std::size_t i = 0; i + 2 < place.size(); i += 3) {
-        sets.join(place[i], place[i + 1]);
-        sets.join(place[i], place[i + 2]);
+    place.reserve(part.indices.size());
+    for (const std::uint32_t index : part.indices) {
+        const float* p = g.vertices[index].position;
+        place.push_back(places.try_emplace({p[0], p[1], p[2]}, static_cast<std::uint32_t>(places.size())).first->second);
+    }
+    const auto count = static_cast<std::uint32_t>(place.size() / 3);
+    Sets triangles(count);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges;  // and the first triangle at it
+    for (std::uint32_t t = 0; t < count; ++t) {
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const std::uint32_t from = place[3 * t + k], to = place[3 * t + (k + 1) % 3];
+            triangles.join(t, edges.try_emplace({std::min(from, to), std::max(from, to)}, t).first->second);
+        }
     }
     std::map<std::uint32_t, std::vector<std::uint32_t>> by_root;
-    for (std::size_t i = 0; i + 2 < place.size(); i += 3) {
-        std::vector<std::uint32_t>& card = by_root[sets.root(place[i])];
-        card.insert(card.end(), indices.begin() + static_cast<std::ptrdiff_t>(i),
-                    indices.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+    for (std::uint32_t t = 0; t < count; ++t) {
+        std::vector<std::uint32_t>& card = by_root[triangles.root(t)];
+        const auto first = part.indices.begin() + static_cast<std::ptrdiff_t>(3) * t;
+        card.insert(card.end(), first, first + 3);
     }
     Cards cards;
     cards.reserve(by_root.size());
@@ -59,28 +60,8 @@ Cards connected(const std::vector<std::uint32_t>& indices, Key key) {
     return cards;
 }
 
-}  // namespace
-
-Cards cards_of(const Geometry& g, const GeometryPart& part) {
-    return connected(part.indices, [&](std::uint32_t index) {
-        const float* p = g.vertices[index].position;
-        return std::tuple(p[0], p[1], p[2]);
-    });
-}
-
 Cards thinnable_cards(const Geometry& g, const GeometryPart& part) {
-    Cards cards;
-    for (std::vector<std::uint32_t>& card : cards_of(g, part)) {
-        if (card.size() * fewest_cards <= part.indices.size()) {
-            cards.push_back(std::move(card));
-            continue;
-        }
-        Cards apart = connected(card, [&](std::uint32_t index) {
-            const model::Vertex& v = g.vertices[index];
-            return std::tuple(v.position[0], v.position[1], v.position[2], v.uv[0], v.uv[1]);
-        });
-        std::move(apart.begin(), apart.end(), std::back_inserter(cards));
-    }
+    Cards cards = cards_of(g, part);
     const bool large = std::any_of(cards.begin(), cards.end(), [&](const std::vector<std::uint32_t>& card) {
         return static_cast<double>(card.size()) > largest_card_share * static_cast<double>(part.indices.size());
     });
@@ -98,28 +79,41 @@ double area_of(const Geometry& g, const std::vector<std::uint32_t>& indices) {
 }
 
 void spread(const Geometry& g, Cards& cards, std::size_t most_triangles) {
-    std::vector<vec3> middles;
-    middles.reserve(cards.size());
+    struct Place {
+        vec3 middle;
+        float thrift;  ///< less for a larger one
+        float away;    ///< from those that are kept
+    };
+    std::vector<Place> places;
+    places.reserve(cards.size());
     Box all;
+    std::size_t triangles = 0;
     for (const std::vector<std::uint32_t>& card : cards) {
         Box box;
         for (const std::uint32_t index : card) box.grow(dvec3(position_of(g.vertices[index])));
-        middles.emplace_back(box.centre());
+        places.push_back({vec3(box.centre()), 1 / std::sqrt(static_cast<float>(card.size())), 0});
         all.grow(box.centre());
+        triangles += card.size() / 3;
     }
-    std::vector<float> away(cards.size());  // from those that are kept; at first less for what is farther out
-    for (std::size_t i = 0; i < cards.size(); ++i) away[i] = -glm::length(middles[i] - vec3(all.centre()));
-    std::size_t triangles = 0;
-    for (std::size_t kept = 0; kept < cards.size() && triangles < most_triangles; ++kept) {
-        const auto next = static_cast<std::size_t>(
-            std::max_element(away.begin() + static_cast<std::ptrdiff_t>(kept), away.end()) - away.begin());
+    // At first the middle one, of those that are not large: it is in every level.
+    const vec3 middle(all.centre());
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < cards.size(); ++i) {
+        const bool large = cards[i].size() / 3 * fewest_cards > triangles;
+        places[i].away = -glm::length(places[i].middle - middle) - (large ? 1e30F : 0.0F);
+        if (places[i].away > places[next].away) next = i;
+    }
+    std::size_t ordered = 0;
+    for (std::size_t kept = 0; kept < cards.size() && ordered < most_triangles; ++kept) {
         std::swap(cards[kept], cards[next]);
-        std::swap(middles[kept], middles[next]);
-        std::swap(away[kept], away[next]);
-        triangles += cards[kept].size() / 3;
+        std::swap(places[kept], places[next]);
+        ordered += cards[kept].size() / 3;
+        next = kept + 1;
         for (std::size_t i = kept + 1; i < cards.size(); ++i) {
-            const float from = glm::length(middles[i] - middles[kept]) / std::sqrt(static_cast<float>(cards[i].size()));
-            away[i] = kept == 0 ? from : std::min(away[i], from);
+            Place& place = places[i];
+            const float from = glm::length(place.middle - places[kept].middle) * place.thrift;
+            place.away = kept == 0 ? from : std::min(place.away, from);
+            if (place.away > places[next].away) next = i;
         }
     }
 }
@@ -135,17 +129,19 @@ std::vector<std::uint32_t> some_cards(const Cards& cards, double share) {
     return kept;
 }
 
-void enlarge_cards(Geometry& g, GeometryPart& part, double area_m2, double largest) {
+void enlarge_cards(Geometry& g, GeometryPart& part, const Cards& cards, double area_m2, double largest) {
     const double now_m2 = area_of(g, part.indices);
     if (!(now_m2 > 0) || !(area_m2 > now_m2)) return;
     const double scale = std::min(largest, std::sqrt(area_m2 / now_m2));
-    const std::vector<std::vector<std::uint32_t>> cards = cards_of(g, part);
-    std::map<std::uint32_t, std::uint32_t> moved;
-    part.indices.clear();
+    std::size_t first = 0;
     for (const std::vector<std::uint32_t>& card : cards) {
+        if (first >= part.indices.size()) return;
+        const std::span<std::uint32_t> own = std::span(part.indices).subspan(first, card.size());
+        first += card.size();
         dvec3 middle(0.0);
-        for (const std::uint32_t index : card) middle += dvec3(position_of(g.vertices[index])) / static_cast<double>(card.size());
-        for (const std::uint32_t index : card) {
+        for (const std::uint32_t index : own) middle += dvec3(position_of(g.vertices[index])) / static_cast<double>(own.size());
+        std::map<std::uint32_t, std::uint32_t> moved;  // a card's own: another that shares a vertex moves it elsewhere
+        for (std::uint32_t& index : own) {
             const auto [where, fresh] = moved.try_emplace(index, static_cast<std::uint32_t>(g.vertices.size()));
             if (fresh) {
                 model::Vertex v = g.vertices[index];
@@ -155,7 +151,7 @@ void enlarge_cards(Geometry& g, GeometryPart& part, double area_m2, double large
                 const std::array<std::uint8_t, 4> colour = g.baked[index];
                 g.baked.push_back(colour);
             }
-            part.indices.push_back(where->second);
+            index = where->second;
         }
     }
 }

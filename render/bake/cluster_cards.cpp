@@ -52,7 +52,7 @@ struct Thinning {
 
     struct OfMaterial {
         model::Index material;
-        std::vector<std::vector<std::uint32_t>> cards;
+        Cards cards;
         double area_m2;
     };
     const Geometry& g;
@@ -79,7 +79,7 @@ Geometry some_of(const Thinning& from, double budget) {
             }
             part.indices.push_back(where->second);
         }
-        enlarge_cards(out, part, m.area_m2, largest_in_clusters);
+        enlarge_cards(out, part, m.cards, m.area_m2, largest_in_clusters);
         out.parts.push_back(std::move(part));
     }
     optimise(out);

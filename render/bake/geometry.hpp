@@ -15,7 +15,7 @@ struct GeometryPart {
     std::vector<std::uint32_t> indices;
 };
 
-/// Triangles by material over one vertex array; positions relative to `centre`, which is in the mesh's frame.
+/// Triangles by material (a part each) over one vertex array; positions relative to `centre`, which is in the mesh's frame.
 struct Geometry {
     dvec3 centre{0};
     std::vector<model::Vertex> vertices;
@@ -55,8 +55,7 @@ struct ChainOptions {
     std::uint32_t proxy_below = 40;   ///< triangles; coarser levels carry baked colours in one part
     std::vector<Picture> pictures;    ///< by material: what baked colours at a few vertices lose
     std::vector<bool> cut_out;        ///< by material: its picture's alpha cuts the shape out of its triangles
-    double first_share = 1;           ///< share of the triangles that the finest simplified level may have (1: as ratio says)
-    double ratio = 0.45;              ///< of triangles from one level to the next coarser
+    double ratio = 0.45;  ///< of triangles from one level to the next coarser; its root for what is solid beside many cards
 };
 
 /// meshoptimizer proposes, mesh_distance bounds. A chain of one level where nothing coarser is worth keeping.

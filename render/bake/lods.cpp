@@ -73,51 +73,60 @@ std::vector<std::uint32_t> simplify_part(const Geometry& g, std::size_t vertices
 /// A level whose picture lies off by more of its size shows baked colours instead, and counts as wrong by that much.
 constexpr double squeezed_picture_error = 1.0 / 16;
 
-/// What is thinned out, by material.
-using Cards = std::map<model::Index, std::vector<std::vector<std::uint32_t>>>;
+/// What is thinned out.
+struct Thinned {
+    std::map<model::Index, Cards> cards;  ///< by material
+    /// Half or more of the whole, by area: it is seen through (a box would be a dark solid), and its pixels cost most.
+    bool mostly = false;
+    [[nodiscard]] bool contains(model::Index material) const { return cards.contains(material); }
+};
 
-Cards find_cards(const Geometry& g, const ChainOptions& options) {
-    Cards cards;
+Thinned find_cards(const Geometry& g, const ChainOptions& options) {
+    Thinned thinned;
+    double of_cards = 0, all = 0;
     for (const GeometryPart& part : g.parts) {
+        const double area = area_of(g, part.indices);
+        all += area;
         if (part.material >= options.cut_out.size() || !options.cut_out[part.material]) continue;
         auto found = thinnable_cards(g, part);
         if (found.empty()) continue;
-        spread(g, found, part.indices.size() / 3);
-        cards[part.material] = std::move(found);
+        of_cards += area;
+        spread(g, found, static_cast<std::size_t>(options.ratio * static_cast<double>(part.indices.size() / 3)) + 1);
+        thinned.cards[part.material] = std::move(found);
     }
-    return cards;
+    thinned.mostly = of_cards > 0 && 2 * of_cards >= all;
+    return thinned;
 }
 
-/// Beside cards, whose pixels cost most, what is solid goes by smaller steps: a trunk of a few spikes shows in any crown.
-double solid_share(const Cards& cards, double share) { return cards.empty() ? share : std::sqrt(share); }
+/// Beside many cards what is solid goes by smaller steps: a trunk of a few spikes shows in any crown.
+double solid_share(const Thinned& thinned, double share) { return thinned.mostly ? std::sqrt(share) : share; }
 
 /// Of the triangles of `parts`, those that simplify() is to leave.
-double expected_share(const Cards& cards, const std::vector<GeometryPart>& parts, double share) {
+double expected_share(const Thinned& thinned, const std::vector<GeometryPart>& parts, double share) {
     double all = 0, left = 0;
     for (const GeometryPart& part : parts) {
         const auto n = static_cast<double>(part.indices.size());
         all += n;
-        left += n * (cards.contains(part.material) ? share : solid_share(cards, share));
+        left += n * (thinned.contains(part.material) ? share : solid_share(thinned, share));
     }
     return all > 0 ? left / all : share;
 }
 
-Level simplify(const Geometry& g, std::size_t vertices, const Cards& cards, const std::vector<GeometryPart>& from, double share,
-               bool lock, bool sloppy) {
+Level simplify(const Geometry& g, std::size_t vertices, const Thinned& thinned, const std::vector<GeometryPart>& from,
+               double share, bool lock, bool sloppy) {
     Level level;
     for (const GeometryPart& part : from) {
         GeometryPart smaller{part.material, {}};
         const auto all =
             std::find_if(g.parts.begin(), g.parts.end(), [&](const GeometryPart& p) { return p.material == part.material; });
         const double left = static_cast<double>(part.indices.size()) / static_cast<double>(all->indices.size());
-        if (const auto thinned = cards.find(part.material); thinned != cards.end())
-            smaller.indices = some_cards(thinned->second, share * left);
+        if (const auto cards = thinned.cards.find(part.material); cards != thinned.cards.end())
+            smaller.indices = some_cards(cards->second, share * left);
         else if (sloppy)  // it takes a mesh with its seams whole
-            smaller.indices = simplify_part(g, vertices, *all, solid_share(cards, share) * left, lock, sloppy);
+            smaller.indices = simplify_part(g, vertices, *all, solid_share(thinned, share) * left, lock, sloppy);
         else
-            smaller.indices = simplify_part(g, vertices, part, solid_share(cards, share), lock, sloppy);
+            smaller.indices = simplify_part(g, vertices, part, solid_share(thinned, share), lock, sloppy);
         if (smaller.indices.empty()) continue;
-        meshopt_optimizeVertexCache(smaller.indices.data(), smaller.indices.data(), smaller.indices.size(), g.vertices.size());
         level.triangles += static_cast<std::uint32_t>(smaller.indices.size() / 3);
         level.parts.push_back(std::move(smaller));
     }
@@ -160,25 +169,14 @@ std::array<std::array<std::uint8_t, 4>, 6> face_colours(const Geometry& g) {
     return out;
 }
 
-/// What is half or more of cards is seen through: a box would be a dark solid.
-bool mostly_cards(const Geometry& g, const Cards& cards) {
-    double of_cards = 0, all = 0;
-    for (const GeometryPart& part : g.parts) {
-        const double area = area_of(g, part.indices);
-        all += area;
-        if (cards.contains(part.material)) of_cards += area;
-    }
-    return of_cards > 0 && 2 * of_cards >= all;
-}
-
 /// The level again in the proxy material: one part, its own vertices with the baked colours, no texture to bind. But cards, which
 /// would be solid, stay as they are.
-void to_proxy(Geometry& g, const Cards& cards, Level& level, model::Index material) {
+void to_proxy(Geometry& g, const Thinned& thinned, Level& level, model::Index material) {
     GeometryPart part{material, {}};
     std::vector<GeometryPart> kept;
     std::vector<std::uint32_t> map(g.vertices.size(), model::none);
     for (const GeometryPart& p : level.parts) {
-        if (cards.contains(p.material) || p.material == material) {
+        if (thinned.contains(p.material) || p.material == material) {
             kept.push_back(p);
             continue;
         }
@@ -269,43 +267,44 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     finest.triangles = total;
     std::vector<Level> levels{finest};
     const Reference reference(full, options.slack);
-    const Cards cards = find_cards(full, options);
+    const Thinned thinned = find_cards(full, options);
     std::vector<Picture> laid_on = options.pictures;  // cards keep theirs, and miss it where they are left out
     laid_on.resize(std::max(laid_on.size(), options.cut_out.size()), Picture::none);
-    for (const auto& [material, thinned] : cards) laid_on[material] = Picture::none;
+    for (const auto& [material, cards] : thinned.cards) laid_on[material] = Picture::none;
     const PictureReference pictures(full, laid_on);
     const Places places(full);
     const std::size_t own_vertices = full.vertices.size();
     std::map<model::Index, double> card_area_m2;
     for (const GeometryPart& part : full.parts)
-        if (cards.contains(part.material)) card_area_m2[part.material] = area_of(full, part.indices);
+        if (thinned.contains(part.material)) card_area_m2[part.material] = area_of(full, part.indices);
     const Box box = full.box();
     const float floor_m = static_cast<float>(box.diagonal()) * 0.002F;
     const auto bound = [&](const Level& level) { return std::max(reference.bound(full, level), pictures.shift_m(level)); };
     std::vector<GeometryPart> parts = finest.parts;  // of the coarsest level so far, as the simplifier left them
-    bool torn = false;
+    bool torn = false, squeezed = false;             // from then on
     while (levels.back().triangles > options.smallest) {
         const Level& before = levels.back();
-        const double share = levels.size() == 1 ? std::min(options.ratio, options.first_share) : options.ratio;
+        const double share = options.ratio;
         // Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives
         // way.
-        const double wanted = before.triangles * expected_share(cards, parts, share);
-        Level next = simplify(full, own_vertices, cards, parts, share, true, false);
+        const double wanted = before.triangles * expected_share(thinned, parts, share);
+        Level next = simplify(full, own_vertices, thinned, parts, share, true, false);
         const double most = 0.8 * before.triangles;  // else it is no level of its own
         if (!options.lock_border && next.triangles > std::min(wanted * 1.4, most))
-            next = simplify(full, own_vertices, cards, parts, share, false, false);
+            next = simplify(full, own_vertices, thinned, parts, share, false, false);
         if (next.triangles == 0 || next.triangles > std::min(std::max(wanted * 1.5, wanted + 0.02 * before.triangles), most)) {
             if (options.lock_border) break;
-            next = simplify(full, own_vertices, cards, parts, share, false, true);
+            next = simplify(full, own_vertices, thinned, parts, share, false, true);
             torn = true;
         }
         if (next.triangles == 0 || next.triangles > most) break;
         parts = next.parts;
         for (GeometryPart& part : next.parts) {
-            if (cards.contains(part.material))
-                enlarge_cards(full, part, card_area_m2[part.material]);
+            if (const auto cards = thinned.cards.find(part.material); cards != thinned.cards.end())
+                enlarge_cards(full, part, cards->second, card_area_m2[part.material]);
             else
                 mend_corners(full, places, part);
+            meshopt_optimizeVertexCache(part.indices.data(), part.indices.data(), part.indices.size(), full.vertices.size());
         }
         const bool pictured = std::any_of(next.parts.begin(), next.parts.end(), [&](const GeometryPart& part) {
             return part.material < laid_on.size() && laid_on[part.material] != Picture::none;
@@ -313,11 +312,13 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         next.error_m = reference.bound(full, next);
         if (pictured) {
             const auto without = static_cast<float>((torn ? least_proxy_error : squeezed_picture_error) * box.diagonal());
-            const float shift_m = torn ? without : pictures.shift_m(next);
-            if (options.proxy_material != model::none && (torn || shift_m > std::max(without, next.error_m))) {
+            const bool may_colour = options.proxy_material != model::none;
+            const float shift_m = torn && may_colour ? without : pictures.shift_m(next);
+            squeezed = squeezed || shift_m > std::max(without, next.error_m);
+            if (may_colour && (torn || squeezed)) {
                 // Vertices from far apart in the picture are one now, or the picture is squeezed: in baked colours it looks like
                 // the thing, in the picture like anything.
-                to_proxy(full, cards, next, options.proxy_material);
+                to_proxy(full, thinned, next, options.proxy_material);
                 next.error_m = std::max(next.error_m, without);
             } else {
                 next.error_m = std::max(next.error_m, shift_m);
@@ -333,7 +334,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         }
         levels.push_back(std::move(next));
     }
-    if (levels.back().triangles > 48 && !options.lock_border && !mostly_cards(full, cards)) {
+    if (levels.back().triangles > 48 && !options.lock_border && !thinned.mostly) {
         Level round = box_level(full, box, options.proxy_material);
         round.error_m = std::max(bound(round), std::nextafter(levels.back().error_m, 1e30F));
         if (options.proxy_material != model::none)
@@ -342,7 +343,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     }
     for (std::size_t i = 1; i < levels.size(); ++i) {  // never the full detail
         if (options.proxy_material == model::none || levels[i].triangles >= options.proxy_below) continue;
-        if (may_lose_pictures(levels[i], options, box.diagonal())) to_proxy(full, cards, levels[i], options.proxy_material);
+        if (may_lose_pictures(levels[i], options, box.diagonal())) to_proxy(full, thinned, levels[i], options.proxy_material);
     }
     std::reverse(levels.begin(), levels.end());
     chain.full = std::move(full);

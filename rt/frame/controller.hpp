@@ -20,8 +20,8 @@ public:
     /// predicted_us: uncorrected (factor 1). Pairs that are not positive and finite are ignored.
     void update(double predicted_us, double actual_us);
     [[nodiscard]] double factor() const { return factor_; }
-    /// At most the table's, which it is until 58 frames have passed. It falls as it rises: held up where it had been (down by 1 % a
-    /// frame) it stood at the 97 % quantile, left a tenth of the budget unspent, and the slowest frames were as slow.
+    /// At most the table's, which it is until 58 frames have passed. It falls as fast as it rises: falling by 1 % a frame, it
+    /// stood above the quantile, and frames were no steadier for it.
     [[nodiscard]] double upper(double of_table) const;
 
 private:

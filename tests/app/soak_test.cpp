@@ -15,7 +15,7 @@ namespace {
 
 using test::Forest;
 
-/// Long enough for every kind of load and some hundreds of frames; a sanitizer makes a second ten times as long.
+/// Hundreds of frames; a sanitizer makes a second ten times as long.
 const double a_while_s = rt::guard_active() ? 60 : 20;
 
 SoakRequest virtual_soak(double seconds) {

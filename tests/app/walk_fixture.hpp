@@ -57,11 +57,12 @@ private:
         const int lock = ::open((folder + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
         EXPECT_EQ(::flock(lock, LOCK_EX), 0);
         if (!std::filesystem::exists(done)) {
-            for (const auto& old : std::filesystem::directory_iterator(folder)) {
-                if (old.path().filename().string().starts_with("baked-by-")) std::filesystem::remove(old.path());
-            }
-            EXPECT_EQ(std::system(("'" + baker.string() + "' '" + folder + "'").c_str()), 0);
-            EXPECT_TRUE(write_text(done, "").ok());
+            for (const auto& old : std::filesystem::directory_iterator(folder))
+                if (old.path().filename() != "lock") std::filesystem::remove(old.path());
+            if (std::system(("\"" + baker.string() + "\" \"" + folder + "\"").c_str()) == 0)
+                EXPECT_TRUE(write_text(done, "").ok());
+            else
+                ADD_FAILURE() << baker << " made no forest";
         }
         ::close(lock);
         return folder;

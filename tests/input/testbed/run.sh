@@ -15,13 +15,14 @@ for library in libasan libubsan; do
   path=$(ldd "$program" | awk -v l="$library" '$1 ~ "^" l {print $3}')
   [[ -n "$path" ]] && runtime=${runtime:+$runtime:}$path
 done
-export LD_PRELOAD=${runtime:+$runtime:}$preload
-if (( $# > 0 )); then exec "$program" "$@"; fi
+preload=${runtime:+$runtime:}$preload
+if (( $# > 0 )); then LD_PRELOAD=$preload exec "$program" "$@"; fi
 # Most of it is waiting, for a hand or for a limit to pass: two at a time, each with devices of its own.
-shards=2 log=$(mktemp -d) failed=0 pids=()
-trap 'rm -rf "$log"' EXIT
+shards=2 failed=0 pids=()
+log=$(mktemp -d) || exit 1
+trap '(( ${#pids[@]} )) && kill "${pids[@]}" 2>/dev/null; rm -rf "$log"' EXIT
 for (( shard = 0; shard < shards; ++shard )); do
-  GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard "$program" >"$log/$shard" 2>&1 &
+  LD_PRELOAD=$preload GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard "$program" >"$log/$shard" 2>&1 &
   pids+=($!)
 done
 for (( shard = 0; shard < shards; ++shard )); do
