@@ -257,6 +257,15 @@ bool may_lose_pictures(const Level& level, const ChainOptions& options, double d
     });
 }
 
+/// A level that is hardly better than the next coarser one is a step that is paid for and shows nothing. The full detail stays.
+void drop_little_gains(std::vector<Level>& levels) {
+    constexpr float gain = 0.9F;
+    std::vector<Level> kept;
+    for (Level& level : levels)
+        if (kept.empty() || level.error_m <= gain * kept.back().error_m) kept.push_back(std::move(level));
+    levels = std::move(kept);
+}
+
 }  // namespace
 
 LodChain make_chain(Geometry full, const ChainOptions& options) {
@@ -346,6 +355,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         if (may_lose_pictures(levels[i], options, box.diagonal())) to_proxy(full, thinned, levels[i], options.proxy_material);
     }
     std::reverse(levels.begin(), levels.end());
+    drop_little_gains(levels);
     chain.full = std::move(full);
     chain.levels = std::move(levels);
     return chain;
