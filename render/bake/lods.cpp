@@ -71,7 +71,7 @@ std::vector<std::uint32_t> simplify_part(const Geometry& g, std::size_t vertices
 }
 
 /// A level whose picture lies off by more of its size shows baked colours instead, and counts as wrong by that much.
-constexpr double squeezed_picture_error = 1.0 / 16;
+constexpr double squeezed_picture_error = 1.0 / 4;
 
 /// What is thinned out.
 struct Thinned {
@@ -112,6 +112,10 @@ double expected_share(const Thinned& thinned, const std::vector<GeometryPart>& p
     return all > 0 ? left / all : share;
 }
 
+void optimise_order(GeometryPart& part, const Geometry& g) {
+    meshopt_optimizeVertexCache(part.indices.data(), part.indices.data(), part.indices.size(), g.vertices.size());
+}
+
 Level simplify(const Geometry& g, std::size_t vertices, const Thinned& thinned, const std::vector<GeometryPart>& from,
                double share, bool lock, bool sloppy) {
     Level level;
@@ -127,6 +131,7 @@ Level simplify(const Geometry& g, std::size_t vertices, const Thinned& thinned, 
         else
             smaller.indices = simplify_part(g, vertices, part, solid_share(thinned, share), lock, sloppy);
         if (smaller.indices.empty()) continue;
+        if (!thinned.contains(part.material)) optimise_order(smaller, g);
         level.triangles += static_cast<std::uint32_t>(smaller.indices.size() / 3);
         level.parts.push_back(std::move(smaller));
     }
@@ -309,11 +314,13 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         if (next.triangles == 0 || next.triangles > most) break;
         parts = next.parts;
         for (GeometryPart& part : next.parts) {
-            if (const auto cards = thinned.cards.find(part.material); cards != thinned.cards.end())
-                enlarge_cards(full, part, cards->second, card_area_m2[part.material]);
-            else
+            const auto cards = thinned.cards.find(part.material);
+            if (cards == thinned.cards.end()) {
                 mend_corners(full, places, part);
-            meshopt_optimizeVertexCache(part.indices.data(), part.indices.data(), part.indices.size(), full.vertices.size());
+                continue;
+            }
+            enlarge_cards(full, part, cards->second, card_area_m2[part.material]);
+            optimise_order(part, full);
         }
         const bool pictured = std::any_of(next.parts.begin(), next.parts.end(), [&](const GeometryPart& part) {
             return part.material < laid_on.size() && laid_on[part.material] != Picture::none;
