@@ -1,4 +1,4 @@
-// Cards by places, and those first that lie farthest from all before (cards.hpp).
+// Cards by their edges, those first that lie farthest from all before (cards.hpp).
 #include "render/bake/cards.hpp"
 
 #include <algorithm>

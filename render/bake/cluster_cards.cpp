@@ -37,7 +37,7 @@ struct Thinning {
     Thinning(const Geometry& geometry, const std::vector<GeometryPart>& parts, const CardLimits& wanted) : g(geometry) {
         limits.relative = wanted.slack;
         for (const GeometryPart& part : parts) {
-            cards.push_back({part.material, thinnable_cards(g, part), area_of(g, part.indices)});
+            cards.push_back({part.material, cards_of(g, part), area_of(g, part.indices)});
             spread(g, cards.back().cards, wanted.most);
             triangles += part.indices.size() / 3;
         }

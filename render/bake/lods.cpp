@@ -76,7 +76,8 @@ constexpr double squeezed_picture_error = 1.0 / 4;
 /// What is thinned out.
 struct Thinned {
     std::map<model::Index, Cards> cards;  ///< by material
-    /// Half or more of the whole, by area: it is seen through (a box would be a dark solid), and its pixels cost most.
+    /// Half or more of the whole, by area: it is seen through (a box of plain colours would be a dark solid), and its pixels cost
+    /// most.
     bool mostly = false;
     [[nodiscard]] bool contains(model::Index material) const { return cards.contains(material); }
 };
@@ -298,17 +299,16 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     bool torn = false, squeezed = false;             // from then on
     while (levels.back().triangles > options.smallest) {
         const Level& before = levels.back();
-        const double share = options.ratio;
         // Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives
         // way.
-        const double wanted = before.triangles * expected_share(thinned, parts, share);
-        Level next = simplify(full, own_vertices, thinned, parts, share, true, false);
+        const double wanted = before.triangles * expected_share(thinned, parts, options.ratio);
+        Level next = simplify(full, own_vertices, thinned, parts, options.ratio, true, false);
         const double most = 0.8 * before.triangles;  // else it is no level of its own
         if (!options.lock_border && next.triangles > std::min(wanted * 1.4, most))
-            next = simplify(full, own_vertices, thinned, parts, share, false, false);
+            next = simplify(full, own_vertices, thinned, parts, options.ratio, false, false);
         if (next.triangles == 0 || next.triangles > std::min(std::max(wanted * 1.5, wanted + 0.02 * before.triangles), most)) {
             if (options.lock_border) break;
-            next = simplify(full, own_vertices, thinned, parts, share, false, true);
+            next = simplify(full, own_vertices, thinned, parts, options.ratio, false, true);
             torn = true;
         }
         if (next.triangles == 0 || next.triangles > most) break;
