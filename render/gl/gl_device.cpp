@@ -56,7 +56,7 @@ Result<void> GlDevice::set_up() {
 
 Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
     free_resources(gl_, resources_);
-    tables_ = make_tables(model);
+    tables_ = draw::make_tables(model);
     auto resources = load_resources(gl_, model, tables_.masks, tables_.textures, programs, frame_, software_);
     if (!resources) return resources.error();
     resources_ = std::move(*resources);
@@ -70,7 +70,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
 void GlDevice::warm_up() {
     std::vector<std::pair<State, Pending>> kinds;
     for (std::uint32_t r = 0; r < tables_.reps.size(); ++r) {
-        const DrawRep& rep = tables_.reps[r];
+        const draw::DrawRep& rep = tables_.reps[r];
         for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
             const Pending pending{0, p, r};
             kinds.emplace_back(state_of(pending), pending);

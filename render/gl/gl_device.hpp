@@ -9,7 +9,7 @@
 
 #include "render/gl/context.hpp"
 #include "render/gl/resources.hpp"
-#include "render/gl/tables.hpp"
+#include "render/draw/tables.hpp"
 
 namespace surefoot::gl {
 
@@ -49,7 +49,7 @@ private:
     /// GL state that a batch shares.
     struct State {
         std::uint32_t program, texture;
-        Culling culling;
+        draw::Culling culling;
         bool operator==(const State&) const = default;
     };
 
@@ -73,7 +73,7 @@ private:
     Target target_;
     FrameBuffers frame_;
     Resources resources_;
-    DrawTables tables_;
+    draw::DrawTables tables_;
 
     Pose pose_;
     mat4 view_projection_{1.0F};

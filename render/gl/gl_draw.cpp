@@ -14,7 +14,7 @@ namespace {
 std::uint32_t distance_bits(float distance) { return distance > 0 ? std::bit_cast<std::uint32_t>(distance) : 0U; }
 
 /// Program, culling, texture, then front to back. Textures beyond 2^20 share keys: batches compare the true state.
-std::uint64_t state_key(std::uint32_t program, Culling culling, std::uint32_t texture, float distance) {
+std::uint64_t state_key(std::uint32_t program, draw::Culling culling, std::uint32_t texture, float distance) {
     return static_cast<std::uint64_t>(program & 0x3ffU) << 54U | static_cast<std::uint64_t>(culling) << 52U |
            static_cast<std::uint64_t>(texture & 0xfffffU) << 32U | distance_bits(distance);
 }
@@ -65,21 +65,21 @@ void GlDevice::set_blending(bool on) {
 }
 
 GlDevice::State GlDevice::state_of(const Pending& pending) const {
-    const DrawPart& part = tables_.parts[pending.part];
-    return {part.program, part.texture, culling(part, tables_.placements[tables_.reps[pending.rep].placement])};
+    const draw::DrawPart& part = tables_.parts[pending.part];
+    return {part.program, part.texture, draw::culling(part, tables_.placements[tables_.reps[pending.rep].placement])};
 }
 
 void GlDevice::draw(std::span<const DrawItem> items) {
     const vec3 eye(pose_.position - tables_.middle);
     std::size_t count = 0;
     for (const DrawItem& item : items) {
-        const DrawRep& rep = tables_.reps[item.rep];
-        const Placed& placed = tables_.placements[rep.placement];
+        const draw::DrawRep& rep = tables_.reps[item.rep];
+        const draw::Placed& placed = tables_.placements[rep.placement];
         const float distance = glm::length(vec3(tables_.centres[item.node]) - eye);
         ++stats_.items;
         stats_.triangles += rep.triangles;
         for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
-            const DrawPart& part = tables_.parts[p];
+            const draw::DrawPart& part = tables_.parts[p];
             if (part.index_count == 0) continue;
             if (part.blended) {
                 if (blended_count_ == blended_.size()) submit_blended();  // out of order rather than not at all
@@ -92,7 +92,7 @@ void GlDevice::draw(std::span<const DrawItem> items) {
                 submit({pending_.data(), count});
                 count = 0;
             }
-            pending_[count++] = {state_key(part.program, culling(part, placed), part.texture, distance), p, item.rep};
+            pending_[count++] = {state_key(part.program, draw::culling(part, placed), part.texture, distance), p, item.rep};
         }
     }
     submit({pending_.data(), count});
@@ -138,11 +138,11 @@ void GlDevice::submit(std::span<Pending> sorted) {
 }
 
 void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
-    const DrawPart& part = tables_.parts[pending.part];
-    const Placed& placed = tables_.placements[tables_.reps[pending.rep].placement];
+    const draw::DrawPart& part = tables_.parts[pending.part];
+    const draw::Placed& placed = tables_.placements[tables_.reps[pending.rep].placement];
     Instance instance;
-    eye_relative_rows(placed, pose_.position, instance.rows);
-    const DrawRep& rep = tables_.reps[pending.rep];
+    draw::eye_relative_rows(placed, pose_.position, instance.rows);
+    const draw::DrawRep& rep = tables_.reps[pending.rep];
     settle_ties(tables_.ties.ranks[tables_.ties.first_of_rep[pending.rep] + pending.part - rep.first_part], instance.rows);
     instance.colour = part.colour;
     instance.alpha_cutoff = part.alpha_cutoff;
@@ -153,7 +153,7 @@ void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
 
 /// A command of its own, or one instance more of the batch's last command when the geometry is the same.
 void GlDevice::append_command(const Pending& pending, std::uint32_t at, std::uint32_t first_of_batch) {
-    const DrawPart& part = tables_.parts[pending.part];
+    const draw::DrawPart& part = tables_.parts[pending.part];
     if (used_commands_ > first_of_batch) {
         DrawCommand& last = frame_.commands[used_commands_ - 1];
         if (last.first_index == part.first_index && last.base_vertex == part.base_vertex &&
@@ -184,11 +184,11 @@ void GlDevice::apply(const State& state) {
         ++stats_.state_changes;
     }
     if (all || state.culling != current_.culling) {
-        if (state.culling == Culling::none) {
+        if (state.culling == draw::Culling::none) {
             gl_.Disable(GL_CULL_FACE);
         } else {
             gl_.Enable(GL_CULL_FACE);
-            gl_.FrontFace(state.culling == Culling::front_flipped ? GL_CW : GL_CCW);
+            gl_.FrontFace(state.culling == draw::Culling::front_flipped ? GL_CW : GL_CCW);
         }
         ++stats_.state_changes;
     }

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "render/gl/program.hpp"
-#include "render/gl/tables.hpp"
+#include "render/draw/tables.hpp"
 #include "render/model/item_costs.hpp"
 #include "rt/base/random.hpp"
 
@@ -72,7 +72,7 @@ private:
 Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& programs) {
     if (costs_.grids.empty()) return Error{"cost table", "holds no state class", "run `surefoot calibrate`"};
     programs_.clear();
-    for (const model::EffectMask mask : make_tables(model).masks) programs_.push_back({mask, programs(mask)});
+    for (const model::EffectMask mask : draw::make_tables(model).masks) programs_.push_back({mask, programs(mask)});
     model_ = &model;
     item_costs_.emplace(model, costs_);
     return {};

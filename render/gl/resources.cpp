@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include "render/gl/texture_upload.hpp"
+
 namespace surefoot::gl {
 
 namespace {
@@ -76,7 +78,7 @@ Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items) 
 }
 
 Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
-                                 const TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
+                                 const draw::TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
                                  bool soft) {
     Resources resources;
     gl.BindVertexArray(0);  // the index buffer's binding belongs to the vertex array
@@ -84,7 +86,7 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
     resources.indices = make_static(gl, GL_ARRAY_BUFFER, model.indices.data(), model.indices.size() * sizeof(std::uint32_t));
     const std::string remedy = "the model's geometry does not fit the device: bake a smaller part of it";
     if (auto fine = check_errors(gl, "uploading geometry", remedy); !fine) return fine.error();
-    for (const TextureArray& array : layout.arrays) {
+    for (const draw::TextureArray& array : layout.arrays) {
         auto made = upload_array(gl, model, array, soft);
         if (!made) return made.error();
         resources.textures.push_back(*made);

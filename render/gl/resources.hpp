@@ -7,7 +7,7 @@
 
 #include "render/gl/api.hpp"
 #include "render/gl/program.hpp"
-#include "render/gl/texture_arrays.hpp"
+#include "render/draw/texture_arrays.hpp"
 #include "render/model/model.hpp"
 #include "rt/base/result.hpp"
 
@@ -42,7 +42,7 @@ struct Resources {
 };
 /// soft: nearest mip level instead of trilinear, which software pays for a pixel.
 Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
-                                 const TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
+                                 const draw::TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
                                  bool soft);
 void free_resources(const Api& gl, Resources& resources);
 

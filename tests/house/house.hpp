@@ -31,7 +31,8 @@ inline const std::vector<Room>& rooms() {
         // Calibration draws with the programs of the effects whose cost it measures.
         {"render/measure", {"render/model", "render/gl", "render/effects"}},
         {"render/bake", {"render/model", "render/import", "render/measure", "render/gl"}},
-        {"render/gl", {"render/model"}},
+        {"render/draw", {"render/model"}},
+        {"render/gl", {"render/model", "render/draw"}},
         {"render/stream", {"render/model", "render/gl"}},
         {"render/cache", {"render/model", "render/gl"}},
         {"render/prepare", {"render/model"}},

@@ -2,14 +2,14 @@
 # shellcheck shell=bash
 
 eye='s/const dvec3 origin = placed.origin - eye;/const dvec3 origin = dvec3(vec3(placed.origin) - vec3(eye));/'
-mutation N16a render/gl/tables.cpp "$eye" "origins made relative to the eye in double"
-mutation N16b render/gl/tables.cpp "$eye" "the same"
-mutation N16c render/gl/tables.cpp "$eye" "the same"
-mutation N16e render/gl/tables.cpp "$eye" "the same"
+mutation N16a render/draw/tables.cpp "$eye" "origins made relative to the eye in double"
+mutation N16b render/draw/tables.cpp "$eye" "the same"
+mutation N16c render/draw/tables.cpp "$eye" "the same"
+mutation N16e render/draw/tables.cpp "$eye" "the same"
 mutation N16d render/bake/emit.cpp 's/placement.origin = dvec3\(world \* dvec4\(emitted.centre, 1.0\)\);/placement.origin = dvec3(0);/' "a placed object's own origin"
-mutation N17a render/gl/ties.cpp 's/return out;/for (std::size_t i = 0; i < out.ranks.size(); ++i) out.ranks[i] = i % 32; return out;/' "ranks only for what lies in one place"
-mutation N17b render/gl/ties.cpp 's/ranks\[now.rank_at\] = rank;//' "ranks of what lies in one place"
-mutation N17c render/gl/ties.cpp 's/ranks\[now.rank_at\] = rank;//' "the same"
+mutation N17a render/draw/ties.cpp 's/return out;/for (std::size_t i = 0; i < out.ranks.size(); ++i) out.ranks[i] = i % 32; return out;/' "ranks only for what lies in one place"
+mutation N17b render/draw/ties.cpp 's/ranks\[now.rank_at\] = rank;//' "ranks of what lies in one place"
+mutation N17c render/draw/ties.cpp 's/ranks\[now.rank_at\] = rank;//' "the same"
 mutation N17d render/gl/gl_draw.cpp 's/gl_.Enable\(GL_DEPTH_TEST\);/gl_.Disable(GL_DEPTH_TEST);/' "the depth test"
 mutation N9a render/model/view.cpp 's/below = below && step <= 0;/below = below;/' "no face separates if an edge ray comes back"
 mutation N9b render/model/view.cpp 's/return !\(large && separated_across_edges.*?;/return true;/' "edges across edges, of large boxes"

@@ -5,12 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/gl/device.hpp"
-#include "render/gl/program.hpp"
-#include "render/gl/texture_arrays.hpp"
-#include "render/gl/ties.hpp"
+#include "render/draw/texture_arrays.hpp"
+#include "render/draw/ties.hpp"
+#include "render/model/model.hpp"
 
-namespace surefoot::gl {
+namespace surefoot::draw {
 
 enum class Culling : std::uint8_t { back, front_flipped, none };
 
@@ -57,4 +56,4 @@ inline Culling culling(const DrawPart& part, const Placed& placed) {
     return placed.mirrored ? Culling::front_flipped : Culling::back;
 }
 
-}  // namespace surefoot::gl
+}  // namespace surefoot::draw

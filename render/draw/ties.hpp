@@ -6,7 +6,7 @@
 
 #include "render/model/model.hpp"
 
-namespace surefoot::gl {
+namespace surefoot::draw {
 
 /// Ranks of a representation's parts: ranks[first_of_rep[rep] + k] for its k-th part. 0: in nobody's place, or the first there.
 struct TieRanks {
@@ -19,4 +19,4 @@ struct TieRanks {
 /// have the same ranks, so that a change of form changes nothing; with other parts they have the first part's. O(n log n).
 TieRanks tie_ranks(const model::Model& model);
 
-}  // namespace surefoot::gl
+}  // namespace surefoot::draw

@@ -1,10 +1,10 @@
 // Building the drawing tables (tables.hpp).
-#include "render/gl/tables.hpp"
+#include "render/draw/tables.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace surefoot::gl {
+namespace surefoot::draw {
 
 namespace {
 
@@ -81,4 +81,4 @@ void eye_relative_rows(const Placed& placed, const dvec3& eye, std::array<float,
     rows[11] = static_cast<float>(origin.z);
 }
 
-}  // namespace surefoot::gl
+}  // namespace surefoot::draw

@@ -1,5 +1,5 @@
 // Finding what lies in one place (ties.hpp).
-#include "render/gl/ties.hpp"
+#include "render/draw/ties.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-namespace surefoot::gl {
+namespace surefoot::draw {
 
 namespace {
 
@@ -163,4 +163,4 @@ TieRanks tie_ranks(const model::Model& m) {
     return out;
 }
 
-}  // namespace surefoot::gl
+}  // namespace surefoot::draw

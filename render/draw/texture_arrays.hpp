@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/gl/api.hpp"
 #include "render/model/model.hpp"
-#include "rt/base/result.hpp"
 
-namespace surefoot::gl {
+namespace surefoot::draw {
 
 struct TextureArray {
     std::uint32_t width = 0, height = 0, levels = 1;
@@ -28,7 +26,4 @@ struct TextureLayout {
 /// Arrays in order of first use; none has more than 256 layers (OpenGL 4.3 promises 2048).
 TextureLayout lay_out_textures(const model::Model& model);
 
-/// soft: nearest mip level instead of trilinear, which software pays for a pixel.
-Result<GLuint> upload_array(const Api& gl, const model::Model& model, const TextureArray& array, bool soft);
-
-}  // namespace surefoot::gl
+}  // namespace surefoot::draw
