@@ -74,7 +74,7 @@ void sweep_columns(Field& field, bool clamp) {
 
 }  // namespace
 
-Alphas alphas_of(const importer::Image& image) {
+Alphas alphas_of(const image::Image& image) {
     Alphas there{};
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) there[image.rgba[i]] = true;
     return there;

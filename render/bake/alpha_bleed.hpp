@@ -13,12 +13,12 @@ namespace surefoot::bake {
 
 /// Which alphas there are in a picture.
 using Alphas = std::array<bool, 256>;
-Alphas alphas_of(const importer::Image& image);
+Alphas alphas_of(const image::Image& image);
 
 /// The largest alpha in the picture with which the material shows nothing: below a mask's cutoff, or 0 of what fades. None where
 /// every texel is shown: of an opaque material, and of one without a picture.
 std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const Alphas& there);
-inline std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const importer::Image& image) {
+inline std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const image::Image& image) {
     return hidden_alpha(material, alphas_of(image));
 }
 

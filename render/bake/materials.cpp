@@ -102,7 +102,7 @@ float cutoff_of(const importer::Material& material, const Shown& shown) {
 }
 
 model::Index add_shown(const importer::Scene& scene, const Shown& shown, float cutoff, model::Model& model) {
-    const importer::Image& image = scene.images[shown.image];
+    const image::Image& image = scene.images[shown.image];
     std::vector<std::uint8_t> bled;
     if (shown.hidden) {
         bled = image.rgba;

@@ -133,11 +133,11 @@ Picture load_texture(Scene& scene, const std::string& file, const std::string& n
     const std::string place = place_beside(file, name);
     const auto plain = require_plain(place);
     auto bytes = plain ? read_file(place) : plain.error();
-    auto image = bytes ? decode_image(*bytes, place) : Result<Image>(bytes.error());
+    auto image = bytes ? image::decode_image(*bytes, place) : Result<image::Image>(bytes.error());
     return add_picture(scene, name, std::move(image));
 }
 
-Picture add_picture(Scene& scene, const std::string& name, Result<Image> image) {
+Picture add_picture(Scene& scene, const std::string& name, Result<image::Image> image) {
     if (!image) {
         scene.warnings.push_back(fmt::format("texture '{}' left white: {}", name, image.error().text()));
         return {none, scene.warnings.back()};

@@ -29,6 +29,6 @@ std::string place_beside(const std::string& file, const std::string& name);
 Picture load_texture(Scene& scene, const std::string& file, const std::string& name);
 
 /// The same of one that is decoded already, or could not be.
-Picture add_picture(Scene& scene, const std::string& name, Result<Image> image);
+Picture add_picture(Scene& scene, const std::string& name, Result<image::Image> image);
 
 }  // namespace surefoot::importer

@@ -8,7 +8,7 @@
 
 #include "render/import/finish.hpp"
 #include "render/import/gltf_load.hpp"
-#include "render/import/srgb.hpp"
+#include "render/image/srgb.hpp"
 
 namespace surefoot::importer {
 namespace {
@@ -108,7 +108,7 @@ private:
         const tinygltf::Image& image = model_.images[static_cast<std::size_t>(source)];
         if (!image.uri.empty()) return load_texture(scene_, file_, decode_uri(image.uri));
         const std::string name = image.name.empty() ? fmt::format("image {}", source) : image.name;
-        return add_picture(scene_, name, decode_image(encoded(image), file_ + ": " + name));
+        return add_picture(scene_, name, image::decode_image(encoded(image), file_ + ": " + name));
     }
 
     /// Views of images were checked by load_gltf.
@@ -127,7 +127,7 @@ private:
 
 void set_colour(Material& material, const std::vector<double>& linear) {
     if (linear.size() != 4) return;
-    for (std::size_t c = 0; c < 3; ++c) material.colour[c] = encode_srgb(static_cast<float>(linear[c]));
+    for (std::size_t c = 0; c < 3; ++c) material.colour[c] = image::encode_srgb(static_cast<float>(linear[c]));
     material.colour[3] = std::clamp(static_cast<float>(linear[3]), 0.0F, 1.0F);
 }
 

@@ -11,7 +11,7 @@
 #include "render/import/finish.hpp"
 #include "render/import/obj_material.hpp"
 #include "render/import/polygon.hpp"
-#include "render/import/srgb.hpp"
+#include "render/image/srgb.hpp"
 #include "render/import/text_cursor.hpp"
 #include "rt/base/file.hpp"
 
@@ -112,8 +112,8 @@ private:
         if (count >= 6) {
             colours_.resize(positions_.size() - 1, {255, 255, 255, 255});
             const std::size_t c = count == 7 ? 4 : 3;
-            colours_.push_back({to_byte(static_cast<float>(n[c])), to_byte(static_cast<float>(n[c + 1])),
-                                to_byte(static_cast<float>(n[c + 2])), 255});
+            colours_.push_back({image::to_byte(static_cast<float>(n[c])), image::to_byte(static_cast<float>(n[c + 1])),
+                                image::to_byte(static_cast<float>(n[c + 2])), 255});
         }
         return {};
     }

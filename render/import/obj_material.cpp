@@ -48,7 +48,7 @@ Index picture(Reading& reading, Material& material, const std::string& name) {
 }
 
 /// Masked when nearly every texel is either there or not; blended when many lie between.
-model::AlphaMode alpha_of(const Image& image) {
+model::AlphaMode alpha_of(const image::Image& image) {
     std::size_t clear = 0, between = 0;
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
         clear += image.rgba[i] < 16 ? 1 : 0;
@@ -62,7 +62,7 @@ model::AlphaMode alpha_of(const Image& image) {
 void merge_opacity(Reading& reading, Material& material, const std::string& name) {
     const Index source = picture(reading, material, name);
     if (source == none) return;
-    Image merged = reading.scene.images[source];
+    image::Image merged = reading.scene.images[source];
     bool own_alpha = false;
     for (std::size_t i = 3; i < merged.rgba.size() && !own_alpha; i += 4) own_alpha = merged.rgba[i] != 255;
     const Image* colours = material.image == none ? nullptr : &reading.scene.images[material.image];

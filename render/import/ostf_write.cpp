@@ -100,8 +100,8 @@ private:
         const std::string name = fmt::format("{}_{}.png", path.stem().string(), image);
         textures_.resize(scene_.images.size());
         if (!textures_[image]) {
-            const Image& from = scene_.images[image];
-            if (auto done = write_png((path.parent_path() / name).string(), from.width, from.height, from.rgba); !done)
+            const image::Image& from = scene_.images[image];
+            if (auto done = image::write_png((path.parent_path() / name).string(), from.width, from.height, from.rgba); !done)
                 return done.error();
             textures_[image] = true;
         }

@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "render/image/image.hpp"
 #include "render/model/model.hpp"
 #include "rt/base/geometry.hpp"
 #include "rt/base/progress.hpp"
@@ -16,14 +16,6 @@ namespace surefoot::importer {
 
 using Index = std::uint32_t;
 constexpr Index none = model::none;
-
-/// Decoded RGBA8, row 0 on top.
-struct Image {
-    std::string name;
-    std::uint32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;
-    bool clamp = false;
-};
 
 struct Material {
     std::string name;
@@ -71,7 +63,7 @@ struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;
     std::vector<Material> materials;  ///< at least one
-    std::vector<Image> images;
+    std::vector<image::Image> images;
     std::vector<std::string> sources;
     std::vector<std::string> warnings;              ///< what was repaired or dropped, one line each with counts
     std::vector<Damage> damage;                     ///< those of them that a person should mend: of things that are drawn
@@ -89,11 +81,5 @@ Result<Scene> import_obj(const std::string& file, const Progress& progress);
 /// Drops what is not finite, out of range, repeated or of zero area, and says so in `warnings`; renormalises normals, and
 /// makes those that are missing (the triangles' mean by area). Vertices that no triangle uses go. Every importer ends with it.
 void clean(Primitive& primitive, const std::string& mesh_name, std::vector<std::string>& warnings);
-
-/// PNG or JPEG by signature. Refuses dimensions over 16384 before allocating.
-Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& place);
-/// 8-bit RGB (where all is opaque) or RGBA PNG of width * height * 4 bytes; used by snapshots and scene generators.
-Result<void> write_png(const std::string& file, std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba);
-std::vector<std::uint8_t> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba);
 
 }  // namespace surefoot::importer

@@ -53,8 +53,8 @@ TEST(AlphaBleed, GivesTheColourOfANearestShownTexel) {
     }
 }
 
-importer::Image image_of(std::vector<Texel> texels, std::uint32_t width, std::uint32_t height) {
-    importer::Image image{"picture", width, height, {}, true};
+image::Image image_of(std::vector<Texel> texels, std::uint32_t width, std::uint32_t height) {
+    image::Image image{"picture", width, height, {}, true};
     for (const Texel& t : texels) image.rgba.insert(image.rgba.end(), t.begin(), t.end());
     return image;
 }
@@ -86,7 +86,7 @@ TEST(AlphaBleed, HiddenIsWhatAMaskDropsOrWhatIsClear) {
 }
 
 /// Green where x < shown, magenta with alpha `hidden` elsewhere.
-importer::Image half_magenta(std::uint32_t shown, std::uint8_t hidden) {
+image::Image half_magenta(std::uint32_t shown, std::uint8_t hidden) {
     std::vector<Texel> texels;
     for (std::uint32_t i = 0; i < 37 * 20; ++i)
         texels.push_back(i % 37 < shown ? Texel{0, 200, 0, 255} : Texel{255, 0, 255, hidden});

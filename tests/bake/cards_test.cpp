@@ -387,7 +387,7 @@ TEST(ClusterCards, LargerThanALevelMayBeAreColouredAndSolid) {
 TEST(ClusterCards, OfABakedWoodAreSeenThroughAtEveryDistance) {
     importer::Scene scene;
     scene.sources = {"by hand"};
-    importer::Image leaf;
+    image::Image leaf;
     leaf.width = leaf.height = 8;
     for (int i = 0; i < 64; ++i)
         leaf.rgba.insert(leaf.rgba.end(), {40, 120, 30, static_cast<std::uint8_t>((i / 8 + i) % 3 == 0 ? 255 : 0)});

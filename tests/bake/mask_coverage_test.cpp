@@ -117,7 +117,7 @@ TEST(MaskCoverage, LeavesTheFirstLevelAndWhatIsNoMaskAlone) {
 
 TEST(MaskCoverage, OfAMaterialThatFadesIsNotTouched) {
     importer::Scene scene;
-    importer::Image image;
+    image::Image image;
     image.width = image.height = mask_side;
     for (std::uint32_t y = 0; y < mask_side; ++y)
         for (std::uint32_t x = 0; x < mask_side; ++x)

@@ -68,7 +68,7 @@ inline importer::Scene small_town(const dvec3& at = dvec3(0)) {
     scene.sources = {"by hand"};
     scene.materials.resize(2);
     scene.materials[1].colour = {0.8F, 0.2F, 0.1F, 1};
-    importer::Image image;
+    image::Image image;
     image.width = image.height = 4;
     for (int i = 0; i < 16; ++i) image.rgba.insert(image.rgba.end(), {static_cast<std::uint8_t>(16 * i), 90, 60, 255});
     scene.images.push_back(image);

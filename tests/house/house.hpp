@@ -27,10 +27,11 @@ inline const std::vector<Room>& rooms() {
         {"config", {}},
         {"input", {"rt/"}},
         {"render/model", {}},
-        {"render/import", {"render/model"}},
+        {"render/image", {}},
+        {"render/import", {"render/model", "render/image"}},
         // Calibration draws with the programs of the effects whose cost it measures.
         {"render/measure", {"render/model", "render/gl", "render/effects"}},
-        {"render/bake", {"render/model", "render/import", "render/measure", "render/gl"}},
+        {"render/bake", {"render/model", "render/image", "render/import", "render/measure", "render/gl"}},
         {"render/draw", {"render/model"}},
         {"render/gl", {"render/model", "render/draw"}},
         {"render/stream", {"render/model", "render/gl"}},
@@ -47,8 +48,8 @@ inline const std::vector<Room>& rooms() {
         {"tools/doctor", {"*"}},
         // Its rows reach into every room below the session, and into no tool but the generators.
         {"tools/selftest", {"rt/", "config", "input", "render/", "render", "tools/scenes"}},
-        {"tools/report", {"rt/", "render/import", "render/model"}},
-        {"tools/scenes", {"render/import", "render/model"}},
+        {"tools/report", {"rt/", "render/image", "render/model"}},
+        {"tools/scenes", {"render/image", "render/import", "render/model"}},
         {"tests", {"*"}},
     };
     return table;

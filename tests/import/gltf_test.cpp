@@ -1,7 +1,7 @@
 // glTF: hierarchy, instances, attributes of every kind, materials, and the traps of each.
 #include <gtest/gtest.h>
 
-#include "render/import/srgb.hpp"
+#include "render/image/srgb.hpp"
 #include "tests/import/fixtures.hpp"
 
 namespace surefoot::importer::test {
@@ -239,7 +239,7 @@ TEST(Gltf, MaterialsAreRead) {
     EXPECT_FLOAT_EQ(leaf.alpha_cutoff, 0.25F);
     EXPECT_TRUE(leaf.two_sided);
     EXPECT_TRUE(leaf.unlit);
-    EXPECT_NEAR(leaf.colour[0], encode_srgb(0.5F), 1e-6F);
+    EXPECT_NEAR(leaf.colour[0], image::encode_srgb(0.5F), 1e-6F);
     EXPECT_FLOAT_EQ(leaf.colour[3], 0.5F);
     EXPECT_EQ(scene.materials[1].alpha, model::AlphaMode::blend);
     EXPECT_EQ(scene.meshes[0].primitives[0].material, 0U);
@@ -254,7 +254,7 @@ TEST(Gltf, MaterialThatDoesNotExistIsTheDefault) {
 TEST(Gltf, TextureFromBufferViewWithTransformAndClamp) {
     TriangleGltf gltf;
     const std::vector<std::uint8_t> red{255, 0, 0, 255};
-    const auto png = encode_png(1, 1, red);
+    const auto png = image::encode_png(1, 1, red);
     gltf.attributes = R"("POSITION":0,"TEXCOORD_1":2)";
     gltf.primitive = R"(,"indices":1,"material":0)";
     gltf.accessors = R"(,{"bufferView":2,"componentType":5126,"count":3,"type":"VEC2"})";

@@ -96,7 +96,7 @@ TEST(Obj, AnyByteChangedNeverCrashes) {
 TEST(Obj, TextureWithHolesIsMaskedAndMissingOnesAreWhite) {
     const Folder folder;
     const std::vector<std::uint8_t> holes{255, 0, 0, 255, 0, 0, 0, 0};
-    ASSERT_TRUE(write_png(folder.file("leaf one.png"), 2, 1, holes).ok());
+    ASSERT_TRUE(image::write_png(folder.file("leaf one.png"), 2, 1, holes).ok());
     folder.write("m.mtl", "newmtl leaf\nmap_Kd -s 1 1 1 -clamp on leaf one.png\nnewmtl gone\nmap_Kd no.png\n");
     const auto scene =
         import_files({folder.write("a.obj", "mtllib m.mtl\n" + square + "usemtl leaf\nf 1 2 3\nusemtl gone\nf 1 3 4\n")}, {});

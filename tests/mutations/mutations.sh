@@ -55,9 +55,9 @@ mutation F4 rt/base/path.cpp 's/if \(!std::isfinite\(\*value\)\) return.*?;//; s
 mutation F5 render/measure/calibrate_file.cpp 's/if \(first != fmt::format.*?\n    \}//s' "the cost table's checksum"
 mutation F6 config/values.cpp 's/!\(\*number >= entry.min && \*number <= entry.max\)/false/' "limits of settings"
 mutation F7 input/hid/decoder.cpp 's/value = std::clamp\(value, v.min, v.max\);//' "values held in their range"
-mutation N21a render/import/image.cpp 's/png_image_finish_read\(.*?\) == 0/false/' "a picture that cannot be unpacked is refused"
-mutation N21b render/import/image.cpp 's/if \(errors.truncated\) return/if (false) return/' "a JPEG that ends early is refused"
-mutation N21c render/import/image.cpp 's/ > most_jpeg_texels_a_byte \* bytes.size\(\)/ > UINT64_MAX - 1/' "a JPEG that is too small for its size is refused before memory is taken"
+mutation N21a render/image/image.cpp 's/png_image_finish_read\(.*?\) == 0/false/' "a picture that cannot be unpacked is refused"
+mutation N21b render/image/image.cpp 's/if \(errors.truncated\) return/if (false) return/' "a JPEG that ends early is refused"
+mutation N21c render/image/image.cpp 's/ > most_jpeg_texels_a_byte \* bytes.size\(\)/ > UINT64_MAX - 1/' "a JPEG that is too small for its size is refused before memory is taken"
 mutation N13c render/prepare/prepare.cpp 's/begin < end;\)/begin < end && begin < 4096;)/' "levels walked to the last"
 mutation N13d render/select/steps.hpp 's/return refined \? benefit \* hysteresis_ : benefit;/return refined ? benefit \/ hysteresis_ : benefit;/' "what was shown is preferred (turned round)" \
   render/select/search.cpp render/select/benefit_search.cpp render/select/fixed.cpp render/select/published.cpp render/select/cover.cpp

@@ -110,7 +110,7 @@ Result<void> write_snaps(Engine& engine, const ShotStore& store, const std::stri
         engine.draw_unbudgeted(shot.pose, shot.items);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
-        auto written = importer::write_png(fmt::format("{}/{:05}.png", dir, i), image->width, image->height, image->rgba);
+        auto written = image::write_png(fmt::format("{}/{:05}.png", dir, i), image->width, image->height, image->rgba);
         if (!written) return written;
     }
     return {};

@@ -70,7 +70,7 @@ void seat_body(MeshMaker& maker, const Stuff& stuff, const Detail& detail, const
 int Detail::cut(int n, int least) const { return std::max(least, static_cast<int>(std::lround(n * factor))); }
 
 Stuff make_stuff(SceneMaker& maker, std::uint64_t seed) {
-    const auto textured = [&](const char* name, importer::Image image, model::AlphaMode alpha = model::AlphaMode::opaque,
+    const auto textured = [&](const char* name, image::Image image, model::AlphaMode alpha = model::AlphaMode::opaque,
                               bool two_sided = false) {
         return maker.material(name, {255, 255, 255, 255}, maker.image(std::move(image)), alpha, two_sided);
     };

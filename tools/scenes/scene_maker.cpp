@@ -19,7 +19,7 @@ void drop_needless(importer::Primitive& p, const importer::Material& material) {
 
 }  // namespace
 
-Index SceneMaker::image(importer::Image picture) {
+Index SceneMaker::image(image::Image picture) {
     scene.images.push_back(std::move(picture));
     return last_of(scene.images.size());
 }

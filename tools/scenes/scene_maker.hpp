@@ -10,7 +10,7 @@ namespace surefoot::scenes {
 struct SceneMaker {
     importer::Scene scene;
 
-    Index image(importer::Image picture);
+    Index image(image::Image picture);
     /// Plain: coloured by the vertices alone.
     Index material(const std::string& name, const Colour& colour = {255, 255, 255, 255}, Index picture = importer::none,
                    model::AlphaMode alpha = model::AlphaMode::opaque, bool two_sided = false);

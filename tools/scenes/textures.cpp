@@ -12,8 +12,8 @@ namespace {
 
 /// texel(u, v), u and v in 0..1 at texel middles, row 0 on top.
 template <class Texel>
-importer::Image paint(const char* name, std::uint32_t width, std::uint32_t height, const Texel& texel) {
-    importer::Image image;
+image::Image paint(const char* name, std::uint32_t width, std::uint32_t height, const Texel& texel) {
+    image::Image image;
     image.name = name;
     image.width = width;
     image.height = height;
@@ -33,7 +33,7 @@ double fraction(double v) { return v - std::floor(v); }
 double off_joint(double at, double width) { return std::clamp((std::min(at, 1 - at) - width) / width, 0.0, 1.0); }
 
 /// Rows of stones, each row shifted by half: bricks, tiles, slabs. Number of stone by row and column, each repeats.
-importer::Image courses(const char* name, std::uint64_t seed, const Colour& colour, const Colour& joint, int columns, int rows,
+image::Image courses(const char* name, std::uint64_t seed, const Colour& colour, const Colour& joint, int columns, int rows,
                         double spread) {
     return paint(name, 256, 256, [&](double u, double v) {
         const auto row = static_cast<std::int64_t>(v * rows);
@@ -48,25 +48,25 @@ importer::Image courses(const char* name, std::uint64_t seed, const Colour& colo
 
 }  // namespace
 
-importer::Image brick(std::uint64_t seed, const Colour& colour) {
+image::Image brick(std::uint64_t seed, const Colour& colour) {
     return courses("brick", seed, colour, rgb(176, 168, 156), 4, 12, 0.5);
 }
 
-importer::Image paving(std::uint64_t seed, const Colour& colour) {
+image::Image paving(std::uint64_t seed, const Colour& colour) {
     return courses("paving", seed, colour, shade(colour, 0.62), 4, 4, 0.16);
 }
 
-importer::Image cobbles(std::uint64_t seed, const Colour& colour) {
+image::Image cobbles(std::uint64_t seed, const Colour& colour) {
     return courses("cobbles", seed, colour, shade(colour, 0.5), 12, 12, 0.35);
 }
 
-importer::Image plaster(std::uint64_t seed, const Colour& colour) {
+image::Image plaster(std::uint64_t seed, const Colour& colour) {
     return paint("plaster", 128, 128, [&](double u, double v) {
         return shade(colour, 0.94 + 0.09 * rough_noise(u * 8, v * 8, seed, 8) + 0.05 * noise(u * 64, v * 64, seed + 9, 64));
     });
 }
 
-importer::Image roof_tiles(std::uint64_t seed, const Colour& colour) {
+image::Image roof_tiles(std::uint64_t seed, const Colour& colour) {
     return paint("roof tiles", 256, 256, [&](double u, double v) {
         constexpr int columns = 10, rows = 8;
         const auto row = static_cast<std::int64_t>(v * rows);
@@ -79,7 +79,7 @@ importer::Image roof_tiles(std::uint64_t seed, const Colour& colour) {
     });
 }
 
-importer::Image planks(std::uint64_t seed, const Colour& colour) {
+image::Image planks(std::uint64_t seed, const Colour& colour) {
     return paint("planks", 256, 256, [&](double u, double v) {
         constexpr int rows = 6;
         const auto row = static_cast<std::int64_t>(v * rows);
@@ -91,7 +91,7 @@ importer::Image planks(std::uint64_t seed, const Colour& colour) {
     });
 }
 
-importer::Image wood_grain(std::uint64_t seed, const Colour& colour) {
+image::Image wood_grain(std::uint64_t seed, const Colour& colour) {
     return paint("wood", 128, 128, [&](double u, double v) {
         const double wander = 0.05 * noise(u * 4, v * 4, seed, 4);
         const double rings = 0.5 + 0.5 * std::sin(2 * pi * (7 * (v + wander) + 0.8 * noise(u * 3, v * 6, seed + 1, 3)));
@@ -99,13 +99,13 @@ importer::Image wood_grain(std::uint64_t seed, const Colour& colour) {
     });
 }
 
-importer::Image speckle(std::uint64_t seed, const Colour& a, const Colour& b, const char* name) {
+image::Image speckle(std::uint64_t seed, const Colour& a, const Colour& b, const char* name) {
     return paint(name, 128, 128, [&](double u, double v) {
         return mix(a, b, 0.55 * rough_noise(u * 8, v * 8, seed, 8) + 0.45 * noise(u * 64, v * 64, seed + 5, 64));
     });
 }
 
-importer::Image rug(std::uint64_t seed, const Colour& a, const Colour& b) {
+image::Image rug(std::uint64_t seed, const Colour& a, const Colour& b) {
     return paint("rug", 256, 256, [&](double u, double v) {
         const double edge = std::min(std::min(u, 1 - u), std::min(v, 1 - v));
         const double weave = 0.92 + 0.1 * noise(u * 128, v * 128, seed, 128);
@@ -120,7 +120,7 @@ importer::Image rug(std::uint64_t seed, const Colour& a, const Colour& b) {
     });
 }
 
-importer::Image wallpaper(std::uint64_t seed, const Colour& a, const Colour& b) {
+image::Image wallpaper(std::uint64_t seed, const Colour& a, const Colour& b) {
     return paint("wallpaper", 128, 128, [&](double u, double v) {
         const double stripe = fraction(u * 8) < 0.5 ? 0.0 : 0.35;
         const double x = fraction(u * 4) - 0.5, y = fraction(v * 4 + (static_cast<int>(u * 4) % 2) * 0.5) - 0.5;
@@ -129,7 +129,7 @@ importer::Image wallpaper(std::uint64_t seed, const Colour& a, const Colour& b) 
     });
 }
 
-importer::Image painting(std::uint64_t seed, int kind) {
+image::Image painting(std::uint64_t seed, int kind) {
     Random random(seed);
     const double hills = random.range(0.45, 0.62), sun_x = random.range(0.2, 0.8);
     const std::uint64_t s = seed;
@@ -172,7 +172,7 @@ importer::Image painting(std::uint64_t seed, int kind) {
     });
 }
 
-importer::Image glass() {
+image::Image glass() {
     return paint("window glass", 64, 64, [](double u, double v) {
         const double streak = std::max(0.0, 1 - 6 * std::abs(fraction(u + 0.6 * v) - 0.4));
         Colour c = mix(rgb(150, 180, 200), rgb(230, 240, 248), streak);
@@ -181,7 +181,7 @@ importer::Image glass() {
     });
 }
 
-importer::Image leaves(std::uint64_t seed, const Colour& dark, const Colour& light) {
+image::Image leaves(std::uint64_t seed, const Colour& dark, const Colour& light) {
     struct Leaf {
         double x, y, angle, length, tone;
     };
@@ -207,7 +207,7 @@ importer::Image leaves(std::uint64_t seed, const Colour& dark, const Colour& lig
     });
 }
 
-importer::Image book_spines(std::uint64_t seed) {
+image::Image book_spines(std::uint64_t seed) {
     return paint("book spine", 32, 128, [&](double u, double v) {
         const double round = 0.75 + 0.3 * std::sin(u * pi);
         const bool band = std::abs(v - 0.12) < 0.012 || std::abs(v - 0.88) < 0.012 || std::abs(v - 0.2) < 0.006;

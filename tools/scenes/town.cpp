@@ -24,7 +24,7 @@ constexpr int visited_plot = 2;  ///< of the south row of the block at 0, 0: the
 TownStuff make_town_stuff(SceneMaker& maker, std::uint64_t seed) {
     TownStuff t;
     t.stuff = make_stuff(maker, seed);
-    const auto textured = [&](const char* name, importer::Image image) {
+    const auto textured = [&](const char* name, image::Image image) {
         return maker.material(name, {255, 255, 255, 255}, maker.image(std::move(image)));
     };
     t.brick = textured("brick", brick(seed + 50, rgb(168, 92, 70)));

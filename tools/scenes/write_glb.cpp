@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "render/import/srgb.hpp"
+#include "render/image/srgb.hpp"
 #include "rt/base/file.hpp"
 #include "tools/scenes/writers.hpp"
 
@@ -60,8 +60,8 @@ private:
         root_["samplers"] = json::array({{{"wrapS", 10497}, {"wrapT", 10497}, {"magFilter", 9729}, {"minFilter", 9987}},
                                          {{"wrapS", 33071}, {"wrapT", 33071}, {"magFilter", 9729}, {"minFilter", 9987}}});
         for (std::size_t i = 0; i < scene_.images.size(); ++i) {
-            const importer::Image& image = scene_.images[i];
-            const std::vector<std::uint8_t> png = importer::encode_png(image.width, image.height, image.rgba);
+            const image::Image& image = scene_.images[i];
+            const std::vector<std::uint8_t> png = image::encode_png(image.width, image.height, image.rgba);
             root_["images"].push_back(
                 {{"bufferView", view(std::as_bytes(std::span(png)))}, {"mimeType", "image/png"}, {"name", image.name}});
             root_["textures"].push_back({{"source", i}, {"sampler", image.clamp ? 1 : 0}});
@@ -71,8 +71,8 @@ private:
     void materials() {
         for (const importer::Material& m : scene_.materials) {
             json pbr{{"metallicFactor", 0.0}, {"roughnessFactor", 1.0}};
-            pbr["baseColorFactor"] = {importer::decode_srgb(m.colour[0]), importer::decode_srgb(m.colour[1]),
-                                      importer::decode_srgb(m.colour[2]), m.colour[3]};
+            pbr["baseColorFactor"] = {image::decode_srgb(m.colour[0]), image::decode_srgb(m.colour[1]),
+                                      image::decode_srgb(m.colour[2]), m.colour[3]};
             if (m.image != none) pbr["baseColorTexture"] = {{"index", m.image}};
             json out{{"name", m.name}, {"pbrMetallicRoughness", std::move(pbr)}, {"doubleSided", m.two_sided}};
             if (m.alpha != model::AlphaMode::opaque) out["alphaMode"] = m.alpha == model::AlphaMode::mask ? "MASK" : "BLEND";
@@ -105,7 +105,7 @@ private:
         for (const auto& c : p.colours) {
             for (std::size_t i = 0; i < 3; ++i)
                 linear.push_back(
-                    static_cast<std::uint16_t>(importer::decode_srgb(static_cast<float>(c[i]) / 255.0F) * 65535.0F + 0.5F));
+                    static_cast<std::uint16_t>(image::decode_srgb(static_cast<float>(c[i]) / 255.0F) * 65535.0F + 0.5F));
             linear.push_back(static_cast<std::uint16_t>(c[3] * 257));
         }
         out["COLOR_0"] = accessor(linear, count, ushort_type, "VEC4", true);

@@ -49,8 +49,8 @@ private:
             if (m.image != none) fmt::format_to(std::back_inserter(mtl), "map_Kd {}_{}.png\n", stem, m.image);
         }
         for (std::size_t i = 0; i < scene_.images.size(); ++i) {
-            const importer::Image& image = scene_.images[i];
-            if (auto done = importer::write_png(fmt::format("{}_{}.png", base, i), image.width, image.height, image.rgba); !done)
+            const image::Image& image = scene_.images[i];
+            if (auto done = image::write_png(fmt::format("{}_{}.png", base, i), image.width, image.height, image.rgba); !done)
                 return done;
         }
         return write_text(base + ".mtl", mtl);

@@ -33,8 +33,8 @@ constexpr std::array<Shape, 4> shapes = {
 };
 
 /// Kept texels are opaque; the others have another colour and the alpha `hidden`.
-importer::Image picture_of(Shape shape, Colour other, std::uint8_t hidden, bool clamp) {
-    importer::Image image{"picture", texels_across, texels_across, {}, clamp};
+image::Image picture_of(Shape shape, Colour other, std::uint8_t hidden, bool clamp) {
+    image::Image image{"picture", texels_across, texels_across, {}, clamp};
     for (std::uint32_t y = 0; y < texels_across; ++y) {
         for (std::uint32_t x = 0; x < texels_across; ++x) {
             const bool shown = shape(x, y);

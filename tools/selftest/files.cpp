@@ -262,7 +262,7 @@ void recordings(const Effort& effort, Outcome& out) {
 
 void picture_files(const Bytes& fixture, double whole, const Effort& effort, Outcome& out) {
     const auto read = [](const Bytes& bytes) -> Answer {
-        auto image = importer::decode_image(bytes, "fixture");
+        auto image = image::decode_image(bytes, "fixture");
         if (!image) return refusal(image.error());
         return {true, image->rgba.size() == 4ULL * image->width * image->height && image->width > 0 && image->height > 0};
     };

@@ -191,7 +191,7 @@ void reseal_costs(Bytes& bytes) {
 Bytes png_fixture(std::uint32_t width, std::uint32_t height) {
     std::vector<std::uint8_t> texels(4ULL * width * height);
     for (std::size_t i = 0; i < texels.size(); ++i) texels[i] = static_cast<std::uint8_t>(i * 37);
-    const std::vector<std::uint8_t> png = importer::encode_png(width, height, texels);
+    const std::vector<std::uint8_t> png = image::encode_png(width, height, texels);
     const auto view = std::as_bytes(std::span(png));
     return {view.begin(), view.end()};
 }

@@ -24,7 +24,7 @@ struct Tried {
 };
 
 Tried tried(const Bytes& bytes) {
-    auto image = importer::decode_image(bytes, "fixture");
+    auto image = image::decode_image(bytes, "fixture");
     if (!image) return {false, 0, 0, {}, image.error().what};
     return {true, image->width, image->height, std::move(image->rgba), {}};
 }

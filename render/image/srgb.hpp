@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace surefoot::importer {
+namespace surefoot::image {
 
 /// IEC 61966-2-1; 0..1 to 0..1, not a number to 1 (white).
 inline float encode_srgb(float linear) {
@@ -26,4 +26,4 @@ inline std::uint8_t to_byte(float v) {
     return static_cast<std::uint8_t>(std::max(v, 0.0F) * 255.0F + 0.5F);
 }
 
-}  // namespace surefoot::importer
+}  // namespace surefoot::image

@@ -11,10 +11,10 @@
 
 #include <fmt/format.h>
 
-#include "render/import/scene.hpp"
+#include "render/image/image.hpp"
 #include "rt/base/file.hpp"
 
-namespace surefoot::importer {
+namespace surefoot::image {
 namespace {
 
 constexpr std::uint32_t largest_side = 16384;
@@ -208,4 +208,4 @@ Result<void> write_png(const std::string& file, std::uint32_t width, std::uint32
     return write_file(file, std::as_bytes(std::span(png)));
 }
 
-}  // namespace surefoot::importer
+}  // namespace surefoot::image
