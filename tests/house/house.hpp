@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,7 @@ inline const std::vector<Room>& rooms() {
         {"tools/cli", {"*"}},
         {"tools/daemon", {"*"}},
         {"tools/console", {"*"}},
+        {"tools/soak", {"*"}},
         {"tools/doctor", {"*"}},
         // Its rows reach into every room below the session, and into no tool but the generators.
         {"tools/selftest", {"rt/", "config", "input", "render/", "render", "tools/scenes"}},
@@ -70,8 +72,13 @@ inline const Room* room_of(std::string_view path) {
 inline bool allowed(const Room& from, const Room& to) {
     if (&from == &to || to.folder == "rt/base") return true;
     if (to.folder == "tests") return false;  // only tests include tests, and they are one room
-    if (from.folder == "tools/app" && to.folder.starts_with("tools/"))
-        return to.folder == "tools/report" || to.folder == "tools/scenes";
+    // The session and the features beside it: no command, and no feature of another room.
+    const auto is_one_of = [](std::string_view folder, std::initializer_list<std::string_view> list) {
+        return std::find(list.begin(), list.end(), folder) != list.end();
+    };
+    if (from.folder == "tools/app" && to.folder.starts_with("tools/")) return is_one_of(to.folder, {"tools/report", "tools/scenes"});
+    if (is_one_of(from.folder, {"tools/soak"}) && to.folder.starts_with("tools/"))
+        return is_one_of(to.folder, {"tools/app", "tools/report", "tools/scenes"});
     return std::any_of(from.may_include.begin(), from.may_include.end(), [&](std::string_view rule) {
         return rule == "*" || rule == to.folder || (rule.ends_with('/') && to.folder.starts_with(rule));
     });

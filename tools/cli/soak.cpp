@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "tools/app/settings_request.hpp"
-#include "tools/app/soak/soak.hpp"
+#include "tools/soak/soak.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
@@ -15,20 +15,20 @@ namespace {
 constexpr double judged_from_s = 780;
 
 struct SoakArguments {
-    app::SoakRequest request;
+    soak::SoakRequest request;
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     std::string mix;
     double seconds = 0, hours = 0;
     bool strict = false, no_control = false, json = false;
 };
 
-Result<app::SoakRequest> to_soak_request(const SoakArguments& a) {
-    app::SoakRequest r = a.request;
+Result<soak::SoakRequest> to_soak_request(const SoakArguments& a) {
+    soak::SoakRequest r = a.request;
     if (a.seconds > 0 && a.hours > 0) return Error{"--hours", "and --seconds are two lengths", "give one of them"};
     if (a.seconds > 0) r.seconds = a.seconds;
     if (a.hours > 0) r.seconds = a.hours * 3600;
     if (!a.mix.empty()) {
-        auto mix = app::parse_mix(a.mix);
+        auto mix = soak::parse_mix(a.mix);
         if (!mix) return mix.error();
         r.mix = *mix;
     }
@@ -50,23 +50,23 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
         note(fmt::format("a verdict needs {:.1f} minutes or more; of {:.0f} s not all can be judged", judged_from_s / 60,
                          request->seconds));
     }
-    auto outcome = app::run_soak(*request, terminal_progress(context));
+    auto outcome = soak::run_soak(*request, terminal_progress(context));
     end_progress(context);
     if (!outcome) return fail(outcome.error());
-    const report::SoakSummary& s = outcome->summary;
+    const soak::SoakSummary& s = outcome->summary;
     for (const std::string& text : outcome->notes) note(text);
     if (a.json) {
-        fmt::print("{}", report::soak_json(s));
+        fmt::print("{}", soak::soak_json(s));
         if (!s.walk.uncalibrated.empty()) note("uncalibrated: " + s.walk.uncalibrated);
         for (const report::Degraded& d : s.walk.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
     } else {
-        fmt::print("{}", report::soak_table(s, context.colour));
+        fmt::print("{}", soak::soak_table(s, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
     }
     for (const Error& error : outcome->failures) fail(error);
     if (s.stopped)
         note(fmt::format("stopped by the user after {:.0f} of {:.0f} s; the figures are of these", s.ran_s, s.asked_s));
-    const bool holds = report::verdict_of(s) == report::Judged::holds;
+    const bool holds = soak::verdict_of(s) == soak::Judged::holds;
     return holds && outcome->failures.empty() && !s.stopped ? exit_success : exit_failure;
 }
 
@@ -74,7 +74,7 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
 
 void add_soak(CLI::App& app, Context& context) {
     auto a = std::make_shared<SoakArguments>();
-    app::SoakRequest& r = a->request;
+    soak::SoakRequest& r = a->request;
     CLI::App* c =
         add_command(app, "soak", "Walk for hours under a rotating mix of load, and judge it",
                     "surefoot soak town.walk --rate 60 --size 640x480 --report soak\n"

@@ -1,0 +1,27 @@
+// What the machine was, and what the kernel counted while the soak ran: kept with the figures, so that they can be judged later.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "tools/soak/summary.hpp"
+
+namespace surefoot::soak {
+
+/// Counters since boot.
+struct MachineCounters {
+    std::map<std::string, double> interrupts;   ///< by number or name, with the device's name behind it; all cores together
+    std::map<std::string, double> pressure_us;  ///< "cpu some", "io full", ...
+    double steal_ms = 0, context_switches = 0, processes = 0;
+    double time_s = 0;  ///< monotonic
+};
+/// root: where /proc lies, for tests. What the kernel does not tell is left out.
+MachineCounters read_counters(const std::string& root = "");
+
+/// The machine and what it counted between the two. Interrupts: the busiest twenty, the rest as one.
+SoakMachine machine_facts(const MachineCounters& before, const MachineCounters& after, const std::string& root = "");
+
+/// This process's own command line, arguments apart by spaces; quoted where they hold any.
+std::string own_command_line();
+
+}  // namespace surefoot::soak

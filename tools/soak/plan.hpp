@@ -1,0 +1,54 @@
+// What loads a soak when: a seeded timetable of phases, known beforehand and the same for every process that reads it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt/base/result.hpp"
+
+namespace surefoot::soak {
+
+enum class LoadKind : std::uint8_t { cpu, memory, io, forks, devices, reloads, caches, clock };
+constexpr std::size_t load_kinds = 8;
+constexpr std::array<std::string_view, load_kinds> load_names = {"cpu",     "memory",  "io",     "forks",
+                                                                 "devices", "reloads", "caches", "clock"};
+
+/// A set of kinds: bit 1 << kind.
+using LoadSet = std::uint32_t;
+constexpr LoadSet load_bit(LoadKind kind) { return 1U << static_cast<unsigned>(kind); }
+constexpr bool has_load(LoadSet set, LoadKind kind) { return (set & load_bit(kind)) != 0; }
+/// All but clock, which steps the time of day for the whole machine: only who asks for it gets it.
+constexpr LoadSet usual_loads = (1U << load_kinds) - 1U - load_bit(LoadKind::clock);
+/// Those that a virtual clock leaves a meaning: work in this process, rather than contention for a core.
+constexpr LoadSet virtual_loads = load_bit(LoadKind::reloads);
+
+/// "cpu,io": names apart by commas. Error: an unknown name, with what is allowed; nothing at all.
+Result<LoadSet> parse_mix(std::string_view text);
+std::vector<std::string> names_of(LoadSet set);
+
+/// Times in seconds from the first slot.
+struct LoadPhase {
+    double from_s = 0, to_s = 0;
+    LoadSet loads = 0;
+};
+
+struct LoadPlan {
+    LoadSet mix = usual_loads;
+    double seconds = 0;
+    std::vector<LoadPhase> phases;  ///< gapless from 0 to `seconds`
+
+    /// 0 outside.
+    [[nodiscard]] LoadSet at(double time_s) const;
+    /// The phase of a time; the last one from its beginning on for ever.
+    [[nodiscard]] std::size_t phase_at(double time_s) const;
+};
+
+/// Rounds: in each, every kind leads one phase, in an order by `seed`, and takes one or two others along; then one phase of all
+/// at once. Phases last 30 s, less where two rounds would not fit, and are whole multiples of pair_s (a pair of control blocks):
+/// no pair sees two loads.
+LoadPlan plan_loads(LoadSet mix, double seconds, double pair_s, std::uint64_t seed);
+
+}  // namespace surefoot::soak
