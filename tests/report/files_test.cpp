@@ -185,58 +185,10 @@ TEST_F(ReportFiles, UnwritablePlaceIsNamed) {
     EXPECT_EQ(*read_text(in("file")), "x");
 }
 
-AccuracyRun sweep() {
-    AccuracyRun run;
-    run.model = "forest.walk";
-    run.full_frame_ms = 100;
-    for (const auto* selector : {"two-stage", "two-stage-1994", "flat"})
-        for (const double budget : {10.0, 20.0, 40.0}) {
-            AccuracyPoint p;
-            p.selector = selector;
-            p.budget_ms = budget;
-            p.frame_ms_p50 = budget * 0.9;
-            p.accuracy_mean = budget * 10;
-            p.snr_db = budget / 3;
-            p.ssim = 0.9;
-            p.frames = 5;
-            run.points.push_back(p);
-        }
-    run.points.back().snr_db = std::numeric_limits<double>::infinity();
-    run.points.back().snr_infinite = 5;
-    run.points.back().accuracy_mean = std::numeric_limits<double>::infinity();
-    run.points.back().exact = 5;
-    return run;
-}
-
-TEST_F(ReportFiles, AccuracyPageAndFiles) {
-    const auto run = sweep();
-    ASSERT_TRUE(write_accuracy_page(in("a"), run).ok());
-    const auto page = *read_text(in("a/index.html"));
-    EXPECT_EQ(page.find("http"), std::string::npos);
-    EXPECT_EQ(split(*read_text(in("a/accuracy.csv")), '\n').size(), run.points.size() + 1);
-    const auto json = nlohmann::json::parse(*read_text(in("a/accuracy.json")));
-    EXPECT_EQ(json["points"].size(), run.points.size());
-    EXPECT_TRUE(json["points"].back()["snr_db"].is_null());
-    EXPECT_TRUE(json["points"].back()["accuracy"].is_null());
-    EXPECT_EQ(json["points"].back()["exact"], 5);
-    EXPECT_NE(page.find("left out of the mean"), std::string::npos);
-    for (const bool dark : {false, true}) {
-        const auto svg = accuracy_svg(run, dark);
-        EXPECT_EQ(svg.rfind("<svg xmlns=", 0), 0U);
-        // 9 points in three panels, the exact one in none but the last; a dot each for two mended selectors in the legend.
-        EXPECT_EQ(count_of(svg, "<title>two-stage"), 18U);
-        EXPECT_EQ(count_of(svg, "<title>flat"), 7U);
-        EXPECT_EQ(svg.find("nan"), std::string::npos);
-        EXPECT_EQ(svg.find("inf"), std::string::npos);
-    }
-    EXPECT_NE(accuracy_svg(run, false), accuracy_svg(run, true));
-}
-
-TEST_F(ReportFiles, EmptySweepAndCostPlotDoNotDivideByZero) {
-    for (const auto& svg : {accuracy_svg({}, false), cost_plot_svg("cost", {})}) {
-        EXPECT_EQ(svg.find("nan"), std::string::npos);
-        EXPECT_EQ(svg.find("inf"), std::string::npos);
-    }
+TEST_F(ReportFiles, CostPlotDoesNotDivideByZero) {
+    const auto none = cost_plot_svg("cost", {});
+    EXPECT_EQ(none.find("nan"), std::string::npos);
+    EXPECT_EQ(none.find("inf"), std::string::npos);
     const std::vector<CostPoint> one = {
         {"plain", 1, 1, 3.0}, {"plain", 1, 0, 3.0}, {"plain", 4, 16, std::numeric_limits<double>::infinity()}};
     const auto svg = cost_plot_svg("cost", one);

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "render/select/select.hpp"
-#include "tools/app/accuracy.hpp"
+#include "tools/accuracy/sweep.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 
@@ -12,17 +12,17 @@ namespace surefoot::cli {
 
 namespace {
 struct AccuracyArguments {
-    app::AccuracyRequest request;
+    accuracy::AccuracyRequest request;
     std::string out = "accuracy", size = "1280x720";
     bool json = false;
 };
 
-void print_points(const report::AccuracyRun& run) {
+void print_points(const accuracy::AccuracyRun& run) {
     fmt::print("{} at {} poses, {}x{}; full detail takes {:.1f} ms a frame\n", run.model, run.poses, run.width, run.height,
                run.full_frame_ms);
     fmt::print("{:<18} {:>10} {:>10} {:>10} {:>12} {:>6} {:>8} {:>7} {:>11}\n", "selector", "budget ms", "p50 ms", "p90 ms",
                "accuracy 1/r", "exact", "SNR dB", "SSIM", "triangles");
-    for (const report::AccuracyPoint& p : run.points) {
+    for (const accuracy::AccuracyPoint& p : run.points) {
         fmt::print("{:<18} {:>10.2f} {:>10.2f} {:>10.2f} {:>12} {:>6} {:>8.2f} {:>7.4f} {:>11.0f}\n", p.selector, p.budget_ms,
                    p.frame_ms_p50, p.frame_ms_p90,
                    std::isfinite(p.accuracy_mean) ? fmt::format("{:.1f}", p.accuracy_mean) : "exact", p.exact, p.snr_db, p.ssim,
@@ -35,14 +35,14 @@ int run_accuracy_command(AccuracyArguments& a, const Context& context) {
     if (!size) return misuse(size.error());
     a.request.width = size->width;
     a.request.height = size->height;
-    if (auto ok = report::probe_accuracy_page(a.out); !ok) return fail(ok.error());
-    auto run = app::run_accuracy(a.request, terminal_progress(context));
+    if (auto ok = accuracy::probe_accuracy_page(a.out); !ok) return fail(ok.error());
+    auto run = accuracy::run_accuracy(a.request, terminal_progress(context));
     end_progress(context);
     if (!run) return fail(run.error());
     if (!run->uncalibrated.empty()) note("uncalibrated: " + run->uncalibrated);
-    if (auto w = report::write_accuracy_page(a.out, *run); !w) return fail(w.error());
+    if (auto w = accuracy::write_accuracy_page(a.out, *run); !w) return fail(w.error());
     if (a.json) {
-        fmt::print("{}\n", report::accuracy_json(*run));
+        fmt::print("{}\n", accuracy::accuracy_json(*run));
     } else {
         print_points(*run);
         fmt::print("page: {}/index.html\n", a.out);
@@ -59,7 +59,7 @@ void add_accuracy(CLI::App& app, Context& context) {
         "The accuracy of a point is the mean over its places; places drawn exactly have no finite accuracy, are left\n"
         "out of that mean and counted apart (a point with nothing but such places is 'exact').",
         a->json);
-    app::AccuracyRequest& r = a->request;
+    accuracy::AccuracyRequest& r = a->request;
     c->add_option("model", r.model_file, "The .walk model")->required();
     c->add_option("--path", r.path_file, "Poses are taken along this path (else MODEL.path.csv, else a tour)");
     c->add_option("-o,--out", a->out, "Folder for index.html, accuracy.svg, accuracy.csv")->capture_default_str();

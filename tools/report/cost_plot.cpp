@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/accuracy.hpp"
+#include "tools/report/style.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/svg.hpp"
 

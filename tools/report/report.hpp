@@ -135,28 +135,6 @@ struct ReportShot {
 Result<void> write_report(const std::string& dir, const WalkSummary& summary, std::span<const rt::FrameRecord> records,
                           std::span<const ReportShot> shots);
 
-// ---- accuracy against time ----
-struct AccuracyPoint {
-    std::string selector;
-    double budget_ms = 0, frame_ms_p50 = 0, frame_ms_p90 = 0, accuracy_mean = 0, snr_db = 0, ssim = 0, triangles = 0, cost_us = 0;
-    std::uint32_t snr_undefined = 0, snr_infinite = 0, frames = 0;
-    std::uint32_t exact = 0;  ///< frames drawn exactly: left out of accuracy_mean, which is infinite where all are
-};
-struct AccuracyRun {
-    std::string model, path, renderer, machine;
-    std::string uncalibrated;  ///< where this machine's cost table is missing: what, and the remedy
-    std::uint32_t width = 0, height = 0, poses = 0;
-    double shift_x = 0, shift_y = 0;  ///< off axis, half widths and half heights
-    double full_frame_ms = 0;
-    std::vector<AccuracyPoint> points;
-};
-std::string accuracy_svg(const AccuracyRun& run, bool dark);
-std::string accuracy_csv(const AccuracyRun& run);
-std::string accuracy_json(const AccuracyRun& run);
-/// Whether the page could be written to `dir` now; to be asked before the sweep.
-Result<void> probe_accuracy_page(const std::string& dir);
-Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run);
-
 /// Maciel's figure 3.4 for this machine: cost against pixels, a line a triangle count, a panel a state class.
 struct CostPoint {
     std::string state;

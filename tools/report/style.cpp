@@ -129,4 +129,11 @@ std::string page(std::string_view title, std::string_view body) {
         title, page_style(), body);
 }
 
+std::string stand_alone(const std::string& inline_chart, bool dark) {
+    const auto tag_end = inline_chart.find('>');
+    if (tag_end == std::string::npos) return inline_chart;
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + inline_chart.substr(4, tag_end - 3) + chart_style(dark) +
+           "<rect width=\"100%\" height=\"100%\" rx=\"10\" fill=\"var(--panel)\"/>" + inline_chart.substr(tag_end + 1);
+}
+
 }  // namespace surefoot::report

@@ -11,6 +11,9 @@ std::string page_style();
 /// Chart rules with the palette written out, for an SVG file of its own.
 std::string chart_style(bool dark);
 
+/// An inline chart with its name space, palette and a background of its own.
+std::string stand_alone(const std::string& inline_chart, bool dark);
+
 /// A whole page around `body`. Nothing in it points outside the file.
 std::string page(std::string_view title, std::string_view body);
 

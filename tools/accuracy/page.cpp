@@ -1,5 +1,5 @@
 // The accuracy sweep as CSV, JSON and a page.
-#include "tools/report/accuracy.hpp"
+#include "tools/accuracy/page.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "tools/report/style.hpp"
 #include "tools/report/svg.hpp"
 
-namespace surefoot::report {
+namespace surefoot::accuracy {
 
 namespace {
 
@@ -31,25 +31,25 @@ std::string table_of(const AccuracyRun& run) {
             "<tr><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.4f}</td><td>{}</"
             "td><td>{} / {} "
             "of {}</td></tr>\n",
-            escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.2f}", p.budget_ms) : "∞", p.frame_ms_p50,
-            p.frame_ms_p90, std::isfinite(p.accuracy_mean) ? short_number(p.accuracy_mean) : "∞", p.exact,
-            std::isfinite(p.snr_db) ? fmt::format("{:.2f}", p.snr_db) : "–", p.ssim, grouped(p.triangles), p.snr_infinite,
+            report::escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.2f}", p.budget_ms) : "∞", p.frame_ms_p50,
+            p.frame_ms_p90, std::isfinite(p.accuracy_mean) ? report::short_number(p.accuracy_mean) : "∞", p.exact,
+            std::isfinite(p.snr_db) ? fmt::format("{:.2f}", p.snr_db) : "–", p.ssim, report::grouped(p.triangles), p.snr_infinite,
             p.snr_undefined, p.frames);
     return out + "</table></div>\n";
 }
 
 std::string body_of(const AccuracyRun& run) {
-    const std::string model = escaped(std::filesystem::path(run.model).filename().string());
+    const std::string model = report::escaped(std::filesystem::path(run.model).filename().string());
     std::string out = "<header>\n<p class=\"brand\"><b>Surefoot</b> accuracy</p>\n<h1>What accuracy costs in time</h1>\n";
     out += fmt::format("<p class=\"lead\"><b>{}</b> along <b>{}</b>: {} places, {}×{} pixels, on {}.", model,
-                       escaped(std::filesystem::path(run.path).filename().string()), run.poses, run.width, run.height,
-                       escaped(run.renderer));
+                       report::escaped(std::filesystem::path(run.path).filename().string()), run.poses, run.width, run.height,
+                       report::escaped(run.renderer));
     if (run.shift_x != 0 || run.shift_y != 0)
         out += fmt::format(" Off axis by {:+g} half widths, {:+g} half heights.", run.shift_x, run.shift_y);
     if (run.full_frame_ms > 0) out += fmt::format(" Full detail takes {:.1f} ms a frame.", run.full_frame_ms);
     out += "</p>\n</header>\n";
     if (!run.uncalibrated.empty())
-        out += fmt::format("<ul class=\"notes\"><li><b>Uncalibrated: {}</b></li></ul>\n", escaped(run.uncalibrated));
+        out += fmt::format("<ul class=\"notes\"><li><b>Uncalibrated: {}</b></li></ul>\n", report::escaped(run.uncalibrated));
     out += fmt::format("<div class=\"card wide\">{}</div>\n", accuracy_chart(run));
     out +=
         "<p class=\"sub\">Each line is one way to choose what to draw, each point a budget. <b>Accuracy</b>: one over the "
@@ -66,17 +66,10 @@ std::string body_of(const AccuracyRun& run) {
                      "href=\"accuracy.json\">accuracy.json</a>, "
                      "<a href=\"accuracy.svg\">accuracy.svg</a>, <a "
                      "href=\"accuracy-dark.svg\">accuracy-dark.svg</a>.</p></footer>\n",
-                     escaped(run.machine));
+                     report::escaped(run.machine));
 }
 
 }  // namespace
-
-std::string stand_alone(const std::string& inline_chart, bool dark) {
-    const auto tag_end = inline_chart.find('>');
-    if (tag_end == std::string::npos) return inline_chart;
-    return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + inline_chart.substr(4, tag_end - 3) + chart_style(dark) +
-           "<rect width=\"100%\" height=\"100%\" rx=\"10\" fill=\"var(--panel)\"/>" + inline_chart.substr(tag_end + 1);
-}
 
 std::string accuracy_csv(const AccuracyRun& run) {
     std::string out =
@@ -131,11 +124,11 @@ Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run)
         {"accuracy.json", accuracy_json(run)},
         {"accuracy.svg", accuracy_svg(run, false)},
         {"accuracy-dark.svg", accuracy_svg(run, true)},
-        {"index.html", page("Surefoot: what accuracy costs in time", body_of(run))},
+        {"index.html", report::page("Surefoot: what accuracy costs in time", body_of(run))},
     }};
     for (const auto& [name, text] : files)
         if (auto ok = written->add(name, text); !ok) return ok;
     return written->commit();
 }
 
-}  // namespace surefoot::report
+}  // namespace surefoot::accuracy

@@ -7,9 +7,10 @@
 #include "render/gl/device.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
-#include "tools/report/report.hpp"
+#include "render/model/view.hpp"
+#include "tools/accuracy/page.hpp"
 
-namespace surefoot::app {
+namespace surefoot::accuracy {
 
 struct AccuracyRequest {
     std::string model_file, path_file, state_dir, backend = "egl";
@@ -26,6 +27,6 @@ struct AccuracyRequest {
 
 /// Every budget is spent on every pose by every selector; pictures are compared with full detail at the same pose.
 /// `distance` has no budget: its threshold is swept instead. `flat` is the full frame itself.
-Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress);
+Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress);
 
-}  // namespace surefoot::app
+}  // namespace surefoot::accuracy

@@ -1,5 +1,5 @@
 // What accuracy costs in time: budgets swept over poses of a path, a line a selector, against full detail.
-#include "tools/app/accuracy.hpp"
+#include "tools/accuracy/sweep.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 #include "tools/app/path_source.hpp"
 #include "tools/app/state.hpp"
 
-namespace surefoot::app {
+namespace surefoot::accuracy {
 
 namespace {
 
@@ -43,7 +43,7 @@ struct Sweep {
     int repeats;
 
     double time_full(const Station& station, const std::vector<gl::DrawItem>& items);
-    Result<report::AccuracyPoint> measure(const std::string& selector, double budget_us, double target_error_rad);
+    Result<AccuracyPoint> measure(const std::string& selector, double budget_us, double target_error_rad);
 };
 
 double Sweep::time_full(const Station& station, const std::vector<gl::DrawItem>& items) {
@@ -56,8 +56,8 @@ double Sweep::time_full(const Station& station, const std::vector<gl::DrawItem>&
     return median(ms);
 }
 
-Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double budget_us, double target_error_rad) {
-    report::AccuracyPoint point;
+Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_us, double target_error_rad) {
+    AccuracyPoint point;
     point.selector = selector;
     point.budget_ms = budget_us * 1e-3;
     std::vector<double> frame_ms;
@@ -106,7 +106,7 @@ Result<report::AccuracyPoint> Sweep::measure(const std::string& selector, double
 }
 
 Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, model::Model model, std::uint64_t model_hash,
-                                            report::AccuracyRun& run) {
+                                            AccuracyRun& run) {
     EngineOptions options;
     auto kind = gl::parse_backend(request.backend);
     if (!kind) return kind.error();
@@ -120,10 +120,10 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
         request.workers > 0 ? request.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     options.in_frame_check = false;
     std::string note;
-    const std::string state = state_directory(request.state_dir);
-    auto table = load_costs(state, "", note);
+    const std::string state = app::state_directory(request.state_dir);
+    auto table = app::load_costs(state, "", note);
     if (!table) return table.error();
-    auto costs = fitted_costs(state, *table, {model_hash, request.width, request.height, request.backend});
+    auto costs = app::fitted_costs(state, *table, {model_hash, request.width, request.height, request.backend});
     if (!costs) return costs.error();
     auto engine = Engine::open(std::move(model), *costs, options);
     if (engine) run.machine = measure::machine_identity((*engine)->device().renderer(), request.rasterisers);
@@ -133,13 +133,13 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
 
 }  // namespace
 
-Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress) {
+Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress) {
     model::WalkFileInfo file;
     auto model = model::read_walk(request.model_file, &file);
     if (!model) return model.error();
-    auto chosen = choose_path(request.path_file, request.model_file, *model, request.lift_m);
+    auto chosen = app::choose_path(request.path_file, request.model_file, *model, request.lift_m);
     if (!chosen) return chosen.error();
-    report::AccuracyRun run;
+    AccuracyRun run;
     run.model = request.model_file;
     run.path = chosen->source;
     run.width = request.width;
@@ -193,4 +193,4 @@ Result<report::AccuracyRun> run_accuracy(const AccuracyRequest& request, const P
     return run;
 }
 
-}  // namespace surefoot::app
+}  // namespace surefoot::accuracy

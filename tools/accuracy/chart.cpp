@@ -10,13 +10,13 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/report/accuracy.hpp"
+#include "tools/accuracy/page.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/style.hpp"
 #include "tools/report/svg.hpp"
 #include "tools/report/verdict.hpp"
 
-namespace surefoot::report {
+namespace surefoot::accuracy {
 
 namespace {
 
@@ -55,7 +55,7 @@ std::vector<Series> series_of(const AccuracyRun& run) {
             const std::string family = s.published ? s.name.substr(0, s.name.size() - published_ending.size()) : s.name;
             auto kin = std::find(families.begin(), families.end(), family);
             if (kin == families.end()) kin = families.insert(families.end(), family);
-            s.colour = static_cast<std::size_t>(kin - families.begin()) % series_colours;
+            s.colour = static_cast<std::size_t>(kin - families.begin()) % report::series_colours;
             all.push_back(std::move(s));
             found = all.end() - 1;
         }
@@ -77,7 +77,7 @@ struct Range {
     [[nodiscard]] bool empty() const { return low > high; }
 };
 
-Scale time_scale(const AccuracyRun& run, const PlotArea& area) {
+report::Scale time_scale(const AccuracyRun& run, const report::PlotArea& area) {
     Range range;
     for (const AccuracyPoint& p : run.points)
         if (p.frame_ms_p50 > 0) range.grow(p.frame_ms_p50);
@@ -86,7 +86,7 @@ Scale time_scale(const AccuracyRun& run, const PlotArea& area) {
     return {range.low * 0.9, std::max(range.high * 1.12, range.low * 1.5), area.left, area.right, true};
 }
 
-Scale value_scale(const AccuracyRun& run, const Panel& panel, const PlotArea& area) {
+report::Scale value_scale(const AccuracyRun& run, const Panel& panel, const report::PlotArea& area) {
     Range range;
     for (const AccuracyPoint& p : run.points) {
         const double v = panel.value(p);
@@ -104,23 +104,23 @@ bool drawable(const AccuracyPoint& p, double value, const Panel& panel) {
 
 std::string tip_of(const AccuracyPoint& p) {
     return fmt::format("{}, budget {} ms: frame {:.1f} ms (p90 {:.1f}), accuracy {} rad⁻¹, SNR {}, SSIM {:.3f}, {} triangles",
-                       escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited",
-                       p.frame_ms_p50, p.frame_ms_p90, short_number(p.accuracy_mean), decibels(p.snr_db), p.ssim,
-                       short_number(p.triangles));
+                       report::escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited",
+                       p.frame_ms_p50, p.frame_ms_p90, report::short_number(p.accuracy_mean), report::decibels(p.snr_db), p.ssim,
+                       report::short_number(p.triangles));
 }
 
-std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, const Panel& panel, const PlotArea& area) {
-    const Scale x = time_scale(run, area);
-    const Scale y = value_scale(run, panel, area);
-    std::string out = text_at(area.left, area.top - 14, "title", panel.title);
-    out += y_axis(area, y, panel.log ? log_ticks(y.from, y.to) : nice_ticks(y.from, y.to, 5), panel.unit);
-    out += x_axis(area, x, log_ticks(x.from, x.to), "");
+std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, const Panel& panel, const report::PlotArea& area) {
+    const report::Scale x = time_scale(run, area);
+    const report::Scale y = value_scale(run, panel, area);
+    std::string out = report::text_at(area.left, area.top - 14, "title", panel.title);
+    out += report::y_axis(area, y, panel.log ? report::log_ticks(y.from, y.to) : report::nice_ticks(y.from, y.to, 5), panel.unit);
+    out += report::x_axis(area, x, report::log_ticks(x.from, x.to), "");
     if (run.full_frame_ms > 0) {
-        out += line_between(x(run.full_frame_ms), area.top, x(run.full_frame_ms), area.bottom, "budget");
-        out += text_at(x(run.full_frame_ms) - 5, area.bottom - 8, "note end budget-text", "full detail");
+        out += report::line_between(x(run.full_frame_ms), area.top, x(run.full_frame_ms), area.bottom, "budget");
+        out += report::text_at(x(run.full_frame_ms) - 5, area.bottom - 8, "note end budget-text", "full detail");
     }
     for (const Series& s : all) {
-        std::vector<Point> line;
+        std::vector<report::Point> line;
         std::string dots;
         for (const AccuracyPoint* p : s.points) {
             const double v = panel.value(*p);
@@ -156,7 +156,7 @@ std::string legend_of(const std::vector<Series>& all, double top) {
                            s.published ? 1.6 : 2.4, s.published ? " stroke-dasharray=\"5 4\"" : "");
         if (!s.published)
             out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.8\" fill=\"var(--s{})\"/>", at + 11, y - 4, s.colour);
-        out += text_at(at + 28, y, "", s.name);
+        out += report::text_at(at + 28, y, "", s.name);
         at += length;
     }
     return out;
@@ -166,17 +166,17 @@ std::string legend_of(const std::vector<Series>& all, double top) {
 
 std::string accuracy_chart(const AccuracyRun& run) {
     const auto all = series_of(run);
-    std::string out = open_chart(chart_width, chart_height, "What accuracy costs in time");
+    std::string out = report::open_chart(chart_width, chart_height, "What accuracy costs in time");
     out += legend_of(all, 24);
     constexpr double panel_width = chart_width / 3;
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const double left = panel_width * static_cast<double>(i);
         out += panel_chart(run, all, panels[i], {left + 52, 96, left + panel_width - 14, chart_height - 46});
     }
-    out += text_at(chart_width / 2, chart_height - 8, "note mid", "median frame time, ms (logarithmic)");
-    return out + close_chart();
+    out += report::text_at(chart_width / 2, chart_height - 8, "note mid", "median frame time, ms (logarithmic)");
+    return out + report::close_chart();
 }
 
-std::string accuracy_svg(const AccuracyRun& run, bool dark) { return stand_alone(accuracy_chart(run), dark); }
+std::string accuracy_svg(const AccuracyRun& run, bool dark) { return report::stand_alone(accuracy_chart(run), dark); }
 
-}  // namespace surefoot::report
+}  // namespace surefoot::accuracy
