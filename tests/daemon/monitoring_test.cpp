@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/daemon/running.hpp"
-#include "tools/console/client.hpp"
+#include "tools/monitor/client.hpp"
 #include "tools/daemon/exit_code.hpp"
 #include "tools/daemon/monitoring.hpp"
 
@@ -10,16 +10,16 @@ namespace surefoot::daemon::test {
 namespace {
 
 std::string page(const std::string& socket_file, std::string_view path) {
-    const auto address = console::parse_address("unix:" + socket_file);
+    const auto address = monitor::parse_address("unix:" + socket_file);
     if (!address) return {};
-    auto body = console::fetch(*address, path);
+    auto body = monitor::fetch(*address, path);
     return body ? *body : std::string();
 }
 
 TEST(Monitoring, IsWhereTheSettingsSayElseInTheRunTimeFolder) {
     config::Settings settings;
     EXPECT_EQ(monitor_address(settings, false), "");
-    EXPECT_EQ(monitor_address(settings, true), console::default_address());
+    EXPECT_EQ(monitor_address(settings, true), monitor::default_address());
     settings.monitor = "127.0.0.1:9464";
     EXPECT_EQ(monitor_address(settings, true), "127.0.0.1:9464");
     settings.monitor = "none";

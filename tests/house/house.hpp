@@ -45,7 +45,7 @@ inline const std::vector<Room>& rooms() {
         {"tools/app", {"*"}},
         {"tools/cli", {"*"}},
         {"tools/daemon", {"*"}},
-        {"tools/console", {"*"}},
+        {"tools/monitor", {"*"}},
         {"tools/accuracy", {"*"}},
         {"tools/soak", {"*"}},
         {"tools/doctor", {"*"}},
@@ -78,7 +78,7 @@ inline bool allowed(const Room& from, const Room& to) {
         return std::find(list.begin(), list.end(), folder) != list.end();
     };
     if (from.folder == "tools/app" && to.folder.starts_with("tools/")) return is_one_of(to.folder, {"tools/report", "tools/scenes"});
-    if (is_one_of(from.folder, {"tools/accuracy", "tools/soak"}) && to.folder.starts_with("tools/"))
+    if (is_one_of(from.folder, {"tools/accuracy", "tools/monitor", "tools/soak"}) && to.folder.starts_with("tools/"))
         return is_one_of(to.folder, {"tools/app", "tools/report", "tools/scenes"});
     return std::any_of(from.may_include.begin(), from.may_include.end(), [&](std::string_view rule) {
         return rule == "*" || rule == to.folder || (rule.ends_with('/') && to.folder.starts_with(rule));

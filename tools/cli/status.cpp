@@ -11,8 +11,8 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/terminal.hpp"
-#include "tools/console/client.hpp"
-#include "tools/console/view.hpp"
+#include "tools/monitor/client.hpp"
+#include "tools/monitor/view.hpp"
 
 namespace surefoot::cli {
 
@@ -31,16 +31,16 @@ struct Asked {
     json status;
 };
 
-Result<Asked> ask(const console::Address& address) {
-    auto text = console::fetch(address, "/status.json");
+Result<Asked> ask(const monitor::Address& address) {
+    auto text = monitor::fetch(address, "/status.json");
     if (!text) return text.error();
-    auto status = console::parse_status(address, *text);
+    auto status = monitor::parse_status(address, *text);
     if (!status) return status.error();
     return Asked{std::move(*text), std::move(*status)};
 }
 
-Result<console::Address> place_of(const LookArguments& a) {
-    return console::parse_address(a.socket.empty() ? console::default_address() : a.socket);
+Result<monitor::Address> place_of(const LookArguments& a) {
+    return monitor::parse_address(a.socket.empty() ? monitor::default_address() : a.socket);
 }
 
 int run_status(const LookArguments& a, const Context& context) {
@@ -52,14 +52,14 @@ int run_status(const LookArguments& a, const Context& context) {
         print_json(nlohmann::ordered_json::parse(asked->text));
         return exit_success;
     }
-    for (const std::string& line : console::status_page(asked->status, terminal_look(context.colour))) fmt::print("{}\n", line);
+    for (const std::string& line : monitor::status_page(asked->status, terminal_look(context.colour))) fmt::print("{}\n", line);
     return exit_success;
 }
 
 /// Every second until the end; what is shown where stdout is a terminal, a pipe, or wants JSON.
 class Top {
 public:
-    Top(const LookArguments& a, const Context& context, const console::Address& address)
+    Top(const LookArguments& a, const Context& context, const monitor::Address& address)
         : a_(a), context_(context), address_(address), screen_wanted_(!a.json && isatty(STDOUT_FILENO) == 1) {}
 
     int run() {
@@ -115,12 +115,12 @@ private:
             return true;
         }
         const std::string line =
-            a_.json ? asked->text : time_of_day() + " " + console::top_line(status_, before_, between_s_) + "\n";
+            a_.json ? asked->text : time_of_day() + " " + monitor::top_line(status_, before_, between_s_) + "\n";
         return std::fputs(line.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
     }
     void draw() {
-        const console::Look look = terminal_look(context_.colour);
-        std::vector<std::string> lines = console::top_page(status_, before_, between_s_, look);
+        const monitor::Look look = terminal_look(context_.colour);
+        std::vector<std::string> lines = monitor::top_page(status_, before_, between_s_, look);
         if (!trouble_.empty() && !lines.empty())
             lines.back() = ("the service is gone, asking again: " + trouble_).substr(0, look.width);
         screen_->draw(lines);
@@ -134,7 +134,7 @@ private:
 
     const LookArguments& a_;
     const Context& context_;
-    const console::Address& address_;
+    const monitor::Address& address_;
     bool screen_wanted_;
     std::optional<FullScreen> screen_;
     json status_, before_;

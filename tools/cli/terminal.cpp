@@ -28,8 +28,8 @@ bool speaks_utf8() {
 
 }  // namespace
 
-console::Look terminal_look(bool colour) {
-    console::Look look;
+monitor::Look terminal_look(bool colour) {
+    monitor::Look look;
     look.colour = colour;
     look.unicode = speaks_utf8();
     winsize size{};

@@ -7,12 +7,12 @@
 #include <span>
 #include <string>
 
-#include "tools/console/view.hpp"
+#include "tools/monitor/view.hpp"
 
 namespace surefoot::cli {
 
 /// Colour, characters and size of stdout as it is now.
-console::Look terminal_look(bool colour);
+monitor::Look terminal_look(bool colour);
 
 /// The other screen of the terminal on stdout, without a cursor; keys come at once and are not shown. Ctrl-Z does nothing
 /// meanwhile (the shell would inherit the screen).

@@ -6,7 +6,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
-#include "tools/console/watch.hpp"
+#include "tools/monitor/watch.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace surefoot::cli {
@@ -94,14 +94,14 @@ Result<app::WalkRequest> to_request(WalkArguments& a) {
 }
 
 /// Null where nothing is asked for.
-Result<std::unique_ptr<console::Monitor>> open_monitor(const MonitorArguments& a) {
-    if (a.address.empty() && a.incidents_dir.empty()) return std::unique_ptr<console::Monitor>();
-    console::MonitorOptions options;
+Result<std::unique_ptr<monitor::Monitor>> open_monitor(const MonitorArguments& a) {
+    if (a.address.empty() && a.incidents_dir.empty()) return std::unique_ptr<monitor::Monitor>();
+    monitor::MonitorOptions options;
     options.address = a.address;
     options.incidents_dir = a.incidents_dir;
     options.version = SUREFOOT_VERSION;
     options.say = [](std::string_view text) { note(std::string(text)); };
-    auto monitor = console::Monitor::open(std::move(options));
+    auto monitor = monitor::Monitor::open(std::move(options));
     if (monitor && !a.address.empty()) note(fmt::format("look at it with: surefoot top --socket {}", (*monitor)->address()));
     return monitor;
 }
@@ -110,14 +110,14 @@ int run_walk_command(WalkArguments& a, const Context& context) {
     auto request = to_request(a);
     if (!request) return misuse(request.error());
     if (!a.watch.address.empty()) {
-        if (const auto address = console::parse_address(a.watch.address); !address) return misuse(address.error());
+        if (const auto address = monitor::parse_address(a.watch.address); !address) return misuse(address.error());
     }
     auto monitor = open_monitor(a.watch);
     if (!monitor) return fail(monitor.error());
     app::WalkWatch watch;
     Progress progress = terminal_progress(context);
     if (*monitor) {
-        console::watch_with(**monitor, *request, watch);
+        monitor::watch_with(**monitor, *request, watch);
         progress.note = [tell = progress.note, m = monitor->get()](std::string_view text) {
             tell(text);
             m->add_note(text);

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/app/settings_request.hpp"
-#include "tools/console/address.hpp"
+#include "tools/monitor/address.hpp"
 #include "tools/daemon/monitoring.hpp"
 
 namespace surefoot::daemon {
@@ -26,7 +26,7 @@ std::vector<Error> own_rules(const config::Configuration& c, const std::string& 
     if (!s.steering.empty() && s.input.empty())
         wrong("steering", "says how an input steers, and there is none", "add input = \"devices\", or take it out");
     if (!s.monitor.empty() && s.monitor != no_monitor) {
-        if (const auto address = console::parse_address(s.monitor); !address)
+        if (const auto address = monitor::parse_address(s.monitor); !address)
             wrong("monitor", address.error().what, address.error().remedy);
     }
     return problems;

@@ -17,7 +17,7 @@
 #include "rt/threads/memory.hpp"
 #include "rt/threads/runaway.hpp"
 #include "tools/app/state.hpp"
-#include "tools/console/watch.hpp"
+#include "tools/monitor/watch.hpp"
 #include "tools/daemon/configuration.hpp"
 #include "tools/daemon/exit_code.hpp"
 #include "tools/daemon/log.hpp"
@@ -94,7 +94,7 @@ Result<void> check_state(const app::WalkRequest& request) {
 }
 
 Ending walk(const config::Configuration& configuration, const Options& options, Log& log, Standing& standing,
-            console::Monitor* monitor, const app::FaultHook& inject) {
+            monitor::Monitor* monitor, const app::FaultHook& inject) {
     const app::WalkRequest request = request_of(configuration, options.config_file);
     if (auto ok = check_state(request); !ok) {
         const Error& e = ok.error();
@@ -109,8 +109,8 @@ Ending walk(const config::Configuration& configuration, const Options& options, 
     Bursts bursts;
     app::WalkWatch watch = watch_of(log, standing, bursts, inject);
     if (monitor != nullptr) {
-        monitor->set_state(report::ServiceState::starting);
-        console::watch_with(*monitor, request, watch);
+        monitor->set_state(monitor::ServiceState::starting);
+        monitor::watch_with(*monitor, request, watch);
     }
     auto outcome = app::run_walk(request, progress, watch);
     say_burst(log, bursts.finish());
@@ -124,7 +124,7 @@ Ending walk(const config::Configuration& configuration, const Options& options, 
 }
 
 /// Walks until the end; of a configuration that never showed a frame back to the last that did.
-ExitCode walk_on(config::Configuration current, const Options& options, Log& log, Standing& standing, console::Monitor* monitor,
+ExitCode walk_on(config::Configuration current, const Options& options, Log& log, Standing& standing, monitor::Monitor* monitor,
                  const app::FaultHook& inject) {
     std::optional<config::Configuration> good;
     while (true) {
@@ -189,7 +189,7 @@ int run(const Options& options, const app::FaultHook& inject) {
     log.say(
         Priority::info, event::starting,
         fmt::format("{}: {}, {}", options.config_file, loaded.configuration.values.model, in_short(loaded.configuration.values)));
-    const std::unique_ptr<console::Monitor> monitor = open_monitor(loaded.configuration, log);
+    const std::unique_ptr<monitor::Monitor> monitor = open_monitor(loaded.configuration, log);
     const Service service(options, log, standing, notifier, watchdog_timeout_ns());
     return walk_on(std::move(loaded.configuration), options, log, standing, monitor.get(), inject);
 }

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "config/settings.hpp"
-#include "tools/console/monitor.hpp"
+#include "tools/monitor/monitor.hpp"
 #include "tools/daemon/log.hpp"
 
 namespace surefoot::daemon {
@@ -20,6 +20,6 @@ std::string monitor_address(const config::Settings& settings, bool has_runtime_d
 
 /// Null where nothing is asked for, or where it cannot be had, which is logged. Call it from a neutral thread, before the first
 /// walk: it stays for all of them, so a reload does not move it.
-std::unique_ptr<console::Monitor> open_monitor(const config::Configuration& configuration, Log& log);
+std::unique_ptr<monitor::Monitor> open_monitor(const config::Configuration& configuration, Log& log);
 
 }  // namespace surefoot::daemon

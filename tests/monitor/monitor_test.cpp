@@ -15,13 +15,13 @@
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/recorder.hpp"
 #include "rt/threads/usage.hpp"
-#include "tests/console/http.hpp"
-#include "tests/report/exposition.hpp"
+#include "tests/monitor/http.hpp"
+#include "tests/monitor/exposition.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tools/console/client.hpp"
-#include "tools/console/monitor.hpp"
+#include "tools/monitor/client.hpp"
+#include "tools/monitor/monitor.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 namespace {
 
 using test::RawReader;
@@ -47,8 +47,8 @@ rt::FrameRecord frame_of_walk(std::uint64_t i, std::int64_t t0_ns, bool late = f
     return f;
 }
 
-report::MonitoredWalk a_walk() {
-    report::MonitoredWalk w;
+MonitoredWalk a_walk() {
+    MonitoredWalk w;
     w.model = "town.walk";
     w.clock = "real";
     w.rate_hz = 60;
@@ -246,4 +246,4 @@ TEST(Monitor, CostsTheMonitorThreadAtMostTwentyMicrosecondsAFrame) {
 }
 
 }  // namespace
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -1,5 +1,5 @@
 // Records in, pages out; a page is made at most a few times a second, however many ask for it.
-#include "tools/console/monitor.hpp"
+#include "tools/monitor/monitor.hpp"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 #include "rt/clock/clock.hpp"
 #include "rt/threads/usage.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -26,7 +26,7 @@ struct Monitor::Cached {
         std::int64_t made_ns = 0;
     };
     Text metrics, status;
-    report::MonitorPage page;
+    MonitorPage page;
     std::int64_t process_ns = 0;
 };
 
@@ -76,10 +76,10 @@ void Monitor::offer(MissedFrame missed) {
 
 std::string Monitor::address() const { return server_ ? server_->address().text() : std::string(); }
 
-void Monitor::begin_walk(const report::MonitoredWalk& walk) {
+void Monitor::begin_walk(const MonitoredWalk& walk) {
     const std::lock_guard lock(facts_mutex_);
     facts_.walk = walk;
-    facts_.state = report::ServiceState::walking;
+    facts_.state = ServiceState::walking;
     setup_ = walk.setup;
     walk_waits_.store(true, std::memory_order_release);
 }
@@ -89,10 +89,10 @@ void Monitor::end_walk() {
     black_box_.finish();
     telemetry_.publish();
     const std::lock_guard lock(facts_mutex_);
-    facts_.state = report::ServiceState::stopped;
+    facts_.state = ServiceState::stopped;
 }
 
-void Monitor::set_state(report::ServiceState state) {
+void Monitor::set_state(ServiceState state) {
     const std::lock_guard lock(facts_mutex_);
     facts_.state = state;
 }
@@ -107,7 +107,7 @@ void Monitor::add_degraded(const report::Degraded& degraded) {
     facts_.degraded.push_back(degraded);
 }
 
-void Monitor::set_input(const report::MonitoredInput& input) {
+void Monitor::set_input(const MonitoredInput& input) {
     const std::lock_guard lock(facts_mutex_);
     facts_.input = input;
 }
@@ -140,9 +140,9 @@ void Monitor::on_record(const rt::FrameRecord& record) {
     cpu_seen_ns_ = cpu_ns;
 }
 
-const report::MonitorPage& Monitor::fill_page(bool with_threads) {
+const MonitorPage& Monitor::fill_page(bool with_threads) {
     const std::int64_t now_ns = rt::monotonic_ns();
-    report::MonitorPage& p = cached_->page;
+    MonitorPage& p = cached_->page;
     const rt::ProcessFigures process = p.process;
     {
         const std::lock_guard lock(facts_mutex_);
@@ -187,11 +187,11 @@ std::optional<Server::Page> Monitor::page(std::string_view path) {
     Cached::Text& kept = metrics ? cached_->metrics : cached_->status;
     const std::int64_t now_ns = rt::monotonic_ns();
     if (!kept.text || now_ns - kept.made_ns >= page_age_ns) {
-        const report::MonitorPage& filled = fill_page(!metrics);
-        kept.text = std::make_shared<const std::string>(metrics ? report::prometheus_text(filled) : report::status_json(filled));
+        const MonitorPage& filled = fill_page(!metrics);
+        kept.text = std::make_shared<const std::string>(metrics ? prometheus_text(filled) : status_json(filled));
         kept.made_ns = now_ns;
     }
-    return Server::Page{metrics ? report::prometheus_content_type : "application/json", kept.text};
+    return Server::Page{metrics ? prometheus_content_type : "application/json", kept.text};
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -1,5 +1,5 @@
 // Folders written under a temporary name and renamed; the oldest make room.
-#include "tools/console/incidents.hpp"
+#include "tools/monitor/incidents.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 #include "rt/threads/placement.hpp"
 #include "tools/report/report.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -194,4 +194,4 @@ void IncidentWriter::write(const rt::BlackBox::Incident& incident) {
     failing_ = true;
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

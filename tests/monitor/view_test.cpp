@@ -5,11 +5,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tools/console/text.hpp"
-#include "tools/console/view.hpp"
-#include "tools/report/monitor.hpp"
+#include "tools/monitor/text.hpp"
+#include "tools/monitor/view.hpp"
+#include "tools/monitor/page.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 namespace {
 
 using nlohmann::json;
@@ -34,16 +34,16 @@ json viewed_status(int frames, const std::string& model = "/srv/models/town.walk
         f.accuracy = 100;
         telemetry->add(f);
     }
-    report::MonitorPage page;
+    MonitorPage page;
     page.figures = &telemetry->figures();
     page.version = "1.2.3";
-    page.state = report::ServiceState::walking;
+    page.state = ServiceState::walking;
     page.walk.model = model;
     page.walk.rate_hz = 50;
     page.walk.setup = telemetry->figures().setup;
     page.degraded = {{"SCHED_FIFO is refused", "grant CAP_SYS_NICE"}};
     page.threads = rt::read_busy_threads();
-    return json::parse(report::status_json(page));
+    return json::parse(status_json(page));
 }
 
 std::string joined(const std::vector<std::string>& lines) {
@@ -131,4 +131,4 @@ TEST(View, SomethingElseIsNotTakenForAStatus) {
 }
 
 }  // namespace
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

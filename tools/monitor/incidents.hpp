@@ -14,7 +14,7 @@
 #include "rt/base/result.hpp"
 #include "rt/monitor/black_box.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 struct IncidentLimits {
     std::size_t folders = 20;             ///< the oldest is removed for a new one
@@ -66,4 +66,4 @@ private:
 Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::Incident& incident, const IncidentLimits& limits,
                                    std::int64_t unix_s, const MissedFrame* missed = nullptr);
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -1,5 +1,5 @@
 // Addresses read and written.
-#include "tools/console/address.hpp"
+#include "tools/monitor/address.hpp"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -96,4 +96,4 @@ SocketAddress socket_address(const Address& address) {
     return out;
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -1,5 +1,5 @@
 // Binding, and taking the place of a dead socket.
-#include "tools/console/listen.hpp"
+#include "tools/monitor/listen.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 #include <cstring>
 #include <filesystem>
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -85,4 +85,4 @@ Result<Listener> open_listener(const Address& wanted) {
     return l;
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -1,5 +1,5 @@
 // Words, colours, bars and the frame chart.
-#include "tools/console/text.hpp"
+#include "tools/monitor/text.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -162,4 +162,4 @@ std::vector<std::string> frame_chart(const json& frames, double period_ms, const
     return lines;
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "rt/threads/capability.hpp"
-#include "tests/report/exposition.hpp"
-#include "tools/report/monitor.hpp"
+#include "tests/monitor/exposition.hpp"
+#include "tools/monitor/page.hpp"
 
-namespace surefoot::report {
+namespace surefoot::monitor {
 namespace {
 
 constexpr std::int64_t period_30_ns = 33'333'333;
@@ -217,4 +217,4 @@ TEST_F(MonitorPages, TheStatusPageIsOneLineOfJsonThatAgreesWithTheMetrics) {
 }
 
 }  // namespace
-}  // namespace surefoot::report
+}  // namespace surefoot::monitor

@@ -12,11 +12,11 @@
 #include <thread>
 
 #include "rt/base/file.hpp"
-#include "tests/console/http.hpp"
+#include "tests/monitor/http.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tools/console/incidents.hpp"
+#include "tools/monitor/incidents.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -180,4 +180,4 @@ TEST(Incidents, WhatAnEarlierProcessLeftHalfIsClearedAway) {
 }
 
 }  // namespace
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -3,7 +3,7 @@
 # usage: monitor_cli.sh SUREFOOT
 set -u
 surefoot=$(realpath "$1")
-source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/contract.sh"
+source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/../contract.sh"
 unset RUNTIME_DIRECTORY
 
 "$surefoot" scene forest --scale 0.3 -o f.glb >/dev/null && "$surefoot" bake f.glb -o f.walk >/dev/null || complain "no model to walk"

@@ -1,5 +1,5 @@
 // One poll loop: accept within a rate, read a request, write a page, drop who is late.
-#include "tools/console/server.hpp"
+#include "tools/monitor/server.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -12,9 +12,9 @@
 
 #include "rt/clock/clock.hpp"
 #include "rt/threads/placement.hpp"
-#include "tools/console/listen.hpp"
+#include "tools/monitor/listen.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -224,4 +224,4 @@ void Server::drop_late(std::int64_t now_ns) {
     std::erase_if(readers_, [](const auto& r) { return r->over; });
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -14,12 +14,12 @@
 
 #include "rt/base/file.hpp"
 #include "rt/clock/clock.hpp"
-#include "tests/console/http.hpp"
+#include "tests/monitor/http.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tools/console/client.hpp"
-#include "tools/console/server.hpp"
+#include "tools/monitor/client.hpp"
+#include "tools/monitor/server.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 namespace {
 
 using test::RawReader;
@@ -250,4 +250,4 @@ TEST(Client, NamesThePlaceAndTheRemedy) {
 }
 
 }  // namespace
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

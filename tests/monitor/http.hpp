@@ -14,15 +14,15 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/console/address.hpp"
+#include "tools/monitor/address.hpp"
 
 namespace surefoot::test {
 
 /// A connection that does what it is told, and nothing else.
 class RawReader {
 public:
-    explicit RawReader(const console::Address& address, int receive_bytes = 0) {
-        const console::SocketAddress to = console::socket_address(address);
+    explicit RawReader(const Address& address, int receive_bytes = 0) {
+        const SocketAddress to = socket_address(address);
         fd_ = ::socket(to.family(), SOCK_STREAM | SOCK_CLOEXEC, 0);
         if (receive_bytes > 0) (void)::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_bytes, sizeof receive_bytes);
         connected_ = ::connect(fd_, to.get(), to.length) == 0;

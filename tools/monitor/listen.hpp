@@ -1,12 +1,12 @@
-// Inside the console: a listening socket, or why there is none.
+// Inside this room: a listening socket, or why there is none.
 #pragma once
 
 #include <cstdint>
 
 #include "rt/base/result.hpp"
-#include "tools/console/address.hpp"
+#include "tools/monitor/address.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 struct Listener {
     int fd = -1;
@@ -18,4 +18,4 @@ Result<Listener> open_listener(const Address& address);
 /// The inode of a path; 0 where there is none.
 std::uint64_t inode_of(const std::string& path);
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

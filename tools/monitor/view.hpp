@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "rt/base/result.hpp"
-#include "tools/console/address.hpp"
+#include "tools/monitor/address.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 struct Look {
     bool colour = false, unicode = false;
@@ -27,4 +27,4 @@ std::vector<std::string> status_page(const nlohmann::json& status, const Look& l
 std::vector<std::string> top_page(const nlohmann::json& status, const nlohmann::json& before, double between_s, const Look& look);
 std::string top_line(const nlohmann::json& status, const nlohmann::json& before, double between_s);
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "tools/report/monitor.hpp"
+#include "tools/monitor/page.hpp"
 
-namespace surefoot::report {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -43,7 +43,7 @@ ordered_json distribution_json(const rt::Histogram& h, double ns_per_unit) {
 
 /// Exact quantiles of a few values; changes their order.
 ordered_json few_json(std::vector<double> values) {
-    const Quantiles q = quantiles(std::move(values));
+    const report::Quantiles q = report::quantiles(std::move(values));
     return {{"min", q.min}, {"p50", q.p50}, {"p99", q.p99}, {"max", q.max}, {"mean", q.mean}};
 }
 
@@ -176,7 +176,7 @@ std::string_view service_state_name(ServiceState state) {
 
 std::span<const std::string_view> degraded_reasons() { return reasons; }
 
-std::string_view degraded_reason(const Degraded& degraded) {
+std::string_view degraded_reason(const report::Degraded& degraded) {
     for (const auto& [text, reason] : telltales)
         if (degraded.what.find(text) != std::string::npos) return reason;
     return "other";
@@ -185,7 +185,7 @@ std::string_view degraded_reason(const Degraded& degraded) {
 std::string status_json(const MonitorPage& p) {
     const Figures& f = *p.figures;
     ordered_json degraded = ordered_json::array(), notes = ordered_json::array();
-    for (const Degraded& d : p.degraded)
+    for (const report::Degraded& d : p.degraded)
         degraded.push_back({{"reason", std::string(degraded_reason(d))}, {"what", d.what}, {"remedy", d.remedy}});
     for (const MonitoredNote& n : p.notes) notes.push_back({{"age_s", n.age_s}, {"text", n.text}});
     ordered_json j = {{"version", p.version}, {"pid", p.pid}, {"state", std::string(service_state_name(p.state))}};
@@ -215,4 +215,4 @@ std::string status_json(const MonitorPage& p) {
     return j.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace surefoot::report
+}  // namespace surefoot::monitor

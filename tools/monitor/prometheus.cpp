@@ -7,9 +7,9 @@
 #include <iterator>
 #include <limits>
 
-#include "tools/report/monitor.hpp"
+#include "tools/monitor/page.hpp"
 
-namespace surefoot::report {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -113,7 +113,7 @@ void add_identity(Exposition& e, const MonitorPage& p) {
              "1 where something that real time needs is refused or missing, by reason; `surefoot status` says how to grant it.");
     for (const std::string_view reason : degraded_reasons()) {
         bool lacking = false;
-        for (const Degraded& d : p.degraded) lacking = lacking || degraded_reason(d) == reason;
+        for (const report::Degraded& d : p.degraded) lacking = lacking || degraded_reason(d) == reason;
         e.sample(lacking ? 1 : 0, fmt::format("reason=\"{}\"", reason));
     }
     e.gauge("surefoot_start_time_seconds", "When this monitor started, seconds since 1970.", p.started_unix_s);
@@ -283,4 +283,4 @@ std::string prometheus_text(const MonitorPage& page) {
     return e.take();
 }
 
-}  // namespace surefoot::report
+}  // namespace surefoot::monitor

@@ -12,7 +12,7 @@
 #include "rt/monitor/telemetry.hpp"
 #include "tools/report/report.hpp"
 
-namespace surefoot::report {
+namespace surefoot::monitor {
 
 /// What the service does. Prometheus has a series for each.
 enum class ServiceState : std::uint8_t { starting, walking, stopped, failed };
@@ -59,7 +59,7 @@ struct MonitorPage {
     double started_unix_s = 0;     ///< the same moment as wall time, seconds since 1970
     double last_frame_age_s = -1;  ///< since the newest frame that the figures know of; -1: none yet, or the clock is not real
     MonitoredWalk walk;
-    std::vector<Degraded> degraded;
+    std::vector<report::Degraded> degraded;
     MonitoredInput input;
     std::vector<MonitoredNote> notes;  ///< the last few, oldest first; only in the JSON
     rt::ProcessFigures process;
@@ -69,7 +69,7 @@ struct MonitorPage {
 
 /// What a lack is about, as a word out of a fixed list, so that a label stays bounded: fifo, memory_lock, isolated_core,
 /// throttled, placing, cost_table, switched_off, census, sanitizer, other.
-std::string_view degraded_reason(const Degraded& degraded);
+std::string_view degraded_reason(const report::Degraded& degraded);
 std::span<const std::string_view> degraded_reasons();
 
 /// Prometheus' text format 0.0.4. Names, units and HELP are the contract; every label's values are bounded.
@@ -79,4 +79,4 @@ constexpr std::string_view prometheus_content_type = "text/plain; version=0.0.4;
 /// One JSON object; numbers that are not known are null.
 std::string status_json(const MonitorPage& page);
 
-}  // namespace surefoot::report
+}  // namespace surefoot::monitor

@@ -18,11 +18,11 @@
 #include "rt/base/result.hpp"
 #include "rt/monitor/black_box.hpp"
 #include "rt/monitor/telemetry.hpp"
-#include "tools/console/incidents.hpp"
-#include "tools/console/server.hpp"
-#include "tools/report/monitor.hpp"
+#include "tools/monitor/incidents.hpp"
+#include "tools/monitor/server.hpp"
+#include "tools/monitor/page.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 struct MonitorOptions {
     std::string address;        ///< see parse_address(); empty: nobody can look
@@ -46,12 +46,12 @@ public:
     Monitor& operator=(const Monitor&) = delete;
 
     /// Any thread but the monitor's, in any order:
-    void begin_walk(const report::MonitoredWalk& walk);  ///< before its first record
+    void begin_walk(const MonitoredWalk& walk);  ///< before its first record
     void end_walk();                                     ///< after its last record
-    void set_state(report::ServiceState state);
+    void set_state(ServiceState state);
     void set_degraded(std::vector<report::Degraded> degraded);
     void add_degraded(const report::Degraded& degraded);
-    void set_input(const report::MonitoredInput& input);
+    void set_input(const MonitoredInput& input);
     void add_note(std::string_view text);  ///< told to the user: the last few are shown
 
     /// A missed frame, for the incident that it belongs to.
@@ -69,7 +69,7 @@ public:
 private:
     explicit Monitor(MonitorOptions options);
     void take_walk();
-    const report::MonitorPage& fill_page(bool with_threads);
+    const MonitorPage& fill_page(bool with_threads);
 
     MonitorOptions options_;
     // The monitor thread's, and (the published copy) the readers'.
@@ -82,7 +82,7 @@ private:
 
     std::mutex facts_mutex_;  ///< of what callers set and readers copy; never taken for a record, but for a walk's first
     rt::TelemetrySetup setup_;
-    report::MonitorPage facts_;
+    MonitorPage facts_;
     struct Note {
         std::int64_t at_ns = 0;
         std::string text;
@@ -100,4 +100,4 @@ private:
     std::unique_ptr<Server> server_;  ///< last: its thread uses all the others
 };
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 
-#include "tools/console/text.hpp"
+#include "tools/monitor/text.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -187,4 +187,4 @@ std::string top_line(const json& s, const json& before, double between_s) {
                        100 * number_at(s, "/recent/budget_used/mean"), std::isnan(accuracy) ? "exact" : short_number(accuracy));
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -1,5 +1,5 @@
 // Connect, ask, read to the end; one deadline for all of it.
-#include "tools/console/client.hpp"
+#include "tools/monitor/client.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -13,7 +13,7 @@
 
 #include "rt/clock/clock.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -122,4 +122,4 @@ Result<std::string> fetch(const Address& address, std::string_view path, std::in
     }
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

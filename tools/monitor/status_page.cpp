@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "tools/console/text.hpp"
+#include "tools/monitor/text.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
@@ -147,4 +147,4 @@ std::vector<std::string> status_page(const json& status, const Look& look) {
     return lines;
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

@@ -1,5 +1,5 @@
 // The walk's words into the monitor's.
-#include "tools/console/watch.hpp"
+#include "tools/monitor/watch.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -7,12 +7,12 @@
 
 #include "render/capture/capture.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 namespace {
 
-report::MonitoredWalk monitored(const app::WalkRequest& request, const app::WalkStart& start) {
-    report::MonitoredWalk w;
+MonitoredWalk monitored(const app::WalkRequest& request, const app::WalkStart& start) {
+    MonitoredWalk w;
     w.model = request.model_file;
     w.path = request.input_file.empty() ? start.path : request.input_file;
     w.selector = request.selector;
@@ -66,4 +66,4 @@ void watch_with(Monitor& monitor, const app::WalkRequest& request, app::WalkWatc
     });
 }
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

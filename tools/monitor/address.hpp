@@ -8,7 +8,7 @@
 
 #include "rt/base/result.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 struct Address {
     std::string socket_path;  ///< empty: TCP
@@ -32,4 +32,4 @@ struct SocketAddress {
 };
 SocketAddress socket_address(const Address& address);
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

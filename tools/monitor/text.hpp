@@ -1,4 +1,4 @@
-// Inside the console: numbers out of JSON, words, colours, bars, and lines that end where the screen does.
+// Inside this room: numbers out of JSON, words, colours, bars, and lines that end where the screen does.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/console/view.hpp"
+#include "tools/monitor/view.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 /// A number at a JSON pointer ("/recent/frame_ms/p50"); NaN where there is none.
 double number_at(const nlohmann::json& j, const char* pointer);
@@ -41,4 +41,4 @@ std::string causes_text(const nlohmann::json& causes);
 std::vector<std::string> frame_chart(const nlohmann::json& frames, double period_ms, const Look& look, std::size_t columns,
                                      std::size_t rows);
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor

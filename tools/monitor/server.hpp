@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "rt/base/result.hpp"
-#include "tools/console/address.hpp"
+#include "tools/monitor/address.hpp"
 
-namespace surefoot::console {
+namespace surefoot::monitor {
 
 struct ServerLimits {
     std::size_t readers = 32;          ///< at once; one more, and the oldest is dropped
@@ -74,4 +74,4 @@ private:
     std::thread thread_;
 };
 
-}  // namespace surefoot::console
+}  // namespace surefoot::monitor
