@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "tools/daemon/daemon.hpp"
+#include "systemd/daemon/daemon.hpp"
 
 int main(int argc, char** argv) {
     using namespace surefoot::app;

@@ -6,7 +6,7 @@
 #include "rt/threads/capability.hpp"
 #include "rt/threads/guard.hpp"
 #include "tests/daemon/running.hpp"
-#include "tools/daemon/exit_code.hpp"
+#include "systemd/daemon/exit_code.hpp"
 
 namespace surefoot::daemon::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <ostream>
 
 #include "tests/daemon/running.hpp"
-#include "tools/daemon/exit_code.hpp"
+#include "systemd/daemon/exit_code.hpp"
 
 namespace surefoot::daemon::test {
 namespace {

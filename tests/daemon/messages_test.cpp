@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "tests/daemon/notify_socket.hpp"
-#include "tools/daemon/log.hpp"
-#include "tools/daemon/notify.hpp"
+#include "systemd/daemon/log.hpp"
+#include "systemd/daemon/notify.hpp"
 
 namespace surefoot::daemon {
 namespace {

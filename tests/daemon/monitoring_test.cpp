@@ -3,8 +3,8 @@
 
 #include "tests/daemon/running.hpp"
 #include "tools/monitor/client.hpp"
-#include "tools/daemon/exit_code.hpp"
-#include "tools/daemon/monitoring.hpp"
+#include "systemd/daemon/exit_code.hpp"
+#include "systemd/daemon/monitoring.hpp"
 
 namespace surefoot::daemon::test {
 namespace {

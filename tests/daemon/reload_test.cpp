@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/daemon/running.hpp"
-#include "tools/daemon/exit_code.hpp"
+#include "systemd/daemon/exit_code.hpp"
 
 namespace surefoot::daemon::test {
 namespace {

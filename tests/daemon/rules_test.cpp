@@ -1,9 +1,9 @@
 // The daemon's pure rules: when the watchdog is fed, how bursts of misses are told, how the status reads.
 #include <gtest/gtest.h>
 
-#include "tools/daemon/heartbeat.hpp"
-#include "tools/daemon/misses.hpp"
-#include "tools/daemon/standing.hpp"
+#include "systemd/daemon/heartbeat.hpp"
+#include "systemd/daemon/misses.hpp"
+#include "systemd/daemon/standing.hpp"
 
 namespace surefoot::daemon {
 namespace {

@@ -44,7 +44,7 @@ inline const std::vector<Room>& rooms() {
         {"render", {"render/"}},  // the door, engine.hpp, and what stands right behind it
         {"tools/app", {"*"}},
         {"tools/cli", {"*"}},
-        {"tools/daemon", {"*"}},
+        {"systemd/daemon", {"rt/", "config", "tools/app", "tools/monitor"}},
         {"tools/monitor", {"*"}},
         {"tools/accuracy", {"*"}},
         {"tools/soak", {"*"}},

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A walk that can be looked at: `walk --monitor`, `status`, `top` and a scraper, on the tool itself.
-# usage: monitor_cli.sh SUREFOOT
+# usage: cli.sh SUREFOOT
 set -u
 surefoot=$(realpath "$1")
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/../contract.sh"

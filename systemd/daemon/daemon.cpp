@@ -1,5 +1,5 @@
 // One walk after another, each as the newest good configuration says.
-#include "tools/daemon/daemon.hpp"
+#include "systemd/daemon/daemon.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -18,13 +18,13 @@
 #include "rt/threads/runaway.hpp"
 #include "tools/app/state.hpp"
 #include "tools/monitor/watch.hpp"
-#include "tools/daemon/configuration.hpp"
-#include "tools/daemon/exit_code.hpp"
-#include "tools/daemon/log.hpp"
-#include "tools/daemon/misses.hpp"
-#include "tools/daemon/monitoring.hpp"
-#include "tools/daemon/service.hpp"
-#include "tools/daemon/standing.hpp"
+#include "systemd/daemon/configuration.hpp"
+#include "systemd/daemon/exit_code.hpp"
+#include "systemd/daemon/log.hpp"
+#include "systemd/daemon/misses.hpp"
+#include "systemd/daemon/monitoring.hpp"
+#include "systemd/daemon/service.hpp"
+#include "systemd/daemon/standing.hpp"
 
 namespace surefoot::daemon {
 

@@ -1,11 +1,11 @@
 // Reading and checking.
-#include "tools/daemon/configuration.hpp"
+#include "systemd/daemon/configuration.hpp"
 
 #include <fmt/format.h>
 
 #include "tools/app/settings_request.hpp"
 #include "tools/monitor/address.hpp"
-#include "tools/daemon/monitoring.hpp"
+#include "systemd/daemon/monitoring.hpp"
 
 namespace surefoot::daemon {
 

@@ -1,11 +1,11 @@
 // The command line, by CLI11.
-#include "tools/daemon/options.hpp"
+#include "systemd/daemon/options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <sstream>
 
-#include "tools/daemon/exit_code.hpp"
+#include "systemd/daemon/exit_code.hpp"
 
 namespace surefoot::daemon {
 

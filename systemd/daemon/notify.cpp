@@ -1,5 +1,5 @@
 // One datagram a message.
-#include "tools/daemon/notify.hpp"
+#include "systemd/daemon/notify.hpp"
 
 #include <sys/socket.h>
 #include <sys/time.h>

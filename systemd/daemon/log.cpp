@@ -1,5 +1,5 @@
 // Lines and datagrams.
-#include "tools/daemon/log.hpp"
+#include "systemd/daemon/log.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>

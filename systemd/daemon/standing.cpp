@@ -1,5 +1,5 @@
 // The shared state, and its one line.
-#include "tools/daemon/standing.hpp"
+#include "systemd/daemon/standing.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "rt/clock/grid.hpp"
-#include "tools/daemon/configuration.hpp"
+#include "systemd/daemon/configuration.hpp"
 
 namespace surefoot::daemon {
 

@@ -7,7 +7,7 @@
 #include "config/settings.hpp"
 #include "rt/base/result.hpp"
 #include "tools/app/walk.hpp"
-#include "tools/daemon/options.hpp"
+#include "systemd/daemon/options.hpp"
 
 namespace surefoot::daemon {
 

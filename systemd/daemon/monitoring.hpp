@@ -7,7 +7,7 @@
 
 #include "config/settings.hpp"
 #include "tools/monitor/monitor.hpp"
-#include "tools/daemon/log.hpp"
+#include "systemd/daemon/log.hpp"
 
 namespace surefoot::daemon {
 

@@ -1,5 +1,5 @@
 // The rule: a ping needs a frame that was not there at the last ping.
-#include "tools/daemon/heartbeat.hpp"
+#include "systemd/daemon/heartbeat.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // The service thread's loop: twenty looks a second, and one at every signal.
-#include "tools/daemon/service.hpp"
+#include "systemd/daemon/service.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -10,8 +10,8 @@
 #include "rt/clock/clock.hpp"
 #include "rt/threads/placement.hpp"
 #include "rt/threads/runaway.hpp"
-#include "tools/daemon/configuration.hpp"
-#include "tools/daemon/exit_code.hpp"
+#include "systemd/daemon/configuration.hpp"
+#include "systemd/daemon/exit_code.hpp"
 
 namespace surefoot::daemon {
 

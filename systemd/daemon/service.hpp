@@ -6,11 +6,11 @@
 #include <string>
 #include <thread>
 
-#include "tools/daemon/heartbeat.hpp"
-#include "tools/daemon/log.hpp"
-#include "tools/daemon/notify.hpp"
-#include "tools/daemon/options.hpp"
-#include "tools/daemon/standing.hpp"
+#include "systemd/daemon/heartbeat.hpp"
+#include "systemd/daemon/log.hpp"
+#include "systemd/daemon/notify.hpp"
+#include "systemd/daemon/options.hpp"
+#include "systemd/daemon/standing.hpp"
 
 namespace surefoot::daemon {
 

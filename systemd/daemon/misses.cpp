@@ -1,5 +1,5 @@
 // Bursts of misses.
-#include "tools/daemon/misses.hpp"
+#include "systemd/daemon/misses.hpp"
 
 #include <fmt/format.h>
 

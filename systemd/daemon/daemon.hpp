@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/app/walk.hpp"
-#include "tools/daemon/options.hpp"
+#include "systemd/daemon/options.hpp"
 
 namespace surefoot::daemon {
 

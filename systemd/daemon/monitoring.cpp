@@ -1,5 +1,5 @@
 // From settings to a monitor.
-#include "tools/daemon/monitoring.hpp"
+#include "systemd/daemon/monitoring.hpp"
 
 #include <cstdlib>
 
