@@ -1,5 +1,5 @@
 // What a user may set for a walk and for the daemon: one schema table with units, limits, defaults and help; values from
-// TOML files and the command line; and where each value came from. Knows no room's types: tools/app maps it to theirs.
+// TOML files and the command line; and where each value came from. Knows no room's types: tools/walk maps it to theirs.
 #pragma once
 
 #include <array>

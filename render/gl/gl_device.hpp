@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "render/draw/tables.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/resources.hpp"
-#include "render/draw/tables.hpp"
 
 namespace surefoot::gl {
 

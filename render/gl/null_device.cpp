@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "render/gl/program.hpp"
 #include "render/draw/tables.hpp"
+#include "render/gl/program.hpp"
 #include "render/model/item_costs.hpp"
 #include "rt/base/random.hpp"
 

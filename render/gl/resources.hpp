@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "render/draw/texture_arrays.hpp"
 #include "render/gl/api.hpp"
 #include "render/gl/program.hpp"
-#include "render/draw/texture_arrays.hpp"
 #include "render/model/model.hpp"
 #include "rt/base/result.hpp"
 

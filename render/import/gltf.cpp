@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "render/image/srgb.hpp"
 #include "render/import/finish.hpp"
 #include "render/import/gltf_access.hpp"
 #include "render/import/gltf_load.hpp"
 #include "render/import/gltf_material.hpp"
 #include "render/import/gltf_nodes.hpp"
-#include "render/image/srgb.hpp"
 
 namespace surefoot::importer {
 namespace {
@@ -54,8 +54,8 @@ Result<std::vector<std::array<std::uint8_t, 4>>> read_colours(const tinygltf::Mo
     std::vector<std::array<std::uint8_t, 4>> out(floats->count());
     for (std::size_t i = 0; i < out.size(); ++i) {
         const float* c = floats->values.data() + i * floats->components;
-        out[i] = {image::to_byte(image::encode_srgb(c[0])), image::to_byte(image::encode_srgb(c[1])), image::to_byte(image::encode_srgb(c[2])),
-                  floats->components > 3 ? image::to_byte(c[3]) : std::uint8_t{255}};
+        out[i] = {image::to_byte(image::encode_srgb(c[0])), image::to_byte(image::encode_srgb(c[1])),
+                  image::to_byte(image::encode_srgb(c[2])), floats->components > 3 ? image::to_byte(c[3]) : std::uint8_t{255}};
     }
     return out;
 }

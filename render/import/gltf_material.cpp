@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "render/image/srgb.hpp"
 #include "render/import/finish.hpp"
 #include "render/import/gltf_load.hpp"
-#include "render/image/srgb.hpp"
 
 namespace surefoot::importer {
 namespace {

@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "render/image/srgb.hpp"
 #include "render/import/corner_map.hpp"
 #include "render/import/finish.hpp"
 #include "render/import/obj_material.hpp"
 #include "render/import/polygon.hpp"
-#include "render/image/srgb.hpp"
 #include "render/import/text_cursor.hpp"
 #include "rt/base/file.hpp"
 

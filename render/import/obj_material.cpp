@@ -65,7 +65,7 @@ void merge_opacity(Reading& reading, Material& material, const std::string& name
     image::Image merged = reading.scene.images[source];
     bool own_alpha = false;
     for (std::size_t i = 3; i < merged.rgba.size() && !own_alpha; i += 4) own_alpha = merged.rgba[i] != 255;
-    const Image* colours = material.image == none ? nullptr : &reading.scene.images[material.image];
+    const image::Image* colours = material.image == none ? nullptr : &reading.scene.images[material.image];
     if (colours != nullptr && (colours->width != merged.width || colours->height != merged.height)) {
         reading.scene.warnings.push_back(
             fmt::format("material '{}': map_d '{}' left out, its size is not that of map_Kd", material.name, name));

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "render/image/srgb.hpp"
 #include "render/import/finish.hpp"
 #include "render/import/ostf.hpp"
-#include "render/image/srgb.hpp"
 #include "render/import/text_cursor.hpp"
 #include "rt/base/hash.hpp"
 
@@ -81,7 +81,8 @@ Primitive weld(const std::vector<OstfVertex>& vertices) {
             p.positions.push_back(v.position);
             p.normals.push_back(v.normal);
             p.uvs.emplace_back(v.uv.x, 1.0F - v.uv.y);  // OpenGL's, from the picture's lower edge
-            p.colours.push_back({image::to_byte(v.colour.x * scale), image::to_byte(v.colour.y * scale), image::to_byte(v.colour.z * scale), 255});
+            p.colours.push_back({image::to_byte(v.colour.x * scale), image::to_byte(v.colour.y * scale),
+                                 image::to_byte(v.colour.z * scale), 255});
         }
         p.indices.push_back(table[slot]);
     }

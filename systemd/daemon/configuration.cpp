@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "tools/app/settings_request.hpp"
-#include "tools/monitor/address.hpp"
 #include "systemd/daemon/monitoring.hpp"
+#include "tools/monitor/address.hpp"
+#include "tools/walk/settings_request.hpp"
 
 namespace surefoot::daemon {
 
@@ -63,9 +63,9 @@ Loaded load(const Options& options) {
     return loaded;
 }
 
-app::WalkRequest request_of(const config::Configuration& configuration, const std::string& config_file) {
-    app::WalkRequest request;
-    app::apply_settings(configuration, request);
+walk::WalkRequest request_of(const config::Configuration& configuration, const std::string& config_file) {
+    walk::WalkRequest request;
+    walk::apply_settings(configuration, request);
     request.config_file = config_file;
     request.endless = true;
     return request;

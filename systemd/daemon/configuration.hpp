@@ -6,8 +6,8 @@
 
 #include "config/settings.hpp"
 #include "rt/base/result.hpp"
-#include "tools/app/walk.hpp"
 #include "systemd/daemon/options.hpp"
+#include "tools/walk/walk.hpp"
 
 namespace surefoot::daemon {
 
@@ -21,7 +21,7 @@ struct Loaded {
 Loaded load(const Options& options);
 
 /// The walk that is asked for: without end.
-app::WalkRequest request_of(const config::Configuration& configuration, const std::string& config_file);
+walk::WalkRequest request_of(const config::Configuration& configuration, const std::string& config_file);
 
 /// "60 Hz, 1280x720, osmesa".
 std::string in_short(const config::Settings& settings);

@@ -16,8 +16,6 @@
 #include "rt/base/file.hpp"
 #include "rt/threads/memory.hpp"
 #include "rt/threads/runaway.hpp"
-#include "tools/app/state.hpp"
-#include "tools/monitor/watch.hpp"
 #include "systemd/daemon/configuration.hpp"
 #include "systemd/daemon/exit_code.hpp"
 #include "systemd/daemon/log.hpp"
@@ -25,6 +23,8 @@
 #include "systemd/daemon/monitoring.hpp"
 #include "systemd/daemon/service.hpp"
 #include "systemd/daemon/standing.hpp"
+#include "tools/monitor/watch.hpp"
+#include "tools/walk/state.hpp"
 
 namespace surefoot::daemon {
 
@@ -62,10 +62,10 @@ void say_burst(Log& log, const std::optional<Burst>& burst) {
              {"SUREFOOT_WORST_LATE_US", std::to_string(burst->worst_late_ns / 1000)}});
 }
 
-app::WalkWatch watch_of(Log& log, Standing& standing, Bursts& bursts, const app::FaultHook& inject) {
-    app::WalkWatch watch;
-    watch.on_step = [&](app::WalkStep step) { standing.step.store(step); };
-    watch.on_started = [&](const app::WalkStart& start) {
+walk::WalkWatch watch_of(Log& log, Standing& standing, Bursts& bursts, const walk::FaultHook& inject) {
+    walk::WalkWatch watch;
+    watch.on_step = [&](walk::WalkStep step) { standing.step.store(step); };
+    watch.on_started = [&](const walk::WalkStart& start) {
         for (const report::Degraded& lack : start.degraded) say_lack(log, standing, lack);
         if (!start.uncalibrated.empty() && standing.uncalibrated(start.uncalibrated))
             log.say(Priority::warning, event::uncalibrated, start.uncalibrated);
@@ -84,9 +84,9 @@ app::WalkWatch watch_of(Log& log, Standing& standing, Bursts& bursts, const app:
 }
 
 /// A stop that could not be remembered would be forgotten by the next start: known before the first frame.
-Result<void> check_state(const app::WalkRequest& request) {
-    if (request.input_file != app::live_input) return {};
-    const std::string file = app::state_directory(request.state_dir) + "/probe";
+Result<void> check_state(const walk::WalkRequest& request) {
+    if (request.input_file != walk::live_input) return {};
+    const std::string file = walk::state_directory(request.state_dir) + "/probe";
     auto probe = AtomicFile::create(file);
     if (!probe) return probe.error();
     const std::array<std::byte, 4096> page{};
@@ -94,8 +94,8 @@ Result<void> check_state(const app::WalkRequest& request) {
 }
 
 Ending walk(const config::Configuration& configuration, const Options& options, Log& log, Standing& standing,
-            monitor::Monitor* monitor, const app::FaultHook& inject) {
-    const app::WalkRequest request = request_of(configuration, options.config_file);
+            monitor::Monitor* monitor, const walk::FaultHook& inject) {
+    const walk::WalkRequest request = request_of(configuration, options.config_file);
     if (auto ok = check_state(request); !ok) {
         const Error& e = ok.error();
         return {true, {e.place, "the state folder must keep a stop, and cannot: " + e.what, e.remedy}, exit_cannot_write};
@@ -107,12 +107,12 @@ Ending walk(const config::Configuration& configuration, const Options& options, 
         if (monitor != nullptr) monitor->add_note(text);
     };
     Bursts bursts;
-    app::WalkWatch watch = watch_of(log, standing, bursts, inject);
+    walk::WalkWatch watch = watch_of(log, standing, bursts, inject);
     if (monitor != nullptr) {
         monitor->set_state(monitor::ServiceState::starting);
         monitor::watch_with(*monitor, request, watch);
     }
-    auto outcome = app::run_walk(request, progress, watch);
+    auto outcome = walk::run_walk(request, progress, watch);
     say_burst(log, bursts.finish());
     if (!outcome) return {true, outcome.error(), exit_code_of(standing.step.load())};
     for (const std::string& note : outcome->notes) log.say(Priority::notice, event::input, note);
@@ -125,7 +125,7 @@ Ending walk(const config::Configuration& configuration, const Options& options, 
 
 /// Walks until the end; of a configuration that never showed a frame back to the last that did.
 ExitCode walk_on(config::Configuration current, const Options& options, Log& log, Standing& standing, monitor::Monitor* monitor,
-                 const app::FaultHook& inject) {
+                 const walk::FaultHook& inject) {
     std::optional<config::Configuration> good;
     while (true) {
         // In this order: what a signal asks for in between is seen below, or ends the walk as it begins.
@@ -174,7 +174,7 @@ std::string environment(const char* name) {
 
 }  // namespace
 
-int run(const Options& options, const app::FaultHook& inject) {
+int run(const Options& options, const walk::FaultHook& inject) {
     if (options.check) return check(options);
     block_service_signals();
     Log log(default_target());
@@ -194,7 +194,7 @@ int run(const Options& options, const app::FaultHook& inject) {
     return walk_on(std::move(loaded.configuration), options, log, standing, monitor.get(), inject);
 }
 
-int run_main(int argc, char** argv, const app::FaultHook& inject) {
+int run_main(int argc, char** argv, const walk::FaultHook& inject) {
     keep_standard_files();
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);  // a file limit is an error of that file, not the end of the program

@@ -1,7 +1,7 @@
 // How surefootd ends: one number a kind of fault, named as sysexits.h names them, so that systemd shows the name too.
 #pragma once
 
-#include "tools/app/walk.hpp"
+#include "tools/walk/walk.hpp"
 
 namespace surefoot::daemon {
 
@@ -18,19 +18,19 @@ enum ExitCode : int {
 };
 
 /// Of an Error that run_walk() returned in this step.
-constexpr ExitCode exit_code_of(app::WalkStep step) {
+constexpr ExitCode exit_code_of(walk::WalkStep step) {
     switch (step) {
-        case app::WalkStep::request:
+        case walk::WalkStep::request:
             return exit_config;
-        case app::WalkStep::input:
-        case app::WalkStep::model:
+        case walk::WalkStep::input:
+        case walk::WalkStep::model:
             return exit_no_input;
-        case app::WalkStep::real_time:
+        case walk::WalkStep::real_time:
             return exit_no_real_time;
-        case app::WalkStep::device:
+        case walk::WalkStep::device:
             return exit_unavailable;
-        case app::WalkStep::frames:
-        case app::WalkStep::ending:
+        case walk::WalkStep::frames:
+        case walk::WalkStep::ending:
             break;
     }
     return exit_failure;

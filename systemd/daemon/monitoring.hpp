@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "config/settings.hpp"
-#include "tools/monitor/monitor.hpp"
 #include "systemd/daemon/log.hpp"
+#include "tools/monitor/monitor.hpp"
 
 namespace surefoot::daemon {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "config/settings.hpp"
-#include "tools/app/walk.hpp"
+#include "tools/walk/walk.hpp"
 
 namespace surefoot::daemon {
 
@@ -39,7 +39,7 @@ public:
     std::atomic<bool> stop_walk{false};  ///< the walk is to end, for good or to begin anew
     std::atomic<bool> leaving{false};    ///< for good
     std::atomic<bool> stalled{false};
-    std::atomic<app::WalkStep> step{app::WalkStep::request};
+    std::atomic<walk::WalkStep> step{walk::WalkStep::request};
 
     // The session's.
     void open(const config::Settings& settings);

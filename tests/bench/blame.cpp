@@ -19,7 +19,7 @@
 #include "rt/threads/capability.hpp"
 #include "rt/threads/memory.hpp"
 #include "tests/bench/stolen_frames.hpp"
-#include "tools/app/control_proof.hpp"
+#include "tools/walk/control_proof.hpp"
 
 namespace surefoot::bench {
 
@@ -109,13 +109,13 @@ void BlameStages::finish(rt::FrameRecord& r) {
 
 void BlameStages::account(rt::FrameRecord& r) {
     if (counts(r)) {
-        if (app::total_steal_ms() > stolen_before_ms_) {
+        if (walk::total_steal_ms() > stolen_before_ms_) {
             two_causes_.push_back(r.frame);
         } else if (--wanted_ == 0) {
             enough_ = true;
         }
     }
-    if (injected(r.frame + 1)) stolen_before_ms_ = app::total_steal_ms();
+    if (injected(r.frame + 1)) stolen_before_ms_ = walk::total_steal_ms();
     // The preparation falls behind for as long as it takes to make a set too old just at the injected frame.
     const bool stalled =
         cause_ == rt::Cause::prepared_too_old && r.frame % frames_apart < frames_apart / 2 && r.frame >= frames_apart;

@@ -15,7 +15,7 @@
 
 #include "render/engine.hpp"
 #include "render/model/walk_file.hpp"
-#include "tools/app/path_source.hpp"
+#include "tools/walk/path_source.hpp"
 
 namespace {
 
@@ -126,7 +126,7 @@ int main(int argc, char** argv) {
                2;
     auto model = model::read_walk(argv[1]);
     if (!model) return fail(model.error());
-    auto path = app::choose_path(argc > 4 ? argv[4] : "", argv[1], *model, argc > 5 ? std::atof(argv[5]) : 0);
+    auto path = walk::choose_path(argc > 4 ? argv[4] : "", argv[1], *model, argc > 5 ? std::atof(argv[5]) : 0);
     if (!path) return fail(path.error());
     const double far_m = argc > 6 ? std::atof(argv[6]) : 0;
     if (far_m != 0) shift(*model, path->path, far_m * glm::normalize(dvec3(1, 0, 1)));

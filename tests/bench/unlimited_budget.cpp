@@ -9,7 +9,7 @@
 #include "render/engine.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "render/model/walk_file.hpp"
-#include "tools/app/path_source.hpp"
+#include "tools/walk/path_source.hpp"
 
 namespace {
 int fail(const surefoot::Error& error) {
@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     const int poses = argc > 2 ? std::atoi(argv[2]) : 24;
     auto model = model::read_walk(argv[1]);
     if (!model) return fail(model.error());
-    auto path = app::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, argc > 4 ? std::atof(argv[4]) : 0);
+    auto path = walk::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, argc > 4 ? std::atof(argv[4]) : 0);
     if (!path) return fail(path.error());
     EngineOptions options;
     options.in_frame_check = false;

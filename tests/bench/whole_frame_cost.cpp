@@ -18,9 +18,9 @@
 #include "rt/threads/memory.hpp"
 #include "rt/threads/placement.hpp"
 #include "tests/bench/statistics.hpp"
-#include "tools/app/path_source.hpp"
-#include "tools/app/placing.hpp"
-#include "tools/app/state.hpp"
+#include "tools/walk/path_source.hpp"
+#include "tools/walk/placing.hpp"
+#include "tools/walk/state.hpp"
 
 namespace {
 
@@ -50,7 +50,7 @@ Rounds drawn(Engine& engine, const Path& path, std::size_t poses, int rounds) {
     for (int round = 0; round < rounds; ++round) {
         Random random(2026);  // the same poses again
         for (std::size_t i = 0; i < poses + warm_up; ++i) {
-            const Pose pose = app::random_pose(path, random);
+            const Pose pose = walk::random_pose(path, random);
             const double budget_us = random.range(3000, 28000);
             engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);
             engine.select(prepared, budget_us, {}, 0);
@@ -108,14 +108,14 @@ int main(int argc, char** argv) {
     model::WalkFileInfo info;
     auto model = model::read_walk(argv[1], &info);
     if (!model) return fail(model.error());
-    auto path = app::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, argc > 6 ? std::atof(argv[6]) : 0);
+    auto path = walk::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, argc > 6 ? std::atof(argv[6]) : 0);
     if (!path) return fail(path.error());
     std::string note;
-    auto costs = app::load_costs(app::state_directory(argc > 4 ? argv[4] : ""), "", note);
+    auto costs = walk::load_costs(walk::state_directory(argc > 4 ? argv[4] : ""), "", note);
     if (!costs) return fail(costs.error());
     if (!note.empty()) fmt::print(stderr, "{}\n", note);
     if (argc > 5 && std::string_view(argv[5]) == "fitted") {  // "fitted": as `surefoot calibrate MODEL.walk` left it
-        costs = app::fitted_costs(app::state_directory(argv[4]), *costs, {info.hash, 1280, 720, "egl"});
+        costs = walk::fitted_costs(walk::state_directory(argv[4]), *costs, {info.hash, 1280, 720, "egl"});
         if (!costs) return fail(costs.error());
     }
     (void)rt::prepare_memory({});
@@ -123,11 +123,11 @@ int main(int argc, char** argv) {
     options.in_frame_check = false;
     auto engine = Engine::open(std::move(*model), *costs, options);
     if (!engine) return fail(engine.error());
-    app::WalkRequest request;
-    auto plan = app::plan_placing(request, true);
+    walk::WalkRequest request;
+    auto plan = walk::plan_placing(request, true);
     if (!plan) return fail(plan.error());
-    (void)app::place_rasterisers(*plan);
-    (void)rt::place_thread(0, app::frame_placement(*plan));
+    (void)walk::place_rasterisers(*plan);
+    (void)rt::place_thread(0, walk::frame_placement(*plan));
     (*engine)->device().bind();
 
     constexpr int rounds = 8;

@@ -9,7 +9,7 @@
 #include "systemd/daemon/daemon.hpp"
 
 int main(int argc, char** argv) {
-    using namespace surefoot::app;
+    using namespace surefoot::walk;
     const char* named = std::getenv("SUREFOOT_TEST_FAULT");
     const std::string all = named == nullptr ? "" : named, fault = all.substr(0, all.find(':'));
     const std::string file = fault == all ? "" : all.substr(fault.size() + 1);

@@ -5,8 +5,8 @@
 
 #include "rt/threads/capability.hpp"
 #include "rt/threads/guard.hpp"
-#include "tests/daemon/running.hpp"
 #include "systemd/daemon/exit_code.hpp"
+#include "tests/daemon/running.hpp"
 
 namespace surefoot::daemon::test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <ostream>
 
-#include "tests/daemon/running.hpp"
 #include "systemd/daemon/exit_code.hpp"
+#include "tests/daemon/running.hpp"
 
 namespace surefoot::daemon::test {
 namespace {

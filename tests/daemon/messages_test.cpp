@@ -6,9 +6,9 @@
 
 #include <filesystem>
 
-#include "tests/daemon/notify_socket.hpp"
 #include "systemd/daemon/log.hpp"
 #include "systemd/daemon/notify.hpp"
+#include "tests/daemon/notify_socket.hpp"
 
 namespace surefoot::daemon {
 namespace {

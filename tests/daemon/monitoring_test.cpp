@@ -1,10 +1,10 @@
 // The daemon looked at from outside: live figures where the settings say, over a reload, and a walk that needs nobody to look.
 #include <gtest/gtest.h>
 
-#include "tests/daemon/running.hpp"
-#include "tools/monitor/client.hpp"
 #include "systemd/daemon/exit_code.hpp"
 #include "systemd/daemon/monitoring.hpp"
+#include "tests/daemon/running.hpp"
+#include "tools/monitor/client.hpp"
 
 namespace surefoot::daemon::test {
 namespace {

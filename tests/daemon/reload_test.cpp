@@ -1,8 +1,8 @@
 // SIGHUP: a good configuration takes over, a bad one changes nothing, and one that does not walk is taken back.
 #include <gtest/gtest.h>
 
-#include "tests/daemon/running.hpp"
 #include "systemd/daemon/exit_code.hpp"
+#include "tests/daemon/running.hpp"
 
 namespace surefoot::daemon::test {
 namespace {

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "rt/base/file.hpp"
-#include "tests/app/walk_fixture.hpp"
 #include "tests/daemon/notify_socket.hpp"
+#include "tests/walk/walk_fixture.hpp"
 
 namespace surefoot::daemon::test {
 

@@ -63,8 +63,8 @@ TEST(House, ForbiddenArrowsAreFound) {
     EXPECT_NE(include_problem("config/schema.cpp", "render/engine.hpp"), "");
     EXPECT_NE(include_problem("rt/base/file.cpp", "rt/frame/record.hpp"), "");
     EXPECT_NE(include_problem("rt/frame/loop.cpp", "config/settings.hpp"), "");
-    EXPECT_NE(include_problem("tools/report/page.cpp", "tools/app/walk.hpp"), "");
-    EXPECT_NE(include_problem("tools/app/walk.cpp", "tools/cli/command.hpp"), "");
+    EXPECT_NE(include_problem("tools/report/page.cpp", "tools/walk/walk.hpp"), "");
+    EXPECT_NE(include_problem("tools/walk/walk.cpp", "tools/cli/command.hpp"), "");
     EXPECT_NE(include_problem("systemd/daemon/daemon.cpp", "tools/cli/command.hpp"), "");
     EXPECT_NE(include_problem("systemd/daemon/daemon.cpp", "render/engine.hpp"), "");
     EXPECT_NE(include_problem("tools/soak/soak.cpp", "tools/monitor/monitor.hpp"), "");
@@ -73,7 +73,7 @@ TEST(House, ForbiddenArrowsAreFound) {
     EXPECT_NE(include_problem("rt/frame/loop.cpp", "record.hpp"), "") << "not relative to the root";
     EXPECT_NE(include_problem("rt/frame/loop.cpp", "../base/hash.hpp"), "");
     EXPECT_NE(system_include_problem("render/engine.cpp", "GL/gl.h"), "");
-    EXPECT_NE(system_include_problem("tools/app/walk.cpp", "EGL/egl.h"), "");
+    EXPECT_NE(system_include_problem("tools/walk/walk.cpp", "EGL/egl.h"), "");
 }
 
 TEST(House, AllowedArrowsAreLeftAlone) {
@@ -81,8 +81,8 @@ TEST(House, AllowedArrowsAreLeftAlone) {
     EXPECT_EQ(include_problem("config/schema.cpp", "rt/base/result.hpp"), "");
     EXPECT_EQ(include_problem("rt/frame/loop.cpp", "rt/clock/clock.hpp"), "");
     EXPECT_EQ(include_problem("render/engine.cpp", "render/gl/device.hpp"), "");
-    EXPECT_EQ(include_problem("tools/cli/walk.cpp", "tools/app/walk.hpp"), "");
-    EXPECT_EQ(include_problem("tools/app/walk.cpp", "tools/report/report.hpp"), "");
+    EXPECT_EQ(include_problem("tools/cli/walk.cpp", "tools/walk/walk.hpp"), "");
+    EXPECT_EQ(include_problem("tools/walk/walk.cpp", "tools/report/report.hpp"), "");
     EXPECT_EQ(include_problem("tests/gl/slices_test.cpp", "render/gl/device.hpp"), "");
     EXPECT_EQ(system_include_problem("render/gl/egl.cpp", "EGL/egl.h"), "");
     EXPECT_EQ(system_include_problem("render/engine.cpp", "vector"), "");

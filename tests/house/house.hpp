@@ -42,9 +42,9 @@ inline const std::vector<Room>& rooms() {
         {"render/effects", {"render/model", "render/gl"}},
         {"render/capture", {"render/model", "render/prepare", "render/select"}},
         {"render", {"render/"}},  // the door, engine.hpp, and what stands right behind it
-        {"tools/app", {"*"}},
+        {"tools/walk", {"*"}},
         {"tools/cli", {"*"}},
-        {"systemd/daemon", {"rt/", "config", "tools/app", "tools/monitor"}},
+        {"systemd/daemon", {"rt/", "config", "tools/walk", "tools/monitor"}},
         {"tools/monitor", {"*"}},
         {"tools/accuracy", {"*"}},
         {"tools/soak", {"*"}},
@@ -77,9 +77,10 @@ inline bool allowed(const Room& from, const Room& to) {
     const auto is_one_of = [](std::string_view folder, std::initializer_list<std::string_view> list) {
         return std::find(list.begin(), list.end(), folder) != list.end();
     };
-    if (from.folder == "tools/app" && to.folder.starts_with("tools/")) return is_one_of(to.folder, {"tools/report", "tools/scenes"});
+    if (from.folder == "tools/walk" && to.folder.starts_with("tools/"))
+        return is_one_of(to.folder, {"tools/report", "tools/scenes"});
     if (is_one_of(from.folder, {"tools/accuracy", "tools/monitor", "tools/soak"}) && to.folder.starts_with("tools/"))
-        return is_one_of(to.folder, {"tools/app", "tools/report", "tools/scenes"});
+        return is_one_of(to.folder, {"tools/walk", "tools/report", "tools/scenes"});
     return std::any_of(from.may_include.begin(), from.may_include.end(), [&](std::string_view rule) {
         return rule == "*" || rule == to.folder || (rule.ends_with('/') && to.folder.starts_with(rule));
     });

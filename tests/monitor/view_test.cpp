@@ -5,9 +5,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "tools/monitor/page.hpp"
 #include "tools/monitor/text.hpp"
 #include "tools/monitor/view.hpp"
-#include "tools/monitor/page.hpp"
 
 namespace surefoot::monitor {
 namespace {

@@ -12,7 +12,6 @@
 namespace surefoot::soak {
 namespace {
 
-
 constexpr std::int64_t soak_period_ns = 16'666'667;
 
 TEST(SoakPlan, CoversEverySecondAndRunsEveryLoadAloneOrWithOthersAndAllAtOnce) {

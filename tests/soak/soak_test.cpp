@@ -7,7 +7,7 @@
 
 #include "rt/base/file.hpp"
 #include "rt/threads/guard.hpp"
-#include "tests/app/walk_fixture.hpp"
+#include "tests/walk/walk_fixture.hpp"
 #include "tools/soak/soak.hpp"
 
 namespace surefoot::soak {

@@ -109,7 +109,8 @@ std::string tip_of(const AccuracyPoint& p) {
                        report::short_number(p.triangles));
 }
 
-std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, const Panel& panel, const report::PlotArea& area) {
+std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, const Panel& panel,
+                        const report::PlotArea& area) {
     const report::Scale x = time_scale(run, area);
     const report::Scale y = value_scale(run, panel, area);
     std::string out = report::text_at(area.left, area.top - 14, "title", panel.title);

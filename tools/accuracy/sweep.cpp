@@ -11,8 +11,8 @@
 #include "render/measure/image_metrics.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/clock/clock.hpp"
-#include "tools/app/path_source.hpp"
-#include "tools/app/state.hpp"
+#include "tools/walk/path_source.hpp"
+#include "tools/walk/state.hpp"
 
 namespace surefoot::accuracy {
 
@@ -120,10 +120,10 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
         request.workers > 0 ? request.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     options.in_frame_check = false;
     std::string note;
-    const std::string state = app::state_directory(request.state_dir);
-    auto table = app::load_costs(state, "", note);
+    const std::string state = walk::state_directory(request.state_dir);
+    auto table = walk::load_costs(state, "", note);
     if (!table) return table.error();
-    auto costs = app::fitted_costs(state, *table, {model_hash, request.width, request.height, request.backend});
+    auto costs = walk::fitted_costs(state, *table, {model_hash, request.width, request.height, request.backend});
     if (!costs) return costs.error();
     auto engine = Engine::open(std::move(model), *costs, options);
     if (engine) run.machine = measure::machine_identity((*engine)->device().renderer(), request.rasterisers);
@@ -137,7 +137,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
     model::WalkFileInfo file;
     auto model = model::read_walk(request.model_file, &file);
     if (!model) return model.error();
-    auto chosen = app::choose_path(request.path_file, request.model_file, *model, request.lift_m);
+    auto chosen = walk::choose_path(request.path_file, request.model_file, *model, request.lift_m);
     if (!chosen) return chosen.error();
     AccuracyRun run;
     run.model = request.model_file;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "render/gl/device.hpp"
+#include "render/model/view.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
-#include "render/model/view.hpp"
 #include "tools/accuracy/page.hpp"
 
 namespace surefoot::accuracy {

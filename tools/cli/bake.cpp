@@ -12,9 +12,9 @@
 #include "render/import/scene.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
-#include "tools/app/state.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/walk/state.hpp"
 
 namespace surefoot::cli {
 
@@ -89,7 +89,7 @@ int run_bake(const BakeArguments& a, const Context& context) {
         if (bar) bar(stage, done);
     };
     std::string cost_note;
-    auto costs = app::load_costs(app::state_directory(a.state), "", cost_note);
+    auto costs = walk::load_costs(walk::state_directory(a.state), "", cost_note);
     if (!costs) return fail(costs.error());
     auto scene = importer::import_files(a.in, progress);
     if (!scene) return end_progress(context), fail(scene.error());

@@ -9,13 +9,13 @@
 #include "rt/threads/capability.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/memory.hpp"
-#include "tools/app/model_costs.hpp"
-#include "tools/app/path_source.hpp"
-#include "tools/app/placing.hpp"
-#include "tools/app/state.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/report/report.hpp"
+#include "tools/walk/model_costs.hpp"
+#include "tools/walk/path_source.hpp"
+#include "tools/walk/placing.hpp"
+#include "tools/walk/state.hpp"
 
 namespace surefoot::cli {
 
@@ -65,15 +65,15 @@ nlohmann::ordered_json to_json(const measure::Calibration& c, const std::string&
 
 /// Measured as it will be spent: threads where the walk puts them, memory kept and locked.
 Result<std::function<void()>> placed_as_walked() {
-    rt::raise_limits(app::WalkRequest{}.frame_priority);
-    const rt::Capabilities capable = rt::probe_capabilities(app::WalkRequest{}.frame_priority);
-    auto plan = app::plan_placing({}, capable.fifo_priority >= app::WalkRequest{}.frame_priority);
+    rt::raise_limits(walk::WalkRequest{}.frame_priority);
+    const rt::Capabilities capable = rt::probe_capabilities(walk::WalkRequest{}.frame_priority);
+    auto plan = walk::plan_placing({}, capable.fifo_priority >= walk::WalkRequest{}.frame_priority);
     if (!plan) return plan.error();
     if (!plan->fifo) note("not fully real-time: SCHED_FIFO is refused; the figures will be of ordinary scheduling");
     if (rt::guard_active()) (void)rt::prepare_memory({});
     return std::function<void()>([plan = *plan]() mutable {
-        if (auto placed = app::place_rasterisers(plan); !placed) note(placed.error().text());
-        if (auto placed = rt::place_thread(0, app::frame_placement(plan)); !placed) note(placed.error().text());
+        if (auto placed = walk::place_rasterisers(plan); !placed) note(placed.error().text());
+        if (auto placed = rt::place_thread(0, walk::frame_placement(plan)); !placed) note(placed.error().text());
     });
 }
 
@@ -84,37 +84,37 @@ Result<void> make_folder(const std::string& dir) {
     return {};
 }
 
-nlohmann::ordered_json to_json(const app::FrameErrors& e) { return {{"p50", e.p50}, {"p90", e.p90}, {"p99", e.p99}}; }
+nlohmann::ordered_json to_json(const walk::FrameErrors& e) { return {{"p50", e.p50}, {"p90", e.p90}, {"p99", e.p99}}; }
 
 /// One model: the table stays, the weights of a frame's sums are fitted.
 int run_fit(const CalibrateArguments& a, const Context& context) {
     auto kind = gl::parse_backend(a.backend);
     if (!kind) return misuse(kind.error());
     if (!a.plot.empty()) return misuse({"--plot", "belongs to the machine's table", "leave out the model, or leave out --plot"});
-    const std::string dir = app::state_directory(a.state);
+    const std::string dir = walk::state_directory(a.state);
     std::string lacking;
-    auto table = app::load_costs(dir, "", lacking);
+    auto table = walk::load_costs(dir, "", lacking);
     if (!table) return fail(table.error());
     if (!lacking.empty()) return fail({a.model, "cannot be fitted: no cost table in " + dir, "run `surefoot calibrate` first"});
     model::WalkFileInfo info;
     auto model = model::read_walk(a.model, &info);
     if (!model) return fail(model.error());
-    auto path = app::choose_path(a.path, a.model, *model, a.lift_m);
+    auto path = walk::choose_path(a.path, a.model, *model, a.lift_m);
     if (!path) return fail(path.error());
-    const app::FitConditions conditions{info.hash, a.width, a.height, a.backend};
-    const std::string file = app::model_costs_file(dir, *table, conditions);
+    const walk::FitConditions conditions{info.hash, a.width, a.height, a.backend};
+    const std::string file = walk::model_costs_file(dir, *table, conditions);
     if (auto made = make_folder(dir + "/models"); !made) return fail(made.error());
     if (auto ok = probe_writable(file); !ok) return fail(ok.error());
     auto placed = placed_as_walked();
     if (!placed) return fail(placed.error());
-    app::ModelFitOptions options;
+    walk::ModelFitOptions options;
     options.device.kind = *kind;
     options.device.viewport = {a.width, a.height};
     options.device.rasterisers = a.rasterisers;
     options.frame_us = 1e6 / a.rate_hz;
     if (a.quick) options.poses = 80;
     options.opened = *placed;
-    auto fit = app::fit_to_model(std::move(*model), path->path, *table, options, terminal_progress(context));
+    auto fit = walk::fit_to_model(std::move(*model), path->path, *table, options, terminal_progress(context));
     end_progress(context);
     if (!fit) return fail(fit.error());
     if (fit->machine != table->machine) {
@@ -161,8 +161,8 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     }
     auto kind = gl::parse_backend(a.backend);
     if (!kind) return misuse(kind.error());
-    const std::string dir = app::state_directory(a.state);
-    const std::string file = app::cost_table_file(dir);
+    const std::string dir = walk::state_directory(a.state);
+    const std::string file = walk::cost_table_file(dir);
     const std::string plot = a.plot.empty() ? dir + "/costs.svg" : a.plot;
     if (auto ok = probe_writable(file, true); !ok) return fail(ok.error());
     if (auto ok = probe_writable(plot, a.plot.empty()); !ok) return fail(ok.error());
@@ -179,7 +179,7 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (!c) return fail(c.error());
     if (auto made = make_folder(dir); !made) return fail(made.error());
     if (auto written = measure::write_costs(file, c->costs); !written) return fail(written.error());
-    if (const std::size_t old = app::drop_old_fits(dir, c->costs); old > 0) {
+    if (const std::size_t old = walk::drop_old_fits(dir, c->costs); old > 0) {
         note(fmt::format("{} to the old table {} removed; fit anew with `surefoot calibrate MODEL.walk`",
                          old == 1 ? "the fit" : fmt::format("{} fits", old), old == 1 ? "is" : "are"));
     }

@@ -9,7 +9,6 @@
 
 #include "config/settings.hpp"
 #include "rt/threads/placement.hpp"
-#include "tools/app/state.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/doctor/check.hpp"
@@ -17,6 +16,7 @@
 #include "tools/doctor/probe.hpp"
 #include "tools/doctor/table.hpp"
 #include "tools/doctor/wake_up.hpp"
+#include "tools/walk/state.hpp"
 
 namespace surefoot::cli {
 
@@ -90,7 +90,7 @@ void wake_up(const DoctorArguments& a, const Context& context, int core, doctor:
 int run_doctor(const DoctorArguments& a, const Context& context) {
     doctor::Wanted wanted;
     wanted.frame_priority = static_cast<int>(config::Settings{}.frame_priority);
-    wanted.state_folder = app::state_directory(a.state);
+    wanted.state_folder = walk::state_directory(a.state);
     if (a.frame_core >= 0) wanted.frame_core = a.frame_core;
     std::error_code ignored;
     if (!a.root.empty() && !std::filesystem::is_directory(a.root, ignored))

@@ -1,11 +1,11 @@
 // surefoot soak: hours of a walk under a rotating mix of load, with a verdict.
 #include <fmt/format.h>
 
-#include "tools/app/settings_request.hpp"
-#include "tools/soak/soak.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
+#include "tools/soak/soak.hpp"
+#include "tools/walk/settings_request.hpp"
 
 namespace surefoot::cli {
 
@@ -36,7 +36,7 @@ Result<soak::SoakRequest> to_soak_request(const SoakArguments& a) {
     if (!settings) return settings.error();
     settings->values.strict = settings->values.strict || a.strict;
     if (auto ok = config::check(*settings); !ok) return ok.error();
-    app::apply_settings(*settings, r.walk);
+    walk::apply_settings(*settings, r.walk);
     r.walk.config_file = a.settings->config_file;
     r.control = !a.no_control;
     if (r.walk.strict && r.walk.clock == "virtual") return Error{"--strict", "asks for real time", "leave out --clock virtual"};

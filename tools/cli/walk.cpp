@@ -1,13 +1,13 @@
 // surefoot walk: a real-time walk through a model, with its figures.
 #include <fmt/format.h>
 
-#include "tools/app/settings_request.hpp"
-#include "tools/app/walk.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
 #include "tools/monitor/watch.hpp"
 #include "tools/report/verdict.hpp"
+#include "tools/walk/settings_request.hpp"
+#include "tools/walk/walk.hpp"
 
 namespace surefoot::cli {
 
@@ -23,7 +23,7 @@ struct MonitorArguments {
 
 /// What the command line says.
 struct WalkArguments {
-    app::WalkRequest request;
+    walk::WalkRequest request;
     MonitorArguments watch;
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool no_correction = false, json = false;
@@ -43,7 +43,7 @@ struct Given {
 };
 
 /// Options that say nothing without another one, or against it.
-Result<void> check_together(const app::WalkRequest& r, const Given& given) {
+Result<void> check_together(const walk::WalkRequest& r, const Given& given) {
     const bool is_virtual = r.clock == "virtual";
     if (r.control && is_virtual) return Error{"--control", "judges real time", "leave out --clock virtual"};
     if (given.control_pairs && !r.control)
@@ -59,7 +59,7 @@ Result<void> check_together(const app::WalkRequest& r, const Given& given) {
         return Error{"--steering", "says how a device steers, and none does: the path is followed",
                      "add --input devices, or --input REC with a recording of one"};
     }
-    const bool live = r.input_file == app::live_input;
+    const bool live = r.input_file == walk::live_input;
     if (live && is_virtual)
         return Error{"--input devices", "steer in real time, which --clock virtual has not got",
                      "leave out --clock virtual, or give a recording (`surefoot devices record`)"};
@@ -73,15 +73,15 @@ Result<void> check_together(const app::WalkRequest& r, const Given& given) {
     return {};
 }
 
-Result<app::WalkRequest> to_request(WalkArguments& a) {
+Result<walk::WalkRequest> to_request(WalkArguments& a) {
     auto read = read_settings(*a.settings);
     if (!read) return read.error();
     config::Configuration& c = *read;
     c.values.strict = c.values.strict || a.request.strict;
     c.values.control = c.values.control || a.request.control;
     if (auto ok = config::check(c); !ok) return ok.error();
-    app::WalkRequest r = a.request;
-    app::apply_settings(c, r);
+    walk::WalkRequest r = a.request;
+    walk::apply_settings(c, r);
     if (r.model_file.empty())
         return Error{"MODEL.walk", "is not named", "surefoot walk MODEL.walk, or `model = ...` in the --config file"};
     r.correct_costs = !a.no_correction;
@@ -114,7 +114,7 @@ int run_walk_command(WalkArguments& a, const Context& context) {
     }
     auto monitor = open_monitor(a.watch);
     if (!monitor) return fail(monitor.error());
-    app::WalkWatch watch;
+    walk::WalkWatch watch;
     Progress progress = terminal_progress(context);
     if (*monitor) {
         monitor::watch_with(**monitor, *request, watch);
@@ -123,7 +123,7 @@ int run_walk_command(WalkArguments& a, const Context& context) {
             m->add_note(text);
         };
     }
-    auto outcome = app::run_walk(*request, progress, watch);
+    auto outcome = walk::run_walk(*request, progress, watch);
     monitor->reset();  // what waits to be written is, before the figures are
     end_progress(context);
     if (!outcome) return fail(outcome.error());
@@ -151,7 +151,7 @@ int run_walk_command(WalkArguments& a, const Context& context) {
 
 void add_walk(CLI::App& app, Context& context) {
     auto a = std::make_shared<WalkArguments>();
-    app::WalkRequest& r = a->request;
+    walk::WalkRequest& r = a->request;
     r.capture_frame = unset;
     CLI::App* c =
         add_command(app, "walk", "Walk through a model in real time, and show the figures",

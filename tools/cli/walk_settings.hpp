@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "config/settings.hpp"
-#include "tools/app/walk.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/walk/walk.hpp"
 
 namespace surefoot::cli {
 

@@ -12,7 +12,7 @@
 #include "render/gl/device.hpp"
 #include "render/measure/calibrate.hpp"
 #include "rt/threads/capability.hpp"
-#include "tools/app/state.hpp"
+#include "tools/walk/state.hpp"
 
 namespace surefoot::doctor {
 
@@ -56,7 +56,7 @@ RendererFound try_renderer() {
 
 CostTableFound look_for_costs(const std::string& state_folder) {
     CostTableFound found;
-    found.file = app::cost_table_file(state_folder);
+    found.file = walk::cost_table_file(state_folder);
     std::error_code ignored;
     found.there = std::filesystem::exists(found.file, ignored);
     if (!found.there) return found;

@@ -19,8 +19,8 @@
 #include "rt/monitor/black_box.hpp"
 #include "rt/monitor/telemetry.hpp"
 #include "tools/monitor/incidents.hpp"
-#include "tools/monitor/server.hpp"
 #include "tools/monitor/page.hpp"
+#include "tools/monitor/server.hpp"
 
 namespace surefoot::monitor {
 
@@ -47,7 +47,7 @@ public:
 
     /// Any thread but the monitor's, in any order:
     void begin_walk(const MonitoredWalk& walk);  ///< before its first record
-    void end_walk();                                     ///< after its last record
+    void end_walk();                             ///< after its last record
     void set_state(ServiceState state);
     void set_degraded(std::vector<report::Degraded> degraded);
     void add_degraded(const report::Degraded& degraded);

@@ -59,7 +59,7 @@ std::string grouped(double whole) {
     if (!std::isfinite(whole)) return "-";
     std::string digits = fmt::format("{:.0f}", std::abs(whole));
     for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
-        digits.insert(static_cast<std::size_t>(at), " ");
+        digits.insert(static_cast<std::size_t>(at), 1, ' ');
     return (whole < 0 ? "-" : "") + digits;
 }
 

@@ -11,7 +11,7 @@ namespace surefoot::monitor {
 
 namespace {
 
-MonitoredWalk monitored(const app::WalkRequest& request, const app::WalkStart& start) {
+MonitoredWalk monitored(const walk::WalkRequest& request, const walk::WalkStart& start) {
     MonitoredWalk w;
     w.model = request.model_file;
     w.path = request.input_file.empty() ? start.path : request.input_file;
@@ -41,8 +41,8 @@ void chain(std::function<void(Told)>& callback, Then then) {
 
 }  // namespace
 
-void watch_with(Monitor& monitor, const app::WalkRequest& request, app::WalkWatch& watch) {
-    chain(watch.on_started, [&monitor, &request](const app::WalkStart& start) {
+void watch_with(Monitor& monitor, const walk::WalkRequest& request, walk::WalkWatch& watch) {
+    chain(watch.on_started, [&monitor, &request](const walk::WalkStart& start) {
         std::vector<report::Degraded> lacks(start.degraded.begin(), start.degraded.end());
         if (!start.uncalibrated.empty()) lacks.push_back({start.uncalibrated, ""});
         monitor.set_degraded(std::move(lacks));
@@ -50,7 +50,7 @@ void watch_with(Monitor& monitor, const app::WalkRequest& request, app::WalkWatc
     });
     chain(watch.on_record, [&monitor](const rt::FrameRecord& record) { monitor.on_record(record); });
     chain(watch.on_degraded, [&monitor](const report::Degraded& lack) { monitor.add_degraded(lack); });
-    chain(watch.on_input, [&monitor](const app::WalkInput& input) {
+    chain(watch.on_input, [&monitor](const walk::WalkInput& input) {
         monitor.set_input({input.live, input.devices, input.emergency_stop});
     });
     if (monitor.writes_incidents()) {
@@ -61,8 +61,8 @@ void watch_with(Monitor& monitor, const app::WalkRequest& request, app::WalkWatc
                            }});
         });
     }
-    chain(watch.on_step, [&monitor](app::WalkStep step) {
-        if (step == app::WalkStep::ending) monitor.end_walk();
+    chain(watch.on_step, [&monitor](walk::WalkStep step) {
+        if (step == walk::WalkStep::ending) monitor.end_walk();
     });
 }
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/style.hpp"
 #include "tools/report/report.hpp"
+#include "tools/report/style.hpp"
 #include "tools/report/svg.hpp"
 
 namespace surefoot::report {

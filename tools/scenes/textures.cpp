@@ -34,7 +34,7 @@ double off_joint(double at, double width) { return std::clamp((std::min(at, 1 - 
 
 /// Rows of stones, each row shifted by half: bricks, tiles, slabs. Number of stone by row and column, each repeats.
 image::Image courses(const char* name, std::uint64_t seed, const Colour& colour, const Colour& joint, int columns, int rows,
-                        double spread) {
+                     double spread) {
     return paint(name, 256, 256, [&](double u, double v) {
         const auto row = static_cast<std::int64_t>(v * rows);
         const double along = u * columns + (row % 2 == 0 ? 0.0 : 0.5);

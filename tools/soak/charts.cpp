@@ -48,7 +48,8 @@ std::string frame_band(const SoakSummary& s, const report::Scale& x, const repor
         highest.push_back({at, high});
         mean.push_back({at, y(std::min<double>(c.mean_ms, y.to))});
     }
-    return fmt::format("<path d=\"{}{}Z\" class=\"band\"/>", up, down) + report::polyline(highest, "peaks") + report::polyline(mean, "line");
+    return fmt::format("<path d=\"{}{}Z\" class=\"band\"/>", up, down) + report::polyline(highest, "peaks") +
+           report::polyline(mean, "line");
 }
 
 std::string miss_marks(const SoakSummary& s, const report::Scale& x, const report::Scale& y) {
@@ -77,8 +78,9 @@ std::string load_strips(const SoakSummary& s, const report::PlotArea& area, cons
                 "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"load l{}{}\"><title>{}, "
                 "{:.0f}–{:.0f} s: "
                 "{} of {} frames missed, {} of them own; slowest {:.1f} ms</title></rect>",
-                from, at + 2, std::max(0.5, to - from), strip_px - 5, row % 8, load.ran ? "" : " idle", report::escaped(load.name),
-                p.from_s, std::min(p.to_s, s.ran_s), p.misses, p.frames, p.own_misses, p.frame_ms_max);
+                from, at + 2, std::max(0.5, to - from), strip_px - 5, row % 8, load.ran ? "" : " idle",
+                report::escaped(load.name), p.from_s, std::min(p.to_s, s.ran_s), p.misses, p.frames, p.own_misses,
+                p.frame_ms_max);
         }
     }
     return out;
@@ -99,14 +101,15 @@ std::string soak_time_chart(const SoakSummary& s) {
     const double deadline_ms = s.walk.rate_hz > 0 ? 1000 / s.walk.rate_hz : 0;
     const double highest = s.walk.frame_ms.max;
     const report::Scale x{0, length_of(s), area.left, area.right, false};
-    const report::Scale y{0, report::nice_ceiling(std::clamp(highest * 1.05, deadline_ms * 1.2, deadline_ms * 2.5)), area.bottom, area.top,
-                  false};
+    const report::Scale y{0, report::nice_ceiling(std::clamp(highest * 1.05, deadline_ms * 1.2, deadline_ms * 2.5)), area.bottom,
+                          area.top, false};
     std::string out =
         report::open_chart(wide_px, area.bottom + 30 + strips + 6, "Frame times over the soak, and what loaded the machine when");
     out += report::y_axis(area, y, report::nice_ticks(0, y.to, 5), "ms") + time_axis(area, x, 10);
     out += frame_band(s, x, y);
     out += report::line_between(area.left, y(deadline_ms), area.right, y(deadline_ms), "deadline");
-    out += report::text_at(area.right, y(deadline_ms) - 6, "note end deadline-text", fmt::format("deadline {:.1f} ms", deadline_ms));
+    out +=
+        report::text_at(area.right, y(deadline_ms) - 6, "note end deadline-text", fmt::format("deadline {:.1f} ms", deadline_ms));
     out += miss_marks(s, x, y);
     return out + load_strips(s, area, x, area.bottom + 30) + report::close_chart();
 }
@@ -125,10 +128,10 @@ std::string soak_memory_chart(const SoakSummary& s) {
     for (const double tick : report::nice_ticks(y.from, y.to, 4)) {
         out += report::line_between(area.left, y(tick), area.right, y(tick), "grid");
         out += report::text_at(area.left - 8, y(tick) + 4, "tick end",
-                       fmt::format("{:.{}f}", tick,
-                                   room > 8 * 1024 ? 0
-                                   : room > 1024   ? 1
-                                                   : 2));
+                               fmt::format("{:.{}f}", tick,
+                                           room > 8 * 1024 ? 0
+                                           : room > 1024   ? 1
+                                                           : 2));
     }
     out += report::text_at(area.left - 8, area.top - 11, "unit end", "MiB") + time_axis(area, x, 5);
     std::vector<report::Point> line;
@@ -138,7 +141,7 @@ std::string soak_memory_chart(const SoakSummary& s) {
         const auto trend_px = [&](double t) { return y((s.memory.at_s0 + s.memory.per_s * t) / 1024); };
         out += report::line_between(x(s.warm_up_s), trend_px(s.warm_up_s), x(s.ran_s), trend_px(s.ran_s), "budget");
         out += report::text_at(area.right, area.top + 2, "note end budget-text",
-                       fmt::format("trend {:+.0f} KiB an hour", s.memory.per_s * 3600 + 0.0));
+                               fmt::format("trend {:+.0f} KiB an hour", s.memory.per_s * 3600 + 0.0));
     }
     return out + report::close_chart();
 }
@@ -210,9 +213,9 @@ std::string soak_load_chart(const SoakSummary& s) {
         out += report::text_at(84, at + 13, "end", rows[i].name);
         out += fmt::format("<rect x=\"94\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"17\" rx=\"3\" class=\"bar{}\"/>", at, length,
                            rows[i].misses > 0 ? " late" : "");
-        out += report::text_at(
-            102 + length, at + 13, "note",
-            fmt::format("{} of {} missed, {} own", rows[i].misses, report::grouped(static_cast<double>(rows[i].frames)), rows[i].own));
+        out += report::text_at(102 + length, at + 13, "note",
+                               fmt::format("{} of {} missed, {} own", rows[i].misses,
+                                           report::grouped(static_cast<double>(rows[i].frames)), rows[i].own));
     }
     return out + report::close_chart();
 }

@@ -15,10 +15,6 @@ namespace surefoot::soak {
 
 namespace {
 
-using Judged;
-using SoakCheck;
-using SoakSummary;
-
 constexpr double own_misses_per_frame = 2.0 / 1800.0;
 constexpr double memory_limit_kib_h = 64;
 constexpr double least_memory_window_s = 600;

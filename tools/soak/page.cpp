@@ -9,12 +9,12 @@
 #include "rt/base/file.hpp"
 #include "tools/report/charts.hpp"
 #include "tools/report/page_parts.hpp"
-#include "tools/soak/summary.hpp"
-#include "tools/soak/charts.hpp"
-#include "tools/soak/words.hpp"
 #include "tools/report/style.hpp"
 #include "tools/report/svg.hpp"
 #include "tools/report/verdict.hpp"
+#include "tools/soak/charts.hpp"
+#include "tools/soak/summary.hpp"
+#include "tools/soak/words.hpp"
 
 namespace surefoot::soak {
 
@@ -72,7 +72,8 @@ std::string check_list(const SoakSummary& s) {
 }
 
 std::string half_card(std::string_view title, std::string_view words, const std::string& chart) {
-    return fmt::format("<div class=\"card\"><h3>{}</h3><p>{}</p>{}</div>\n", report::escaped(title), report::escaped(words), chart);
+    return fmt::format("<div class=\"card\"><h3>{}</h3><p>{}</p>{}</div>\n", report::escaped(title), report::escaped(words),
+                       chart);
 }
 
 std::string hours_section(const SoakSummary& s) {
@@ -103,12 +104,12 @@ std::string load_section(const SoakSummary& s) {
         "<h2>What was done to the machine</h2>\n<p class=\"sub\">A load counts only if it is known to have been there.</p>\n<div "
         "class=\"card scroll\"><table>\n<tr><th>load</th><th>seconds</th><th>real</th><th></th></tr>\n";
     for (const SoakLoad& l : s.loads)
-        out +=
-            fmt::format("<tr><td>{}</td><td>{:.0f}</td><td>{}</td><td class=\"words\">{}</td></tr>\n", report::escaped(l.name), l.seconds,
-                        !l.ran   ? "not run"
-                        : l.real ? "yes"
-                                 : "too light",
-                        report::escaped(l.words));
+        out += fmt::format("<tr><td>{}</td><td>{:.0f}</td><td>{}</td><td class=\"words\">{}</td></tr>\n", report::escaped(l.name),
+                           l.seconds,
+                           !l.ran   ? "not run"
+                           : l.real ? "yes"
+                                    : "too light",
+                           report::escaped(l.words));
     return out + "</table></div>\n";
 }
 
@@ -131,7 +132,8 @@ std::string kernel_section(const SoakSummary& s) {
     row("Processor", fmt::format("{} ({} cores)", m.processor, m.cores));
     row("This soak", fmt::format("{} (seed {})", s.command_line, s.seed));
     row("Stolen by the host", fmt::format("{:.0f} ms of {} cores", m.steal_ms, m.cores));
-    row("Context switches, new processes", fmt::format("{}, {}", report::grouped(m.context_switches), report::grouped(m.processes)));
+    row("Context switches, new processes",
+        fmt::format("{}, {}", report::grouped(m.context_switches), report::grouped(m.processes)));
     std::string pressure;
     for (const SoakCount& c : m.pressure)
         pressure += fmt::format("{}{} {}", pressure.empty() ? "" : "; ", c.name, report::percent(c.count));
@@ -163,8 +165,9 @@ Result<void> write_soak_page(const std::string& dir, const SoakSummary& s) {
     auto files = FileSet::create(dir);
     if (!files) return files.error();
     if (auto written = files->add("soak.json", soak_json(s)); !written) return written;
-    const std::string body = std::string(soak_rules) + header_of(s) + report::degraded_notes(s.walk) + check_list(s) + hours_section(s) +
-                             load_section(s) + control_part(s.walk.control) + kernel_section(s) + std::string(soak_footer);
+    const std::string body = std::string(soak_rules) + header_of(s) + report::degraded_notes(s.walk) + check_list(s) +
+                             hours_section(s) + load_section(s) + control_part(s.walk.control) + kernel_section(s) +
+                             std::string(soak_footer);
     const std::string title = fmt::format("Surefoot soak: {}", model_name(s.walk.model));
     if (auto written = files->add("index.html", report::page(title, body)); !written) return written;
     return files->commit();

@@ -19,7 +19,7 @@
 #include "tools/soak/load_runner.hpp"
 #include "tools/soak/machine_facts.hpp"
 #include "tools/soak/tally.hpp"
-#include "tools/app/state.hpp"
+#include "tools/walk/state.hpp"
 
 namespace surefoot::soak {
 
@@ -30,13 +30,13 @@ constexpr double most_samples = 7200;
 constexpr double virtual_sample_s = 10;
 
 /// What a service does when it is told to read its settings anew: all of them, on a thread that is none of the frame's.
-bool reload_once(const app::WalkRequest& r) {
+bool reload_once(const walk::WalkRequest& r) {
     config::Configuration c;
     const auto read = r.config_file.empty() ? config::load_text(c, config::commented_defaults(), "defaults")
                                             : config::load_file(c, r.config_file);
     const auto steering = input::parse_steering(input::steering_text({}), "defaults");
     std::string note;
-    const auto costs = app::load_costs(app::state_directory(r.state_dir), "", note);
+    const auto costs = walk::load_costs(walk::state_directory(r.state_dir), "", note);
     const bool path_read = r.path_file.empty() || read_path(r.path_file).ok();
     return read.ok() && config::check(c).ok() && steering.ok() && costs.ok() && path_read;
 }
@@ -44,7 +44,7 @@ bool reload_once(const app::WalkRequest& r) {
 /// One soak while it runs.
 struct Soak {
     const SoakRequest& request;
-    app::WalkRequest walk;
+    walk::WalkRequest walk;
     LoadPlan plan;
     bool virtual_clock = false;
     std::optional<LoadRunner> runner;
@@ -83,7 +83,7 @@ LoadSettings load_settings(const Soak& s) {
     settings.cores = std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
     // At most an eighth of the machine's memory: the load is to press, not to push others out.
     const double pages = static_cast<double>(sysconf(_SC_PHYS_PAGES)), page = static_cast<double>(sysconf(_SC_PAGESIZE));
-    settings.memory_bytes = std::min(settings.memory_bytes, static_cast<std::uint64_t>(pages * report::page / 8));
+    settings.memory_bytes = std::min(settings.memory_bytes, static_cast<std::uint64_t>(pages * page / 8));
     std::error_code failed;
     settings.folder = std::filesystem::temp_directory_path(failed).string();
     if (failed) settings.folder = "/tmp";
@@ -95,9 +95,9 @@ LoadSettings load_settings(const Soak& s) {
 
 void reload(Soak& s) { reload_once(s.walk) ? ++s.own.amount : ++s.own.failures; }
 
-app::WalkWatch watch_of(Soak& s) {
-    app::WalkWatch watch;
-    watch.on_started = [&s](const app::WalkStart& start) {
+walk::WalkWatch watch_of(Soak& s) {
+    walk::WalkWatch watch;
+    watch.on_started = [&s](const walk::WalkStart& start) {
         s.tally->begin(start.t0_ns);
         if (s.runner) s.runner->begin(start.t0_ns);
         if (s.virtual_clock) return;
@@ -154,7 +154,7 @@ Result<SoakOutcome> run_soak(const SoakRequest& request, const Progress& progres
         s.runner.emplace(std::move(*runner));
     }
     const MachineCounters before = read_counters();
-    auto walked = app::run_walk(s.walk, progress, watch_of(s));
+    auto walked = walk::run_walk(s.walk, progress, watch_of(s));
     s.footprint->stop();
     if (s.runner) s.runner->stop();
     if (!walked) return walked.error();

@@ -6,14 +6,14 @@
 #include <string>
 
 #include "tools/soak/plan.hpp"
-#include "tools/app/walk.hpp"
 #include "tools/soak/summary.hpp"
+#include "tools/walk/walk.hpp"
 
 namespace surefoot::soak {
 
 struct SoakRequest {
-    app::WalkRequest walk;       ///< how it walks; frames, seconds, control and outputs are the soak's to set
-    double seconds = 1200;  ///< with a control: whole pairs of blocks of it
+    walk::WalkRequest walk;  ///< how it walks; frames, seconds, control and outputs are the soak's to set
+    double seconds = 1200;   ///< with a control: whole pairs of blocks of it
     LoadSet mix = usual_loads;
     std::uint64_t seed = 1;
     bool control = true;         ///< not on the virtual clock

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/soak/summary.hpp"
-#include "tools/soak/words.hpp"
 #include "tools/report/svg.hpp"
 #include "tools/report/text_table.hpp"
 #include "tools/report/verdict.hpp"
+#include "tools/soak/summary.hpp"
+#include "tools/soak/words.hpp"
 
 namespace surefoot::soak {
 

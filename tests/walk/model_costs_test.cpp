@@ -1,0 +1,128 @@
+// Fits to a model: found by model and table, refused when damaged, and nearer to measured frames than a table that is wrong.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "render/measure/calibrate.hpp"
+#include "render/model/walk_file.hpp"
+#include "tests/walk/walk_fixture.hpp"
+#include "tools/walk/model_costs.hpp"
+#include "tools/walk/path_source.hpp"
+#include "tools/walk/state.hpp"
+
+namespace surefoot::walk {
+namespace {
+
+model::CostModel table(float submit_weight) {
+    model::CostModel costs = model::default_costs();
+    costs.calibrated = true;
+    costs.combine.submit_weight = submit_weight;
+    return costs;
+}
+
+FitConditions under(std::uint64_t model) { return {model, 1280, 720, "egl"}; }
+
+/// A state folder of its own with a folder for fits.
+std::string state_for(const std::string& name) {
+    const std::string state = test::Forest::get().dir + "/" + name;
+    std::filesystem::create_directories(state + "/models");
+    return state;
+}
+
+const std::string& model_file() { return test::Forest::get().model_file; }
+
+TEST(ModelCosts, a_fit_is_found_by_model_and_table) {
+    const std::string state = state_for("found");
+    const model::CostModel machine = table(1), fit = table(2);
+    ASSERT_TRUE(measure::write_costs(model_costs_file(state, machine, under(7)), fit).ok());
+    const auto weight = [&](const model::CostModel& of, std::uint64_t model) {
+        auto costs = fitted_costs(state, of, under(model));
+        return costs ? costs->combine.submit_weight : -1;
+    };
+    EXPECT_EQ(weight(machine, 7), 2);
+    EXPECT_EQ(weight(machine, 8), 1);
+    auto smaller = fitted_costs(state, machine, {7, 640, 480, "egl"});
+    ASSERT_TRUE(smaller.ok());
+    EXPECT_EQ(smaller->combine.submit_weight, 1);
+    auto elsewhere = fitted_costs(state, machine, {7, 1280, 720, "osmesa"});
+    ASSERT_TRUE(elsewhere.ok());
+    EXPECT_EQ(elsewhere->combine.submit_weight, 1);
+    EXPECT_EQ(weight(table(1.5F), 7), 1.5F);  // measured anew: the old fit is of another table
+    model::CostModel built_in = machine;
+    built_in.calibrated = false;
+    EXPECT_EQ(weight(built_in, 7), 1);
+}
+
+TEST(ModelCosts, fits_to_an_old_table_are_dropped_and_nothing_else) {
+    const std::string state = state_for("dropped");
+    const std::string kept = model_costs_file(state, table(1), under(7)), old = model_costs_file(state, table(2), under(7));
+    const std::string other = state + "/models/notes.toml";
+    ASSERT_TRUE(measure::write_costs(kept, table(1)).ok());
+    ASSERT_TRUE(measure::write_costs(old, table(2)).ok());
+    ASSERT_TRUE(write_text(other, "mine").ok());
+    EXPECT_EQ(drop_old_fits(state, table(1)), 1U);
+    EXPECT_TRUE(std::filesystem::exists(kept));
+    EXPECT_FALSE(std::filesystem::exists(old));
+    EXPECT_TRUE(std::filesystem::exists(other));
+    EXPECT_EQ(drop_old_fits(state + "/none", table(1)), 0U);
+}
+
+TEST(ModelCosts, a_damaged_fit_is_an_error) {
+    const std::string state = state_for("damaged");
+    const std::string fit = model_costs_file(state, table(1), under(7));
+    ASSERT_TRUE(measure::write_costs(fit, table(2)).ok());
+    std::fstream(fit, std::ios::in | std::ios::out).seekp(200).put('#');
+    auto costs = fitted_costs(state, table(1), under(7));
+    ASSERT_FALSE(costs.ok());
+    EXPECT_NE(costs.error().text().find(fit), std::string::npos);
+}
+
+TEST(ModelCosts, a_file_of_a_model_has_a_hash_of_its_own) {
+    model::WalkFileInfo written, read;
+    auto model = model::read_walk(model_file(), &read);
+    ASSERT_TRUE(model.ok());
+    const std::string other = test::Forest::get().dir + "/other.walk";
+    model->materials[0].colour[0] = 0.125F;
+    ASSERT_TRUE(model::write_walk(other, *model).ok());
+    ASSERT_TRUE(model::read_walk(other, &written).ok());
+    EXPECT_NE(read.hash, 0U);
+    EXPECT_NE(read.hash, written.hash);
+    auto again = model::read_walk(model_file());
+    ASSERT_TRUE(again.ok());
+    again->provenance.bake_s += 1;  // the same bake, slower
+    ASSERT_TRUE(model::write_walk(other, *again).ok());
+    ASSERT_TRUE(model::read_walk(other, &written).ok());
+    EXPECT_EQ(read.hash, written.hash);
+}
+
+TEST(ModelCosts, a_fit_is_nearer_to_measured_frames_than_a_table_five_times_off) {
+    auto model = model::read_walk(model_file());
+    ASSERT_TRUE(model.ok());
+    auto path = choose_path("", model_file(), *model, 0);
+    ASSERT_TRUE(path.ok());
+    model::CostModel wrong = table(5);
+    wrong.combine.fixed_us *= 5;
+    wrong.combine.raster_weight *= 5;
+    ModelFitOptions options;
+    options.device.viewport = {320, 180};
+    options.poses = 60;
+    auto fit = fit_to_model(std::move(*model), path->path, wrong, options, {});
+    if (!fit && fit.error().text().find("libEGL") != std::string::npos) GTEST_SKIP() << fit.error().text();
+    ASSERT_TRUE(fit.ok()) << fit.error().text();
+    EXPECT_EQ(fit->frames, 60U);
+    EXPECT_LT(fit->after.p50, fit->before.p50);
+    EXPECT_GE(fit->costs.upper_factor, 1);
+    EXPECT_EQ(fit->costs.grids.size(), wrong.grids.size());
+}
+
+TEST(ModelCosts, stopping_a_fit_is_an_error) {
+    auto model = model::read_walk(model_file());
+    ASSERT_TRUE(model.ok());
+    const std::atomic<bool> stop{true};
+    auto fit = fit_to_model(std::move(*model), Path{{PathSample{}}}, table(1), {}, {.report = {}, .stop = &stop, .note = {}});
+    ASSERT_FALSE(fit.ok());
+}
+
+}  // namespace
+}  // namespace surefoot::walk

@@ -1,0 +1,43 @@
+// What the graphics driver allocates in a frame is not ours to mend, but ours to know: it may not grow.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <string_view>
+
+#include "tests/walk/walk_fixture.hpp"
+
+namespace surefoot {
+namespace {
+
+/// Allocations a frame of the walk below, as recorded on Debian 12 (Mesa 22.3), by the renderer's name.
+struct Baseline {
+    std::string_view renderer;
+    double allocations = 0;
+};
+constexpr std::array<Baseline, 1> baselines{{{"llvmpipe (LLVM 15.0.6, 256 bits)", 1754}}};
+
+TEST(DriverBaseline, AFramesAllocationsInTheDriverDoNotGrow) {
+#ifdef SUREFOOT_SANITIZED
+    GTEST_SKIP() << "a sanitizer's own hooks count nothing";
+#endif
+    walk::WalkRequest request = test::Forest::get().virtual_request(240);  // the same cuts on every machine
+    request.backend = "egl";
+    request.width = 320;
+    request.height = 240;
+    request.rasterisers = 2;
+    const auto outcome = walk::run_walk(request, {}, {});
+    if (!outcome && outcome.error().text().find("libEGL") != std::string::npos) GTEST_SKIP() << outcome.error().text();
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+    const report::WalkSummary& s = outcome->summary;
+    std::cout << s.renderer << ": " << s.driver_allocations_per_frame << " allocations a frame\n";
+    const auto known =
+        std::find_if(baselines.begin(), baselines.end(), [&](const Baseline& b) { return b.renderer == s.renderer; });
+    if (known == baselines.end()) GTEST_SKIP() << "no baseline of this renderer is recorded";
+    EXPECT_GT(s.driver_allocations_per_frame, 0) << "the counter sees nothing";
+    EXPECT_LE(s.driver_allocations_per_frame, 1.05 * known->allocations);
+}
+
+}  // namespace
+}  // namespace surefoot

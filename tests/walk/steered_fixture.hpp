@@ -1,0 +1,51 @@
+// Walks steered by recorded sessions, for the tests of the session.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "rt/base/file.hpp"
+#include "tests/input/gamepad_session.hpp"
+#include "tests/walk/walk_fixture.hpp"
+
+namespace surefoot::test {
+
+using input::test::GamepadSession;
+
+inline std::string keep(const GamepadSession& session, const std::string& name) {
+    const std::string file = Forest::get().dir + "/" + name + ".hid";
+    EXPECT_TRUE(write_text(file, session.text()).ok());
+    return file;
+}
+
+/// On the virtual clock and without GL; ends where the recording does.
+inline walk::WalkRequest steered_request(const GamepadSession& session, const std::string& name) {
+    walk::WalkRequest request = Forest::get().virtual_request(0);
+    request.input_file = keep(session, name);
+    return request;
+}
+
+inline dvec3 eye(const rt::FrameRecord& r) { return {r.eye[0], r.eye[1], r.eye[2]}; }
+inline dquat orientation(const rt::FrameRecord& r) {
+    return {r.orientation[3], r.orientation[0], r.orientation[1], r.orientation[2]};
+}
+/// The frame at a time after the walk's start, at 30 Hz.
+inline const rt::FrameRecord& at(const walk::WalkOutcome& outcome, double seconds) {
+    return outcome.records.at(static_cast<std::size_t>(seconds * 30.0 + 0.5));
+}
+
+/// Ten thousand reports at 1 kHz with every sort of movement in them, the first at rest.
+inline GamepadSession ten_thousand_events() {
+    GamepadSession session;
+    session.report({});
+    for (int i = 1; i < 10'000; ++i) {
+        const double t = i * 1e-3;
+        session.report(
+            {.side = 0.5 * std::sin(3 * t), .forward = std::sin(t), .turn = std::sin(0.7 * t), .look = 0.2 * std::sin(2 * t)},
+            1000);
+    }
+    return session;
+}
+
+}  // namespace surefoot::test

@@ -1,0 +1,107 @@
+// The walk on the virtual clock: bit-equal cuts, the in-frame check, the budget, conservation of slots.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include "rt/base/file.hpp"
+#include "tests/temporary_folder.hpp"
+#include "tests/walk/walk_fixture.hpp"
+
+namespace surefoot {
+namespace {
+
+using test::walk;
+
+TEST(VirtualWalk, CutsAreBitEqualAtAnyWorkerCountAndAcrossRuns) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(120);
+    request.workers = 1;
+    const std::string hash = walk(request).summary.cut_hash;
+    EXPECT_FALSE(hash.empty());
+    EXPECT_EQ(walk(request).summary.cut_hash, hash);
+    for (const int workers : {2, 4}) {
+        request.workers = workers;
+        EXPECT_EQ(walk(request).summary.cut_hash, hash) << workers << " workers";
+    }
+}
+
+TEST(VirtualWalk, EverySlotIsRunOrSkippedExactly) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(200);
+    request.in_frame_check = false;
+    request.correct_costs = false;
+    request.cost_scale = 2.3;
+    const walk::WalkOutcome outcome = walk(request);
+    ASSERT_EQ(outcome.records.size(), 200U);
+    std::uint64_t skipped = 0;
+    for (const rt::FrameRecord& r : outcome.records) skipped += r.skipped_before;
+    EXPECT_EQ(outcome.records.back().slot + 1, outcome.records.size() + skipped);
+    EXPECT_GT(skipped, 0U) << "costs of 2.3 times the budget must overrun slots, or the test shows nothing";
+}
+
+TEST(VirtualWalk, ATourThatStartsAtSpeedIsPreparedForFromItsFirstFrame) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(10);
+    const test::TemporaryFolder folder;
+    Path fast = *read_path(request.path_file);
+    for (auto& sample : fast.samples) sample.time_s /= 40;
+    const double speed_m_s = glm::length(sample_path(fast, 0.01).position - sample_path(fast, 0).position) / 0.01;
+    EXPECT_GT(speed_m_s, 25) << "or the test shows nothing";
+    request.path_file = folder / "fast.csv";
+    ASSERT_TRUE(write_path(request.path_file, fast).ok());
+    for (const rt::FrameRecord& r : walk(request).records)
+        EXPECT_GT(r.candidates, 0U) << "frame " << r.frame << " was drawn coarse";
+}
+
+TEST(VirtualWalk, CostsUnderPredictedTwofoldMissNothingWithTheInFrameCheckAndMissWithoutIt) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(600);
+    request.cost_scale = 2;
+    request.correct_costs = false;  // the check alone must hold, for all 600 frames
+    const walk::WalkOutcome checked = walk(request);
+    EXPECT_EQ(checked.summary.misses, 0U);
+    EXPECT_GT(checked.summary.downgrades, 0U);
+    request.in_frame_check = false;
+    EXPECT_GT(walk(request).summary.misses, 300U);
+}
+
+TEST(VirtualWalk, WithinAFewFramesTheCorrectionMeetsADoubledCost) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(300);
+    request.cost_scale = 1.9;
+    const walk::WalkOutcome outcome = walk(request);
+    std::uint32_t late_downgrades = 0;
+    for (const rt::FrameRecord& r : outcome.records) late_downgrades += r.frame > 60 ? r.downgraded_slices : 0;
+    EXPECT_EQ(outcome.summary.misses, 0U);
+    EXPECT_EQ(late_downgrades, 0U);
+}
+
+TEST(VirtualWalk, EverySelectorWalksAndOnlyFlatAndDistanceIgnoreTheBudget) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(60);
+    request.in_frame_check = false;
+    for (const auto* selector : {"depth-first", "best-first", "two-stage"}) {
+        request.selector = selector;
+        const walk::WalkOutcome outcome = walk(request);
+        for (const rt::FrameRecord& r : outcome.records) {
+            ASSERT_LE(r.actual_us, std::max(r.budget_us, r.floor_us) * 1.0001F) << selector << " frame " << r.frame;
+        }
+    }
+    for (const auto* selector : {"flat", "distance", "depth-first-1994", "best-first-1994", "two-stage-1994"}) {
+        request.selector = selector;
+        EXPECT_EQ(walk(request).records.size(), 60U) << selector;
+    }
+}
+
+TEST(VirtualWalk, BadRequestsNameThePlaceAndTheRemedy) {
+    const walk::WalkRequest good = test::Forest::get().virtual_request(10);
+    const auto refused = [&](auto change) {
+        walk::WalkRequest request = good;
+        change(request);
+        auto outcome = walk::run_walk(request, {});
+        if (outcome.ok()) return std::string();
+        EXPECT_FALSE(outcome.error().remedy.empty()) << outcome.error().text();
+        return outcome.error().text();
+    };
+    EXPECT_NE(refused([](auto& r) { r.model_file = "absent.walk"; }).find("absent.walk"), std::string::npos);
+    EXPECT_NE(refused([](auto& r) { r.path_file = "absent.csv"; }).find("absent.csv"), std::string::npos);
+    EXPECT_NE(refused([](auto& r) { r.selector = "best"; }).find("two-stage"), std::string::npos);
+    EXPECT_NE(refused([](auto& r) { r.ledger_file = "/nonexistent/ledger.csv"; }).find("/nonexistent"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace surefoot

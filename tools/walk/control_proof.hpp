@@ -1,0 +1,37 @@
+// The control's side of a walk: steal a block, the proof that the load is real, and the verdict.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "rt/frame/control.hpp"
+#include "rt/frame/record.hpp"
+#include "tools/walk/placing.hpp"
+#include "tools/walk/walk.hpp"
+
+namespace surefoot::walk {
+
+/// Of all cores since boot, ms; 0 where the kernel does not say.
+double total_steal_ms();
+
+/// The blocks' counts as they come, and the steal of each, read at the blocks' borders by the monitor thread.
+class ControlBlocks {
+public:
+    void on_record(const rt::FrameRecord& record);
+    /// By block number; the last one ends now.
+    [[nodiscard]] std::vector<rt::BlockTally> finish();
+
+private:
+    rt::BlockTallies tallies_;
+    std::vector<double> steal_ms_;
+    std::uint32_t block_ = 0;
+    double at_start_ms_ = -1;
+};
+
+/// Fills outcome.summary.control: takes the blocks, runs 10 s of the bare loop under SCHED_OTHER on the frame core with
+/// the same CPU time (the load counts only if that misses a fifth), and applies the permutation test.
+/// burn_ns: what the control's bare frames burned.
+void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, ControlBlocks& blocks,
+                   WalkOutcome& outcome, const Progress& progress);
+
+}  // namespace surefoot::walk

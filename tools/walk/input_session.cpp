@@ -1,0 +1,124 @@
+// Opening, wiring, summing up.
+#include "tools/walk/input_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "input/replay/replay_source.hpp"
+
+namespace surefoot::walk {
+
+namespace {
+
+void say_what_is_passed_over(const input::SteeringFile& steering, const input::RecordedDevice& recorded,
+                             const WalkRequest& request, std::vector<std::string>& notes) {
+    if (!steering.lines.empty()) {
+        notes.push_back(
+            fmt::format("{}: its {} GPIO lines are not read: a recording steers", request.steering_file, steering.lines.size()));
+    }
+    if (recorded.recording.other_devices > 0) {
+        notes.push_back(fmt::format("{}: {} reports of other devices are passed over: one device steers", request.input_file,
+                                    recorded.recording.other_devices));
+    }
+    for (const std::string& left_out : recorded.mapper.notes) notes.push_back(request.input_file + ": " + left_out);
+}
+
+/// Names in recordings are bytes of unknown sort.
+std::string printable(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(),
+        [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f; }, '?');
+    return text;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& request, std::int64_t period_ns,
+                                                         std::vector<std::string>& notes) {
+    input::SteeringFile steering;
+    if (!request.steering_file.empty()) {
+        auto read = input::read_steering(request.steering_file);
+        if (!read) return read.error();
+        steering = std::move(*read);
+    }
+    std::unique_ptr<InputSession> session(new InputSession());
+    session->source_name_ = request.input_file;
+    session->period_ns_ = period_ns;
+    session->motion_ = steering.motion;
+    session->motion_.frame_s = static_cast<double>(period_ns) * 1e-9;
+    if (request.input_file == live_input) {
+        auto live = LiveInput::open(request, steering, notes);
+        if (!live) return live.error();
+        session->live_.emplace(std::move(*live));
+        session->source_ = session->live_->take_source();
+        session->steering_ = std::make_unique<input::Steering>(session->motion_, steering.safety, session->live_->stop_latched());
+        return session;
+    }
+    auto recorded = input::open_recorded(request.input_file, steering, request.steering_file);
+    if (!recorded) return recorded.error();
+    say_what_is_passed_over(steering, *recorded, request, notes);
+    session->duration_s_ = recorded->duration_s() + after_recording_s;
+    session->source_ = std::make_unique<input::ReplaySource>(std::move(*recorded));
+    session->steering_ = std::make_unique<input::Steering>(session->motion_, steering.safety);
+    return session;
+}
+
+void InputSession::begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement) {
+    visit_ = std::make_unique<Visit>(path);
+    stepper_ =
+        std::make_unique<InputStepper>(*source_, *steering_, *visit_, samples_, places_, live_ ? live_->keeper() : nullptr);
+    poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get());
+    stepper_->begin(start_ns);
+    if (real_clock) thread_ = std::make_unique<InputThread>(*stepper_, placement);
+}
+
+std::optional<Error> InputSession::end(const Progress& progress, std::vector<std::string>& notes) {
+    if (!thread_) return {};
+    thread_->stop();
+    guard_violations_ = thread_->guard_violations();
+    if (live_) live_->finish(steering_->safety().latched, progress, notes);
+    return thread_->misplaced();
+}
+
+report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> records) const {
+    report::InputSummary s;
+    s.given = true;
+    s.source = source_name_;
+    for (const input::SteeringDevice& d : source_->devices())
+        s.devices.push_back({printable(d.name), d.device_class, printable(d.mapping)});
+    s.reports = source_->log().count();
+    s.refused = source_->refused();
+    const std::vector<double> ages = report_ages_ms(records, source_->log().stamps());
+    // Of a long live walk the first reports' ages are kept, not all.
+    s.reports_shown = records.empty() ? 0 : std::max<std::uint64_t>(ages.size(), records.back().input_reports);
+    s.age_ms = report::quantiles(ages);
+    const input::SafetyState& safety = steering_->safety();
+    s.stops = safety.stops;
+    s.stop_latched = safety.latched;
+    s.silences = safety.silences;
+    s.overflows = safety.overflows;
+    s.losses = safety.losses;
+    for (const rt::FrameRecord& r : records) s.stopped_frames += r.stopped ? 1 : 0;
+    const input::PressCounts& presses = steering_->motion().presses;
+    s.next_viewpoint = presses.next_viewpoint;
+    s.reset = presses.reset;
+    s.tour = presses.tour;
+    s.pause = presses.pause;
+    s.jumps = visit_->jumps();
+    s.filter_lag_ms = steering_->worst_lag_s() * 1e3;
+    s.guard_violations = guard_violations_;
+    return s;
+}
+
+std::vector<double> report_ages_ms(std::span<const rt::FrameRecord> records, std::span<const std::int64_t> stamps_ns) {
+    std::vector<double> ages;
+    std::size_t seen = 0;
+    for (const rt::FrameRecord& r : records) {
+        const std::size_t until = std::min<std::size_t>(r.input_reports, stamps_ns.size());
+        for (; seen < until; ++seen) ages.push_back(static_cast<double>(r.submitted_ns - stamps_ns[seen]) * 1e-6);
+    }
+    return ages;
+}
+
+}  // namespace surefoot::walk

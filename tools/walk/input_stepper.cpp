@@ -1,0 +1,56 @@
+// The step.
+#include "tools/walk/input_stepper.hpp"
+
+#include <algorithm>
+
+namespace surefoot::walk {
+
+InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit,
+                           rt::TripleBuffer<SteeredSample>& samples, PlaceBuffer& places, input::StopKeeper* keeper)
+    : source_(source), steering_(steering), visit_(visit), samples_(samples), places_(places), keeper_(keeper) {
+    steering_.place(visit_.start());
+}
+
+void InputStepper::begin(std::int64_t start_ns) {
+    tick_at_ns_ = start_ns;
+    source_.begin(steering_, start_ns);
+    input::NavigationSample first;
+    first.pose = visit_.start();
+    publish(first, start_ns);
+}
+
+std::int64_t InputStepper::next_ns() const { return std::min(source_.next_ns(), tick_at_ns_); }
+
+void InputStepper::step(std::int64_t now_ns) {
+    const input::Lines lines = source_.drain(steering_, now_ns);
+    input::NavigationSample sample = steering_.tick(lines, now_ns);
+    if (keeper_ != nullptr) keeper_->set(steering_.safety().latched);
+    visit_.follow(sample, steering_, now_ns);
+    publish(sample, now_ns);
+    tick_at_ns_ = now_ns + input_tick_ns;
+}
+
+void InputStepper::advance_to(std::int64_t now_ns) {
+    for (std::int64_t due = next_ns(); due <= now_ns; due = next_ns()) step(due);
+}
+
+void InputStepper::publish(const input::NavigationSample& sample, std::int64_t now_ns) {
+    if (visit_.jumps() != jumps_told_) {
+        jumps_told_ = visit_.jumps();
+        PoseSample& place = places_.back();
+        place.pose = sample.pose;
+        place.dt_s = static_cast<double>(input_tick_ns) * 1e-9;
+        place.before = input::carried(sample, -place.dt_s);  // a tour goes on from there at once
+        place.time_ns = now_ns;
+        places_.publish();
+    }
+    SteeredSample& out = samples_.back();
+    out.nav = sample;
+    out.time_ns = now_ns;
+    out.reports = source_.log().count();
+    out.jumps = visit_.jumps();
+    out.touring = visit_.touring();
+    samples_.publish();
+}
+
+}  // namespace surefoot::walk

@@ -1,0 +1,62 @@
+// One step of the input: read what there is, steer, act on buttons, publish. Real time runs it on a thread of its own
+// (input_thread.hpp); the virtual clock runs it inline up to each frame's start. Both run this body.
+//
+//   ReportSource ─drain─► Steering ─tick─► Visit ─follow─► SteeredSample ─► triple buffer ─► frame thread (steered_poses.hpp)
+#pragma once
+
+#include <cstdint>
+
+#include "input/report_source.hpp"
+#include "input/safety/stop_memory.hpp"
+#include "input/steering.hpp"
+#include "rt/exchange/triple_buffer.hpp"
+#include "tools/walk/prepare_thread.hpp"
+#include "tools/walk/visit.hpp"
+
+namespace surefoot::walk {
+
+/// Longest time between two steps: every report makes one, and where none comes, filters and limits run on.
+constexpr std::int64_t input_tick_ns = 2'000'000;
+
+/// What the frame thread reads, newest wins.
+struct SteeredSample {
+    input::NavigationSample nav;
+    std::int64_t time_ns = 0;   ///< of the step: nav.pose is the pose then
+    std::uint64_t reports = 0;  ///< accepted, up to and with this sample
+    std::uint32_t jumps = 0;    ///< Visit::jumps()
+    bool touring = false;
+};
+
+class InputStepper {
+public:
+    /// All of them must outlive this; `steering` is placed at the visit's start.
+    /// `keeper`, where given, is told at each step whether an emergency stop is latched.
+    /// `places` is told where the eye is put when it does not walk there.
+    InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit, rt::TripleBuffer<SteeredSample>& samples,
+                 PlaceBuffer& places, input::StopKeeper* keeper = nullptr);
+
+    /// Publishes the start, and attaches what is there. On a neutral thread, before the first step; allocates.
+    void begin(std::int64_t start_ns);
+    /// When the next step is due at the latest.
+    [[nodiscard]] std::int64_t next_ns() const;
+    /// Sleeps until then, or until something can be read.
+    void wait(rt::Clock& clock) { source_.wait(clock, next_ns()); }
+    /// One step at `now_ns`; does not allocate, lock or read a clock.
+    void step(std::int64_t now_ns);
+    /// Every step that is due by `now_ns`, each at its own time: the same whenever it is called (virtual clock).
+    void advance_to(std::int64_t now_ns);
+
+private:
+    void publish(const input::NavigationSample& sample, std::int64_t now_ns);
+
+    input::ReportSource& source_;
+    input::Steering& steering_;
+    Visit& visit_;
+    rt::TripleBuffer<SteeredSample>& samples_;
+    PlaceBuffer& places_;
+    input::StopKeeper* keeper_;
+    std::uint32_t jumps_told_ = 0;
+    std::int64_t tick_at_ns_ = 0;
+};
+
+}  // namespace surefoot::walk

@@ -1,0 +1,85 @@
+// Opening, recalling, telling.
+#include "tools/walk/live_input.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "tools/walk/state.hpp"
+
+namespace surefoot::walk {
+
+namespace {
+
+void say(const Progress& progress, std::vector<std::string>& notes, std::string text) {
+    if (progress.note)
+        progress.note(text);
+    else
+        notes.push_back(std::move(text));
+}
+
+/// The folder is there, and the file can be written: else a stop would be forgotten, and nobody would know.
+Result<void> check_memory(const std::string& file, bool latched) {
+    std::error_code problem;
+    std::filesystem::create_directories(std::filesystem::path(file).parent_path(), problem);
+    auto stored = input::store_stop(file, latched);
+    if (stored) return stored;
+    return Error{stored.error().place, "the emergency stop cannot be remembered: " + stored.error().what,
+                 "name a folder that can be written with --state DIR"};
+}
+
+}  // namespace
+
+Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::SteeringFile& steering,
+                                  std::vector<std::string>& notes) {
+    LiveInput live;
+    if (input::has_stop(steering)) {
+        const std::string file = stop_file(state_directory(request.state_dir));
+        const input::RememberedStop remembered = input::load_stop(file);
+        if (!remembered.note.empty()) notes.push_back(remembered.note);
+        live.stop_latched_ = remembered.latched && !request.clear_stop;
+        if (auto ok = check_memory(file, live.stop_latched_); !ok) return ok.error();
+        live.keeper_ = std::make_unique<input::StopKeeper>(file, live.stop_latched_);
+        if (live.stop_latched_)
+            notes.push_back(file +
+                            ": the emergency stop of an earlier walk is still latched: press what does `stop_reset`, or start "
+                            "with --clear-stop");
+        else if (remembered.latched)
+            notes.push_back(file + ": the emergency stop of an earlier walk is taken off, as --clear-stop asks");
+    } else if (request.clear_stop) {
+        return Error{"--clear-stop", "takes off a latched stop, and nothing here can stop",
+                     "name a stop in the --steering file, or leave it out"};
+    }
+    input::LiveOptions options;
+    options.mappings = steering.devices;
+    options.lines = steering.lines;
+    auto source = input::LiveSource::open(std::move(options));
+    if (!source) return source.error();
+    live.source_ = std::move(*source);
+    live.live_ = live.source_.get();
+    return live;
+}
+
+void LiveInput::attend(const Progress& progress, std::vector<std::string>& notes) {
+    for (input::NoteLine note; live_->next_note(note);) say(progress, notes, std::string(note.view()));
+    if (!keeper_) return;
+    if (const bool latched = keeper_->latched(); latched != stop_latched_) {
+        stop_latched_ = latched;
+        say(progress, notes,
+            latched ? "emergency stop: the walk stands still until what does `stop_reset` is pressed"
+                    : "emergency stop: taken off");
+    }
+    const auto written = keeper_->flush();
+    const std::string why = written ? std::string() : written.error().text();
+    if (why != unwritten_ && !why.empty()) say(progress, notes, "the emergency stop's memory: " + why);
+    unwritten_ = why;
+}
+
+void LiveInput::finish(bool latched, const Progress& progress, std::vector<std::string>& notes) {
+    if (keeper_) keeper_->set(latched);
+    attend(progress, notes);
+    if (live_->lost_notes() > 0)
+        say(progress, notes, fmt::format("{} more messages about devices came too fast to be shown", live_->lost_notes()));
+}
+
+}  // namespace surefoot::walk

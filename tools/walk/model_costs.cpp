@@ -1,0 +1,81 @@
+// Fitting the frame's weights to a model (model_costs.hpp).
+#include "tools/walk/model_costs.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "render/measure/calibrate.hpp"
+#include "render/measure/calibrate_fit.hpp"
+#include "rt/base/random.hpp"
+#include "rt/clock/clock.hpp"
+#include "tools/walk/path_source.hpp"
+
+namespace surefoot::walk {
+
+namespace {
+
+constexpr std::uint32_t warm_up = 10;
+
+/// Drawn twice: the second finds warm caches, as a walk's frames do.
+measure::FrameSample measured(Engine& engine, const Pose& pose) {
+    SubmitLimits limits;
+    limits.limit_us = 1e12;
+    limits.now_ns = [](void*) { return rt::monotonic_ns(); };
+    engine.submit(pose, limits);
+    const SubmitReport report = engine.submit(pose, limits);
+    return {static_cast<double>(report.predicted.submit_us), static_cast<double>(report.predicted.raster_us), report.finished_us};
+}
+
+FrameErrors errors_of(std::span<const measure::FrameSample> samples, const model::FrameCombine& combine) {
+    const auto at = [&](double q) { return measure::relative_error(samples, combine, q); };
+    return {at(0.5), at(0.9), at(0.99)};
+}
+
+}  // namespace
+
+Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
+                              const Progress& progress) {
+    const auto begun = rt::monotonic_ns();
+    EngineOptions engine_options;
+    engine_options.device = options.device;
+    engine_options.in_frame_check = false;  // whole cuts are timed
+    auto opened = Engine::open(std::move(model), table, engine_options);
+    if (!opened) return opened.error();
+    Engine& engine = **opened;
+    if (options.opened) options.opened();
+    engine.device().bind();
+    prepare::PreparedFrame prepared;
+    engine.reserve(prepared);
+    std::vector<std::vector<measure::FrameSample>> drawn(options.poses);
+    const std::uint32_t a_round = options.poses + warm_up, rounds = std::max(1U, options.rounds);
+    for (std::uint32_t round = 0; round < rounds; ++round) {
+        Random random(options.seed);  // the same views again
+        for (std::uint32_t i = 0; i < a_round; ++i) {
+            if (progress.stopped()) return Error{"calibration", "stopped: nothing was written", "run it again"};
+            const Pose pose = random_pose(path, random);
+            const double budget_us = random.range(0.1, 0.85) * options.frame_us;
+            engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);
+            engine.select(prepared, budget_us, {}, 0);
+            const measure::FrameSample sample = measured(engine, pose);
+            if (i >= warm_up) drawn[i - warm_up].push_back(sample);
+            progress.say("frames", (round + static_cast<double>(i) / a_round) / rounds);
+        }
+    }
+    const measure::Settled settled = measure::settle(drawn);
+    std::vector<measure::FrameSample> taught, held_out;
+    for (std::size_t i = 0; i < settled.frames.size(); ++i) (i % 2 == 0 ? taught : held_out).push_back(settled.frames[i]);
+    ModelFit fit;
+    fit.costs = table;
+    fit.costs.combine = measure::fit_combine(taught, table.combine);
+    fit.costs.upper_factor = static_cast<float>(std::max(1.0, measure::ratio(held_out, fit.costs.combine, 0.9)));
+    fit.before = errors_of(held_out, table.combine);
+    fit.after = errors_of(held_out, fit.costs.combine);
+    fit.frames = options.poses;
+    fit.repeated = settled.repeated;
+    fit.slowdown = settled.slowdown;
+    fit.machine = measure::machine_identity(engine.device().renderer(), options.device.rasterisers);
+    fit.seconds = static_cast<double>(rt::monotonic_ns() - begun) * 1e-9;
+    return fit;
+}
+
+}  // namespace surefoot::walk

@@ -1,0 +1,44 @@
+// What a machine's cost table says of one model, set right: how items add up to a frame, fitted to measured frames of it.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "render/engine.hpp"
+#include "rt/base/path.hpp"
+#include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::walk {
+
+struct ModelFitOptions {
+    gl::DeviceOptions device;
+    double frame_us = 1e6 / 30;  ///< budgets are drawn from a tenth of it up to 85 %
+    std::uint32_t poses = 240;
+    std::uint32_t rounds = 4;  ///< that each pose is drawn in, at least 1
+    std::uint64_t seed = 7;
+    std::function<void()> opened;  ///< called once, when the driver's threads exist: place them as a walk does
+};
+
+/// Relative errors of predicted whole frames, 0..1.
+struct FrameErrors {
+    double p50 = 0, p90 = 0, p99 = 0;
+};
+
+struct ModelFit {
+    model::CostModel costs;     ///< the table with `combine` and `upper_factor` of this model
+    FrameErrors before, after;  ///< on the half of the frames that taught nothing
+    std::string machine;        ///< that drew it, as a table names its own
+    std::uint32_t frames = 0;
+    std::size_t repeated = 0;  ///< of them, drawn alike in at least two rounds
+    double slowdown = 1;       ///< measure::Settled's
+    double seconds = 0;
+};
+
+/// Draws random views near the path at random budgets, in several rounds (measure::settle); every other one teaches the weights,
+/// the rest judge them. The table itself stays: its cells are of single items, and what differs between models is how these
+/// overlap and what hides what.
+Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
+                              const Progress& progress);
+
+}  // namespace surefoot::walk

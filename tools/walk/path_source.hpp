@@ -1,0 +1,27 @@
+// Where a walk's path comes from: the file asked for, the one beside the model, or a tour made from the model's box.
+#pragma once
+
+#include <string>
+
+#include "render/model/model.hpp"
+#include "rt/base/path.hpp"
+#include "rt/base/random.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::walk {
+
+struct ChosenPath {
+    Path path;
+    std::string source;  ///< the file, or "generated tour"
+};
+
+/// asked: a CSV file or empty. lift_m is added to every y (recorded drives give the vehicle's ground pose).
+Result<ChosenPath> choose_path(const std::string& asked, const std::string& model_file, const model::Model& model, double lift_m);
+
+/// A place on the path, moved by up to 3 m, looking anywhere about the horizon: for judging what is predicted of any view.
+Pose random_pose(const Path& path, Random& random);
+
+/// 40 s: from above one corner, round the model once, closing in to its middle. For models that bring no path.
+Path generated_tour(const model::Model& model);
+
+}  // namespace surefoot::walk

@@ -1,0 +1,45 @@
+// Which thread runs where, at which priority: the declared table of the session, and putting it in force (DESIGN 7).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rt/base/result.hpp"
+#include "rt/threads/census.hpp"
+#include "rt/threads/placement.hpp"
+#include "tools/walk/walk.hpp"
+
+namespace surefoot::walk {
+
+/// Cores and priorities of one session, worked out from the request and the machine.
+struct PlacingPlan {
+    bool fifo = false;  ///< asked for and granted
+    int frame_core = 0;
+    int absent_core = -1;  ///< asked for as the frame core, and not there (or not ours): another one serves; -1: none
+    rt::CpuMask all;       ///< of every other thread; the frame core is outside of it where the kernel isolates that one
+    int frame_priority = 80, raster_priority = 70, worker_priority = 60;
+    bool input = false;                        ///< an input thread steers
+    bool devices = false;                      ///< and another one finds its devices
+    std::vector<std::string> driver_prefixes;  ///< the driver's rasterisers
+    int rasterisers = 0;                       ///< how many were found
+};
+
+/// The frame thread gets rt::default_frame_core() unless the request names one that is there.
+Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted);
+
+/// Places the driver's rasterisers below the frame thread, on all cores: pinned one a core, the one on the frame core would
+/// keep each scene's barrier waiting until the frame thread sleeps (measured: ARCHITECTURE). Call when the context exists.
+Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan);
+/// Rasterisers whose CPU time counts as the frame core's, for the control.
+std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_t>& rasterisers);
+/// Workers (threads named sf-prepare*): below the rasterisers, on every core.
+Result<void> place_workers(const PlacingPlan& plan);
+rt::Placement frame_placement(const PlacingPlan& plan);
+/// The input thread: between the frame thread and the rasterisers, so that drawing cannot delay a report; on every core, so
+/// that the frame thread does not either.
+rt::Placement input_placement(const PlacingPlan& plan);
+
+/// What the census compares with: every thread that a session may have.
+std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_clock, const std::string& program_name);
+
+}  // namespace surefoot::walk

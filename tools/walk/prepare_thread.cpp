@@ -1,0 +1,77 @@
+// The coordinator of preparation, on its own grid.
+#include "tools/walk/prepare_thread.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt/clock/clock.hpp"
+#include "rt/threads/placement.hpp"
+
+namespace surefoot::walk {
+
+void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out) {
+    if (const Foresight& f = sample.foresight; f.known) {
+        engine.prepare(f.region, sample.frame, f.speed_m_s, f.turn_rad_s, out);
+        return;
+    }
+    const double dt_s = std::max(sample.dt_s, 1e-3);
+    const prepare::Region region = predict_region(sample.before, sample.pose, dt_s, horizon_periods * period_s);
+    const double speed_mps = glm::length(sample.pose.position - sample.before.position) / dt_s;
+    const double w = std::min(1.0, std::abs(glm::dot(sample.pose.orientation, sample.before.orientation)));
+    engine.prepare(region, sample.frame, speed_mps, 2.0 * std::acos(w) / dt_s, out);
+}
+
+PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
+                             rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places)
+    : engine_(engine), grid_(grid), poses_(poses), prepared_(prepared), places_(places), thread_([this] { run(); }) {
+    named_.wait(false);  // by its name it is found and placed
+}
+
+PrepareThread::~PrepareThread() { stop(); }
+
+void PrepareThread::stop() {
+    stopping_.store(true);
+    if (thread_.joinable()) thread_.join();
+}
+
+void PrepareThread::prepare_newest() {
+    const double period_s = static_cast<double>(grid_.period_ns) * 1e-9;
+    const bool frame = poses_.refresh() && poses_.front().valid && poses_.front().frame != seen_;
+    bool place = places_ != nullptr && places_->refresh();
+    place = place && poses_.front().valid && places_->front().time_ns > poses_.front().time_ns;  // else a frame has it already
+    if (!frame && !place) return;
+    PoseSample sample = poses_.front();
+    if (place) {  // the next frame is drawn there
+        sample.pose = places_->front().pose;
+        sample.before = places_->front().before;
+        sample.dt_s = places_->front().dt_s;
+        sample.foresight = {};
+    }
+    seen_ = sample.frame;
+    prepare_after(engine_, sample, period_s, prepared_.back());
+    prepared_.publish();
+}
+
+void PrepareThread::run() {
+    (void)rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-prepare"});
+    named_.store(true);
+    named_.notify_one();
+    rt::RealClock clock;
+    // A fortieth of a period after the frame's start: the pose is there by then, and most of the period is left.
+    const std::int64_t offset_ns = grid_.period_ns / 40;
+    const std::int64_t step_ns = places_ != nullptr ? grid_.period_ns / 8 : grid_.period_ns;
+    while (!stopping_.load(std::memory_order_relaxed)) {
+        prepare_newest();
+        // The steps are counted from each frame's start, so that one of them is always where it is without them.
+        const std::int64_t begun_ns = grid_.t0_ns + offset_ns, now = clock.now_ns();
+        if (now < begun_ns) {
+            clock.sleep_until_ns(begun_ns);
+            continue;
+        }
+        const std::int64_t slot = (now - begun_ns) / grid_.period_ns, slot_ns = begun_ns + slot * grid_.period_ns;
+        const std::int64_t next_ns = slot_ns + ((now - slot_ns) / step_ns + 1) * step_ns;
+        clock.sleep_until_ns(std::min(next_ns, slot_ns + grid_.period_ns));
+    }
+}
+
+}  // namespace surefoot::walk

@@ -1,0 +1,66 @@
+// The coordinator of preparation: on its own grid point a little after each frame's start it takes the newest pose, lets
+// the workers prepare, and publishes. The frame thread never waits for it, nor wakes it. Where an input puts the eye elsewhere
+// (a viewpoint), it is told between the frames, so that the first picture there is prepared like any other.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+#include "render/engine.hpp"
+#include "rt/clock/grid.hpp"
+#include "rt/exchange/triple_buffer.hpp"
+
+namespace surefoot::walk {
+
+/// Where the eye can be until `horizon_periods` from now, where that is known from what steers it.
+struct Foresight {
+    bool known = false;
+    prepare::Region region;  ///< the pose if the hand stays as it is, and how far from it the limits of motion allow
+    double speed_m_s = 0, turn_rad_s = 0;
+};
+
+/// What the frame thread publishes at each frame's start.
+struct PoseSample {
+    std::uint64_t frame = 0;   ///< walked frames, from 0
+    std::int64_t time_ns = 0;  ///< when it was due
+    Pose pose, before;         ///< now, and one frame ago
+    double dt_s = 0;
+    Foresight foresight;  ///< not known: the last two poses say where the walk goes
+    bool valid = false;
+};
+
+/// The pictures of the next frames are prepared for: this many periods ahead of the newest pose (DESIGN 1.4: 3 at most).
+constexpr double horizon_periods = 3.0;
+
+/// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.
+void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out);
+
+/// Where the eye is being put, from the input thread; only poses and times count.
+using PlaceBuffer = rt::TripleBuffer<PoseSample>;
+
+class PrepareThread {
+public:
+    /// Start from a neutral thread; the thread is named sf-prepare when this returns. The buffers must outlive it. `places`: null
+    /// where nothing puts the eye elsewhere; else looked at eight times a period.
+    PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
+                  rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places);
+    ~PrepareThread();
+    PrepareThread(const PrepareThread&) = delete;
+    PrepareThread& operator=(const PrepareThread&) = delete;
+    void stop();
+
+private:
+    void run();
+    void prepare_newest();
+    Engine& engine_;
+    rt::Grid grid_;
+    rt::TripleBuffer<PoseSample>& poses_;
+    rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
+    PlaceBuffer* places_;
+    std::uint64_t seen_ = ~0ULL;  ///< frame prepared after last
+    std::atomic<bool> stopping_{false}, named_{false};
+    std::thread thread_;
+};
+
+}  // namespace surefoot::walk

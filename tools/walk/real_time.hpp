@@ -1,0 +1,20 @@
+// What the machine grants of real time, what it lacks, and the refusal to start without (--strict; DESIGN 7).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "rt/base/result.hpp"
+#include "tools/walk/placing.hpp"
+#include "tools/walk/walk_results.hpp"
+
+namespace surefoot::walk {
+
+/// Fills in what is granted and what is lacking (facts.degraded), locks memory, and works out the placing. real_clock false:
+/// nothing is asked of the machine. An Error only where the request itself cannot be met.
+Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock, WalkFacts& facts);
+
+/// --strict: success, or one Error that names every lack with its remedy.
+Result<void> require_real_time(std::span<const report::Degraded> lacks);
+
+}  // namespace surefoot::walk

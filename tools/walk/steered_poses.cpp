@@ -1,0 +1,51 @@
+// From the newest sample to a frame's pose.
+#include "tools/walk/steered_poses.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::walk {
+
+SteeredPoses::SteeredPoses(rt::TripleBuffer<SteeredSample>& samples, const input::MotionLimits& limits, std::int64_t period_ns,
+                           InputStepper* inline_stepper)
+    : samples_(samples), limits_(limits), period_ns_(period_ns), inline_stepper_(inline_stepper) {}
+
+FramePose SteeredPoses::sample(const FrameTime& time) {
+    if (inline_stepper_ != nullptr) inline_stepper_->advance_to(time.now_ns);
+    samples_.refresh();
+    FramePose pose = pose_of(time);
+    jumps_seen_ = samples_.front().jumps;
+    return pose;
+}
+
+bool SteeredPoses::latch(const FrameTime& time, FramePose& newest) {
+    if (inline_stepper_ != nullptr) inline_stepper_->advance_to(time.now_ns);
+    if (!samples_.refresh()) return false;
+    newest = pose_of(time);
+    return true;
+}
+
+FramePose SteeredPoses::pose_of(const FrameTime& time) const {
+    const SteeredSample& s = samples_.front();
+    FramePose out;
+    const std::int64_t by_ns = std::clamp(time.due_ns - s.time_ns, -carry_limit_ns, carry_limit_ns);
+    const auto carried_by = [&](std::int64_t ns) {
+        return ns == 0 ? s.nav.pose : input::carried(s.nav, static_cast<double>(ns) * 1e-9);
+    };
+    out.pose = carried_by(by_ns);
+    out.before = carried_by(by_ns - period_ns_);
+    out.jumped = s.jumps != jumps_seen_;
+    out.stopped = s.nav.stopped;
+    out.stamp_ns = s.nav.stamp_ns;
+    out.reports = s.reports;
+    if (s.touring) return out;  // the limits say nothing about a path: the last two poses do
+    const double ahead_s = horizon_periods * static_cast<double>(period_ns_) * 1e-9 + static_cast<double>(carry_limit_ns) * 1e-9;
+    const input::Prediction ahead = input::predict(s.nav, limits_, ahead_s);
+    out.foresight.known = true;
+    out.foresight.region = {ahead.pose, ahead.uncertainty_m, ahead.uncertainty_rad};
+    out.foresight.speed_m_s = glm::length(s.nav.velocity_m_s);
+    out.foresight.turn_rad_s = glm::length(s.nav.angular_rad_s);
+    return out;
+}
+
+}  // namespace surefoot::walk

@@ -1,0 +1,34 @@
+// Poses that an input steers: the newest sample, moved to the frame's own time, with the bounds of what may follow.
+#pragma once
+
+#include "input/motion/motion.hpp"
+#include "rt/exchange/triple_buffer.hpp"
+#include "tools/walk/input_stepper.hpp"
+#include "tools/walk/pose_source.hpp"
+
+namespace surefoot::walk {
+
+/// A sample is taken on by at most this much, towards the frame's due time and back: that evens out the phase between steps and
+/// frames. An input thread that stalls for longer leaves the eye where it was last seen.
+constexpr std::int64_t carry_limit_ns = 2 * input_tick_ns;
+
+class SteeredPoses final : public PoseSource {
+public:
+    /// `inline_stepper`: on the virtual clock, stepped here up to the frame's time; null: a thread of its own steps it.
+    SteeredPoses(rt::TripleBuffer<SteeredSample>& samples, const input::MotionLimits& limits, std::int64_t period_ns,
+                 InputStepper* inline_stepper);
+
+    FramePose sample(const FrameTime& time) override;
+    bool latch(const FrameTime& time, FramePose& newest) override;
+
+private:
+    [[nodiscard]] FramePose pose_of(const FrameTime& time) const;
+
+    rt::TripleBuffer<SteeredSample>& samples_;
+    input::MotionLimits limits_;
+    std::int64_t period_ns_;
+    InputStepper* inline_stepper_;
+    std::uint32_t jumps_seen_ = 0;
+};
+
+}  // namespace surefoot::walk

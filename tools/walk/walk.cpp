@@ -1,0 +1,244 @@
+// A walk: places the threads, runs the frame loop in an open session, sums up and writes.
+#include "tools/walk/walk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "rt/clock/clock.hpp"
+#include "rt/monitor/recorder.hpp"
+#include "tools/walk/control_proof.hpp"
+#include "tools/walk/outputs.hpp"
+#include "tools/walk/prepare_thread.hpp"
+#include "tools/walk/walk_session.hpp"
+
+namespace surefoot::walk {
+
+namespace {
+
+constexpr double limit_share = 0.88;  // of the period: when the in-frame check wants the frame done
+
+WalkStagesOptions stages_options(Session& s) {
+    const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
+    WalkStagesOptions o;
+    o.period_ns = s.grid.period_ns;
+    o.budget_us = s.request.budget_ms > 0 ? s.request.budget_ms * 1e3 : budget_share * period_us;
+    o.limit_us = limit_share * period_us;
+    o.target_error_rad = s.request.accuracy > 0 ? 1.0 / s.request.accuracy : 0;
+    o.correct_costs = s.request.correct_costs;
+    o.control = s.request.control;
+    o.virtual_clock = s.virtual_clock;
+    o.cost_scale = s.request.cost_scale;
+    if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
+    o.capture_missed = s.request.capture_file.empty() && s.watch.on_missed_frame;
+    if (s.watch.inject) o.inject = &s.watch.inject;
+    o.lost = &s.lost;
+    return o;
+}
+
+void tell_started(const Session& s) {
+    if (!s.watch.on_started) return;
+    WalkStart start;
+    start.t0_ns = s.grid.t0_ns;
+    start.period_ns = s.grid.period_ns;
+    start.degraded = s.facts.degraded;
+    start.uncalibrated = s.facts.uncalibrated;
+    start.renderer = s.facts.renderer;
+    start.path = s.path.source;
+    start.fifo = s.plan.fifo;
+    start.locked = s.facts.locked;
+    start.isolated = s.facts.isolated;
+    start.frame_core = s.plan.frame_core;
+    start.rasterisers = s.plan.rasterisers;
+    s.watch.on_started(start);
+}
+
+void tell_input(Session& s) {
+    if (!s.watch.on_input || !s.input || s.input->now() == s.input_told) return;
+    s.input_told = s.input->now();
+    s.watch.on_input(s.input_told);
+}
+
+void tell_census(const Session& s) {
+    if (!s.watch.on_degraded) return;
+    for (const std::string& problem : s.facts.census_problems) s.watch.on_degraded({"thread census: " + problem, ""});
+}
+
+/// How much of the walk is done, 0..1; of a walk without end nothing.
+double share_done(const Session& s, double slots_ran) {
+    return s.frames == 0 ? 0.0 : std::clamp(slots_ran / static_cast<double>(s.frames), 0.0, 1.0);
+}
+
+/// After the frames: what kept the input thread from its place must be said.
+void end_input(Session& s, const Progress& progress) {
+    if (!s.input) return;
+    if (const auto misplaced = s.input->end(progress, s.notes))
+        s.facts.degraded.push_back({misplaced->place + ": " + misplaced->what, misplaced->remedy});
+}
+
+rt::FrameLoopOptions loop_options(const Session& s, const Progress& progress) {
+    rt::FrameLoopOptions o;
+    o.period_ns = s.grid.period_ns;
+    o.t0_ns = s.grid.t0_ns;
+    o.frames = s.frames;
+    o.late = s.late;
+    o.control = s.request.control ? &s.control : nullptr;
+    o.stop = progress.stop;
+    o.failed = &s.lost;
+    o.continued = s.virtual_clock ? nullptr : rt::count_continues();
+    o.rasterisers = s.rasterisers;
+    o.rasterisers_on_core = s.on_frame_core;
+    o.limits.fifo = s.plan.fifo;
+    if (s.facts.minor_fault_ns > 0) o.limits.minor_fault_ns = s.facts.minor_fault_ns;
+    o.wait_for_ring = s.virtual_clock;
+    return o;
+}
+
+void tell_missed_frame(Session& s) {
+    if (!s.request.capture_file.empty() || !s.watch.on_missed_frame || !s.kept.kept.load(std::memory_order_acquire)) return;
+    s.watch.on_missed_frame(capture_of(s.kept, s.request, *s.engine));
+    s.kept.kept.store(false, std::memory_order_release);
+}
+
+/// While the frame thread walks: attends to the input, tells how far it is, and counts the threads once they have settled.
+void attend(Session& s, rt::Clock& clock, const std::atomic<bool>& done, const Progress& progress) {
+    bool counted = s.virtual_clock;
+    const int look_ms = s.virtual_clock ? 5 : s.input && s.input->live() ? 10 : 100;
+    while (!done.load()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
+        if (s.input) s.input->attend(progress, s.notes);
+        tell_input(s);
+        tell_missed_frame(s);
+        const double ran =
+            s.virtual_clock ? 0.5 : static_cast<double>(clock.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
+        progress.say("walk", share_done(s, ran));
+        if (!counted && ran > 30) {
+            take_census(s.plan, s.facts);
+            tell_census(s);
+            counted = true;
+        }
+    }
+}
+
+/// The frame loop on its own thread; the caller's thread attends meanwhile.
+void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring, const Progress& progress) {
+    rt::RealClock real;
+    rt::VirtualClock virtual_time;
+    rt::Clock& clock = s.virtual_clock ? static_cast<rt::Clock&>(virtual_time) : real;
+    // Far enough ahead that all threads are in place before the first slot.
+    s.grid.t0_ns = s.virtual_clock ? s.grid.period_ns : real.now_ns() + 300'000'000;
+    s.on_frame_core = on_frame_core(s.plan, s.rasterisers);
+    const rt::FrameLoopOptions options = loop_options(s, progress);
+
+    std::unique_ptr<PrepareThread> preparing;
+    PlaceBuffer* places = s.input ? s.input->places() : nullptr;
+    if (!s.virtual_clock) preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, places);
+    PathPoses path_poses(s.path.path, s.grid.period_ns);
+    if (s.input) s.input->begin(s.path.path, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
+    PoseSource& pose_source = s.input ? s.input->poses() : static_cast<PoseSource&>(path_poses);
+    if (s.virtual_clock) tell_started(s);
+    std::atomic<bool> done{false};
+    std::optional<Error> misplaced;  // the frame thread's until it is joined
+    std::thread frame_thread([&] {
+        auto placed = s.virtual_clock
+                          ? rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-frame"})
+                          : rt::place_thread(0, frame_placement(s.plan));
+        if (!placed) misplaced = placed.error();
+        rt::prefault_stack();
+        if (!s.virtual_clock) rt::prefault_heap();
+        WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
+        s.engine->device().bind();
+        s.burn_ns = rt::run_frame_loop(options, clock, stages, ring).burn_ns;
+        s.engine->device().release();
+        done.store(true);
+    });
+    if (!s.virtual_clock) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        if (auto placed = place_workers(s.plan); !placed)
+            s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
+        tell_started(s);
+    }
+    attend(s, clock, done, progress);
+    frame_thread.join();
+    tell_missed_frame(s);
+    s.facts.pinned = !misplaced && !s.virtual_clock;
+    if (misplaced) {
+        s.plan.fifo = false;  // the figures must say so
+        s.facts.degraded.push_back({misplaced->what, misplaced->remedy});
+    }
+    if (preparing) preparing->stop();
+    end_input(s, progress);
+}
+
+/// What the user should know before the walk begins, where someone listens; else it stays for the end.
+void tell_now(std::vector<std::string>& notes, const Progress& progress) {
+    if (!progress.note) return;
+    for (const std::string& text : notes) progress.note(text);
+    notes.clear();
+}
+
+/// What was walked until then is summed up; pictures can no longer be drawn.
+void note_loss(const Session& s, WalkOutcome& outcome) {
+    outcome.lost = s.lost.load();
+    if (!outcome.lost) return;
+    tell(s, WalkStep::device);
+    outcome.failures.push_back({"graphics context", "was lost while walking: the driver was reset, or took it away",
+                                "start again; see the kernel's log for resets of the GPU"});
+}
+
+}  // namespace
+
+Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkWatch& watch) {
+    Session s(request, watch);
+    if (auto ok = open_session(s, progress); !ok) return ok.error();
+    if (!s.virtual_clock) {
+        auto placed = place_rasterisers(s.plan);
+        if (!placed) return placed.error();
+        s.rasterisers = *placed;
+    }
+    warm_up(s);
+
+    WalkOutcome outcome;
+    tell_now(s.notes, progress);
+    // After memory is locked: what the store sets aside is locked with it, and touched.
+    ShotStore shots = make_shot_store(request, s.frames, s.engine->drawn_capacity(), s.notes);
+    rt::SpscRing<rt::FrameRecord> ring(4096);
+    ControlBlocks blocks;
+    std::uint64_t seen = 0;
+    rt::RecorderOptions recorder_options;
+    recorder_options.keep = !request.endless && request.keep_records;
+    recorder_options.reserve_records = s.frames + 64;
+    recorder_options.on_record = [&](const rt::FrameRecord& record) {
+        ++seen;
+        if (!request.endless) blocks.on_record(record);
+        if (watch.on_record) watch.on_record(record);
+    };
+    rt::Recorder recorder(ring, recorder_options);
+
+    const double steal_before = total_steal_ms();
+    tell(s, WalkStep::frames);
+    run_loop(s, shots, ring, progress);
+    recorder.stop();
+    tell(s, WalkStep::ending);
+    outcome.notes.insert(outcome.notes.begin(), s.notes.begin(), s.notes.end());
+    s.facts.steal_ms = total_steal_ms() - steal_before;
+    s.facts.dropped_records = ring.dropped();
+    outcome.records = recorder.take_records();
+    note_loss(s, outcome);
+    outcome.stopped = progress.stopped() && (request.endless || seen < s.frames);
+    if (s.input) outcome.summary.input = s.input->summary(outcome.records);
+    fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
+    if (request.control && !outcome.stopped && !s.lost)
+        judge_control(s.plan, s.grid.period_ns, s.burn_ns, blocks, outcome, progress);
+    if (seen == 0 && outcome.stopped) {  // nothing to show: what an earlier walk left stays
+        outcome.notes.emplace_back("stopped before the first frame: nothing is written");
+        return outcome;
+    }
+    s.engine->device().bind();
+    write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
+    s.engine->device().release();
+    return outcome;
+}
+
+}  // namespace surefoot::walk

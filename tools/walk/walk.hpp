@@ -1,0 +1,121 @@
+// The session: a real-time walk through a model, with its threads placed, its frames accounted and its results handed back.
+// walk, soak, compare and the daemon all run this.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
+#include "rt/frame/record.hpp"
+#include "tools/report/report.hpp"
+
+namespace surefoot::capture {
+struct Capture;
+}
+
+namespace surefoot::walk {
+
+/// In place of a recording: the devices that are plugged in. A recording of that name is "./devices".
+constexpr std::string_view live_input = "devices";
+
+/// What one walk is asked for; 0 or empty means the default that is said here.
+struct WalkRequest {
+    std::string model_file;
+    std::string config_file;    ///< where settings came from: not to be written over; may be empty
+    std::string path_file;      ///< empty: beside the model, else a generated tour
+    std::string input_file;     ///< a recording that steers, or live_input; empty: the path is followed
+    std::string steering_file;  ///< how it steers; empty: the default of the device's class
+    bool clear_stop = false;    ///< live: take off a stop that an earlier walk has left latched
+    std::string state_dir;      ///< empty: see state_directory()
+    std::string selector = "two-stage", late = "lock", backend = "egl", clock = "real";
+    std::array<float, 3> sky{0.62F, 0.72F, 0.82F};  ///< background, 0..1 each
+    double lift_m = 0;                              ///< added to the path's heights
+    double rate_hz = 30;
+    std::uint32_t width = 1280, height = 720;
+    double shift_x = 0, shift_y = 0;  ///< off axis, as model::Viewport has it
+    std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
+    double seconds = 0;
+    bool keep_records = true;  ///< false: records are handed to the watch only, and what is made of records is not made
+    bool endless = false;   ///< until progress.stop: records are handed to the watch and not kept, so nothing is written of them
+    double budget_ms = 0;   ///< 0: 0.80 of the frame
+    double accuracy = 0;    ///< rad^-1; 0: as accurate as the budget allows
+    double cost_scale = 1;  ///< what costs really are over what is predicted (virtual clock)
+    double cost_noise = 0;  ///< relative, seeded (virtual clock)
+    int workers = 0;        ///< 0: one a core
+    int rasterisers = 0;    ///< 0: the measured default
+    int frame_core = -1;    ///< -1: the last core
+    int frame_priority = 80, raster_priority = 70, worker_priority = 60;
+    double slice_us = 1000;
+    double hysteresis = 1.25;
+    bool correct_costs = true;  ///< online correction of predictions; false: frozen at 1
+    bool fifo = true, strict = false, in_frame_check = true, occlusion = true;
+    bool control = false;  ///< ABBA blocks against a bare loop
+    std::uint32_t control_pairs = 90;
+    double control_block_s = 2.0;
+    std::string ledger_file, trace_file, report_dir, snap_dir;
+    std::uint64_t snap_every = 0;
+    std::string capture_file;  ///< one frame's prepared arrays and cut, for `surefoot replay`
+    std::uint64_t capture_frame = 0;
+};
+
+struct WalkOutcome {
+    report::WalkSummary summary;
+    std::vector<rt::FrameRecord> records;
+    std::vector<Error> failures;     ///< outputs that could not be written; the others are there
+    std::vector<std::string> notes;  ///< what else the user should know, a line each
+    bool stopped = false;            ///< ended before its last frame, by progress.stop
+    bool lost = false;               ///< ended because the graphics context was lost; failures says so too
+    std::string report_page;         ///< the report's index.html, where asked for
+};
+
+/// Where a walk is. An Error that run_walk() returns belongs to the step that was told last.
+enum class WalkStep : std::uint8_t { request, input, real_time, model, device, frames, ending };
+
+/// Faults for tests: called on the frame thread as each stage of a frame begins; what it does there delays that stage.
+enum class FramePhase : std::uint8_t { sample, select, submit, finish };
+enum class Fault : std::uint8_t { none, context_lost };
+using FaultHook = std::function<Fault(FramePhase, const rt::FrameRecord&)>;
+
+/// Known when all threads are in place; the spans are valid during the call only.
+struct WalkStart {
+    std::int64_t t0_ns = 0, period_ns = 0;  ///< slot k is due at t0 + k * period
+    std::span<const report::Degraded> degraded;
+    std::string uncalibrated;  ///< the cost table is missing or another machine's: what, and the remedy; else empty
+    std::string renderer, path;
+    bool fifo = false, locked = false, isolated = false;
+    int frame_core = 0, rasterisers = 0;
+};
+
+/// What steers now.
+struct WalkInput {
+    bool live = false;            ///< devices steer; else a path or a recording
+    int devices = 0;              ///< that steer
+    bool emergency_stop = false;  ///< latched
+    friend bool operator==(const WalkInput&, const WalkInput&) = default;
+};
+
+/// Who looks on while a walk runs: telemetry, the daemon, soaks. Each may be empty.
+struct WalkWatch {
+    std::function<void(WalkStep)> on_step;                  ///< on the caller's thread, as each begins
+    std::function<void(const WalkStart&)> on_started;       ///< on the caller's thread, before the first slot is due (real clock)
+    std::function<void(const rt::FrameRecord&)> on_record;  ///< on the monitor thread: every frame, in order
+    std::function<void(const report::Degraded&)> on_degraded;  ///< on the caller's thread: found after on_started
+    std::function<void(const WalkInput&)> on_input;            ///< on the caller's thread: whenever it has changed
+    /// On the caller's thread, a tenth of a second later at most: a missed frame as `surefoot replay` takes it, the first one
+    /// since the last call. Not of frames drawn from coarse levels, nor beside capture_file, nor of the largest models.
+    std::function<void(const capture::Capture&)> on_missed_frame;
+    FaultHook inject;
+};
+
+/// Errors, all before the first frame: unreadable model, path, recording or steering file, no context, --strict without real
+/// time, outputs that could not be written. What fails after the walk is in the outcome's failures. Stopping (progress.stop) ends
+/// the walk at the next frame; what was walked is summed up and written. An endless walk has an end too, but no figures.
+Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkWatch& watch = {});
+
+}  // namespace surefoot::walk

@@ -1,0 +1,119 @@
+// What a walk leaves: its summary, and the files that were asked for.
+#include "tools/walk/walk_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "render/capture/capture.hpp"
+#include "rt/base/file.hpp"
+
+namespace surefoot::walk {
+
+void fill_summary(const WalkRequest& request, const WalkFacts& facts, const PlacingPlan& plan, std::int64_t period_ns,
+                  const std::string& path_source, const Engine& engine, WalkOutcome& outcome) {
+    report::WalkSummary& s = outcome.summary;
+    s.model = request.model_file;
+    s.path = path_source;
+    s.selector = request.selector;
+    s.backend = request.backend;
+    s.renderer = facts.renderer;
+    s.machine = facts.machine;
+    s.late_policy = request.late;
+    s.clock = request.clock;
+    s.width = request.width;
+    s.height = request.height;
+    s.shift_x = request.shift_x;
+    s.shift_y = request.shift_y;
+    s.rate_hz = request.rate_hz;
+    s.model_triangles = engine.model().triangles();
+    s.rasterisers = static_cast<std::uint32_t>(std::max(1, plan.rasterisers));
+    s.fifo = plan.fifo;
+    s.pinned = facts.pinned;
+    s.isolated = facts.isolated;
+    s.locked = facts.locked;
+    s.steal_ms = facts.steal_ms;
+    s.census_problems = facts.census_problems;
+    s.threads = facts.threads;
+    s.degraded = facts.degraded;
+    s.uncalibrated = facts.uncalibrated;
+    if (facts.dropped_records > 0) {
+        s.degraded.push_back({fmt::format("{} frame records were dropped", facts.dropped_records),
+                              "give the monitor thread a core with time left"});
+    }
+    report::summarize(outcome.records, period_ns, s);
+}
+
+namespace {
+
+Result<void> write_capture(const WalkRequest& request, const KeptFrame& kept, const Engine& engine) {
+    if (!kept.kept) {
+        return Error{request.capture_file, fmt::format("frame {} was not selected in this walk", request.capture_frame),
+                     "choose a frame within the walk with --capture-frame"};
+    }
+    return capture::write_capture(request.capture_file, capture_of(kept, request, engine));
+}
+
+Result<void> write_report_pages(const WalkRequest& request, Engine& engine, const ShotStore& shots, WalkOutcome& outcome,
+                                const Progress& progress) {
+    std::vector<report::ReportShot> developed;
+    // Snapshots may be many: the page shows at most seven of them, evenly spread.
+    const std::size_t step = std::max<std::size_t>(1, (shots.used() + 6) / 7);
+    for (std::size_t i = 0; i < shots.used(); i += step) {
+        if (progress.stopped() || outcome.lost) break;  // a shorter page is better than none
+        progress.say("pictures", static_cast<double>(i) / static_cast<double>(shots.used()));
+        auto shot = develop(engine, shots.shots()[i]);
+        if (!shot) return shot.error();
+        developed.push_back(std::move(*shot));
+    }
+    auto written = report::write_report(request.report_dir, outcome.summary, outcome.records, developed);
+    if (!written) return written;
+    outcome.report_page = request.report_dir + "/index.html";
+    return {};
+}
+
+}  // namespace
+
+void take_census(const PlacingPlan& plan, WalkFacts& facts) {
+    const std::vector<rt::DeclaredThread> table = thread_table(plan, true, program_invocation_short_name);
+    const auto threads = rt::read_threads();
+    if (!threads) {
+        facts.census_problems = {threads.error().text()};
+        return;
+    }
+    facts.census_problems = rt::census(table, *threads);
+    for (const rt::CensusRow& row : rt::census_rows(table, *threads)) {
+        facts.threads.push_back({row.name, row.count, std::string(rt::policy_name(row.policy)), row.priority, row.cpus.text()});
+    }
+}
+
+ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
+                          std::vector<std::string>& notes) {
+    const bool page_only = request.snap_every == 0;
+    if (page_only && request.report_dir.empty()) return {0, 0, 0};
+    const std::uint64_t every = page_only ? std::max<std::uint64_t>(1, frames / 6) : request.snap_every;
+    const std::uint64_t wanted = page_only ? 7 : (frames - 1) / every + 1;
+    const std::uint64_t fit = shots_that_fit(max_items);
+    if (wanted > fit) {
+        notes.push_back(fmt::format(
+            "--snap: {} of {} pictures are kept: {} MiB of memory hold no more of this model; take fewer with --every {}", fit,
+            wanted, shot_memory_bytes >> 20U, (frames - 1) / fit + 1));
+    }
+    return {every, static_cast<std::size_t>(std::min(wanted, fit)), max_items};
+}
+
+void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots,
+                   WalkOutcome& outcome, const Progress& progress) {
+    const auto put = [&](const std::string& place, auto write) {
+        if (place.empty()) return;
+        if (Result<void> written = write(); !written) outcome.failures.push_back(written.error());
+    };
+    put(request.ledger_file, [&] { return report::write_ledger(request.ledger_file, outcome.records); });
+    put(request.trace_file, [&] { return report::write_trace(request.trace_file, outcome.records); });
+    put(request.capture_file, [&] { return write_capture(request, kept, engine); });
+    if (!outcome.lost) put(request.snap_dir, [&] { return write_snaps(engine, shots, request.snap_dir, progress); });
+    put(request.report_dir, [&] { return write_report_pages(request, engine, shots, outcome, progress); });
+}
+
+}  // namespace surefoot::walk

@@ -1,0 +1,205 @@
+// Opening a walk: everything that can be wrong is found here, before a frame is due.
+#include "tools/walk/walk_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/measure/calibrate.hpp"
+#include "render/model/walk_file.hpp"
+#include "tools/walk/outputs.hpp"
+#include "tools/walk/pose_source.hpp"
+#include "tools/walk/real_time.hpp"
+#include "tools/walk/state.hpp"
+
+namespace surefoot::walk {
+
+namespace {
+
+constexpr std::uint64_t most_frames = 4'000'000;  // records of 0.4 KiB
+
+/// Where nothing is kept, nothing can be summed up or written.
+Result<void> read_endless(const WalkRequest& r) {
+    if (r.control || r.frames > 0 || r.seconds > 0)
+        return Error{"a walk without end", "was given an end", "leave one of them out"};
+    const bool writes = !(r.ledger_file + r.trace_file + r.report_dir + r.snap_dir + r.capture_file).empty();
+    if (writes)
+        return Error{"a walk without end", "keeps no frames, so none can be written", "leave out the outputs, or give it an end"};
+    return {};
+}
+
+Result<void> read_request(Session& s) {
+    const WalkRequest& r = s.request;
+    auto late = rt::parse_late_policy(r.late);
+    if (!late) return late.error();
+    s.late = *late;
+    auto period = rt::period_of_rate_ns(r.rate_hz);
+    if (!period) return period.error();
+    s.grid.period_ns = *period;
+    if (r.clock != "real" && r.clock != "virtual")
+        return Error{"--clock " + r.clock, "there is no such clock", "real or virtual"};
+    s.virtual_clock = r.clock == "virtual";
+    if (r.control && s.virtual_clock) return Error{"--control", "judges real time", "leave out --clock virtual"};
+    if (r.strict && s.virtual_clock) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
+    if (r.input_file == live_input && s.virtual_clock)
+        return Error{"--input devices", "are hands in real time", "leave out --clock virtual, or give a recording"};
+    if (!r.input_file.empty() && r.control)
+        return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
+    return r.endless ? read_endless(r) : Result<void>{};
+}
+
+/// Read first of all: a wrong steering file is found before a large model is opened.
+Result<void> open_input(Session& s) {
+    if (s.request.input_file.empty()) return {};
+    tell(s, WalkStep::input);
+    auto input = InputSession::open(s.request, s.grid.period_ns, s.notes);
+    if (!input) return input.error();
+    s.input = std::move(*input);
+    return {};
+}
+
+/// Real time and the cost table, or what they lack; with --strict a lack is an error.
+Result<void> claim(Session& s) {
+    const WalkRequest& r = s.request;
+    tell(s, WalkStep::real_time);
+    auto plan = claim_real_time(r, !s.virtual_clock, s.facts);
+    if (!plan) return plan.error();
+    s.plan = *plan;
+    s.plan.input = s.input != nullptr;
+    s.plan.devices = s.input && s.input->live();
+    tell(s, WalkStep::input);
+    auto costs = load_costs(state_directory(r.state_dir), "", s.facts.uncalibrated);
+    if (!costs) return costs.error();
+    s.costs = std::move(*costs);
+    if (!r.strict) return {};
+    tell(s, WalkStep::real_time);
+    std::vector<report::Degraded> lacks = s.facts.degraded;
+    if (!s.facts.uncalibrated.empty()) lacks.push_back({s.facts.uncalibrated, ""});
+    return require_real_time(lacks);
+}
+
+Result<void> open_engine(Session& s, const Progress& progress) {
+    const WalkRequest& r = s.request;
+    tell(s, WalkStep::model);
+    progress.say("open", 0.1);
+    model::WalkFileInfo file;
+    auto model = model::read_walk(r.model_file, &file);
+    if (!model) return model.error();
+    auto costs = fitted_costs(state_directory(r.state_dir), s.costs, {file.hash, r.width, r.height, r.backend});
+    if (!costs) return costs.error();
+    s.costs = std::move(*costs);
+    auto path = choose_path(r.path_file, r.model_file, *model, r.lift_m);
+    if (!path) return path.error();
+    s.path = std::move(*path);
+
+    EngineOptions options;
+    auto kind = gl::parse_backend(r.backend);
+    if (!kind) return kind.error();
+    options.device.kind = *kind;
+    options.device.viewport = {r.width, r.height, r.shift_x, r.shift_y};
+    options.device.rasterisers = r.rasterisers;
+    options.device.sky = r.sky;
+    options.null.cost_scale = r.cost_scale;
+    options.null.noise = r.cost_noise;
+    const int others = s.plan.all.count() - (s.plan.all.has(s.plan.frame_core) ? 1 : 0);
+    options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);
+    options.selector = r.selector;
+    options.slice_us = r.slice_us;
+    options.hysteresis = static_cast<float>(r.hysteresis);
+    options.in_frame_check = r.in_frame_check;
+    options.prepare.occlusion = r.occlusion;
+    tell(s, WalkStep::device);
+    progress.say("open", 0.5);
+    auto engine = Engine::open(std::move(*model), s.costs, options);
+    if (!engine) return engine.error();
+    s.engine = std::move(*engine);
+    s.facts.renderer = s.engine->device().renderer();
+    s.facts.machine = measure::machine_identity(s.facts.renderer, r.rasterisers);
+    if (s.costs.calibrated && *kind != gl::BackendKind::null && s.costs.machine != s.facts.machine) {
+        s.facts.uncalibrated = "the cost table was measured on \"" + s.costs.machine + "\", this is \"" + s.facts.machine +
+                               "\"; run `surefoot calibrate` here";
+        if (r.strict) {
+            tell(s, WalkStep::real_time);
+            return require_real_time(std::vector<report::Degraded>{{s.facts.uncalibrated, ""}});
+        }
+    }
+    for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
+    if (!r.capture_file.empty() || s.watch.on_missed_frame) s.kept.reserve(*s.engine);
+    return {};
+}
+
+/// How many frames to walk; 0: until stopped. Where each leaves a record in memory, there is an end to them.
+Result<std::uint64_t> frames_wanted(const Session& s) {
+    if (s.request.endless) return std::uint64_t{0};
+    const double period_s = static_cast<double>(s.grid.period_ns) * 1e-9;
+    const bool recorded = s.input && !s.input->live();
+    const double own_s = recorded ? s.input->duration_s() : std::max(s.path.path.duration_s(), 1.0);
+    const double seconds = s.request.seconds > 0 ? s.request.seconds : own_s;
+    const double frames = s.request.control      ? static_cast<double>(s.control.slots())
+                          : s.request.frames > 0 ? static_cast<double>(s.request.frames)
+                                                 : std::max(1.0, std::round(seconds / period_s));
+    if (s.request.keep_records && !(frames <= static_cast<double>(most_frames))) {
+        const bool asked = s.request.frames > 0 || s.request.seconds > 0 || s.request.control;
+        return Error{asked      ? "walk"
+                     : recorded ? s.request.input_file
+                                : s.path.source,
+                     fmt::format("would take {:.4g} frames; at most {} are kept ({:.0f} hours at this rate)", frames, most_frames,
+                                 static_cast<double>(most_frames) * period_s / 3600.0),
+                     "give a smaller --frames or --seconds"};
+    }
+    if (!s.request.capture_file.empty() && static_cast<double>(s.request.capture_frame) >= frames) {
+        return Error{fmt::format("--capture-frame {}", s.request.capture_frame),
+                     fmt::format("the walk has {:.0f} frames, from 0", frames),
+                     "choose one of them, or walk longer with --frames"};
+    }
+    return static_cast<std::uint64_t>(frames);
+}
+
+}  // namespace
+
+void tell(const Session& s, WalkStep step) {
+    if (s.watch.on_step) s.watch.on_step(step);
+}
+
+Result<void> open_session(Session& s, const Progress& progress) {
+    tell(s, WalkStep::request);
+    if (auto ok = read_request(s); !ok) return ok;
+    if (auto ok = check_outputs(s.request); !ok) return ok;
+    if (auto ok = open_input(s); !ok) return ok;
+    if (auto ok = claim(s); !ok) return ok;
+    if (auto ok = open_engine(s, progress); !ok) return ok;
+    s.control = rt::control_schedule(s.grid.period_ns, s.request.control_block_s, s.request.control_pairs);
+    auto frames = frames_wanted(s);
+    if (!frames) return frames.error();
+    s.frames = *frames;
+    return {};
+}
+
+void warm_up(Session& s) {
+    Engine& engine = *s.engine;
+    engine.device().bind();
+    SubmitLimits limits;
+    limits.limit_us = 1e9;
+    const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
+    for (int i = 0; i < 12; ++i) {
+        const Pose pose = pose_at(s.path.path, i * s.path.path.duration_s() / 12.0);
+        prepare::PreparedFrame& set = s.prepared.slot(0);
+        engine.prepare({pose, 0.1, 0.05}, 0, 0, 0, set);
+        engine.select(set, budget_share * period_us, {}, 0);
+        engine.submit(pose, limits);
+        engine.select_coarse();
+        engine.submit(pose, limits);
+    }
+    engine.device().release();
+    // Ready for the first frame: a complete set for where the path begins.
+    const double period_s = period_us * 1e-6;
+    const FramePose first = PathPoses(s.path.path, s.grid.period_ns).sample({});
+    prepare::Region region = predict_region(first.before, first.pose, period_s, horizon_periods * period_s);
+    region.radius_m = std::max(region.radius_m, 0.5);
+    region.angle_rad = std::max(region.angle_rad, 0.2);
+    engine.prepare(region, 0, 0, 0, s.prepared.back());
+    s.prepared.publish();
+}
+
+}  // namespace surefoot::walk

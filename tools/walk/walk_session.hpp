@@ -1,0 +1,69 @@
+// What one walk holds while it lasts, and how it is opened: in the order in which it must be made, and (backwards) taken down.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/engine.hpp"
+#include "rt/clock/grid.hpp"
+#include "rt/exchange/triple_buffer.hpp"
+#include "rt/frame/control.hpp"
+#include "rt/frame/loop.hpp"
+#include "rt/threads/guard.hpp"
+#include "rt/threads/memory.hpp"
+#include "tools/walk/input_session.hpp"
+#include "tools/walk/path_source.hpp"
+#include "tools/walk/placing.hpp"
+#include "tools/walk/walk.hpp"
+#include "tools/walk/walk_results.hpp"
+#include "tools/walk/walk_stages.hpp"
+
+namespace surefoot::walk {
+
+/// Of the period: what a frame may cost where no budget is asked for.
+constexpr double budget_share = 0.80;
+
+struct Session {
+    const WalkRequest& request;
+    const WalkWatch& watch;
+    WalkFacts facts;
+    PlacingPlan plan;
+    std::unique_ptr<Engine> engine;
+    ChosenPath path;
+    std::unique_ptr<InputSession> input;  ///< null: the path is followed
+    WalkInput input_told;
+    std::vector<std::string> notes;
+    rt::Grid grid;
+    rt::LatePolicy late = rt::LatePolicy::lock;
+    bool virtual_clock = false;
+    std::uint64_t frames = 0;  ///< 0: until stopped
+    std::vector<pid_t> rasterisers;
+    std::vector<pid_t> on_frame_core;  ///< those of them that share the frame thread's core
+    rt::TripleBuffer<PoseSample> poses;
+    rt::TripleBuffer<prepare::PreparedFrame> prepared;
+    KeptFrame kept;
+    rt::ControlSchedule control;
+    std::int64_t burn_ns = 0;  ///< the control's
+    model::CostModel costs;
+    std::atomic<bool> lost{false};  ///< the graphics context
+
+    Session(const WalkRequest& r, const WalkWatch& w) : request(r), watch(w) {}
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+    /// On every way out, refusals included: the memory that claim() had locked.
+    ~Session() {
+        if (!virtual_clock && rt::guard_active()) rt::release_memory();
+    }
+};
+
+/// Says to whoever watches which step begins.
+void tell(const Session& s, WalkStep step);
+/// Opens all that a walk needs but its threads: request, input, real time, costs, model, path, device. Fails with the first thing
+/// that is wrong, named; what was opened until then goes with the session.
+Result<void> open_session(Session& s, const Progress& progress);
+/// A few frames along the path, so that programs, buffers and caches are warm and memory is touched.
+void warm_up(Session& s);
+
+}  // namespace surefoot::walk

@@ -1,0 +1,181 @@
+// The walk's frame: take the newest pose, take the newest prepared set, select, submit, account.
+#include "tools/walk/walk_stages.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "rt/threads/guard.hpp"
+
+namespace surefoot::walk {
+
+namespace {
+constexpr std::uint64_t oldest_prepared = 3;  // frames; older sets are not used (DESIGN 1.4)
+
+std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
+}  // namespace
+
+WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
+                       rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
+                       const WalkStagesOptions& options)
+    : engine_(engine),
+      pose_source_(pose_source),
+      clock_(clock),
+      poses_(poses),
+      prepared_(prepared),
+      shots_(shots),
+      kept_(kept),
+      options_(options) {}
+
+void WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
+    if (options_.inject == nullptr) return;
+    const Fault fault = (*options_.inject)(phase, record);
+    if (fault == Fault::context_lost && options_.lost != nullptr) options_.lost->store(true);
+}
+
+void WalkStages::sample(rt::FrameRecord& record) {
+    inject(FramePhase::sample, record);
+    const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
+    // Beside a control the walk goes on where its last block ended: slots of the bare loop are no time of the path.
+    path_slot_ = options_.control ? walked_ : record.slot;
+    const FramePose newest = pose_source_.sample(frame_time(record));
+    const bool unseen = !now_.valid || newest.jumped;  // no frame has seen where this one's motion comes from
+    if (options_.virtual_clock) {
+        // From what was known one frame ago, as the workers would; where the eye is put elsewhere, the input has told them.
+        if (unseen) {
+            now_.pose = newest.pose;
+            now_.before = newest.before;
+            now_.foresight = newest.foresight;
+            now_.dt_s = period_s;
+        }
+        prepare_inline();
+    }
+    now_.before = unseen ? newest.before : now_.pose;
+    now_.dt_s = period_s * (1.0 + (options_.control || unseen ? 0 : record.skipped_before));
+    now_.foresight = newest.foresight;
+    now_.frame = walked_++;
+    now_.time_ns = record.due_ns;
+    now_.valid = true;
+    take(newest, record);
+    poses_.back() = now_;
+    poses_.publish();
+}
+
+FrameTime WalkStages::frame_time(const rt::FrameRecord& record) const { return {path_slot_, record.due_ns, clock_.now_ns()}; }
+
+void WalkStages::take(const FramePose& from, rt::FrameRecord& record) {
+    const Pose& pose = now_.pose = from.pose;
+    record.eye = {pose.position.x, pose.position.y, pose.position.z};
+    record.orientation = {pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w};
+    record.input_stamp_ns = from.stamp_ns;
+    record.input_reports = from.reports;
+    record.stopped = from.stopped;
+}
+
+/// What came while the cut was chosen still counts, as far as the cut was made for it.
+void WalkStages::latch(rt::FrameRecord& record) {
+    const rt::OwnScope own;  // the submission around it is the driver's, this is not
+    FramePose newest;
+    if (!pose_source_.latch(frame_time(record), newest)) return;
+    if (coarse_ || covers(prepared_.front().region, newest.pose, prepared_.front().viewport)) take(newest, record);
+}
+
+void WalkStages::prepare_inline() {
+    const rt::DriverScope not_the_frame_threads_own;  // the workers' library may allocate
+    prepare_after(engine_, now_, static_cast<double>(options_.period_ns) * 1e-9, prepared_.back());
+    prepared_.publish();
+}
+
+void WalkStages::select(rt::FrameRecord& record) {
+    inject(FramePhase::select, record);
+    prepared_.refresh();
+    const prepare::PreparedFrame& set = prepared_.front();
+    const std::uint64_t age = now_.frame - std::min(set.frame, now_.frame);
+    record.prepared_age = static_cast<std::uint32_t>(age);
+    record.correction = static_cast<float>(options_.correct_costs ? controller_.factor() : 1.0);
+    record.budget_us = static_cast<float>(options_.budget_us);
+    coarse_ = age > oldest_prepared || !covers(set.region, now_.pose, set.viewport);
+    if (coarse_) {
+        engine_.select_coarse();
+        return;
+    }
+    const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
+    const double budget_us = std::max(0.0, options_.budget_us - spent_us);
+    const Correction correction =
+        options_.correct_costs ? Correction{controller_.factor(), controller_.upper(engine_.costs().upper_factor)} : Correction{};
+    const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
+    record.floor_us = cut.floor_us;
+    record.floor_binds = cut.floor_binds;
+    record.switches = cut.switches;
+    record.cut_hash = cut.hash;
+    record.visits = set.visits;
+    record.hidden = set.hidden;
+    record.candidates = static_cast<std::uint32_t>(set.candidates.size());
+    record.prepare_cpu_us = static_cast<float>(set.cpu_us);
+    cut_ = &cut;
+    asked_budget_us_ = budget_us;
+    asked_correction_ = correction;
+}
+
+/// After the frame, when it is known whether it was late. Copying takes a tenth of a millisecond for a few thousand candidates;
+/// of larger sets only the frame that was asked for is kept, so that one miss does not make the next.
+void WalkStages::keep(const rt::FrameRecord& record) {
+    constexpr std::size_t most_candidates = 16'384;
+    const prepare::PreparedFrame& set = prepared_.front();
+    const bool missed = options_.capture_missed && record.missed && set.candidates.size() <= most_candidates;
+    if (coarse_ || cut_ == nullptr || (record.frame != options_.capture_frame && !missed)) return;
+    if (kept_.kept.load(std::memory_order_acquire)) return;
+    kept_.frame = record.frame;
+    kept_.prepared = set;  // into vectors that were reserved: no allocation
+    kept_.cut = *cut_;
+    kept_.memory = engine_.selection_memory().before;
+    kept_.budget_us = asked_budget_us_;
+    kept_.correction = asked_correction_;
+    kept_.target_error_rad = options_.target_error_rad;
+    kept_.kept.store(true, std::memory_order_release);
+}
+
+void WalkStages::submit(rt::FrameRecord& record) {
+    inject(FramePhase::submit, record);
+    latch(record);
+    SubmitLimits limits;
+    const std::int64_t begun_ns = clock_.now_ns();
+    limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
+    limits.limit_us = options_.limit_us;
+    if (!options_.virtual_clock) {
+        limits.now_ns = clock_now;
+        limits.now_context = &clock_;
+    }
+    report_ = engine_.submit(now_.pose, limits);
+    if (engine_.device().lost() && options_.lost != nullptr) options_.lost->store(true);
+    if (options_.virtual_clock) {
+        const double charged_us = report_.finished_us > 0 ? report_.finished_us : report_.predicted_us * options_.cost_scale;
+        static_cast<rt::VirtualClock&>(clock_).advance(static_cast<std::int64_t>(charged_us * 1e3));
+        report_.finished_us = charged_us;
+        report_.submitted_us = std::min(report_.submitted_us, charged_us);
+    }
+    record.submitted_ns = begun_ns + static_cast<std::int64_t>(report_.submitted_us * 1e3);
+    record.rastered_ns = begun_ns + static_cast<std::int64_t>(report_.finished_us * 1e3);
+}
+
+/// submit() has waited for the last fence and presented.
+void WalkStages::finish(rt::FrameRecord& record) { inject(FramePhase::finish, record); }
+
+void WalkStages::account(rt::FrameRecord& record) {
+    record.slices = report_.slices;
+    record.downgraded_slices = report_.downgraded_slices;
+    record.items = report_.items;
+    record.draws = report_.draws;
+    record.triangles = report_.triangles;
+    record.accuracy = report_.worst_error_rad > 0 ? 1.0F / report_.worst_error_rad : std::numeric_limits<float>::infinity();
+    record.benefit = static_cast<float>(report_.benefit_mean);
+    record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);
+    const double actual_us = report_.finished_us - static_cast<double>(record.stolen_ns) * 1e-3;
+    record.actual_us = static_cast<float>(actual_us);
+    if (!coarse_) controller_.update(report_.predicted_us, actual_us);
+    if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
+    keep(record);
+    const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
+    shots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn());
+}
+
+}  // namespace surefoot::walk
