@@ -1,13 +1,18 @@
 // Pictures: PNG there and back, JPEG, truncation at every length, sizes refused before they are allocated.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
 
 #include <jpeglib.h>
 
-#include "tests/import/fixtures.hpp"
+#include "render/image/image.hpp"
+#include "tests/temporary_folder.hpp"
 
-namespace surefoot::importer::test {
+namespace surefoot::image {
 namespace {
 
 std::vector<std::uint8_t> gradient(std::uint32_t width, std::uint32_t height, bool opaque) {
@@ -63,8 +68,8 @@ TEST(Picture, PngThereAndBack) {
 
 TEST(Picture, EncodingTheWrongNumberOfTexelsIsRefused) {
     EXPECT_TRUE(encode_png(4, 4, gradient(4, 3, true)).empty());
-    const Folder folder;
-    EXPECT_FALSE(write_png(folder.file("a.png"), 4, 4, gradient(4, 3, true)).ok());
+    const test::TemporaryFolder folder;
+    EXPECT_FALSE(write_png(folder / "a.png", 4, 4, gradient(4, 3, true)).ok());
 }
 
 TEST(Picture, JpegOfEveryKind) {
@@ -110,4 +115,4 @@ TEST(Picture, OtherFormatsAndNothingAreNamed) {
 }
 
 }  // namespace
-}  // namespace surefoot::importer::test
+}  // namespace surefoot::image

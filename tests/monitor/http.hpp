@@ -21,8 +21,8 @@ namespace surefoot::test {
 /// A connection that does what it is told, and nothing else.
 class RawReader {
 public:
-    explicit RawReader(const Address& address, int receive_bytes = 0) {
-        const SocketAddress to = socket_address(address);
+    explicit RawReader(const monitor::Address& address, int receive_bytes = 0) {
+        const monitor::SocketAddress to = monitor::socket_address(address);
         fd_ = ::socket(to.family(), SOCK_STREAM | SOCK_CLOEXEC, 0);
         if (receive_bytes > 0) (void)::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_bytes, sizeof receive_bytes);
         connected_ = ::connect(fd_, to.get(), to.length) == 0;

@@ -18,7 +18,7 @@
 #include "rt/threads/census.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/placement.hpp"
-#include "rt/threads/syscall_trap.hpp"
+#include "tests/rt/syscall_trap.hpp"
 #include "tests/rt/idle_stages.hpp"
 #include "tests/rt/in_child.hpp"
 #include "tests/time_units.hpp"

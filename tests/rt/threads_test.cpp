@@ -14,7 +14,7 @@
 #include "rt/threads/census.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/placement.hpp"
-#include "rt/threads/syscall_trap.hpp"
+#include "tests/rt/syscall_trap.hpp"
 #include "rt/threads/usage.hpp"
 
 namespace surefoot::rt {

@@ -1,6 +1,6 @@
 // A seccomp filter that lets the declared calls pass and turns the others into SIGSYS. The handler counts, then carries the
 // call out through a gate: one `syscall` instruction whose address the filter lets through.
-#include "rt/threads/syscall_trap.hpp"
+#include "tests/rt/syscall_trap.hpp"
 
 #include <fmt/format.h>
 #include <linux/audit.h>
