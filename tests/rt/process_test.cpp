@@ -18,9 +18,9 @@
 #include "rt/threads/census.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/placement.hpp"
-#include "tests/rt/syscall_trap.hpp"
 #include "tests/rt/idle_stages.hpp"
 #include "tests/rt/in_child.hpp"
+#include "tests/rt/syscall_trap.hpp"
 #include "tests/time_units.hpp"
 
 namespace surefoot::rt {

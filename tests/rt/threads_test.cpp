@@ -14,8 +14,8 @@
 #include "rt/threads/census.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/placement.hpp"
-#include "tests/rt/syscall_trap.hpp"
 #include "rt/threads/usage.hpp"
+#include "tests/rt/syscall_trap.hpp"
 
 namespace surefoot::rt {
 namespace {
