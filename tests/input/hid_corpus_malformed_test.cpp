@@ -15,29 +15,30 @@ struct MalformedRow {
     int refused_at = -1;
     DeviceClass device_class = DeviceClass::reject;
     std::size_t axes = 0, hats = 0, buttons = 0;
+    std::string_view inputs;  ///< "1:4 2:2": input reports by id, with their bytes; id 0 is none
     std::string_view why;
 };
 
 constexpr std::array<MalformedRow, corpus_seeds> malformed_rows = {{
-    {"9000-fields", -1, DeviceClass::navigation, 256, 0, 0, "axes of one bit; those beyond 256 are counted, not kept"},
-    {"all-zero-512", -1, DeviceClass::reject, 0, 0, 0, "unknown main items are passed over; nothing is left"},
-    {"array-of-axes", -1, DeviceClass::reject, 0, 0, 0, "an array lists what is pressed; an axis cannot be pressed"},
-    {"const-only", -1, DeviceClass::reject, 0, 0, 0, "padding"},
-    {"delimiter-unbalanced", 6, DeviceClass::reject, 0, 0, 0, "closes a delimiter that was never opened"},
-    {"duplicate-usage-x4", -1, DeviceClass::navigation, 5, 0, 0, "four X of their own names and a Y"},
-    {"feature-only", -1, DeviceClass::reject, 0, 0, 0, "a feature is asked for, not reported"},
-    {"hat-physical-rad", -1, DeviceClass::buttons, 0, 1, 0, "a hat's unit does not matter: it has eight steps"},
-    {"input-no-data", -1, DeviceClass::reject, 0, 0, 0, "an Input item without flags is an array"},
-    {"nested-app-x8", -1, DeviceClass::navigation, 2, 0, 0, "joysticks in joysticks"},
-    {"push-restores-report-id", -1, DeviceClass::navigation, 6, 0, 0, "the third pair is of report 1 again"},
-    {"report-id-reused-kinds", -1, DeviceClass::navigation, 2, 0, 0, "an id is of its kind"},
-    {"size-31-unaligned", -1, DeviceClass::navigation, 1, 0, 1, "31 bits behind one bit"},
-    {"size-32-unsigned-full", -1, DeviceClass::reject, 0, 0, 0, "a maximum of 2^32-1 is below its minimum in 32 bits"},
-    {"size-neg1", 12, DeviceClass::reject, 0, 0, 0, "elements of 2^32-1 bits"},
-    {"truncated-after-prefix", 4, DeviceClass::reject, 0, 0, 0, "ends behind an item's first byte"},
-    {"two-gb-report", 14, DeviceClass::reject, 0, 0, 0, "2^31-1 elements"},
-    {"usage-ext-other-page", -1, DeviceClass::navigation, 1, 0, 0, "a usage of four bytes has its own page"},
-    {"usage-page-after-usage", -1, DeviceClass::navigation, 1, 0, 0, "the page behind a usage holds for it"},
+    {"9000-fields", -1, DeviceClass::navigation, 256, 0, 0, "0:1125", "axes of one bit; those beyond 256 are counted, not kept"},
+    {"all-zero-512", -1, DeviceClass::reject, 0, 0, 0, "", "unknown main items are passed over; nothing is left"},
+    {"array-of-axes", -1, DeviceClass::reject, 0, 0, 0, "0:2", "an array lists what is pressed; an axis cannot be pressed"},
+    {"const-only", -1, DeviceClass::reject, 0, 0, 0, "0:8", "padding"},
+    {"delimiter-unbalanced", 6, DeviceClass::reject, 0, 0, 0, "", "closes a delimiter that was never opened"},
+    {"duplicate-usage-x4", -1, DeviceClass::navigation, 5, 0, 0, "0:5", "four X of their own names and a Y"},
+    {"feature-only", -1, DeviceClass::reject, 0, 0, 0, "", "a feature is asked for, not reported"},
+    {"hat-physical-rad", -1, DeviceClass::buttons, 0, 1, 0, "0:1", "a hat's unit does not matter: it has eight steps"},
+    {"input-no-data", -1, DeviceClass::reject, 0, 0, 0, "0:2", "an Input item without flags is an array"},
+    {"nested-app-x8", -1, DeviceClass::navigation, 2, 0, 0, "0:2", "joysticks in joysticks"},
+    {"push-restores-report-id", -1, DeviceClass::navigation, 6, 0, 0, "1:4 2:2", "the third pair is of report 1 again"},
+    {"report-id-reused-kinds", -1, DeviceClass::navigation, 2, 0, 0, "1:2", "an id is of its kind"},
+    {"size-31-unaligned", -1, DeviceClass::navigation, 1, 0, 1, "0:4", "31 bits behind one bit"},
+    {"size-32-unsigned-full", -1, DeviceClass::reject, 0, 0, 0, "0:4", "a maximum of 2^32-1 is below its minimum in 32 bits"},
+    {"size-neg1", 12, DeviceClass::reject, 0, 0, 0, "", "elements of 2^32-1 bits"},
+    {"truncated-after-prefix", 4, DeviceClass::reject, 0, 0, 0, "", "ends behind an item's first byte"},
+    {"two-gb-report", 14, DeviceClass::reject, 0, 0, 0, "", "2^31-1 elements"},
+    {"usage-ext-other-page", -1, DeviceClass::navigation, 1, 0, 0, "0:1", "a usage of four bytes has its own page"},
+    {"usage-page-after-usage", -1, DeviceClass::navigation, 1, 0, 0, "0:1", "the page behind a usage holds for it"},
 }};
 
 void expect_device(const MalformedRow& row, const HidDevice& d) {
@@ -47,6 +48,11 @@ void expect_device(const MalformedRow& row, const HidDevice& d) {
         return static_cast<std::size_t>(
             std::count_if(d.controls.begin(), d.controls.end(), [&](const ControlInfo& c) { return c.kind == kind; }));
     };
+    std::string inputs;
+    for (const Report& r : d.layout.reports)
+        if (r.kind == ReportKind::input)
+            inputs += (inputs.empty() ? "" : " ") + std::to_string(r.id) + ":" + std::to_string(r.bytes());
+    EXPECT_EQ(inputs, row.inputs);
     EXPECT_EQ(count(ControlKind::axis), row.axes);
     EXPECT_EQ(count(ControlKind::hat), row.hats);
     EXPECT_EQ(count(ControlKind::button), row.buttons);
