@@ -120,8 +120,10 @@ cmp -s f.walk kept.walk || complain "an output replaced the model"
 cmp -s f.glb again.glb || complain "an output replaced the scene"
 [ -e n.cap ] && complain "a refused capture left a file"
 ( ulimit -f 40; "$surefoot" walk f.walk $virtual --frames 300 --ledger big.csv --capture small.cap --json >out 2>err; echo $? >rc )
-( ulimit -f 40; "$surefoot" scene forest --scale 0.3 -o over.obj 2>/dev/null ) && complain "an .obj that is too large is a success"
-[ -e over.mtl ] && complain "half a scene is there"
+( ulimit -f 40; "$surefoot" scene forest --scale 0.3 -o over.glb 2>/dev/null ) && complain "a .glb that is too large is a success"
+[ -e over.glb ] && complain "half a scene is there"
+expect 1 'over.obj: .*\.obj.*only read.*\.glb' scene forest --scale 0.3 -o over.obj
+[ -e over.obj ] && complain "a refused scene is there"
 [ "$(cat rc)" = 1 ] || complain "exit $(cat rc), not 1, where the ledger could not be finished"
 grep -q 'big.csv.*too large.*ulimit' err || complain "stderr says '$(head -c 300 err)' of a ledger that is too large"
 valid_json out || complain "no summary where an output failed"

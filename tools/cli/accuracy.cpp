@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "render/select/select.hpp"
+#include "render/select/registry.hpp"
 #include "tools/accuracy/sweep.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "render/effects/effects.hpp"
+#include "render/gl/backends.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
@@ -27,15 +29,6 @@ struct CalibrateArguments {
     double rate_hz = 30, lift_m = 0;
     bool quick = false, json = false;
 };
-
-std::string state_name(model::EffectMask mask) {
-    std::string name;
-    for (int e = 0; e < model::effect_count; ++e) {
-        if ((mask >> static_cast<unsigned>(e) & 1U) != 0)
-            name += (name.empty() ? "" : " + ") + std::string(model::effect_names[e]);
-    }
-    return name.empty() ? "bare" : name;
-}
 
 nlohmann::ordered_json to_json(const model::CostModel& costs) {
     const model::FrameCombine& k = costs.combine;
@@ -185,7 +178,7 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     }
     std::vector<report::CostPoint> points;
     for (const measure::CalibrationPoint& p : c->points) {
-        points.push_back({state_name(p.effects), p.triangles, p.pixels, p.submit_us + p.raster_us});
+        points.push_back({effects::effects_text(p.effects, " + "), p.triangles, p.pixels, p.submit_us + p.raster_us});
     }
     if (auto written = write_text(plot, report::cost_plot_svg(c->costs.machine, points)); !written) return fail(written.error());
     if (a.json) return print_json(to_json(*c, file, plot)), exit_success;

@@ -15,6 +15,7 @@
 #include <system_error>
 #include <vector>
 
+#include "render/import/formats.hpp"
 #include "rt/base/nearest.hpp"
 #include "tools/cli/command.hpp"
 
@@ -86,10 +87,12 @@ int main(int argc, char** argv) {
     CLI::App app{
         "Surefoot walks through 3D models that are too complex to draw whole, every frame by its deadline.\n\n"
         "First steps:\n"
-        "  surefoot scene forest --scale 10 -o forest.glb     a model and a path (or bring your own .glb, .gltf, .obj, .ostf)\n"
-        "  surefoot bake forest.glb -o forest.walk            prepare it\n"
-        "  surefoot calibrate                                 measure this machine, once\n"
-        "  surefoot walk forest.walk --path forest.path.csv --report report",
+        "  surefoot scene forest --scale 10 -o forest.glb     a model and a path (or bring your own: " +
+            importer::endings_in_words() +
+            ")\n"
+            "  surefoot bake forest.glb -o forest.walk            prepare it\n"
+            "  surefoot calibrate                                 measure this machine, once\n"
+            "  surefoot walk forest.walk --path forest.path.csv --report report",
         "surefoot"};
     app.require_subcommand(1);
     app.set_version_flag("--version", SUREFOOT_VERSION);

@@ -124,7 +124,7 @@ void walk_files(const Effort& effort, Outcome& out) {
         Pose pose;
         pose.position = {2, 1, 8};
         const prepare::PreparedFrame& frame = look.prepare({pose, 0, 0}, {64, 64});
-        return {true, unsound(frame, look.costs()) + illegal(frame, look.select("two-stage", 1000)) == 0};
+        return {true, unsound(frame, look.costs()) + illegal(frame, look.select(select::usual_selector, 1000)) == 0};
     };
     attack({*fixture, read, 1, reseal_walk}, effort, out);
 }
