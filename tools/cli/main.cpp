@@ -18,6 +18,7 @@
 #include "render/import/formats.hpp"
 #include "rt/base/nearest.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
 
 namespace {
 
@@ -112,7 +113,9 @@ int main(int argc, char** argv) {
     cli::add_status(app, context);
     cli::add_top(app, context);
     app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {
-        const std::string text = unknown_command(*of, argc, argv).value_or(error.what());
+        const std::vector<std::string_view> arguments(argv + 1, argv + argc);
+        const auto renamed = cli::renamed_option(arguments);
+        const std::string text = renamed ? *renamed : unknown_command(*of, argc, argv).value_or(error.what());
         return "surefoot: " + text + " (see surefoot --help, or --help after the command)\n";
     });
     try {

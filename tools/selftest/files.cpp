@@ -12,6 +12,7 @@
 #include "config/settings.hpp"
 #include "input/hid/decoder.hpp"
 #include "input/replay/recording.hpp"
+#include "render/gl/backends.hpp"
 #include "render/import/ostf.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
@@ -226,9 +227,10 @@ void cost_files(const Effort& effort, Outcome& out) {
 }
 
 void settings_files(const Effort& effort, Outcome& out) {
+    const config::Schema schema({named(select::selectors()), select::usual_selector}, {named(gl::backends()), gl::usual_backend});
     const auto read = [&](const Bytes& bytes) -> Answer {
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        config::Configuration configuration;
+        config::Configuration configuration(schema);
         const auto loaded = config::load_text(configuration, text, "fixture.toml", "kiosk");
         if (!loaded) return refusal(loaded.error());
         const config::Settings& s = configuration.values;
