@@ -42,8 +42,9 @@ struct Given {
     bool every = false, capture_frame = false, control_pairs = false;
 };
 
-/// Options that say nothing without another one, where only the command line tells that they were given.
+/// Options that say nothing without another one, or the same twice, where a request as such is clear: frames go before seconds.
 Result<void> check_given(const walk::WalkRequest& r, const Given& given) {
+    if (r.frames > 0 && r.seconds > 0) return Error{"--seconds", "and --frames say the length twice", "leave one of them out"};
     if (given.control_pairs && !r.control)
         return Error{"--control-pairs", "says how long the control is, and there is none", "add --control"};
     if (given.every && r.snap_dir.empty())

@@ -70,7 +70,6 @@ Result<void> check_request(const WalkRequest& r) {
                      "leave it out, or --control (`control` of the --config file, where it stands there)"};
     if (r.control && !r.input_file.empty())
         return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
-    if (r.frames > 0 && r.seconds > 0) return Error{"--seconds", "and --frames say the length twice", "leave one of them out"};
     const auto backend = gl::backend_named(r.backend);
     if (!backend) return backend.error();
     if (r.cost_noise > 0 && (r.clock == rt::ClockKind::real || (*backend)->draws()))
