@@ -1,10 +1,13 @@
 // The schema: every key once, with its unit, limits and help.
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <string>
+#include <utility>
 
 #include "config/settings.hpp"
+#include "config/values.hpp"
 #include "rt/base/nearest.hpp"
 
 namespace surefoot::config {
@@ -14,20 +17,16 @@ namespace {
 using S = Settings;
 using std::string_view;
 
-constexpr std::array<string_view, 8> selectors = {"flat",      "distance",         "depth-first",     "best-first",
-                                                  "two-stage", "depth-first-1994", "best-first-1994", "two-stage-1994"};
-constexpr std::array<string_view, 2> late_policies = {"lock", "float"};
-constexpr std::array<string_view, 5> backends = {"egl", "device", "window", "osmesa", "null"};  // kms: planned
-constexpr std::array<string_view, 2> clocks = {"real", "virtual"};
-
 constexpr Entry number(string_view key, string_view unit, double min, double max, string_view help, double S::*member) {
     return {key, Kind::number, unit, min, max, {}, help, member};
 }
-constexpr Entry integer(string_view key, string_view unit, double min, double max, string_view help, std::int64_t S::*member) {
+template <class Whole>
+constexpr Entry integer(string_view key, string_view unit, double min, double max, string_view help, Whole S::*member) {
     return {key, Kind::integer, unit, min, max, {}, help, member};
 }
 constexpr Entry flag(string_view key, string_view help, bool S::*member) { return {key, Kind::flag, {}, 0, 1, {}, help, member}; }
-constexpr Entry choice(string_view key, std::span<const string_view> of, string_view help, std::string S::*member) {
+template <class Chosen>
+constexpr Entry choice(string_view key, std::span<const Named> of, string_view help, Chosen S::*member) {
     return {key, Kind::choice, {}, 0, 0, of, help, member};
 }
 
@@ -37,57 +36,65 @@ constexpr Entry file_name(string_view key, string_view help, std::string S::*mem
     return {key, Kind::file, {}, 0, longest_name, {}, help, member};
 }
 
-const std::array<Entry, 35> entries = {
-    file_name("model", "The .walk model that is walked through. Relative names here and below: relative to this file's folder.",
-              &S::model),
-    file_name("path",
-              "Poses over time, CSV; \"\": MODEL.path.csv beside the model, else a tour. With an input: start and viewpoints.",
-              &S::path),
-    number("lift_m", "m", -1e7, 1e7, "Added to the path's heights (recorded drives: 1.5).", &S::lift_m),
-    file_name("input", "Who steers: \"\" nobody, the path is followed; \"devices\" what is plugged in; else a recording.",
-              &S::input),
-    file_name("steering", "How the input steers; \"\": the default of the device's class.", &S::steering),
-    file_name("state", "Folder of the cost table and of a latched emergency stop; \"\": $STATE_DIRECTORY, as systemd sets it.",
-              &S::state),
-    file_name(
-        "monitor",
-        "Where surefootd serves live figures, unix:/PATH or 127.0.0.1:PORT; \"\": surefoot.sock in $RUNTIME_DIRECTORY; \"none\".",
-        &S::monitor),
-    file_name("incidents", "Folder where surefootd writes bursts of misses down; \"\": nowhere.", &S::incidents),
-    number("open_limit_s", "s", 1, 86400, "Longest time that opening a model may take (surefootd).", &S::open_limit_s),
-    number("rate_hz", "Hz", 1, 1000, "Frames a second that the walk keeps.", &S::rate_hz),
-    integer("width", "px", 16, 16384, "Width of the picture.", &S::width),
-    integer("height", "px", 16, 16384, "Height of the picture.", &S::height),
-    number("shift_x", "half widths", -8, 8,
-           "Off axis: the picture's middle lies so far right of where the pose looks (a screen that is not straight before the "
-           "eye).",
-           &S::shift_x),
-    number("shift_y", "half heights", -8, 8, "The same, upwards.", &S::shift_y),
-    number("budget_ms", "ms", 0, 1000, "Time that a frame may spend; 0: what the rate allows.", &S::budget_ms),
-    number("accuracy", "1/rad", 0, 1e6, "Stop refining at this accuracy; 0: refine as far as the budget goes.", &S::accuracy),
-    number("cost_scale", "", 0.01, 100, "Factor on the machine's cost table (to try under- and over-prediction).",
-           &S::cost_scale),
-    choice("selector", selectors, "How the cut is chosen.", &S::selector),
-    choice("late", late_policies, "A late frame: 'lock' skips whole slots, 'float' shows when done.", &S::late),
-    choice("backend", backends, "Where pictures are drawn; 'null' draws none and charges the predicted cost.", &S::backend),
-    choice("clock", clocks,
-           "'virtual' charges predicted costs instead of waiting: the same frames wherever the cost table is the same.",
-           &S::clock),
-    integer("workers", "threads", 0, 256, "Threads that prepare frames; 0: chosen for the machine.", &S::workers),
-    integer("rasterisers", "threads", 0, 256, "Threads of a software renderer; 0: chosen for the machine.", &S::rasterisers),
-    flag("fifo", "Real-time scheduling (SCHED_FIFO) for the frame thread, rasterisers and workers.", &S::fifo),
-    flag("strict", "Do not start where real-time scheduling or locked memory is refused.", &S::strict),
-    flag("in_frame_check", "Between slices, draw stand-ins when the rest no longer fits the frame.", &S::in_frame_check),
-    flag("occlusion", "Leave out what other things hide from every pose that a frame may have.", &S::occlusion),
-    flag("control", "Alternate the walk with a bare loop of the same cost, to judge misses against.", &S::control),
-    integer("frame_core", "", -1, 4095, "Core of the frame thread; -1: chosen for the machine.", &S::frame_core),
-    number("slice_us", "us", 50, 100000, "Predicted length of a slice of submission.", &S::slice_us),
-    number("hysteresis", "", 1, 10, "How much better a representation must be to replace the one on screen.", &S::hysteresis),
-    {"sky", Kind::colour, {}, 0, 0, {}, "Background, as \"#rrggbb\".", &S::sky},
-    integer("frame_priority", "FIFO", 1, 98, "Priority of the frame thread.", &S::frame_priority),
-    integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),
-    integer("worker_priority", "FIFO", 1, 98, "Priority of the workers; below the rasterisers'.", &S::worker_priority),
-};
+std::vector<Entry> make_entries(const Registry& selectors, const Registry& backends) {
+    std::vector<Entry> entries = {
+        file_name("model",
+                  "The .walk model that is walked through. Relative names here and below: relative to this file's folder.",
+                  &S::model_file),
+        file_name(
+            "path",
+            "Poses over time, CSV; \"\": MODEL.path.csv beside the model, else a tour. With an input: start and viewpoints.",
+            &S::path_file),
+        number("lift_m", "m", -1e7, 1e7, "Added to the path's heights (recorded drives: 1.5).", &S::lift_m),
+        file_name("input", "Who steers: \"\" nobody, the path is followed; \"devices\" what is plugged in; else a recording.",
+                  &S::input_file),
+        file_name("steering", "How the input steers; \"\": the default of the device's class.", &S::steering_file),
+        file_name("state",
+                  "Folder of the cost table and of a latched emergency stop; \"\": $STATE_DIRECTORY, as systemd sets it.",
+                  &S::state_dir),
+        file_name("monitor",
+                  "Where surefootd serves live figures, unix:/PATH or 127.0.0.1:PORT; \"\": surefoot.sock in $RUNTIME_DIRECTORY; "
+                  "\"none\".",
+                  &S::monitor),
+        file_name("incidents", "Folder where surefootd writes bursts of misses down; \"\": nowhere.", &S::incidents),
+        number("open_limit_s", "s", 1, 86400, "Longest time that opening a model may take (surefootd).", &S::open_limit_s),
+        number("rate_hz", "Hz", 1, 1000, "Frames a second that the walk keeps.", &S::rate_hz),
+        integer("width", "px", 16, 16384, "Width of the picture.", &S::width),
+        integer("height", "px", 16, 16384, "Height of the picture.", &S::height),
+        number(
+            "shift_x", "half widths", -8, 8,
+            "Off axis: the picture's middle lies so far right of where the pose looks (a screen that is not straight before the "
+            "eye).",
+            &S::shift_x),
+        number("shift_y", "half heights", -8, 8, "The same, upwards.", &S::shift_y),
+        number("budget_ms", "ms", 0, 1000, "Time that a frame may spend; 0: what the rate allows.", &S::budget_ms),
+        number("accuracy", "1/rad", 0, 1e6, "Stop refining at this accuracy; 0: refine as far as the budget goes.", &S::accuracy),
+        number("cost_scale", "", 0.01, 100, "Factor on the machine's cost table (to try under- and over-prediction).",
+               &S::cost_scale),
+        choice("selector", selectors.entries, "How the cut is chosen.", &S::selector),
+        choice("late", rt::late_policies, "What happens to a late frame.", &S::late),
+        choice("backend", backends.entries, "Where pictures are drawn.", &S::backend),
+        choice("clock", rt::clock_kinds, "Which clock the frames are counted by.", &S::clock),
+        integer("workers", "threads", 0, 256, "Threads that prepare frames; 0: chosen for the machine.", &S::workers),
+        integer("rasterisers", "threads", 0, 256, "Threads of a software renderer; 0: chosen for the machine.", &S::rasterisers),
+        flag("fifo", "Real-time scheduling (SCHED_FIFO) for the frame thread, rasterisers and workers.", &S::fifo),
+        flag("strict", "Do not start where real-time scheduling or locked memory is refused.", &S::strict),
+        flag("in_frame_check", "Between slices, draw stand-ins when the rest no longer fits the frame.", &S::in_frame_check),
+        flag("occlusion", "Leave out what other things hide from every pose that a frame may have.", &S::occlusion),
+        flag("control", "Alternate the walk with a bare loop of the same cost, to judge misses against.", &S::control),
+        integer("frame_core", "", -1, 4095, "Core of the frame thread; -1: chosen for the machine.", &S::frame_core),
+        number("slice_us", "us", 50, 100000, "Predicted length of a slice of submission.", &S::slice_us),
+        number("hysteresis", "", 1, 10, "How much better a representation must be to replace the one on screen.", &S::hysteresis),
+        {"sky", Kind::colour, {}, 0, 0, {}, "Background, as \"#rrggbb\".", &S::sky},
+        integer("frame_priority", "FIFO", 1, 98, "Priority of the frame thread.", &S::frame_priority),
+        integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),
+        integer("worker_priority", "FIFO", 1, 98, "Priority of the workers; below the rasterisers'.", &S::worker_priority),
+    };
+    std::find_if(entries.begin(), entries.end(), [](const Entry& e) { return e.key == "backend"; })->absent = backends.absent;
+    return entries;
+}
+
+}  // namespace
 
 std::string normalised(string_view key) {
     std::string text(key);
@@ -95,20 +102,42 @@ std::string normalised(string_view key) {
     return text;
 }
 
-}  // namespace
+std::span<const Renamed> renamed_keys() { return {}; }  // no key has had another name yet
 
-std::span<const Entry> schema() { return entries; }
-
-const Entry* find_entry(string_view key) {
-    const std::string wanted = normalised(key);
-    const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == wanted; });
-    return found == entries.end() ? nullptr : &*found;
+std::optional<Error> renamed_error(std::span<const Renamed> table, std::string place, string_view name) {
+    const std::string wanted = normalised(name);
+    for (const Renamed& one : table) {
+        if (normalised(one.before) != wanted) continue;
+        if (one.now.empty())
+            return Error{std::move(place), fmt::format("'{}' is no longer there", name), std::string(one.remedy)};
+        return Error{std::move(place), fmt::format("'{}' is called '{}' now", name, one.now),
+                     fmt::format("write {}; the value stays as it is", one.now)};
+    }
+    return std::nullopt;
 }
 
-string_view nearest_key(string_view key) {
-    std::array<string_view, entries.size()> keys;
-    std::transform(entries.begin(), entries.end(), keys.begin(), [](const Entry& entry) { return entry.key; });
-    return nearest_word(normalised(key), keys);
+Schema::Schema(Registry selectors, Registry backends, std::span<const Renamed> renamed)
+    : selectors_(std::move(selectors)),
+      backends_(std::move(backends)),
+      renamed_(renamed),
+      entries_(make_entries(selectors_, backends_)) {
+    defaults_.selector = selectors_.usual;
+    defaults_.backend = backends_.usual;
+}
+
+const Entry* Schema::find(string_view key) const {
+    const std::string wanted = normalised(key);
+    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.key == wanted; });
+    return found == entries_.end() ? nullptr : &*found;
+}
+
+string_view Schema::nearest(string_view key) const {
+    const std::string wanted = normalised(key);
+    for (const Renamed& one : renamed_)
+        if (normalised(one.before) == wanted) return one.now;
+    std::vector<string_view> keys;
+    for (const Entry& entry : entries_) keys.push_back(entry.key);
+    return nearest_word(wanted, keys);
 }
 
 }  // namespace surefoot::config

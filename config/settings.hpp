@@ -1,66 +1,111 @@
 // What a user may set for a walk and for the daemon: one schema table with units, limits, defaults and help; values from
-// TOML files and the command line; and where each value came from. Knows no room's types: tools/walk maps it to theirs.
+// TOML files and the command line; and where each value came from. Knows no room's types: names and help of what may be chosen
+// are handed to the schema (walk::settings_schema).
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "rt/base/modes.hpp"
+#include "rt/base/named.hpp"
 #include "rt/base/result.hpp"
 
 namespace surefoot::config {
 
-/// The initial values are the defaults.
+/// The initial values are the defaults, but for names out of registries: see Schema::defaults().
 struct Settings {
-    std::string model, path, input, steering, state;  ///< files; see file_setting() for what relative names stand for
-    std::string monitor, incidents;                   ///< the daemon's: where live figures are served; a folder
-    double lift_m = 0;                                ///< added to the path's heights
-    double open_limit_s = 600;                        ///< the daemon's: for how long opening a model may take
+    std::string model_file;
+    std::string path_file;           ///< empty: beside the model, else a generated tour
+    std::string input_file;          ///< who steers; empty: the path is followed
+    std::string steering_file;       ///< how it steers; empty: the default of the device's class
+    std::string state_dir;           ///< empty: the program's own choice
+    std::string monitor, incidents;  ///< the daemon's: where live figures are served; a folder
+    double lift_m = 0;               ///< added to the path's heights
+    double open_limit_s = 600;       ///< the daemon's: for how long opening a model may take
     double rate_hz = 30;
-    std::int64_t width = 1280, height = 720;  ///< pixels
-    double shift_x = 0, shift_y = 0;          ///< off axis, in halves of the picture
-    double budget_ms = 0;                     ///< 0: what the rate allows
-    double accuracy = 0;                      ///< rad^-1 to stop at; 0: as far as the budget goes
-    double cost_scale = 1;                    ///< on the machine's cost table
-    std::string selector = "two-stage";
-    std::string late = "lock";
-    std::string backend = "egl";
-    std::string clock = "real";
-    std::int64_t workers = 0;      ///< 0: one a core beside the frame thread's
-    std::int64_t rasterisers = 0;  ///< 0: one a core
+    std::uint32_t width = 1280, height = 720;  ///< pixels
+    double shift_x = 0, shift_y = 0;           ///< off axis, in halves of the picture
+    double budget_ms = 0;                      ///< 0: what the rate allows
+    double accuracy = 0;                       ///< rad^-1 to stop at; 0: as far as the budget goes
+    double cost_scale = 1;                     ///< on the machine's cost table; what costs really are (virtual clock)
+    std::string selector, backend;             ///< names out of registries
+    rt::LatePolicy late = rt::LatePolicy::lock;
+    rt::ClockKind clock = rt::ClockKind::real;
+    int workers = 0;      ///< 0: one a core beside the frame thread's
+    int rasterisers = 0;  ///< 0: one a core
     bool fifo = true, strict = false, in_frame_check = true, occlusion = true, control = false;
-    std::int64_t frame_core = -1;  ///< -1: chosen
+    int frame_core = -1;  ///< -1: chosen
     double slice_us = 1000;
     double hysteresis = 1.25;
     std::string sky = "#9eb8d1";
-    std::int64_t frame_priority = 80, raster_priority = 70, worker_priority = 60;
+    int frame_priority = 80, raster_priority = 70, worker_priority = 60;
 };
 
 enum class Kind : std::uint8_t { number, integer, flag, choice, colour, file };
 
-using Member = std::variant<double Settings::*, std::int64_t Settings::*, bool Settings::*, std::string Settings::*>;
+using Member = std::variant<double Settings::*, std::uint32_t Settings::*, int Settings::*, bool Settings::*,
+                            std::string Settings::*, rt::LatePolicy Settings::*, rt::ClockKind Settings::*>;
 
-/// One row of the schema. min and max hold for number and integer, choices for choice; max for file: bytes.
+/// One row of the schema. min and max hold for number and integer, choices for choice (of an enum: in its order); max for
+/// file: bytes.
 struct Entry {
     std::string_view key;
     Kind kind = Kind::number;
     std::string_view unit;  ///< empty: none
     double min = 0, max = 0;
-    std::span<const std::string_view> choices;
+    std::span<const Named> choices;
     std::string_view help;
     Member member;
+    std::span<const Named> absent = {};  ///< names that are known and cannot be chosen, and why
 };
 
-std::span<const Entry> schema();
-/// Null for an unknown key. A key's '-' and '_' are the same (command lines write --rate-hz).
-const Entry* find_entry(std::string_view key);
-/// The known key that an unknown one was probably meant to be; empty where none is near.
-std::string_view nearest_key(std::string_view key);
+/// What may be chosen by name: handed over by the room that has it. `usual`: the default.
+struct Registry {
+    std::vector<Named> entries;
+    std::string_view usual;
+    std::vector<Named> absent = {};
+};
+
+/// A name of older settings files or command lines. It is refused by name, with the new one or with what to do instead.
+struct Renamed {
+    std::string_view before, now;
+    std::string_view remedy = {};  ///< where nothing has taken its place
+};
+
+/// Keys that settings files of earlier versions may hold.
+std::span<const Renamed> renamed_keys();
+/// What is said of a renamed key or option ("--rate"); nothing where it is none. '-' and '_' are the same.
+std::optional<Error> renamed_error(std::span<const Renamed> table, std::string place, std::string_view name);
+
+/// Every key once, with its unit, limits, choices, default and help. Everything that people read of settings is written from it.
+class Schema {
+public:
+    /// Names and help, and the table of renamed keys, must outlive this.
+    Schema(Registry selectors, Registry backends, std::span<const Renamed> renamed = renamed_keys());
+    Schema(const Schema&) = delete;
+    Schema& operator=(const Schema&) = delete;
+
+    [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
+    /// Null for an unknown key. A key's '-' and '_' are the same (command lines write --rate-hz).
+    [[nodiscard]] const Entry* find(std::string_view key) const;
+    /// The known key that an unknown one was probably meant to be, a renamed one's new name; empty where none is near.
+    [[nodiscard]] std::string_view nearest(std::string_view key) const;
+    [[nodiscard]] std::span<const Renamed> renamed() const { return renamed_; }
+    [[nodiscard]] const Settings& defaults() const { return defaults_; }
+
+private:
+    Registry selectors_, backends_;
+    std::span<const Renamed> renamed_;
+    std::vector<Entry> entries_;
+    Settings defaults_;
+};
 
 /// Where a value came from: "default", "FILE:LINE", "FILE:LINE (profile NAME)", or "command line".
 struct Origin {
@@ -73,6 +118,8 @@ struct Origin {
 
 /// Values with their origins. Every change is checked against the schema; a refused change leaves all as it was.
 struct Configuration {
+    explicit Configuration(const Schema& of) : schema(&of), values(of.defaults()) {}
+    const Schema* schema;
     Settings values;
     std::map<std::string, Origin, std::less<>> origins;  ///< only keys that are not at their default's origin
     [[nodiscard]] Origin origin(std::string_view key) const;
@@ -93,8 +140,8 @@ struct Problem {
 };
 /// Everything that is wrong in a file, by line: syntax, every key of every profile, and the rules across keys, with each profile
 /// in force. Empty: load_file() and check() succeed, whatever the profile.
-std::vector<Problem> problems_in_file(const std::string& file);
-std::vector<Problem> problems_in_text(std::string_view text, const std::string& name);
+std::vector<Problem> problems_in_file(const Schema& schema, const std::string& file);
+std::vector<Problem> problems_in_text(const Schema& schema, std::string_view text, const std::string& name);
 
 /// One value as text, as on a command line.
 Result<void> set_value(Configuration& configuration, std::string_view key, std::string_view text);
@@ -106,10 +153,12 @@ Result<void> check(const Configuration& configuration);
 /// empty, and so does `word` (a value that is no file name).
 std::string file_setting(const Configuration& configuration, std::string_view key, std::string_view word = {});
 
+/// The name that was chosen.
+std::string_view choice_of(const Settings& settings, const Entry& entry);
 /// A key's value as TOML would write it.
 std::string value_text(const Settings& settings, const Entry& entry);
 /// All keys with unit, limits, default and help: a TOML file that changes nothing.
-std::string commented_defaults();
+std::string commented_defaults(const Schema& schema);
 /// One line a key: value, unit, origin, and what is allowed.
 std::string explain(const Configuration& configuration);
 

@@ -47,12 +47,13 @@ void complain(Reading& into, const std::string& name, const toml::node& node, Pr
 void read_key(Reading& into, std::string_view key, const toml::node& node, const std::string& name, std::string_view profile) {
     Problem problem;
     problem.key = std::string(key);
-    const Entry* entry = find_entry(key);
+    const Schema& schema = *into.configuration.schema;
+    const Entry* entry = schema.find(key);
     const auto value = value_of(node);
     if (value) problem.found = text_of(*value);
     if (entry == nullptr) {
-        problem.error = unknown_key({}, key);
-        problem.nearest = std::string(nearest_key(key));
+        problem.error = unknown_key(schema, {}, key);
+        problem.nearest = std::string(schema.nearest(key));
         return complain(into, name, node, std::move(problem));
     }
     problem.allowed = allowed(*entry);
@@ -133,8 +134,8 @@ Result<void> load_text(Configuration& configuration, std::string_view text, cons
     return {};
 }
 
-std::vector<Problem> problems_in_text(std::string_view text, const std::string& name) {
-    Reading reading = read_toml({}, text, name, {});
+std::vector<Problem> problems_in_text(const Schema& schema, std::string_view text, const std::string& name) {
+    Reading reading = read_toml(Configuration(schema), text, name, {});
     if (!reading.problems.empty()) return reading.problems;
     const auto across = [&](const Configuration& configuration) {
         const auto ok = check(configuration);
@@ -149,13 +150,14 @@ std::vector<Problem> problems_in_text(std::string_view text, const std::string& 
         if (std::none_of(reading.problems.begin(), reading.problems.end(), same)) reading.problems.push_back(std::move(problem));
     };
     across(reading.configuration);
-    for (const std::string& profile : reading.profiles) across(read_toml({}, text, name, profile).configuration);
+    for (const std::string& profile : reading.profiles)
+        across(read_toml(Configuration(schema), text, name, profile).configuration);
     return reading.problems;
 }
 
-std::vector<Problem> problems_in_file(const std::string& file) {
+std::vector<Problem> problems_in_file(const Schema& schema, const std::string& file) {
     const auto text = read_text(file, max_bytes);
-    if (text) return problems_in_text(*text, file);
+    if (text) return problems_in_text(schema, *text, file);
     Problem problem;
     problem.error = text.error();
     problem.file = file;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 namespace surefoot::config {
@@ -27,12 +28,6 @@ std::string toml_string(std::string_view text) {
 bool is_file_name(std::string_view text, double most) {
     const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
     return static_cast<double>(text.size()) <= most && std::none_of(text.begin(), text.end(), control);
-}
-
-std::string joined(std::span<const std::string_view> words) {
-    std::string text;
-    for (const auto word : words) text += (text.empty() ? "" : ", ") + std::string(word);
-    return text;
 }
 
 std::optional<double> number_in(std::string_view text) {
@@ -59,7 +54,7 @@ std::string limits_of(const Entry& entry) {
         case Kind::flag:
             return "true or false";
         case Kind::choice:
-            return "one of " + joined(entry.choices);
+            return "one of " + names_in_words(entry.choices);
         case Kind::colour:
             return "a colour as \"#rrggbb\"";
         case Kind::file:
@@ -82,16 +77,42 @@ std::string text_of(const Value& value) {
     return toml_string(std::get<std::string>(value));
 }
 
+std::string_view absent_because(const Entry& entry, std::string_view name) {
+    const Named* known = find_named(entry.absent, name);
+    return known == nullptr ? std::string_view() : known->help;
+}
+
+namespace {
+
+/// Numbers and choices go into members of several types; the entry's kind and limits have been checked.
+void put_number(Settings& settings, const Entry& entry, double number) {
+    const auto put = [&](auto member) {
+        using T = std::remove_reference_t<decltype(settings.*member)>;
+        if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) settings.*member = static_cast<T>(number);
+    };
+    std::visit(put, entry.member);
+}
+
+void put_choice(Settings& settings, const Entry& entry, const Named& chosen) {
+    const auto put = [&](auto member) {
+        using T = std::remove_reference_t<decltype(settings.*member)>;
+        if constexpr (std::is_same_v<T, std::string>)
+            settings.*member = chosen.name;
+        else if constexpr (std::is_enum_v<T>)
+            settings.*member = static_cast<T>(&chosen - entry.choices.data());
+    };
+    std::visit(put, entry.member);
+}
+
+}  // namespace
+
 std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value) {
     const auto refusal = [&] { return fmt::format("{} = {} is not {}", entry.key, text_of(value), allowed(entry)); };
     if (const auto* number = std::get_if<double>(&value)) {
         const bool numeric = entry.kind == Kind::number || entry.kind == Kind::integer;
         const bool whole = entry.kind != Kind::integer || std::floor(*number) == *number;
         if (!numeric || !whole || !(*number >= entry.min && *number <= entry.max)) return refusal();
-        if (entry.kind == Kind::number)
-            settings.*std::get<double Settings::*>(entry.member) = *number;
-        else
-            settings.*std::get<std::int64_t Settings::*>(entry.member) = static_cast<std::int64_t>(*number);
+        put_number(settings, entry, *number);
         return std::nullopt;
     }
     if (const auto* flag = std::get_if<bool>(&value)) {
@@ -100,16 +121,25 @@ std::optional<std::string> assign(Settings& settings, const Entry& entry, const 
         return std::nullopt;
     }
     const auto& text = std::get<std::string>(value);
+    if (entry.kind == Kind::choice) {
+        const Named* chosen = find_named(entry.choices, text);
+        const std::string_view absent = absent_because(entry, text);
+        if (chosen == nullptr && !absent.empty())
+            return fmt::format("{} = {} {}; {}", entry.key, text_of(value), absent, allowed(entry));
+        if (chosen == nullptr) return refusal();
+        put_choice(settings, entry, *chosen);
+        return std::nullopt;
+    }
     const bool fits =
-        (entry.kind == Kind::choice && std::find(entry.choices.begin(), entry.choices.end(), text) != entry.choices.end()) ||
         (entry.kind == Kind::colour && is_colour(text)) || (entry.kind == Kind::file && is_file_name(text, entry.max));
     if (!fits) return refusal();
     settings.*std::get<std::string Settings::*>(entry.member) = text;
     return std::nullopt;
 }
 
-Error unknown_key(std::string place, std::string_view key) {
-    const auto nearest = nearest_key(key);
+Error unknown_key(const Schema& schema, std::string place, std::string_view key) {
+    if (auto renamed = renamed_error(schema.renamed(), place, key)) return *renamed;
+    const auto nearest = schema.nearest(key);
     return {std::move(place), fmt::format("unknown key '{}'", key),
             nearest.empty() ? "'surefoot config --print' lists the keys" : fmt::format("did you mean '{}'?", nearest)};
 }
@@ -121,14 +151,14 @@ std::string Origin::text() const {
 }
 
 Origin Configuration::origin(std::string_view key) const {
-    const auto* entry = find_entry(key);
+    const auto* entry = schema->find(key);
     const auto found = entry == nullptr ? origins.end() : origins.find(entry->key);
     return found == origins.end() ? Origin{} : found->second;
 }
 
 Result<void> set_value(Configuration& configuration, std::string_view key, std::string_view text) {
-    const auto* entry = find_entry(key);
-    if (entry == nullptr) return unknown_key("command line", key);
+    const auto* entry = configuration.schema->find(key);
+    if (entry == nullptr) return unknown_key(*configuration.schema, "command line", key);
     Value value = std::string(text);
     if (entry->kind == Kind::number || entry->kind == Kind::integer) {
         if (const auto number = number_in(text)) value = *number;
@@ -155,7 +185,7 @@ Result<void> check(const Configuration& configuration) {
         return Error{place("worker_priority"),
                      fmt::format("{} is not below raster_priority {}", s.worker_priority, s.raster_priority),
                      "load beside the rasterisers must not hold them up"};
-    if (s.budget_ms > 0 && s.late == "lock" && s.budget_ms > 1000.0 / s.rate_hz)
+    if (s.budget_ms > 0 && s.late == rt::LatePolicy::lock && s.budget_ms > 1000.0 / s.rate_hz)
         return Error{place("budget_ms"),
                      fmt::format("{} ms is longer than a frame at {} Hz ({:.3f} ms)", s.budget_ms, s.rate_hz, 1000.0 / s.rate_hz),
                      "lower the budget or the rate, or use late = \"float\""};
@@ -163,38 +193,60 @@ Result<void> check(const Configuration& configuration) {
 }
 
 std::string file_setting(const Configuration& configuration, std::string_view key, std::string_view word) {
-    const Entry* entry = find_entry(key);
+    const Entry* entry = configuration.schema->find(key);
     const std::string& name = configuration.values.*std::get<std::string Settings::*>(entry->member);
     const Origin origin = configuration.origin(entry->key);
     if (name.empty() || name == word || origin.file.empty() || name.front() == '/') return name;
     return (std::filesystem::path(origin.file).parent_path() / name).string();
 }
 
-std::string value_text(const Settings& settings, const Entry& entry) {
-    struct Writer {
-        const Settings& s;
-        std::string operator()(double Settings::*m) const { return number_text(s.*m); }
-        std::string operator()(std::int64_t Settings::*m) const { return std::to_string(s.*m); }
-        std::string operator()(bool Settings::*m) const { return s.*m ? "true" : "false"; }
-        std::string operator()(std::string Settings::*m) const { return toml_string(s.*m); }
+std::string_view choice_of(const Settings& settings, const Entry& entry) {
+    const auto name = [&](auto member) -> std::string_view {
+        using T = std::remove_const_t<std::remove_reference_t<decltype(settings.*member)>>;
+        if constexpr (std::is_same_v<T, std::string>)
+            return settings.*member;
+        else if constexpr (std::is_enum_v<T>)
+            return entry.choices[static_cast<std::size_t>(settings.*member)].name;
+        else
+            return {};
     };
-    return std::visit(Writer{settings}, entry.member);
+    return std::visit(name, entry.member);
 }
 
-std::string commented_defaults() {
+std::string value_text(const Settings& settings, const Entry& entry) {
+    if (entry.kind == Kind::choice) return toml_string(choice_of(settings, entry));
+    const auto text = [&](auto member) -> std::string {
+        using T = std::remove_const_t<std::remove_reference_t<decltype(settings.*member)>>;
+        if constexpr (std::is_same_v<T, bool>)
+            return settings.*member ? "true" : "false";
+        else if constexpr (std::is_same_v<T, double>)
+            return number_text(settings.*member);
+        else if constexpr (std::is_arithmetic_v<T>)
+            return std::to_string(settings.*member);
+        else if constexpr (std::is_same_v<T, std::string>)
+            return toml_string(settings.*member);
+        else
+            return {};  // an enum is a choice
+    };
+    return std::visit(text, entry.member);
+}
+
+std::string commented_defaults(const Schema& schema) {
     std::string text = "# Surefoot settings. Every line shows a default; take away the '#' to change it.\n";
-    const Settings defaults;
-    for (const Entry& entry : schema())
-        text += fmt::format("\n# {} {}{}.\n# {} = {}\n", entry.help, entry.kind == Kind::flag ? "" : "Allowed: ", allowed(entry),
-                            entry.key, value_text(defaults, entry));
+    for (const Entry& entry : schema.entries()) {
+        text += fmt::format("\n# {} {}{}.\n", entry.help, entry.kind == Kind::flag ? "" : "Allowed: ", allowed(entry));
+        for (const Named& choice : entry.choices) text += fmt::format("#   {:<17} {}\n", choice.name, choice.help);
+        text += fmt::format("# {} = {}\n", entry.key, value_text(schema.defaults(), entry));
+    }
     return text;
 }
 
 std::string explain(const Configuration& configuration) {
     std::size_t widest = 7;
-    for (const Entry& entry : schema()) widest = std::max(widest, configuration.origin(entry.key).text().size());
+    for (const Entry& entry : configuration.schema->entries())
+        widest = std::max(widest, configuration.origin(entry.key).text().size());
     std::string text;
-    for (const Entry& entry : schema())
+    for (const Entry& entry : configuration.schema->entries())
         text += fmt::format("{:<16} {:<12} {:<8} {:<{}}  {}\n", entry.key, value_text(configuration.values, entry), entry.unit,
                             configuration.origin(entry.key).text(), widest, limits_of(entry));
     return text;

@@ -17,6 +17,10 @@ std::string allowed(const Entry& entry);
 std::string text_of(const Value& value);
 /// Puts the value in, or says why not and changes nothing.
 std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value);
-Error unknown_key(std::string place, std::string_view key);
+/// Why a name that is known cannot be chosen; empty where nothing is known of it.
+std::string_view absent_because(const Entry& entry, std::string_view name);
+Error unknown_key(const Schema& schema, std::string place, std::string_view key);
+/// Lower case, with '_' for '-'.
+std::string normalised(std::string_view key);
 
 }  // namespace surefoot::config

@@ -52,13 +52,6 @@ std::vector<gl::DrawItem> coarse_cover(const model::Model& model) {
     return items;
 }
 
-Result<const select::Selector*> selector_named(std::string_view wanted) {
-    if (const select::Selector* selector = select::find_selector(wanted); selector != nullptr) return selector;
-    std::string names;
-    for (const auto name : select::selector_names()) names += (names.empty() ? "" : ", ") + std::string(name);
-    return Error{"selector '" + std::string(wanted) + "'", "there is no such selector", "one of: " + names};
-}
-
 }  // namespace
 
 struct Engine::Impl {
@@ -95,13 +88,11 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->model = std::move(model);
     impl->costs = costs;
     impl->options = options;
-    auto selector = selector_named(options.selector);
+    auto selector = select::selector_named(options.selector);
     if (!selector) return selector.error();
-    impl->selector = *selector;
-    gl::NullOptions null = options.null;
-    null.costs = &impl->costs;
-    auto device = options.device.kind == gl::BackendKind::null ? gl::open_null_device(options.device, null)
-                                                               : gl::open_device(options.device);
+    impl->selector = &(*selector)->make();
+    impl->options.device.null.costs = &impl->costs;
+    auto device = gl::open_device(impl->options.device);
     if (!device) return device.error();
     impl->device = std::move(*device);
     auto loaded = impl->device->load(impl->model, effects::assemble_program);
@@ -111,7 +102,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->options.prepare.max_candidates = candidates;
     impl->options.prepare.max_choices =
         static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_choices, impl->model.reps.size()));
-    impl->options.prepare.full_depth |= options.selector == "flat";  // full detail needs the leaves
+    impl->options.prepare.full_depth |= (*selector)->goes_by == select::GoesBy::nothing;  // full detail needs the leaves
     impl->preparer = std::make_unique<prepare::Preparer>(impl->model, impl->costs, impl->options.prepare);
     impl->state.reserve(impl->model, candidates);
     impl->state.hysteresis = options.hysteresis;
@@ -137,9 +128,9 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
 }
 
 Result<void> Engine::set_selector(std::string_view name) {
-    auto selector = selector_named(name);
+    auto selector = select::selector_named(name);
     if (!selector) return selector.error();
-    impl_->selector = *selector;
+    impl_->selector = &(*selector)->make();
     return {};
 }
 

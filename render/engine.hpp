@@ -16,16 +16,15 @@
 #include "render/model/cost.hpp"
 #include "render/model/model.hpp"
 #include "render/prepare/prepared.hpp"
-#include "render/select/select.hpp"
+#include "render/select/registry.hpp"
 #include "rt/base/result.hpp"
 
 namespace surefoot {
 
 struct EngineOptions {
-    gl::DeviceOptions device;
-    gl::NullOptions null;  ///< used by the null backend; costs are filled in by the engine
+    gl::DeviceOptions device;  ///< the costs of the null backend are the engine's
     prepare::PrepareOptions prepare;
-    std::string selector = "two-stage";
+    std::string selector{select::usual_selector};
     double slice_us = 1000;  ///< predicted length of a slice
     float hysteresis = 1.25F;
     bool in_frame_check = true;  ///< DESIGN 1.2; off only to show what it is worth

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "render/select/registry.hpp"
+
 namespace surefoot::capture {
 
 Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<select::Shown> memory,

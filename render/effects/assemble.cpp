@@ -17,6 +17,16 @@ std::span<const EffectModule> all_effects() {
     return modules;
 }
 
+std::string effects_text(model::EffectMask mask, std::string_view between) {
+    std::string text;
+    for (const EffectModule& module : all_effects()) {
+        if ((mask & module.bit) == 0) continue;
+        if (!text.empty()) text += between;
+        text += module.name;
+    }
+    return text.empty() ? "bare" : text;
+}
+
 gl::ProgramSource assemble_program(model::EffectMask mask) {
     std::string vertex_declarations;
     std::string vertex_code;
@@ -32,6 +42,7 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
     // A colour that no effect varies over the triangle needs no interpolation.
     const std::string flat = (mask & varying_colour) == 0 ? "flat " : "";
     gl::ProgramSource source;
+    source.name = effects_text(mask);
     source.vertex =
         "#version 430 core\n"
         "in vec3 position;\n"

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/gl/device.hpp"
@@ -14,14 +15,16 @@ namespace surefoot::effects {
 /// One effect: what asks for it and its share of the program. GLSL pieces go into the named slots of the bare program.
 struct EffectModule {
     model::Effect bit;
-    std::string_view name;
-    std::string_view what;                                  ///< one line for people
+    std::string_view name, help;                            ///< help: one line for people
     std::string_view asked_by;                              ///< what in a scene asks for it
     std::string_view vertex_declarations, vertex_code;      ///< may read `world_rows`, write `v_colour`
     std::string_view fragment_declarations, fragment_code;  ///< may change `colour`, discard
 };
 
+/// In bit order: adding one is its bit, a file of this folder, and its line in modules.hpp and assemble.cpp.
 std::span<const EffectModule> all_effects();
+/// "texture sun", or "bare".
+std::string effects_text(model::EffectMask mask, std::string_view between = " ");
 
 /// Findings, one an effect, from a model's materials and geometry.
 std::vector<model::EffectFinding> find_effects(const model::Model& model);

@@ -8,7 +8,7 @@ namespace surefoot::effects {
 constexpr EffectModule sun{
     .bit = model::effect_sun,
     .name = "sun",
-    .what = "sun and sky light at the vertices",
+    .help = "sun and sky light at the vertices",
     .asked_by = "a mesh with normals and a lit material",
     .vertex_declarations = "in vec3 normal;\nin float two_sided;\nuniform vec3 sun_direction;\n",
     .vertex_code =

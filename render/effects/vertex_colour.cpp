@@ -6,7 +6,7 @@ namespace surefoot::effects {
 constexpr EffectModule vertex_colour{
     .bit = model::effect_vertex_colour,
     .name = "vertex_colour",
-    .what = "a colour at each vertex",
+    .help = "a colour at each vertex",
     .asked_by = "a mesh whose vertices carry colours",
     .vertex_declarations = "in vec4 vertex_colour;\n",
     .vertex_code = "    v_colour *= vertex_colour;\n",

@@ -18,8 +18,7 @@
 
 namespace surefoot::gl {
 
-enum class BackendKind { egl, device, window, osmesa, null };
-Result<BackendKind> parse_backend(std::string_view name);
+enum class BackendKind { egl, device, window, osmesa, null };  ///< backends.hpp has them by name
 
 struct DrawItem {
     model::Index node = 0;
@@ -29,8 +28,17 @@ struct DrawItem {
 /// GLSL of one state class; made by render/effects, so that gl knows no effect.
 struct ProgramSource {
     std::string vertex, fragment;
+    std::string name{};  ///< of the state class, for people: "texture sun"
 };
 using ProgramFactory = std::function<ProgramSource(model::EffectMask)>;
+
+/// The null device charges each item by `costs` times `scale`; the same numbers at any speed and worker count.
+struct NullOptions {
+    const model::CostModel* costs = nullptr;
+    double cost_scale = 1;
+    double noise = 0;  ///< relative, seeded
+    std::uint64_t seed = 1;
+};
 
 struct DeviceOptions {
     BackendKind kind = BackendKind::egl;
@@ -39,6 +47,7 @@ struct DeviceOptions {
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
     std::array<float, 3> sky{0.62F, 0.72F, 0.82F};
+    NullOptions null;  ///< of the null backend
 };
 
 struct FrameStats {
@@ -98,13 +107,6 @@ public:
 /// Call it from a neutral thread (not FIFO, not pinned): driver threads inherit from their creator (DESIGN 7).
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options);
 
-/// The null device charges each item by `costs` times `scale`; the same numbers at any speed and worker count.
-struct NullOptions {
-    const model::CostModel* costs = nullptr;
-    double cost_scale = 1;
-    double noise = 0;  ///< relative, seeded
-    std::uint64_t seed = 1;
-};
 Result<std::unique_ptr<Device>> open_null_device(const DeviceOptions& options, const NullOptions& null_options);
 
 /// The number of software rasterisers that options.rasterisers stands for: 0 is the measured default.

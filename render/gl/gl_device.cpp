@@ -104,7 +104,7 @@ void GlDevice::warm_up() {
 std::vector<std::string> GlDevice::program_listing() const {
     std::vector<std::string> lines;
     for (const Program& program : resources_.programs) {
-        lines.push_back(std::to_string(program.mask) + ": " + mask_text(program.mask));
+        lines.push_back(std::to_string(program.mask) + ": " + program.source.name);
     }
     return lines;
 }

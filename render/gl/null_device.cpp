@@ -80,7 +80,7 @@ Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& p
 
 std::vector<std::string> NullDevice::program_listing() const {
     std::vector<std::string> lines;
-    for (const auto& program : programs_) lines.push_back(std::to_string(program.mask) + ": " + mask_text(program.mask));
+    for (const auto& program : programs_) lines.push_back(std::to_string(program.mask) + ": " + program.source.name);
     return lines;
 }
 

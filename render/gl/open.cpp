@@ -1,10 +1,11 @@
-// Opening a device by backend.
+// Opening a device.
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <string>
 #include <thread>
 
+#include "render/gl/backends.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/gl_device.hpp"
 
@@ -25,18 +26,6 @@ constexpr bool threads_are_watched = false;
 
 int effective_rasterisers(int rasterisers) { return rasterisers > 0 ? rasterisers : default_rasterisers(); }
 
-Result<BackendKind> parse_backend(std::string_view name) {
-    if (name == "egl") return BackendKind::egl;
-    if (name == "device") return BackendKind::device;
-    if (name == "window") return BackendKind::window;
-    if (name == "osmesa") return BackendKind::osmesa;
-    if (name == "null") return BackendKind::null;
-    if (name == "kms") {
-        return Error{"backend 'kms'", "is planned, and not in this version", "one of: egl, device, window, osmesa, null"};
-    }
-    return Error{"backend '" + std::string(name) + "'", "there is no such backend", "one of: egl, device, window, osmesa, null"};
-}
-
 Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options) {
     // llvmpipe reads it when its screen is made; other drivers do not care.
     const std::string threads = std::to_string(effective_rasterisers(options.rasterisers));
@@ -46,23 +35,13 @@ Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options) {
                      "are not opened where the thread sanitizer watches: the driver's threads are not built with it",
                      "use a build without it, or walk with --backend null"};
     }
-    switch (options.kind) {
-        case BackendKind::egl:
-            return open_egl_surfaceless();
-        case BackendKind::device:
-            return open_egl_device();
-        case BackendKind::window:
-            return open_window(options.viewport, options.window_title);
-        case BackendKind::osmesa:
-            return open_osmesa();
-        case BackendKind::null:
-            break;
-    }
-    return Error{"backend 'null'", "has no GL context", "use egl, device, window or osmesa"};
+    const Backend& backend = backend_of(options.kind);
+    if (backend.draws()) return backend.open(options);
+    return Error{"backend '" + std::string(backend.name) + "'", "has no GL context", "use one of: " + drawing_backends()};
 }
 
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
-    if (options.kind == BackendKind::null) return open_null_device(options, {});
+    if (options.kind == BackendKind::null) return open_null_device(options, options.null);
     if (options.viewport.width == 0 || options.viewport.height == 0) {
         return Error{"viewport", "has no pixels", "give a --size of at least 1x1"};
     }

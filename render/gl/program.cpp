@@ -76,17 +76,8 @@ void make_vertex_array(const Api& gl, Program& program, const GeometryBuffers& b
 
 }  // namespace
 
-std::string mask_text(model::EffectMask mask) {
-    std::string text;
-    for (int i = 0; i < model::effect_count; ++i) {
-        if ((mask >> static_cast<unsigned>(i) & 1U) == 0) continue;
-        text += (text.empty() ? "" : " ") + std::string(model::effect_names[static_cast<std::size_t>(i)]);
-    }
-    return text.empty() ? "bare" : text;
-}
-
 Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers) {
-    const std::string place = "program '" + mask_text(mask) + "'";
+    const std::string place = "program '" + source.name + "'";
     auto vertex = compile(gl, GL_VERTEX_SHADER, source.vertex, place);
     if (!vertex) return vertex.error();
     auto fragment = compile(gl, GL_FRAGMENT_SHADER, source.fragment, place);

@@ -39,7 +39,4 @@ struct GeometryBuffers {
 Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers);
 void delete_program(const Api& gl, Program& program);
 
-/// "texture sun", or "bare".
-std::string mask_text(model::EffectMask mask);
-
 }  // namespace surefoot::gl

@@ -1,29 +1,18 @@
 // The importers' common door: choice by ending, several files into one scene, and what every scene must have.
 #include "render/import/scene.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <exception>
 #include <filesystem>
 #include <iterator>
 
 #include <fmt/format.h>
 
-#include "render/import/ostf.hpp"
+#include "render/import/formats.hpp"
 
 namespace surefoot::importer {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* endings = ".gltf .glb .obj .ostf";
-
-std::string ending_of(const std::string& file) {
-    std::string ending = fs::path(file).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending;
-}
 
 /// What a person most often gets wrong, said before any reader starts.
 Result<void> check_file(const std::string& file) {
@@ -38,12 +27,10 @@ Result<void> check_file(const std::string& file) {
 
 Result<Scene> import_one(const std::string& file, const Progress& progress) {
     if (auto usable = check_file(file); !usable) return usable.error();
+    if (const Format* format = format_of(file)) return format->read(file, progress);
     const std::string ending = ending_of(file);
-    if (ending == ".gltf" || ending == ".glb") return import_gltf(file, progress);
-    if (ending == ".obj") return import_obj(file, progress);
-    if (ending == ".ostf") return import_ostf(file, progress);
     return Error{file, ending.empty() ? "has no ending" : fmt::format("unknown ending '{}'", ending),
-                 fmt::format("convert it to one of {}", endings)};
+                 fmt::format("convert it to one of {}", endings_in_words())};
 }
 
 void shift(Index& index, std::size_t by) {
@@ -91,7 +78,7 @@ std::uint64_t Scene::triangles() const {
 }
 
 Result<Scene> import_files(const std::vector<std::string>& files, const Progress& progress) {
-    if (files.empty()) return Error{"import", "no file given", fmt::format("name at least one model ({})", endings)};
+    if (files.empty()) return Error{"import", "no file given", fmt::format("name at least one model ({})", endings_in_words())};
     Scene scene;
     for (const std::string& file : files) {
         try {
@@ -99,7 +86,8 @@ Result<Scene> import_files(const std::vector<std::string>& files, const Progress
             if (!one) return one.error();
             append(scene, std::move(one).value());
         } catch (const std::bad_alloc&) {
-            return Error{file, "needs more memory than this machine gives", "split the model, or import it as .ostf"};
+            return Error{file, "needs more memory than this machine gives",
+                         fmt::format("split the model, or import it as {}", ostf_ending)};
         } catch (const std::exception& trouble) {
             return Error{file, fmt::format("cannot be read: {}", trouble.what()), "export the model again"};
         }

@@ -71,7 +71,7 @@ struct Scene {
     [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
 };
 
-/// By ending: .gltf .glb .obj .ostf. Several files become one scene.
+/// By ending (formats.hpp). Several files become one scene.
 /// Errors: missing, empty or truncated file, unknown ending, nothing drawable in it. Missing textures: damage, and white.
 Result<Scene> import_files(const std::vector<std::string>& files, const Progress& progress);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "render/gl/backends.hpp"
 #include "render/measure/calibrate_fit.hpp"
 #include "render/measure/calibrate_run.hpp"
 #include "render/measure/calibrate_scene.hpp"
@@ -193,7 +194,7 @@ Result<void> Run::frames(Calibration& out) {
 
 Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& progress) {
     if (options.device.kind == gl::BackendKind::null) {
-        return Error{"calibration", "the null backend draws nothing", "use --backend egl, device, window or osmesa"};
+        return Error{"calibration", "the null backend draws nothing", "use one of: " + gl::drawing_backends()};
     }
     const double start_s = now_s();
     progress.say("opening", 0);

@@ -1,15 +1,13 @@
 // The effects that a scene may call for, as bits, and what was found in a scene: the state class of a draw is a set of them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace surefoot::model {
 
-/// One bit an effect. The bare pipeline (mask 0) draws the material's colour, opaque, unlit.
+/// One bit an effect; render/effects has them by name. The bare pipeline (mask 0) draws the material's colour, opaque, unlit.
 enum Effect : std::uint32_t {
     effect_texture = 1U << 0U,        ///< base colour texture
     effect_vertex_colour = 1U << 1U,  ///< colour a vertex
@@ -19,7 +17,6 @@ enum Effect : std::uint32_t {
 };
 using EffectMask = std::uint32_t;
 constexpr int effect_count = 5;
-constexpr std::array<std::string_view, effect_count> effect_names = {"texture", "vertex_colour", "sun", "alpha_mask", "blend"};
 
 /// Whether a scene calls for an effect, and the evidence. One entry for every effect, called for or not.
 struct EffectFinding {

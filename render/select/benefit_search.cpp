@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "render/select/cover.hpp"
+#include "render/select/entries.hpp"
 #include "render/select/queue.hpp"
 #include "render/select/search.hpp"
 #include "render/select/steps.hpp"
@@ -228,8 +229,7 @@ private:
 
 class BenefitSearch final : public Selector {
 public:
-    BenefitSearch(std::string_view name, bool subtree) : name_(name), subtree_(subtree) {}
-    [[nodiscard]] std::string_view name() const override { return name_; }
+    explicit BenefitSearch(bool subtree) : subtree_(subtree) {}
 
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         clear(cut);
@@ -243,19 +243,23 @@ public:
     }
 
 private:
-    std::string_view name_;
     bool subtree_;
 };
 
+const Selector& make_best_first() {
+    static const BenefitSearch selector(false);
+    return selector;
+}
+const Selector& make_two_stage() {
+    static const BenefitSearch selector(true);
+    return selector;
+}
+
 }  // namespace
 
-const Selector& best_first() {
-    static const BenefitSearch selector("best-first", false);
-    return selector;
-}
-const Selector& two_stage() {
-    static const BenefitSearch selector("two-stage", true);
-    return selector;
-}
+const SelectorEntry best_first_entry{"best-first", "the greatest benefit of its own next, within the budget", GoesBy::budget,
+                                     true, make_best_first};
+const SelectorEntry two_stage_entry{usual_selector, "the greatest benefit below it next, within the budget", GoesBy::budget, true,
+                                    make_two_stage};
 
 }  // namespace surefoot::select

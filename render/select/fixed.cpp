@@ -1,8 +1,7 @@
-// The selectors that know no budget, and the table of all names.
-#include <array>
-
+// The selectors that know no budget.
 #include "render/model/view.hpp"
 #include "render/select/cover.hpp"
+#include "render/select/entries.hpp"
 #include "render/select/search.hpp"
 
 namespace surefoot::select {
@@ -37,7 +36,6 @@ void walk(const SelectInput& input, SelectState& state, Cut& cut, const Stops& s
 
 class Flat final : public Selector {
 public:
-    [[nodiscard]] std::string_view name() const override { return "flat"; }
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         walk(input, state, cut, [](const Cover& cover, Index c) {
             const prepare::Candidate& candidate = cover.candidate(c);
@@ -48,7 +46,6 @@ public:
 
 class ByDistance final : public Selector {
 public:
-    [[nodiscard]] std::string_view name() const override { return "distance"; }
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         const double pixel = model::pixel_angle(input.prepared->region.centre, input.prepared->viewport);
         const auto threshold =
@@ -63,30 +60,20 @@ public:
     }
 };
 
-constexpr std::array<std::string_view, 8> names = {"flat",      "distance",         "depth-first",     "best-first",
-                                                   "two-stage", "depth-first-1994", "best-first-1994", "two-stage-1994"};
-
-}  // namespace
-
-const Selector& flat() {
+const Selector& make_flat() {
     static const Flat selector;
     return selector;
 }
-const Selector& by_distance() {
+const Selector& make_by_distance() {
     static const ByDistance selector;
     return selector;
 }
 
-const Selector* find_selector(std::string_view name) {
-    const std::array<const Selector*, names.size()> all = {
-        &flat(),      &by_distance(),      &depth_first(),     &best_first(),
-        &two_stage(), &depth_first_1994(), &best_first_1994(), &two_stage_1994()};
-    for (const Selector* selector : all) {
-        if (selector->name() == name) return selector;
-    }
-    return nullptr;
-}
+}  // namespace
 
-std::span<const std::string_view> selector_names() { return names; }
+const SelectorEntry flat_entry{full_detail_selector, "all of it in full detail, whatever that costs", GoesBy::nothing, false,
+                               make_flat};
+const SelectorEntry by_distance_entry{"distance", "what is far is coarse, by a fixed angle; no budget", GoesBy::threshold, true,
+                                      make_by_distance};
 
 }  // namespace surefoot::select

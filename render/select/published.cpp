@@ -4,6 +4,7 @@
 
 #include "render/model/view.hpp"
 #include "render/select/cover.hpp"
+#include "render/select/entries.hpp"
 #include "render/select/queue.hpp"
 #include "render/select/search.hpp"
 
@@ -24,8 +25,7 @@ enum class Order { depth, own, subtree };
 
 class Published final : public Selector {
 public:
-    Published(std::string_view name, Order order) : name_(name), order_(order) {}
-    [[nodiscard]] std::string_view name() const override { return name_; }
+    explicit Published(Order order) : order_(order) {}
 
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         clear(cut);
@@ -106,23 +106,23 @@ private:
         return refinements;
     }
 
-    std::string_view name_;
     Order order_;
 };
 
+template <Order order>
+const Selector& make_published() {
+    static const Published selector(order);
+    return selector;
+}
+
 }  // namespace
 
-const Selector& depth_first_1994() {
-    static const Published selector("depth-first-1994", Order::depth);
-    return selector;
-}
-const Selector& best_first_1994() {
-    static const Published selector("best-first-1994", Order::own);
-    return selector;
-}
-const Selector& two_stage_1994() {
-    static const Published selector("two-stage-1994", Order::subtree);
-    return selector;
-}
+// As printed in Maciel 1994, figures 3.14, 3.15 and 3.19.
+const SelectorEntry depth_first_1994_entry{"depth-first-1994", "depth-first with the published accounting (Maciel 1994)",
+                                           GoesBy::budget, false, make_published<Order::depth>};
+const SelectorEntry best_first_1994_entry{"best-first-1994", "best-first with the published accounting", GoesBy::budget, false,
+                                          make_published<Order::own>};
+const SelectorEntry two_stage_1994_entry{"two-stage-1994", "two-stage with the published accounting", GoesBy::budget, false,
+                                         make_published<Order::subtree>};
 
 }  // namespace surefoot::select

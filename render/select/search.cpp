@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "render/select/cover.hpp"
+#include "render/select/entries.hpp"
 #include "render/select/steps.hpp"
 
 namespace surefoot::select {
@@ -56,8 +57,6 @@ private:
 
 class DepthFirst final : public Selector {
 public:
-    [[nodiscard]] std::string_view name() const override { return "depth-first"; }
-
     // A node is refined all the way down before its sibling: the stack's top is the most beneficial one left.
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         clear(cut);
@@ -101,6 +100,11 @@ public:
     }
 };
 
+const Selector& make_depth_first() {
+    static const DepthFirst selector;
+    return selector;
+}
+
 }  // namespace
 
 void clear(Cut& cut) {
@@ -113,9 +117,7 @@ void clear(Cut& cut) {
     cut.switches = cut.refinements = 0;
 }
 
-const Selector& depth_first() {
-    static const DepthFirst selector;
-    return selector;
-}
+const SelectorEntry depth_first_entry{"depth-first", "one thing all the way down before the next, within the budget",
+                                      GoesBy::budget, true, make_depth_first};
 
 }  // namespace surefoot::select

@@ -74,19 +74,12 @@ struct SelectState {
     void reserve(const model::Model& model, std::uint32_t max_candidates);
 };
 
-/// A selector allocates nothing, and is a pure function of its arguments.
+/// A selector allocates nothing, and is a pure function of its arguments. registry.hpp has them by name.
 class Selector {
 public:
     virtual ~Selector() = default;
-    [[nodiscard]] virtual std::string_view name() const = 0;
     virtual void run(const SelectInput& input, SelectState& state, Cut& cut) const = 0;
 };
-
-/// flat (all full detail), distance (static angular threshold), depth-first, best-first, two-stage (mended accounting),
-/// and the published accounting of the three searches: depth-first-1994, best-first-1994, two-stage-1994.
-/// Null for an unknown name.
-const Selector* find_selector(std::string_view name);
-std::span<const std::string_view> selector_names();
 
 void reserve(Cut& cut, std::uint32_t max_candidates);
 

@@ -9,12 +9,6 @@
 
 namespace surefoot::rt {
 
-Result<LatePolicy> parse_late_policy(std::string_view name) {
-    if (name == "lock") return LatePolicy::lock;
-    if (name == "float") return LatePolicy::floating;
-    return Error{"late policy", fmt::format("'{}' is not known", name), "lock or float"};
-}
-
 Result<std::int64_t> period_of_rate_ns(double rate_hz) {
     if (!(rate_hz >= 0.1 && rate_hz <= 1000.0))
         return Error{"frame rate", fmt::format("{} Hz is not within 0.1 to 1000", rate_hz), "for example 30, 59.94 or 60"};

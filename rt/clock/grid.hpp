@@ -2,22 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
+#include "rt/base/modes.hpp"
 #include "rt/base/result.hpp"
 
 namespace surefoot::rt {
-
-/// What happens to a frame that is late, named as in OpenGL Performer (research/realtime.md 2).
-/// lock:     a picture is shown on grid points only. A late frame is shown on the first grid point after it is done, and the
-///           next frame starts there; the slots that it ran over are skipped whole. Latency is a whole number of periods.
-/// floating: (`float`) a late frame is shown when it is done, and the next frame starts at once, in the slot that has begun.
-///           Only slots that have passed entirely are skipped.
-/// A frame that is in time is shown at its deadline (lock) or when done (floating); the next starts on the next grid point.
-enum class LatePolicy : std::uint8_t { lock, floating };
-
-/// "lock" or "float".
-Result<LatePolicy> parse_late_policy(std::string_view name);
 
 /// Slot k is due (may start) at t0 + k * period, and its deadline is due + period. Integer nanoseconds: no drift.
 struct Grid {

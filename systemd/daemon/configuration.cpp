@@ -20,10 +20,12 @@ std::vector<Error> own_rules(const config::Configuration& c, const std::string& 
         const std::string place = origin.text() == "default" ? file : origin.text();
         problems.push_back({place, fmt::format("{} {}", key, what), std::move(remedy)});
     };
-    if (s.model.empty()) wrong("model", "is not set", "name the .walk file that `surefoot bake` made: model = \"lobby.walk\"");
+    if (s.model_file.empty())
+        wrong("model", "is not set", "name the .walk file that `surefoot bake` made: model = \"lobby.walk\"");
     if (s.control) wrong("control", "= true is for `surefoot walk`: every other two seconds show no frames", "take it out");
-    if (s.clock != "real") wrong("clock", "= \"" + s.clock + "\" has no real time", "take it out");
-    if (!s.steering.empty() && s.input.empty())
+    if (s.clock != rt::ClockKind::real)
+        wrong("clock", fmt::format("= \"{}\" has no real time", rt::name_of(s.clock)), "take it out");
+    if (!s.steering_file.empty() && s.input_file.empty())
         wrong("steering", "says how an input steers, and there is none", "add input = \"devices\", or take it out");
     if (!s.monitor.empty() && s.monitor != no_monitor) {
         if (const auto address = monitor::parse_address(s.monitor); !address)
@@ -44,9 +46,10 @@ Result<void> apply_set(config::Configuration& c, const std::string& assignment) 
 
 Loaded load(const Options& options) {
     Loaded loaded;
-    for (const config::Problem& problem : config::problems_in_file(options.config_file)) loaded.problems.push_back(problem.error);
+    for (const config::Problem& problem : config::problems_in_file(walk::settings_schema(), options.config_file))
+        loaded.problems.push_back(problem.error);
     if (!loaded.problems.empty()) return loaded;
-    config::Configuration c;
+    config::Configuration c(walk::settings_schema());
     if (auto ok = config::load_file(c, options.config_file, options.profile); !ok) {
         loaded.problems.push_back(ok.error());
         return loaded;

@@ -7,12 +7,12 @@
 #include "config/settings.hpp"
 #include "rt/base/result.hpp"
 #include "systemd/daemon/options.hpp"
-#include "tools/walk/walk.hpp"
+#include "tools/walk/settings_request.hpp"
 
 namespace surefoot::daemon {
 
 struct Loaded {
-    config::Configuration configuration;
+    config::Configuration configuration{walk::settings_schema()};
     std::vector<Error> problems;  ///< empty: it can be used
     bool misuse = false;          ///< the command line is wrong, not the file
 };

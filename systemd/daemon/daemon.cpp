@@ -186,9 +186,9 @@ int run(const Options& options, const walk::FaultHook& inject) {
     Notifier notifier(environment("NOTIFY_SOCKET"));
     Standing standing;
     standing.open(loaded.configuration.values);
-    log.say(
-        Priority::info, event::starting,
-        fmt::format("{}: {}, {}", options.config_file, loaded.configuration.values.model, in_short(loaded.configuration.values)));
+    log.say(Priority::info, event::starting,
+            fmt::format("{}: {}, {}", options.config_file, loaded.configuration.values.model_file,
+                        in_short(loaded.configuration.values)));
     const std::unique_ptr<monitor::Monitor> monitor = open_monitor(loaded.configuration, log);
     const Service service(options, log, standing, notifier, watchdog_timeout_ns());
     return walk_on(std::move(loaded.configuration), options, log, standing, monitor.get(), inject);

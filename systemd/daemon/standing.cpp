@@ -36,7 +36,7 @@ void Standing::open(const config::Settings& settings) {
     if (leaving.load()) return;
     const std::lock_guard lock(mutex_);
     facts_.phase = Phase::opening;
-    facts_.model = std::filesystem::path(settings.model).filename().string();
+    facts_.model = std::filesystem::path(settings.model_file).filename().string();
     facts_.in_short = in_short(settings);
     facts_.period_ns = rt::period_of_rate_ns(settings.rate_hz) ? *rt::period_of_rate_ns(settings.rate_hz) : 0;
     facts_.open_limit_ns = static_cast<std::int64_t>(settings.open_limit_s * 1e9);

@@ -3,25 +3,30 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 #include <string>
+
+#include "tests/config/toy_schema.hpp"
 
 namespace surefoot::config {
 namespace {
 
+using test::toy_schema;
+
 void refused(std::string_view text, int line, std::string_view what, std::string_view remedy = {}) {
-    Configuration c;
+    Configuration c(toy_schema());
     const auto loaded = load_text(c, text, "s.toml");
     ASSERT_FALSE(loaded.ok()) << text;
     EXPECT_EQ(loaded.error().place, "s.toml:" + std::to_string(line)) << text;
     EXPECT_NE(loaded.error().what.find(what), std::string::npos) << loaded.error().text();
     EXPECT_NE(loaded.error().remedy.find(remedy), std::string::npos) << loaded.error().text();
-    EXPECT_EQ(explain(c), explain(Configuration{})) << "a refused file changed something";
+    EXPECT_EQ(explain(c), explain(Configuration(toy_schema()))) << "a refused file changed something";
 }
 
 TEST(Settings, DefaultsLieWithinTheirOwnLimits) {
-    Configuration c;
-    for (const Entry& entry : schema()) {
+    Configuration c(toy_schema());
+    for (const Entry& entry : toy_schema().entries()) {
         auto text = value_text(c.values, entry);
         if (text.front() == '"') text = text.substr(1, text.size() - 2);
         const auto set = set_value(c, entry.key, text);
@@ -32,7 +37,7 @@ TEST(Settings, DefaultsLieWithinTheirOwnLimits) {
 
 TEST(Settings, KeysAreUniqueAndExplained) {
     std::set<std::string_view> keys;
-    for (const Entry& entry : schema()) {
+    for (const Entry& entry : toy_schema().entries()) {
         EXPECT_TRUE(keys.insert(entry.key).second) << entry.key;
         EXPECT_GT(entry.help.size(), 10U) << entry.key;
         EXPECT_TRUE(entry.help.ends_with('.')) << entry.key;
@@ -40,21 +45,21 @@ TEST(Settings, KeysAreUniqueAndExplained) {
 }
 
 TEST(Settings, LaterSourcesWinAndOriginsAreKept) {
-    Configuration c;
+    Configuration c(toy_schema());
     ASSERT_TRUE(load_text(c, "rate_hz = 60\n\nwidth = 640\n", "a.toml").ok());
     ASSERT_TRUE(load_text(c, "rate_hz = 50.5\n", "b.toml").ok());
     ASSERT_TRUE(set_value(c, "height", "480").ok());
     EXPECT_EQ(c.values.rate_hz, 50.5);
     EXPECT_EQ(c.origin("rate_hz").text(), "b.toml:1");
-    EXPECT_EQ(c.values.width, 640);
+    EXPECT_EQ(c.values.width, 640U);
     EXPECT_EQ(c.origin("width").text(), "a.toml:3");
-    EXPECT_EQ(c.values.height, 480);
+    EXPECT_EQ(c.values.height, 480U);
     EXPECT_EQ(c.origin("height").text(), "command line");
     EXPECT_EQ(c.origin("late").text(), "default");
 }
 
 TEST(Settings, FilesAreRelativeToTheFileThatNamesThem) {
-    Configuration c;
+    Configuration c(toy_schema());
     ASSERT_TRUE(load_text(c, "model = \"m.walk\"\npath = \"/p.csv\"\ninput = \"devices\"\n", "/etc/surefoot/s.toml").ok());
     EXPECT_EQ(file_setting(c, "model"), "/etc/surefoot/m.walk");
     EXPECT_EQ(file_setting(c, "path"), "/p.csv");
@@ -66,12 +71,12 @@ TEST(Settings, FilesAreRelativeToTheFileThatNamesThem) {
     refused("model = \"a\\nb\"\n", 1, "is not a file name of at most 4095 bytes");
     refused("model = \"" + std::string(4096, 'x') + "\"\n", 1, "is not a file name");
     refused("model = 3\n", 1, "model = 3 is not a file name");
-    Configuration again;
+    Configuration again(toy_schema());
     ASSERT_TRUE(set_value(again, "model", "a \"b\" \\c").ok());
-    const std::string written = "model = " + value_text(again.values, *find_entry("model")) + "\n";
-    Configuration read;
+    const std::string written = "model = " + value_text(again.values, *toy_schema().find("model")) + "\n";
+    Configuration read(toy_schema());
     ASSERT_TRUE(load_text(read, written, "s.toml").ok()) << written;
-    EXPECT_EQ(read.values.model, again.values.model);
+    EXPECT_EQ(read.values.model_file, again.values.model_file);
 }
 
 TEST(Settings, UnknownKeySuggestsTheNearest) {
@@ -79,8 +84,8 @@ TEST(Settings, UnknownKeySuggestsTheNearest) {
     refused("\nselektor = \"flat\"\n", 2, "unknown key", "'selector'");
     refused("rate = 30\n", 1, "unknown key", "'rate_hz'");
     refused("[window]\nx = 1\n", 1, "unknown key 'window'");
-    EXPECT_TRUE(nearest_key("zzzzzzzzzz").empty());
-    EXPECT_TRUE(nearest_key(std::string(100000, 'w')).empty());
+    EXPECT_TRUE(toy_schema().nearest("zzzzzzzzzz").empty());
+    EXPECT_TRUE(toy_schema().nearest(std::string(100000, 'w')).empty());
 }
 
 TEST(Settings, WrongTypesAndLimitsAreNamed) {
@@ -96,6 +101,64 @@ TEST(Settings, WrongTypesAndLimitsAreNamed) {
     refused("height = 720\nlate = true\n", 2, "late = true is not one of lock, float");
 }
 
+TEST(Settings, NamesThatAreHandedInAreChoicesDefaultsAndHelp) {
+    Configuration c(toy_schema());
+    EXPECT_EQ(c.values.selector, "steep");
+    EXPECT_EQ(c.values.backend, "paper");
+    ASSERT_TRUE(load_text(c, "selector = \"flat\"\nbackend = \"glass\"\n", "s.toml").ok());
+    EXPECT_EQ(c.values.selector, "flat");
+    EXPECT_EQ(value_text(c.values, *toy_schema().find("backend")), "\"glass\"");
+    refused("selector = \"two-stage\"\n", 1, "is not one of flat, steep");
+    refused("backend = \"smoke\"\n", 1, "backend = \"smoke\" is planned; one of paper, glass");
+    const std::string page = commented_defaults(toy_schema());
+    EXPECT_NE(page.find("#   steep             what is near\n"), std::string::npos) << page;
+    EXPECT_NE(page.find("# selector = \"steep\"\n"), std::string::npos) << page;
+}
+
+TEST(Settings, ChoicesOfTheCoreAreEnums) {
+    Configuration c(toy_schema());
+    EXPECT_EQ(c.values.late, rt::LatePolicy::lock);
+    EXPECT_EQ(c.values.clock, rt::ClockKind::real);
+    ASSERT_TRUE(load_text(c, "late = \"float\"\nclock = \"virtual\"\n", "s.toml").ok());
+    EXPECT_EQ(c.values.late, rt::LatePolicy::floating);
+    EXPECT_EQ(c.values.clock, rt::ClockKind::virtual_time);
+    EXPECT_EQ(choice_of(c.values, *toy_schema().find("late")), "float");
+    EXPECT_EQ(value_text(c.values, *toy_schema().find("clock")), "\"virtual\"");
+    refused("late = \"loose\"\n", 1, "one of lock, float");
+    refused("clock = 1\n", 1, "one of real, virtual");
+}
+
+TEST(Settings, RenamedKeysAreRefusedByNameWithTheNewOne) {
+    for (const auto* key : {"frame_rate", "frame-rate", "Frame_Rate"}) {
+        refused(std::string("width = 640\n") + key + " = 60\n", 2, "is called 'rate_hz' now", "rate_hz");
+        Configuration c(toy_schema());
+        const auto set = set_value(c, key, "60");
+        ASSERT_FALSE(set.ok()) << key;
+        EXPECT_NE(set.error().what.find("'rate_hz'"), std::string::npos) << set.error().text();
+        EXPECT_EQ(c.values.rate_hz, 30);
+    }
+    refused("smoothing = 1\n", 1, "'smoothing' is no longer there", "take it out");
+    refused("[profile.kiosk]\nframe_rate = 60\n", 2, "'rate_hz' now");
+    const auto problems = problems_in_text(toy_schema(), "frame_rate = 60\nrate_hz = 60\n", "s.toml");
+    ASSERT_EQ(problems.size(), 1U) << "the new key beside the old one does not hide it";
+    EXPECT_EQ(problems[0].nearest, "rate_hz");
+    for (const Renamed& one : test::renamed) EXPECT_EQ(toy_schema().find(one.before), nullptr) << one.before;
+    for (const Renamed& one : renamed_keys()) {
+        EXPECT_EQ(toy_schema().find(one.before), nullptr) << one.before;
+        EXPECT_TRUE(one.now.empty() ? !one.remedy.empty() : toy_schema().find(one.now) != nullptr) << one.before;
+    }
+}
+
+TEST(Settings, RenamedOptionsAreRefusedByNameWithTheNewOne) {
+    constexpr std::array options = {Renamed{"--fps", "--rate"}, Renamed{"--blur", "", "leave it out"}};
+    const auto renamed = renamed_error(options, "surefoot walk", "--fps");
+    ASSERT_TRUE(renamed.has_value());
+    EXPECT_EQ(renamed->text().find("surefoot walk: '--fps' is called '--rate' now"), 0U) << renamed->text();
+    EXPECT_NE(renamed_error(options, "", "--blur")->remedy.find("leave it out"), std::string::npos);
+    EXPECT_FALSE(renamed_error(options, "", "--rate").has_value());
+    EXPECT_FALSE(renamed_error({}, "", "--fps").has_value());
+}
+
 TEST(Settings, BrokenSyntaxNamesItsLine) {
     refused("rate_hz = 30\nwidth = \n", 2, "");
     refused("width = 640\nwidth = 641\n", 2, "");
@@ -103,10 +166,10 @@ TEST(Settings, BrokenSyntaxNamesItsLine) {
 
 TEST(Settings, ProfileIsLaidOverTheRest) {
     constexpr std::string_view text = "rate_hz = 30\nwidth = 640\n[profile.kiosk]\nrate_hz = 60\n[profile.lab]\nstrict = true\n";
-    Configuration c;
+    Configuration c(toy_schema());
     ASSERT_TRUE(load_text(c, text, "s.toml", "kiosk").ok());
     EXPECT_EQ(c.values.rate_hz, 60);
-    EXPECT_EQ(c.values.width, 640);
+    EXPECT_EQ(c.values.width, 640U);
     EXPECT_FALSE(c.values.strict);
     EXPECT_EQ(c.origin("rate_hz").text(), "s.toml:4 (profile kiosk)");
     const auto missing = load_text(c, text, "s.toml", "kisok");
@@ -121,7 +184,7 @@ TEST(Settings, SlipsInUnusedProfilesAreFound) {
 }
 
 TEST(Settings, CommandLineTakesDashesAndWords) {
-    Configuration c;
+    Configuration c(toy_schema());
     EXPECT_TRUE(set_value(c, "rate-hz", "25").ok());
     EXPECT_TRUE(set_value(c, "fifo", "off").ok());
     EXPECT_EQ(c.values.rate_hz, 25);
@@ -133,7 +196,7 @@ TEST(Settings, CommandLineTakesDashesAndWords) {
 }
 
 TEST(Settings, PrioritiesMustDescend) {
-    Configuration c;
+    Configuration c(toy_schema());
     ASSERT_TRUE(set_value(c, "worker_priority", "75").ok());
     const auto checked = check(c);
     ASSERT_FALSE(checked.ok());
@@ -141,7 +204,7 @@ TEST(Settings, PrioritiesMustDescend) {
 }
 
 TEST(Settings, BudgetLongerThanTheFrameIsRefusedUnderLock) {
-    Configuration c;
+    Configuration c(toy_schema());
     ASSERT_TRUE(set_value(c, "budget_ms", "40").ok());
     EXPECT_FALSE(check(c).ok());
     ASSERT_TRUE(set_value(c, "late", "float").ok());
@@ -149,16 +212,17 @@ TEST(Settings, BudgetLongerThanTheFrameIsRefusedUnderLock) {
 }
 
 TEST(Settings, CommentedDefaultsChangeNothingWithOrWithoutTheComments) {
-    Configuration c;
-    std::string text = commented_defaults();
+    Configuration c(toy_schema());
+    std::string text = commented_defaults(toy_schema());
     ASSERT_TRUE(load_text(c, text, "d.toml").ok());
     EXPECT_TRUE(c.origins.empty());
     std::string live;
-    for (const Entry& entry : schema()) live += std::string(entry.key) + " = " + value_text(Settings{}, entry) + "\n";
+    for (const Entry& entry : toy_schema().entries())
+        live += std::string(entry.key) + " = " + value_text(toy_schema().defaults(), entry) + "\n";
     ASSERT_TRUE(load_text(c, live, "d.toml").ok());
-    EXPECT_EQ(c.origins.size(), schema().size());
-    for (const Entry& entry : schema()) {
-        EXPECT_EQ(value_text(c.values, entry), value_text(Settings{}, entry));
+    EXPECT_EQ(c.origins.size(), toy_schema().entries().size());
+    for (const Entry& entry : toy_schema().entries()) {
+        EXPECT_EQ(value_text(c.values, entry), value_text(toy_schema().defaults(), entry));
         EXPECT_NE(text.find("# " + std::string(entry.key) + " = "), std::string::npos) << entry.key;
     }
 }
@@ -171,7 +235,7 @@ TEST(Settings, ColourIsRead) {
 }
 
 TEST(Settings, MissingFileIsNamed) {
-    Configuration c;
+    Configuration c(toy_schema());
     const auto loaded = load_file(c, "/nonexistent/surefoot.toml");
     ASSERT_FALSE(loaded.ok());
     EXPECT_EQ(loaded.error().place, "/nonexistent/surefoot.toml");

@@ -41,8 +41,11 @@ TEST(Modules, are_one_a_bit_in_bit_order) {
     ASSERT_EQ(modules.size(), static_cast<std::size_t>(model::effect_count));
     for (std::size_t i = 0; i < modules.size(); ++i) {
         EXPECT_EQ(modules[i].bit, 1U << i);
-        EXPECT_EQ(modules[i].name, model::effect_names[i]);
+        EXPECT_EQ(effects::effects_text(modules[i].bit), modules[i].name);
+        EXPECT_GT(modules[i].help.size(), 10U) << modules[i].name;
     }
+    EXPECT_EQ(effects::effects_text(0), "bare");
+    EXPECT_EQ(effects::effects_text(3, " + "), std::string(modules[0].name) + " + " + std::string(modules[1].name));
 }
 
 TEST(Findings, say_what_a_scene_calls_for_and_why) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "render/effects/effects.hpp"
-#include "render/gl/device.hpp"
+#include "render/gl/backends.hpp"
 #include "tests/gl/small_models.hpp"
 
 namespace surefoot {
@@ -274,7 +274,7 @@ TEST_F(DeviceTest, a_program_that_does_not_compile_is_an_error_with_its_name) {
     SmallModel scene;
     scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1));
     const auto loaded = device_->load(scene.finish(), [](model::EffectMask) {
-        return gl::ProgramSource{"nonsense", "nonsense"};
+        return gl::ProgramSource{"nonsense", "nonsense", "bare"};
     });
     ASSERT_FALSE(loaded.ok());
     EXPECT_NE(loaded.error().text().find("bare"), std::string::npos);
@@ -358,10 +358,26 @@ TEST(Backends, two_devices_live_side_by_side_and_one_after_the_other) {
 }
 
 TEST(Backends, names_are_parsed_and_unknown_ones_refused) {
-    EXPECT_EQ(gl::parse_backend("osmesa").value(), BackendKind::osmesa);
-    const auto wrong = gl::parse_backend("vulkan");
+    EXPECT_EQ(gl::backend_named("osmesa").value()->kind, BackendKind::osmesa);
+    const auto wrong = gl::backend_named("vulkan");
     ASSERT_FALSE(wrong.ok());
     EXPECT_NE(wrong.error().remedy.find("egl"), std::string::npos);
+    const auto planned = gl::backend_named("kms");
+    ASSERT_FALSE(planned.ok());
+    EXPECT_NE(planned.error().what.find("not in this version"), std::string::npos);
+}
+
+TEST(Backends, every_kind_has_its_entry_and_a_line_of_help) {
+    for (const auto kind : {BackendKind::egl, BackendKind::device, BackendKind::window, BackendKind::osmesa, BackendKind::null}) {
+        const gl::Backend& backend = gl::backend_of(kind);
+        EXPECT_EQ(backend.kind, kind);
+        EXPECT_EQ(gl::backend_named(backend.name).value(), &backend);
+        EXPECT_GT(backend.help.size(), 10U) << backend.name;
+        EXPECT_EQ(backend.draws(), kind != BackendKind::null);
+        EXPECT_EQ(gl::drawing_backends().find(backend.name) != std::string::npos, backend.draws()) << backend.name;
+    }
+    EXPECT_EQ(gl::backend_named(gl::usual_backend).value()->kind, gl::DeviceOptions{}.kind);
+    EXPECT_EQ(gl::backends().size(), 5U);
 }
 
 TEST(Backends, a_window_without_a_display_says_what_to_do) {

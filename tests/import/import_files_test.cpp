@@ -1,6 +1,7 @@
 // import_files: what a person gets wrong on the command line, and several files in one scene.
 #include <gtest/gtest.h>
 
+#include "render/import/formats.hpp"
 #include "tests/import/fixtures.hpp"
 
 namespace surefoot::importer::test {
@@ -24,6 +25,22 @@ TEST(ImportFiles, EachMistakeHasItsWords) {
     EXPECT_NE(import_error({folder.write("a.xyz", "x")}).find("unknown ending '.xyz'"), std::string::npos);
     EXPECT_NE(import_error({folder.write("a", "x")}).find("has no ending"), std::string::npos);
     EXPECT_NE(import_error({folder.write("a.glb", "not a model at all, but long enough")}).find("JSON"), std::string::npos);
+}
+
+TEST(ImportFiles, EveryFormatIsExplainedAndFoundByEachOfItsEndings) {
+    for (const Format& format : formats()) {
+        EXPECT_GT(format.help.size(), 10U) << format.name;
+        ASSERT_FALSE(format.endings.empty());
+        for (const std::string_view ending : format.endings) {
+            EXPECT_EQ(format_of("a/b.c" + std::string(ending)), &format) << ending;
+            EXPECT_NE(endings_in_words().find(ending), std::string::npos);
+        }
+    }
+    EXPECT_EQ(format_of("A.GLB"), format_of("a.glb"));
+    EXPECT_EQ(format_of("a.xyz"), nullptr);
+    EXPECT_EQ(format_of(".obj"), nullptr) << "a hidden file's name is no ending";
+    const Folder folder;
+    EXPECT_NE(import_error({folder.write("a.xyz", "x")}).find(endings_in_words()), std::string::npos);
 }
 
 TEST(ImportFiles, SeveralFilesBecomeOneScene) {

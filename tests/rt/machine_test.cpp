@@ -66,7 +66,6 @@ TEST(Grid, FractionalRatesAndNonsense) {
     EXPECT_EQ(period_of_rate_ns(60).value(), 16'666'667);
     EXPECT_EQ(period_of_rate_ns(59.94).value(), 16'683'350);
     for (const double bad : {0.0, -60.0, 1e9, std::nan("")}) EXPECT_FALSE(period_of_rate_ns(bad)) << bad;
-    EXPECT_FALSE(parse_late_policy("loose"));
 }
 
 /// The slots that frames of equal work run in.

@@ -345,18 +345,27 @@ TEST(WriteScene, WritesTheSameBytesTwice) {
     EXPECT_EQ(read("a.glb"), read("b.glb"));
 }
 
-TEST(WriteScene, ObjAndOstfKeepTheTriangles) {
+TEST(WriteScene, OstfKeepsTheTriangles) {
     const test::TemporaryFolder folder;
-    for (const char* ending : {".obj", ".ostf"}) {
-        const GeneratedScene out = made("room", 0.05);
-        const std::string file = (folder / std::string("room") + ending);
-        ASSERT_TRUE(write_scene(file, out).ok());
-        EXPECT_TRUE(fs::exists(folder / "room.path.csv"));
-        const auto back = importer::import_files({file}, {});
-        ASSERT_TRUE(back.ok()) << back.error().text();
-        EXPECT_EQ(back->triangles(), out.scene.triangles()) << ending;
-        EXPECT_TRUE(back->warnings.empty()) << ending << ": " << back->warnings.front();
-        EXPECT_GE(back->images.size() + 1, out.scene.images.size()) << ending;  // OSTF names only those that are seen
+    const GeneratedScene out = made("room", 0.05);
+    const std::string file = folder / "room.ostf";
+    ASSERT_TRUE(write_scene(file, out).ok());
+    EXPECT_TRUE(fs::exists(folder / "room.path.csv"));
+    const auto back = importer::import_files({file}, {});
+    ASSERT_TRUE(back.ok()) << back.error().text();
+    EXPECT_EQ(back->triangles(), out.scene.triangles());
+    EXPECT_TRUE(back->warnings.empty()) << back->warnings.front();
+    EXPECT_GE(back->images.size() + 1, out.scene.images.size());  // OSTF names only those that are seen
+}
+
+TEST(WriteScene, WhatIsOnlyReadIsRefusedWithTheRemedy) {
+    const test::TemporaryFolder folder;
+    for (const char* ending : {".obj", ".OBJ", ".gltf"}) {
+        const auto refused = write_scene(folder / (std::string("a") + ending), made("forest", 0.01));
+        ASSERT_FALSE(refused.ok()) << ending;
+        EXPECT_NE(refused.error().what.find("only read"), std::string::npos) << refused.error().text();
+        EXPECT_NE(refused.error().remedy.find(".glb"), std::string::npos) << refused.error().text();
+        EXPECT_FALSE(fs::exists(folder / "a.path.csv"));
     }
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "render/prepare/prepared.hpp"
-#include "render/select/select.hpp"
+#include "render/select/registry.hpp"
 #include "tests/prepare/random_model.hpp"
 
 namespace surefoot::test {

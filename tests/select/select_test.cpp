@@ -1,5 +1,5 @@
 // Selection: the bound on predicted cost, legal cuts for every selector and budget, the order of the searches, hysteresis.
-#include "render/select/select.hpp"
+#include "render/select/registry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 using test::infinity;
 using test::Scene;
 
-bool is_search(std::string_view name) { return name != "flat" && name != "distance"; }
+bool is_search(std::string_view name) { return (*selector_named(name))->goes_by == GoesBy::budget; }
 
 double predicted(const Scene& s, double submit, double raster) {
     const model::FrameCombine& c = s.costs.combine;
@@ -371,7 +371,25 @@ TEST(Select, EmptyFrameGivesAnEmptyCut) {
 
 TEST(Select, UnknownNamesAreRefused) {
     EXPECT_EQ(find_selector("three-stage"), nullptr);
-    for (const std::string_view name : selector_names()) EXPECT_EQ(find_selector(name)->name(), name);
+    ASSERT_FALSE(selector_named("three-stage").ok());
+    for (const std::string_view name : selector_names()) {
+        EXPECT_EQ((*selector_named(name))->name, name);
+        EXPECT_NE(selector_named("three-stage").error().remedy.find(name), std::string::npos);
+    }
+}
+
+TEST(Select, EverySelectorIsExplainedAndMadeOnce) {
+    std::set<std::string_view> names;
+    std::set<const Selector*> made;
+    for (const SelectorEntry& entry : selectors()) {
+        EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
+        EXPECT_TRUE(made.insert(&entry.make()).second) << entry.name;
+        EXPECT_EQ(&entry.make(), find_selector(entry.name)) << entry.name;
+        EXPECT_GT(entry.help.size(), 10U) << entry.name;
+        EXPECT_EQ(entry.help.find('\n'), std::string_view::npos) << entry.name;
+    }
+    ASSERT_TRUE(names.contains(usual_selector) && names.contains(full_detail_selector));
+    EXPECT_EQ((*selector_named(full_detail_selector))->goes_by, GoesBy::nothing);
 }
 
 TEST(Select, IllegalCutsAreNamed) {

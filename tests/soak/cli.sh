@@ -18,6 +18,9 @@ expect 0 '' soak f.walk $virtual --seconds 780 --json; valid_json out || complai
 grep -q '"verdict": "holds"' out || complain "no verdict in the JSON"
 expect 0 '' soak --help; grep -q 'surefoot soak' out || complain "no example"
 
+mean_triangles() { "$surefoot" soak f.walk $virtual --seconds 5 "$@" --json 2>/dev/null | grep -A1 '"triangles"' | tail -1; }
+[ "$(mean_triangles)" != "$(mean_triangles --lift 500)" ] || complain "--lift lifts nothing"
+
 # Wrong use is 2, bad input 1, before anything is loaded; a verdict that does not hold is 1.
 expect 2 'no load .disk.*devices' soak f.walk $virtual --mix cpu,disk
 expect 2 'two lengths' soak f.walk $virtual --hours 1 --seconds 5

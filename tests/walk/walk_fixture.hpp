@@ -31,7 +31,7 @@ public:
         r.model_file = model_file;
         r.path_file = path_file;
         r.backend = "null";
-        r.clock = "virtual";
+        r.clock = rt::ClockKind::virtual_time;
         r.frames = frames;
         r.state_dir = dir;  // no table there: built-in costs on every machine
         return r;

@@ -156,14 +156,14 @@ TEST(Strict, NamesEveryLackWithItsRemedy) {
 
 TEST(Strict, RefusesAMissingCostTableAndOrdinaryScheduling) {
     walk::WalkRequest request = test::Forest::get().virtual_request(5);  // no table in its state folder
-    request.clock = "real";
+    request.clock = rt::ClockKind::real;
     request.strict = true;
     request.fifo = false;
     const std::string text = refusal(request);
     EXPECT_NE(text.find("no cost table"), std::string::npos) << text;
     EXPECT_NE(text.find("calibrate"), std::string::npos) << text;
     EXPECT_NE(text.find("--no-fifo"), std::string::npos) << text;
-    request.clock = "virtual";
+    request.clock = rt::ClockKind::virtual_time;
     EXPECT_NE(refusal(request).find("--strict"), std::string::npos);
 }
 

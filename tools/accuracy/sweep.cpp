@@ -108,12 +108,11 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
 Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, model::Model model, std::uint64_t model_hash,
                                             AccuracyRun& run) {
     EngineOptions options;
-    auto kind = gl::parse_backend(request.backend);
-    if (!kind) return kind.error();
-    if (*kind == gl::BackendKind::null) {
-        return Error{"--backend null", "draws no pictures to compare", "use egl, device, osmesa or window"};
-    }
-    options.device.kind = *kind;
+    const auto backend = gl::backend_named(request.backend);
+    if (!backend) return backend.error();
+    if (!(*backend)->draws())
+        return Error{"--backend " + request.backend, "draws no pictures to compare", "use one of: " + gl::drawing_backends()};
+    options.device.kind = (*backend)->kind;
     options.device.viewport = request.viewport();
     options.device.rasterisers = request.rasterisers;
     options.prepare.workers =
@@ -132,6 +131,13 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
 }
 
 }  // namespace
+
+std::vector<std::string> compared_selectors() {
+    std::vector<std::string> names;
+    for (const select::SelectorEntry& entry : select::selectors())
+        if (entry.compared) names.emplace_back(entry.name);
+    return names;
+}
 
 Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress) {
     model::WalkFileInfo file;
@@ -178,16 +184,17 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
     std::size_t done = 0;
     for (const std::string& selector : request.selectors) {
         if (auto set = engine.set_selector(selector); !set) return set.error();
+        const select::SelectorEntry& entry = **select::selector_named(selector);
         for (std::size_t b = 0; b < budgets.size(); ++b) {
             if (progress.stopped()) return Error{request.model_file, "stopped by the user", ""};
             progress.say(selector, static_cast<double>(done++) / points);
-            const bool by_threshold = selector == "distance";
+            const bool by_threshold = entry.goes_by == select::GoesBy::threshold;
             const double threshold = pixel * 32.0 * std::pow(0.5, static_cast<double>(b));  // 32 pixels down to a quarter
             auto point = sweep.measure(selector, by_threshold ? 1e12 : budgets[b] * 1e3, by_threshold ? threshold : 0.0);
             if (!point) return point.error();
             if (by_threshold) point->budget_ms = 0;
             run.points.push_back(*point);
-            if (selector == "flat") break;
+            if (entry.goes_by == select::GoesBy::nothing) break;
         }
     }
     return run;

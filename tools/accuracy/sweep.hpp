@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/gl/device.hpp"
+#include "render/gl/backends.hpp"
 #include "render/model/view.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
@@ -12,21 +12,25 @@
 
 namespace surefoot::accuracy {
 
+/// Those that are worth a line where nobody says which.
+std::vector<std::string> compared_selectors();
+
 struct AccuracyRequest {
-    std::string model_file, path_file, state_dir, backend = "egl";
+    std::string model_file, path_file, state_dir;
+    std::string backend{gl::usual_backend};
     std::uint32_t width = 1280, height = 720, poses = 16;
     int repeats = 3;  ///< submissions a pose and budget; the median counts
     int workers = 0, rasterisers = 0;
     double lift_m = 0;
     double shift_x = 0, shift_y = 0;  ///< off axis, as model::Viewport has it
-    std::vector<std::string> selectors{"distance", "depth-first", "best-first", "two-stage"};
+    std::vector<std::string> selectors = compared_selectors();
     std::vector<double> budgets_ms;  ///< empty: eight, from an eighth of the full frame's time to all of it
 
     [[nodiscard]] model::Viewport viewport() const { return {width, height, shift_x, shift_y}; }
 };
 
 /// Every budget is spent on every pose by every selector; pictures are compared with full detail at the same pose.
-/// `distance` has no budget: its threshold is swept instead. `flat` is the full frame itself.
+/// A selector that goes by a threshold has no budget: its threshold is swept instead. One that goes by nothing is the full frame.
 Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress);
 
 }  // namespace surefoot::accuracy

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "render/select/select.hpp"
+#include "render/select/registry.hpp"
 #include "tools/accuracy/sweep.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
@@ -82,7 +82,7 @@ void add_accuracy(CLI::App& app, Context& context) {
     c->add_option("--lift", r.lift_m, "Metres added to every height of the path")
         ->check(number_within(-1e7, 1e7, "m"))
         ->capture_default_str();
-    c->add_option("--backend", r.backend, "egl, device, osmesa or window")->check(drawing_backend())->capture_default_str();
+    c->add_option("--backend", r.backend, gl::drawing_backends())->check(drawing_backend())->capture_default_str();
     c->add_option("--workers", r.workers, "Threads that prepare; 0: one a core")->check(whole_number_within(0, 256));
     c->add_option("--rasterisers", r.rasterisers, "Software GL threads; 0: the measured default")
         ->check(whole_number_within(0, 64));

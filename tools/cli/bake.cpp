@@ -9,7 +9,7 @@
 #include <sys/resource.h>
 
 #include "render/bake/bake.hpp"
-#include "render/import/scene.hpp"
+#include "render/import/formats.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
 #include "tools/cli/command.hpp"
@@ -133,7 +133,7 @@ void add_bake(CLI::App& app, Context& context) {
     auto a = std::make_shared<BakeArguments>();
     CLI::App* c = add_command(app, "bake", "Import, cluster, simplify, capture, and write a model to walk",
                               "surefoot bake house.glb garden.obj -o home.walk", a->json);
-    c->add_option("in", a->in, "Model files: .glb, .gltf, .obj, .ostf; several become one scene")->required();
+    c->add_option("in", a->in, "Model files: " + importer::endings_in_words() + "; several become one scene")->required();
     c->add_option("-o,--out", a->out, "The model to write; what was there stays until it is complete")->required();
     c->add_option("--quality", a->quality, "draft: at most a minute a million triangles; full: tighter error bounds")
         ->check(CLI::IsMember({"draft", "full"}))

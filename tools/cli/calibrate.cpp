@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "render/effects/effects.hpp"
+#include "render/gl/backends.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
@@ -21,21 +23,12 @@ namespace surefoot::cli {
 
 namespace {
 struct CalibrateArguments {
-    std::string model, path, state, backend = "egl", plot;
+    std::string model, path, state, backend{gl::usual_backend}, plot;
     int rasterisers = 0;
     std::uint32_t width = 1280, height = 720;
     double rate_hz = 30, lift_m = 0;
     bool quick = false, json = false;
 };
-
-std::string state_name(model::EffectMask mask) {
-    std::string name;
-    for (int e = 0; e < model::effect_count; ++e) {
-        if ((mask >> static_cast<unsigned>(e) & 1U) != 0)
-            name += (name.empty() ? "" : " + ") + std::string(model::effect_names[e]);
-    }
-    return name.empty() ? "bare" : name;
-}
 
 nlohmann::ordered_json to_json(const model::CostModel& costs) {
     const model::FrameCombine& k = costs.combine;
@@ -88,8 +81,8 @@ nlohmann::ordered_json to_json(const walk::FrameErrors& e) { return {{"p50", e.p
 
 /// One model: the table stays, the weights of a frame's sums are fitted.
 int run_fit(const CalibrateArguments& a, const Context& context) {
-    auto kind = gl::parse_backend(a.backend);
-    if (!kind) return misuse(kind.error());
+    const auto backend = gl::backend_named(a.backend);
+    if (!backend) return misuse(backend.error());
     if (!a.plot.empty()) return misuse({"--plot", "belongs to the machine's table", "leave out the model, or leave out --plot"});
     const std::string dir = walk::state_directory(a.state);
     std::string lacking;
@@ -108,7 +101,7 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
     auto placed = placed_as_walked();
     if (!placed) return fail(placed.error());
     walk::ModelFitOptions options;
-    options.device.kind = *kind;
+    options.device.kind = (*backend)->kind;
     options.device.viewport = {a.width, a.height};
     options.device.rasterisers = a.rasterisers;
     options.frame_us = 1e6 / a.rate_hz;
@@ -159,15 +152,15 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
          {std::pair{!a.path.empty(), "--path"}, {a.lift_m != 0, "--lift"}, {a.rate_hz != 30, "--rate"}}) {
         if (given) return misuse({option, "belongs to a model", "name the model: surefoot calibrate MODEL.walk ..."});
     }
-    auto kind = gl::parse_backend(a.backend);
-    if (!kind) return misuse(kind.error());
+    const auto backend = gl::backend_named(a.backend);
+    if (!backend) return misuse(backend.error());
     const std::string dir = walk::state_directory(a.state);
     const std::string file = walk::cost_table_file(dir);
     const std::string plot = a.plot.empty() ? dir + "/costs.svg" : a.plot;
     if (auto ok = probe_writable(file, true); !ok) return fail(ok.error());
     if (auto ok = probe_writable(plot, a.plot.empty()); !ok) return fail(ok.error());
     measure::CalibrateOptions options;
-    options.device.kind = *kind;
+    options.device.kind = (*backend)->kind;
     options.device.viewport = {a.width, a.height};
     options.device.rasterisers = a.rasterisers;
     options.quick = a.quick;
@@ -185,7 +178,7 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     }
     std::vector<report::CostPoint> points;
     for (const measure::CalibrationPoint& p : c->points) {
-        points.push_back({state_name(p.effects), p.triangles, p.pixels, p.submit_us + p.raster_us});
+        points.push_back({effects::effects_text(p.effects, " + "), p.triangles, p.pixels, p.submit_us + p.raster_us});
     }
     if (auto written = write_text(plot, report::cost_plot_svg(c->costs.machine, points)); !written) return fail(written.error());
     if (a.json) return print_json(to_json(*c, file, plot)), exit_success;
@@ -215,7 +208,7 @@ void add_calibrate(CLI::App& app, Context& context) {
         ->check(number_within(1, 1000, "Hz"))
         ->capture_default_str();
     c->add_option("--state", a->state, "Folder for costs.toml and costs.svg (else $STATE_DIRECTORY, else XDG state)");
-    c->add_option("--backend", a->backend, "egl, device, osmesa or window")->check(drawing_backend())->capture_default_str();
+    c->add_option("--backend", a->backend, gl::drawing_backends())->check(drawing_backend())->capture_default_str();
     c->add_option("--rasterisers", a->rasterisers, "Software GL threads; 0: the measured default")
         ->check(whole_number_within(0, 64));
     c->add_option("--width", a->width, "Picture width, pixels")->check(whole_number_within(16, 8192))->capture_default_str();

@@ -4,6 +4,7 @@
 #include "config/settings.hpp"
 #include "config/values.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/walk/settings_request.hpp"
 
 namespace surefoot::cli {
 
@@ -27,7 +28,7 @@ ordered_json to_json(const config::Problem& p) {
 }
 
 int run_check(const ConfigArguments& a) {
-    const auto problems = config::problems_in_file(a.file);
+    const auto problems = config::problems_in_file(walk::settings_schema(), a.file);
     if (a.json) {
         ordered_json errors = ordered_json::array();
         for (const config::Problem& problem : problems) errors.push_back(to_json(problem));
@@ -40,6 +41,7 @@ int run_check(const ConfigArguments& a) {
 }
 
 ordered_json value_json(const config::Settings& settings, const config::Entry& entry) {
+    if (entry.kind == config::Kind::choice) return std::string(config::choice_of(settings, entry));
     return std::visit([&](auto member) { return ordered_json(settings.*member); }, entry.member);
 }
 
@@ -51,9 +53,9 @@ ordered_json to_json(const config::Configuration& c, const config::Entry& entry)
         object["max"] = entry.max;
     }
     if (entry.kind == config::Kind::choice)
-        object["choices"] = std::vector<std::string>(entry.choices.begin(), entry.choices.end());
+        for (const Named& choice : entry.choices) object["choices"].push_back(std::string(choice.name));
     object["allowed"] = config::allowed(entry);
-    object["default"] = value_json({}, entry);
+    object["default"] = value_json(c.schema->defaults(), entry);
     const config::Origin origin = c.origin(entry.key);
     object["origin"] = origin.text();
     object["line"] = origin.line > 0 ? ordered_json(origin.line) : ordered_json(nullptr);
@@ -62,7 +64,7 @@ ordered_json to_json(const config::Configuration& c, const config::Entry& entry)
 }
 
 int run_print(const ConfigArguments& a) {
-    config::Configuration c;
+    config::Configuration c(walk::settings_schema());
     if (!a.file.empty()) {
         if (auto loaded = config::load_file(c, a.file, a.profile); !loaded) return fail(loaded.error());
     }
@@ -75,7 +77,7 @@ int run_print(const ConfigArguments& a) {
     if (auto ok = config::check(c); !ok) return fail(ok.error());
     if (!a.json) return fmt::print("{}", config::explain(c)), exit_success;
     ordered_json settings = ordered_json::array();
-    for (const config::Entry& entry : config::schema()) settings.push_back(to_json(c, entry));
+    for (const config::Entry& entry : c.schema->entries()) settings.push_back(to_json(c, entry));
     ordered_json object;
     object["file"] = a.file.empty() ? ordered_json(nullptr) : ordered_json(a.file);
     object["profile"] = a.profile.empty() ? ordered_json(nullptr) : ordered_json(a.profile);
@@ -95,7 +97,7 @@ int run_config(const ConfigArguments& a) {
     if (!a.defaults) return run_print(a);
     if (!a.file.empty() || !a.set.empty() || a.json)
         return misuse({"--defaults", "writes a settings file with nothing changed", "leave out the file, --set and --json"});
-    fmt::print("{}", config::commented_defaults());
+    fmt::print("{}", config::commented_defaults(walk::settings_schema()));
     return exit_success;
 }
 

@@ -23,7 +23,7 @@ int run_effects(const EffectsArguments& a) {
             if (f.bit != effect.bit) continue;
             if (a.json) {
                 list.push_back({{"effect", std::string(effect.name)},
-                                {"what", std::string(effect.what)},
+                                {"what", std::string(effect.help)},
                                 {"asked_by", std::string(effect.asked_by)},
                                 {"called_for", f.called_for},
                                 {"triangles", f.triangles},

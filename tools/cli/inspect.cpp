@@ -1,6 +1,8 @@
 // surefoot inspect: what is in a .walk model.
 #include <fmt/format.h>
 
+#include "render/effects/effects.hpp"
+#include "render/model/forms.hpp"
 #include "render/model/walk_file.hpp"
 #include "tools/cli/command.hpp"
 
@@ -16,9 +18,7 @@ struct InspectArguments {
 const char* kind_name(model::NodeKind kind) {
     return kind == model::NodeKind::cluster ? "cluster" : kind == model::NodeKind::object ? "object" : "piece";
 }
-const char* rep_name(model::RepKind kind) {
-    return kind == model::RepKind::mesh ? "mesh" : kind == model::RepKind::colour_box ? "colour_box" : "textured_box";
-}
+std::string rep_name(model::RepKind kind) { return std::string(model::form_of(kind).name); }
 
 void print_tree(const model::Model& m) {
     struct Open {
@@ -70,13 +70,12 @@ void print_tree_json(const std::string& file, const model::Model& m) {
 }
 
 nlohmann::ordered_json effects_json(const model::Model& m) {
-    nlohmann::ordered_json effects = nlohmann::ordered_json::array();
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const model::EffectFinding& f : m.effects) {
-        for (int e = 0; e < model::effect_count; ++e) {
-            if (f.bit == 1U << static_cast<unsigned>(e) && f.called_for) effects.push_back(std::string(model::effect_names[e]));
-        }
+        for (const effects::EffectModule& effect : effects::all_effects())
+            if (f.bit == effect.bit && f.called_for) list.push_back(std::string(effect.name));
     }
-    return effects;
+    return list;
 }
 
 int run_inspect(const InspectArguments& a) {

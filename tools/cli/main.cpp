@@ -15,8 +15,10 @@
 #include <system_error>
 #include <vector>
 
+#include "render/import/formats.hpp"
 #include "rt/base/nearest.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
 
 namespace {
 
@@ -86,10 +88,12 @@ int main(int argc, char** argv) {
     CLI::App app{
         "Surefoot walks through 3D models that are too complex to draw whole, every frame by its deadline.\n\n"
         "First steps:\n"
-        "  surefoot scene forest --scale 10 -o forest.glb     a model and a path (or bring your own .glb, .gltf, .obj, .ostf)\n"
-        "  surefoot bake forest.glb -o forest.walk            prepare it\n"
-        "  surefoot calibrate                                 measure this machine, once\n"
-        "  surefoot walk forest.walk --path forest.path.csv --report report",
+        "  surefoot scene forest --scale 10 -o forest.glb     a model and a path (or bring your own: " +
+            importer::endings_in_words() +
+            ")\n"
+            "  surefoot bake forest.glb -o forest.walk            prepare it\n"
+            "  surefoot calibrate                                 measure this machine, once\n"
+            "  surefoot walk forest.walk --path forest.path.csv --report report",
         "surefoot"};
     app.require_subcommand(1);
     app.set_version_flag("--version", SUREFOOT_VERSION);
@@ -109,7 +113,9 @@ int main(int argc, char** argv) {
     cli::add_status(app, context);
     cli::add_top(app, context);
     app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {
-        const std::string text = unknown_command(*of, argc, argv).value_or(error.what());
+        const std::vector<std::string_view> arguments(argv + 1, argv + argc);
+        const auto renamed = cli::renamed_option(arguments);
+        const std::string text = renamed ? *renamed : unknown_command(*of, argc, argv).value_or(error.what());
         return "surefoot: " + text + " (see surefoot --help, or --help after the command)\n";
     });
     try {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <optional>
 
-#include "config/settings.hpp"
-#include "render/gl/device.hpp"
+#include "render/gl/backends.hpp"
+#include "tools/walk/settings_request.hpp"
 
 namespace surefoot::cli {
 
@@ -59,17 +59,28 @@ CLI::Validator one_of(std::span<const std::string_view> words) {
 
 CLI::Validator drawing_backend() {
     return {[](std::string& text) {
-                const auto kind = gl::parse_backend(text);
-                if (!kind) return kind.error().text();
-                if (*kind != gl::BackendKind::null) return std::string();
-                return std::string("'null' draws nothing and takes no time; one of: egl, device, window, osmesa");
+                const auto backend = gl::backend_named(text);
+                if (!backend) return backend.error().text();
+                if ((*backend)->draws()) return std::string();
+                return fmt::format("'{}' draws nothing and takes no time; one of: {}", text, gl::drawing_backends());
             },
             ""};
 }
 
+std::span<const config::Renamed> renamed_options() { return {}; }  // no option has had another name yet
+
+std::optional<std::string> renamed_option(std::span<const std::string_view> arguments) {
+    for (const std::string_view argument : arguments) {
+        if (!argument.starts_with("--")) continue;
+        if (auto error = config::renamed_error(renamed_options(), "command line", argument.substr(0, argument.find('='))))
+            return error->text();
+    }
+    return std::nullopt;
+}
+
 Result<Size> parse_size(const std::string& text) {
-    const config::Entry& width = *config::find_entry("width");
-    const config::Entry& height = *config::find_entry("height");
+    const config::Entry& width = *walk::settings_schema().find("width");
+    const config::Entry& height = *walk::settings_schema().find("height");
     const std::size_t x = text.find('x');
     const auto side = [](std::string_view digits, const config::Entry& entry) -> std::optional<std::uint32_t> {
         const auto value = number_in<std::uint32_t>(digits);

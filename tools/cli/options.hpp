@@ -3,10 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "config/settings.hpp"
 #include "rt/base/result.hpp"
 
 namespace surefoot::cli {
@@ -19,6 +21,11 @@ CLI::Validator whole_number_within(std::uint64_t least, std::uint64_t most);
 CLI::Validator one_of(std::span<const std::string_view> words);
 /// A backend of this version that draws pictures.
 CLI::Validator drawing_backend();
+
+/// Options that earlier versions had.
+std::span<const config::Renamed> renamed_options();
+/// What is said of the first of them on a command line that was refused; nothing where none is there.
+std::optional<std::string> renamed_option(std::span<const std::string_view> arguments);
 
 struct Size {
     std::uint32_t width = 0, height = 0;

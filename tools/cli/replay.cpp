@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "render/capture/capture.hpp"
+#include "render/select/registry.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 

@@ -20,6 +20,7 @@ struct SceneArguments {
 };
 
 int run_scene(const SceneArguments& a, const Context& context) {
+    if (auto ok = scenes::check_ending(a.out); !ok) return fail(ok.error());
     const std::string path = std::filesystem::path(a.out).replace_extension(".path.csv").string();
     for (const std::string& out : {a.out, path}) {
         if (auto ok = probe_writable(out); !ok) return fail(ok.error());
@@ -61,7 +62,9 @@ void add_scene(CLI::App& app, Context& context) {
     c->add_option("--seed", a->seed, "The same seed gives the same file, bit for bit")
         ->check(whole_number_within(0, std::numeric_limits<std::uint64_t>::max()))
         ->capture_default_str();
-    c->add_option("-o,--out", a->out, "OUT.glb, OUT.obj or OUT.ostf; the path goes to OUT.path.csv")->required();
+    c->add_option("-o,--out", a->out,
+                  "The file to write, by its ending: " + scenes::written_endings() + "; the path goes to OUT.path.csv")
+        ->required();
     c->callback([&context, a] { context.run = [a, &context] { return run_scene(*a, context); }; });
 }
 

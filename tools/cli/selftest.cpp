@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "render/gl/backends.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/selftest/hard.hpp"
@@ -114,7 +115,7 @@ void add_selftest(CLI::App& app, Context& context) {
         ->check(number_within(0.001, 100))
         ->capture_default_str();
     c->add_option("--backend", a->backend,
-                  "Rows that draw: by egl, device, osmesa or window only (else egl, or osmesa where that is missing)")
+                  "Rows that draw: by this backend only, of " + gl::drawing_backends() + " (else the first that opens)")
         ->check(drawing_backend());
     c->callback([&context, a] { context.run = [&context, a] { return run_selftest(*a, context); }; });
 }

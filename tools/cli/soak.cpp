@@ -39,7 +39,7 @@ Result<soak::SoakRequest> to_soak_request(const SoakArguments& a) {
     walk::apply_settings(*settings, r.walk);
     r.walk.config_file = a.settings->config_file;
     r.control = !a.no_control;
-    if (r.walk.strict && r.walk.clock == "virtual") return Error{"--strict", "asks for real time", "leave out --clock virtual"};
+    if (auto ok = walk::check_request(r.walk); !ok) return ok.error();
     return r;
 }
 
@@ -85,9 +85,6 @@ void add_soak(CLI::App& app, Context& context) {
                     a->json);
     c->add_option("model", r.walk.model_file, "The .walk model")->required();
     c->add_option("--path", r.walk.path_file, "Poses over time, CSV (else MODEL.path.csv, else a tour); walked forth and back");
-    c->add_option("--lift", r.walk.lift_m, "Metres added to the path's heights (recorded drives: 1.5)")
-        ->check(number_within(-1e7, 1e7, "m"))
-        ->capture_default_str();
     c->add_option("--seconds", a->seconds, "How long; with the control whole pairs of blocks of it [1200]")
         ->check(number_within(1, 1e6, "s"));
     c->add_option("--hours", a->hours, "The same in hours")->check(number_within(0.001, 240, "h"));
@@ -102,7 +99,8 @@ void add_soak(CLI::App& app, Context& context) {
     c->add_option("--seed", r.seed, "Of the timetable: the same seed loads in the same order")->capture_default_str();
     c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html, and DIR/soak.json");
     add_settings(c, a->settings,
-                 {{"--rate", "rate_hz"},
+                 {{"--lift", "lift_m"},
+                  {"--rate", "rate_hz"},
                   {"--budget", "budget_ms"},
                   {"--selector", "selector"},
                   {"--late", "late"},

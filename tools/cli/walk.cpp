@@ -42,30 +42,11 @@ struct Given {
     bool every = false, capture_frame = false, control_pairs = false;
 };
 
-/// Options that say nothing without another one, or against it.
-Result<void> check_together(const walk::WalkRequest& r, const Given& given) {
-    const bool is_virtual = r.clock == "virtual";
-    if (r.control && is_virtual) return Error{"--control", "judges real time", "leave out --clock virtual"};
+/// Options that say nothing without another one, or the same twice, where a request as such is clear: frames go before seconds.
+Result<void> check_given(const walk::WalkRequest& r, const Given& given) {
+    if (r.frames > 0 && r.seconds > 0) return Error{"--seconds", "and --frames say the length twice", "leave one of them out"};
     if (given.control_pairs && !r.control)
         return Error{"--control-pairs", "says how long the control is, and there is none", "add --control"};
-    if (r.control && (r.frames > 0 || r.seconds > 0))
-        return Error{r.frames > 0 ? "--frames" : "--seconds", "is not the control's length, which --control-pairs says",
-                     "leave it out, or --control (`control` of the --config file, where it stands there)"};
-    if (r.frames > 0 && r.seconds > 0) return Error{"--seconds", "and --frames say the length twice", "leave one of them out"};
-    if (r.cost_noise > 0 && !(is_virtual && r.backend == "null"))
-        return Error{"--cost-noise", "is of simulated costs, and these are real", "add --clock virtual --backend null"};
-    if (r.strict && is_virtual) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
-    if (!r.steering_file.empty() && r.input_file.empty()) {
-        return Error{"--steering", "says how a device steers, and none does: the path is followed",
-                     "add --input devices, or --input REC with a recording of one"};
-    }
-    const bool live = r.input_file == walk::live_input;
-    if (live && is_virtual)
-        return Error{"--input devices", "steer in real time, which --clock virtual has not got",
-                     "leave out --clock virtual, or give a recording (`surefoot devices record`)"};
-    if (r.clear_stop && !live) return Error{"--clear-stop", "is for devices, and none steers", "add --input devices"};
-    if (r.control && !r.input_file.empty())
-        return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
     if (given.every && r.snap_dir.empty())
         return Error{"--every", "says how often pictures are taken, and none are", "add --snap DIR"};
     if (given.capture_frame && r.capture_file.empty())
@@ -87,7 +68,8 @@ Result<walk::WalkRequest> to_request(WalkArguments& a) {
     r.correct_costs = !a.no_correction;
     r.config_file = a.settings->config_file;
     const Given given{r.snap_every > 0, r.capture_frame != unset, a.control_pairs->count() > 0};
-    if (auto ok = check_together(r, given); !ok) return ok.error();
+    if (auto ok = walk::check_request(r); !ok) return ok.error();
+    if (auto ok = check_given(r, given); !ok) return ok.error();
     if (!r.snap_dir.empty() && r.snap_every == 0) r.snap_every = 30;
     if (r.capture_frame == unset) r.capture_frame = 0;
     return r;
@@ -201,6 +183,8 @@ void add_walk(CLI::App& app, Context& context) {
                   {"--slice", "slice_us"},
                   {"--hysteresis", "hysteresis"}});
     c->add_option("--cost-noise", r.cost_noise, "Virtual clock: relative noise on costs")->check(number_within(0, 10));
+    for (const char* experiment : {"--slice", "--hysteresis", "--cost-noise"})
+        c->get_option(experiment)->group("");  // not in --help
     c->add_flag("--strict", r.strict,
                 "Do not start where anything that real time needs is refused: FIFO, locked memory, an isolated core, "
                 "placing, a cost table");

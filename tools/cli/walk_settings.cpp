@@ -1,9 +1,11 @@
 // Settings of a walk, from file and command line.
 #include "tools/cli/walk_settings.hpp"
 
+#include <fmt/format.h>
+
 #include "config/values.hpp"
-#include "render/gl/device.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/walk/settings_request.hpp"
 
 namespace surefoot::cli {
 
@@ -12,18 +14,19 @@ namespace {
 /// A value of the command line, through the schema; what is refused is named as the user wrote it.
 Result<void> put_setting(config::Configuration& c, const std::string& flag, const std::string& key, const std::string& text) {
     const std::string place = flag + " " + text;
-    if (key == "backend") {
-        if (const auto kind = gl::parse_backend(text); !kind) return Error{place, kind.error().what, kind.error().remedy};
-    }
     if (config::set_value(c, key, text)) return {};
-    return Error{place, "is not allowed", config::allowed(*config::find_entry(key))};
+    const config::Entry& entry = *c.schema->find(key);
+    const std::string_view why = config::absent_because(entry, text);
+    return Error{place, std::string(why.empty() ? "is not allowed" : why), config::allowed(entry)};
 }
 
 /// An option that goes through the settings' schema under `key`.
 void add_setting(CLI::App* c, const std::shared_ptr<SettingArguments>& a, const std::string& flag, const std::string& key) {
-    const config::Entry* entry = config::find_entry(key);
+    const config::Schema& schema = walk::settings_schema();
+    const config::Entry* entry = schema.find(key);
     std::string help(entry->help);
-    help += " Allowed: " + config::allowed(*entry) + " [" + config::value_text({}, *entry) + "]";
+    help += " Allowed: " + config::allowed(*entry) + " [" + config::value_text(schema.defaults(), *entry) + "]";
+    for (const Named& choice : entry->choices) help += fmt::format("\n  {:<17} {}", choice.name, choice.help);
     c->add_option_function<std::string>(
         flag,
         [a, flag, key](const std::string& text) {
@@ -44,7 +47,7 @@ void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& a,
 }
 
 Result<config::Configuration> read_settings(const SettingArguments& a) {
-    config::Configuration c;
+    config::Configuration c(walk::settings_schema());
     if (!a.profile.empty() && a.config_file.empty()) {
         return Error{"--profile " + a.profile, "is a part of a settings file, and none is given",
                      "add --config FILE.toml with a [profile." + a.profile + "]"};

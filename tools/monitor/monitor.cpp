@@ -157,7 +157,7 @@ const MonitorPage& Monitor::fill_page(bool with_threads) {
     if (with_threads) p.threads = rt::read_busy_threads();
     p.figures = &telemetry_.newest();
     p.up_s = static_cast<double>(now_ns - started_ns_) * 1e-9;
-    p.last_frame_age_s = p.figures->frames > 0 && p.walk.clock == "real"
+    p.last_frame_age_s = p.figures->frames > 0 && p.walk.clock == rt::name_of(rt::ClockKind::real)
                              ? static_cast<double>(std::max<std::int64_t>(now_ns - p.figures->last.presented_ns, 0)) * 1e-9
                              : -1;
     p.counts.monitor_cpu_s = static_cast<double>(cpu_ns_.load(std::memory_order_relaxed)) * 1e-9;

@@ -101,8 +101,7 @@ void add_identity(Exposition& e, const MonitorPage& p) {
         e.family("surefoot_walk_info", "gauge", "Always 1; what is walked, and by what, are the labels.");
         e.sample(1, fmt::format("model=\"{}\",selector=\"{}\",backend=\"{}\",renderer=\"{}\",clock=\"{}\",late=\"{}\"",
                                 label_value(p.walk.model), label_value(p.walk.selector), label_value(p.walk.backend),
-                                label_value(p.walk.renderer), label_value(p.walk.clock),
-                                p.walk.setup.late == rt::LatePolicy::lock ? "lock" : "float"));
+                                label_value(p.walk.renderer), label_value(p.walk.clock), rt::name_of(p.walk.setup.late)));
     }
     e.family("surefoot_state", "gauge", "1 for what the service does now, 0 for the others.");
     for (std::size_t i = 0; i < service_state_count; ++i) {

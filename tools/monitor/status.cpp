@@ -138,7 +138,7 @@ ordered_json walk_json(const MonitoredWalk& w) {
             {"clock", w.clock},
             {"rate_hz", w.rate_hz},
             {"period_ms", static_cast<double>(w.setup.period_ns) / 1e6},
-            {"late", w.setup.late == rt::LatePolicy::lock ? "lock" : "float"},
+            {"late", std::string(rt::name_of(w.setup.late))},
             {"rt", {{"fifo", w.fifo}, {"locked", w.locked}, {"isolated", w.isolated}, {"frame_core", w.frame_core}}}};
 }
 

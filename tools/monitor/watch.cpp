@@ -18,10 +18,10 @@ MonitoredWalk monitored(const walk::WalkRequest& request, const walk::WalkStart&
     w.selector = request.selector;
     w.backend = request.backend;
     w.renderer = start.renderer;
-    w.clock = request.clock;
+    w.clock = rt::name_of(request.clock);
     w.rate_hz = request.rate_hz;
     w.setup.period_ns = start.period_ns;
-    w.setup.late = request.late == "lock" ? rt::LatePolicy::lock : rt::LatePolicy::floating;
+    w.setup.late = request.late;
     w.setup.rasterisers = static_cast<std::uint32_t>(std::max(start.rasterisers, 1));
     w.fifo = start.fifo;
     w.locked = start.locked;

@@ -1,14 +1,15 @@
 // Choice of a generated scene by name, and writing it with its path.
 #include "tools/scenes/scenes.hpp"
 
-#include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "render/import/formats.hpp"
 #include "render/import/ostf.hpp"
+#include "rt/base/named.hpp"
 #include "tools/scenes/forest.hpp"
 #include "tools/scenes/room.hpp"
 #include "tools/scenes/town.hpp"
@@ -18,27 +19,22 @@ namespace surefoot::scenes {
 namespace {
 
 struct Maker {
-    const char* name;
+    std::string_view name;
     GeneratedScene (*make)(double scale, std::uint64_t seed);
 };
 
 constexpr std::array makers{Maker{"forest", make_forest}, Maker{"room", make_room}, Maker{"town", make_town}};
 
-std::string names_in_words() {
-    std::string out;
-    for (const Maker& maker : makers) out += (out.empty() ? "" : ", ") + std::string(maker.name);
-    return out;
-}
+struct Writer {
+    std::string_view name;  ///< the ending of its files
+    Result<void> (*write)(const std::string& file, const importer::Scene& scene);
+};
 
-Result<void> write_model(const std::string& out, const importer::Scene& scene) {
-    std::string ending = std::filesystem::path(out).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (ending == ".glb") return write_glb(out, scene);
-    if (ending == ".obj") return write_obj(out, scene);
-    if (ending == ".ostf") return importer::write_ostf(out, scene, {});
-    return Error{out, fmt::format("cannot write a scene with the ending '{}'", ending), "choose .glb, .obj or .ostf"};
-}
+constexpr std::array writers{
+    Writer{importer::glb_ending, write_glb},
+    Writer{importer::ostf_ending,
+           [](const std::string& file, const importer::Scene& scene) { return importer::write_ostf(file, scene, {}); }},
+};
 
 }  // namespace
 
@@ -58,11 +54,23 @@ Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64
         made.scene.sources.push_back(fmt::format("generated: {} at scale {}, seed {}", name, scale, seed));
         return made;
     }
-    return Error{std::string(name), "no scene of this name", "choose one of " + names_in_words()};
+    return Error{std::string(name), "no scene of this name", "choose one of " + names_in_words(makers)};
+}
+
+std::string written_endings() { return names_in_words(writers); }
+
+Result<void> check_ending(const std::string& out) {
+    const std::string ending = importer::ending_of(out);
+    if (find_named(writers, ending) != nullptr) return {};
+    const std::string remedy = "choose one of " + written_endings();
+    if (importer::format_of(out) != nullptr)
+        return Error{out, fmt::format("scenes are not written as {}, which is only read", ending), remedy};
+    return Error{out, fmt::format("cannot write a scene with the ending '{}'", ending), remedy};
 }
 
 Result<void> write_scene(const std::string& out, const GeneratedScene& generated) {
-    if (auto written = write_model(out, generated.scene); !written) return written;
+    if (auto ok = check_ending(out); !ok) return ok;
+    if (auto written = find_named(writers, importer::ending_of(out))->write(out, generated.scene); !written) return written;
     return write_path(std::filesystem::path(out).replace_extension(".path.csv").string(), generated.path);
 }
 

@@ -28,7 +28,11 @@ constexpr double least_scale = 0.01, most_scale = 200.0;
 /// Errors: unknown name, scale out of range.
 Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed);
 
-/// By ending: .glb, .obj (with .mtl and PNG beside it) or .ostf; and beside it `out` with its ending replaced by .path.csv.
+/// ".glb, .ostf".
+std::string written_endings();
+/// Whether a scene can be written under this name.
+Result<void> check_ending(const std::string& out);
+/// By ending; and beside it `out` with its ending replaced by .path.csv.
 Result<void> write_scene(const std::string& out, const GeneratedScene& generated);
 
 }  // namespace surefoot::scenes

@@ -26,6 +26,8 @@ Pose over_the_row() {
     return pose;
 }
 
+bool is_search(std::string_view selector) { return (*select::selector_named(selector))->goes_by == select::GoesBy::budget; }
+
 void odd_budgets(const Effort&, Outcome& out) {
     std::uint64_t cuts = 0, over = 0, made = 0;
     for (const std::uint32_t leaves : {1U, 2U, 300U}) {
@@ -46,7 +48,7 @@ void odd_budgets(const Effort&, Outcome& out) {
                         const select::Cut& cut = look.select(selector, budget_us, correction);
                         ++made;
                         if (correction != 1e300) cuts += illegal(frame, cut);
-                        const bool search = selector != "flat" && selector != "distance";
+                        const bool search = is_search(selector);
                         const double allowed = std::max(budget_us > 0 ? budget_us : 0.0, static_cast<double>(cut.floor_us));
                         over += search && !(static_cast<double>(cut.predicted_us) <= allowed) ? 1 : 0;
                         if (correction == 1.0) out.digest_of(cut.hash);
@@ -76,7 +78,7 @@ void many_children(const Effort& effort, Outcome& out) {
     std::uint64_t bad = unsound(frame, look.costs());
     std::size_t most = 0;
     for (const double budget_us : {0.0, 20000.0, infinity}) {
-        const select::Cut& cut = look.select("two-stage", budget_us);
+        const select::Cut& cut = look.select(select::usual_selector, budget_us);
         bad += illegal(frame, cut);
         most = std::max(most, cut.items.size());
         out.digest_of(cut.hash);
@@ -109,7 +111,7 @@ void equal_benefits(const Effort&, Outcome& out) {
     pose.position = {48, 0.5, 1e6};  // so far away that every box looks the same
     pose.fov_y_rad = 1e-3;
     const prepare::PreparedFrame& frame = look.prepare({pose, 0, 0});
-    const double budget_us = 0.75 * static_cast<double>(look.select("flat", infinity).predicted_us);
+    const double budget_us = 0.75 * static_cast<double>(look.select(select::full_detail_selector, infinity).predicted_us);
     std::uint64_t flicker = 0, bad = frame.candidates.empty() ? 1 : 0;
     std::size_t fewest = 1000;
     model::Index coarsest = 99, finest = 0;  // forms that two-stage shows
@@ -117,8 +119,8 @@ void equal_benefits(const Effort&, Outcome& out) {
         look.forget();
         const select::Cut& first = look.select(selector, budget_us);
         const std::uint64_t hash = first.hash;
-        fewest = std::min(fewest, selector == "flat" || selector == "distance" ? fewest : first.items.size());
-        if (selector == "two-stage") {
+        fewest = std::min(fewest, is_search(selector) ? first.items.size() : fewest);
+        if (selector == select::usual_selector) {
             for (const select::CutItem& item : first.items) {
                 const model::Index form = item.rep - look.model().nodes[item.node].first_rep;
                 coarsest = std::min(coarsest, form);

@@ -12,6 +12,7 @@
 #include "config/settings.hpp"
 #include "input/hid/decoder.hpp"
 #include "input/replay/recording.hpp"
+#include "render/gl/backends.hpp"
 #include "render/import/ostf.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
@@ -124,7 +125,7 @@ void walk_files(const Effort& effort, Outcome& out) {
         Pose pose;
         pose.position = {2, 1, 8};
         const prepare::PreparedFrame& frame = look.prepare({pose, 0, 0}, {64, 64});
-        return {true, unsound(frame, look.costs()) + illegal(frame, look.select("two-stage", 1000)) == 0};
+        return {true, unsound(frame, look.costs()) + illegal(frame, look.select(select::usual_selector, 1000)) == 0};
     };
     attack({*fixture, read, 1, reseal_walk}, effort, out);
 }
@@ -226,9 +227,10 @@ void cost_files(const Effort& effort, Outcome& out) {
 }
 
 void settings_files(const Effort& effort, Outcome& out) {
+    const config::Schema schema({named(select::selectors()), select::usual_selector}, {named(gl::backends()), gl::usual_backend});
     const auto read = [&](const Bytes& bytes) -> Answer {
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        config::Configuration configuration;
+        config::Configuration configuration(schema);
         const auto loaded = config::load_text(configuration, text, "fixture.toml", "kiosk");
         if (!loaded) return refusal(loaded.error());
         const config::Settings& s = configuration.values;

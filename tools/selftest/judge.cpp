@@ -22,7 +22,7 @@ std::uint64_t unsound_views(const model::Model& model, std::uint64_t& cut_hash) 
         pose.position = at;
         const prepare::PreparedFrame& frame = look.prepare({pose, 0, 0});
         bad += unsound(frame, look.costs());
-        const select::Cut& cut = look.select("two-stage", 2500);
+        const select::Cut& cut = look.select(select::usual_selector, 2500);
         bad += illegal(frame, cut);
         cut_hash = fnv1a(cut_hash, cut.hash);
     }

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "render/prepare/prepared.hpp"
-#include "render/select/select.hpp"
+#include "render/select/registry.hpp"
 
 namespace surefoot::selftest {
 

@@ -110,8 +110,8 @@ void inside_boxes(const Effort& effort, Outcome& out) {
                 look.forget();
                 differ += look.select(selector, budget_us).hash != hash ? 1 : 0;
                 ++made;
-                if (selector == "two-stage") out.digest_of(hash);
-                if (selector == "two-stage" && budget_us == infinity)
+                if (selector == select::usual_selector) out.digest_of(hash);
+                if (selector == select::usual_selector && budget_us == infinity)
                     coarse += cut.worst_error_rad <= 1.00001F * frame.target_error_rad ? 0 : 1;
             }
         }
@@ -136,7 +136,7 @@ void nothing_lost(const Effort& effort, Outcome& out) {
     for (const Placed& place : awkward_places(*model, effort.count(3000, 100))) {
         if (effort.stopped()) break;
         look.prepare({place.pose, 0, 0}, place.viewport);
-        const select::Cut& cut = look.select("two-stage", 4000);
+        const select::Cut& cut = look.select(select::usual_selector, 4000);
         const LeavesInView leaves = leaves_in_view(*model, cut, place.pose, place.viewport);
         seen += leaves.seen;
         lost += leaves.lost;

@@ -6,7 +6,7 @@
 
 #include "render/measure/image_metrics.hpp"
 #include "render/model/pixels.hpp"
-#include "render/select/select.hpp"
+#include "render/select/registry.hpp"
 #include "tools/selftest/families.hpp"
 #include "tools/selftest/look.hpp"
 #include "tools/selftest/picture.hpp"
@@ -144,7 +144,7 @@ void shifted_cuts(const Effort& effort, Outcome& out) {
             cuts += illegal(frame, look.select(selector, 2500));
         }
         look.forget();
-        const select::Cut& cut = look.select("two-stage", 4000);
+        const select::Cut& cut = look.select(select::usual_selector, 4000);
         out.digest_of(cut.hash);
         const LeavesInView leaves = leaves_in_view(*model, cut, place.pose, viewport);
         seen += leaves.seen;
@@ -173,7 +173,8 @@ void wall_of_screens(const Effort& effort, Outcome& out) {
         Look look(*town);
         look.prepare({from, 0, 0}, viewport);
         std::vector<gl::DrawItem> items;
-        for (const select::CutItem& item : look.select("two-stage", no_end).items) items.push_back({item.node, item.rep});
+        for (const select::CutItem& item : look.select(select::usual_selector, no_end).items)
+            items.push_back({item.node, item.rep});
         return draw(*device, items, from);
     };
     const gl::PixelImage whole = drawn({screens * width, screens * height}, pose);

@@ -36,7 +36,8 @@ std::vector<gl::DrawItem> some_cut(const model::Model& model, const Pose& pose, 
     Look look(model);
     look.prepare({pose, 0, 0}, view);
     std::vector<gl::DrawItem> items;
-    for (const select::CutItem& item : look.select("two-stage", budget_us).items) items.push_back({item.node, item.rep});
+    for (const select::CutItem& item : look.select(select::usual_selector, budget_us).items)
+        items.push_back({item.node, item.rep});
     return items;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/effects/effects.hpp"
+#include "render/gl/backends.hpp"
 #include "render/model/flat_root.hpp"
 #include "render/model/pixels.hpp"
 
@@ -16,12 +17,12 @@ std::unique_ptr<gl::Device> open_picture(model::Viewport viewport, const Effort&
     options.sky = {0, 0, 1};
     std::vector<gl::BackendKind> kinds{gl::BackendKind::egl, gl::BackendKind::osmesa};
     if (!effort.backend.empty()) {
-        const auto named = gl::parse_backend(effort.backend);
-        if (!named) {
-            outcome.not_run = named.error().text();
+        const auto backend = gl::backend_named(effort.backend);
+        if (!backend) {
+            outcome.not_run = backend.error().text();
             return nullptr;
         }
-        kinds = {*named};
+        kinds = {(*backend)->kind};
     }
     for (const gl::BackendKind kind : kinds) {
         options.kind = kind;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "rt/base/modes.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace surefoot::soak {
@@ -202,7 +203,7 @@ SoakLoad describe_load(const LoadFigures& f, double other_miss_share) {
 }
 
 void judge_soak(SoakSummary& s) {
-    const bool on_virtual_clock = s.walk.clock == "virtual";
+    const bool on_virtual_clock = s.walk.clock == rt::name_of(rt::ClockKind::virtual_time);
     s.warm_up_s = warm_up_of(s.ran_s);
     const std::vector<SoakSample> samples = after_warm_up(s);
     s.checks.clear();

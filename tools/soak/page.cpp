@@ -7,6 +7,7 @@
 #include <string>
 
 #include "rt/base/file.hpp"
+#include "rt/base/modes.hpp"
 #include "tools/report/charts.hpp"
 #include "tools/report/page_parts.hpp"
 #include "tools/report/style.hpp"
@@ -50,7 +51,7 @@ std::string header_of(const SoakSummary& s) {
     if (!s.walk.path.empty()) out += fmt::format(" along <b>{}</b>", model_name(s.walk.path));
     out += fmt::format(" at {:.4g} Hz and {}×{} pixels, drawn by {}", s.walk.rate_hz, s.walk.width, s.walk.height,
                        report::escaped(s.walk.renderer.empty() ? s.walk.backend : s.walk.renderer));
-    if (s.walk.clock == "virtual") {
+    if (s.walk.clock == rt::name_of(rt::ClockKind::virtual_time)) {
         out += ", on the virtual clock: times are predictions; growth, the grid and the counts are real.";
     } else {
         out += fmt::format(", while {} kinds of load took turns on {} cores.", s.loads.size(), s.machine.cores);

@@ -19,6 +19,7 @@
 #include "tools/soak/load_runner.hpp"
 #include "tools/soak/machine_facts.hpp"
 #include "tools/soak/tally.hpp"
+#include "tools/walk/settings_request.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::soak {
@@ -31,8 +32,8 @@ constexpr double virtual_sample_s = 10;
 
 /// What a service does when it is told to read its settings anew: all of them, on a thread that is none of the frame's.
 bool reload_once(const walk::WalkRequest& r) {
-    config::Configuration c;
-    const auto read = r.config_file.empty() ? config::load_text(c, config::commented_defaults(), "defaults")
+    config::Configuration c(walk::settings_schema());
+    const auto read = r.config_file.empty() ? config::load_text(c, config::commented_defaults(*c.schema), "defaults")
                                             : config::load_file(c, r.config_file);
     const auto steering = input::parse_steering(input::steering_text({}), "defaults");
     std::string note;
@@ -59,7 +60,7 @@ Result<void> make_plan(Soak& s) {
     const auto period_ns = rt::period_of_rate_ns(r.walk.rate_hz);
     if (!period_ns) return period_ns.error();
     s.walk = r.walk;
-    s.virtual_clock = r.walk.clock == "virtual";
+    s.virtual_clock = r.walk.clock == rt::ClockKind::virtual_time;
     s.walk.control = r.control && !s.virtual_clock;
     s.walk.keep_records = false;
     s.walk.report_dir.clear();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt/base/modes.hpp"
 #include "tools/report/svg.hpp"
 #include "tools/report/text_table.hpp"
 #include "tools/report/verdict.hpp"
@@ -41,7 +42,7 @@ std::string duration_words(double seconds) {
 
 std::string soak_headline(const SoakSummary& s) {
     if (s.walk.frames == 0) return "No frame was drawn.";
-    const bool on_virtual_clock = s.walk.clock == "virtual";
+    const bool on_virtual_clock = s.walk.clock == rt::name_of(rt::ClockKind::virtual_time);
     std::string text =
         fmt::format("{} {}: {} frames", duration_words(s.ran_s), on_virtual_clock ? "of virtual time" : "under load",
                     report::grouped(static_cast<double>(s.walk.frames)));

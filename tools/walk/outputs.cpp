@@ -1,10 +1,13 @@
 // A walk's outputs, checked before it begins.
 #include "tools/walk/outputs.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <system_error>
 #include <vector>
 
+#include "render/gl/backends.hpp"
 #include "rt/base/file.hpp"
 #include "tools/walk/state.hpp"
 
@@ -43,8 +46,11 @@ bool same_file(const std::string& a, const std::string& b) {
 }  // namespace
 
 Result<void> check_outputs(const WalkRequest& request) {
-    if (!request.snap_dir.empty() && request.backend == "null") {
-        return Error{"--snap " + request.snap_dir, "the null backend draws no pictures", "leave out --snap or --backend null"};
+    const auto backend = gl::backend_named(request.backend);
+    if (!backend) return backend.error();
+    if (!request.snap_dir.empty() && !(*backend)->draws()) {
+        return Error{"--snap " + request.snap_dir, fmt::format("the {} backend draws no pictures", request.backend),
+                     fmt::format("leave out --snap or --backend {}", request.backend)};
     }
     const std::vector<Output> outputs = outputs_of(request);
     const std::string beside = std::filesystem::path(request.model_file).replace_extension(".path.csv").string();

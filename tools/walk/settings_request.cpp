@@ -1,54 +1,85 @@
-// From settings to a request.
+// From settings to a request; what it may not ask for.
 #include "tools/walk/settings_request.hpp"
+
+#include <utility>
+
+#include "render/gl/backends.hpp"
+#include "render/select/registry.hpp"
 
 namespace surefoot::walk {
 
 namespace {
 
-void put_file(const config::Configuration& c, std::string_view key, std::string_view word, std::string& into) {
-    if (into.empty()) into = config::file_setting(c, key, word);
+struct FileSetting {
+    std::string_view key;
+    std::string config::Settings::*member;
+    std::string_view word = {};  ///< a value that is no file name
+};
+
+constexpr FileSetting files[] = {
+    {"model", &config::Settings::model_file},
+    {"path", &config::Settings::path_file},
+    {"input", &config::Settings::input_file, live_input},
+    {"steering", &config::Settings::steering_file},
+    {"state", &config::Settings::state_dir},
+};
+
+/// Where nothing is kept, nothing can be summed up or written.
+Result<void> check_endless(const WalkRequest& r) {
+    if (r.control || r.frames > 0 || r.seconds > 0)
+        return Error{"a walk without end", "was given an end", "leave one of them out"};
+    const bool writes = !(r.ledger_file + r.trace_file + r.report_dir + r.snap_dir + r.capture_file).empty();
+    if (writes)
+        return Error{"a walk without end", "keeps no frames, so none can be written", "leave out the outputs, or give it an end"};
+    return {};
 }
 
-void put_files(const config::Configuration& c, WalkRequest& r) {
-    put_file(c, "model", {}, r.model_file);
-    put_file(c, "path", {}, r.path_file);
-    put_file(c, "input", live_input, r.input_file);
-    put_file(c, "steering", {}, r.steering_file);
-    put_file(c, "state", {}, r.state_dir);
+Result<void> check_real_time(const WalkRequest& r) {
+    if (r.clock == rt::ClockKind::real) return {};
+    if (r.control) return Error{"--control", "judges real time", "leave out --clock virtual"};
+    if (r.strict) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
+    if (r.input_file == live_input)
+        return Error{"--input devices", "steer in real time, which --clock virtual has not got",
+                     "leave out --clock virtual, or give a recording (`surefoot devices record`)"};
+    return {};
 }
 
 }  // namespace
 
-void apply_settings(const config::Configuration& configuration, WalkRequest& r) {
-    const config::Settings& s = configuration.values;
-    put_files(configuration, r);
-    r.lift_m = s.lift_m;
-    r.rate_hz = s.rate_hz;
-    r.width = static_cast<std::uint32_t>(s.width);
-    r.height = static_cast<std::uint32_t>(s.height);
-    r.shift_x = s.shift_x;
-    r.shift_y = s.shift_y;
-    r.budget_ms = s.budget_ms;
-    r.accuracy = s.accuracy;
-    r.cost_scale = s.cost_scale;
-    r.selector = s.selector;
-    r.late = s.late;
-    r.backend = s.backend;
-    r.clock = s.clock;
-    r.workers = static_cast<int>(s.workers);
-    r.rasterisers = static_cast<int>(s.rasterisers);
-    r.fifo = s.fifo;
-    r.strict = s.strict;
-    r.control = s.control;
-    r.in_frame_check = s.in_frame_check;
-    r.occlusion = s.occlusion;
-    r.frame_core = static_cast<int>(s.frame_core);
-    r.frame_priority = static_cast<int>(s.frame_priority);
-    r.raster_priority = static_cast<int>(s.raster_priority);
-    r.worker_priority = static_cast<int>(s.worker_priority);
-    r.slice_us = s.slice_us;
-    r.hysteresis = s.hysteresis;
-    r.sky = config::colour_of(s.sky);
+WalkRequest::WalkRequest() : config::Settings(settings_schema().defaults()) {}
+
+const config::Schema& settings_schema() {
+    static const config::Schema schema({named(select::selectors()), select::usual_selector},
+                                       {named(gl::backends()), gl::usual_backend, named(gl::absent_backends())});
+    return schema;
+}
+
+void apply_settings(const config::Configuration& configuration, WalkRequest& request) {
+    config::Settings settings = configuration.values;
+    for (const auto& [key, member, word] : files) {
+        settings.*member = config::file_setting(configuration, key, word);
+        if (!(request.*member).empty()) settings.*member = request.*member;
+    }
+    static_cast<config::Settings&>(request) = std::move(settings);
+}
+
+Result<void> check_request(const WalkRequest& r) {
+    if (auto ok = check_real_time(r); !ok) return ok;
+    if (r.control && (r.frames > 0 || r.seconds > 0))
+        return Error{r.frames > 0 ? "--frames" : "--seconds", "is not the control's length, which --control-pairs says",
+                     "leave it out, or --control (`control` of the --config file, where it stands there)"};
+    if (r.control && !r.input_file.empty())
+        return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
+    const auto backend = gl::backend_named(r.backend);
+    if (!backend) return backend.error();
+    if (r.cost_noise > 0 && (r.clock == rt::ClockKind::real || (*backend)->draws()))
+        return Error{"--cost-noise", "is of simulated costs, and these are real", "add --clock virtual --backend null"};
+    if (!r.steering_file.empty() && r.input_file.empty())
+        return Error{"--steering", "says how a device steers, and none does: the path is followed",
+                     "add --input devices, or --input REC with a recording of one"};
+    if (r.clear_stop && r.input_file != live_input)
+        return Error{"--clear-stop", "is for devices, and none steers", "add --input devices"};
+    return r.endless ? check_endless(r) : Result<void>{};
 }
 
 }  // namespace surefoot::walk

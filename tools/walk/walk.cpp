@@ -21,15 +21,11 @@ constexpr double limit_share = 0.88;  // of the period: when the in-frame check 
 
 WalkStagesOptions stages_options(Session& s) {
     const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
-    WalkStagesOptions o;
+    WalkStagesOptions o{s.request};
     o.period_ns = s.grid.period_ns;
     o.budget_us = s.request.budget_ms > 0 ? s.request.budget_ms * 1e3 : budget_share * period_us;
     o.limit_us = limit_share * period_us;
     o.target_error_rad = s.request.accuracy > 0 ? 1.0 / s.request.accuracy : 0;
-    o.correct_costs = s.request.correct_costs;
-    o.control = s.request.control;
-    o.virtual_clock = s.virtual_clock;
-    o.cost_scale = s.request.cost_scale;
     if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
     o.capture_missed = s.request.capture_file.empty() && s.watch.on_missed_frame;
     if (s.watch.inject) o.inject = &s.watch.inject;
@@ -82,7 +78,7 @@ rt::FrameLoopOptions loop_options(const Session& s, const Progress& progress) {
     o.period_ns = s.grid.period_ns;
     o.t0_ns = s.grid.t0_ns;
     o.frames = s.frames;
-    o.late = s.late;
+    o.late = s.request.late;
     o.control = s.request.control ? &s.control : nullptr;
     o.stop = progress.stop;
     o.failed = &s.lost;

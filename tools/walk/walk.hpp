@@ -2,7 +2,6 @@
 // walk, soak, compare and the daemon all run this.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/settings.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
 #include "rt/frame/record.hpp"
@@ -24,38 +24,18 @@ namespace surefoot::walk {
 /// In place of a recording: the devices that are plugged in. A recording of that name is "./devices".
 constexpr std::string_view live_input = "devices";
 
-/// What one walk is asked for; 0 or empty means the default that is said here.
-struct WalkRequest {
-    std::string model_file;
-    std::string config_file;    ///< where settings came from: not to be written over; may be empty
-    std::string path_file;      ///< empty: beside the model, else a generated tour
-    std::string input_file;     ///< a recording that steers, or live_input; empty: the path is followed
-    std::string steering_file;  ///< how it steers; empty: the default of the device's class
-    bool clear_stop = false;    ///< live: take off a stop that an earlier walk has left latched
-    std::string state_dir;      ///< empty: see state_directory()
-    std::string selector = "two-stage", late = "lock", backend = "egl", clock = "real";
-    std::array<float, 3> sky{0.62F, 0.72F, 0.82F};  ///< background, 0..1 each
-    double lift_m = 0;                              ///< added to the path's heights
-    double rate_hz = 30;
-    std::uint32_t width = 1280, height = 720;
-    double shift_x = 0, shift_y = 0;  ///< off axis, as model::Viewport has it
+/// What one walk is asked for: the settings, ready to be used (files can be opened as they are named), and what no settings file
+/// says. 0 or empty means the default that is said here.
+struct WalkRequest : config::Settings {
+    WalkRequest();             ///< the schema's defaults
+    std::string config_file;   ///< where settings came from: not to be written over; may be empty
+    bool clear_stop = false;   ///< live: take off a stop that an earlier walk has left latched
     std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
     double seconds = 0;
     bool keep_records = true;  ///< false: records are handed to the watch only, and what is made of records is not made
     bool endless = false;   ///< until progress.stop: records are handed to the watch and not kept, so nothing is written of them
-    double budget_ms = 0;   ///< 0: 0.80 of the frame
-    double accuracy = 0;    ///< rad^-1; 0: as accurate as the budget allows
-    double cost_scale = 1;  ///< what costs really are over what is predicted (virtual clock)
     double cost_noise = 0;  ///< relative, seeded (virtual clock)
-    int workers = 0;        ///< 0: one a core
-    int rasterisers = 0;    ///< 0: the measured default
-    int frame_core = -1;    ///< -1: the last core
-    int frame_priority = 80, raster_priority = 70, worker_priority = 60;
-    double slice_us = 1000;
-    double hysteresis = 1.25;
     bool correct_costs = true;  ///< online correction of predictions; false: frozen at 1
-    bool fifo = true, strict = false, in_frame_check = true, occlusion = true;
-    bool control = false;  ///< ABBA blocks against a bare loop
     std::uint32_t control_pairs = 90;
     double control_block_s = 2.0;
     std::string ledger_file, trace_file, report_dir, snap_dir;

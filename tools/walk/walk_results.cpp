@@ -20,8 +20,8 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
     s.backend = request.backend;
     s.renderer = facts.renderer;
     s.machine = facts.machine;
-    s.late_policy = request.late;
-    s.clock = request.clock;
+    s.late_policy = rt::name_of(request.late);
+    s.clock = rt::name_of(request.clock);
     s.width = request.width;
     s.height = request.height;
     s.shift_x = request.shift_x;

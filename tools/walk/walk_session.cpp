@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/gl/backends.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
 #include "tools/walk/outputs.hpp"
 #include "tools/walk/pose_source.hpp"
 #include "tools/walk/real_time.hpp"
+#include "tools/walk/settings_request.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::walk {
@@ -19,34 +21,11 @@ namespace {
 
 constexpr std::uint64_t most_frames = 4'000'000;  // records of 0.4 KiB
 
-/// Where nothing is kept, nothing can be summed up or written.
-Result<void> read_endless(const WalkRequest& r) {
-    if (r.control || r.frames > 0 || r.seconds > 0)
-        return Error{"a walk without end", "was given an end", "leave one of them out"};
-    const bool writes = !(r.ledger_file + r.trace_file + r.report_dir + r.snap_dir + r.capture_file).empty();
-    if (writes)
-        return Error{"a walk without end", "keeps no frames, so none can be written", "leave out the outputs, or give it an end"};
-    return {};
-}
-
 Result<void> read_request(Session& s) {
-    const WalkRequest& r = s.request;
-    auto late = rt::parse_late_policy(r.late);
-    if (!late) return late.error();
-    s.late = *late;
-    auto period = rt::period_of_rate_ns(r.rate_hz);
+    auto period = rt::period_of_rate_ns(s.request.rate_hz);
     if (!period) return period.error();
     s.grid.period_ns = *period;
-    if (r.clock != "real" && r.clock != "virtual")
-        return Error{"--clock " + r.clock, "there is no such clock", "real or virtual"};
-    s.virtual_clock = r.clock == "virtual";
-    if (r.control && s.virtual_clock) return Error{"--control", "judges real time", "leave out --clock virtual"};
-    if (r.strict && s.virtual_clock) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
-    if (r.input_file == live_input && s.virtual_clock)
-        return Error{"--input devices", "are hands in real time", "leave out --clock virtual, or give a recording"};
-    if (!r.input_file.empty() && r.control)
-        return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
-    return r.endless ? read_endless(r) : Result<void>{};
+    return check_request(s.request);
 }
 
 /// Read first of all: a wrong steering file is found before a large model is opened.
@@ -79,6 +58,26 @@ Result<void> claim(Session& s) {
     return require_real_time(lacks);
 }
 
+/// `others`: cores beside the frame thread's.
+Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
+    const auto backend = gl::backend_named(r.backend);
+    if (!backend) return backend.error();
+    EngineOptions options;
+    options.device.kind = (*backend)->kind;
+    options.device.viewport = {r.width, r.height, r.shift_x, r.shift_y};
+    options.device.rasterisers = r.rasterisers;
+    options.device.sky = config::colour_of(r.sky);
+    options.device.null.cost_scale = r.cost_scale;
+    options.device.null.noise = r.cost_noise;
+    options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);
+    options.prepare.occlusion = r.occlusion;
+    options.selector = r.selector;
+    options.slice_us = r.slice_us;
+    options.hysteresis = static_cast<float>(r.hysteresis);
+    options.in_frame_check = r.in_frame_check;
+    return options;
+}
+
 Result<void> open_engine(Session& s, const Progress& progress) {
     const WalkRequest& r = s.request;
     tell(s, WalkStep::model);
@@ -93,30 +92,17 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     if (!path) return path.error();
     s.path = std::move(*path);
 
-    EngineOptions options;
-    auto kind = gl::parse_backend(r.backend);
-    if (!kind) return kind.error();
-    options.device.kind = *kind;
-    options.device.viewport = {r.width, r.height, r.shift_x, r.shift_y};
-    options.device.rasterisers = r.rasterisers;
-    options.device.sky = r.sky;
-    options.null.cost_scale = r.cost_scale;
-    options.null.noise = r.cost_noise;
     const int others = s.plan.all.count() - (s.plan.all.has(s.plan.frame_core) ? 1 : 0);
-    options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);
-    options.selector = r.selector;
-    options.slice_us = r.slice_us;
-    options.hysteresis = static_cast<float>(r.hysteresis);
-    options.in_frame_check = r.in_frame_check;
-    options.prepare.occlusion = r.occlusion;
+    auto options = engine_options(r, others);
+    if (!options) return options.error();
     tell(s, WalkStep::device);
     progress.say("open", 0.5);
-    auto engine = Engine::open(std::move(*model), s.costs, options);
+    auto engine = Engine::open(std::move(*model), s.costs, *options);
     if (!engine) return engine.error();
     s.engine = std::move(*engine);
     s.facts.renderer = s.engine->device().renderer();
     s.facts.machine = measure::machine_identity(s.facts.renderer, r.rasterisers);
-    if (s.costs.calibrated && *kind != gl::BackendKind::null && s.costs.machine != s.facts.machine) {
+    if (s.costs.calibrated && options->device.kind != gl::BackendKind::null && s.costs.machine != s.facts.machine) {
         s.facts.uncalibrated = "the cost table was measured on \"" + s.costs.machine + "\", this is \"" + s.facts.machine +
                                "\"; run `surefoot calibrate` here";
         if (r.strict) {

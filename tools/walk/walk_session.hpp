@@ -36,8 +36,7 @@ struct Session {
     WalkInput input_told;
     std::vector<std::string> notes;
     rt::Grid grid;
-    rt::LatePolicy late = rt::LatePolicy::lock;
-    bool virtual_clock = false;
+    const bool virtual_clock = request.clock == rt::ClockKind::virtual_time;
     std::uint64_t frames = 0;  ///< 0: until stopped
     std::vector<pid_t> rasterisers;
     std::vector<pid_t> on_frame_core;  ///< those of them that share the frame thread's core

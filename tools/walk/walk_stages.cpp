@@ -24,7 +24,9 @@ WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock
       prepared_(prepared),
       shots_(shots),
       kept_(kept),
-      options_(options) {}
+      options_(options),
+      request_(options.request),
+      virtual_clock_(options.request.clock == rt::ClockKind::virtual_time) {}
 
 void WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
     if (options_.inject == nullptr) return;
@@ -36,10 +38,10 @@ void WalkStages::sample(rt::FrameRecord& record) {
     inject(FramePhase::sample, record);
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
     // Beside a control the walk goes on where its last block ended: slots of the bare loop are no time of the path.
-    path_slot_ = options_.control ? walked_ : record.slot;
+    path_slot_ = request_.control ? walked_ : record.slot;
     const FramePose newest = pose_source_.sample(frame_time(record));
     const bool unseen = !now_.valid || newest.jumped;  // no frame has seen where this one's motion comes from
-    if (options_.virtual_clock) {
+    if (virtual_clock_) {
         // From what was known one frame ago, as the workers would; where the eye is put elsewhere, the input has told them.
         if (unseen) {
             now_.pose = newest.pose;
@@ -50,7 +52,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
         prepare_inline();
     }
     now_.before = unseen ? newest.before : now_.pose;
-    now_.dt_s = period_s * (1.0 + (options_.control || unseen ? 0 : record.skipped_before));
+    now_.dt_s = period_s * (1.0 + (request_.control || unseen ? 0 : record.skipped_before));
     now_.foresight = newest.foresight;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
@@ -91,7 +93,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     const prepare::PreparedFrame& set = prepared_.front();
     const std::uint64_t age = now_.frame - std::min(set.frame, now_.frame);
     record.prepared_age = static_cast<std::uint32_t>(age);
-    record.correction = static_cast<float>(options_.correct_costs ? controller_.factor() : 1.0);
+    record.correction = static_cast<float>(request_.correct_costs ? controller_.factor() : 1.0);
     record.budget_us = static_cast<float>(options_.budget_us);
     coarse_ = age > oldest_prepared || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
@@ -101,7 +103,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
     const double budget_us = std::max(0.0, options_.budget_us - spent_us);
     const Correction correction =
-        options_.correct_costs ? Correction{controller_.factor(), controller_.upper(engine_.costs().upper_factor)} : Correction{};
+        request_.correct_costs ? Correction{controller_.factor(), controller_.upper(engine_.costs().upper_factor)} : Correction{};
     const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
     record.floor_us = cut.floor_us;
     record.floor_binds = cut.floor_binds;
@@ -141,14 +143,14 @@ void WalkStages::submit(rt::FrameRecord& record) {
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
     limits.limit_us = options_.limit_us;
-    if (!options_.virtual_clock) {
+    if (!virtual_clock_) {
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
     }
     report_ = engine_.submit(now_.pose, limits);
     if (engine_.device().lost() && options_.lost != nullptr) options_.lost->store(true);
-    if (options_.virtual_clock) {
-        const double charged_us = report_.finished_us > 0 ? report_.finished_us : report_.predicted_us * options_.cost_scale;
+    if (virtual_clock_) {
+        const double charged_us = report_.finished_us > 0 ? report_.finished_us : report_.predicted_us * request_.cost_scale;
         static_cast<rt::VirtualClock&>(clock_).advance(static_cast<std::int64_t>(charged_us * 1e3));
         report_.finished_us = charged_us;
         report_.submitted_us = std::min(report_.submitted_us, charged_us);

@@ -19,14 +19,11 @@
 namespace surefoot::walk {
 
 struct WalkStagesOptions {
+    const WalkRequest& request;
     std::int64_t period_ns = 0;
     double budget_us = 0;  ///< of the whole frame, from its due time
     double limit_us = 0;   ///< of the in-frame check, from the due time
     double target_error_rad = 0;
-    bool correct_costs = true;
-    bool control = false;                 ///< bare blocks lie between: the path's time is counted in walked frames
-    bool virtual_clock = false;           ///< prepare inline, charge the device's virtual time
-    double cost_scale = 1;                ///< virtual clock with a device that charges nothing
     std::uint64_t capture_frame = ~0ULL;  ///< kept, or else (capture_missed) the first missed one that nobody has taken yet
     bool capture_missed = false;
     const FaultHook* inject = nullptr;  ///< null: no faults
@@ -35,7 +32,7 @@ struct WalkStagesOptions {
 
 class WalkStages final : public rt::FrameStages {
 public:
-    /// `clock` is the loop's; virtual_clock: a rt::VirtualClock. Everything must outlive this.
+    /// `clock` is the loop's; where the request's is virtual, a rt::VirtualClock. Everything must outlive this.
     WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
                rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
                const WalkStagesOptions& options);
@@ -62,6 +59,8 @@ private:
     ShotStore& shots_;
     KeptFrame& kept_;
     WalkStagesOptions options_;
+    const WalkRequest& request_;  ///< control: bare blocks lie between, the path's time is counted in walked frames
+    const bool virtual_clock_;    ///< prepare inline, charge the device's virtual time
     rt::CostController controller_;
     PoseSample now_;
     SubmitReport report_;

@@ -16,7 +16,7 @@ TEST(MonitoredWalk, TwentyInjectedStallsOfFiftyMillisecondsAreThereInFull) {
     constexpr std::uint64_t stalls = 20;
     constexpr std::int64_t stall_ns = 50'000'000;
     walk::WalkRequest request = test::Forest::get().virtual_request(300);
-    request.clock = "real";
+    request.clock = rt::ClockKind::real;
     request.rate_hz = 60;
 
     const auto telemetry = std::make_unique<rt::Telemetry>();

@@ -63,7 +63,7 @@ TEST(SteeredRealWalk, TenThousandReportsReachTheirFramesInTimeThroughTheInputThr
     if (rt::probe_capabilities(80).fifo_priority < 80)
         GTEST_SKIP() << "SCHED_FIFO 80 is refused here: run as root or with RLIMIT_RTPRIO";
     walk::WalkRequest request = test::steered_request(test::ten_thousand_events(), "real-events");
-    request.clock = "real";
+    request.clock = rt::ClockKind::real;
     walk::WalkOutcome outcome = test::walk(request);
     expect_lossless(outcome);
     // A host that steals from the input thread delays reports too: then it is walked again, up to twice.
@@ -99,7 +99,7 @@ TEST(SteeredRealWalk, AViewpointIsPreparedBeforeItIsShown) {
     session.report({});
     for (int i = 0; i < presses; ++i) session.press(GamepadSession::next_viewpoint).hold({}, 0.007 * i);
     walk::WalkRequest request = test::steered_request(session, "real-viewpoints");
-    request.clock = "real";
+    request.clock = rt::ClockKind::real;
     const walk::WalkOutcome outcome = test::walk(request);
     EXPECT_EQ(outcome.summary.input.jumps, static_cast<std::uint64_t>(presses));
     int coarse = 0;

@@ -1,0 +1,56 @@
+// The list of all backends, in the order in which people see them.
+#include "render/gl/backends.hpp"
+
+#include <array>
+#include <cassert>
+
+#include "render/gl/context.hpp"
+
+namespace surefoot::gl {
+
+namespace {
+
+using Options = const DeviceOptions&;
+
+constexpr std::array all = {
+    Backend{usual_backend, "EGL without a surface, on the driver that it finds first", BackendKind::egl,
+            [](Options) { return open_egl_surfaceless(); }},
+    Backend{"device", "EGL on the first device that it lists: a GPU without a display", BackendKind::device,
+            [](Options) { return open_egl_device(); }},
+    Backend{"window", "a window of the X server at $DISPLAY, the walk to be seen", BackendKind::window,
+            [](Options options) { return open_window(options.viewport, options.window_title); }},
+    Backend{"osmesa", "Mesa in memory: software, and no driver at all", BackendKind::osmesa,
+            [](Options) { return open_osmesa(); }},
+    Backend{"null", "draws nothing and charges the predicted cost", BackendKind::null, nullptr},
+};
+
+constexpr std::array absent = {Named{"kms", "is planned, and not in this version"}};
+
+}  // namespace
+
+std::span<const Backend> backends() { return all; }
+
+std::span<const Named> absent_backends() { return absent; }
+
+const Backend& backend_of(BackendKind kind) {
+    for (const Backend& backend : all)
+        if (backend.kind == kind) return backend;
+    assert(false);  // every kind has its entry: tests/gl
+    return all.back();
+}
+
+Result<const Backend*> backend_named(std::string_view name) {
+    if (const Backend* backend = find_named(all, name)) return backend;
+    const Named* known = find_named(absent, name);
+    return Error{"backend '" + std::string(name) + "'", std::string(known != nullptr ? known->help : "there is no such backend"),
+                 "one of: " + names_in_words(all)};
+}
+
+std::string drawing_backends() {
+    std::string text;
+    for (const Backend& backend : all)
+        if (backend.draws()) text += (text.empty() ? "" : ", ") + std::string(backend.name);
+    return text;
+}
+
+}  // namespace surefoot::gl

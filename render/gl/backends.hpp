@@ -1,0 +1,36 @@
+// The backends by name. Adding one is a file of this folder, its BackendKind, and an entry in backends.cpp; schema, help and
+// settings page follow.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "render/gl/device.hpp"
+#include "rt/base/named.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::gl {
+
+class Context;
+
+struct Backend {
+    std::string_view name, help;
+    BackendKind kind = BackendKind::null;
+    Result<std::unique_ptr<Context>> (*open)(const DeviceOptions& options) = nullptr;  ///< null: it draws nothing
+    [[nodiscard]] bool draws() const { return open != nullptr; }
+};
+
+constexpr std::string_view usual_backend = "egl";
+
+std::span<const Backend> backends();
+/// Names that are no backend of this version, and why.
+std::span<const Named> absent_backends();
+const Backend& backend_of(BackendKind kind);
+/// An unknown name is an Error that lists the known ones.
+Result<const Backend*> backend_named(std::string_view name);
+/// "egl, device, window, osmesa": those that draw pictures.
+std::string drawing_backends();
+
+}  // namespace surefoot::gl

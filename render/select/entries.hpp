@@ -1,0 +1,17 @@
+// Inside the select room: every selector's entry, for the registry.
+#pragma once
+
+#include "render/select/registry.hpp"
+
+namespace surefoot::select {
+
+extern const SelectorEntry flat_entry;
+extern const SelectorEntry by_distance_entry;
+extern const SelectorEntry depth_first_entry;
+extern const SelectorEntry best_first_entry;
+extern const SelectorEntry two_stage_entry;
+extern const SelectorEntry depth_first_1994_entry;
+extern const SelectorEntry best_first_1994_entry;
+extern const SelectorEntry two_stage_1994_entry;
+
+}  // namespace surefoot::select

@@ -1,0 +1,36 @@
+// The list of all selectors, in the order in which people see them.
+#include "render/select/registry.hpp"
+
+#include <array>
+#include <vector>
+
+#include "render/select/entries.hpp"
+
+namespace surefoot::select {
+
+std::span<const SelectorEntry> selectors() {
+    static const std::array all = {flat_entry,      by_distance_entry,      depth_first_entry,     best_first_entry,
+                                   two_stage_entry, depth_first_1994_entry, best_first_1994_entry, two_stage_1994_entry};
+    return all;
+}
+
+Result<const SelectorEntry*> selector_named(std::string_view name) {
+    if (const SelectorEntry* entry = find_named(selectors(), name)) return entry;
+    return Error{"selector '" + std::string(name) + "'", "there is no such selector", "one of: " + names_in_words(selectors())};
+}
+
+const Selector* find_selector(std::string_view name) {
+    const SelectorEntry* entry = find_named(selectors(), name);
+    return entry == nullptr ? nullptr : &entry->make();
+}
+
+std::span<const std::string_view> selector_names() {
+    static const std::vector<std::string_view> names = [] {
+        std::vector<std::string_view> out;
+        for (const SelectorEntry& entry : selectors()) out.push_back(entry.name);
+        return out;
+    }();
+    return names;
+}
+
+}  // namespace surefoot::select

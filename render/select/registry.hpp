@@ -1,0 +1,36 @@
+// The selectors by name: what may be asked of each, and how it is made. Adding one is a file of this folder, and its entry in
+// entries.hpp and registry.cpp; schema, help and settings page follow.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "render/select/select.hpp"
+#include "rt/base/named.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::select {
+
+/// What a selector goes by: full detail always, an angular threshold, or the frame's budget.
+enum class GoesBy : std::uint8_t { nothing, threshold, budget };
+
+struct SelectorEntry {
+    std::string_view name, help;
+    GoesBy goes_by = GoesBy::budget;
+    bool compared = true;  ///< by `surefoot accuracy` where nobody says which
+    const Selector& (*make)() = nullptr;
+};
+
+constexpr std::string_view usual_selector = "two-stage";
+constexpr std::string_view full_detail_selector = "flat";
+
+std::span<const SelectorEntry> selectors();
+/// An unknown name is an Error that lists the known ones.
+Result<const SelectorEntry*> selector_named(std::string_view name);
+
+/// Null for an unknown name.
+const Selector* find_selector(std::string_view name);
+std::span<const std::string_view> selector_names();
+
+}  // namespace surefoot::select

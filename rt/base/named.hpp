@@ -1,0 +1,40 @@
+// What the entries of every registry have: a name and one line of help. Found by name, listed for people, and handed to rooms
+// that know no other room's types.
+#pragma once
+
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace surefoot {
+
+struct Named {
+    std::string_view name, help;
+};
+
+/// The entry of this name; null where there is none.
+template <class Entries>
+auto find_named(const Entries& entries, std::string_view name) -> decltype(std::data(entries)) {
+    for (const auto& entry : entries)
+        if (entry.name == name) return &entry;
+    return nullptr;
+}
+
+/// Names and help alone, of entries that outlive them.
+template <class Entries>
+std::vector<Named> named(const Entries& entries) {
+    std::vector<Named> out;
+    for (const auto& entry : entries) out.push_back({entry.name, entry.help});
+    return out;
+}
+
+/// "flat, distance, two-stage".
+template <class Entries>
+std::string names_in_words(const Entries& entries) {
+    std::string text;
+    for (const auto& entry : entries) text += (text.empty() ? "" : ", ") + std::string(entry.name);
+    return text;
+}
+
+}  // namespace surefoot

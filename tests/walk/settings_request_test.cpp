@@ -1,0 +1,112 @@
+// From settings to a request: nothing is forgotten, what the command line names wins, and each rule is told by its option.
+#include "tools/walk/settings_request.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "render/engine.hpp"
+#include "render/gl/backends.hpp"
+#include "render/select/registry.hpp"
+
+namespace surefoot::walk {
+namespace {
+
+/// As a command line would write a value that is not the default.
+std::string another_value(const config::Entry& entry) {
+    const config::Settings& defaults = settings_schema().defaults();
+    switch (entry.kind) {
+        case config::Kind::flag:
+            return config::value_text(defaults, entry) == "true" ? "false" : "true";
+        case config::Kind::choice:
+            return std::string(entry.choices.back().name == config::choice_of(defaults, entry) ? entry.choices.front().name
+                                                                                               : entry.choices.back().name);
+        case config::Kind::colour:
+            return "#010203";
+        case config::Kind::file:
+            return "some.file";
+        case config::Kind::number:
+        case config::Kind::integer:
+            break;
+    }
+    return std::to_string(static_cast<long long>(entry.max));
+}
+
+TEST(SettingsRequest, EverySettingArrives) {
+    config::Configuration c(settings_schema());
+    for (const config::Entry& entry : settings_schema().entries()) {
+        ASSERT_TRUE(config::set_value(c, entry.key, another_value(entry)).ok()) << entry.key;
+        EXPECT_NE(config::value_text(c.values, entry), config::value_text(WalkRequest(), entry)) << entry.key;
+    }
+    WalkRequest request;
+    apply_settings(c, request);
+    for (const config::Entry& entry : settings_schema().entries())
+        EXPECT_EQ(config::value_text(request, entry), config::value_text(c.values, entry)) << entry.key;
+}
+
+TEST(SettingsRequest, FilesOfTheCommandLineWinAndThoseOfAFileAreRelativeToIt) {
+    config::Configuration c(settings_schema());
+    ASSERT_TRUE(config::load_text(c, "model = \"m.walk\"\npath = \"p.csv\"\ninput = \"devices\"\n", "/etc/surefoot/s.toml").ok());
+    WalkRequest request;
+    request.path_file = "mine.csv";
+    apply_settings(c, request);
+    EXPECT_EQ(request.model_file, "/etc/surefoot/m.walk");
+    EXPECT_EQ(request.path_file, "mine.csv");
+    EXPECT_EQ(request.input_file, live_input);
+    EXPECT_EQ(request.state_dir, "");
+}
+
+TEST(SettingsRequest, TheSchemaHoldsWhatTheRegistriesHold) {
+    const auto same = [](const config::Entry& entry, const std::vector<Named>& registry) {
+        ASSERT_EQ(entry.choices.size(), registry.size()) << entry.key;
+        for (std::size_t i = 0; i < registry.size(); ++i) {
+            EXPECT_EQ(entry.choices[i].name, registry[i].name);
+            EXPECT_EQ(entry.choices[i].help, registry[i].help);
+            EXPECT_NE(config::commented_defaults(settings_schema()).find(registry[i].help), std::string::npos);
+        }
+    };
+    same(*settings_schema().find("selector"), named(select::selectors()));
+    same(*settings_schema().find("backend"), named(gl::backends()));
+    EXPECT_EQ(WalkRequest().selector, EngineOptions().selector);
+    EXPECT_EQ((*gl::backend_named(WalkRequest().backend))->kind, EngineOptions().device.kind);
+}
+
+TEST(SettingsRequest, ABackendOfAnotherVersionIsRefusedByName) {
+    config::Configuration c(settings_schema());
+    const auto loaded = config::load_text(c, "backend = \"kms\"\n", "s.toml");
+    ASSERT_FALSE(loaded.ok());
+    EXPECT_EQ(loaded.error().place, "s.toml:1");
+    EXPECT_NE(loaded.error().what.find("not in this version"), std::string::npos) << loaded.error().text();
+    EXPECT_NE(loaded.error().what.find("egl"), std::string::npos) << loaded.error().text();
+}
+
+TEST(SettingsRequest, ARuleThatIsBrokenNamesItsOption) {
+    EXPECT_TRUE(check_request({}).ok());
+    const auto place = [](auto change) {
+        WalkRequest request;
+        change(request);
+        const auto checked = check_request(request);
+        return checked.ok() ? std::string("fine") : checked.error().place;
+    };
+    const auto on_virtual_time = [](WalkRequest& r) { r.clock = rt::ClockKind::virtual_time; };
+    EXPECT_EQ(place(on_virtual_time), "fine");
+    EXPECT_EQ(place([&](WalkRequest& r) { on_virtual_time(r), r.control = true; }), "--control");
+    EXPECT_EQ(place([&](WalkRequest& r) { on_virtual_time(r), r.strict = true; }), "--strict");
+    EXPECT_EQ(place([&](WalkRequest& r) { on_virtual_time(r), r.input_file = live_input; }), "--input devices");
+    EXPECT_EQ(place([](WalkRequest& r) { r.control = true, r.input_file = "a.hid"; }), "--control");
+    EXPECT_EQ(place([](WalkRequest& r) { r.control = true, r.frames = 5; }), "--frames");
+    EXPECT_EQ(place([](WalkRequest& r) { r.control = true, r.seconds = 5; }), "--seconds");
+    EXPECT_EQ(place([](WalkRequest& r) { r.cost_noise = 0.1; }), "--cost-noise");
+    EXPECT_EQ(place([&](WalkRequest& r) { on_virtual_time(r), r.cost_noise = 0.1; }), "--cost-noise");
+    EXPECT_EQ(place([&](WalkRequest& r) { on_virtual_time(r), r.cost_noise = 0.1, r.backend = "null"; }), "fine");
+    EXPECT_EQ(place([](WalkRequest& r) { r.steering_file = "s.toml"; }), "--steering");
+    EXPECT_EQ(place([](WalkRequest& r) { r.clear_stop = true; }), "--clear-stop");
+    EXPECT_EQ(place([](WalkRequest& r) { r.clear_stop = true, r.input_file = live_input; }), "fine");
+    EXPECT_EQ(place([](WalkRequest& r) { r.backend = "paper"; }), "backend 'paper'");
+    EXPECT_EQ(place([](WalkRequest& r) { r.endless = true, r.frames = 5; }), "a walk without end");
+    EXPECT_EQ(place([](WalkRequest& r) { r.endless = true, r.ledger_file = "l.csv"; }), "a walk without end");
+}
+
+}  // namespace
+}  // namespace surefoot::walk
