@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "input/devices/discoverer.hpp"
+#include "input/gpio/line_opener.hpp"
 #include "render/gl/device.hpp"
 #include "rt/threads/capability.hpp"
 
@@ -142,8 +143,10 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
         const rt::Placement input = input_placement(plan);
         table.push_back({.name = input.name, .policy = input.policy, .priority = input.priority, .cpus = input.cpus});
     }
-    if (real_clock && plan.devices)
+    if (real_clock && plan.devices) {
         table.push_back({.name = input::devices_thread_name, .policy = rt::Policy::other, .cpus = plan.all});
+        table.push_back({.name = input::lines_thread_name, .policy = rt::Policy::other, .cpus = plan.all, .min_count = 0});
+    }
     if (real_clock) {
         const rt::Placement prepare = prepare_placement(plan);
         table.push_back({.name = prepare.name, .policy = prepare.policy, .priority = prepare.priority, .cpus = prepare.cpus});
