@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "render/import/scene.hpp"
+#include "render/image/image.hpp"
 #include "render/measure/image_metrics.hpp"
 
 namespace surefoot::walk {
