@@ -33,7 +33,8 @@ LiveSource::LiveSource(LiveOptions options, std::unique_ptr<DeviceSource> device
       devices_(std::move(devices)) {
     log_.reserve(options_.stamps);
     if (!options_.lines.empty())
-        panel_.emplace(options_.lines, options_.mappings, options_.open_lines, options_.lines_context, say_);
+        panel_.emplace(options_.lines, options_.mappings, options_.open_lines, options_.lines_context, say_,
+                       options_.lines_opened);
 }
 
 void LiveSource::begin(Steering& steering, std::int64_t start_ns) {

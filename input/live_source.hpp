@@ -1,7 +1,7 @@
 // Live devices as the source of a walk's reports: the finder beside, the attendant between, wired switches with them.
 //
 //   sf-devices: finds, opens, maps ─► LiveDevices ─► Attendant ─┐
-//   GPIO lines ─► GpioPanel ─► PanelDevice ─────────────────────┴► Steering           notes ─► ring ─► whoever prints
+//   sf-lines: opens ─► GpioPanel ─► PanelDevice ────────────────┴► Steering           notes ─► ring ─► whoever prints
 #pragma once
 
 #include <atomic>
@@ -22,6 +22,7 @@ struct LiveOptions {
     std::vector<LineConfig> lines;        ///< must have passed check_lines
     OpenLines open_lines = input::open_lines;
     void* lines_context = nullptr;
+    Opening lines_opened = Opening::beside;
     std::size_t stamps = std::size_t{1} << 20U;  ///< of so many reports the age is kept: 17 minutes at 1 kHz
 };
 

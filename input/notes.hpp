@@ -24,17 +24,26 @@ struct NoteLine {
 using Say = std::function<void(std::string_view)>;
 
 template <class... T>
-void tell(const Say& say, fmt::format_string<T...> format, T&&... what) {
-    if (!say) return;
+NoteLine noted(fmt::format_string<T...> format, T&&... what) {
     NoteLine line;
     const auto end = fmt::format_to_n(line.text.data(), line.text.size(), format, std::forward<T>(what)...);
     line.size = std::min(end.size, line.text.size());
-    say(line.view());
+    return line;
+}
+
+/// As Error::text().
+inline NoteLine noted(const Error& error) {
+    if (error.remedy.empty()) return noted("{}: {}", error.place, error.what);
+    return noted("{}: {} ({})", error.place, error.what, error.remedy);
+}
+
+template <class... T>
+void tell(const Say& say, fmt::format_string<T...> format, T&&... what) {
+    if (say) say(noted(format, std::forward<T>(what)...).view());
 }
 
 inline void tell(const Say& say, const Error& error) {
-    if (error.remedy.empty()) return tell(say, "{}: {}", error.place, error.what);
-    tell(say, "{}: {} ({})", error.place, error.what, error.remedy);
+    if (say) say(noted(error).view());
 }
 
 }  // namespace surefoot::input

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <array>
 
+#include "rt/threads/guard.hpp"
+
 namespace surefoot::input {
 
 namespace {
 
-constexpr std::size_t max_lines = 64;  // what one request may hold in the kernel
 constexpr std::size_t edges_at_once = 64;
 constexpr int drains_a_service = 64;  // a line that toggles for ever must not hold us for ever
 
@@ -59,17 +60,13 @@ Result<void> check_lines(std::span<const LineConfig> lines) {
     return {};
 }
 
-GpioPanel::GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* context, std::string consumer)
-    : configs_(std::move(lines)),
-      open_(opener),
-      context_(context),
-      consumer_(std::move(consumer)),
-      state_of_(configs_.size()),
-      levels_(std::make_unique<bool[]>(std::max<std::size_t>(1, configs_.size()))) {
+GpioPanel::GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* context, Opening where)
+    : configs_(std::move(lines)), state_of_(configs_.size()) {
+    LinesToOpen to_open{{}, opener, context, "surefoot"};
     for (std::size_t i = 0; i < configs_.size(); ++i) {
         LineConfig& config = configs_[i];
         if (config.role == LineRole::stop) config.normally_closed = true;
-        requests_.push_back(config.request);
+        to_open.requests.push_back(config.request);
         if (config.role == LineRole::button) {
             state_of_[i].control = controls_.size();
             controls_.push_back(control_of(config));
@@ -83,27 +80,34 @@ GpioPanel::GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* cont
             }
         controls_.push_back(control_of(config));
     }
+    opener_ = make_line_opener(std::move(to_open), where);
 }
 
-std::span<const pollfd> GpioPanel::polled() const { return lines_ ? lines_->polled() : std::span<const pollfd>{}; }
+std::span<const pollfd> GpioPanel::polled() const { return opened_ ? opened_->lines->polled() : std::span<const pollfd>{}; }
 
 bool GpioPanel::asserted_by(std::size_t line, bool active) const { return active != configs_[line].normally_closed; }
 
 void GpioPanel::service(std::int64_t now_ns) {
-    if (!lines_) try_open(now_ns);
-    if (lines_ && drain(now_ns)) publish(now_ns);
+    if (!opened_) take_opened(now_ns);
+    if (opened_ && drain(now_ns)) publish(now_ns);
 }
 
-void GpioPanel::try_open(std::int64_t now_ns) {
-    if (configs_.empty() || !retry_.due(now_ns)) return;
-    auto opened = open_(requests_, consumer_, context_);
-    if (!opened) return close(opened.error(), now_ns);
-    lines_ = std::move(*opened);
-    const auto read = lines_->levels({levels_.get(), configs_.size()});
-    if (!read) return close(read.error(), now_ns);
-    retry_.succeeded();
-    problem_.clear();
+void GpioPanel::take_opened(std::int64_t now_ns) {
+    while (auto made = opener_->next(now_ns)) {
+        if (made->lines) {
+            opened_ = std::move(made);
+            return start();
+        }
+        problem_ = noted(made->error);
+        was_closed_ = true;
+        opener_->give_back(std::move(made), now_ns);
+    }
+}
+
+void GpioPanel::start() {
+    problem_.size = 0;
     ++opens_;
+    levels_ = opened_->levels;
     for (std::size_t i = 0; i < configs_.size(); ++i) {
         Line& line = state_of_[i];
         const auto lost = line.contact.lost_edges;
@@ -119,10 +123,10 @@ void GpioPanel::try_open(std::int64_t now_ns) {
     }
 }
 
-void GpioPanel::close(const Error& error, std::int64_t now_ns) {
-    lines_.reset();
-    retry_.failed(now_ns);
-    problem_ = error.text();
+/// With the reason that ask_library() has left.
+void GpioPanel::close(std::int64_t now_ns) {
+    problem_ = noted(opened_->error);
+    opener_->give_back(std::move(opened_), now_ns);
     was_closed_ = true;
     state_.connected = false;
     state_.has_value.reset();
@@ -133,19 +137,33 @@ void GpioPanel::close(const Error& error, std::int64_t now_ns) {
     }
 }
 
+/// Only this is the library's. False, and the reason kept: the chip is gone.
+template <class Read>
+bool GpioPanel::ask_library(const Read& read) {
+    const rt::DriverScope library;
+    const auto done = read(*opened_->lines);
+    if (!done) opened_->error = done.error();
+    return done.ok();
+}
+
 bool GpioPanel::drain(std::int64_t now_ns) {
     std::array<LineEdge, edges_at_once> edges;
     for (int i = 0; i < drains_a_service; ++i) {
-        const auto count = lines_->read(edges);
-        if (!count) {
-            close(count.error(), now_ns);
+        std::size_t count = 0;
+        const bool there = ask_library([&](GpioLines& lines) {
+            auto got = lines.read(edges);
+            count = got ? std::min(*got, edges.size()) : 0;
+            return got;
+        });
+        if (!there) {
+            close(now_ns);
             return false;
         }
-        for (std::size_t k = 0; k < *count && k < edges.size(); ++k) take(edges[k]);
-        if (*count < edges.size()) break;
+        for (std::size_t k = 0; k < count; ++k) take(edges[k]);
+        if (count < edges.size()) break;
     }
-    if (const auto read = lines_->levels({levels_.get(), configs_.size()}); !read) {
-        close(read.error(), now_ns);
+    if (!ask_library([&](GpioLines& lines) { return lines.levels({levels_.data(), configs_.size()}); })) {
+        close(now_ns);
         return false;
     }
     for (std::size_t i = 0; i < configs_.size(); ++i) {

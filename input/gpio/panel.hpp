@@ -2,17 +2,20 @@
 // bounce, lose edges or vanish.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "input/controls.hpp"
 #include "input/gpio/debounce.hpp"
+#include "input/gpio/line_opener.hpp"
 #include "input/gpio/lines.hpp"
 #include "input/gpio/quadrature.hpp"
-#include "input/retry.hpp"
+#include "input/notes.hpp"
 #include "input/safety/safety.hpp"
 
 namespace surefoot::input {
@@ -30,13 +33,17 @@ struct LineConfig {
 /// Names are unique but for encoders, encoders have two lines of one chip, at most 64 lines. Error: the line's name and what.
 Result<void> check_lines(std::span<const LineConfig> lines);
 
-/// Reads the lines; one thread. Only opening allocates.
+/// Reads the lines; one thread. What the GPIO library needs to read them, or to say that it cannot, is counted as the driver's;
+/// nothing else allocates, where the lines are opened beside.
 class GpioPanel {
 public:
     /// `lines` must have passed check_lines. `opener` and `context`: open_lines, or a fake.
-    GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* context, std::string consumer = "surefoot");
+    GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* context, Opening where = Opening::here);
 
-    /// Call when a polled descriptor is readable and at every tick: opens and reopens, drains, reads levels again, settles.
+    /// Returns when the lines have been tried once.
+    void wait_for_first_try() { opener_->wait_for_first(); }
+    /// Call when a polled descriptor is readable and at every tick: takes lines that were opened, drains, reads levels again,
+    /// settles.
     void service(std::int64_t now_ns);
 
     /// For safety/; its "since the last step" parts begin anew. While the chip is gone: stop asserted, dead-man not held. Closed
@@ -48,8 +55,8 @@ public:
     [[nodiscard]] const DeviceState& state() const { return state_; }
     [[nodiscard]] std::span<const pollfd> polled() const;
 
-    [[nodiscard]] bool open() const { return lines_ != nullptr; }
-    [[nodiscard]] const std::string& problem() const { return problem_; }  ///< of the last failure; changes only when it does
+    [[nodiscard]] bool open() const { return opened_ != nullptr; }
+    [[nodiscard]] std::string_view problem() const { return problem_.view(); }  ///< of the last failure; empty: open
     [[nodiscard]] std::uint64_t lost_edges() const;
     [[nodiscard]] std::uint64_t illegal_steps() const;
     [[nodiscard]] std::uint64_t opens() const { return opens_; }
@@ -66,8 +73,11 @@ private:
         std::size_t a = 0, b = 0, control = 0;
         std::int64_t reported = 0;
     };
-    void try_open(std::int64_t now_ns);
-    void close(const Error& error, std::int64_t now_ns);
+    void take_opened(std::int64_t now_ns);
+    void start();
+    void close(std::int64_t now_ns);
+    template <class Read>
+    bool ask_library(const Read& read);
     bool drain(std::int64_t now_ns);
     void take(const LineEdge& edge);
     void turn(std::size_t line);
@@ -75,17 +85,14 @@ private:
     [[nodiscard]] bool asserted_by(std::size_t line, bool active) const;
 
     std::vector<LineConfig> configs_;
-    std::vector<LineRequest> requests_;
-    OpenLines open_;
-    void* context_;
-    std::string consumer_, problem_;
-    std::unique_ptr<GpioLines> lines_;
-    Retry retry_;
+    std::unique_ptr<LineOpener> opener_;
+    std::unique_ptr<OpenedLines> opened_;  ///< null, or with lines
+    NoteLine problem_;
     std::vector<Line> state_of_;
     std::vector<Encoder> encoders_;
     std::vector<ControlInfo> controls_;
     DeviceState state_;
-    std::unique_ptr<bool[]> levels_;
+    std::array<bool, max_lines> levels_{};
     std::uint64_t opens_ = 0;
     bool was_closed_ = true;  ///< since the last take_lines()
 };

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "rt/threads/guard.hpp"
-
 namespace surefoot::input {
 
 namespace {
@@ -46,8 +44,8 @@ DeviceMapping panel_mapping(std::span<const DeviceMapping> mappings, std::span<c
 }
 
 PanelDevice::PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context,
-                         Say say)
-    : panel_(std::move(lines), opener, context), say_(std::move(say)) {
+                         Say say, Opening where)
+    : panel_(std::move(lines), opener, context, where), say_(std::move(say)) {
     const DeviceMapping mapping = panel_mapping(mappings, panel_.controls());
     mapping_ = mapping.name;
     mapper_ = compile_what_fits(mapping, panel_.controls());
@@ -57,17 +55,17 @@ PanelDevice::PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMa
 
 /// A stop that is asserted because the chip is missing must be explained: nobody has pressed anything.
 void PanelDevice::service(std::int64_t now_ns) {
-    const rt::DriverScope library;
     panel_.service(now_ns);
-    if (panel_.problem() == said_) return;
-    said_ = panel_.problem();
-    if (said_.empty())
+    if (panel_.problem() == said_.view()) return;
+    said_ = noted("{}", panel_.problem());
+    if (said_.size == 0)
         tell(say_, "{}: its lines are there", panel_name);
     else
-        tell(say_, "{}: {}; tried again by itself, a stop among its lines is asserted until then", panel_name, said_);
+        tell(say_, "{}: {}; tried again by itself, a stop among its lines is asserted until then", panel_name, said_.view());
 }
 
 void PanelDevice::open() {
+    panel_.wait_for_first_try();
     service(0);
     (void)panel_.take_lines();  // that the lines were closed until now is no broken wire
 }

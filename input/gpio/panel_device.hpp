@@ -21,21 +21,23 @@ constexpr std::string_view panel_name = "gpio panel";
 /// named so, the default of a box of buttons.
 DeviceMapping panel_mapping(std::span<const DeviceMapping> mappings, std::span<const ControlInfo> controls);
 
-/// The input thread's. While the chip stays, step() neither allocates nor locks. Opening it, and losing it, is the GPIO library's
-/// business and counted as the driver's; a chip that is missing is tried again after 0.1 to 2 s.
+/// The input thread's. step() neither allocates nor locks, whether the chip is there, missing, lost or found again, where its
+/// lines are opened beside; what the GPIO library needs to read them is counted as the driver's. A chip that is missing is tried
+/// again after 0.1 to 2 s.
 class PanelDevice {
 public:
     /// `lines` must have passed check_lines. `say` is told of each new trouble, and when it is over.
-    PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context, Say say);
+    PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context, Say say,
+                Opening where);
 
-    /// The first try, before the input thread starts: where the lines are there, that thread opens nothing.
+    /// The first try, before the input thread starts.
     void open();
 
     struct Step {
         Lines lines;
         bool reported = false;  ///< a button or encoder moved
     };
-    /// Opens where it must, reads all, reports to `steering`, attaches and detaches there as the chip comes and goes.
+    /// Takes lines that were opened, reads all, reports to `steering`, attaches and detaches there as the chip comes and goes.
     Step step(Steering& steering, std::int64_t now_ns);
 
     [[nodiscard]] std::span<const pollfd> polled() const { return panel_.polled(); }
@@ -48,7 +50,8 @@ private:
 
     GpioPanel panel_;
     Say say_;
-    std::string mapping_, said_;
+    std::string mapping_;
+    NoteLine said_;
     Mapper mapper_, spare_;  ///< one of them is in the steering once it was attached
     bool attached_once_ = false;
     int number_ = -1, known_ = -1;  ///< Steering's, now and ever

@@ -1,6 +1,7 @@
 // What a device is for, from its application collections and usable elements alone (devices.md 2, rules 11 and 12).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "input/hid/device.hpp"
@@ -85,6 +86,15 @@ bool any_input(const Layout& layout) {
     return false;
 }
 
+/// Every input stands in applications that name nothing, and some of it is numbered buttons: button boxes with firmware of their
+/// own leave the application undefined. Axes in such a device do not steer: nothing says what they measure.
+std::uint32_t nameless_buttons(const Layout& layout, const std::vector<Element>& elements) {
+    for (const Field& f : layout.fields)
+        if (f.kind == ReportKind::input && application_of(application_usage(layout, f.collection)) != Application::none) return 0;
+    return static_cast<std::uint32_t>(
+        std::count_if(elements.begin(), elements.end(), [](const Element& e) { return e.usage >> 16U == page::button; }));
+}
+
 }  // namespace
 
 std::uint32_t application_usage(const Layout& layout, std::uint32_t collection) {
@@ -125,6 +135,8 @@ Verdict classify(const Layout& layout, const std::vector<Element>& elements, boo
         return {DeviceClass::buttons,
                 fmt::format("a {} without a usable axis: {}", name_of(layout, Application::steering), steering.text())};
     }
+    if (Count box{.buttons = nameless_buttons(layout, elements)}; box.buttons > 0)
+        return {DeviceClass::buttons, fmt::format("a box that names no application, with {}", box.text())};
     if (!any_input(layout)) return {DeviceClass::reject, "it declares no input that has a usage"};
     if (declared) {
         return {

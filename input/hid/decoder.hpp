@@ -3,8 +3,8 @@
 // What it does as the kernel (hid-core, hid-input): sign extension only where the logical minimum is below zero;
 // values outside the logical range are clamped, or no value at all where the field has a null state; arrays are lists of
 // what is pressed, absence is release, a roll-over code leaves the array's last state. What it does otherwise, on purpose:
-//   - short, long and undeclared reports change nothing (the kernel fills short ones with zeros: full deflection on an
-//     unsigned axis) and are counted;
+//   - short, long and undeclared reports change nothing and are counted (the kernel cuts long ones; short ones it drops too,
+//     but for older kernels, which fill them with zeros: full deflection on an unsigned axis);
 //   - a null state of an axis or button is "no value", where evdev keeps the last one;
 //   - a hat is 0..7 and centred for *any* value outside its range (the kernel's division rounds some to north).
 #pragma once

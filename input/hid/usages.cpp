@@ -143,6 +143,7 @@ Application application_of(std::uint32_t usage) {
         case 0:
             return Application::none;
         case page::generic_desktop:
+            if (u == 0) return Application::none;  // "Undefined" in the tables
             if (u == 0x04 || u == 0x05 || u == 0x08) return Application::steering;
             if (u == 0x01 || u == 0x02) return Application::mouse;
             if (u == 0x06 || u == 0x07) return Application::keyboard;

@@ -10,7 +10,7 @@ namespace surefoot::input {
 
 namespace {
 
-constexpr double longest_step_s = 0.05;               // after a stall the slew does not leap
+constexpr double longest_slew_s = 0.05;               // after a stall the slew does not leap
 constexpr std::int64_t brake_window_ns = 50'000'000;  // for so long after a loss the motion brakes
 
 bool asks(const Wish& w) { return w.forward != 0 || w.side != 0 || w.up != 0 || w.turn != 0 || w.look != 0; }
@@ -104,7 +104,7 @@ Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Sou
              std::int64_t now_ns) {
     const auto sources = all.first(std::min(all.size(), max_devices));
     const std::int64_t passed = state.last_ns < 0 ? 0 : std::max<std::int64_t>(0, now_ns - state.last_ns);
-    const double dt_s = std::min(static_cast<double>(passed) * 1e-9, longest_step_s);
+    const double dt_s = std::min(static_cast<double>(passed) * 1e-9, longest_slew_s);
     const std::int64_t now = state.last_ns = std::max(state.last_ns, now_ns);
 
     std::array<Wish, max_devices> passing{};

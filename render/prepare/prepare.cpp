@@ -5,20 +5,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <memory>
-#include <optional>
 
 #include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/occlusion.hpp"
 #include "render/prepare/passes.hpp"
 #include "render/prepare/prepared.hpp"
 #include "render/prepare/visibility.hpp"
+#include "render/prepare/workers.hpp"
 #include "rt/base/fork_join.hpp"
 
 namespace surefoot::prepare {
@@ -72,8 +68,7 @@ struct Preparer::Impl {
     Evaluator evaluator;
     Occluders occluders;
     Occlusion occlusion;
-    std::optional<tbb::global_control> more_than_cores;  ///< else the library caps its threads, and says so on stderr
-    std::unique_ptr<tbb::task_arena> arena;              ///< none: one worker, the caller
+    Workers workers;
 
     std::vector<Visit> visits;
     std::vector<Visit> slots;  ///< children of a block of parents, before they are closed up
@@ -105,7 +100,8 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
       options(o),
       evaluator(m, c),
       occluders(o.occlusion ? find_occluders(m) : Occluders{}),
-      occlusion(occluders) {
+      occlusion(occluders),
+      workers(o.workers, o.worker_hooks) {
     options.max_candidates = std::max(1U, options.max_candidates);
     std::uint32_t most_children = 0, most_reps = 1;
     for (const model::Node& node : m.nodes) {
@@ -126,14 +122,11 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     chunk_candidate.resize(chunks);
     chunk_count.resize(chunks);
     weights.resize(most);
-    if (options.workers > tbb::info::default_concurrency()) {
-        more_than_cores.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.workers));
-    }
-    if (options.workers > 1) arena = std::make_unique<tbb::task_arena>(options.workers);
 }
 
 template <class Body>
 void Preparer::Impl::for_chunks(std::uint32_t count, const Body& body) {
+    tbb::task_arena* const arena = workers.arena();
     if (arena == nullptr || count < 2) {
         for (std::uint32_t i = 0; i < count; ++i) body(i);
         return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -66,15 +67,23 @@ struct PreparedFrame {
     double wall_us = 0;
 };
 
+/// Called on worker threads, not on the one that calls run(); several at a time.
+struct WorkerHooks {
+    std::function<void(int number)> on_start;  ///< as a worker starts, before its first task; numbers from 1
+    std::function<void()> on_first_task;       ///< then, once, within its first task
+    [[nodiscard]] bool any() const { return on_start || on_first_task; }
+};
+
 /// Limits and weights of preparation, fixed when the Preparer is made.
 struct PrepareOptions {
     double target_error_rad = 0;  ///< do not open nodes whose error is below this (0: an eighth of a pixel)
     std::uint32_t max_candidates = 1U << 18U;
     std::uint32_t max_choices = 1U << 20U;
     double focus_strength = 0.5;  ///< 0: periphery counts as the centre
-    int workers = 1;
-    bool occlusion = true;    ///< leave out what is hidden from the whole region
-    bool full_depth = false;  ///< go down to the leaves, whatever their error (reference pictures, `flat`)
+    int workers = 1;              ///< the caller of run() among them
+    WorkerHooks worker_hooks;     ///< where given, the workers start with the Preparer; else as they are first wanted
+    bool occlusion = true;        ///< leave out what is hidden from the whole region
+    bool full_depth = false;      ///< go down to the leaves, whatever their error (reference pictures, `flat`)
     /// Where a frame looked at more nodes than this, the next ones raise the error below which nodes are not opened, by a
     /// tenth a frame or more, and lower it again when there is room: bounds the CPU time on any model (a visit takes about
     /// 0.2 us, and 0.1 more where something may hide it, so that this is 4 to 6 ms). 0: no limit.

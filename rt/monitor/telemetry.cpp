@@ -15,13 +15,14 @@ constexpr std::int64_t us = 1000, ms = 1'000'000;
 constexpr std::array<std::int64_t, 19> round_edges_ns = {
     10 * us, 20 * us, 50 * us,  100 * us, 200 * us, 500 * us,  1 * ms,    2 * ms,    5 * ms,     10 * ms,
     20 * ms, 50 * ms, 100 * ms, 200 * ms, 500 * ms, 1000 * ms, 2000 * ms, 5000 * ms, 10'000 * ms};
-static_assert(round_edges_ns.size() + 4 == Edges::most);
+static_assert(round_edges_ns.size() + 8 == Edges::most);
 
 }  // namespace
 
 Edges::Edges(std::int64_t period_ns) {
     std::copy(round_edges_ns.begin(), round_edges_ns.end(), edges_ns_.begin());
-    const std::array<std::int64_t, 4> of_period = {period_ns / 4, period_ns / 2, period_ns, 2 * period_ns};
+    const std::array<std::int64_t, 8> of_period = {period_ns / 4,       period_ns / 2, period_ns / 4 * 3, period_ns / 8 * 7,
+                                                   period_ns / 16 * 15, period_ns,     period_ns / 4 * 5, period_ns * 2};
     std::copy(of_period.begin(), of_period.end(), edges_ns_.begin() + round_edges_ns.size());
     std::sort(edges_ns_.begin(), edges_ns_.end());
     count_ = static_cast<std::size_t>(std::unique(edges_ns_.begin(), edges_ns_.end()) - edges_ns_.begin());

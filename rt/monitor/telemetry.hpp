@@ -14,10 +14,11 @@
 
 namespace surefoot::rt {
 
-/// Upper edges of exact cumulative counts, rising, without doubles: round times from 10 us to 10 s and T/4, T/2, T, 2T.
+/// Upper edges of exact cumulative counts, rising, without doubles: round times from 10 us to 10 s and
+/// T/4, T/2, 3T/4, 7T/8, 15T/16, T, 5T/4, 2T: fine where a frame is about to be late.
 class Edges {
 public:
-    static constexpr std::size_t most = 23;
+    static constexpr std::size_t most = 27;
     Edges() : Edges(16'666'667) {}
     explicit Edges(std::int64_t period_ns);
     [[nodiscard]] std::span<const std::int64_t> ns() const { return {edges_ns_.data(), count_}; }

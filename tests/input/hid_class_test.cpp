@@ -58,6 +58,22 @@ TEST(HidClass, AJoystickThatForgotItsApplicationIsOne) {
     EXPECT_EQ(d.device_class, DeviceClass::navigation) << d.reason;
 }
 
+TEST(HidClass, AButtonBoxMayLeaveItsApplicationUndefined) {
+    // Usage 0 of Generic Desktop, 32 buttons: a real device (1fd1:03ea).
+    const std::string head = "05 01 09 00 a1 01 ", buttons = "05 09 19 01 29 20 15 00 25 01 95 20 75 01 81 02 ";
+    const auto of = [](const std::string& text) { return describe_device(layout_of(hex(text)), {0x1fd1, 0x03ea}); };
+    const HidDevice box = of(head + buttons + "c0");
+    EXPECT_EQ(box.device_class, DeviceClass::buttons) << box.reason;
+    EXPECT_EQ(box.reason, "a box that names no application, with 32 buttons");
+    EXPECT_EQ(box.controls.size(), 32U);
+    EXPECT_EQ(of("a1 01 " + buttons + "c0").device_class, DeviceClass::buttons) << "no usage at all";
+    // What has nothing but axes there says nothing of what they measure; a mouse or keyboard beside it is what the device is.
+    EXPECT_EQ(of(head + "09 30 09 31 15 00 26 ff 00 75 08 95 02 81 02 c0").device_class, DeviceClass::reject);
+    const std::string mouse = "05 01 09 02 a1 01 09 30 09 31 15 81 25 7f 75 08 95 02 81 06 c0";
+    EXPECT_EQ(of(head + buttons + "c0 " + mouse).device_class, DeviceClass::reject);
+    EXPECT_EQ(of("06 00 ff 09 01 a1 01 " + buttons + "c0").device_class, DeviceClass::reject) << "a vendor's own";
+}
+
 TEST(HidClass, TrackballsAreTold) {
     const Recording mouse = recorded("boot-mouse"), shaped = recorded("trackball-constant-buttons");
     const auto of = [](const Recording& r, DeviceId id) { return describe_device(layout_of(r.descriptor), id).device_class; };

@@ -1,81 +1,17 @@
-// The corpus of real devices beside the project ($SUREFOOT_DATA/hid): every descriptor against the kernel's own dump.
-#include <cctype>
-#include <cstdlib>
-#include <fstream>
-#include <iostream>
-#include <map>
-#include <regex>
+// Descriptors of real devices: layout against the kernel's dump, class and controls against the index.
+#include "tests/input/hid_corpus.hpp"
 
-#include "rt/base/file.hpp"
-#include "tests/input/hid_test.hpp"
+#include <algorithm>
+#include <iostream>
+
+#include "tests/input/kernel_dump.hpp"
 
 namespace surefoot::input {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// One field as debugfs rdesc prints it; ranges without extent are not printed there.
-struct Dumped {
-    std::int64_t kind = 0, id = 0, offset = 0, size = 0, count = 0, logical_min = 0, logical_max = 0, physical_min = 0,
-                 physical_max = 0, exponent = 0, flags = 0;
-    bool operator==(const Dumped&) const = default;
-};
-struct DumpedField {
-    Dumped numbers;
-    std::vector<std::string> usages;
-};
-
-std::int64_t flags_of(const std::string& text) {
-    static const std::pair<const char*, std::int64_t> words[] = {{"Constant", 1},   {"Variable", 2},   {"Relative", 4},
-                                                                 {"Wrap", 8},       {"NonLinear", 16}, {"NoPreferredState", 32},
-                                                                 {"NullState", 64}, {"Volatile", 128}, {"BufferedByte", 256}};
-    std::int64_t flags = 0;
-    for (const auto& [word, bit] : words)
-        if (text.find(word) != std::string::npos) flags |= bit;
-    return flags;
-}
-
-std::vector<DumpedField> read_dump(const fs::path& file) {
-    std::ifstream stream(file);
-    std::vector<DumpedField> fields;
-    std::int64_t kind = -1, id = 0;
-    int usages_left = 0;
-    static const std::regex report(R"(^\s*(INPUT|OUTPUT|FEATURE)(?:\((\d+)\))?\[)"), item(R"(^\s*([A-Z][A-Za-z ]*)\((.*)\)\s*$)");
-    for (std::string line; std::getline(stream, line);) {
-        std::smatch m;
-        if (usages_left > 0) {
-            const auto from = line.find_first_not_of(' ');
-            fields.back().usages.push_back(from == std::string::npos ? "" : line.substr(from));
-            --usages_left;
-        } else if (std::regex_search(line, m, report)) {
-            kind = m[1] == "INPUT" ? 0 : m[1] == "OUTPUT" ? 1 : 2;
-            id = m[2].matched ? std::stoll(m[2]) : 0;
-        } else if (std::regex_match(line, m, item)) {
-            const std::string key = m[1], value = m[2];
-            const auto number = [&] { return std::strtoll(value.c_str(), nullptr, 10); };
-            if (key == "Field" && kind >= 0) {
-                fields.push_back({});
-                fields.back().numbers.kind = kind;
-                fields.back().numbers.id = id;
-            }
-            if (fields.empty()) continue;
-            Dumped& f = fields.back().numbers;
-            if (key == "Usage") usages_left = static_cast<int>(number());
-            if (key == "Logical Minimum") f.logical_min = number();
-            if (key == "Logical Maximum") f.logical_max = number();
-            if (key == "Physical Minimum") f.physical_min = number();
-            if (key == "Physical Maximum") f.physical_max = number();
-            if (key == "Unit Exponent") f.exponent = number();
-            if (key == "Report Size") f.size = number();
-            if (key == "Report Count") f.count = number();
-            if (key == "Report Offset") f.offset = number();
-            if (key == "Flags") f.flags = flags_of(value);
-        }
-    }
-    return fields;
-}
-
-Dumped as_dumped(const Field& f) {
+DumpedNumbers as_dumped(const Field& f) {
     const bool range = f.logical_min != f.logical_max, physical = f.physical_min != f.physical_max;
     return {std::int64_t(f.kind),
             f.report_id,
@@ -90,57 +26,135 @@ Dumped as_dumped(const Field& f) {
             f.flags & 0x1ff};
 }
 
-/// The descriptor beside a dump: a binary of a likely name, or an R: line.
-std::vector<std::byte> descriptor_beside(const fs::path& dump) {
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(dump.parent_path())) files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    for (const auto& file : files) {
-        if (file.extension() != ".bin" && file.extension() != ".hid") continue;
-        auto bytes = read_file(file, max_recording_bytes);
-        if (!bytes) continue;
-        if (!looks_like_recording(*bytes)) return *bytes;
-        auto r = parse_recording({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file);
-        if (r && !r->descriptor.empty()) return r->descriptor;
+/// The kernel prints names, not numbers. A name and its number must stand for each other everywhere, and a name that ends in
+/// hexadecimal ("Button.000a", "ff00.0021") must end in its number.
+class NameTable {
+public:
+    void expect(std::uint32_t number, const std::string& name) {
+        EXPECT_EQ(number_of_.try_emplace(name, number).first->second, number) << name;
+        EXPECT_EQ(name_of_.try_emplace(number, name).first->second, name) << number;
+        if (const auto low = hex_of(name, name.size() - std::min<std::size_t>(name.size(), 4))) {
+            EXPECT_EQ(*low, number & 0xffffU) << name;
+        }
+        if (const auto page = hex_of(name, 0); page && name.size() == 9) {
+            EXPECT_EQ(*page, number >> 16U) << name;
+        }
     }
-    return {};
+    [[nodiscard]] std::size_t size() const { return name_of_.size(); }
+
+private:
+    static std::optional<std::uint32_t> hex_of(const std::string& name, std::size_t from) {
+        if (name.size() < from + 4) return std::nullopt;
+        const std::string digits = name.substr(from, 4);
+        if (digits.find_first_not_of("0123456789abcdef") != std::string::npos) return std::nullopt;
+        return static_cast<std::uint32_t>(std::stoul(digits, nullptr, 16));
+    }
+    std::map<std::string, std::uint32_t> number_of_;
+    std::map<std::uint32_t, std::string> name_of_;
+};
+
+void expect_field(const Layout& l, const Field& f, const DumpedField& dumped, NameTable& usages, NameTable& units) {
+    EXPECT_TRUE(as_dumped(f) == dumped.numbers);
+    ASSERT_EQ(f.usages, dumped.usages.size());
+    for (std::uint32_t k = 0; k < f.usages; ++k) usages.expect(l.usage_of(f, k), dumped.usages[k]);
+    // A collection of usage 0 is printed like none.
+    const auto expect_collection = [&](std::uint8_t type, const std::string& name) {
+        const std::uint32_t usage = l.enclosing(f.collection, type);
+        EXPECT_EQ(usage == 0, name.empty()) << name;
+        if (usage != 0 && !name.empty()) usages.expect(usage, name);
+    };
+    expect_collection(collection_type::physical, dumped.physical);
+    expect_collection(collection_type::logical, dumped.logical);
+    expect_collection(collection_type::application, dumped.application);
+    EXPECT_EQ(f.unit == 0, dumped.unit.empty()) << dumped.unit;
+    if (!dumped.unit.empty()) units.expect(f.unit, dumped.unit);
 }
 
-TEST(HidCorpus, LayoutsEqualTheKernelsDumps) {
-    const char* data = std::getenv("SUREFOOT_DATA");
-    const fs::path root = data != nullptr ? fs::path(data) / "hid" : fs::path();
-    if (data == nullptr || !fs::is_directory(root))
-        GTEST_SKIP() << "no corpus: SUREFOOT_DATA/hid is not there; the devices in tests/input/devices stand in";
-    std::size_t devices = 0, fields = 0;
-    // Names are not looked up but must stand for usages one to one.
-    std::map<std::uint32_t, std::string> name_of;
-    for (const auto& entry : fs::recursive_directory_iterator(root)) {
-        if (entry.path().filename() != "kernel-rdesc.txt") continue;
-        const auto dumped = read_dump(entry.path());
-        const auto bytes = descriptor_beside(entry.path());
-        EXPECT_FALSE(bytes.empty()) << "no descriptor beside " << entry.path();
-        EXPECT_FALSE(dumped.empty()) << "no field is read from " << entry.path();
-        if (bytes.empty() || dumped.empty()) continue;
-        SCOPED_TRACE(entry.path().string());
-        Layout l;
-        const auto refusal = parse_descriptor(bytes, l);
-        ASSERT_FALSE(refusal) << refusal->what;
+TEST_F(HidCorpus, LayoutsEqualTheKernelsDumps) {
+    std::size_t compared = 0, fields = 0;
+    NameTable usages, units;
+    for (const CorpusDevice& device : devices) {
+        SCOPED_TRACE(device.slug);
+        const auto bytes = device.descriptor();
+        EXPECT_EQ(bytes.size(), device.descriptor_bytes);
+        const KernelDump dump = read_kernel_dump(device.folder / "kernel-rdesc.txt");
+        const Layout l = layout_of(bytes);
         const auto order = l.fields_by_report();
-        ASSERT_EQ(order.size(), dumped.size());
-        for (std::size_t i = 0; i < order.size(); ++i) {
-            const Field& f = l.fields[order[i]];
-            EXPECT_TRUE(as_dumped(f) == dumped[i].numbers) << "field " << i << " at byte " << f.offset;
-            ASSERT_EQ(f.usages, dumped[i].usages.size());
-            for (std::uint32_t k = 0; k < f.usages; ++k) {
-                const auto [at, fresh] = name_of.emplace(l.usage_of(f, k), dumped[i].usages[k]);
-                EXPECT_TRUE(fresh || at->second == dumped[i].usages[k]) << at->second << " and " << dumped[i].usages[k];
-            }
-            ++fields;
+        ASSERT_GT(order.size(), 0U);
+        ASSERT_EQ(order.size(), dump.fields.size());
+        for (std::size_t i = 0; i < order.size(); ++i, ++fields) {
+            SCOPED_TRACE("field " + std::to_string(i) + " at byte " + std::to_string(l.fields[order[i]].offset));
+            expect_field(l, l.fields[order[i]], dump.fields[i], usages, units);
         }
-        ++devices;
+        ++compared;
     }
-    EXPECT_GE(devices, 1U) << "nothing was compared";
-    std::cout << devices << " devices, " << fields << " fields\n";
+    EXPECT_EQ(compared, devices.size());
+    EXPECT_GT(units.size(), 1U);
+    std::cout << compared << " devices, " << fields << " fields, " << usages.size() << " usages, " << units.size() << " units\n";
+}
+
+TEST_F(HidCorpus, TheIndexNamesEveryFolder) {
+    std::size_t folders = 0;
+    for (const auto& entry : fs::directory_iterator(root)) {
+        if (!fs::exists(entry.path() / "rdesc.bin")) continue;
+        ++folders;
+        EXPECT_TRUE(std::any_of(devices.begin(), devices.end(), [&](const auto& d) { return d.folder == entry.path(); }))
+            << entry.path() << " is not in the index";
+    }
+    EXPECT_EQ(folders, devices.size());
+}
+
+DeviceClass class_of(const std::string& expected) {
+    if (expected == "navigation") return DeviceClass::navigation;
+    if (expected == "map-as-trackball") return DeviceClass::trackball;
+    if (expected == "buttons-only") return DeviceClass::buttons;
+    EXPECT_TRUE(expected == "reject" || expected == "reject-or-quirk") << expected;
+    return DeviceClass::reject;
+}
+
+/// "X16r": usage, bits and the descriptor's own flag, as the index writes an axis; empty for what the index does not list.
+std::string as_indexed(const HidDevice& d, std::size_t control) {
+    static const std::map<std::uint32_t, const char*> listed = {
+        {0x10030, "X"},      {0x10031, "Y"},     {0x10032, "Z"},   {0x10033, "Rx"},    {0x10034, "Ry"},   {0x10035, "Rz"},
+        {0x10036, "Slider"}, {0x10038, "Wheel"}, {0x10039, "Hat"}, {0x200c4, "Accel"}, {0x200c5, "Brake"}};
+    const ControlInfo& c = d.controls[control];
+    const Field& f = d.layout.fields[d.sources[control].field];
+    const auto found = listed.find(full_usage(c.usage_page, c.usage));
+    return found == listed.end() ? "" : found->second + std::to_string(f.size) + (f.relative() ? "r" : "");
+}
+
+TEST_F(HidCorpus, ClassesAndControlsAreThoseOfTheIndex) {
+    // Axes that the index leaves out: it lists the pages Generic Desktop and Simulation.
+    std::map<std::string, std::string> unlisted;
+    std::size_t axes = 0, buttons = 0, navigating = 0;
+    for (const CorpusDevice& device : devices) {
+        SCOPED_TRACE(device.slug);
+        const HidDevice d = device.described();
+        EXPECT_STREQ(class_name(d.device_class), class_name(class_of(device.expected_class))) << d.reason;
+        std::vector<std::string> expected, found;
+        std::istringstream names(device.axes == "-" ? "" : device.axes);
+        for (std::string name; std::getline(names, name, ',');) expected.push_back(name);
+        std::size_t pressed = 0;
+        for (std::size_t i = 0; i < d.controls.size(); ++i) {
+            const ControlInfo& c = d.controls[i];
+            if (c.kind == ControlKind::button) {
+                pressed += c.usage_page == 9;
+            } else if (const std::string name = as_indexed(d, i); name.empty()) {
+                unlisted[device.slug] += c.name + " ";
+            } else {
+                found.push_back(name);
+            }
+        }
+        std::sort(expected.begin(), expected.end());
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(found, expected);
+        EXPECT_EQ(pressed, device.buttons);
+        axes += found.size();
+        buttons += pressed;
+        navigating += d.device_class == DeviceClass::navigation;
+    }
+    EXPECT_EQ(unlisted, (std::map<std::string, std::string>{{"trackball-elecom-huge2", "pan "}, {"x52", "move-side move-up "}}));
+    std::cout << axes << " axes and hats, " << buttons << " buttons, " << navigating << " devices that navigate\n";
 }
 
 }  // namespace

@@ -23,12 +23,12 @@ std::vector<std::string> lines(std::string_view descriptor) {
     for (const auto i : l.fields_by_report()) all.push_back(line(l, l.fields[i]));
     return all;
 }
-using Lines = std::vector<std::string>;
+using FieldLines = std::vector<std::string>;
 
 TEST(HidDescriptor, BootMouseOfTheSpecification) {
     EXPECT_EQ(lines("05 01 09 02 a1 01 09 01 a1 00 05 09 19 01 29 03 15 00 25 01 95 03 75 01 81 02 95 01 75 05 81 01"
                     "05 01 09 30 09 31 15 81 25 7f 75 08 95 02 81 06 c0 c0"),
-              (Lines{"in 0 @0 1x3 0..1 f2: 90001 90002 90003", "in 0 @8 8x2 -127..127 f6: 10030 10031"}));
+              (FieldLines{"in 0 @0 1x3 0..1 f2: 90001 90002 90003", "in 0 @8 8x2 -127..127 f6: 10030 10031"}));
 }
 
 TEST(HidDescriptor, KeyboardArrayAndOutput) {
@@ -46,13 +46,13 @@ TEST(HidDescriptor, KeyboardArrayAndOutput) {
 TEST(HidDescriptor, MaximumIsSignedOnlyBelowAZeroMinimum) {
     EXPECT_EQ(lines("05 01 09 04 a1 01 75 08 95 01 15 00 25 ff 09 30 81 02 15 81 25 ff 09 31 81 02"
                     "15 00 27 ff ff 00 00 09 32 81 02 c0"),
-              (Lines{"in 0 @0 8x1 0..255 f2: 10030", "in 0 @8 8x1 -127..-1 f2: 10031", "in 0 @16 8x1 0..65535 f2: 10032"}));
+              (FieldLines{"in 0 @0 8x1 0..255 f2: 10030", "in 0 @8 8x1 -127..-1 f2: 10031", "in 0 @16 8x1 0..65535 f2: 10032"}));
 }
 
 TEST(HidDescriptor, UsagePageCountsAtTheMainItem) {
     // The page after the last usage moves it; usages that have another page from before a first page change stay.
     EXPECT_EQ(lines("05 01 09 04 a1 01 75 08 95 02 25 7f 09 30 05 02 09 c4 81 02 09 bb 05 09 95 01 81 02 c0"),
-              (Lines{"in 0 @0 8x2 0..127 f2: 10030 200c4", "in 0 @16 8x1 0..127 f2: 900bb"}));
+              (FieldLines{"in 0 @0 8x2 0..127 f2: 10030 200c4", "in 0 @16 8x1 0..127 f2: 900bb"}));
 }
 
 TEST(HidDescriptor, FourByteUsagesCarryTheirPage) {
@@ -63,7 +63,7 @@ TEST(HidDescriptor, FourByteUsagesCarryTheirPage) {
 
 TEST(HidDescriptor, LastUsageRepeatsAndRangesMixWithSingleUsages) {
     EXPECT_EQ(lines("05 09 09 04 a1 01 25 01 75 01 95 06 09 01 19 05 29 06 09 0a 81 02 c0"),
-              (Lines{"in 0 @0 1x6 0..1 f2: 90001 90005 90006 9000a 9000a 9000a"}));
+              (FieldLines{"in 0 @0 1x6 0..1 f2: 90001 90005 90006 9000a 9000a 9000a"}));
 }
 
 TEST(HidDescriptor, PaddingTakesInheritedSizeAndCount) {
@@ -77,10 +77,10 @@ TEST(HidDescriptor, PaddingTakesInheritedSizeAndCount) {
 
 TEST(HidDescriptor, ReportIdsAreStreamsOfTheirKindAndContinue) {
     const auto l = layout_of(recorded("ids-in-two-collections").descriptor);
-    Lines all;
+    FieldLines all;
     for (const auto i : l.fields_by_report()) all.push_back(line(l, l.fields[i]));
-    EXPECT_EQ(all, (Lines{"in 1 @0 8x1 -127..127 f2: 10030", "in 1 @8 8x1 -127..127 f2: 10032", "in 2 @0 8x1 -127..127 f2: 10031",
-                          "feature 1 @0 8x1 -127..127 f2: 10033"}));
+    EXPECT_EQ(all, (FieldLines{"in 1 @0 8x1 -127..127 f2: 10030", "in 1 @8 8x1 -127..127 f2: 10032",
+                               "in 2 @0 8x1 -127..127 f2: 10031", "feature 1 @0 8x1 -127..127 f2: 10033"}));
     EXPECT_TRUE(l.numbered[0]);
     EXPECT_NE(l.find(ReportKind::output, 3), nullptr) << "a report of padding alone is still declared";
     EXPECT_EQ(l.find(ReportKind::input, 3), nullptr);

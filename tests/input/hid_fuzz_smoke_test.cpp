@@ -10,7 +10,7 @@
 #include "rt/base/file.hpp"
 #include "rt/base/random.hpp"
 #include "tests/fuzz/targets.hpp"
-#include "tests/input/hid_test.hpp"
+#include "tests/input/hid_corpus.hpp"
 
 // Peak of what is allocated by new, for this thread: R3 bounds it. Sanitizers bring their own new.
 #ifndef SUREFOOT_SANITIZED
@@ -129,6 +129,27 @@ TEST(HidFuzz, MutatedRecordings) {
         auto bytes = seeds[random.below(static_cast<std::uint32_t>(seeds.size()))];
         mutate(bytes, random);
         fuzz::recording(bytes);
+    }
+}
+
+/// The same with real devices and malformed descriptors as seeds, where they are on this machine; each seed first as it is.
+TEST_F(HidCorpus, MutatedDescriptorsBreakNothing) {
+    const auto seeds = descriptors();
+    ASSERT_GE(seeds.size(), corpus_devices + corpus_seeds);
+    for (const auto& seed : seeds) {
+#ifndef SUREFOOT_SANITIZED
+        allocated_now = allocated_peak = 0;
+#endif
+        fuzz::descriptor(seed);
+#ifndef SUREFOOT_SANITIZED
+        EXPECT_LT(allocated_peak, std::size_t{1} << 20U);
+#endif
+    }
+    Random random(14);
+    for (int i = 0; i < mutations / 5; ++i) {
+        auto bytes = seeds[random.below(static_cast<std::uint32_t>(seeds.size()))];
+        mutate(bytes, random);
+        fuzz::descriptor(bytes);
     }
 }
 

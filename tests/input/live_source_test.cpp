@@ -2,7 +2,13 @@
 // needs memory.
 #include "input/live_source.hpp"
 
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "rt/clock/clock.hpp"
 #include "rt/threads/guard.hpp"
+#include "rt/threads/placement.hpp"
 #include "tests/input/fake_devices.hpp"
 #include "tests/input/fake_lines.hpp"
 #include "tests/input/plain_stick.hpp"
@@ -44,6 +50,7 @@ struct Rig {
         options.lines = std::move(wired);
         options.open_lines = test::open_fake;
         options.lines_context = &chip;
+        options.lines_opened = Opening::here;  // in virtual time
         options.stamps = 1000;
         source = std::make_unique<LiveSource>(std::move(options), std::move(fake));
         source->begin(steering, devices->now_ns);
@@ -266,7 +273,8 @@ TEST(LivePanel, ABusyLineIsAStopThatNamesWhoHasIt) {
     FakeChip chip;
     chip.busy_by = "gpiomon";
     std::vector<std::string> said;
-    PanelDevice panel(lines(), {}, test::open_fake, &chip, [&](std::string_view text) { said.emplace_back(text); });
+    PanelDevice panel(
+        lines(), {}, test::open_fake, &chip, [&](std::string_view text) { said.emplace_back(text); }, Opening::here);
     panel.open();
     Steering steering{MotionLimits{}, SafetyLimits{}};
     for (int i = 1; i < 200; ++i) EXPECT_TRUE(panel.step(steering, i * tick_ns).lines.stop);
@@ -277,6 +285,92 @@ TEST(LivePanel, ABusyLineIsAStopThatNamesWhoHasIt) {
     bool stop = true;
     for (int i = 200; i < 2000; ++i) stop = panel.step(steering, i * tick_ns).lines.stop;
     EXPECT_FALSE(stop);
+}
+
+/// A chip that another thread opens: there or not, as the test wants it; closed while it is there.
+struct SharedChip {
+    std::atomic<bool> there{false};
+    std::atomic<int> tried{0}, closed{0};
+    std::atomic<pid_t> opened_by{0}, closed_by{0};
+};
+class SharedLines final : public GpioLines {
+public:
+    explicit SharedLines(SharedChip& chip) : chip_(chip) {}
+    ~SharedLines() override {
+        chip_.closed_by = rt::own_tid();
+        ++chip_.closed;
+    }
+    [[nodiscard]] std::span<const pollfd> polled() const override { return {}; }
+    Result<std::size_t> read(std::span<LineEdge>) override {
+        if (chip_.there) return std::size_t{0};
+        return Error{"gpiochip7 of the panel", "the chip is gone, as far as anybody can tell", "plug it in again"};
+    }
+    Result<void> levels(std::span<bool> active) override {
+        std::fill(active.begin(), active.end(), true);
+        return {};
+    }
+
+private:
+    SharedChip& chip_;
+};
+Result<std::unique_ptr<GpioLines>> open_shared(std::span<const LineRequest>, std::string_view, void* context) {
+    auto& chip = *static_cast<SharedChip*>(context);
+    chip.opened_by = rt::own_tid();
+    const int tried = ++chip.tried;
+    if (!chip.there) return Error{"gpiochip7 of the panel", "cannot be opened, try " + std::to_string(tried), "plug it in"};
+    return std::unique_ptr<GpioLines>(std::make_unique<SharedLines>(chip));
+}
+
+/// The input thread's ticks in real time, under the guard, until something has come about; false: it has not in ten seconds.
+struct GuardedTicks {
+    PanelDevice& panel;
+    Steering steering{MotionLimits{}, SafetyLimits{}};
+    std::uint64_t violations = 0, drivers = 0;
+    bool stop = true;
+
+    template <class Done>
+    bool until(const Done& done) {
+        const rt::RealClock clock;
+        const std::int64_t deadline_ns = clock.now_ns() + 10'000'000'000;
+        while (!done() && clock.now_ns() < deadline_ns) {
+            const rt::GuardCounters before = rt::guard_counters();
+            {
+                const rt::OwnScope own;
+                stop = panel.step(steering, clock.now_ns()).lines.stop;
+            }
+            violations += rt::guard_counters().own_violations - before.own_violations;
+            drivers += rt::guard_counters().driver_allocations - before.driver_allocations;
+            std::this_thread::sleep_for(std::chrono::microseconds(500));  // the tick
+        }
+        return done();
+    }
+};
+
+TEST(LivePanel, AChipThatIsMissingOrGoesIsOpenedAndClosedBesideTheInputThread) {
+    SharedChip chip;
+    std::size_t times = 0;
+    PanelDevice panel(
+        lines(), {}, open_shared, &chip, [&](std::string_view) { ++times; }, Opening::beside);
+    panel.open();
+    EXPECT_EQ(chip.tried, 1) << "the first try is over before the input thread starts";
+    EXPECT_EQ(times, 1U);
+    GuardedTicks ticks{panel};
+    ASSERT_TRUE(ticks.until([&] { return chip.tried >= 3; })) << "tried again by itself";
+    EXPECT_TRUE(ticks.stop);
+    EXPECT_EQ(ticks.violations, 0U);
+    EXPECT_EQ(ticks.drivers, 0U) << "nothing is hidden as the driver's: nothing was read";
+    EXPECT_NE(chip.opened_by, rt::own_tid());
+    chip.there = true;
+    ASSERT_TRUE(ticks.until([&] { return !ticks.stop; }));
+    EXPECT_EQ(ticks.drivers, 0U);
+    chip.there = false;
+    ASSERT_TRUE(ticks.until([&] { return chip.closed == 1; }));
+    EXPECT_TRUE(ticks.stop);
+    EXPECT_NE(chip.closed_by, rt::own_tid());
+    chip.there = true;
+    ASSERT_TRUE(ticks.until([&] { return !ticks.stop; })) << "found again";
+    EXPECT_EQ(ticks.violations, 0U);
+    EXPECT_GE(times, 5U) << "missing (each new reason), there, gone, there";
 }
 
 TEST(LivePanel, TheSteeringFileNamesItsMappingElseTheLinesDo) {

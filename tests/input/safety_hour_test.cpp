@@ -16,9 +16,9 @@ namespace surefoot::input {
 namespace {
 
 #ifdef SUREFOOT_SANITIZED
-constexpr int virtual_seconds = 600;  // the sanitizers take ten times as long
+constexpr int hour_seconds = 600;  // the sanitizers take ten times as long
 #else
-constexpr int virtual_seconds = 3600;
+constexpr int hour_seconds = 3600;
 #endif
 constexpr int devices = 8;
 
@@ -143,7 +143,7 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
     double fastest = 0, norm = 0;
     NavigationSample before = steering.tick({}, now);
     dvec3 walker_before{0.0};
-    for (int i = 0; i < virtual_seconds * 1000; ++i) {
+    for (int i = 0; i < hour_seconds * 1000; ++i) {
         if (random.below(3000) == 0) {  // plugged and unplugged, outside of what may not allocate
             const int d = static_cast<int>(random.below(devices));
             const auto at = static_cast<std::size_t>(d);
@@ -200,9 +200,9 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
     std::printf(
         "%d s, %llu reports: fastest %.2f m/s, |q| off by %.1e; %llu stops, %llu overflows, %llu silences, %llu losses; stopped "
         "%.0f %% of the time; allocations %llu; %.0f ns a report\n",
-        virtual_seconds, static_cast<unsigned long long>(reports), fastest, norm, static_cast<unsigned long long>(s.stops),
+        hour_seconds, static_cast<unsigned long long>(reports), fastest, norm, static_cast<unsigned long long>(s.stops),
         static_cast<unsigned long long>(s.overflows), static_cast<unsigned long long>(s.silences),
-        static_cast<unsigned long long>(s.losses), 100.0 * static_cast<double>(stops) / (virtual_seconds * 1000.0),
+        static_cast<unsigned long long>(s.losses), 100.0 * static_cast<double>(stops) / (hour_seconds * 1000.0),
         static_cast<unsigned long long>(after.own_violations - guard.own_violations), took * 1e9 / static_cast<double>(reports));
     EXPECT_EQ(after.own_violations, guard.own_violations) << "nothing may be allocated or freed";
     EXPECT_LT(norm, 1e-12);

@@ -88,7 +88,7 @@ private:
         if (rest.substr(0, space) != name_) return problem("TYPE does not follow its HELP");
         if (!out_.families[name_].type.empty() || any_) problem("TYPE twice, or after a sample");
         const std::string type = space == std::string::npos ? "" : rest.substr(space + 1);
-        if (type != "counter" && type != "gauge" && type != "histogram") problem("an unknown type");
+        if (type != "counter" && type != "gauge" && type != "histogram" && type != "summary") problem("an unknown type");
         if ((type == "counter") != name_.ends_with("_total")) problem("_total is for counters, and for all of them");
         out_.families[name_].type = type;
     }
@@ -111,6 +111,8 @@ private:
         any_ = true;
         const std::string& type = out_.families[name_].type;
         if (type == "histogram") return bucket(name, labels, value);
+        if (type == "summary" && (name == name_ + "_sum" || name == name_ + "_count")) return;
+        if (labels.contains("quantile") != (type == "summary")) problem("quantile is for summaries, and for all of them");
         if (name != name_) problem("a sample of another family");
         if (type == "counter" && !(value >= 0)) problem("a counter below zero");
     }
@@ -174,7 +176,7 @@ private:
 inline void expect_monotone(const Exposed& before, const Exposed& after) {
     for (const auto& [key, value] : before.samples) {
         const std::string& type = before.families.at(before.family_of.at(key)).type;
-        if (type == "gauge") continue;
+        if (type == "gauge" || key.find("{quantile=") != std::string::npos) continue;
         EXPECT_TRUE(after.samples.contains(key)) << key << " has vanished";
         EXPECT_GE(after.at(key), value) << key;
     }

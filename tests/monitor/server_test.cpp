@@ -25,7 +25,7 @@ namespace {
 using test::RawReader;
 using test::TemporaryFolder;
 
-constexpr std::string_view ask_hello = "GET /hello HTTP/1.1\r\nHost: x\r\n\r\n";
+constexpr std::string_view ask_hello = "GET /hello HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 Server::Pages hello_pages(std::size_t bytes = 0) {
     auto body = std::make_shared<const std::string>(bytes == 0 ? std::string("hello\n") : std::string(bytes, 'x'));
@@ -106,13 +106,48 @@ TEST(Server, SaysWhatItMakesOfARequest) {
     };
     EXPECT_EQ(answer_to(ask_hello), "HTTP/1.1 200 OK");
     EXPECT_EQ(answer_to("GET /hello?format=text HTTP/1.0\r\n\r\n"), "HTTP/1.1 200 OK");
-    EXPECT_EQ(answer_to("HEAD /hello HTTP/1.1\r\n\r\n"), "HTTP/1.1 200 OK");
+    EXPECT_EQ(answer_to("HEAD /hello HTTP/1.1\r\nHost: localhost\r\n\r\n"), "HTTP/1.1 200 OK");
     EXPECT_EQ(answer_to("POST /hello HTTP/1.1\r\n\r\n"), "HTTP/1.1 405 Method Not Allowed");
-    EXPECT_EQ(answer_to("GET /../etc/passwd HTTP/1.1\r\n\r\n"), "HTTP/1.1 404 Not Found");
+    EXPECT_EQ(answer_to("GET /../etc/passwd HTTP/1.1\r\nHost: localhost\r\n\r\n"), "HTTP/1.1 404 Not Found");
     for (const char* nonsense :
          {"\r\n\r\n", "GET\r\n\r\n", "GET /hello\r\n\r\n", "\x16\x03\x01\x02\r\n\r\n", "GET /hello SPDY/3\r\n\r\n"})
         EXPECT_EQ(answer_to(nonsense), "HTTP/1.1 400 Bad Request") << nonsense;
     EXPECT_EQ(answer_to("GET /hello HTTP/1.1\r\nX: " + std::string(4200, 'x')), "HTTP/1.1 431 Request Header Fields Too Large");
+}
+
+// DNS rebinding: a page of another site reads what a browser on this machine can reach, under a name of its own.
+TEST(Server, APortAnswersOnlyRequestsThatNameThisMachine) {
+    const auto server = serving(any_port(), hello_pages());
+    const auto answer_to = [&](const std::string& head) {
+        RawReader r(server->address());
+        EXPECT_TRUE(r.say("GET /hello " + head + "\r\n\r\n"));
+        const std::string answer = r.listen();
+        EXPECT_EQ(answer.find("hello\n") != std::string::npos, answer.starts_with("HTTP/1.1 200")) << head;
+        return answer.substr(9, 3);
+    };
+    const std::string port = std::to_string(server->address().port);
+    for (const std::string& own : {std::string("localhost"), "localhost:" + port, std::string("LocalHost"), "127.0.0.1:" + port,
+                                   std::string("127.0.0.1"), std::string("[::1]"), "[::1]:" + port})
+        EXPECT_EQ(answer_to("HTTP/1.1\r\nAccept: */*\r\nhOST: \t" + own + " "), "200") << own;
+    for (const std::string& foreign :
+         {std::string("attacker.example"), "attacker.example:" + port, std::string("localhost.attacker.example"),
+          std::string("127.0.0.1.attacker.example"), std::string("localhost:80:80"), std::string("localhost:80@x"),
+          std::string("192.168.1.2"), std::string("[::2]"), std::string("[::1].attacker.example"), std::string("::1"),
+          std::string("")})
+        EXPECT_EQ(answer_to("HTTP/1.1\r\nHost: " + foreign), "421") << foreign;
+    EXPECT_EQ(answer_to("HTTP/1.0\r\nHost: attacker.example"), "421");
+    EXPECT_EQ(answer_to("HTTP/1.1"), "400") << "HTTP/1.1 asks for a Host";
+    EXPECT_EQ(answer_to("HTTP/1.1\r\nX: localhost"), "400");
+    EXPECT_EQ(answer_to("HTTP/1.1\r\nHost: localhost\r\nHost: attacker.example"), "400") << "which of the two?";
+    EXPECT_EQ(answer_to("HTTP/1.0"), "200") << "HTTP/1.0 does not ask for it, and no browser speaks it";
+}
+
+TEST(Server, ASocketAsksForNoHost) {
+    const TemporaryFolder folder;
+    const auto server = serving(at_socket(folder), hello_pages());
+    RawReader r(server->address());
+    EXPECT_TRUE(r.say("GET /hello HTTP/1.1\r\nHost: attacker.example\r\n\r\n"));
+    EXPECT_TRUE(r.listen().starts_with("HTTP/1.1 200 OK")) << "no browser opens a Unix socket";
 }
 
 TEST(Server, ARequestMayComeInPieces) {
@@ -147,7 +182,7 @@ TEST(Server, AReaderThatStopsReadingHoldsNobodyUp) {
         ASSERT_TRUE(stopped.back().say(ask_hello));
     }
     RawReader head(server->address());
-    ASSERT_TRUE(head.say("HEAD /hello HTTP/1.1\r\n\r\n"));
+    ASSERT_TRUE(head.say("HEAD /hello HTTP/1.1\r\nHost: localhost\r\n\r\n"));
     EXPECT_TRUE(head.listen().starts_with("HTTP/1.1 200 OK"));
     EXPECT_TRUE(soon([&] { return server->counts().dropped_slow == 5; })) << server->counts().dropped_slow;
 }

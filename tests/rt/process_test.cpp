@@ -4,12 +4,16 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_scheduler_observer.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <iterator>
+#include <optional>
 #include <thread>
 
 #include "rt/clock/clock.hpp"
@@ -32,10 +36,26 @@ using test::passed;
 
 void doze() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
 
-/// Makes oneTBB start its workers: three tasks that all wait until two threads have met (or a second has passed).
-void start_workers(std::vector<pid_t>& workers) {
+/// Names and places each worker as it starts.
+class Placing final : public tbb::task_scheduler_observer {
+public:
+    explicit Placing(tbb::task_arena& arena) : task_scheduler_observer(arena) { observe(true); }
+    ~Placing() override { observe(false); }
+    Placing(const Placing&) = delete;
+    Placing& operator=(const Placing&) = delete;
+    void on_scheduler_entry(bool is_worker) override {
+        if (is_worker)
+            (void)place_thread(0, {.policy = Policy::fifo, .priority = 30, .cpus = allowed_cpus(), .name = "sf-worker"});
+    }
+};
+
+/// Makes oneTBB start its workers: three tasks that all wait until three threads have met (or a second has passed).
+int start_workers(bool placed) {
     std::atomic<pid_t> tids[3] = {};
     tbb::task_arena arena(3);
+    arena.initialize();
+    std::optional<Placing> placing;
+    if (placed) placing.emplace(arena);
     arena.execute([&] {
         tbb::parallel_for(
             0, 3,
@@ -45,49 +65,65 @@ void start_workers(std::vector<pid_t>& workers) {
             },
             tbb::simple_partitioner{});
     });
-    for (const auto& tid : tids) {
-        if (tid != own_tid()) workers.push_back(tid);
-    }
+    return static_cast<int>(std::count_if(std::begin(tids), std::end(tids), [](const auto& t) { return t != own_tid(); }));
 }
 
-/// A frame thread and oneTBB's workers, made in one order or the other; what the census says.
-std::vector<std::string> census_with_workers(bool naive) {
+/// Who makes the workers, and whether they are placed as they start.
+enum class Made { by_the_frame_thread, by_the_main_thread, by_the_main_thread_and_placed };
+
+/// A frame thread and oneTBB's workers; what the census says.
+std::vector<std::string> census_with_workers(Made made) {
     const tbb::global_control three(tbb::global_control::max_allowed_parallelism, 3);
     const int core = allowed_cpus().cpus().back();
     const std::string program = read_thread(0).value().name;
-    std::vector<pid_t> workers;
+    const bool naive = made == Made::by_the_frame_thread;
+    int workers = 0;
     std::vector<std::string> problems;
-    if (!naive) start_workers(workers);
+    if (!naive) workers = start_workers(made == Made::by_the_main_thread_and_placed);
     std::thread([&] {
         // As a program would that does not know: without the flag that resets what children inherit.
         (void)place_thread(
             0, {.policy = Policy::fifo, .priority = 40, .cpus = CpuMask{core}, .name = "sf-frame", .reset_on_fork = false});
-        if (naive) start_workers(workers);
+        if (naive) workers = start_workers(false);
         const std::vector<DeclaredThread> table = {
-            {.name = program, .policy = Policy::other, .priority = 0, .cpus = allowed_cpus(), .min_count = 1, .max_count = 8},
-            {.name = "sf-frame", .whole_name = true, .policy = Policy::fifo, .priority = 40, .cpus = CpuMask{core}}};
+            {.name = program, .policy = Policy::other, .priority = 0, .cpus = allowed_cpus()},
+            {.name = "sf-frame", .whole_name = true, .policy = Policy::fifo, .priority = 40, .cpus = CpuMask{core}},
+            {.name = "sf-worker",
+             .policy = Policy::fifo,
+             .priority = 30,
+             .cpus = allowed_cpus(),
+             .min_count = 2,
+             .max_count = 2}};
         problems = census_now(table);
     }).join();
-    if (workers.empty()) problems.emplace_back("oneTBB started no worker");
+    if (workers != 2) problems.emplace_back("oneTBB did not start two workers");
     return problems;
 }
 
-TEST(CensusWithTbb, TheNaiveOrderFailsAndTheNeutralOnePasses) {
+bool has(const std::vector<std::string>& problems, const std::string& words) {
+    return std::any_of(problems.begin(), problems.end(),
+                       [&](const std::string& p) { return p.find(words) != std::string::npos; });
+}
+
+TEST(CensusWithTbb, OnlyWorkersThatArePlacedAsTheyStartPass) {
     if (probe_capabilities(40).fifo_priority < 40)
         GTEST_SKIP() << "SCHED_FIFO is refused here: run as root or with RLIMIT_RTPRIO";
     if (!guard_active()) GTEST_SKIP() << "sanitizers do not follow a fork into threads";
     EXPECT_EQ(in_child([] {
-                  const auto problems = census_with_workers(false);
-                  for (const std::string& p : problems) std::fprintf(stderr, "neutral: %s\n", p.c_str());
+                  const auto problems = census_with_workers(Made::by_the_main_thread_and_placed);
+                  for (const std::string& p : problems) std::fprintf(stderr, "placed: %s\n", p.c_str());
                   return problems.empty() ? passed : failed;
               }),
               passed);
     EXPECT_EQ(in_child([] {
+                  // The workers carry the program's name and are SCHED_OTHER.
+                  const auto problems = census_with_workers(Made::by_the_main_thread);
+                  return has(problems, "too many") && has(problems, "'sf-worker': missing") ? passed : failed;
+              }),
+              passed);
+    EXPECT_EQ(in_child([] {
                   // The workers carry the frame thread's name and priority.
-                  for (const std::string& p : census_with_workers(true)) {
-                      if (p.find("'sf-frame'") != std::string::npos) return passed;
-                  }
-                  return failed;
+                  return has(census_with_workers(Made::by_the_frame_thread), "'sf-frame': too many") ? passed : failed;
               }),
               passed);
 }

@@ -106,6 +106,17 @@ TEST(Telemetry, EveryValueIsInOneBinAndEdgesAreExact) {
     }
 }
 
+TEST(Telemetry, EdgesAreFineWhereAFrameIsAboutToBeLate) {
+    for (const std::int64_t period_ns : {t60_ns, 2 * t60_ns, std::int64_t{33'333'333}, 40 * one_ms, 8 * one_ms}) {
+        const Edges edges(period_ns);
+        const auto between = [&](std::int64_t above, std::int64_t below) {
+            return std::count_if(edges.ns().begin(), edges.ns().end(), [&](auto e) { return e > above && e < below; });
+        };
+        EXPECT_GE(between(period_ns * 3 / 5, period_ns), 3) << period_ns;
+        EXPECT_GE(between(period_ns, 2 * period_ns), 1) << period_ns;
+    }
+}
+
 TEST(Telemetry, EdgesOfARoundPeriodAreNotDoubled) {
     const Edges edges(10 * one_ms);
     EXPECT_EQ(std::adjacent_find(edges.ns().begin(), edges.ns().end()), edges.ns().end());

@@ -341,7 +341,7 @@ void check_busy(Checks& checks, Log& log) {
     auto other = open_lines(one, "other-program", nullptr);
     Rig rig;
     rig.serve(50);
-    const std::string problem = rig.panel.problem();
+    const std::string problem(rig.panel.problem());
     const bool stopped = rig.stop();
     log.line("busy: " + problem);
     if (other) other->reset();
@@ -406,7 +406,7 @@ void check_removal(Checks& checks, SimulatedChip& chip, Log& log) {
     rig.serve(50);
     const bool latched = rig.safety.latched && rig.lines.stop;
     log.state("chip gone", rig);
-    const std::string problem = rig.panel.problem();
+    const std::string problem(rig.panel.problem());
     chip.bring();
     for (std::size_t i = 0; i < 6; ++i) chip.pull(i, i == estop || i == dead_man);
     const double back = rig.until([&] { return rig.panel.open(); }, 5000);

@@ -72,7 +72,7 @@ void check_cp2112(Checks& checks, const Guest&) {
         return -1.0;
     };
     const double opened = until([&] { return panel.open(); }, 10'000);
-    if (opened < 0) return static_cast<void>(checks.check("cp2112", false, "no chip: " + panel.problem()));
+    if (opened < 0) return static_cast<void>(checks.check("cp2112", false, "no chip: " + std::string(panel.problem())));
     (void)panel.take_lines();
     sleep_ms(200);
     panel.service(now_ns());
@@ -88,7 +88,7 @@ void check_cp2112(Checks& checks, const Guest&) {
     const double pulled = until([&] { return panel.take_lines().stop; }, 5000);
     const bool gone = until([&] { return !panel.open(); }, 5000) >= 0;
     cable.join();
-    const std::string problem = panel.problem();
+    const std::string problem(panel.problem());
     device = std::make_unique<UhidDevice>(bridge_device(), "cp2112", bridge(levels));
     const double back = until([&] { return panel.open(); }, 10'000);
     checks.check("cp2112", closed && asserted >= 0 && pulled >= 0 && gone && back >= 0,

@@ -6,6 +6,7 @@
 #include <netinet/in.h>
 #include <sys/un.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
@@ -63,6 +64,21 @@ Result<Address> parse_address(const std::string& text) {
                      "name 127.0.0.1, [::1] or a socket; to look from elsewhere, put a proxy that knows its users before it"};
     }
     return address;
+}
+
+bool host_is_loopback(std::string_view host) {
+    const std::size_t bracket = host.starts_with('[') ? host.find(']') : std::string_view::npos;
+    const std::size_t colon = host.find(':', bracket == std::string_view::npos ? 0 : bracket);
+    if (colon != std::string_view::npos) {
+        const std::string_view port = host.substr(colon + 1);
+        if (port.size() > 5 || port.find_first_not_of("0123456789") != std::string_view::npos) return false;
+        host = host.substr(0, colon);
+    }
+    if (bracket != std::string_view::npos) return host == "[::1]";
+    constexpr std::string_view local = "localhost";
+    const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
+    if (std::equal(host.begin(), host.end(), local.begin(), local.end(), same)) return true;
+    return host.find(':') == std::string_view::npos && is_loopback(std::string(host));
 }
 
 std::string default_address() {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "rt/base/result.hpp"
 
@@ -22,6 +23,10 @@ Result<Address> parse_address(const std::string& text);
 
 /// Where the service listens unless it is told otherwise: surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot.
 std::string default_address();
+
+/// Whether a request's Host field names this machine: localhost or an address on loopback, with or without a port. A web page of
+/// another site can make a browser ask a name of that site which resolves to loopback (DNS rebinding); its Host gives it away.
+bool host_is_loopback(std::string_view host);
 
 /// As the system calls want it.
 struct SocketAddress {

@@ -101,7 +101,8 @@ Result<std::string> fetch(const Address& address, std::string_view path, std::in
         if (rt::monotonic_ns() > deadline_ns) return too_slow(address, timeout_ms);
         ::usleep(10'000);
     }
-    const std::string request = fmt::format("GET {} HTTP/1.1\r\nHost: surefoot\r\nConnection: close\r\n\r\n", path);
+    const std::string request = fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", path,
+                                            address.socket_path.empty() ? address.text() : "localhost");
     std::string answer;
     std::size_t sent = 0;
     std::array<char, 16384> part{};

@@ -77,6 +77,12 @@ public:
         line("_sum", labels, sample_number(d.fine.sum() * 1e-9));
         line("_count", labels, fmt::format("{}", d.fine.count()));
     }
+    void summary(const rt::Histogram& h, const std::array<std::pair<std::string_view, double>, 4>& quantiles) {
+        for (const auto& [name, q] : quantiles)
+            line({}, fmt::format("quantile=\"{}\"", name), sample_number(static_cast<double>(h.quantile(q)) * 1e-9));
+        line("_sum", {}, sample_number(h.sum() * 1e-9));
+        line("_count", {}, fmt::format("{}", h.count()));
+    }
     std::string take() { return fmt::to_string(text_); }
 
 private:
@@ -162,11 +168,10 @@ void add_times(Exposition& e, const Figures& f) {
              "Of frames with new reports: from the newest report's stamp until the frame was submitted.");
     e.histogram(f.of(Series::input_age), f.edges);
 
-    e.family("surefoot_frame_time_quantile_seconds", "gauge",
+    e.family("surefoot_frame_time_quantile_seconds", "summary",
              "Quantiles of surefoot_frame_seconds since the start, from bins of 1/32 of their value; quantile 1 is the exact "
              "maximum.");
-    for (const auto& [name, q] : {std::pair{"0.5", 0.5}, {"0.99", 0.99}, {"0.999", 0.999}, {"1", 1.0}})
-        e.sample(static_cast<double>(f.of(Series::frame).fine.quantile(q)) * 1e-9, fmt::format("quantile=\"{}\"", name));
+    e.summary(f.of(Series::frame).fine, {{{"0.5", 0.5}, {"0.99", 0.99}, {"0.999", 0.999}, {"1", 1.0}}});
     e.gauge("surefoot_one_percent_low_hertz", "1 / (99th percentile of surefoot_shown_interval_seconds since the start).",
             f.of(Series::shown_interval).fine.count() > 0 ? f.one_percent_low_hz() : std::nan(""));
 }

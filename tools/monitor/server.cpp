@@ -30,6 +30,28 @@ std::string head(int code, std::string_view reason, std::string_view content_typ
         code, reason, content_type, length);
 }
 
+enum class HostField { absent, loopback, foreign, twice };
+
+/// What the Host field of a request says; field names are in either case.
+HostField host_of(std::string_view request) {
+    constexpr std::string_view name = "host:";
+    const auto is_name = [](char b, char a) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
+    HostField found = HostField::absent;
+    for (std::size_t at = request.find('\n'); at != std::string_view::npos; at = request.find('\n', at)) {
+        std::string_view field = request.substr(++at);
+        field = field.substr(0, field.find_first_of("\r\n"));
+        if (field.empty()) break;  // the end of the head
+        if (!std::equal(name.begin(), name.end(), field.begin(), field.begin() + std::min(field.size(), name.size()), is_name))
+            continue;
+        if (found != HostField::absent) return HostField::twice;
+        field.remove_prefix(name.size());
+        field.remove_prefix(std::min(field.find_first_not_of(" \t"), field.size()));
+        field = field.substr(0, field.find_last_not_of(" \t") + 1);
+        found = host_is_loopback(field) ? HostField::loopback : HostField::foreign;
+    }
+    return found;
+}
+
 }  // namespace
 
 /// One conversation: a request, an answer, the end.
@@ -192,6 +214,12 @@ void Server::answer(Reader& r, std::int64_t now_ns) {
     if (r.request.size() > limits_.request_bytes) return say(431, "Request Header Fields Too Large");
     if (!request) return say(400, "Bad Request");
     if (method != "GET" && method != "HEAD") return say(405, "Method Not Allowed");
+    if (address_.socket_path.empty()) {  // a port: a browser can be led here by another site's page
+        const HostField host = host_of(r.request);
+        const bool must_name = !line.substr(path_end + 1).starts_with("HTTP/1.0");
+        if (host == HostField::twice || (host == HostField::absent && must_name)) return say(400, "Bad Request");
+        if (host == HostField::foreign) return say(421, "Misdirected Request");
+    }
     std::string_view path = line.substr(method_end + 1, path_end - method_end - 1);
     path = path.substr(0, path.find('?'));
     const auto page = pages_(path);

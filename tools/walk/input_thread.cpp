@@ -8,7 +8,9 @@
 namespace surefoot::walk {
 
 InputThread::InputThread(InputStepper& stepper, rt::Placement placement)
-    : stepper_(stepper), placement_(std::move(placement)), thread_([this] { run(); }) {}
+    : stepper_(stepper), placement_(std::move(placement)), thread_([this] { run(); }) {
+    placed_.wait();
+}
 
 void InputThread::stop() {
     stopping_.store(true);
@@ -17,6 +19,7 @@ void InputThread::stop() {
 
 void InputThread::run() {
     if (auto placed = rt::place_thread(0, placement_); !placed) misplaced_ = placed.error();
+    placed_.count_down();
     rt::prefault_stack();
     rt::RealClock clock;
     const std::uint64_t before = rt::guard_counters().own_violations;

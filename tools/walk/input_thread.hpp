@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <latch>
 #include <optional>
 #include <thread>
 
@@ -14,7 +15,8 @@ namespace surefoot::walk {
 
 class InputThread {
 public:
-    /// Start from a neutral thread, after stepper.begin(); the thread places and names itself as `placement` says.
+    /// Start from a neutral thread, after stepper.begin(); the thread has placed and named itself as `placement` says when this
+    /// returns.
     InputThread(InputStepper& stepper, rt::Placement placement);
     ~InputThread() { stop(); }
     InputThread(const InputThread&) = delete;
@@ -23,7 +25,7 @@ public:
     void stop();
     /// After stop(): allocations, frees inside its loop; must be 0.
     [[nodiscard]] std::uint64_t guard_violations() const { return guard_violations_; }
-    /// After stop(): what kept it from its place.
+    /// What kept it from its place.
     [[nodiscard]] const std::optional<Error>& misplaced() const { return misplaced_; }
 
 private:
@@ -32,7 +34,8 @@ private:
     InputStepper& stepper_;
     rt::Placement placement_;
     std::uint64_t guard_violations_ = 0;
-    std::optional<Error> misplaced_;
+    std::optional<Error> misplaced_;  ///< written before placed_
+    std::latch placed_{1};
     std::atomic<bool> stopping_{false};
     std::thread thread_;
 };

@@ -6,10 +6,20 @@
 #include <algorithm>
 
 #include "input/devices/discoverer.hpp"
+#include "input/gpio/line_opener.hpp"
 #include "render/gl/device.hpp"
 #include "rt/threads/capability.hpp"
 
 namespace surefoot::walk {
+
+namespace {
+
+constexpr const char* worker_name = "sf-worker";
+
+/// As much as the kernel keeps.
+std::string kept_name(const std::string& program_name) { return program_name.substr(0, 15); }
+
+}  // namespace
 
 Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted) {
     PlacingPlan plan;
@@ -53,14 +63,26 @@ std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_
     return sharing;
 }
 
-Result<void> place_workers(const PlacingPlan& plan) {
+rt::Placement prepare_placement(const PlacingPlan& plan) {
     rt::Placement placement;
     placement.policy = plan.fifo ? rt::Policy::fifo : rt::Policy::other;
     placement.priority = plan.fifo ? plan.worker_priority : 0;
     placement.cpus = plan.all;
-    auto placed = rt::place_by_prefix("sf-prepare", placement);
-    if (!placed) return placed.error();
-    return {};
+    placement.name = "sf-prepare";
+    return placement;
+}
+
+rt::Placement worker_placement(const PlacingPlan& plan, int number) {
+    rt::Placement placement = prepare_placement(plan);
+    placement.name = fmt::format("{}-{}", worker_name, number);
+    return placement;
+}
+
+int count_unnamed(const std::string& program_name) {
+    const auto threads = rt::read_threads();
+    if (!threads) return 1;
+    const std::string kept = kept_name(program_name);
+    return static_cast<int>(std::ranges::count_if(*threads, [&](const rt::ThreadInfo& t) { return t.name == kept; }));
 }
 
 rt::Placement frame_placement(const PlacingPlan& plan) {
@@ -81,17 +103,29 @@ rt::Placement input_placement(const PlacingPlan& plan) {
     return placement;
 }
 
+std::vector<rt::DeclaredThread> worker_rows(const PlacingPlan& plan) {
+    if (plan.workers <= 1) return {};
+    const rt::Placement worker = worker_placement(plan, 1);
+    return {{.name = worker_name,
+             .policy = worker.policy,
+             .priority = worker.priority,
+             .cpus = worker.cpus,
+             .min_count = plan.workers - 1,
+             .max_count = plan.workers - 1}};
+}
+
 std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_clock, const std::string& program_name) {
     const rt::Policy real_time = plan.fifo ? rt::Policy::fifo : rt::Policy::other;
     const auto priority = [&](int p) { return plan.fifo ? p : 0; };
     std::vector<rt::DeclaredThread> table;
-    // The main thread and what the driver makes for itself (its shader and disk caches lower themselves to BATCH).
-    table.push_back({.name = program_name.substr(0, 15),  // as much as the kernel keeps
+    // The main thread and what the driver makes for itself (its shader and disk caches lower themselves to BATCH): no more than
+    // were there when ours had their names, so that none of ours hides among them.
+    table.push_back({.name = kept_name(program_name),
                      .whole_name = true,
                      .policy = rt::Policy::other,
                      .cpus = plan.all,
                      .min_count = 1,
-                     .max_count = 64});
+                     .max_count = plan.unnamed});
     table.push_back(
         {.name = program_name.substr(0, 7) + ":disk", .policy = rt::Policy::batch, .cpus = {}, .min_count = 0, .max_count = 16});
     table.push_back(
@@ -109,16 +143,15 @@ std::vector<rt::DeclaredThread> thread_table(const PlacingPlan& plan, bool real_
         const rt::Placement input = input_placement(plan);
         table.push_back({.name = input.name, .policy = input.policy, .priority = input.priority, .cpus = input.cpus});
     }
-    if (real_clock && plan.devices)
+    if (real_clock && plan.devices) {
         table.push_back({.name = input::devices_thread_name, .policy = rt::Policy::other, .cpus = plan.all});
-    if (real_clock) {
-        table.push_back({.name = "sf-prepare",
-                         .policy = real_time,
-                         .priority = priority(plan.worker_priority),
-                         .cpus = plan.all,
-                         .min_count = 1,
-                         .max_count = 256});
+        table.push_back({.name = input::lines_thread_name, .policy = rt::Policy::other, .cpus = plan.all, .min_count = 0});
     }
+    if (real_clock) {
+        const rt::Placement prepare = prepare_placement(plan);
+        table.push_back({.name = prepare.name, .policy = prepare.policy, .priority = prepare.priority, .cpus = prepare.cpus});
+    }
+    for (rt::DeclaredThread& row : worker_rows(plan)) table.push_back(std::move(row));
     for (const std::string& prefix : plan.driver_prefixes) {
         table.push_back({.name = prefix,
                          .policy = real_time,

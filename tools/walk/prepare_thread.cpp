@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "rt/clock/clock.hpp"
-#include "rt/threads/placement.hpp"
 
 namespace surefoot::walk {
 
@@ -22,9 +21,15 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
 }
 
 PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
-                             rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places)
-    : engine_(engine), grid_(grid), poses_(poses), prepared_(prepared), places_(places), thread_([this] { run(); }) {
-    named_.wait(false);  // by its name it is found and placed
+                             rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places, rt::Placement placement)
+    : engine_(engine),
+      grid_(grid),
+      poses_(poses),
+      prepared_(prepared),
+      places_(places),
+      placement_(std::move(placement)),
+      thread_([this] { run(); }) {
+    placed_.wait();
 }
 
 PrepareThread::~PrepareThread() { stop(); }
@@ -53,9 +58,11 @@ void PrepareThread::prepare_newest() {
 }
 
 void PrepareThread::run() {
-    (void)rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-prepare"});
-    named_.store(true);
-    named_.notify_one();
+    if (auto placed = rt::place_thread(0, placement_); !placed) {
+        misplaced_ = placed.error();
+        (void)rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = placement_.cpus, .name = placement_.name});
+    }
+    placed_.count_down();
     rt::RealClock clock;
     // A fortieth of a period after the frame's start: the pose is there by then, and most of the period is left.
     const std::int64_t offset_ns = grid_.period_ns / 40;

@@ -5,11 +5,14 @@
 
 #include <atomic>
 #include <cstdint>
+#include <latch>
+#include <optional>
 #include <thread>
 
 #include "render/engine.hpp"
 #include "rt/clock/grid.hpp"
 #include "rt/exchange/triple_buffer.hpp"
+#include "rt/threads/placement.hpp"
 
 namespace surefoot::walk {
 
@@ -41,14 +44,16 @@ using PlaceBuffer = rt::TripleBuffer<PoseSample>;
 
 class PrepareThread {
 public:
-    /// Start from a neutral thread; the thread is named sf-prepare when this returns. The buffers must outlive it. `places`: null
+    /// Start from a neutral thread; the thread is in its place when this returns. The buffers must outlive it. `places`: null
     /// where nothing puts the eye elsewhere; else looked at eight times a period.
     PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
-                  rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places);
+                  rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places, rt::Placement placement);
     ~PrepareThread();
     PrepareThread(const PrepareThread&) = delete;
     PrepareThread& operator=(const PrepareThread&) = delete;
     void stop();
+    /// What kept it from its place.
+    [[nodiscard]] const std::optional<Error>& misplaced() const { return misplaced_; }
 
 private:
     void run();
@@ -59,7 +64,10 @@ private:
     rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
     PlaceBuffer* places_;
     std::uint64_t seen_ = ~0ULL;  ///< frame prepared after last
-    std::atomic<bool> stopping_{false}, named_{false};
+    const rt::Placement placement_;
+    std::optional<Error> misplaced_;  ///< written before placed_
+    std::latch placed_{1};
+    std::atomic<bool> stopping_{false};
     std::thread thread_;
 };
 

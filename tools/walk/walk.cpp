@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <latch>
 #include <thread>
 
 #include "rt/clock/clock.hpp"
@@ -129,18 +131,23 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
 
     std::unique_ptr<PrepareThread> preparing;
     PlaceBuffer* places = s.input ? s.input->places() : nullptr;
-    if (!s.virtual_clock) preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, places);
+    if (!s.virtual_clock) {
+        preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, places, prepare_placement(s.plan));
+        if (const auto& refused = preparing->misplaced()) s.facts.degraded.push_back({refused->what, refused->remedy});
+    }
     PathPoses path_poses(s.path.path, s.grid.period_ns);
     if (s.input) s.input->begin(s.path.path, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
     PoseSource& pose_source = s.input ? s.input->poses() : static_cast<PoseSource&>(path_poses);
     if (s.virtual_clock) tell_started(s);
     std::atomic<bool> done{false};
-    std::optional<Error> misplaced;  // the frame thread's until it is joined
+    std::optional<Error> misplaced;  // the frame thread's until it is in place
+    std::latch in_place(1);
     std::thread frame_thread([&] {
         auto placed = s.virtual_clock
                           ? rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = "sf-frame"})
                           : rt::place_thread(0, frame_placement(s.plan));
         if (!placed) misplaced = placed.error();
+        in_place.count_down();
         rt::prefault_stack();
         if (!s.virtual_clock) rt::prefault_heap();
         WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
@@ -149,12 +156,8 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
         s.engine->device().release();
         done.store(true);
     });
-    if (!s.virtual_clock) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(60));
-        if (auto placed = place_workers(s.plan); !placed)
-            s.facts.degraded.push_back({placed.error().what, placed.error().remedy});
-        tell_started(s);
-    }
+    in_place.wait();
+    if (!s.virtual_clock) tell_started(s);
     attend(s, clock, done, progress);
     frame_thread.join();
     tell_missed_frame(s);
@@ -194,6 +197,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
         s.rasterisers = *placed;
     }
     warm_up(s);
+    s.plan.unnamed = count_unnamed(program_invocation_short_name);
 
     WalkOutcome outcome;
     tell_now(s.notes, progress);

@@ -83,6 +83,7 @@ void take_census(const PlacingPlan& plan, WalkFacts& facts) {
         return;
     }
     facts.census_problems = rt::census(table, *threads);
+    facts.census_problems.insert(facts.census_problems.end(), facts.worker_problems.begin(), facts.worker_problems.end());
     for (const rt::CensusRow& row : rt::census_rows(table, *threads)) {
         facts.threads.push_back({row.name, row.count, std::string(rt::policy_name(row.policy)), row.priority, row.cpus.text()});
     }

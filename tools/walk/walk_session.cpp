@@ -95,11 +95,16 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     const int others = s.plan.all.count() - (s.plan.all.has(s.plan.frame_core) ? 1 : 0);
     auto options = engine_options(r, others);
     if (!options) return options.error();
+    s.plan.workers = options->prepare.workers;
+    options->prepare.worker_hooks = s.worker_places.emplace(s.plan).hooks();
     tell(s, WalkStep::device);
     progress.say("open", 0.5);
     auto engine = Engine::open(std::move(*model), s.costs, *options);
     if (!engine) return engine.error();
     s.engine = std::move(*engine);
+    if (const auto refused = s.worker_places->refused())
+        s.facts.degraded.push_back({"a worker: " + refused->what, refused->remedy});
+    s.facts.worker_problems = s.worker_places->problems();
     s.facts.renderer = s.engine->device().renderer();
     s.facts.machine = measure::machine_identity(s.facts.renderer, r.rasterisers);
     if (s.costs.calibrated && options->device.kind != gl::BackendKind::null && s.costs.machine != s.facts.machine) {
@@ -144,6 +149,14 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
 
 }  // namespace
 
+Session::~Session() {
+    if (engine) {
+        const BesideWorkers beside(plan);
+        engine.reset();
+    }
+    if (!virtual_clock && rt::guard_active()) rt::release_memory();
+}
+
 void tell(const Session& s, WalkStep step) {
     if (s.watch.on_step) s.watch.on_step(step);
 }
@@ -162,6 +175,15 @@ Result<void> open_session(Session& s, const Progress& progress) {
     return {};
 }
 
+namespace {
+
+void prepare_beside_workers(Session& s, const prepare::Region& region, prepare::PreparedFrame& out) {
+    const BesideWorkers beside(s.plan);
+    s.engine->prepare(region, 0, 0, 0, out);
+}
+
+}  // namespace
+
 void warm_up(Session& s) {
     Engine& engine = *s.engine;
     engine.device().bind();
@@ -171,7 +193,7 @@ void warm_up(Session& s) {
     for (int i = 0; i < 12; ++i) {
         const Pose pose = pose_at(s.path.path, i * s.path.path.duration_s() / 12.0);
         prepare::PreparedFrame& set = s.prepared.slot(0);
-        engine.prepare({pose, 0.1, 0.05}, 0, 0, 0, set);
+        prepare_beside_workers(s, {pose, 0.1, 0.05}, set);
         engine.select(set, budget_share * period_us, {}, 0);
         engine.submit(pose, limits);
         engine.select_coarse();
@@ -184,7 +206,7 @@ void warm_up(Session& s) {
     prepare::Region region = predict_region(first.before, first.pose, period_s, horizon_periods * period_s);
     region.radius_m = std::max(region.radius_m, 0.5);
     region.angle_rad = std::max(region.angle_rad, 0.2);
-    engine.prepare(region, 0, 0, 0, s.prepared.back());
+    prepare_beside_workers(s, region, s.prepared.back());
     s.prepared.publish();
 }
 

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "tools/walk/walk.hpp"
 #include "tools/walk/walk_results.hpp"
 #include "tools/walk/walk_stages.hpp"
+#include "tools/walk/worker_places.hpp"
 
 namespace surefoot::walk {
 
@@ -30,6 +32,7 @@ struct Session {
     const WalkWatch& watch;
     WalkFacts facts;
     PlacingPlan plan;
+    std::optional<WorkerPlaces> worker_places;  ///< of the engine's workers
     std::unique_ptr<Engine> engine;
     ChosenPath path;
     std::unique_ptr<InputSession> input;  ///< null: the path is followed
@@ -51,10 +54,8 @@ struct Session {
     Session(const WalkRequest& r, const WalkWatch& w) : request(r), watch(w) {}
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
-    /// On every way out, refusals included: the memory that claim() had locked.
-    ~Session() {
-        if (!virtual_clock && rt::guard_active()) rt::release_memory();
-    }
+    /// On every way out, refusals included: ends the workers, and releases the memory that claim() had locked.
+    ~Session();
 };
 
 /// Says to whoever watches which step begins.

@@ -1,0 +1,142 @@
+// Both openers.
+#include "input/gpio/line_opener.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <latch>
+#include <semaphore>
+#include <thread>
+
+#include "input/retry.hpp"
+#include "rt/clock/clock.hpp"
+#include "rt/exchange/spsc_ring.hpp"
+#include "rt/threads/placement.hpp"
+
+namespace surefoot::input {
+
+namespace {
+
+/// One try after another, each when it is due.
+class LineTries {
+public:
+    explicit LineTries(LinesToOpen lines) : lines_(std::move(lines)) {}
+    [[nodiscard]] bool due(std::int64_t now_ns) const { return !lines_.requests.empty() && !given_ && retry_.due(now_ns); }
+    [[nodiscard]] bool given() const { return given_; }
+    [[nodiscard]] std::int64_t next_ns() const { return retry_.next_ns; }
+
+    std::unique_ptr<OpenedLines> make(std::int64_t now_ns) {
+        auto made = std::make_unique<OpenedLines>();
+        if (auto done = open_into(*made); !done) {
+            made->lines.reset();
+            made->error = done.error();
+            retry_.failed(now_ns);
+            return made;
+        }
+        retry_.succeeded();
+        given_ = true;
+        return made;
+    }
+    void unmake(std::unique_ptr<OpenedLines> opened, std::int64_t now_ns) {
+        if (!opened->lines) return;
+        given_ = false;
+        retry_.failed(now_ns);
+    }
+
+private:
+    Result<void> open_into(OpenedLines& out) {
+        auto opened = lines_.open(lines_.requests, lines_.consumer, lines_.context);
+        if (!opened) return opened.error();
+        out.lines = std::move(*opened);
+        return out.lines->levels({out.levels.data(), lines_.requests.size()});
+    }
+    LinesToOpen lines_;
+    Retry retry_;
+    bool given_ = false;  ///< the reader has them
+};
+
+class OpensHere final : public LineOpener {
+public:
+    explicit OpensHere(LinesToOpen lines) : tries_(std::move(lines)) {}
+    void wait_for_first() override {}
+    std::unique_ptr<OpenedLines> next(std::int64_t now_ns) override { return tries_.due(now_ns) ? tries_.make(now_ns) : nullptr; }
+    void give_back(std::unique_ptr<OpenedLines> opened, std::int64_t now_ns) override {
+        tries_.unmake(std::move(opened), now_ns);
+    }
+
+private:
+    LineTries tries_;
+};
+
+class OpensBeside final : public LineOpener {
+public:
+    explicit OpensBeside(LinesToOpen lines) : tries_(std::move(lines)), thread_([this] { run(); }) {}
+    OpensBeside(const OpensBeside&) = delete;
+    OpensBeside& operator=(const OpensBeside&) = delete;
+    ~OpensBeside() override {
+        stopping_.store(true);
+        bell_.release();
+        thread_.join();
+        OpenedLines* o = nullptr;
+        while (found_.try_pop(o)) delete o;
+        while (returned_.try_pop(o)) delete o;
+    }
+
+    void wait_for_first() override { first_.wait(); }
+    std::unique_ptr<OpenedLines> next(std::int64_t /*now_ns*/) override {
+        OpenedLines* o = nullptr;
+        return std::unique_ptr<OpenedLines>(found_.try_pop(o) ? o : nullptr);
+    }
+    /// There is always room: no more are under way than the ring to the reader holds.
+    void give_back(std::unique_ptr<OpenedLines> opened, std::int64_t /*now_ns*/) override {
+        if (returned_.try_push(opened.get())) (void)opened.release();
+        bell_.release();
+    }
+
+private:
+    static constexpr std::size_t under_way_most = 8;
+
+    void run() {
+        (void)rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = lines_thread_name});
+        std::string said;
+        for (bool first = true; first || !stopping_.load(); first = false) {
+            const std::int64_t now_ns = clock_.now_ns();
+            for (OpenedLines* o = nullptr; returned_.try_pop(o); --under_way_)
+                tries_.unmake(std::unique_ptr<OpenedLines>(o), now_ns);
+            if (under_way_ < under_way_most && tries_.due(now_ns)) hand_over(tries_.make(now_ns), said);
+            if (first) first_.count_down();
+            sleep();
+        }
+    }
+    /// Each reason once, until another one or the lines come.
+    void hand_over(std::unique_ptr<OpenedLines> made, std::string& said) {
+        const std::string reason = made->error.text();
+        if (!made->lines && reason == said) return;
+        said = reason;
+        if (!found_.try_push(made.get())) return tries_.unmake(std::move(made), clock_.now_ns());
+        (void)made.release();
+        ++under_way_;
+    }
+    void sleep() {
+        if (tries_.given() || under_way_ == under_way_most) return bell_.acquire();
+        (void)bell_.try_acquire_for(std::chrono::nanoseconds(std::max<std::int64_t>(0, tries_.next_ns() - clock_.now_ns())));
+    }
+
+    LineTries tries_;
+    rt::RealClock clock_;
+    rt::SpscRing<OpenedLines*> found_{under_way_most}, returned_{under_way_most};
+    std::size_t under_way_ = 0;  ///< with the reader, or on their way there or back
+    std::counting_semaphore<> bell_{0};
+    std::latch first_{1};
+    std::atomic<bool> stopping_{false};
+    std::thread thread_;
+};
+
+}  // namespace
+
+std::unique_ptr<LineOpener> make_line_opener(LinesToOpen lines, Opening where) {
+    if (where == Opening::here || lines.requests.empty()) return std::make_unique<OpensHere>(std::move(lines));
+    return std::make_unique<OpensBeside>(std::move(lines));
+}
+
+}  // namespace surefoot::input

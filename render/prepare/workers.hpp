@@ -1,0 +1,50 @@
+// The workers of preparation: a oneTBB arena of a known size, whose threads all start at once and are told of before they work.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_scheduler_observer.h>
+
+#include "render/prepare/prepared.hpp"
+
+namespace surefoot::prepare {
+
+class Workers {
+public:
+    /// `count` with the caller; 1: no threads. With hooks all of them start here; without, as they are first wanted.
+    Workers(int count, WorkerHooks hooks);
+    ~Workers();
+    Workers(const Workers&) = delete;
+    Workers& operator=(const Workers&) = delete;
+
+    /// Null: one worker, the caller.
+    [[nodiscard]] tbb::task_arena* arena() { return arena_ ? &*arena_ : nullptr; }
+
+private:
+    class Observer final : public tbb::task_scheduler_observer {
+    public:
+        Observer(tbb::task_arena& arena, const WorkerHooks& hooks);
+        ~Observer() override { observe(false); }
+        Observer(const Observer&) = delete;
+        Observer& operator=(const Observer&) = delete;
+        void on_scheduler_entry(bool is_worker) override;
+
+    private:
+        const WorkerHooks& hooks_;
+        const std::uint64_t id_;
+        std::atomic<int> started_{0};
+    };
+    void start_all(int workers);
+
+    WorkerHooks hooks_;
+    tbb::task_scheduler_handle handle_;                   ///< with hooks: by it the threads end with this
+    std::optional<tbb::global_control> more_than_cores_;  ///< else the library caps its threads, and says so on stderr
+    std::optional<tbb::task_arena> arena_;
+    std::optional<Observer> observer_;
+};
+
+}  // namespace surefoot::prepare
