@@ -112,6 +112,8 @@ grep -qE '^ +two-stage +[a-z].{10}' help || complain "walk --help does not say w
 printf 'backend = "kms"\n' > kms.toml; refuse 'kms.toml:1.*not in this version.*egl' walk f.walk --config kms.toml
 
 # Outputs: asked for beforehand, never over an input; one that fails spoils no other.
+expect 1 'over.obj: .*\.obj.*only read.*\.glb' scene forest --scale 0.3 -o over.obj
+[ -e over.obj ] && complain "a refused scene is there"
 refuse 'f.glb.*files to bake' bake f.glb -o ./f.glb
 refuse 'f.obj.*\.walk' bake f.glb -o f.obj
 expect 1 'nonexistent' scene forest -o /nonexistent/f.glb
@@ -131,8 +133,6 @@ cmp -s f.glb again.glb || complain "an output replaced the scene"
 ( ulimit -f 40; "$surefoot" walk f.walk $virtual --frames 300 --ledger big.csv --capture small.cap --json >out 2>err; echo $? >rc )
 ( ulimit -f 40; "$surefoot" scene forest --scale 0.3 -o over.glb 2>/dev/null ) && complain "a .glb that is too large is a success"
 [ -e over.glb ] && complain "half a scene is there"
-expect 1 'over.obj: .*\.obj.*only read.*\.glb' scene forest --scale 0.3 -o over.obj
-[ -e over.obj ] && complain "a refused scene is there"
 [ "$(cat rc)" = 1 ] || complain "exit $(cat rc), not 1, where the ledger could not be finished"
 grep -q 'big.csv.*too large.*ulimit' err || complain "stderr says '$(head -c 300 err)' of a ledger that is too large"
 valid_json out || complain "no summary where an output failed"

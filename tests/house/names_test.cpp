@@ -108,6 +108,7 @@ bool is_meant(std::string_view file, std::string_view name) {
         {"tools/cli/devices_watch.cpp", "device"},               // what is plugged in
         {"tools/cli/devices_map.cpp", "device"},                 // the same
         {"tools/cli/devices_record.cpp", "device"},              // the same
+        {"render/gl/program.cpp", "vertex_colour"},              // an attribute of the shaders
         {"tools/scenes/write_glb.cpp", "mesh"},                  // glTF's word
         {"tools/selftest/transforms.cpp", "flat"},               // the name of an object in a scene
         {"tools/selftest/budgets_and_curves.cpp", "two-stage"},  // the label of a measured value

@@ -38,7 +38,19 @@ void draw_bar(BarState& bar, std::string_view stage, double done) {
     std::fflush(stderr);
 }
 
+/// CLI11's own way to hide an option takes its name out of error messages too.
+class HelpFormatter final : public CLI::Formatter {
+public:
+    [[nodiscard]] std::string make_group(std::string group, bool is_positional,
+                                         std::vector<const CLI::Option*> options) const override {
+        if (group == hidden_group) return {};
+        return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
+    }
+};
+
 }  // namespace
+
+std::shared_ptr<CLI::Formatter> help_formatter() { return std::make_shared<HelpFormatter>(); }
 
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example, bool& json) {
     CLI::App* command = app.add_subcommand(name, what);

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -24,6 +25,11 @@ struct Context {
     bool terminal = false;                    ///< stderr is a terminal: progress and colour
     bool colour = false;                      ///< stdout is a terminal and NO_COLOR is not set
 };
+
+/// Options of this group are taken, and left out of --help.
+constexpr const char* hidden_group = "Experiments";
+/// What writes --help.
+std::shared_ptr<CLI::Formatter> help_formatter();
 
 /// A subcommand with its help, an example, and --json.
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example, bool& json);

@@ -95,6 +95,7 @@ int main(int argc, char** argv) {
             "  surefoot calibrate                                 measure this machine, once\n"
             "  surefoot walk forest.walk --path forest.path.csv --report report",
         "surefoot"};
+    app.formatter(cli::help_formatter());  // before the commands, which take it over
     app.require_subcommand(1);
     app.set_version_flag("--version", SUREFOOT_VERSION);
     cli::add_scene(app, context);

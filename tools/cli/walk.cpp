@@ -183,8 +183,7 @@ void add_walk(CLI::App& app, Context& context) {
                   {"--slice", "slice_us"},
                   {"--hysteresis", "hysteresis"}});
     c->add_option("--cost-noise", r.cost_noise, "Virtual clock: relative noise on costs")->check(number_within(0, 10));
-    for (const char* experiment : {"--slice", "--hysteresis", "--cost-noise"})
-        c->get_option(experiment)->group("");  // not in --help
+    for (const char* experiment : {"--slice", "--hysteresis", "--cost-noise"}) c->get_option(experiment)->group(hidden_group);
     c->add_flag("--strict", r.strict,
                 "Do not start where anything that real time needs is refused: FIFO, locked memory, an isolated core, "
                 "placing, a cost table");
