@@ -74,8 +74,8 @@ Result<void> claim(Session& s) {
     s.costs = std::move(*costs);
     if (!r.strict) return {};
     tell(s, WalkStep::real_time);
-    std::vector<report::Degraded> lacks = s.facts.degraded;
-    if (!s.facts.uncalibrated.empty()) lacks.push_back({s.facts.uncalibrated, ""});
+    std::vector<rt::Lack> lacks = s.facts.degraded;
+    if (!s.facts.uncalibrated.empty()) lacks.push_back({rt::LackKind::cost_table, s.facts.uncalibrated, ""});
     return require_real_time(lacks);
 }
 
@@ -121,7 +121,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
                                "\"; run `surefoot calibrate` here";
         if (r.strict) {
             tell(s, WalkStep::real_time);
-            return require_real_time(std::vector<report::Degraded>{{s.facts.uncalibrated, ""}});
+            return require_real_time(std::vector<rt::Lack>{{rt::LackKind::cost_table, s.facts.uncalibrated, ""}});
         }
     }
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));

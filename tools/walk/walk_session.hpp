@@ -33,7 +33,7 @@ struct Session {
     std::unique_ptr<Engine> engine;
     ChosenPath path;
     std::unique_ptr<InputSession> input;  ///< null: the path is followed
-    WalkInput input_told;
+    rt::InputState input_told;
     std::vector<std::string> notes;
     rt::Grid grid;
     rt::LatePolicy late = rt::LatePolicy::lock;
