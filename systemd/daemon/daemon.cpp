@@ -44,7 +44,7 @@ struct Ending {
     ExitCode code = exit_failure;
 };
 
-void say_lack(Log& log, Standing& standing, const report::Degraded& lack) {
+void say_lack(Log& log, Standing& standing, const rt::Lack& lack) {
     if (!standing.lacks(lack)) return;
     log.say(Priority::warning, event::degraded,
             fmt::format("not fully real-time: {}{}", lack.what, lack.remedy.empty() ? "" : " (" + lack.remedy + ")"),
@@ -66,19 +66,19 @@ walk::WalkWatch watch_of(Log& log, Standing& standing, Bursts& bursts, const wal
     walk::WalkWatch watch;
     watch.on_step = [&](walk::WalkStep step) { standing.step.store(step); };
     watch.on_started = [&](const walk::WalkStart& start) {
-        for (const report::Degraded& lack : start.degraded) say_lack(log, standing, lack);
+        for (const rt::Lack& lack : start.degraded) say_lack(log, standing, lack);
         if (!start.uncalibrated.empty() && standing.uncalibrated(start.uncalibrated))
             log.say(Priority::warning, event::uncalibrated, start.uncalibrated);
         // After the session has raised its limits.
         if (auto ok = rt::guard_runaways(rt::runaway_limit_us(start.period_ns)); !ok)
-            say_lack(log, standing, {ok.error().place + " " + ok.error().what, ok.error().remedy});
+            say_lack(log, standing, {rt::LackKind::other, ok.error().place + " " + ok.error().what, ok.error().remedy});
         standing.walking(start.period_ns);
     };
     watch.on_record = [&](const rt::FrameRecord& record) {
         standing.count(record);
         say_burst(log, bursts.add(record));
     };
-    watch.on_degraded = [&](const report::Degraded& lack) { say_lack(log, standing, lack); };
+    watch.on_degraded = [&](const rt::Lack& lack) { say_lack(log, standing, lack); };
     watch.inject = inject;
     return watch;
 }

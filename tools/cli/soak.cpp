@@ -58,7 +58,7 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
     if (a.json) {
         fmt::print("{}", soak::soak_json(s));
         if (!s.walk.uncalibrated.empty()) note("uncalibrated: " + s.walk.uncalibrated);
-        for (const report::Degraded& d : s.walk.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
+        for (const rt::Lack& d : s.walk.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
     } else {
         fmt::print("{}", soak::soak_table(s, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
