@@ -89,7 +89,8 @@ public:
     /// Waits for everything; presents where there is something to present to.
     virtual void finish_frame() = 0;
     [[nodiscard]] virtual FrameStats stats() const = 0;
-    /// After finish_frame(): the context is gone (the GPU was reset, or taken away), and nothing drawn since was seen.
+    /// The context is gone (the GPU was reset, taken away, or does not finish), and nothing drawn since was seen. Calls are
+    /// harmless from then on, and draw nothing.
     [[nodiscard]] virtual bool lost() const { return false; }
     /// Of the current frame; slow.
     virtual Result<PixelImage> read_pixels() = 0;

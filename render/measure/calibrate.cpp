@@ -210,6 +210,8 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     run.slices(out);
     if (auto done = run.cells(out); !done) return done.error();
     if (auto done = run.frames(out); !done) return done.error();
+    if ((*device)->lost())
+        return Error{"calibration", "the device was lost: its times are none", "restart the driver, and try again"};
     out.seconds = now_s() - start_s;
     progress.say("done", 1);
     return out;
