@@ -166,8 +166,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
         }
         drawn.push_back({item.node, item.rep});
         const prepare::Choice& choice = prepared->choices[item.choice];
-        cost.submit_us += choice.cost.submit_us;
-        cost.raster_us += choice.cost.raster_us;
+        cost += choice.cost;
         report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
         report.benefit_mean += 1.0 - choice.benefit;
         report.triangles += model.reps[item.rep].triangles;
@@ -182,8 +181,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     const model::FrameCombine& combine = costs.combine;
     model::ItemCost rest_stand_in, so_far;
     for (const select::Slice& slice : plan.slices) {
-        rest_stand_in.submit_us += slice.stand_in_cost.submit_us + costs.slice_us;
-        rest_stand_in.raster_us += slice.stand_in_cost.raster_us;
+        rest_stand_in += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
     }
     bool full = true;
     float in_flight_us = 0;
@@ -210,8 +208,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         const model::ItemCost cost = draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
                                                      : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count),
                                                 report);
-        so_far.submit_us += cost.submit_us + costs.slice_us;
-        so_far.raster_us += cost.raster_us;
+        so_far += {cost.submit_us + costs.slice_us, cost.raster_us};
         in_flight_us = cost.raster_us;
         ++report.slices;
         if (!full) ++report.downgraded_slices;
@@ -229,9 +226,7 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
     const model::ViewScale scale = model::make_view_scale(pose, options.device.viewport);
     model::ItemCost sum{.submit_us = costs.slice_us, .raster_us = 0};
     for (const gl::DrawItem& item : coarse) {
-        const model::ItemCost cost = preparer->item_costs().of(item.rep, model.nodes[item.node].box, pose.position, scale);
-        sum.submit_us += cost.submit_us;
-        sum.raster_us += cost.raster_us;
+        sum += preparer->item_costs().of(item.rep, model.nodes[item.node].box, pose.position, scale);
         report.triangles += model.reps[item.rep].triangles;
     }
     report.predicted = sum;
@@ -246,7 +241,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     SubmitReport report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();
-    e.frustum = model::make_frustum(pose, e.options.device.viewport, 2 * e.model.nodes[0].box.diagonal() + 1e3);
+    e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
     e.device->begin_frame(pose);
     if (e.use_coarse) {
         e.submit_coarse(pose, report);
@@ -280,7 +275,7 @@ void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> ite
 std::vector<gl::DrawItem> Engine::full_detail(const Pose& pose) const {
     const model::Model& model = impl_->model;
     const model::Frustum frustum =
-        model::make_frustum(pose, impl_->options.device.viewport, 2 * model.nodes[0].box.diagonal() + 1e3);
+        model::make_frustum(pose, impl_->options.device.viewport, model::far_corners_m(model.nodes[0].box));
     std::vector<gl::DrawItem> items;
     std::vector<model::Index> stack{0};
     while (!stack.empty()) {

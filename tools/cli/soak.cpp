@@ -46,6 +46,7 @@ Result<soak::SoakRequest> to_soak_request(const SoakArguments& a) {
 int run_soak_command(const SoakArguments& a, const Context& context) {
     auto request = to_soak_request(a);
     if (!request) return misuse(request.error());
+    walk::prepare_process(request->walk);
     if (request->seconds < judged_from_s) {
         note(fmt::format("a verdict needs {:.1f} minutes or more; of {:.0f} s not all can be judged", judged_from_s / 60,
                          request->seconds));

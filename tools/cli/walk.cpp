@@ -91,6 +91,7 @@ Result<std::unique_ptr<monitor::Monitor>> open_monitor(const MonitorArguments& a
 int run_walk_command(WalkArguments& a, const Context& context) {
     auto request = to_request(a);
     if (!request) return misuse(request.error());
+    walk::prepare_process(*request);
     if (!a.watch.address.empty()) {
         if (const auto address = monitor::parse_address(a.watch.address); !address) return misuse(address.error());
     }
