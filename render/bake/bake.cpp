@@ -358,7 +358,6 @@ void Bakery::emit() {
 }  // namespace
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
-    const auto begun = std::chrono::steady_clock::now();
     Bakery bakery{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}};
     bakery.cut_out = cut_out_materials(scene);
     bakery.proxy = add_materials(scene, bakery.model);
@@ -388,7 +387,6 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     model.provenance.sources = scene.sources;
     model.provenance.warnings = scene.warnings;
     model.provenance.quality = options.quality == Quality::full ? "full" : "draft";
-    model.provenance.bake_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     if (auto valid = model::validate(model); !valid) return valid.error();
     return std::move(model);
 }

@@ -98,7 +98,6 @@ struct Provenance {
     std::vector<std::string> sources;
     std::string quality;                ///< draft | full
     std::vector<std::string> warnings;  ///< one line each, e.g. "dropped 12 triangles of zero area in mesh 'lamp'"
-    double bake_s = 0;
 };
 
 struct Model {
