@@ -60,6 +60,7 @@ struct Engine::Impl {
     EngineOptions options;
     std::unique_ptr<gl::Device> device;
     std::unique_ptr<prepare::Preparer> preparer;
+    bool full_depth_always = false;  ///< as asked for, whatever the selector
     const select::Selector* selector = nullptr;
     select::SelectState state;
     select::Cut cut;
@@ -71,6 +72,7 @@ struct Engine::Impl {
     Correction correction;
     double upper_factor = 1;  ///< that the last select() spent
 
+    void use(const select::SelectorEntry& entry);
     double now_us(const SubmitLimits& limits) const {
         return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
     }
@@ -90,20 +92,20 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->options = options;
     auto selector = select::selector_named(options.selector);
     if (!selector) return selector.error();
-    impl->selector = &(*selector)->make();
     impl->options.device.null.costs = &impl->costs;
     auto device = gl::open_device(impl->options.device);
     if (!device) return device.error();
     impl->device = std::move(*device);
     auto loaded = impl->device->load(impl->model, effects::assemble_program);
     if (!loaded) return loaded.error();
+    decltype(impl->model.texels)().swap(impl->model.texels);  // the device has its own
     const auto candidates =
         static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_candidates, impl->model.nodes.size()));
     impl->options.prepare.max_candidates = candidates;
     impl->options.prepare.max_choices =
         static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_choices, impl->model.reps.size()));
-    impl->options.prepare.full_depth |= (*selector)->goes_by == select::GoesBy::nothing;  // full detail needs the leaves
-    impl->preparer = std::make_unique<prepare::Preparer>(impl->model, impl->costs, impl->options.prepare);
+    impl->full_depth_always = options.prepare.full_depth;
+    impl->use(**selector);
     impl->state.reserve(impl->model, candidates);
     impl->state.hysteresis = options.hysteresis;
     select::reserve(impl->cut, candidates);
@@ -111,6 +113,16 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->coarse = coarse_cover(impl->model);
     impl->drawn.reserve(std::max<std::size_t>(candidates, impl->coarse.size()) * 2);
     return std::unique_ptr<Engine>(new Engine(std::move(impl)));
+}
+
+/// A preparer's depth is fixed as it is made: full detail needs the leaves, the other selectors are spared them.
+void Engine::Impl::use(const select::SelectorEntry& entry) {
+    selector = &entry.make();
+    const bool full_depth = full_depth_always || entry.goes_by == select::GoesBy::nothing;
+    if (preparer && full_depth == options.prepare.full_depth) return;
+    options.prepare.full_depth = full_depth;
+    preparer.reset();  // its workers first
+    preparer = std::make_unique<prepare::Preparer>(model, costs, options.prepare);
 }
 
 const model::Model& Engine::model() const { return impl_->model; }
@@ -130,7 +142,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
 Result<void> Engine::set_selector(std::string_view name) {
     auto selector = select::selector_named(name);
     if (!selector) return selector.error();
-    impl_->selector = &(*selector)->make();
+    impl_->use(**selector);
     return {};
 }
 

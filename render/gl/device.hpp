@@ -67,7 +67,7 @@ public:
     [[nodiscard]] virtual std::string renderer() const = 0;  ///< GL_RENDERER, or "null"
     [[nodiscard]] virtual bool software() const = 0;
     /// Uploads geometry and textures, compiles the programs of the scene's state classes (and only those), warms each up. The
-    /// model stays as it is until the last draw, or the next load.
+    /// model stays as it is until the last draw, or the next load; but for its texels, which are not looked at again.
     virtual Result<void> load(const model::Model& model, const ProgramFactory& programs) = 0;
     [[nodiscard]] virtual std::vector<std::string> program_listing() const = 0;  ///< "mask: effects", for tests and `effects`
     [[nodiscard]] virtual std::string program_text(model::EffectMask mask) const = 0;
