@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rt/base/check.hpp"
 #include "rt/monitor/process.hpp"
 #include "rt/monitor/telemetry.hpp"
 #include "tools/report/report.hpp"
@@ -65,6 +66,7 @@ struct MonitorPage {
     rt::ProcessFigures process;
     std::vector<rt::BusyThread> threads;  ///< only in the JSON
     MonitorCounts counts;
+    std::vector<RareCheck> rare_checks;  ///< of this process: what "cannot happen", and did
 };
 
 /// What a lack is about, as a word out of a fixed list, so that a label stays bounded: fifo, memory_lock, isolated_core,
