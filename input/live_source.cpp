@@ -79,8 +79,8 @@ void LiveSource::say_if_nobody_steers(std::int64_t now_ns) {
     }
 }
 
-std::vector<SteeringDevice> LiveSource::devices() const {
-    std::vector<SteeringDevice> list;
+std::vector<rt::SteeringDevice> LiveSource::devices() const {
+    std::vector<rt::SteeringDevice> list;
     if (attendant_) list = attendant_->met();
     if (panel_ && panel_->has_controls())
         list.push_back({std::string(panel_name), class_name(DeviceClass::buttons), panel_->mapping()});

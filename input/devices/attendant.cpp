@@ -145,8 +145,8 @@ int Attendant::steering_now() const {
     return static_cast<int>(std::count_if(slots_.begin(), slots_.end(), [](const Slot& s) { return s.device >= 0; }));
 }
 
-std::vector<SteeringDevice> Attendant::met() const {
-    std::vector<SteeringDevice> list;
+std::vector<rt::SteeringDevice> Attendant::met() const {
+    std::vector<rt::SteeringDevice> list;
     for (const MetDevice& m : met_) list.push_back(m.words);
     return list;
 }

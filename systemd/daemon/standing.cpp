@@ -59,7 +59,7 @@ void Standing::count(const rt::FrameRecord& record) {
     walk_frames_.fetch_add(1);
 }
 
-bool Standing::lacks(const report::Degraded& lack) {
+bool Standing::lacks(const rt::Lack& lack) {
     const std::lock_guard lock(mutex_);
     facts_.lacks.push_back(lack.what);
     return said_.insert(lack.what).second;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/settings.hpp"
+#include "rt/threads/capability.hpp"
 #include "tools/walk/walk.hpp"
 
 namespace surefoot::daemon {
@@ -46,7 +47,7 @@ public:
     void walking(std::int64_t period_ns);
     void count(const rt::FrameRecord& record);
     /// Of this walk. True: not known before in this process, so it is to be said.
-    bool lacks(const report::Degraded& lack);
+    bool lacks(const rt::Lack& lack);
     /// The same of the cost table.
     bool uncalibrated(const std::string& why);
     /// The configuration that a reload brought, once.

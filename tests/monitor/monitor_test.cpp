@@ -79,7 +79,7 @@ TEST(Monitor, ServesTheFiguresOfAWalkAndOfTheNext) {
     EXPECT_EQ(scrape(*monitor).at("surefoot_state{state=\"starting\"}"), 1);
     test::Exposed before;
     for (int n = 1; n <= 2; ++n) {
-        monitor->set_degraded({{"no isolated core among 0-1", "isolate one"}});
+        monitor->set_degraded({{rt::LackKind::isolated_core, "no isolated core among 0-1", "isolate one"}});
         monitor->begin_walk(a_walk());
         const std::int64_t t0_ns = rt::monotonic_ns();
         std::thread([&] {  // the monitor thread of this walk

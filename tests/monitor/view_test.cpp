@@ -41,7 +41,7 @@ json viewed_status(int frames, const std::string& model = "/srv/models/town.walk
     page.walk.model = model;
     page.walk.rate_hz = 50;
     page.walk.setup = telemetry->figures().setup;
-    page.degraded = {{"SCHED_FIFO is refused", "grant CAP_SYS_NICE"}};
+    page.degraded = {{rt::LackKind::fifo, "SCHED_FIFO is refused", "grant CAP_SYS_NICE"}};
     page.threads = rt::read_busy_threads();
     return json::parse(status_json(page));
 }

@@ -174,8 +174,9 @@ TEST(Summary, MissingCostTableIsSaidOnceAndNotAsALackOfRealTime) {
 TEST(Summary, ThreadsOfTheCensusAreNamedWithTheirPlacing) {
     WalkSummary s;
     summarize(good_frames(2), period_ns, s);
-    s.threads = {{"sf-frame", 1, "fifo", 80, "1"}, {"llvmpipe-", 2, "fifo", 70, "0-1"}};
-    EXPECT_NE(to_table(s, false).find("sf-frame fifo 80 on 1; 2 llvmpipe- fifo 70 on 0-1"), std::string::npos);
+    s.threads = {{"sf-frame", 1, rt::Policy::fifo, 80, rt::CpuMask{1}},
+                 {"llvmpipe-", 2, rt::Policy::fifo, 70, rt::CpuMask{0, 1}}};
+    EXPECT_NE(to_table(s, false).find("sf-frame SCHED_FIFO 80 on 1; 2 llvmpipe- SCHED_FIFO 70 on 0-1"), std::string::npos);
     EXPECT_EQ(nlohmann::json::parse(to_json(s))["threads"][1]["count"], 2);
 }
 
@@ -249,8 +250,8 @@ TEST(Table, KeepsWithinAHundredColumnsAndColoursOnlyWhenAsked) {
     summarize(frames_with_a_miss(), period_ns, s);
     s.model = "/a/very/long/path/" + std::string(150, 'm') + "/forest.walk";
     s.renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
-    s.degraded = {
-        {"FIFO refused", std::string("grant it: ") + std::string(120, 'x') + " and then log in again, once more and again"}};
+    s.degraded = {{rt::LackKind::fifo, "FIFO refused",
+                   std::string("grant it: ") + std::string(120, 'x') + " and then log in again, once more and again"}};
     s.census_problems = {std::string(40, 'a') + " " + std::string(70, 'b')};
     EXPECT_EQ(to_table(s, false).find('\x1b'), std::string::npos);
     const std::string table = to_table(s, true);

@@ -171,7 +171,6 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
         if (!image) return image.error();
         station.full = std::move(image->rgba);
         engine.reserve(station.prepared);
-        engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
     }
     run.full_frame_ms = median(full_ms);
 
@@ -184,6 +183,8 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
     std::size_t done = 0;
     for (const std::string& selector : request.selectors) {
         if (auto set = engine.set_selector(selector); !set) return set.error();
+        for (Station& station : sweep.stations)  // `flat` needs the leaves, the others do not
+            engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
         const select::SelectorEntry& entry = **select::selector_named(selector);
         for (std::size_t b = 0; b < budgets.size(); ++b) {
             if (progress.stopped()) return Error{request.model_file, "stopped by the user", ""};

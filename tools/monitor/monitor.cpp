@@ -97,17 +97,17 @@ void Monitor::set_state(ServiceState state) {
     facts_.state = state;
 }
 
-void Monitor::set_degraded(std::vector<report::Degraded> degraded) {
+void Monitor::set_degraded(std::vector<rt::Lack> degraded) {
     const std::lock_guard lock(facts_mutex_);
     facts_.degraded = std::move(degraded);
 }
 
-void Monitor::add_degraded(const report::Degraded& degraded) {
+void Monitor::add_degraded(const rt::Lack& degraded) {
     const std::lock_guard lock(facts_mutex_);
     facts_.degraded.push_back(degraded);
 }
 
-void Monitor::set_input(const MonitoredInput& input) {
+void Monitor::set_input(const rt::InputState& input) {
     const std::lock_guard lock(facts_mutex_);
     facts_.input = input;
 }

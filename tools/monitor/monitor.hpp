@@ -49,9 +49,9 @@ public:
     void begin_walk(const MonitoredWalk& walk);  ///< before its first record
     void end_walk();                             ///< after its last record
     void set_state(ServiceState state);
-    void set_degraded(std::vector<report::Degraded> degraded);
-    void add_degraded(const report::Degraded& degraded);
-    void set_input(const MonitoredInput& input);
+    void set_degraded(std::vector<rt::Lack> degraded);
+    void add_degraded(const rt::Lack& degraded);
+    void set_input(const rt::InputState& input);
     void add_note(std::string_view text);  ///< told to the user: the last few are shown
 
     /// A missed frame, for the incident that it belongs to.

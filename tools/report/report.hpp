@@ -11,6 +11,9 @@
 #include "rt/base/result.hpp"
 #include "rt/frame/control.hpp"
 #include "rt/frame/record.hpp"
+#include "rt/monitor/facts.hpp"
+#include "rt/threads/capability.hpp"
+#include "rt/threads/census.hpp"
 
 namespace surefoot {
 class AtomicFile;
@@ -36,27 +39,11 @@ struct ControlSummary {
     std::vector<ControlBlock> blocks;
 };
 
-struct Degraded {
-    std::string what, remedy;
-};
-
-/// Threads that are alike, as the census found them.
-struct ThreadRow {
-    std::string name;
-    std::uint32_t count = 0;
-    std::string policy;
-    int priority = 0;
-    std::string cores;
-};
-
 /// What steered the walk, and how soon its reports were seen.
 struct InputSummary {
     bool given = false;  ///< false: a path was followed
     std::string source;  ///< the recording
-    struct Device {
-        std::string name, device_class, mapping;
-    };
-    std::vector<Device> devices;
+    std::vector<rt::SteeringDevice> devices;
     std::uint64_t reports = 0;         ///< accepted
     std::uint64_t reports_shown = 0;   ///< of them, those that some frame's pose holds; the others came after the last frame
     std::uint64_t refused = 0;         ///< short, long, undeclared: they changed nothing
@@ -90,9 +77,9 @@ struct WalkSummary {
     std::uint64_t page_faults = 0, guard_violations = 0, driver_faults = 0, driver_allocations = 0;
     std::vector<std::string> census_problems;
     double driver_allocations_per_frame = 0;
-    std::vector<ThreadRow> threads;  ///< of the census, early in the walk; empty where none was taken
-    std::string uncalibrated;        ///< the cost table is missing: what, and the remedy
-    std::vector<Degraded> degraded;  ///< what is not real-time here, and how to grant it
+    std::vector<rt::CensusRow> threads;  ///< of the census, early in the walk; empty where none was taken
+    std::string uncalibrated;            ///< the cost table is missing: what, and the remedy
+    std::vector<rt::Lack> degraded;      ///< what is not real-time here, and how to grant it
     ControlSummary control;
     InputSummary input;
 };

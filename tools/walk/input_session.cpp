@@ -85,7 +85,7 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     report::InputSummary s;
     s.given = true;
     s.source = source_name_;
-    for (const input::SteeringDevice& d : source_->devices())
+    for (const rt::SteeringDevice& d : source_->devices())
         s.devices.push_back({printable(d.name), d.device_class, printable(d.mapping)});
     s.reports = source_->log().count();
     s.refused = source_->refused();

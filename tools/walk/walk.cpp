@@ -44,10 +44,7 @@ void tell_started(const Session& s) {
     start.uncalibrated = s.facts.uncalibrated;
     start.renderer = s.facts.renderer;
     start.path = s.path.source;
-    start.fifo = s.plan.fifo;
-    start.locked = s.facts.locked;
-    start.isolated = s.facts.isolated;
-    start.frame_core = s.plan.frame_core;
+    start.granted = {s.plan.fifo, s.facts.locked, s.facts.isolated, s.plan.frame_core};
     start.rasterisers = s.plan.rasterisers;
     s.watch.on_started(start);
 }
@@ -60,7 +57,8 @@ void tell_input(Session& s) {
 
 void tell_census(const Session& s) {
     if (!s.watch.on_degraded) return;
-    for (const std::string& problem : s.facts.census_problems) s.watch.on_degraded({"thread census: " + problem, ""});
+    for (const std::string& problem : s.facts.census_problems)
+        s.watch.on_degraded({rt::LackKind::census, "thread census: " + problem, ""});
 }
 
 /// How much of the walk is done, 0..1; of a walk without end nothing.
@@ -72,7 +70,7 @@ double share_done(const Session& s, double slots_ran) {
 void end_input(Session& s, const Progress& progress) {
     if (!s.input) return;
     if (const auto misplaced = s.input->end(progress, s.notes))
-        s.facts.degraded.push_back({misplaced->place + ": " + misplaced->what, misplaced->remedy});
+        s.facts.degraded.push_back({rt::LackKind::placing, misplaced->place + ": " + misplaced->what, misplaced->remedy});
 }
 
 rt::FrameLoopOptions loop_options(const Session& s, const Progress& progress) {
@@ -164,7 +162,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     s.facts.pinned = !misplaced && !s.virtual_clock;
     if (misplaced) {
         s.plan.fifo = false;  // the figures must say so
-        s.facts.degraded.push_back({misplaced->what, misplaced->remedy});
+        s.facts.degraded.push_back({rt::LackKind::placing, misplaced->what, misplaced->remedy});
     }
     if (preparing) preparing->stop();
     end_input(s, progress);
