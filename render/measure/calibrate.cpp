@@ -12,6 +12,7 @@
 #include "render/measure/calibrate_run.hpp"
 #include "render/measure/calibrate_scene.hpp"
 #include "render/model/item_costs.hpp"
+#include "rt/base/statistics.hpp"
 
 namespace surefoot::measure {
 
