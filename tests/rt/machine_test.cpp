@@ -313,7 +313,6 @@ TEST(Recorder, KeepsEveryRecordInOrderOnAThreadOfItsOwnName) {
     for (std::uint64_t i = 0; i < 2000; ++i) {
         FrameRecord r;
         r.frame = i;
-        r.missed = i == 1000;
         while (ring.full()) std::this_thread::yield();
         ring.try_push(r);
     }
@@ -323,8 +322,6 @@ TEST(Recorder, KeepsEveryRecordInOrderOnAThreadOfItsOwnName) {
     EXPECT_EQ(seen, 2000U);
     ASSERT_EQ(recorder.records().size(), 2000U);
     for (std::uint64_t i = 0; i < 2000; ++i) ASSERT_EQ(recorder.records()[i].frame, i);
-    ASSERT_EQ(recorder.flight().dumps().size(), 1U);
-    EXPECT_EQ(recorder.flight().dumps()[0].missed_frame, 1000U);
 }
 
 TEST(FrameCore, IsTheLastIsolatedOneElseTheLastThatIsAllowed) {

@@ -30,7 +30,7 @@ ordered_json distribution_json(const rt::Histogram& h, double ns_per_unit) {
 
 /// Exact quantiles of a few values; changes their order.
 ordered_json few_json(std::vector<double> values) {
-    const report::Quantiles q = report::quantiles(std::move(values));
+    const Quantiles q = quantiles(std::move(values));
     return {{"min", q.min}, {"p50", q.p50}, {"p99", q.p99}, {"max", q.max}, {"mean", q.mean}};
 }
 
