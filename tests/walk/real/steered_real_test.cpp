@@ -79,7 +79,7 @@ TEST(SteeredRealWalk, TenThousandReportsReachTheirFramesInTimeThroughTheInputThr
     EXPECT_TRUE(s.census_problems.empty()) << s.census_problems.front();
     const rt::CensusRow *input = row(s, "sf-input"), *frame = row(s, "sf-frame");
     ASSERT_TRUE(input != nullptr && frame != nullptr) << "the census has no such thread";
-    EXPECT_EQ(input->policy, rt::policy_name(rt::Policy::fifo));
+    EXPECT_EQ(input->policy, rt::Policy::fifo);
     EXPECT_LT(input->priority, frame->priority);
 
     // What the host steals from the frame thread's wake-ups shows in the reports' ages too: that much is allowed for.

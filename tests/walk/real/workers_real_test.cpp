@@ -66,7 +66,7 @@ protected:
 TEST_P(Workers, OfAWalkAreInTheirPlacesBeforeTheFirstFrameAndTheCensusCountsThem) {
     const int workers = GetParam();
     walk::WalkRequest request = test::Forest::get().virtual_request(60);
-    request.clock = "real";
+    request.clock = rt::ClockKind::real;
     request.rate_hz = 100;
     request.workers = workers;
     std::vector<Scheduled> started, preparing;
