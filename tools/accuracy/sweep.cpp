@@ -11,6 +11,7 @@
 #include "render/measure/image_metrics.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/clock/clock.hpp"
+#include "tools/report/report.hpp"
 #include "tools/walk/path_source.hpp"
 #include "tools/walk/state.hpp"
 
