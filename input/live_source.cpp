@@ -32,6 +32,7 @@ LiveSource::LiveSource(LiveOptions options, std::unique_ptr<DeviceSource> device
       }),
       devices_(std::move(devices)) {
     log_.reserve(options_.stamps);
+    if (devices_->trouble()) tell(say_, *devices_->trouble());
     if (!options_.lines.empty())
         panel_.emplace(options_.lines, options_.mappings, options_.open_lines, options_.lines_context, say_,
                        options_.lines_opened);
@@ -79,8 +80,8 @@ void LiveSource::say_if_nobody_steers(std::int64_t now_ns) {
     }
 }
 
-std::vector<SteeringDevice> LiveSource::devices() const {
-    std::vector<SteeringDevice> list;
+std::vector<rt::SteeringDevice> LiveSource::devices() const {
+    std::vector<rt::SteeringDevice> list;
     if (attendant_) list = attendant_->met();
     if (panel_ && panel_->has_controls())
         list.push_back({std::string(panel_name), class_name(DeviceClass::buttons), panel_->mapping()});

@@ -39,7 +39,7 @@ public:
     Lines drain(Steering& steering, std::int64_t now_ns) override;
     [[nodiscard]] const StampLog& log() const override { return log_; }
     [[nodiscard]] std::uint64_t refused() const override { return attendant_ ? attendant_->refused_reports() : 0; }
-    [[nodiscard]] std::vector<SteeringDevice> devices() const override;
+    [[nodiscard]] std::vector<rt::SteeringDevice> devices() const override;
     /// How many devices steer now, as of the last drain; any thread.
     [[nodiscard]] int steering_now() const { return steering_now_.load(std::memory_order_relaxed); }
 

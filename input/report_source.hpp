@@ -10,6 +10,7 @@
 
 #include "input/safety/safety.hpp"
 #include "rt/clock/clock.hpp"
+#include "rt/monitor/facts.hpp"
 
 namespace surefoot::input {
 
@@ -34,11 +35,6 @@ private:
     std::uint64_t count_ = 0;
 };
 
-/// One device that steers, in words.
-struct SteeringDevice {
-    std::string name, device_class, mapping;
-};
-
 /// One thread calls all of it but begin(). drain() and wait() neither allocate nor lock while no device comes or goes; a source
 /// whose devices do come and go opens and describes them on a thread of its own and hands them over complete.
 class ReportSource {
@@ -59,7 +55,7 @@ public:
     /// Short, long and undeclared reports: they changed nothing.
     [[nodiscard]] virtual std::uint64_t refused() const = 0;
     /// Devices that were there at any time.
-    [[nodiscard]] virtual std::vector<SteeringDevice> devices() const = 0;
+    [[nodiscard]] virtual std::vector<rt::SteeringDevice> devices() const = 0;
 };
 
 }  // namespace surefoot::input

@@ -9,6 +9,8 @@
 #include "render/effects/effects.hpp"
 #include "render/model/pixels.hpp"
 #include "render/model/view.hpp"
+#include "rt/base/check.hpp"
+#include "rt/base/thread_annotations.hpp"
 
 namespace surefoot {
 
@@ -60,24 +62,27 @@ struct Engine::Impl {
     EngineOptions options;
     std::unique_ptr<gl::Device> device;
     std::unique_ptr<prepare::Preparer> preparer;
+    bool full_depth_always = false;  ///< as asked for, whatever the selector
     const select::Selector* selector = nullptr;
-    select::SelectState state;
-    select::Cut cut;
-    select::SlicePlan plan;
-    std::vector<gl::DrawItem> drawn;
+    [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
+    select::SelectState state GUARDED_BY(draws);
+    select::Cut cut GUARDED_BY(draws);
+    select::SlicePlan plan GUARDED_BY(draws);
+    std::vector<gl::DrawItem> drawn GUARDED_BY(draws);
     std::vector<gl::DrawItem> coarse;
-    bool use_coarse = false;
-    const prepare::PreparedFrame* prepared = nullptr;
-    Correction correction;
-    double upper_factor = 1;  ///< that the last select() spent
+    bool use_coarse GUARDED_BY(draws) = false;
+    const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
+    Correction correction GUARDED_BY(draws);
+    double upper_factor GUARDED_BY(draws) = 1;  ///< that the last select() spent
 
+    void use(const select::SelectorEntry& entry);
     double now_us(const SubmitLimits& limits) const {
         return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
     }
-    model::Frustum frustum;  ///< of the pose that is drawn: narrower than the region that was prepared
-    model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report);
-    void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report);
-    void submit_coarse(const Pose& pose, SubmitReport& report);
+    model::Frustum frustum GUARDED_BY(draws);  ///< of the pose that is drawn: narrower than the region that was prepared
+    model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report) REQUIRES(draws);
+    void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
+    void submit_coarse(const Pose& pose, SubmitReport& report) REQUIRES(draws);
 };
 
 Engine::Engine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -85,25 +90,26 @@ Engine::~Engine() = default;
 
 Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::CostModel& costs, const EngineOptions& options) {
     auto impl = std::make_unique<Impl>();
+    impl->draws.plays();  // nobody else has it yet
     impl->model = std::move(model);
     impl->costs = costs;
     impl->options = options;
     auto selector = select::selector_named(options.selector);
     if (!selector) return selector.error();
-    impl->selector = &(*selector)->make();
     impl->options.device.null.costs = &impl->costs;
     auto device = gl::open_device(impl->options.device);
     if (!device) return device.error();
     impl->device = std::move(*device);
     auto loaded = impl->device->load(impl->model, effects::assemble_program);
     if (!loaded) return loaded.error();
+    decltype(impl->model.texels)().swap(impl->model.texels);  // the device has its own
     const auto candidates =
         static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_candidates, impl->model.nodes.size()));
     impl->options.prepare.max_candidates = candidates;
     impl->options.prepare.max_choices =
         static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_choices, impl->model.reps.size()));
-    impl->options.prepare.full_depth |= (*selector)->goes_by == select::GoesBy::nothing;  // full detail needs the leaves
-    impl->preparer = std::make_unique<prepare::Preparer>(impl->model, impl->costs, impl->options.prepare);
+    impl->full_depth_always = options.prepare.full_depth;
+    impl->use(**selector);
     impl->state.reserve(impl->model, candidates);
     impl->state.hysteresis = options.hysteresis;
     select::reserve(impl->cut, candidates);
@@ -113,12 +119,28 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     return std::unique_ptr<Engine>(new Engine(std::move(impl)));
 }
 
+/// A preparer's depth is fixed as it is made: full detail needs the leaves, the other selectors are spared them.
+void Engine::Impl::use(const select::SelectorEntry& entry) {
+    selector = &entry.make();
+    const bool full_depth = full_depth_always || entry.goes_by == select::GoesBy::nothing;
+    if (preparer && full_depth == options.prepare.full_depth) return;
+    options.prepare.full_depth = full_depth;
+    preparer.reset();  // its workers first
+    preparer = std::make_unique<prepare::Preparer>(model, costs, options.prepare);
+}
+
 const model::Model& Engine::model() const { return impl_->model; }
 const model::CostModel& Engine::costs() const { return impl_->costs; }
 gl::Device& Engine::device() { return *impl_->device; }
 const EngineOptions& Engine::options() const { return impl_->options; }
-std::span<const gl::DrawItem> Engine::drawn() const { return impl_->drawn; }
-std::size_t Engine::drawn_capacity() const { return impl_->drawn.capacity(); }
+std::span<const gl::DrawItem> Engine::drawn() const {
+    impl_->draws.plays();
+    return impl_->drawn;
+}
+std::size_t Engine::drawn_capacity() const {
+    impl_->draws.plays();
+    return impl_->drawn.capacity();
+}
 
 void Engine::reserve(prepare::PreparedFrame& frame) const { impl_->preparer->reserve(frame); }
 
@@ -130,7 +152,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
 Result<void> Engine::set_selector(std::string_view name) {
     auto selector = select::selector_named(name);
     if (!selector) return selector.error();
-    impl_->selector = &(*selector)->make();
+    impl_->use(**selector);
     return {};
 }
 
@@ -139,6 +161,7 @@ void Engine::set_in_frame_check(bool on) { impl_->options.in_frame_check = on; }
 const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction,
                                   double target_error_rad) {
     Impl& e = *impl_;
+    e.draws.plays();
     e.use_coarse = false;
     e.prepared = &prepared;
     e.correction = correction;
@@ -150,24 +173,29 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     return e.cut;
 }
 
-const select::SelectState& Engine::selection_memory() const { return impl_->state; }
+const select::SelectState& Engine::selection_memory() const {
+    impl_->draws.plays();
+    return impl_->state;
+}
 
-void Engine::select_coarse() { impl_->use_coarse = true; }
+void Engine::select_coarse() {
+    impl_->draws.plays();
+    impl_->use_coarse = true;
+}
 
 /// Draws what of a slice the pose really sees; returns what that was predicted to cost.
 model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitReport& report) {
     const std::size_t first = drawn.size();
     model::ItemCost cost;
     for (const select::CutItem& item : items) {
-        if (drawn.size() == drawn.capacity()) break;  // cannot happen: capacity is twice the candidates
+        if (!CHECK_RARE(drawn.size() < drawn.capacity(), "twice the candidates have room for a cut and its stand-ins")) break;
         if (!model::visible(frustum, model.nodes[item.node].box)) {
             ++report.culled;
             continue;
         }
         drawn.push_back({item.node, item.rep});
         const prepare::Choice& choice = prepared->choices[item.choice];
-        cost.submit_us += choice.cost.submit_us;
-        cost.raster_us += choice.cost.raster_us;
+        cost += choice.cost;
         report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
         report.benefit_mean += 1.0 - choice.benefit;
         report.triangles += model.reps[item.rep].triangles;
@@ -182,8 +210,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     const model::FrameCombine& combine = costs.combine;
     model::ItemCost rest_stand_in, so_far;
     for (const select::Slice& slice : plan.slices) {
-        rest_stand_in.submit_us += slice.stand_in_cost.submit_us + costs.slice_us;
-        rest_stand_in.raster_us += slice.stand_in_cost.raster_us;
+        rest_stand_in += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
     }
     bool full = true;
     float in_flight_us = 0;
@@ -210,8 +237,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         const model::ItemCost cost = draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
                                                      : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count),
                                                 report);
-        so_far.submit_us += cost.submit_us + costs.slice_us;
-        so_far.raster_us += cost.raster_us;
+        so_far += {cost.submit_us + costs.slice_us, cost.raster_us};
         in_flight_us = cost.raster_us;
         ++report.slices;
         if (!full) ++report.downgraded_slices;
@@ -229,9 +255,7 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
     const model::ViewScale scale = model::make_view_scale(pose, options.device.viewport);
     model::ItemCost sum{.submit_us = costs.slice_us, .raster_us = 0};
     for (const gl::DrawItem& item : coarse) {
-        const model::ItemCost cost = preparer->item_costs().of(item.rep, model.nodes[item.node].box, pose.position, scale);
-        sum.submit_us += cost.submit_us;
-        sum.raster_us += cost.raster_us;
+        sum += preparer->item_costs().of(item.rep, model.nodes[item.node].box, pose.position, scale);
         report.triangles += model.reps[item.rep].triangles;
     }
     report.predicted = sum;
@@ -243,10 +267,12 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
 
 SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     Impl& e = *impl_;
+    e.draws.plays();
+    CHECK(e.use_coarse || e.prepared != nullptr, "what is submitted was selected before");
     SubmitReport report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();
-    e.frustum = model::make_frustum(pose, e.options.device.viewport, 2 * e.model.nodes[0].box.diagonal() + 1e3);
+    e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
     e.device->begin_frame(pose);
     if (e.use_coarse) {
         e.submit_coarse(pose, report);
@@ -280,7 +306,7 @@ void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> ite
 std::vector<gl::DrawItem> Engine::full_detail(const Pose& pose) const {
     const model::Model& model = impl_->model;
     const model::Frustum frustum =
-        model::make_frustum(pose, impl_->options.device.viewport, 2 * model.nodes[0].box.diagonal() + 1e3);
+        model::make_frustum(pose, impl_->options.device.viewport, model::far_corners_m(model.nodes[0].box));
     std::vector<gl::DrawItem> items;
     std::vector<model::Index> stack{0};
     while (!stack.empty()) {

@@ -67,6 +67,7 @@ public:
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
 
+    /// Without its texels.
     [[nodiscard]] const model::Model& model() const;
     [[nodiscard]] const model::CostModel& costs() const;
     [[nodiscard]] gl::Device& device();
@@ -76,7 +77,7 @@ public:
     void prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
                  prepare::PreparedFrame& out);
 
-    /// Takes another selector from the next select() on.
+    /// Takes another selector from the next prepare() on, while none runs: `flat` needs more of it than the others. Allocates.
     Result<void> set_selector(std::string_view name);
     /// Turns the in-frame check off or on: off where whole cuts are to be timed.
     void set_in_frame_check(bool on);

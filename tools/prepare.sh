@@ -62,6 +62,8 @@ build() {
   local preset=$1 targets=()
   shift
   if (( $# > 0 )); then targets=(--target "$@"); fi
-  cmake --preset "$preset" --log-level=WARNING &&
+  local linker=()
+  if command -v mold >/dev/null; then linker=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=mold); fi  # the same programs, linked in a tenth of the time
+  cmake --preset "$preset" --log-level=WARNING "${linker[@]}" &&
     cmake --build --preset "$preset" --parallel "$(parallel_jobs)" "${targets[@]}"
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "rt/base/check.hpp"
+
 namespace surefoot::input {
 
 namespace {
@@ -109,6 +111,7 @@ void Attendant::added(const DeviceEvent& e) {
                                                           number_before(ready->identity));
     if (number < 0) return tell(say_, "{} ({}): {} devices steer already; unplug one", p.node, p.name, max_devices);
     tell(say_, "{} ({}): steers, by the mapping \"{}\"", p.node, p.name, ready->mapping);
+    CHECK(static_cast<std::size_t>(number) < identities_.size(), "the steering numbers no more devices than there is room for");
     slot->device = e.device;
     slot->steering = number;
     slot->ready = ready;
@@ -145,8 +148,8 @@ int Attendant::steering_now() const {
     return static_cast<int>(std::count_if(slots_.begin(), slots_.end(), [](const Slot& s) { return s.device >= 0; }));
 }
 
-std::vector<SteeringDevice> Attendant::met() const {
-    std::vector<SteeringDevice> list;
+std::vector<rt::SteeringDevice> Attendant::met() const {
+    std::vector<rt::SteeringDevice> list;
     for (const MetDevice& m : met_) list.push_back(m.words);
     return list;
 }

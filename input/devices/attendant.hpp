@@ -26,7 +26,7 @@ DeviceIdentity identity_for_mapping(const PluggedDevice& device);
 /// One that steered at some time.
 struct MetDevice {
     std::string identity;
-    SteeringDevice words;
+    rt::SteeringDevice words;
 };
 
 /// A device as the attendant takes it: everything that needs memory.
@@ -66,7 +66,7 @@ public:
     /// Allocates.
     [[nodiscard]] std::vector<Attended> attended() const;
     /// Devices that steered at any time, once each; the first 64 of them.
-    [[nodiscard]] std::vector<SteeringDevice> met() const;
+    [[nodiscard]] std::vector<rt::SteeringDevice> met() const;
     /// How many devices steer now.
     [[nodiscard]] int steering_now() const;
     /// How many pluggings have steered.

@@ -44,7 +44,7 @@ Lines ReplaySource::drain(Steering& steering, std::int64_t now_ns) {
     return {};
 }
 
-std::vector<SteeringDevice> ReplaySource::devices() const {
+std::vector<rt::SteeringDevice> ReplaySource::devices() const {
     return {{recorded_.recording.name, class_name(recorded_.device.device_class), recorded_.mapping}};
 }
 

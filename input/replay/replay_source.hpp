@@ -20,7 +20,7 @@ public:
 
     [[nodiscard]] const StampLog& log() const override { return log_; }
     [[nodiscard]] std::uint64_t refused() const override { return refused_; }
-    [[nodiscard]] std::vector<SteeringDevice> devices() const override;
+    [[nodiscard]] std::vector<rt::SteeringDevice> devices() const override;
     [[nodiscard]] const RecordedDevice& recorded() const { return recorded_; }
 
 private:

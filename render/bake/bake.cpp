@@ -10,21 +10,22 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <thread>
 
+#include "render/bake/limits.hpp"
 #include "render/bake/materials.hpp"
 #include "render/bake/proxies.hpp"
 #include "render/model/pixels.hpp"
 #include "rt/base/fork_join.hpp"
+#include "rt/base/mutex.hpp"
 
 namespace surefoot::bake {
 
 namespace {
 
-Error stopped_by_user(const importer::Scene& scene) {
-    return {scene.sources.empty() ? "bake" : scene.sources.front(), "stopped by the user", "nothing was written"};
-}
+std::string place_of(const importer::Scene& scene) { return scene.sources.empty() ? "bake" : scene.sources.front(); }
+
+Error stopped_by_user(const importer::Scene& scene) { return {place_of(scene), "stopped by the user", "nothing was written"}; }
 
 /// body(0) to body(count - 1) on all threads of the arena.
 template <class Body>
@@ -60,8 +61,8 @@ private:
     std::string_view name_;
     std::size_t total_;
     std::atomic<std::size_t> done_{0};
-    std::mutex mutex_;
-    std::chrono::steady_clock::time_point said_{};
+    Mutex mutex_;
+    std::chrono::steady_clock::time_point said_ GUARDED_BY(mutex_){};
 };
 
 struct Bakery {
@@ -358,7 +359,6 @@ void Bakery::emit() {
 }  // namespace
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
-    const auto begun = std::chrono::steady_clock::now();
     Bakery bakery{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}};
     bakery.cut_out = cut_out_materials(scene);
     bakery.proxy = add_materials(scene, bakery.model);
@@ -379,16 +379,15 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     });
     if (!done) return stopped_by_user(scene);
     if (bakery.objects.empty()) {
-        return Error{scene.sources.empty() ? "bake" : scene.sources.front(), "there is nothing to draw in it",
-                     "check that its nodes have meshes with triangles"};
+        return Error{place_of(scene), "there is nothing to draw in it", "check that its nodes have meshes with triangles"};
     }
+    if (auto ok = check_limits(counts_of(bakery.proxy_input(), bakery.object_boxes), place_of(scene)); !ok) return ok.error();
     progress.say("write", 0.0);
     arena.execute([&] { bakery.emit(); });
     model::Model& model = bakery.model;
     model.provenance.sources = scene.sources;
     model.provenance.warnings = scene.warnings;
     model.provenance.quality = options.quality == Quality::full ? "full" : "draft";
-    model.provenance.bake_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     if (auto valid = model::validate(model); !valid) return valid.error();
     return std::move(model);
 }

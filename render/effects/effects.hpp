@@ -26,9 +26,6 @@ std::span<const EffectModule> all_effects();
 /// "texture sun", or "bare".
 std::string effects_text(model::EffectMask mask, std::string_view between = " ");
 
-/// Findings, one an effect, from a model's materials and geometry.
-std::vector<model::EffectFinding> find_effects(const model::Model& model);
-
 /// The program of one state class: the bare pipeline and the modules of its bits, nothing else.
 gl::ProgramSource assemble_program(model::EffectMask mask);
 

@@ -1,6 +1,8 @@
 // Loading and checking the OpenGL function table (api.hpp).
 #include "render/gl/api.hpp"
 
+#include <dlfcn.h>
+
 #include <string>
 
 namespace surefoot::gl {
@@ -41,5 +43,16 @@ Result<Api> load_api(const std::function<void*(const char*)>& find, const std::s
     if (missing != nullptr) return Error{place, have + " has no " + missing, remedy};
     return api;
 }
+
+Result<Library> Library::open(const char* name, const char* package) {
+    void* handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+    if (handle == nullptr) {
+        const char* why = dlerror();
+        return Error{name, why != nullptr ? why : "cannot be opened", std::string("install the Debian package ") + package};
+    }
+    return Library(handle);
+}
+
+void* Library::find(const char* symbol) const { return dlsym(handle_, symbol); }
 
 }  // namespace surefoot::gl

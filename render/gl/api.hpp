@@ -1,9 +1,11 @@
-// The OpenGL functions that this room calls, loaded by name: one table a context, no link to libGL.
+// The OpenGL functions that this room calls, loaded by name: one table a context, no link to libGL; and shared libraries opened
+// at run time: what is absent is an error that names the package to install.
 #pragma once
 
 #include <GL/glcorearb.h>
 
 #include <functional>
+#include <string>
 #include <string_view>
 
 #include "rt/base/result.hpp"
@@ -98,5 +100,23 @@ struct Api {
 /// Loads the table with a context current, and checks version (4.3 at least), clip control and buffer storage.
 /// `find` is the context's GetProcAddress; glvnd answers any name, so presence is read from version and extensions.
 Result<Api> load_api(const std::function<void*(const char*)>& find, const std::string& place);
+
+/// Closed never: drivers leave threads and exit handlers behind that live in their code.
+class Library {
+public:
+    /// name: soname; package: Debian package that brings it.
+    static Result<Library> open(const char* name, const char* package);
+    [[nodiscard]] void* find(const char* symbol) const;
+    /// Fills `function`; false where the library has no such symbol.
+    template <class F>
+    bool get(F& function, const char* symbol) const {
+        function = reinterpret_cast<F>(find(symbol));
+        return function != nullptr;
+    }
+
+private:
+    explicit Library(void* handle) : handle_(handle) {}
+    void* handle_;
+};
 
 }  // namespace surefoot::gl

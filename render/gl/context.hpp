@@ -29,7 +29,7 @@ Result<std::unique_ptr<Context>> open_egl_device();
 Result<std::unique_ptr<Context>> open_osmesa();
 Result<std::unique_ptr<Context>> open_window(model::Viewport viewport, const std::string& title);
 
-/// Opens the backend of options.kind (not null), with the rasteriser threads asked for.
+/// Opens the backend of options.kind (not null).
 Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options);
 
 }  // namespace surefoot::gl

@@ -43,7 +43,7 @@ struct NullOptions {
 struct DeviceOptions {
     BackendKind kind = BackendKind::egl;
     model::Viewport viewport;
-    int rasterisers = 0;                  ///< software GL threads (LP_NUM_THREADS); 0: the measured default
+    int rasterisers = 0;                  ///< software GL threads, as prepare_process was told; 0: the measured default
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
     std::array<float, 3> sky{0.62F, 0.72F, 0.82F};
@@ -67,7 +67,7 @@ public:
     [[nodiscard]] virtual std::string renderer() const = 0;  ///< GL_RENDERER, or "null"
     [[nodiscard]] virtual bool software() const = 0;
     /// Uploads geometry and textures, compiles the programs of the scene's state classes (and only those), warms each up. The
-    /// model stays as it is until the last draw, or the next load.
+    /// model stays as it is until the last draw, or the next load; but for its texels, which are not looked at again.
     virtual Result<void> load(const model::Model& model, const ProgramFactory& programs) = 0;
     [[nodiscard]] virtual std::vector<std::string> program_listing() const = 0;  ///< "mask: effects", for tests and `effects`
     [[nodiscard]] virtual std::string program_text(model::EffectMask mask) const = 0;
@@ -89,7 +89,8 @@ public:
     /// Waits for everything; presents where there is something to present to.
     virtual void finish_frame() = 0;
     [[nodiscard]] virtual FrameStats stats() const = 0;
-    /// After finish_frame(): the context is gone (the GPU was reset, or taken away), and nothing drawn since was seen.
+    /// The context is gone (the GPU was reset, taken away, or does not finish), and nothing drawn since was seen. Calls are
+    /// harmless from then on, and draw nothing.
     [[nodiscard]] virtual bool lost() const { return false; }
     /// Of the current frame; slow.
     virtual Result<PixelImage> read_pixels() = 0;
@@ -102,6 +103,10 @@ public:
     /// Virtual time charged so far, us (null backend); 0 elsewhere.
     [[nodiscard]] virtual double charged_us() const { return 0; }
 };
+
+/// Settles how many threads software GL draws with, for the whole process; 0: the measured default. Call it before any other
+/// thread exists: drivers take the number from the environment (LP_NUM_THREADS), which may not change while threads read it.
+void prepare_process(int rasterisers);
 
 /// Opens the library at run time (dlopen); an absent one is an Error with the Debian package to install.
 /// Call it from a neutral thread (not FIFO, not pinned): driver threads inherit from their creator (DESIGN 7).

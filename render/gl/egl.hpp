@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "render/gl/api.hpp"
 #include "render/gl/context.hpp"
-#include "render/gl/library.hpp"
 
 namespace surefoot::gl {
 

@@ -9,12 +9,23 @@ namespace surefoot::gl {
 
 namespace {
 
-constexpr std::uint32_t most_slices = 1024;   // fences kept a frame; beyond it the oldest is waited for first
-constexpr GLuint64 wait_ns = 10'000'000'000;  // a driver that needs longer hangs
+constexpr std::uint32_t most_slices = 1024;  // fences kept a frame; beyond it the oldest is waited for first
+// A driver that has not finished a slice after ten waits of a second hangs.
+constexpr GLuint64 wait_ns = 1'000'000'000;
+constexpr int most_waits = 10;
 
 bool is_software(std::string_view renderer) {
     for (const std::string_view name : {"llvmpipe", "softpipe", "swrast", "Software"}) {
         if (renderer.find(name) != std::string_view::npos) return true;
+    }
+    return false;
+}
+
+/// False: the fence cannot be waited for, or the GPU has not reached it within the bound.
+bool reached(const Api& gl, GLsync fence) {
+    for (int i = 0; i < most_waits; ++i) {
+        const GLenum result = gl.ClientWaitSync(fence, 0, wait_ns);
+        if (result != GL_TIMEOUT_EXPIRED) return result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED;
     }
     return false;
 }
@@ -62,6 +73,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     resources_ = std::move(*resources);
     sun_direction_ = vec3(glm::normalize(model.sun_direction));
     warm_up();
+    if (lost_) return Error{"warming up " + renderer_, "the driver does not finish", "restart it, or use another --backend"};
     return check_errors(gl_, "warming up " + renderer_, "report this together with the driver's version");
 }
 
@@ -123,10 +135,12 @@ std::uint32_t GlDevice::end_slice() {
     return ++slices_;
 }
 
+/// On a lost device nothing is waited for: no later frame writes what the GPU may still read.
+
 void GlDevice::wait_slices(std::uint32_t in_flight) {
     while (slices_ - slices_done_ > in_flight) {
         GLsync& fence = fences_[slices_done_ % most_slices];
-        gl_.ClientWaitSync(fence, 0, wait_ns);
+        lost_ = lost_ || !reached(gl_, fence);
         gl_.DeleteSync(fence);
         fence = nullptr;
         ++slices_done_;
@@ -137,7 +151,7 @@ void GlDevice::finish_frame() {
     end_slice();
     wait_slices(0);
     if (reset_status_ != nullptr && reset_status_() != GL_NO_ERROR) lost_ = true;
-    if (!context_->has_window()) return;
+    if (lost_ || !context_->has_window()) return;
     const auto w = static_cast<GLint>(options_.viewport.width);
     const auto h = static_cast<GLint>(options_.viewport.height);
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
@@ -147,6 +161,7 @@ void GlDevice::finish_frame() {
 }
 
 Result<PixelImage> GlDevice::read_pixels() {
+    if (lost_) return Error{"reading the picture", "the device is lost", "open it again"};
     PixelImage image;
     image.width = options_.viewport.width;
     image.height = options_.viewport.height;

@@ -40,6 +40,7 @@ void GlDevice::begin_frame(const Pose& pose) {
     blended_count_ = 0;
     used_instances_ = used_commands_ = 0;
     state_known_ = false;
+    if (lost_) return;
 
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer);
     gl_.Viewport(0, 0, static_cast<GLsizei>(options_.viewport.width), static_cast<GLsizei>(options_.viewport.height));
@@ -112,7 +113,7 @@ void GlDevice::submit_blended() {
 }
 
 void GlDevice::submit(std::span<Pending> sorted) {
-    if (sorted.empty()) return;
+    if (sorted.empty() || lost_) return;  // lost: the GPU may still read the mapped buffers
     std::sort(sorted.begin(), sorted.end(), [](const Pending& a, const Pending& b) {
         return a.key != b.key ? a.key < b.key : a.part != b.part ? a.part < b.part : a.rep < b.rep;
     });

@@ -24,12 +24,14 @@ constexpr bool threads_are_watched = false;
 
 }  // namespace
 
+void prepare_process(int rasterisers) {
+    // llvmpipe reads it when its screen is made; other drivers do not care.
+    setenv("LP_NUM_THREADS", std::to_string(effective_rasterisers(rasterisers)).c_str(), 1);
+}
+
 int effective_rasterisers(int rasterisers) { return rasterisers > 0 ? rasterisers : default_rasterisers(); }
 
 Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options) {
-    // llvmpipe reads it when its screen is made; other drivers do not care.
-    const std::string threads = std::to_string(effective_rasterisers(options.rasterisers));
-    setenv("LP_NUM_THREADS", threads.c_str(), 1);
     if (threads_are_watched && options.kind != BackendKind::null) {
         return Error{"libEGL, libOSMesa",
                      "are not opened where the thread sanitizer watches: the driver's threads are not built with it",

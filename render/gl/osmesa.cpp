@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "render/gl/api.hpp"
 #include "render/gl/context.hpp"
-#include "render/gl/library.hpp"
 
 namespace surefoot::gl {
 

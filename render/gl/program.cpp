@@ -36,19 +36,31 @@ constexpr std::array<Attribute, 9> attributes{{
     {"texture_layer", instance_binding, 1, GL_FLOAT, GL_FALSE, offsetof(Instance, texture_layer), 1},
 }};
 
-Result<GLuint> compile(const Api& gl, GLenum kind, const std::string& text, const std::string& place) {
-    const GLuint shader = gl.CreateShader(kind);
+/// A shader object, deleted where it goes out of scope: a program that it is attached to keeps it as long as it needs it.
+class Shader {
+public:
+    Shader(const Api& gl, GLenum kind) : gl_(gl), id_(gl.CreateShader(kind)) {}
+    ~Shader() { gl_.DeleteShader(id_); }
+    Shader(const Shader&) = delete;
+    Shader& operator=(const Shader&) = delete;
+    [[nodiscard]] GLuint id() const { return id_; }
+
+private:
+    const Api& gl_;
+    GLuint id_;
+};
+
+Result<void> compile(const Api& gl, const Shader& shader, const std::string& text, const std::string& place) {
     const char* source = text.c_str();
-    gl.ShaderSource(shader, 1, &source, nullptr);
-    gl.CompileShader(shader);
+    gl.ShaderSource(shader.id(), 1, &source, nullptr);
+    gl.CompileShader(shader.id());
     GLint ok = GL_FALSE;
-    gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-    if (ok == GL_TRUE) return shader;
+    gl.GetShaderiv(shader.id(), GL_COMPILE_STATUS, &ok);
+    if (ok == GL_TRUE) return {};
     std::string log(2048, ' ');
     GLsizei length = 0;
-    gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+    gl.GetShaderInfoLog(shader.id(), static_cast<GLsizei>(log.size()), &length, log.data());
     log.resize(static_cast<std::size_t>(length));
-    gl.DeleteShader(shader);
     return Error{place, "does not compile: " + log, "report this together with the driver's version"};
 }
 
@@ -78,19 +90,16 @@ void make_vertex_array(const Api& gl, Program& program, const GeometryBuffers& b
 
 Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers) {
     const std::string place = "program '" + source.name + "'";
-    auto vertex = compile(gl, GL_VERTEX_SHADER, source.vertex, place);
-    if (!vertex) return vertex.error();
-    auto fragment = compile(gl, GL_FRAGMENT_SHADER, source.fragment, place);
-    if (!fragment) return fragment.error();
+    const Shader vertex(gl, GL_VERTEX_SHADER), fragment(gl, GL_FRAGMENT_SHADER);
+    if (auto ok = compile(gl, vertex, source.vertex, place); !ok) return ok.error();
+    if (auto ok = compile(gl, fragment, source.fragment, place); !ok) return ok.error();
     Program program;
     program.mask = mask;
     program.source = source;
     program.id = gl.CreateProgram();
-    gl.AttachShader(program.id, *vertex);
-    gl.AttachShader(program.id, *fragment);
+    gl.AttachShader(program.id, vertex.id());
+    gl.AttachShader(program.id, fragment.id());
     gl.LinkProgram(program.id);
-    gl.DeleteShader(*vertex);
-    gl.DeleteShader(*fragment);
     GLint ok = GL_FALSE;
     gl.GetProgramiv(program.id, GL_LINK_STATUS, &ok);
     if (ok != GL_TRUE) {
@@ -98,6 +107,7 @@ Result<Program> make_program(const Api& gl, model::EffectMask mask, const Progra
         GLsizei length = 0;
         gl.GetProgramInfoLog(program.id, static_cast<GLsizei>(log.size()), &length, log.data());
         log.resize(static_cast<std::size_t>(length));
+        gl.DeleteProgram(program.id);
         return Error{place, "does not link: " + log, "report this together with the driver's version"};
     }
     program.view_projection = gl.GetUniformLocation(program.id, "view_projection");

@@ -6,10 +6,7 @@
 
 #include "render/image/srgb.hpp"
 #include "render/import/finish.hpp"
-#include "render/import/gltf_access.hpp"
-#include "render/import/gltf_load.hpp"
-#include "render/import/gltf_material.hpp"
-#include "render/import/gltf_nodes.hpp"
+#include "render/import/gltf_parts.hpp"
 
 namespace surefoot::importer {
 namespace {

@@ -1,5 +1,5 @@
 // Reads glTF accessors as flat arrays, every offset, stride, count and sparse index checked (tinygltf checks none).
-#include "render/import/gltf_access.hpp"
+#include "render/import/gltf_parts.hpp"
 
 #include <algorithm>
 #include <cstring>

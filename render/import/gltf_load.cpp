@@ -1,5 +1,5 @@
 // From bytes to tinygltf's structures: first the checks that tinygltf 2.7 does not make, then tinygltf.
-#include "render/import/gltf_load.hpp"
+#include "render/import/gltf_parts.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,4 @@
 // glTF materials, textures and pictures to a Scene's.
-#include "render/import/gltf_material.hpp"
 
 #include <cmath>
 #include <map>
@@ -8,7 +7,7 @@
 
 #include "render/image/srgb.hpp"
 #include "render/import/finish.hpp"
-#include "render/import/gltf_load.hpp"
+#include "render/import/gltf_parts.hpp"
 
 namespace surefoot::importer {
 namespace {

@@ -1,5 +1,4 @@
 // The glTF node graph to a Scene's nodes: world matrices in double, instances, cycles refused.
-#include "render/import/gltf_nodes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +6,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/import/gltf_access.hpp"
+#include "render/import/gltf_parts.hpp"
 
 namespace surefoot::importer {
 namespace {

@@ -2,8 +2,6 @@
 // measured table), DESIGN 5 (sums instead of the larger).
 #include "render/measure/calibrate.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -13,6 +11,8 @@
 #include "render/measure/calibrate_run.hpp"
 #include "render/measure/calibrate_scene.hpp"
 #include "render/model/item_costs.hpp"
+#include "rt/base/statistics.hpp"
+#include "rt/clock/clock.hpp"
 
 namespace surefoot::measure {
 
@@ -20,11 +20,7 @@ namespace {
 
 constexpr double slice_target_us = 1000;  // the engine's
 
-double now_s() {
-    timespec t{};
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+double now_s() { return 1e-9 * static_cast<double>(rt::monotonic_ns()); }
 
 const Error stopped{"calibration", "was stopped", "run it again: nothing was written"};
 
@@ -210,6 +206,8 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     run.slices(out);
     if (auto done = run.cells(out); !done) return done.error();
     if (auto done = run.frames(out); !done) return done.error();
+    if ((*device)->lost())
+        return Error{"calibration", "the device was lost: its times are none", "restart the driver, and try again"};
     out.seconds = now_s() - start_s;
     progress.say("done", 1);
     return out;

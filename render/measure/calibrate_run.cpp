@@ -1,60 +1,38 @@
 // Timing one frame (calibrate_run.hpp).
 #include "render/measure/calibrate_run.hpp"
 
-#include <dirent.h>
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
+#include <cstdint>
 #include <string>
+#include <vector>
+
+#include "rt/clock/clock.hpp"
+#include "rt/threads/placement.hpp"
 
 namespace surefoot::measure {
 
 namespace {
-
-std::int64_t clock_ns(clockid_t clock) {
-    timespec t{};
-    clock_gettime(clock, &t);
-    return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
-}
-
-/// The kernel's clock id of another thread's CPU time (CPUCLOCK_SCHED per thread), as pthread_getcpuclockid makes it.
-clockid_t thread_clock(int thread) { return static_cast<clockid_t>((~static_cast<unsigned>(thread) << 3U) | 6U); }
 
 double us(std::int64_t ns) { return 1e-3 * static_cast<double>(ns); }
 
 }  // namespace
 
 RasteriserClocks::RasteriserClocks() {
-    DIR* folder = opendir("/proc/self/task");
-    if (folder == nullptr) return;
+    const auto threads = rt::read_threads();
+    if (!threads) return;
     const std::string rasteriser = gl::driver_thread_prefixes().front();
-    while (const dirent* entry = readdir(folder)) {
-        std::ifstream file(std::string("/proc/self/task/") + entry->d_name + "/comm");
-        std::string name;
-        if (std::getline(file, name) && name.starts_with(rasteriser)) threads_.push_back(std::atoi(entry->d_name));
-    }
-    closedir(folder);
-    before_.resize(threads_.size());
-}
-
-void RasteriserClocks::start() {
-    for (std::size_t i = 0; i < threads_.size(); ++i) before_[i] = clock_ns(thread_clock(threads_[i]));
-}
-
-double RasteriserClocks::busiest_us() const {
-    double most = 0;
-    for (std::size_t i = 0; i < threads_.size(); ++i) most = std::max(most, us(clock_ns(thread_clock(threads_[i])) - before_[i]));
-    return most;
+    std::vector<pid_t> found;
+    for (const rt::ThreadInfo& thread : *threads)
+        if (thread.name.starts_with(rasteriser)) found.push_back(thread.tid);
+    clocks_ = rt::ThreadClocks(found);
 }
 
 FrameTiming run_frame(gl::Device& device, RasteriserClocks& rasterisers, const Pose& pose, std::span<const gl::DrawItem> items,
                       std::size_t slice_items) {
     rasterisers.start();
-    const std::int64_t cpu = clock_ns(CLOCK_THREAD_CPUTIME_ID);
-    const std::int64_t wall = clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t cpu = rt::own_cpu_ns();
+    const std::int64_t wall = rt::monotonic_ns();
     device.begin_frame(pose);
     for (std::size_t i = 0; i < items.size(); i += slice_items) {
         device.draw(items.subspan(i, std::min(slice_items, items.size() - i)));
@@ -62,12 +40,12 @@ FrameTiming run_frame(gl::Device& device, RasteriserClocks& rasterisers, const P
         device.wait_slices(1);
     }
     device.end_items();
-    const std::int64_t submitted = clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t submitted = rt::monotonic_ns();
     device.finish_frame();
-    const std::int64_t end = clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t end = rt::monotonic_ns();
     FrameTiming timing;
     timing.wall_us = us(end - wall);
-    timing.submit_us = us(clock_ns(CLOCK_THREAD_CPUTIME_ID) - cpu);
+    timing.submit_us = us(rt::own_cpu_ns() - cpu);
     timing.raster_us = rasterisers.any() ? rasterisers.busiest_us() : us(end - submitted);
     return timing;
 }
@@ -82,12 +60,12 @@ TimerQueryCheck check_timer(gl::Device& device, const Pose& pose, std::span<cons
     device.begin_frame(pose);  // clears first: neither clock shall see it
     device.end_slice();
     device.wait_slices(0);
-    const std::int64_t wall = clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t wall = rt::monotonic_ns();
     const bool available = device.begin_timer();
     device.draw(items);
     device.end_slice();
     device.wait_slices(0);
-    const double wall_ms = 1e-3 * us(clock_ns(CLOCK_MONOTONIC) - wall);
+    const double wall_ms = 1e-3 * us(rt::monotonic_ns() - wall);
     const double query_ms = available ? device.end_timer_ms() : 0.0;
     device.finish_frame();
     return judge_timer(available, query_ms, wall_ms);

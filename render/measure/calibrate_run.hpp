@@ -1,12 +1,11 @@
 // Timing one frame in its places: the frame thread, the rasterisers, and by the clock on the wall.
 #pragma once
 
-#include <cstdint>
 #include <span>
-#include <vector>
 
 #include "render/gl/device.hpp"
 #include "render/measure/calibrate.hpp"
+#include "rt/threads/usage.hpp"
 
 namespace surefoot::measure {
 
@@ -20,13 +19,12 @@ struct FrameTiming {
 class RasteriserClocks {
 public:
     RasteriserClocks();
-    [[nodiscard]] bool any() const { return !threads_.empty(); }
-    void start();
-    [[nodiscard]] double busiest_us() const;
+    [[nodiscard]] bool any() const { return clocks_.size() > 0; }
+    void start() { clocks_.start(); }
+    [[nodiscard]] double busiest_us() const { return 1e-3 * static_cast<double>(clocks_.spent().longest_ns); }
 
 private:
-    std::vector<int> threads_;
-    std::vector<std::int64_t> before_;
+    rt::ThreadClocks clocks_;
 };
 
 /// Draws the items in slices of slice_items, at most one slice ahead of the rasterisers, as the engine does.

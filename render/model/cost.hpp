@@ -15,6 +15,11 @@ namespace surefoot::model {
 struct ItemCost {
     float submit_us = 0;
     float raster_us = 0;
+    ItemCost& operator+=(const ItemCost& more) {
+        submit_us += more.submit_us;
+        raster_us += more.raster_us;
+        return *this;
+    }
 };
 
 /// One state class: knots at triangles 2^0..2^(nt-1) and pixels 2^0..2^(np-1), linear in the argument between knots

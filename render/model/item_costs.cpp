@@ -66,11 +66,7 @@ ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const Vie
     const auto classes = std::span(classes_).subspan(classes_of_[r].first, classes_of_[r].count);
     std::array<float, Surfaces::most_parts> of_part;  // NOLINT: filled as far as it is read
     ItemCost sum;
-    const auto add = [&](const Class& c, float pixels) {
-        const ItemCost cost = costs_.item(c.triangles, pixels, costs_.grids[c.grid]);
-        sum.submit_us += cost.submit_us;
-        sum.raster_us += cost.raster_us;
-    };
+    const auto add = [&](const Class& c, float pixels) { sum += costs_.item(c.triangles, pixels, costs_.grids[c.grid]); };
     if (surfaces_.part_pixels(model_, r, node_box, eye, scale, of_part)) {
         for (const Class& c : classes) {
             float pixels = 0;

@@ -9,6 +9,7 @@
 
 #include "render/model/effects.hpp"
 #include "rt/base/geometry.hpp"
+#include "rt/base/page_memory.hpp"
 #include "rt/base/result.hpp"
 
 namespace surefoot::model {
@@ -97,7 +98,6 @@ struct Provenance {
     std::vector<std::string> sources;
     std::string quality;                ///< draft | full
     std::vector<std::string> warnings;  ///< one line each, e.g. "dropped 12 triangles of zero area in mesh 'lamp'"
-    double bake_s = 0;
 };
 
 struct Model {
@@ -109,9 +109,9 @@ struct Model {
     std::vector<Texture> textures;
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
-    std::vector<std::byte> texels;
-    std::string names;                   ///< zero-terminated strings, offset 0 is ""
-    std::vector<EffectFinding> effects;  ///< one an effect, bit order
+    std::vector<std::byte, PageMemory<std::byte>> texels;  ///< empty in an Engine: its device has them
+    std::string names;                                     ///< zero-terminated strings, offset 0 is ""
+    std::vector<EffectFinding> effects;                    ///< one an effect, bit order
     std::uint32_t object_count = 0;
     dvec3 sun_direction{0.36, 0.80, 0.48};  ///< towards the sun, unit
     Provenance provenance;

@@ -46,6 +46,9 @@ struct SideAngles {
 };
 SideAngles side_angles(const Pose& pose, Viewport viewport, double angle_rad = 0.0);
 
+/// Where a frustum's corners lie for the second test: behind all of the model, seen from anywhere in or near it.
+inline double far_corners_m(const Box& model) { return 2.0 * model.diagonal() + 1000.0; }
+
 /// The frustum that holds every pose of a region: widened by angle_rad on each side and pulled back by radius_m.
 /// radius 0 and angle 0: exactly the pose's own. Sides turned beyond 89 degrees hold nothing back.
 Frustum make_frustum(const Pose& pose, Viewport viewport, double far_m, double radius_m = 0.0, double angle_rad = 0.0);

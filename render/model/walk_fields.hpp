@@ -115,13 +115,14 @@ template <class Archive, class TextT>
 requires std::is_same_v<std::remove_const_t<TextT>, std::string>
 void fields(Archive& a, TextT& text) { a(text); }
 
-/// What is no array: counts, sun, provenance.
+/// What is no array: counts, sun, provenance. Between them eight bytes that nobody reads: once the time that the bake took.
 template <class Archive, class ModelT>
 void rest(Archive& a, ModelT& m) {
     a(m.object_count);
     vector3(a, m.sun_direction);
     a(m.names);
-    a(m.provenance.quality), a(m.provenance.bake_s);
+    std::uint64_t spare = 0;
+    a(m.provenance.quality), a(spare);
     a.list(m.provenance.sources), a.list(m.provenance.warnings);
 }
 

@@ -2,8 +2,8 @@
 //
 //   header   magic, version, section count, file bytes, page bytes, table hash, header hash        56 bytes
 //   pages    vertices, indices, texels, each cut at 1 MiB and packed by zstd (or kept raw)
-//   sections records of one kind each, in the order of `sections` below
-//   table    one entry a section: id, bytes, hash
+//   sections records of one kind each, in the table's order
+//   table    one entry a section: id, bytes, hash; ids that this program does not know are skipped
 #include "render/model/walk_file.hpp"
 
 #include <zstd.h>
@@ -13,6 +13,7 @@
 #include <bit>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -48,6 +49,8 @@ enum Section : std::uint32_t {
 };
 constexpr std::array<std::string_view, section_count> section_names = {
     "pages", "nodes", "representations", "parts", "placements", "materials", "textures", "effects", "provenance"};
+/// No model is valid without them; any other that a file has not got is empty.
+constexpr bool required(std::uint32_t section) { return section != textures_section; }
 
 struct PageEntry {
     std::uint32_t stored = 0;  ///< bytes on disk; equal to the unpacked size: kept raw
@@ -147,13 +150,42 @@ struct Reading {
     const std::string& file;
     std::span<const std::byte> bytes;
     std::span<const std::byte> pages;
-    std::array<std::span<const std::byte>, section_count> sections;
+    std::array<std::optional<std::span<const std::byte>>, section_count> sections;  ///< those that the file has
     std::uint64_t model_hash = fnv_start;
 
     [[nodiscard]] Error error(std::string_view where, std::string what) const {
         return {fmt::format("{}: {}", file, where), std::move(what), "copy the file again, or bake the model again"};
     }
 };
+
+std::string name_of_section(std::uint32_t id) {
+    return id < section_count ? std::string(section_names[id]) : fmt::format("section {}", id);
+}
+
+/// Sections that this program does not know are checked and skipped: whoever wrote them can do without this program reading them.
+Result<void> open_sections(Reading& in, std::span<const std::byte> table, std::span<const std::byte> rest) {
+    walk::TakeArchive entries{ByteReader(table)};
+    std::array<std::uint64_t, section_count> hashes{};
+    for (std::size_t i = 0; i < table.size() / entry_bytes; ++i) {
+        std::uint32_t id = 0;
+        std::uint64_t size = 0, hash = 0;
+        entries(id), entries(size), entries(hash);
+        if (size > rest.size()) return in.error(name_of_section(id), "section does not fit the file");
+        const auto section = rest.first(size);
+        rest = rest.subspan(size);
+        if (hash_bytes(section) != hash) return in.error(name_of_section(id), "checksum does not match: the file is damaged");
+        if (id >= section_count) continue;
+        if (in.sections[id]) return in.error(name_of_section(id), "section is there twice");
+        in.sections[id] = section;
+        hashes[id] = hash;
+    }
+    if (!rest.empty()) return in.error("section table", "bytes that belong to no section");
+    for (std::uint32_t id = 0; id < section_count; ++id) {
+        if (required(id) && !in.sections[id]) return in.error(section_names[id], "section is missing");
+        if (id != rest_section) in.model_hash = fnv1a(in.model_hash, hashes[id]);
+    }
+    return {};
+}
 
 Result<void> open_header(Reading& in) {
     if (in.bytes.size() < header_bytes) return in.error("header", "the file is shorter than a header");
@@ -173,33 +205,20 @@ Result<void> open_header(Reading& in) {
         return in.error("header",
                         fmt::format("{} bytes expected, {} found: the file is truncated or grown", file_size, in.bytes.size()));
     }
-    const std::uint64_t table_size = section_count * entry_bytes, room = in.bytes.size() - header_bytes;
-    if (sections != section_count || spare != 0 || room < table_size || pages_size > room - table_size) {
+    const std::uint64_t table_size = sections * entry_bytes, room = in.bytes.size() - header_bytes;
+    if (spare != 0 || room < table_size || pages_size > room - table_size) {
         return in.error("header", "sizes do not fit the file");
     }
     const auto table = in.bytes.last(table_size);
     if (hash_bytes(table) != table_hash) return in.error("section table", "checksum does not match: the file is damaged");
     in.pages = in.bytes.subspan(header_bytes, pages_size);
-
-    auto rest = in.bytes.subspan(header_bytes + pages_size, room - table_size - pages_size);
-    walk::TakeArchive entries{ByteReader(table)};
-    for (std::uint32_t i = 0; i < section_count; ++i) {
-        std::uint32_t id = 0;
-        std::uint64_t size = 0, hash = 0;
-        entries(id), entries(size), entries(hash);
-        if (id != i || size > rest.size()) return in.error(section_names[i], "section does not fit the file");
-        in.sections[i] = rest.first(size);
-        rest = rest.subspan(size);
-        if (hash_bytes(in.sections[i]) != hash) return in.error(section_names[i], "checksum does not match: the file is damaged");
-        if (i != rest_section) in.model_hash = fnv1a(in.model_hash, hash);
-    }
-    if (!rest.empty()) return in.error("section table", "bytes that belong to no section");
-    return {};
+    return open_sections(in, table, in.bytes.subspan(header_bytes + pages_size, room - table_size - pages_size));
 }
 
 Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, PayloadSizes& sizes,
                           std::vector<PageEntry>& pages) {
-    walk::TakeArchive take{ByteReader(in.sections[section])};
+    if (!in.sections[section]) return {};
+    walk::TakeArchive take{ByteReader(*in.sections[section])};
     switch (section) {
         case pages_section:
             page_directory(take, sizes, pages);

@@ -13,7 +13,7 @@ struct WalkFileInfo {
     std::uint64_t bytes = 0;          ///< on disk
     std::uint64_t payload_bytes = 0;  ///< geometry and texels, unpacked
     std::uint32_t pages = 0;
-    std::uint64_t hash = 0;  ///< of all sections but the provenance, which holds a time: the same for the same bake
+    std::uint64_t hash = 0;  ///< of all sections but the provenance, which names folders: the same for the same bake
 };
 
 /// Written under a temporary name, synced, renamed: what was there before survives any failure.

@@ -22,10 +22,8 @@ Below below(const Candidate& candidate, std::span<const Weight> weights, const P
         sum.weight.weight = std::max(sum.weight.weight, weights[c].weight);
         sum.weight.distance_m = std::min(sum.weight.distance_m, weights[c].distance_m);
         sum.benefit = std::max(sum.benefit, first.subtree_benefit);
-        sum.floor.submit_us += child.floor_cost.submit_us;
-        sum.floor.raster_us += child.floor_cost.raster_us;
-        first_sum.submit_us += first.cost.submit_us;
-        first_sum.raster_us += first.cost.raster_us;
+        sum.floor += child.floor_cost;
+        first_sum += first.cost;
     }
     return sum;
 }
@@ -86,6 +84,25 @@ void hold_down(PreparedFrame& frame) {
             benefit = most;
         }
     }
+}
+
+PlaneMask narrow(const model::Frustum& frustum, const Box& box, PlaneMask parent) {
+    if (box.empty()) return culled;
+    if (parent == 0) return 0;
+    const dvec3 centre = box.centre(), half = box.half();
+    unsigned mask = parent;
+    for (unsigned i = 0; i < frustum.planes.size(); ++i) {
+        if ((mask >> i & 1U) == 0) continue;
+        const dvec4& p = frustum.planes[i];
+        const double reach = std::abs(p.x) * half.x + std::abs(p.y) * half.y + std::abs(p.z) * half.z;
+        const double away = p.x * centre.x + p.y * centre.y + p.z * centre.z + p.w;
+        const double slack = 1e-9 * (std::abs(p.w) + reach);  // rounding far from the origin, as in model::visible
+        if (away + reach < -slack) return culled;
+        if (away - reach > slack) mask &= ~(1U << i);
+    }
+    // Crossing boxes may still lie beside the frustum's edges: the second test decides, and only they pay for it.
+    if (mask != 0 && !model::visible(frustum, box)) return culled;
+    return static_cast<PlaneMask>(mask);
 }
 
 }  // namespace surefoot::prepare

@@ -1,10 +1,11 @@
 // The Preparer: breadth-first by levels, then evaluation, then the passes up and down the tree. Whatever runs on workers runs
 // in chunks of fixed size that write to places of their own, so that the arrays do not depend on the number of workers.
-#include <time.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -13,9 +14,10 @@
 #include "render/prepare/occlusion.hpp"
 #include "render/prepare/passes.hpp"
 #include "render/prepare/prepared.hpp"
-#include "render/prepare/visibility.hpp"
 #include "render/prepare/workers.hpp"
+#include "rt/base/check.hpp"
 #include "rt/base/fork_join.hpp"
+#include "rt/clock/clock.hpp"
 
 namespace surefoot::prepare {
 
@@ -36,12 +38,6 @@ struct Visit {
 
 constexpr std::uint32_t parents_a_chunk = 64, visits_a_chunk = 512;
 constexpr std::uint32_t least_slots = 1U << 15U;  // children looked at before they are closed up: bounds the room for them
-
-double seconds(clockid_t clock) {
-    timespec t{};
-    clock_gettime(clock, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
 
@@ -139,12 +135,9 @@ void Preparer::Impl::for_chunks(std::uint32_t count, const Body& body) {
             [&](const tbb::blocked_range<std::uint32_t>& range) {
                 const ForkJoin::Task task(loop);
                 const bool own = pthread_equal(pthread_self(), caller) != 0;
-                const double start = own ? 0.0 : seconds(CLOCK_THREAD_CPUTIME_ID);
+                const std::int64_t start = own ? 0 : rt::own_cpu_ns();
                 for (std::uint32_t i = range.begin(); i < range.end(); ++i) body(i);
-                if (!own) {
-                    const double used = seconds(CLOCK_THREAD_CPUTIME_ID) - start;
-                    worker_cpu_ns.fetch_add(static_cast<std::int64_t>(used * 1e9), std::memory_order_relaxed);
-                }
+                if (!own) worker_cpu_ns.fetch_add(rt::own_cpu_ns() - start, std::memory_order_relaxed);
             },
             tbb::simple_partitioner());
     });
@@ -230,6 +223,7 @@ void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& 
             used += children;
             block.push_back(at);
         }
+        CHECK(!block.empty() || at == end, "a block holds at least the children of one node");
         out.visits += used;
         const auto parents = static_cast<std::uint32_t>(block.size());
         for_chunks((parents + parents_a_chunk - 1) / parents_a_chunk, [&](std::uint32_t chunk) {
@@ -248,6 +242,7 @@ void Preparer::Impl::drop_false_positives(PreparedFrame& out) {
         visit.live = false;
         for (std::uint32_t k = 0; k < visit.child_count && !visit.live; ++k) visit.live = visits[visit.first_child + k].live;
     }
+    CHECK(visits.size() <= candidate_of.size(), "no more nodes are visited than there is room for");
     Index candidate = 0;
     std::uint32_t choice = 0;
     for (std::size_t i = 0; i < visits.size(); ++i) {
@@ -312,8 +307,8 @@ void Preparer::Impl::adapt(const PreparedFrame& out) {
 }
 
 Preparer::Preparer(const model::Model& model, const model::CostModel& costs, const PrepareOptions& options)
-    : impl_(new Impl(model, costs, options)) {}
-Preparer::~Preparer() { delete impl_; }
+    : impl_(std::make_unique<Impl>(model, costs, options)) {}
+Preparer::~Preparer() = default;
 
 const model::ItemCosts& Preparer::item_costs() const { return impl_->evaluator.item_costs(); }
 
@@ -325,7 +320,7 @@ void Preparer::reserve(PreparedFrame& frame) const {
 void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
                    PreparedFrame& out) {
     Impl& s = *impl_;
-    const double cpu_start = seconds(CLOCK_THREAD_CPUTIME_ID), wall_start = seconds(CLOCK_MONOTONIC);
+    const std::int64_t cpu_start = rt::own_cpu_ns(), wall_start = rt::monotonic_ns();
     s.worker_cpu_ns.store(0, std::memory_order_relaxed);
     s.visits.clear();
     out.frame = frame;
@@ -343,8 +338,8 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     const RegionView view = s.view_of(out.region, viewport, speed_mps, turn_rps);
     out.target_error_rad = view.full_depth ? 0.0F : view.target_error_rad;
 
-    const double far_m = 2.0 * root.box.diagonal() + 1000.0;
-    const model::Frustum frustum = model::make_frustum(pose, viewport, far_m, view.radius_m, out.region.angle_rad);
+    const model::Frustum frustum =
+        model::make_frustum(pose, viewport, model::far_corners_m(root.box), view.radius_m, out.region.angle_rad);
     const PlaneMask mask = narrow(frustum, root.box, all_planes);
     s.occlusion.draw(out.region, viewport);
     out.visits = 1;
@@ -360,8 +355,8 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     gather_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     hold_down(out);
     s.adapt(out);
-    out.cpu_us = (seconds(CLOCK_THREAD_CPUTIME_ID) - cpu_start) * 1e6 + 1e-3 * static_cast<double>(s.worker_cpu_ns.load());
-    out.wall_us = (seconds(CLOCK_MONOTONIC) - wall_start) * 1e6;
+    out.cpu_us = 1e-3 * static_cast<double>(rt::own_cpu_ns() - cpu_start + s.worker_cpu_ns.load());
+    out.wall_us = 1e-3 * static_cast<double>(rt::monotonic_ns() - wall_start);
 }
 
 }  // namespace surefoot::prepare

@@ -8,7 +8,7 @@
 #include "render/select/cover.hpp"
 #include "render/select/entries.hpp"
 #include "render/select/queue.hpp"
-#include "render/select/search.hpp"
+#include "render/select/scratch.hpp"
 #include "render/select/steps.hpp"
 
 namespace surefoot::select {
@@ -51,10 +51,10 @@ public:
         : cover_(cover),
           budget_(budget),
           steps_(input, state, subtree),
-          sums_(state.scratch_sums),
+          sums_(state.scratch().step_sums),
           notes_(cover.scratch()),
           share_(fresh_share(state)),
-          put_off_(state.scratch_next) {}
+          put_off_(state.scratch().links) {}
 
     /// Returns the number of steps taken.
     std::uint32_t run() {

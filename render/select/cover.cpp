@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "render/select/queue.hpp"
+#include "render/select/scratch.hpp"
 #include "rt/base/hash.hpp"
 
 namespace surefoot::select {
@@ -18,32 +19,49 @@ std::uint64_t mixed(std::uint64_t hash, const CutItem& item) {
 
 }  // namespace
 
+SelectState::SelectState() : scratch_(std::make_unique<Scratch>()) {}
+SelectState::~SelectState() = default;
+SelectState::SelectState(SelectState&&) noexcept = default;
+SelectState& SelectState::operator=(SelectState&&) noexcept = default;
+
+std::uint32_t SelectState::max_candidates() const { return static_cast<std::uint32_t>(scratch_->chosen.size()); }
+
 void SelectState::reserve(const model::Model& model, std::uint32_t max_candidates) {
     shown.assign(model.nodes.size(), none);
     for (std::vector<Shown>* list : {&touched, &before}) {
         list->clear();
         list->reserve(max_candidates);
     }
-    scratch_next.resize(max_candidates);
-    scratch_head.resize(2 * BucketQueue::buckets);
-    scratch_sums.resize(4 * BucketQueue::buckets);
-    scratch_a.resize(max_candidates);
-    scratch_b.resize(max_candidates);
+    scratch_->links.resize(max_candidates);
+    scratch_->queue_heads.resize(2 * BucketQueue::buckets);
+    scratch_->step_sums.resize(4 * BucketQueue::buckets);
+    scratch_->chosen.resize(max_candidates);
+    scratch_->list.resize(max_candidates);
 }
 
 void reserve(Cut& cut, std::uint32_t max_candidates) { cut.items.reserve(max_candidates); }
 
+void clear(Cut& cut) {
+    cut.items.clear();
+    cut.sum = {};
+    cut.predicted_us = cut.floor_us = cut.worst_error_rad = 0;
+    cut.floor_binds = false;
+    cut.benefit = 0;
+    cut.triangles = cut.hash = 0;
+    cut.switches = cut.refinements = 0;
+}
+
 bool has_room(const SelectInput& input, const SelectState& state, const Cut& cut) {
     const std::size_t n = input.prepared->candidates.size();
-    return n > 0 && n <= state.scratch_a.size() && n <= state.touched.capacity() && n <= state.before.capacity() &&
+    return n > 0 && n <= state.max_candidates() && n <= state.touched.capacity() && n <= state.before.capacity() &&
            n <= cut.items.capacity();
 }
 
 Cover::Cover(const SelectInput& input, SelectState& state)
     : prepared_(*input.prepared),
       state_(state),
-      chosen_(std::span(state.scratch_a).first(input.prepared->candidates.size())),
-      scratch_(std::span(state.scratch_b).first(input.prepared->candidates.size())) {}
+      chosen_(std::span(state.scratch().chosen).first(input.prepared->candidates.size())),
+      scratch_(std::span(state.scratch().list).first(input.prepared->candidates.size())) {}
 
 // Candidates are in breadth-first order, so a first-in first-out walk meets them ascending.
 std::span<std::uint32_t> Cover::take_floor() {

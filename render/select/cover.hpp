@@ -8,12 +8,12 @@
 
 namespace surefoot::select {
 
-/// chosen[candidate]: offset of its choice, SelectState::opened, or none (below an item). Lives in the state's scratch_a.
+/// chosen[candidate]: offset of its choice, SelectState::opened, or none (below an item). Lives in the state's scratch.
 class Cover {
 public:
     Cover(const SelectInput& input, SelectState& state);
 
-    /// Starts from the cheapest legal cut (PreparedFrame's floor). Returns its items, ascending, in scratch_b.
+    /// Starts from the cheapest legal cut (PreparedFrame's floor). Returns its items, ascending, in scratch().
     std::span<std::uint32_t> take_floor();
     /// From the floor to full detail: every leaf's finest choice. Returns the number of steps that a search would have taken.
     std::uint32_t take_finest();
@@ -53,6 +53,9 @@ private:
     std::span<std::uint32_t> chosen_, scratch_;
     Sum floor_;
 };
+
+/// Empties a cut and keeps its room.
+void clear(Cut& cut);
 
 /// Whether the state is large enough for the prepared frame; every selector gives an empty cut otherwise.
 bool has_room(const SelectInput& input, const SelectState& state, const Cut& cut);

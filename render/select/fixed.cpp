@@ -2,7 +2,6 @@
 #include "render/model/view.hpp"
 #include "render/select/cover.hpp"
 #include "render/select/entries.hpp"
-#include "render/select/search.hpp"
 
 namespace surefoot::select {
 

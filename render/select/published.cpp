@@ -6,7 +6,7 @@
 #include "render/select/cover.hpp"
 #include "render/select/entries.hpp"
 #include "render/select/queue.hpp"
-#include "render/select/search.hpp"
+#include "render/select/scratch.hpp"
 
 namespace surefoot::select {
 
@@ -86,7 +86,7 @@ private:
     }
     // Figures 3.15 and 3.19: the same loop, by the cluster's own benefit or by the greatest below it.
     std::uint32_t best_first(Cover& cover, SelectState& state, const Budget& budget, float threshold, Sum total) const {
-        BucketQueue queue(state.scratch_head, state.scratch_next);
+        BucketQueue queue(state.scratch().queue_heads, state.scratch().links);
         const auto push = [&](Index c) {
             const prepare::Choice& now = cover.current(c);
             if (cover.candidate(c).child_count > 0) queue.push(order_ == Order::subtree ? now.subtree_benefit : now.benefit, c);

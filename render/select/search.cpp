@@ -1,6 +1,5 @@
 // The mended depth-first search: from the floor upwards, each step priced as what it changes (total - own + new). It stops at
 // the first upgrade that does not fit: skipping on flips levels as the eye moves.
-#include "render/select/search.hpp"
 
 #include <algorithm>
 
@@ -106,16 +105,6 @@ const Selector& make_depth_first() {
 }
 
 }  // namespace
-
-void clear(Cut& cut) {
-    cut.items.clear();
-    cut.sum = {};
-    cut.predicted_us = cut.floor_us = cut.worst_error_rad = 0;
-    cut.floor_binds = false;
-    cut.benefit = 0;
-    cut.triangles = cut.hash = 0;
-    cut.switches = cut.refinements = 0;
-}
 
 const SelectorEntry depth_first_entry{"depth-first", "one thing all the way down before the next, within the budget",
                                       GoesBy::budget, true, make_depth_first};

@@ -67,11 +67,20 @@ struct SelectState {
     std::vector<Index> shown;    ///< a node: representation in the last cut, `opened` if that was among its descendants, or none
     std::vector<Shown> touched;  ///< nodes whose `shown` is not none, and what it is
     std::vector<Shown> before;   ///< `touched` as the last selection found it: with it, that selection can be repeated
-    std::vector<std::uint32_t> scratch_next, scratch_head, scratch_a, scratch_b;  ///< a candidate; scratch_head: the queue
-    std::vector<double> scratch_sums;                                             ///< two costs a bucket, new and shown before
     /// Benefit factor, 1..2, for what was refined in the last frame; 1: no memory.
     float hysteresis = 1.25F;
+
+    struct Scratch;  ///< the searches' own
+    SelectState();
+    ~SelectState();
+    SelectState(SelectState&&) noexcept;
+    SelectState& operator=(SelectState&&) noexcept;
     void reserve(const model::Model& model, std::uint32_t max_candidates);
+    [[nodiscard]] std::uint32_t max_candidates() const;  ///< as reserved
+    [[nodiscard]] Scratch& scratch() { return *scratch_; }
+
+private:
+    std::unique_ptr<Scratch> scratch_;
 };
 
 /// A selector allocates nothing, and is a pure function of its arguments. registry.hpp has them by name.
@@ -101,8 +110,17 @@ struct SlicePlan {
     std::vector<Slice> slices;   ///< in submission order: most beneficial (nearest) subtrees first
     std::vector<CutItem> order;  ///< the cut's items, grouped by slice
     std::vector<CutItem> stand_ins;
-    std::vector<std::uint32_t> scratch_a, scratch_b, scratch_c, scratch_d;
+
+    struct Scratch;  ///< plan_slices's own
+    SlicePlan();
+    ~SlicePlan();
+    SlicePlan(SlicePlan&&) noexcept;
+    SlicePlan& operator=(SlicePlan&&) noexcept;
     void reserve(std::uint32_t max_candidates);
+    [[nodiscard]] Scratch& scratch() { return *scratch_; }
+
+private:
+    std::unique_ptr<Scratch> scratch_;
 };
 
 /// Groups the cut into slices of about slice_us predicted each. Allocates nothing.

@@ -1,11 +1,13 @@
 // The slice plan: subtrees of the cut, most beneficial first, in groups of about one slice's time, each with a coarser stand-in
-// that covers exactly the same leaves.
+// that covers exactly the same leaves; and the in-frame check, whether the next one still fits in full, judged by how wrong the
+// frame has been so far.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "render/select/budget.hpp"
+#include "render/select/scratch.hpp"
 #include "render/select/select.hpp"
+#include "rt/base/check.hpp"
 
 namespace surefoot::select {
 
@@ -25,34 +27,28 @@ Measure measure_of(const model::FrameCombine& combine, const model::ItemCost& su
     return m;
 }
 
-void add(model::ItemCost& sum, const model::ItemCost& cost) {
-    sum.submit_us += cost.submit_us;
-    sum.raster_us += cost.raster_us;
-}
-
 /// The cut as a tree: what lies below every candidate. Arrays live in the plan's scratch.
 class CutTree {
 public:
-    CutTree(const prepare::PreparedFrame& prepared, const Cut& cut, const Measure& measure, SlicePlan& plan)
+    CutTree(const prepare::PreparedFrame& prepared, const Cut& cut, const Measure& measure, SlicePlan::Scratch& room)
         : prepared_(prepared), cut_(cut) {
         // Nothing of the cut lies after its last item: deeper candidates need no room.
         const std::size_t n = cut.items.empty() ? 0 : static_cast<std::size_t>(cut.items.back().candidate) + 1;
-        below_us_ = std::span(plan.scratch_a).first(n);
-        item_ = std::span(plan.scratch_b).first(n);
-        std::fill(below_us_.begin(), below_us_.end(), std::bit_cast<std::uint32_t>(-1.0F));
+        below_us_ = std::span(room.below_us).first(n);
+        item_ = std::span(room.item).first(n);
+        std::fill(below_us_.begin(), below_us_.end(), -1.0F);
         std::fill(item_.begin(), item_.end(), none);
         for (std::uint32_t i = 0; i < cut.items.size(); ++i) {
             item_[cut.items[i].candidate] = i;
-            set(cut.items[i].candidate, measure.of(prepared.choices[cut.items[i].choice].cost));
+            below_us_[cut.items[i].candidate] = measure.of(prepared.choices[cut.items[i].choice].cost);
         }
         for (std::size_t c = n; c-- > 1;) {
             const Index parent = prepared.candidates[c].parent;
-            if (below_us(static_cast<Index>(c)) >= 0.0F)
-                set(parent, std::max(0.0F, below_us(parent)) + below_us(static_cast<Index>(c)));
+            if (below_us_[c] >= 0.0F) below_us_[parent] = std::max(0.0F, below_us_[parent]) + below_us_[c];
         }
     }
     [[nodiscard]] std::size_t size() const { return item_.size(); }
-    [[nodiscard]] float below_us(Index c) const { return std::bit_cast<float>(below_us_[c]); }
+    [[nodiscard]] float below_us(Index c) const { return below_us_[c]; }
     [[nodiscard]] bool in_cut(Index c) const { return c < item_.size() && below_us(c) >= 0.0F; }
     [[nodiscard]] bool is_item(Index c) const { return item_[c] != none; }
     [[nodiscard]] const CutItem& item(Index c) const { return cut_.items[item_[c]]; }
@@ -65,10 +61,10 @@ public:
     [[nodiscard]] float benefit(Index c) const { return prepared_.choices[candidate(c).first_choice].subtree_benefit; }
 
 private:
-    void set(Index c, float us) { below_us_[c] = std::bit_cast<std::uint32_t>(us); }
     const prepare::PreparedFrame& prepared_;
     const Cut& cut_;
-    std::span<std::uint32_t> below_us_, item_;
+    std::span<float> below_us_;
+    std::span<std::uint32_t> item_;
 };
 
 /// Subtrees that fit a slice, or single items: an antichain that covers the cut. Written to the front of `room`, whose rest
@@ -101,7 +97,7 @@ void append_unit(const CutTree& tree, Index unit, std::span<std::uint32_t> stack
         const Index c = stack[--top];
         if (tree.is_item(c)) {
             plan.order.push_back(tree.item(c));
-            add(slice.cost, tree.choice(tree.item(c)).cost);
+            slice.cost += tree.choice(tree.item(c)).cost;
             continue;
         }
         const prepare::Candidate& candidate = tree.candidate(c);
@@ -116,31 +112,36 @@ void append_unit(const CutTree& tree, Index unit, std::span<std::uint32_t> stack
             continue;
         }
         plan.stand_ins.push_back(tree.coarsest(c));
-        add(slice.stand_in_cost, tree.choice(plan.stand_ins.back()).cost);
+        slice.stand_in_cost += tree.choice(plan.stand_ins.back()).cost;
     }
 }
 
 }  // namespace
 
+SlicePlan::SlicePlan() : scratch_(std::make_unique<Scratch>()) {}
+SlicePlan::~SlicePlan() = default;
+SlicePlan::SlicePlan(SlicePlan&&) noexcept = default;
+SlicePlan& SlicePlan::operator=(SlicePlan&&) noexcept = default;
+
 void SlicePlan::reserve(std::uint32_t max_candidates) {
     slices.reserve(std::min<std::size_t>(max_candidates, most_slices));
     order.reserve(max_candidates);
     stand_ins.reserve(max_candidates);
-    scratch_a.resize(max_candidates);
-    scratch_b.resize(max_candidates);
-    scratch_c.resize(max_candidates);
-    scratch_d.resize(max_candidates);
+    scratch_->below_us.resize(max_candidates);
+    for (auto* each : {&scratch_->item, &scratch_->units, &scratch_->stack}) each->resize(max_candidates);
 }
 
 void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, SlicePlan& plan) {
     plan.slices.clear();
     plan.order.clear();
     plan.stand_ins.clear();
-    if (cut.items.empty() || cut.items.back().candidate >= plan.scratch_a.size()) return;
+    if (cut.items.empty()) return;
+    SlicePlan::Scratch& room = plan.scratch();
+    if (!CHECK_RARE(cut.items.back().candidate < room.item.size(), "a cut is of no more candidates than were reserved")) return;
     const Measure measure = measure_of(input.costs->combine, cut.sum);
     const float target_us = slice_us > 0.0 ? static_cast<float>(slice_us) : 1000.0F;
-    const CutTree tree(*input.prepared, cut, measure, plan);
-    const auto units = find_units(tree, target_us, plan.scratch_c);
+    const CutTree tree(*input.prepared, cut, measure, room);
+    const auto units = find_units(tree, target_us, room.units);
     Slice slice;
     const auto close = [&] {
         slice.item_count = static_cast<std::uint32_t>(plan.order.size()) - slice.first_item;
@@ -151,11 +152,23 @@ void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, Slic
         slice.first_stand_in = static_cast<std::uint32_t>(plan.stand_ins.size());
     };
     for (std::size_t i = 0; i < units.size(); ++i) {
-        append_unit(tree, units[i], plan.scratch_d, slice, plan);
+        append_unit(tree, units[i], room.stack, slice, plan);
         // Every slice but the last reaches its time, so their number is at most 1 + total / slice_us, as the budget counts.
         const bool full = measure.of(slice.cost) >= target_us && plan.slices.size() + 1 < plan.slices.capacity();
         if (full || i + 1 == units.size()) close();
     }
+    (void)CHECK_RARE(plan.order.size() == cut.items.size(), "the slices hold every item of the cut once");
+}
+
+bool still_fits(const CheckInput& input) {
+    if (input.next_stand_in_us >= input.next_us) return true;  // the stand-in would gain nothing
+    const double rest_us = std::isfinite(input.rest_stand_in_us) ? std::max(input.rest_stand_in_us, 0.0) : 0.0;
+    const double time_left = std::clamp(1.0 - input.elapsed_us / input.limit_us, 0.0, 1.0);  // NaN stays one: does not fit
+    const double prior_us = 0.05 * input.limit_us + 0.5 * rest_us * time_left;
+    const double wrong = (input.elapsed_us + prior_us) / (input.predicted_so_far_us + prior_us);
+    const double factor = std::clamp(std::isfinite(wrong) ? wrong : 8.0, 1.0, 8.0);
+    return input.elapsed_us + (input.next_us + input.rest_stand_in_us) * factor * input.margin <=
+           input.limit_us;  // NaN: does not fit
 }
 
 }  // namespace surefoot::select

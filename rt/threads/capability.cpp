@@ -116,19 +116,20 @@ Capabilities probe_capabilities(int wanted_priority, const std::string& root) {
 std::vector<Lack> find_lacking(const Capabilities& c, int wanted_priority) {
     std::vector<Lack> lacking;
     if (c.fifo_priority == 0) {
-        lacking.push_back({"SCHED_FIFO is refused", fifo_remedy(wanted_priority)});
+        lacking.push_back({LackKind::fifo, "SCHED_FIFO is refused", fifo_remedy(wanted_priority)});
     } else if (c.fifo_priority < wanted_priority) {
         lacking.push_back(
-            {fmt::format("SCHED_FIFO is granted up to priority {} only, {} is wanted", c.fifo_priority, wanted_priority),
+            {LackKind::fifo,
+             fmt::format("SCHED_FIFO is granted up to priority {} only, {} is wanted", c.fifo_priority, wanted_priority),
              fifo_remedy(wanted_priority)});
     }
     if (!c.can_lock) {
-        lacking.push_back({fmt::format("memory cannot be locked beyond {} MiB", c.memlock_bytes >> 20),
+        lacking.push_back({LackKind::memory_lock, fmt::format("memory cannot be locked beyond {} MiB", c.memlock_bytes >> 20),
                            "grant CAP_IPC_LOCK, or RLIMIT_MEMLOCK unlimited (LimitMEMLOCK=infinity in the unit)"});
     }
     if (c.isolated.empty()) {
         lacking.push_back(
-            {"no isolated core among " + c.allowed.text(),
+            {LackKind::isolated_core, "no isolated core among " + c.allowed.text(),
              c.allowed.count() < 2
                  ? "give this process a second core, and isolate one of them"
                  : fmt::format("boot with isolcpus=managed_irq,domain,{0} nohz_full={0}, or make a cpuset partition",
@@ -136,7 +137,8 @@ std::vector<Lack> find_lacking(const Capabilities& c, int wanted_priority) {
     }
     // All FIFO work together leaves 10 % of each core (DESIGN 1.4): throttling at 95 % never bites, below 90 % it does.
     if (c.rt_runtime_us >= 0 && c.rt_runtime_us * 10 < c.rt_period_us * 9) {
-        lacking.push_back({fmt::format("real-time threads are throttled to {} of {} us", c.rt_runtime_us, c.rt_period_us),
+        lacking.push_back({LackKind::throttled,
+                           fmt::format("real-time threads are throttled to {} of {} us", c.rt_runtime_us, c.rt_period_us),
                            "sysctl kernel.sched_rt_runtime_us=950000"});
     }
     return lacking;

@@ -10,8 +10,23 @@
 
 namespace surefoot::rt {
 
-/// One thing that is missing, for people.
+/// What a lack is about.
+enum class LackKind : std::uint8_t {
+    fifo,
+    memory_lock,
+    isolated_core,
+    throttled,
+    placing,     ///< a thread is not where it should be
+    cost_table,  ///< missing, or another machine's
+    switched_off,
+    census,
+    sanitizer,
+    other
+};
+
+/// One thing that real time wants and does not have: what, in words, and how to grant it.
 struct Lack {
+    LackKind kind = LackKind::other;
     std::string what;
     std::string remedy;
 };

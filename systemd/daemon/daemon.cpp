@@ -44,7 +44,7 @@ struct Ending {
     ExitCode code = exit_failure;
 };
 
-void say_lack(Log& log, Standing& standing, const report::Degraded& lack) {
+void say_lack(Log& log, Standing& standing, const rt::Lack& lack) {
     if (!standing.lacks(lack)) return;
     log.say(Priority::warning, event::degraded,
             fmt::format("not fully real-time: {}{}", lack.what, lack.remedy.empty() ? "" : " (" + lack.remedy + ")"),
@@ -66,19 +66,19 @@ walk::WalkWatch watch_of(Log& log, Standing& standing, Bursts& bursts, const wal
     walk::WalkWatch watch;
     watch.on_step = [&](walk::WalkStep step) { standing.step.store(step); };
     watch.on_started = [&](const walk::WalkStart& start) {
-        for (const report::Degraded& lack : start.degraded) say_lack(log, standing, lack);
+        for (const rt::Lack& lack : start.degraded) say_lack(log, standing, lack);
         if (!start.uncalibrated.empty() && standing.uncalibrated(start.uncalibrated))
             log.say(Priority::warning, event::uncalibrated, start.uncalibrated);
         // After the session has raised its limits.
         if (auto ok = rt::guard_runaways(rt::runaway_limit_us(start.period_ns)); !ok)
-            say_lack(log, standing, {ok.error().place + " " + ok.error().what, ok.error().remedy});
+            say_lack(log, standing, {rt::LackKind::other, ok.error().place + " " + ok.error().what, ok.error().remedy});
         standing.walking(start.period_ns);
     };
     watch.on_record = [&](const rt::FrameRecord& record) {
         standing.count(record);
         say_burst(log, bursts.add(record));
     };
-    watch.on_degraded = [&](const report::Degraded& lack) { say_lack(log, standing, lack); };
+    watch.on_degraded = [&](const rt::Lack& lack) { say_lack(log, standing, lack); };
     watch.inject = inject;
     return watch;
 }
@@ -93,9 +93,12 @@ Result<void> check_state(const walk::WalkRequest& request) {
     return probe->write(page);  // never committed: it goes away again
 }
 
-Ending walk(const config::Configuration& configuration, const Options& options, Log& log, Standing& standing,
-            monitor::Monitor* monitor, const walk::FaultHook& inject) {
-    const walk::WalkRequest request = request_of(configuration, options.config_file);
+/// `first`: what the process was prepared for.
+Ending walk(const config::Configuration& configuration, const walk::WalkRequest& first, const Options& options, Log& log,
+            Standing& standing, monitor::Monitor* monitor, const walk::FaultHook& inject) {
+    walk::WalkRequest request = request_of(configuration, options.config_file);
+    if (const std::string kept = walk::keep_process(first, request); !kept.empty())
+        log.say(Priority::warning, event::reloading, kept, {{"SUREFOOT_CONFIG", options.config_file}});
     if (auto ok = check_state(request); !ok) {
         const Error& e = ok.error();
         return {true, {e.place, "the state folder must keep a stop, and cannot: " + e.what, e.remedy}, exit_cannot_write};
@@ -126,6 +129,7 @@ Ending walk(const config::Configuration& configuration, const Options& options, 
 /// Walks until the end; of a configuration that never showed a frame back to the last that did.
 ExitCode walk_on(config::Configuration current, const Options& options, Log& log, Standing& standing, monitor::Monitor* monitor,
                  const walk::FaultHook& inject) {
+    const walk::WalkRequest first = request_of(current, options.config_file);
     std::optional<config::Configuration> good;
     while (true) {
         // In this order: what a signal asks for in between is seen below, or ends the walk as it begins.
@@ -136,7 +140,7 @@ ExitCode walk_on(config::Configuration current, const Options& options, Log& log
             current = std::move(*next);
             standing.open(current.values);
         }
-        const Ending ending = walk(current, options, log, standing, monitor, inject);
+        const Ending ending = walk(current, first, options, log, standing, monitor, inject);
         rt::release_memory();  // the next walk claims its own
         if (standing.leaving.load()) return exit_success;
         if (standing.walk_frames() > 0) good = current;
@@ -183,6 +187,7 @@ int run(const Options& options, const walk::FaultHook& inject) {
     Loaded loaded = load(options);
     for (const Error& problem : loaded.problems) log.say(Priority::error, event::refused, problem.text());
     if (!loaded.problems.empty()) return loaded.misuse ? exit_usage : exit_config;
+    walk::prepare_process(request_of(loaded.configuration, options.config_file));  // no other thread is there yet
     Notifier notifier(environment("NOTIFY_SOCKET"));
     Standing standing;
     standing.open(loaded.configuration.values);

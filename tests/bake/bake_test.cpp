@@ -10,6 +10,9 @@
 #include "render/bake/cluster.hpp"
 #include "render/bake/objects.hpp"
 #include "render/measure/mesh_distance.hpp"
+#include "render/model/walk_file.hpp"
+#include "rt/base/file.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/scenes/scenes.hpp"
 
 namespace surefoot {
@@ -120,6 +123,17 @@ TEST(Bake, TheSameBitsAtAnyWorkerCount) {
         ASSERT_EQ(one.reps.size(), other.reps.size());
         for (std::size_t r = 0; r < one.reps.size(); ++r) EXPECT_EQ(one.reps[r].error_m, other.reps[r].error_m);
     }
+}
+
+TEST(Bake, TwoBakesOfOneSceneAreTheSameFile) {
+    const test::TemporaryFolder folder;
+    const importer::Scene scene = scene_of("room", small_scale);
+    std::vector<std::vector<std::byte>> files;
+    for (const int workers : {1, 2}) {
+        ASSERT_TRUE(model::write_walk(folder / "m.walk", bake_of(scene, workers)).ok());
+        files.push_back(*read_file(folder / "m.walk"));
+    }
+    EXPECT_TRUE(files[0] == files[1]);
 }
 
 TEST(Bake, EveryTriangleOfTheSceneIsInTheLeaves) {

@@ -69,7 +69,7 @@ Times times_of(const Path& path, int frame, int frames) {
 void print_leaves(const model::Model& model, const Path& path, int frames) {
     for (int i = 0; i < frames; ++i) {
         const auto frustum =
-            model::make_frustum(times_of(path, i, frames).now(path), {}, 2 * model.nodes[0].box.diagonal() + 1e3);
+            model::make_frustum(times_of(path, i, frames).now(path), {}, model::far_corners_m(model.nodes[0].box));
         for (std::size_t n = 0; n < model.nodes.size(); ++n) {
             if (model.nodes[n].child_count == 0 && model::visible(frustum, model.nodes[n].box)) fmt::print("{} {}\n", i, n);
         }

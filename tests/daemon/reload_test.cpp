@@ -24,6 +24,25 @@ TEST(Reload, AGoodConfigurationTakesOver) {
     EXPECT_EQ(daemon.wait_exit(0.1), -1000) << "it walks on: " << daemon.said();
 }
 
+TEST(Reload, AnotherNumberOfRasterisersWaitsForTheNextStart) {
+    Running daemon("reload-rasterisers");
+    daemon.write_config("rasterisers = 2\n");
+    daemon.start();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("next start"), 0) << daemon.said();
+    daemon.write_config("rasterisers = 3\n");
+    ::kill(daemon.pid, SIGHUP);
+    ASSERT_TRUE(daemon.socket.wait_for("RELOADING=1", 5)) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("rasterisers: 3 take effect at the next start"), 1) << daemon.said();
+    // As the process was started: nothing to be said.
+    daemon.write_config("rasterisers = 2\n");
+    ::kill(daemon.pid, SIGHUP);
+    ASSERT_TRUE(daemon.socket.wait_for("RELOADING=1", 5)) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("next start"), 1) << daemon.said();
+}
+
 TEST(Reload, ABadOneIsRefusedOnceAndTheWalkGoesOn) {
     Running daemon("reload-bad");
     daemon.start();

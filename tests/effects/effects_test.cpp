@@ -1,11 +1,10 @@
-// A scene pays only for what it calls for: programs hold their effects' code and no other's; findings name the evidence.
+// A scene pays only for what it calls for: programs hold their effects' code and no other's.
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
 #include "render/effects/effects.hpp"
-#include "tests/gl/small_models.hpp"
 
 namespace surefoot {
 namespace {
@@ -46,31 +45,6 @@ TEST(Modules, are_one_a_bit_in_bit_order) {
     }
     EXPECT_EQ(effects::effects_text(0), "bare");
     EXPECT_EQ(effects::effects_text(3, " + "), std::string(modules[0].name) + " + " + std::string(modules[1].name));
-}
-
-TEST(Findings, say_what_a_scene_calls_for_and_why) {
-    test::SmallModel scene;
-    auto material = test::plain(1, 1, 1, 1, model::effect_texture | model::effect_sun);
-    material.texture = scene.texture({255, 0, 0, 255}, {0, 255, 0, 255});
-    scene.square(scene.material(material), test::at(0, 0, -1));
-    scene.square(scene.material(test::plain(1, 0, 0)), test::at(0, 0, -2));
-    const auto findings = effects::find_effects(scene.finish());
-    ASSERT_EQ(findings.size(), static_cast<std::size_t>(model::effect_count));
-    EXPECT_TRUE(findings[0].called_for);
-    EXPECT_EQ(findings[0].triangles, 2U);
-    EXPECT_EQ(findings[0].reason, "1 image on 1 material");
-    EXPECT_FALSE(findings[1].called_for);
-    EXPECT_EQ(findings[1].reason, "no mesh whose vertices carry colours");
-    EXPECT_TRUE(findings[2].called_for);
-    EXPECT_FALSE(findings[3].called_for);
-    EXPECT_FALSE(findings[4].called_for);
-}
-
-TEST(Findings, of_an_empty_model_call_for_nothing) {
-    for (const auto& finding : effects::find_effects({})) {
-        EXPECT_FALSE(finding.called_for);
-        EXPECT_FALSE(finding.reason.empty());
-    }
 }
 
 }  // namespace

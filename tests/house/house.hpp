@@ -31,14 +31,14 @@ inline const std::vector<Room>& rooms() {
         {"render/image", {}},
         {"render/import", {"render/model", "render/image"}},
         // Calibration draws with the programs of the effects whose cost it measures.
-        {"render/measure", {"render/model", "render/gl", "render/effects"}},
+        {"render/measure", {"render/model", "render/gl", "render/effects", "rt/clock", "rt/threads"}},
         {"render/bake", {"render/model", "render/image", "render/import", "render/measure", "render/gl"}},
         {"render/draw", {"render/model"}},
         {"render/gl", {"render/model", "render/draw"}},
         {"render/stream", {"render/model", "render/gl"}},
         {"render/cache", {"render/model", "render/gl"}},
-        {"render/prepare", {"render/model"}},
-        {"render/select", {"render/model", "render/prepare"}},
+        {"render/prepare", {"render/model", "rt/clock"}},
+        {"render/select", {"render/model", "render/prepare", "rt/clock"}},
         {"render/effects", {"render/model", "render/gl"}},
         {"render/capture", {"render/model", "render/prepare", "render/select"}},
         {"render", {"render/"}},  // the door, engine.hpp, and what stands right behind it

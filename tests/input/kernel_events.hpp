@@ -6,7 +6,6 @@
 // An event of a key follows an MSC 0x04 with the key's full usage; without one it is no key that a person presses.
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace surefoot::input {
@@ -25,7 +25,8 @@ struct KernelEvent {
     EventType type = EventType::key;
     std::uint32_t code = 0;
     std::int32_t value = 0;
-    auto operator<=>(const KernelEvent&) const = default;
+    bool operator==(const KernelEvent&) const = default;
+    bool operator<(const KernelEvent& o) const { return std::tie(type, code, value) < std::tie(o.type, o.code, o.value); }
 };
 
 /// What evdev says of an absolute axis.
@@ -60,18 +61,18 @@ inline KernelEvents read_kernel_events(const std::filesystem::path& file) {
         unsigned node = 0, code = 0, number = 0;
         char type[4] = {};
         int value = 0;
+        if (line.empty() || line.starts_with("  KEY:") || line.starts_with("  REL:")) continue;
+        const bool event = std::sscanf(line.c_str(), " %u %3s %x %d", &node, type, &code, &value) == 4 && !events.reports.empty();
+        const std::string t = event ? type : "";
+        bool understood = true;
         if (std::sscanf(line.c_str(), "report %u", &number) == 1) {
-            if (number != events.reports.size()) events.problems.push_back(line);
+            understood = number == events.reports.size() && usage == 0;
             events.reports.emplace_back();
         } else if (line.starts_with("  ABS:")) {
             read_kernel_axes(line, events);
         } else if (line.starts_with("node ")) {
             ++events.nodes;
-        } else if (line.starts_with("  KEY:") || line.starts_with("  REL:") || line.empty()) {
-            continue;
-        } else if (std::sscanf(line.c_str(), " %u %3s %x %d", &node, type, &code, &value) != 4 || events.reports.empty()) {
-            events.problems.push_back(line);
-        } else if (const std::string t = type; t == "MSC" && code == 4) {
+        } else if (t == "MSC" && code == 4 && usage == 0) {
             usage = static_cast<std::uint32_t>(value);
         } else if (t == "KEY") {
             events.reports.back().push_back(usage != 0 ? KernelEvent{EventType::key, usage, value}
@@ -80,8 +81,9 @@ inline KernelEvents read_kernel_events(const std::filesystem::path& file) {
         } else if (t == "REL" || t == "ABS") {
             events.reports.back().push_back({t == "REL" ? EventType::relative : EventType::absolute, code, value});
         } else {
-            events.problems.push_back(line);
+            understood = false;
         }
+        if (!understood) events.problems.push_back(line);
     }
     return events;
 }

@@ -52,7 +52,7 @@ inline Model two_triangles() {
     }
     m.object_count = 2;
     for (int e = 0; e < effect_count; ++e) add_finding(m, 1U << e, e == 0, e == 0 ? "1 image" : "none");
-    m.provenance = {{"hand.glb"}, "draft", {"a warning"}, 0.25};
+    m.provenance = {{"hand.glb"}, "draft", {"a warning"}};
     return m;
 }
 

@@ -4,9 +4,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "rt/base/file.hpp"
 #include "rt/base/hash.hpp"
@@ -67,7 +73,7 @@ void expect_same(const Model& a, const Model& b) {
     EXPECT_EQ(a.texels, b.texels);
     EXPECT_EQ(a.effects[0].reason, b.effects[0].reason);
     EXPECT_EQ(a.provenance.warnings, b.provenance.warnings);
-    EXPECT_EQ(a.provenance.bake_s, b.provenance.bake_s);
+    EXPECT_EQ(a.provenance.quality, b.provenance.quality);
 }
 
 TEST_F(WalkFile, ComesBackAsItWent) {
@@ -192,6 +198,156 @@ TEST_F(WalkFile, WhatIsNoModelIsSaid) {
     EXPECT_NE(read.error().what.find("not a .walk"), std::string::npos);
     EXPECT_FALSE(read_walk(folder / "absent.walk").ok());
     EXPECT_FALSE(read_walk(folder.path()).ok());
+}
+
+/// A file taken apart at its section table, to be put together in another way with right checksums.
+struct Sections {
+    using Bytes = std::vector<std::byte>;
+    static constexpr std::size_t header = 56, entry = 20;
+    Bytes head, pages;
+    std::vector<std::pair<std::uint32_t, Bytes>> list;
+
+    template <class T>
+    static T get(std::span<const std::byte> bytes, std::size_t at) {
+        T value{};
+        std::memcpy(&value, bytes.data() + at, sizeof(value));
+        return value;
+    }
+    template <class T>
+    static void add(Bytes& bytes, T value) {
+        const auto* const from = reinterpret_cast<const std::byte*>(&value);
+        bytes.insert(bytes.end(), from, from + sizeof(value));
+    }
+    explicit Sections(std::span<const std::byte> file) {
+        const std::size_t count = get<std::uint32_t>(file, 12), pages_size = get<std::uint64_t>(file, 24);
+        const auto first = file.first(12), middle = file.subspan(header, pages_size), table = file.last(count * entry);
+        head.assign(first.begin(), first.end());
+        pages.assign(middle.begin(), middle.end());
+        std::size_t at = header + pages_size;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto section = file.subspan(at, get<std::uint64_t>(table, i * entry + 4));
+            list.emplace_back(get<std::uint32_t>(table, i * entry), Bytes(section.begin(), section.end()));
+            at += section.size();
+        }
+    }
+    void drop(std::uint32_t id) {
+        std::erase_if(list, [=](const auto& one) { return one.first == id; });
+    }
+    [[nodiscard]] Bytes file() const {
+        Bytes table, body = pages, out = head;
+        for (const auto& [id, bytes] : list) {
+            add(table, id), add(table, std::uint64_t{bytes.size()}), add(table, hash_bytes(bytes));
+            body.insert(body.end(), bytes.begin(), bytes.end());
+        }
+        add(out, static_cast<std::uint32_t>(list.size()));
+        add(out, std::uint64_t{header + body.size() + table.size()}), add(out, std::uint64_t{pages.size()});
+        add(out, hash_bytes(table)), add(out, std::uint64_t{0});
+        add(out, hash_bytes(out));
+        out.insert(out.end(), body.begin(), body.end());
+        out.insert(out.end(), table.begin(), table.end());
+        return out;
+    }
+};
+
+constexpr std::array<const char*, 9> section_names = {"pages",     "nodes",    "representations", "parts",     "placements",
+                                                      "materials", "textures", "effects",         "provenance"};
+constexpr std::uint32_t textures_id = 6;
+
+struct OpenTable : WalkFile {
+    Model model = two_triangles();
+    [[nodiscard]] Sections sections_of_model() const {
+        EXPECT_TRUE(write_walk(file, model).ok());
+        return Sections(*read_file(file));
+    }
+};
+
+TEST_F(OpenTable, UnknownSectionsAreSkippedWhereverTheyStand) {
+    Sections sections = sections_of_model();
+    EXPECT_EQ(sections.file(), *read_file(file));
+    WalkFileInfo before, after;
+    ASSERT_TRUE(read_walk(file, &before).ok());
+    const Sections::Bytes unknown(300, std::byte{7});
+    sections.list.insert(sections.list.begin(), {77, unknown});
+    sections.list.insert(sections.list.begin() + 4, {section_names.size(), {}});
+    sections.list.emplace_back(0xffffffffU, unknown);
+    put(sections.file());
+    const auto read = read_walk(file, &after);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    expect_same(model, *read);
+    EXPECT_EQ(before.hash, after.hash);
+    auto damaged = sections.file();  // skipped, and yet under a checksum
+    damaged[Sections::header + sections.pages.size() + 10] ^= std::byte{1};
+    put(damaged);
+    EXPECT_FALSE(read_walk(file).ok());
+}
+
+TEST_F(OpenTable, SectionsMayStandInAnyOrder) {
+    Sections sections = sections_of_model();
+    std::reverse(sections.list.begin(), sections.list.end());
+    put(sections.file());
+    const auto read = read_walk(file);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    expect_same(model, *read);
+}
+
+TEST_F(OpenTable, AMissingOptionalSectionIsEmpty) {
+    model.textures.clear();
+    model.texels.clear();
+    model.materials[0].texture = none;
+    model.materials[0].effects = 0;
+    for (Representation& rep : model.reps) rep.effects = 0;
+    Sections sections = sections_of_model();
+    sections.drop(textures_id);
+    put(sections.file());
+    const auto read = read_walk(file);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_TRUE(read->textures.empty());
+    EXPECT_EQ(read->nodes.size(), model.nodes.size());
+}
+
+TEST_F(OpenTable, AMissingRequiredSectionIsAnErrorByItsName) {
+    const Sections whole = sections_of_model();
+    for (std::uint32_t id = 0; id < section_names.size(); ++id) {
+        if (id == textures_id) continue;
+        Sections sections = whole;
+        sections.drop(id);
+        put(sections.file());
+        const auto read = read_walk(file);
+        ASSERT_FALSE(read.ok()) << section_names[id];
+        EXPECT_NE(read.error().place.find(section_names[id]), std::string::npos) << read.error().text();
+        EXPECT_NE(read.error().what.find("missing"), std::string::npos) << read.error().text();
+    }
+    Sections empty = whole;
+    empty.list.clear();
+    put(empty.file());
+    EXPECT_FALSE(read_walk(file).ok());
+}
+
+TEST_F(OpenTable, ASectionThatIsThereTwiceIsAnError) {
+    Sections sections = sections_of_model();
+    sections.list.push_back(sections.list[3]);
+    put(sections.file());
+    const auto read = read_walk(file);
+    ASSERT_FALSE(read.ok());
+    EXPECT_NE(read.error().place.find("parts"), std::string::npos);
+    EXPECT_NE(read.error().what.find("twice"), std::string::npos);
+}
+
+// Baked while the file still kept the bake's time, and its table exactly nine sections.
+TEST_F(WalkFile, AnOldOneStillOpens) {
+    WalkFileInfo old, again;
+    const auto read = read_walk(std::string(SUREFOOT_SOURCE_DIR) + "/tests/model/golden/yard.walk", &old);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_EQ(read->triangles(), 968U);
+    EXPECT_EQ(read->nodes.size(), 8U);
+    EXPECT_EQ(read->reps.size(), 19U);
+    EXPECT_EQ(read->textures.size(), 1U);
+    EXPECT_EQ(read->provenance.sources, std::vector<std::string>{"yard.obj"});
+    EXPECT_EQ(read->provenance.quality, "draft");
+    ASSERT_TRUE(write_walk(file, *read).ok());
+    ASSERT_TRUE(read_walk(file, &again).ok());
+    EXPECT_EQ(old.hash, again.hash);
+    EXPECT_EQ(old.bytes, again.bytes);
 }
 
 TEST_F(WalkFile, FailedWriteLeavesTheOldFile) {

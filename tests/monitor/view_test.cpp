@@ -41,7 +41,7 @@ json viewed_status(int frames, const std::string& model = "/srv/models/town.walk
     page.walk.model = model;
     page.walk.rate_hz = 50;
     page.walk.setup = telemetry->figures().setup;
-    page.degraded = {{"SCHED_FIFO is refused", "grant CAP_SYS_NICE"}};
+    page.degraded = {{rt::LackKind::fifo, "SCHED_FIFO is refused", "grant CAP_SYS_NICE"}};
     page.threads = rt::read_busy_threads();
     return json::parse(status_json(page));
 }
@@ -65,6 +65,15 @@ TEST(View, StatusIsAPageThatNamesWhatMatters) {
     EXPECT_LE(lines.size(), 40U) << "a page of a screen";
     EXPECT_EQ(all.find('\033'), std::string::npos) << "colour where none is wanted";
     EXPECT_NE(status_page(viewed_status(400), a_look(80, 24, true))[0].find("\033["), std::string::npos);
+}
+
+TEST(View, AFailedCheckIsNamedWithItsPlaceAndCount) {
+    json status = viewed_status(400);
+    EXPECT_EQ(joined(status_page(status, {})).find("check failed"), std::string::npos) << "none has";
+    status["rare_checks"] = {{{"place", "render/engine.cpp:171"}, {"sentence", "there is room"}, {"count", 12}}};
+    EXPECT_NE(joined(status_page(status, {})).find("a check failed, 12 times: not so that there is room (render/engine.cpp:171)"),
+              std::string::npos)
+        << joined(status_page(status, {}));
 }
 
 TEST(View, BeforeTheFirstFrameThereIsAPageToo) {

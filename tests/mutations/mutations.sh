@@ -36,8 +36,7 @@ mutation N22b render/import/clean.cpp 's/!has_area\(p, t.data\(\)\)/false/' "tri
 mutation N7a render/import/polygon.cpp 's/q != c && inside\(q, a, b, c\)/false/' "ears hold no other corner"
 mutation N7b render/import/polygon.cpp 's/if \(q != a && q != b && q != c && inside/if (inside/' "corners that coincide do not spoil an ear"
 mutation N7c render/import/polygon.cpp 's/if \(std::abs\(det\) > 4e-16 .*?\) return/if (true) return/' "the exact sign behind the quick one"
-mutation N13a render/select/budget.hpp 's/input.correction > 0.0 && std::isfinite\(input.correction\) \? input.correction : 1.0/input.correction/' "corrections that are no factor" \
-  render/select/search.cpp render/select/benefit_search.cpp render/select/fixed.cpp render/select/published.cpp render/select/cover.cpp
+mutation N13a render/select/budget.hpp 's/input.correction > 0.0 && std::isfinite\(input.correction\) \? input.correction : 1.0/input.correction/' "corrections that are no factor"
 mutation N13b render/prepare/prepare.cpp 's/slots.resize\(.*?\);/slots.resize(1U << 15U);/' "room for the largest family of children"
 mutation N23a rt/frame/controller.cpp 's/if \(!\(predicted_us > 0\).*?return;//' "measurements that are no cost ignored"
 mutation N23b input/motion/motion.cpp 's/std::min\(static_cast<double>\(passed\) \* 1e-9, longest_step_s\)/static_cast<double>(passed) * 1e-9/' "the longest step"
@@ -59,8 +58,7 @@ mutation N21a render/image/image.cpp 's/png_image_finish_read\(.*?\) == 0/false/
 mutation N21b render/image/image.cpp 's/if \(errors.truncated\) return/if (false) return/' "a JPEG that ends early is refused"
 mutation N21c render/image/image.cpp 's/ > most_jpeg_texels_a_byte \* bytes.size\(\)/ > UINT64_MAX - 1/' "a JPEG that is too small for its size is refused before memory is taken"
 mutation N13c render/prepare/prepare.cpp 's/begin < end;\)/begin < end && begin < 4096;)/' "levels walked to the last"
-mutation N13d render/select/steps.hpp 's/return refined \? benefit \* hysteresis_ : benefit;/return refined ? benefit \/ hysteresis_ : benefit;/' "what was shown is preferred (turned round)" \
-  render/select/search.cpp render/select/benefit_search.cpp render/select/fixed.cpp render/select/published.cpp render/select/cover.cpp
+mutation N13d render/select/steps.hpp 's/return refined \? benefit \* hysteresis_ : benefit;/return refined ? benefit \/ hysteresis_ : benefit;/' "what was shown is preferred (turned round)"
 mutation N25a render/bake/materials.cpp 's/bleed_colours\(bled, .*?\);//' "texels that are never shown take the nearest shown one's colour"
 mutation N25b render/bake/alpha_bleed.cpp 's/material.alpha == model::AlphaMode::mask \? material.alpha_cutoff \* 0.9999F : 1e-9F/1e-9F/' "never shown is all below a mask's cutoff, not only what is clear"
 mutation N25c render/bake/alpha_bleed.cpp 's/if \(material.alpha == model::AlphaMode::opaque\) return \{\};//' "an opaque material shows every texel"

@@ -9,7 +9,6 @@
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/passes.hpp"
 #include "render/prepare/prepared.hpp"
-#include "render/prepare/visibility.hpp"
 #include "tests/prepare/random_model.hpp"
 
 namespace surefoot::prepare {

@@ -131,7 +131,7 @@ TEST_F(ReportFiles, PageNeedsNothingOutsideItself) {
     auto records = frames_with_a_miss();
     summarize(records, period_ns, s);
     s.model = "forest.walk";
-    s.degraded = {{"FIFO refused", "grant rtprio"}};
+    s.degraded = {{rt::LackKind::fifo, "FIFO refused", "grant rtprio"}};
     s.control.ran = true;
     s.control.blocks.resize(4);
     const std::vector<ReportShot> shots = {shot_of(0), shot_of(2)};

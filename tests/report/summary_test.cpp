@@ -16,34 +16,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(Quantiles, AreNearestRanksThatOccurred) {
-    std::vector<double> values;
-    for (int i = 1000; i >= 1; --i) values.push_back(i);
-    const auto q = quantiles(values);
-    EXPECT_EQ(q.p50, 500);
-    EXPECT_EQ(q.p90, 900);
-    EXPECT_EQ(q.p99, 990);
-    EXPECT_EQ(q.p999, 999);
-    EXPECT_EQ(q.max, 1000);
-    EXPECT_EQ(q.min, 1);
-    EXPECT_DOUBLE_EQ(q.mean, 500.5);
-}
-
-TEST(Quantiles, OneSlowFrameOfThousandIsTheMaximumAndNoMore) {
-    std::vector<double> values(1000, 1.0);
-    values[3] = 50;
-    EXPECT_EQ(quantiles(values).p999, 1.0);
-    EXPECT_EQ(quantiles(values).max, 50.0);
-    values.resize(999);
-    EXPECT_EQ(quantiles(values).p999, 50.0);
-}
-
-TEST(Quantiles, EmptyAndNotFiniteValues) {
-    EXPECT_EQ(quantiles({}).max, 0);
-    EXPECT_EQ(quantiles({std::nan(""), infinity, 3.0}).max, 3);
-    EXPECT_EQ(quantiles({7.0}).p50, 7);
-}
-
 TEST(Summary, RunAndSkippedSlotsAddUp) {
     WalkSummary s;
     summarize(frames_with_a_miss(), period_ns, s);
@@ -174,8 +146,9 @@ TEST(Summary, MissingCostTableIsSaidOnceAndNotAsALackOfRealTime) {
 TEST(Summary, ThreadsOfTheCensusAreNamedWithTheirPlacing) {
     WalkSummary s;
     summarize(good_frames(2), period_ns, s);
-    s.threads = {{"sf-frame", 1, "fifo", 80, "1"}, {"llvmpipe-", 2, "fifo", 70, "0-1"}};
-    EXPECT_NE(to_table(s, false).find("sf-frame fifo 80 on 1; 2 llvmpipe- fifo 70 on 0-1"), std::string::npos);
+    s.threads = {{"sf-frame", 1, rt::Policy::fifo, 80, rt::CpuMask{1}},
+                 {"llvmpipe-", 2, rt::Policy::fifo, 70, rt::CpuMask{0, 1}}};
+    EXPECT_NE(to_table(s, false).find("sf-frame SCHED_FIFO 80 on 1; 2 llvmpipe- SCHED_FIFO 70 on 0-1"), std::string::npos);
     EXPECT_EQ(nlohmann::json::parse(to_json(s))["threads"][1]["count"], 2);
 }
 
@@ -249,8 +222,8 @@ TEST(Table, KeepsWithinAHundredColumnsAndColoursOnlyWhenAsked) {
     summarize(frames_with_a_miss(), period_ns, s);
     s.model = "/a/very/long/path/" + std::string(150, 'm') + "/forest.walk";
     s.renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
-    s.degraded = {
-        {"FIFO refused", std::string("grant it: ") + std::string(120, 'x') + " and then log in again, once more and again"}};
+    s.degraded = {{rt::LackKind::fifo, "FIFO refused",
+                   std::string("grant it: ") + std::string(120, 'x') + " and then log in again, once more and again"}};
     s.census_problems = {std::string(40, 'a') + " " + std::string(70, 'b')};
     EXPECT_EQ(to_table(s, false).find('\x1b'), std::string::npos);
     const std::string table = to_table(s, true);

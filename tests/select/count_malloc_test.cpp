@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <cstddef>
 #include <vector>
 
@@ -18,6 +19,7 @@ void* __libc_malloc(std::size_t);                 // NOLINT
 void* __libc_calloc(std::size_t, std::size_t);    // NOLINT
 void* __libc_realloc(void*, std::size_t);         // NOLINT
 void* __libc_memalign(std::size_t, std::size_t);  // NOLINT
+void __libc_free(void*);                          // NOLINT
 void* malloc(std::size_t n) {
     ++count;
     return __libc_malloc(n);
@@ -34,6 +36,17 @@ void* aligned_alloc(std::size_t alignment, std::size_t n) {
     ++count;
     return __libc_memalign(alignment, n);
 }
+// The whole set, as glibc wants it: none of the guard's own is then linked beside it.
+void* memalign(std::size_t alignment, std::size_t n) {
+    ++count;
+    return __libc_memalign(alignment, n);
+}
+int posix_memalign(void** memory, std::size_t alignment, std::size_t n) {
+    ++count;
+    *memory = __libc_memalign(alignment, n);
+    return *memory == nullptr ? ENOMEM : 0;
+}
+void free(void* p) { __libc_free(p); }
 }
 
 namespace surefoot::test {

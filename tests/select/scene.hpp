@@ -40,7 +40,7 @@ struct Scene {
         select::find_selector(selector)->run(input(budget_us, target_rad), state, cut);
         return cut;
     }
-    void forget() { state.reserve(model, static_cast<std::uint32_t>(state.scratch_a.size())); }
+    void forget() { state.reserve(model, state.max_candidates()); }
 };
 
 }  // namespace surefoot::test

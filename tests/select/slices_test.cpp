@@ -29,8 +29,7 @@ void leaves_of(const prepare::PreparedFrame& f, Index c, std::multiset<Index>& l
 model::ItemCost sum_of(const prepare::PreparedFrame& f, std::span<const CutItem> items) {
     model::ItemCost sum;
     for (const CutItem& item : items) {
-        sum.submit_us += f.choices[item.choice].cost.submit_us;
-        sum.raster_us += f.choices[item.choice].cost.raster_us;
+        sum += f.choices[item.choice].cost;
     }
     return sum;
 }

@@ -108,5 +108,20 @@ TEST(SettingsRequest, ARuleThatIsBrokenNamesItsOption) {
     EXPECT_EQ(place([](WalkRequest& r) { r.endless = true, r.ledger_file = "l.csv"; }), "a walk without end");
 }
 
+TEST(SettingsRequest, ALaterWalkKeepsTheProcesssRasterisers) {
+    WalkRequest first, later;
+    first.rasterisers = 2;
+    later.rasterisers = 3;
+    const std::string said = keep_process(first, later);
+    EXPECT_NE(said.find("3 take effect at the next start"), std::string::npos) << said;
+    EXPECT_NE(said.find("draws with 2"), std::string::npos) << said;
+    EXPECT_EQ(later.rasterisers, 2) << "or the cost table of another machine would be looked for";
+    EXPECT_EQ(keep_process(first, later), "");
+    // 0 is a number too: the default.
+    first.rasterisers = gl::effective_rasterisers(0);
+    later.rasterisers = 0;
+    EXPECT_EQ(keep_process(first, later), "");
+}
+
 }  // namespace
 }  // namespace surefoot::walk

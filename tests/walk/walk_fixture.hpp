@@ -47,9 +47,12 @@ private:
         std::filesystem::copy_file(baked + "/forest.walk", model_file);
         std::filesystem::copy_file(baked + "/forest.path.csv", path_file);
     }
-    /// Every test is a process of its own, and a bake takes seconds: the first one has it baked for all programs of this build.
+    /// A bake takes seconds: the first program has it baked for all programs of this build. SUREFOOT_BAKED_FOREST names the
+    /// baker of another build, so that a build with sanitizers needs none of its own.
     static std::string shared_folder() {
-        const auto baker = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "baked_forest";
+        const char* const other = std::getenv("SUREFOOT_BAKED_FOREST");
+        const auto baker = other != nullptr ? std::filesystem::path(other)
+                                            : std::filesystem::read_symlink("/proc/self/exe").parent_path() / "baked_forest";
         const auto built = std::filesystem::last_write_time(baker).time_since_epoch().count();
         const std::string folder = baker.string() + ".kept";
         const std::string done = folder + "/baked-by-" + std::to_string(built);

@@ -146,8 +146,9 @@ TEST(Snaps, AreCappedByMemoryAndTheCapIsSaid) {
 
 TEST(Strict, NamesEveryLackWithItsRemedy) {
     EXPECT_TRUE(walk::require_real_time({}).ok());
-    const std::vector<report::Degraded> lacks = {
-        {"FIFO is refused", "grant rtprio"}, {"no isolated core", "isolcpus"}, {"no table", ""}};
+    const std::vector<rt::Lack> lacks = {{rt::LackKind::fifo, "FIFO is refused", "grant rtprio"},
+                                         {rt::LackKind::isolated_core, "no isolated core", "isolcpus"},
+                                         {rt::LackKind::cost_table, "no table", ""}};
     const auto refused = walk::require_real_time(lacks);
     ASSERT_FALSE(refused.ok());
     for (const auto* part : {"--strict", "FIFO is refused", "grant rtprio", "no isolated core", "isolcpus", "no table"})

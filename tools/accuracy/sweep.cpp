@@ -10,6 +10,7 @@
 #include "render/measure/calibrate.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "render/model/walk_file.hpp"
+#include "rt/base/statistics.hpp"
 #include "rt/clock/clock.hpp"
 #include "tools/report/report.hpp"
 #include "tools/walk/path_source.hpp"
@@ -18,12 +19,6 @@
 namespace surefoot::accuracy {
 
 namespace {
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// dB. Every picture equal to full detail is infinite; none that defines a ratio is no number.
 double mean_snr(double sum_db, std::uint32_t finite, std::uint32_t infinite) {
@@ -54,7 +49,7 @@ double Sweep::time_full(const Station& station, const std::vector<gl::DrawItem>&
         engine.draw_unbudgeted(station.pose, items);
         ms.push_back(static_cast<double>(rt::monotonic_ns() - begun) * 1e-6);
     }
-    return median(ms);
+    return quantile_of(ms, 0.5);
 }
 
 Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_us, double target_error_rad) {
@@ -79,7 +74,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
         cost += cut.predicted_us;
         std::vector<double> ms;
         for (int i = 0; i < repeats; ++i) ms.push_back(engine.submit(station.pose, limits).finished_us * 1e-3);
-        frame_ms.push_back(median(ms));
+        frame_ms.push_back(quantile_of(ms, 0.5));
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
         const measure::Snr snr = measure::snr(image->rgba, station.full);
@@ -93,7 +88,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
         }
         ssim_sum += measure::ssim(image->rgba, station.full, image->width, image->height);
     }
-    const report::Quantiles q = report::quantiles(frame_ms);
+    const Quantiles q = quantiles(frame_ms);
     point.frame_ms_p50 = q.p50;
     point.frame_ms_p90 = q.p90;
     const auto inexact = static_cast<double>(stations.size() - point.exact);
@@ -172,9 +167,8 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
         if (!image) return image.error();
         station.full = std::move(image->rgba);
         engine.reserve(station.prepared);
-        engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
     }
-    run.full_frame_ms = median(full_ms);
+    run.full_frame_ms = quantile_of(full_ms, 0.5);
 
     std::vector<double> budgets = request.budgets_ms;
     if (budgets.empty()) {
@@ -185,6 +179,8 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
     std::size_t done = 0;
     for (const std::string& selector : request.selectors) {
         if (auto set = engine.set_selector(selector); !set) return set.error();
+        for (Station& station : sweep.stations)  // `flat` needs the leaves, the others do not
+            engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
         const select::SelectorEntry& entry = **select::selector_named(selector);
         for (std::size_t b = 0; b < budgets.size(); ++b) {
             if (progress.stopped()) return Error{request.model_file, "stopped by the user", ""};

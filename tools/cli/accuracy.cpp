@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "render/gl/device.hpp"
 #include "render/select/registry.hpp"
 #include "tools/accuracy/sweep.hpp"
 #include "tools/cli/command.hpp"
@@ -33,6 +34,7 @@ void print_points(const accuracy::AccuracyRun& run) {
 int run_accuracy_command(AccuracyArguments& a, const Context& context) {
     const auto size = parse_size(a.size);
     if (!size) return misuse(size.error());
+    gl::prepare_process(a.request.rasterisers);
     a.request.width = size->width;
     a.request.height = size->height;
     if (auto ok = accuracy::probe_accuracy_page(a.out); !ok) return fail(ok.error());

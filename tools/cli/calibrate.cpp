@@ -147,6 +147,7 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
 }
 
 int run_calibrate(const CalibrateArguments& a, const Context& context) {
+    gl::prepare_process(a.rasterisers);
     if (!a.model.empty()) return run_fit(a, context);
     for (const auto& [given, option] :
          {std::pair{!a.path.empty(), "--path"}, {a.lift_m != 0, "--lift"}, {a.rate_hz != 30, "--rate"}}) {

@@ -111,7 +111,6 @@ int run_inspect(const InspectArguments& a) {
                 {"box_m", {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}}},
                 {"sources", m->provenance.sources},
                 {"quality", m->provenance.quality},
-                {"bake_s", m->provenance.bake_s},
                 {"warnings", m->provenance.warnings}});
     return exit_success;
 }

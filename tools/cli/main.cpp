@@ -15,6 +15,7 @@
 #include <system_error>
 #include <vector>
 
+#include "render/gl/device.hpp"
 #include "render/import/formats.hpp"
 #include "rt/base/nearest.hpp"
 #include "tools/cli/command.hpp"
@@ -130,6 +131,7 @@ int main(int argc, char** argv) {
             return code;
         };
     }
+    gl::prepare_process(0);  // before any thread; a command that is told another number settles that first of all
     const int code = run(context);
     return code == cli::exit_failure && stop_requested.load() ? cli::exit_stopped : code;
 }

@@ -46,6 +46,7 @@ Result<soak::SoakRequest> to_soak_request(const SoakArguments& a) {
 int run_soak_command(const SoakArguments& a, const Context& context) {
     auto request = to_soak_request(a);
     if (!request) return misuse(request.error());
+    walk::prepare_process(request->walk);
     if (request->seconds < judged_from_s) {
         note(fmt::format("a verdict needs {:.1f} minutes or more; of {:.0f} s not all can be judged", judged_from_s / 60,
                          request->seconds));
@@ -58,7 +59,7 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
     if (a.json) {
         fmt::print("{}", soak::soak_json(s));
         if (!s.walk.uncalibrated.empty()) note("uncalibrated: " + s.walk.uncalibrated);
-        for (const report::Degraded& d : s.walk.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
+        for (const rt::Lack& d : s.walk.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
     } else {
         fmt::print("{}", soak::soak_table(s, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);

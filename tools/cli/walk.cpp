@@ -91,6 +91,7 @@ Result<std::unique_ptr<monitor::Monitor>> open_monitor(const MonitorArguments& a
 int run_walk_command(WalkArguments& a, const Context& context) {
     auto request = to_request(a);
     if (!request) return misuse(request.error());
+    walk::prepare_process(*request);
     if (!a.watch.address.empty()) {
         if (const auto address = monitor::parse_address(a.watch.address); !address) return misuse(address.error());
     }
@@ -114,8 +115,7 @@ int run_walk_command(WalkArguments& a, const Context& context) {
         fmt::print("{}\n", report::to_json(outcome->summary));
         // The table says these itself.
         if (!outcome->summary.uncalibrated.empty()) note("uncalibrated: " + outcome->summary.uncalibrated);
-        for (const report::Degraded& d : outcome->summary.degraded)
-            note("not fully real-time: " + d.what + " (" + d.remedy + ")");
+        for (const rt::Lack& d : outcome->summary.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
         for (const std::string& problem : outcome->summary.census_problems) note("thread census: " + problem);
     } else {
         fmt::print("{}", report::to_table(outcome->summary, context.colour));

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rt/base/check.hpp"
 #include "rt/monitor/process.hpp"
 #include "rt/monitor/telemetry.hpp"
 #include "tools/report/report.hpp"
@@ -24,14 +25,7 @@ struct MonitoredWalk {
     std::string model, path, selector, backend, renderer, clock;
     double rate_hz = 0;
     rt::TelemetrySetup setup;
-    bool fifo = false, locked = false, isolated = false;
-    int frame_core = -1;
-};
-
-struct MonitoredInput {
-    bool live = false;            ///< devices steer; else a path or a recording
-    int devices = 0;              ///< that steer now
-    bool emergency_stop = false;  ///< latched
+    rt::Granted granted;
 };
 
 /// Something that was told to the user.
@@ -59,18 +53,19 @@ struct MonitorPage {
     double started_unix_s = 0;     ///< the same moment as wall time, seconds since 1970
     double last_frame_age_s = -1;  ///< since the newest frame that the figures know of; -1: none yet, or the clock is not real
     MonitoredWalk walk;
-    std::vector<report::Degraded> degraded;
-    MonitoredInput input;
+    std::vector<rt::Lack> degraded;
+    rt::InputState input;
     std::vector<MonitoredNote> notes;  ///< the last few, oldest first; only in the JSON
     rt::ProcessFigures process;
     std::vector<rt::BusyThread> threads;  ///< only in the JSON
     MonitorCounts counts;
+    std::vector<RareCheck> rare_checks;  ///< of this process: what "cannot happen", and did
 };
 
-/// What a lack is about, as a word out of a fixed list, so that a label stays bounded: fifo, memory_lock, isolated_core,
-/// throttled, placing, cost_table, switched_off, census, sanitizer, other.
-std::string_view degraded_reason(const report::Degraded& degraded);
-std::span<const std::string_view> degraded_reasons();
+/// What a lack is about, as a label's value: fifo, memory_lock, isolated_core, throttled, placing, cost_table, switched_off,
+/// census, sanitizer, other.
+std::string_view degraded_reason(rt::LackKind kind);
+std::span<const std::string_view> degraded_reasons();  ///< by kind
 
 /// Prometheus' text format 0.0.4. Names, units and HELP are the contract; every label's values are bounded.
 std::string prometheus_text(const MonitorPage& page);

@@ -117,8 +117,8 @@ void add_identity(Exposition& e, const MonitorPage& p) {
     e.family("surefoot_degraded", "gauge",
              "1 where something that real time needs is refused or missing, by reason; `surefoot status` says how to grant it.");
     for (const std::string_view reason : degraded_reasons()) {
-        bool lacking = false;
-        for (const report::Degraded& d : p.degraded) lacking = lacking || degraded_reason(d) == reason;
+        const bool lacking = std::any_of(p.degraded.begin(), p.degraded.end(),
+                                         [&](const rt::Lack& lack) { return degraded_reason(lack.kind) == reason; });
         e.sample(lacking ? 1 : 0, fmt::format("reason=\"{}\"", reason));
     }
     e.gauge("surefoot_start_time_seconds", "When this monitor started, seconds since 1970.", p.started_unix_s);
@@ -282,6 +282,11 @@ std::string prometheus_text(const MonitorPage& page) {
     add_times(e, *page.figures);
     add_work(e, *page.figures);
     add_now(e, page);
+    std::uint64_t failed_checks = 0;
+    for (const RareCheck& c : page.rare_checks) failed_checks += c.count;
+    e.counter("surefoot_rare_checks_failed_total",
+              "Times that something was seen that cannot happen: there should be none; `surefoot status` names the places.",
+              failed_checks);
     add_process(e, page.process);
     add_monitor(e, page.counts);
     return e.take();

@@ -15,22 +15,9 @@ using nlohmann::ordered_json;
 using rt::Figures;
 using rt::Series;
 
+/// By rt::LackKind.
 constexpr std::array<std::string_view, 10> reasons = {"fifo",       "memory_lock",  "isolated_core", "throttled", "placing",
                                                       "cost_table", "switched_off", "census",        "sanitizer", "other"};
-
-/// What a message is recognised by; the first that fits.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> telltales = {{{"census", "census"},
-                                                                                      {"sanitizer", "sanitizer"},
-                                                                                      {"switched off", "switched_off"},
-                                                                                      {"SCHED_FIFO", "fifo"},
-                                                                                      {"isolated", "isolated_core"},
-                                                                                      {"throttled", "throttled"},
-                                                                                      {"cost table", "cost_table"},
-                                                                                      {"locked", "memory_lock"},
-                                                                                      {"lock", "memory_lock"},
-                                                                                      {"core", "placing"},
-                                                                                      {"thread", "placing"},
-                                                                                      {"priority", "placing"}}};
 
 ordered_json known(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
 ordered_json counted(std::int64_t value) { return value >= 0 ? ordered_json(value) : ordered_json(nullptr); }
@@ -43,7 +30,7 @@ ordered_json distribution_json(const rt::Histogram& h, double ns_per_unit) {
 
 /// Exact quantiles of a few values; changes their order.
 ordered_json few_json(std::vector<double> values) {
-    const report::Quantiles q = report::quantiles(std::move(values));
+    const Quantiles q = quantiles(std::move(values));
     return {{"min", q.min}, {"p50", q.p50}, {"p99", q.p99}, {"max", q.max}, {"mean", q.mean}};
 }
 
@@ -139,7 +126,11 @@ ordered_json walk_json(const MonitoredWalk& w) {
             {"rate_hz", w.rate_hz},
             {"period_ms", static_cast<double>(w.setup.period_ns) / 1e6},
             {"late", std::string(rt::name_of(w.setup.late))},
-            {"rt", {{"fifo", w.fifo}, {"locked", w.locked}, {"isolated", w.isolated}, {"frame_core", w.frame_core}}}};
+            {"rt",
+             {{"fifo", w.granted.fifo},
+              {"locked", w.granted.locked},
+              {"isolated", w.granted.isolated},
+              {"frame_core", w.granted.frame_core}}}};
 }
 
 ordered_json threads_json(const std::vector<rt::BusyThread>& threads) {
@@ -176,17 +167,13 @@ std::string_view service_state_name(ServiceState state) {
 
 std::span<const std::string_view> degraded_reasons() { return reasons; }
 
-std::string_view degraded_reason(const report::Degraded& degraded) {
-    for (const auto& [text, reason] : telltales)
-        if (degraded.what.find(text) != std::string::npos) return reason;
-    return "other";
-}
+std::string_view degraded_reason(rt::LackKind kind) { return reasons[static_cast<std::size_t>(kind)]; }
 
 std::string status_json(const MonitorPage& p) {
     const Figures& f = *p.figures;
     ordered_json degraded = ordered_json::array(), notes = ordered_json::array();
-    for (const report::Degraded& d : p.degraded)
-        degraded.push_back({{"reason", std::string(degraded_reason(d))}, {"what", d.what}, {"remedy", d.remedy}});
+    for (const rt::Lack& d : p.degraded)
+        degraded.push_back({{"reason", std::string(degraded_reason(d.kind))}, {"what", d.what}, {"remedy", d.remedy}});
     for (const MonitoredNote& n : p.notes) notes.push_back({{"age_s", n.age_s}, {"text", n.text}});
     ordered_json j = {{"version", p.version}, {"pid", p.pid}, {"state", std::string(service_state_name(p.state))}};
     j["up_s"] = p.up_s;
@@ -211,6 +198,9 @@ std::string status_json(const MonitorPage& p) {
                     {"cpu_s", p.process.cpu_s >= 0 ? ordered_json(p.process.cpu_s) : ordered_json(nullptr)},
                     {"host_steal_s", p.process.steal_s >= 0 ? ordered_json(p.process.steal_s) : ordered_json(nullptr)}};
     j["threads"] = threads_json(p.threads);
+    j["rare_checks"] = ordered_json::array();
+    for (const RareCheck& c : p.rare_checks)
+        j["rare_checks"].push_back({{"place", c.place}, {"sentence", c.sentence}, {"count", c.count}});
     j["monitor"] = monitor_json(p.counts);
     return j.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -23,10 +23,7 @@ MonitoredWalk monitored(const walk::WalkRequest& request, const walk::WalkStart&
     w.setup.period_ns = start.period_ns;
     w.setup.late = request.late;
     w.setup.rasterisers = static_cast<std::uint32_t>(std::max(start.rasterisers, 1));
-    w.fifo = start.fifo;
-    w.locked = start.locked;
-    w.isolated = start.isolated;
-    w.frame_core = start.frame_core;
+    w.granted = start.granted;
     return w;
 }
 
@@ -43,16 +40,14 @@ void chain(std::function<void(Told)>& callback, Then then) {
 
 void watch_with(Monitor& monitor, const walk::WalkRequest& request, walk::WalkWatch& watch) {
     chain(watch.on_started, [&monitor, &request](const walk::WalkStart& start) {
-        std::vector<report::Degraded> lacks(start.degraded.begin(), start.degraded.end());
-        if (!start.uncalibrated.empty()) lacks.push_back({start.uncalibrated, ""});
+        std::vector<rt::Lack> lacks(start.degraded.begin(), start.degraded.end());
+        if (!start.uncalibrated.empty()) lacks.push_back({rt::LackKind::cost_table, start.uncalibrated, ""});
         monitor.set_degraded(std::move(lacks));
         monitor.begin_walk(monitored(request, start));
     });
     chain(watch.on_record, [&monitor](const rt::FrameRecord& record) { monitor.on_record(record); });
-    chain(watch.on_degraded, [&monitor](const report::Degraded& lack) { monitor.add_degraded(lack); });
-    chain(watch.on_input, [&monitor](const walk::WalkInput& input) {
-        monitor.set_input({input.live, input.devices, input.emergency_stop});
-    });
+    chain(watch.on_degraded, [&monitor](const rt::Lack& lack) { monitor.add_degraded(lack); });
+    chain(watch.on_input, [&monitor](const rt::InputState& input) { monitor.set_input(input); });
     if (monitor.writes_incidents()) {
         chain(watch.on_missed_frame, [&monitor](const capture::Capture& frame) {
             // Shared, for the writer's thread may hold it when the next one comes.

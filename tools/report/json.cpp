@@ -42,11 +42,14 @@ Json control_of(const ControlSummary& control) {
     return json;
 }
 
-Json threads_of(const std::vector<ThreadRow>& threads) {
+Json threads_of(const std::vector<rt::CensusRow>& threads) {
     Json rows = Json::array();
-    for (const ThreadRow& t : threads)
-        rows.push_back(
-            {{"name", t.name}, {"count", t.count}, {"policy", t.policy}, {"priority", t.priority}, {"cores", t.cores}});
+    for (const rt::CensusRow& t : threads)
+        rows.push_back({{"name", t.name},
+                        {"count", t.count},
+                        {"policy", std::string(rt::policy_name(t.policy))},
+                        {"priority", t.priority},
+                        {"cores", t.cpus.text()}});
     return rows;
 }
 
@@ -54,7 +57,7 @@ Json threads_of(const std::vector<ThreadRow>& threads) {
 Json input_of(const InputSummary& in) {
     if (!in.given) return nullptr;
     Json devices = Json::array();
-    for (const InputSummary::Device& d : in.devices)
+    for (const rt::SteeringDevice& d : in.devices)
         devices.push_back({{"name", d.name}, {"class", d.device_class}, {"mapping", d.mapping}});
     return {
         {"source", in.source},

@@ -99,7 +99,7 @@ std::string degraded_notes(const WalkSummary& s) {
     if (s.degraded.empty() && s.census_problems.empty() && s.uncalibrated.empty()) return {};
     std::string out = "<ul class=\"notes\">\n";
     if (!s.uncalibrated.empty()) out += fmt::format("<li><b>Uncalibrated: {}</b></li>\n", escaped(s.uncalibrated));
-    for (const Degraded& d : s.degraded) {
+    for (const rt::Lack& d : s.degraded) {
         out += fmt::format("<li><b>Not fully real-time: {}</b>", escaped(d.what));
         if (!d.remedy.empty()) out += fmt::format("<code>{}</code>", escaped(d.remedy));
         out += "</li>\n";

@@ -9,18 +9,18 @@
 #include <vector>
 
 #include "rt/base/result.hpp"
+#include "rt/base/statistics.hpp"
 #include "rt/frame/control.hpp"
 #include "rt/frame/record.hpp"
+#include "rt/monitor/facts.hpp"
+#include "rt/threads/capability.hpp"
+#include "rt/threads/census.hpp"
 
 namespace surefoot {
 class AtomicFile;
 }
 
 namespace surefoot::report {
-
-struct Quantiles {
-    double p50 = 0, p90 = 0, p99 = 0, p999 = 0, max = 0, mean = 0, min = 0;
-};
 
 struct ControlBlock {
     bool walk = false;  ///< else the bare loop
@@ -36,27 +36,11 @@ struct ControlSummary {
     std::vector<ControlBlock> blocks;
 };
 
-struct Degraded {
-    std::string what, remedy;
-};
-
-/// Threads that are alike, as the census found them.
-struct ThreadRow {
-    std::string name;
-    std::uint32_t count = 0;
-    std::string policy;
-    int priority = 0;
-    std::string cores;
-};
-
 /// What steered the walk, and how soon its reports were seen.
 struct InputSummary {
     bool given = false;  ///< false: a path was followed
     std::string source;  ///< the recording
-    struct Device {
-        std::string name, device_class, mapping;
-    };
-    std::vector<Device> devices;
+    std::vector<rt::SteeringDevice> devices;
     std::uint64_t reports = 0;         ///< accepted
     std::uint64_t reports_shown = 0;   ///< of them, those that some frame's pose holds; the others came after the last frame
     std::uint64_t refused = 0;         ///< short, long, undeclared: they changed nothing
@@ -90,15 +74,14 @@ struct WalkSummary {
     std::uint64_t page_faults = 0, guard_violations = 0, driver_faults = 0, driver_allocations = 0;
     std::vector<std::string> census_problems;
     double driver_allocations_per_frame = 0;
-    std::vector<ThreadRow> threads;  ///< of the census, early in the walk; empty where none was taken
-    std::string uncalibrated;        ///< the cost table is missing: what, and the remedy
-    std::vector<Degraded> degraded;  ///< what is not real-time here, and how to grant it
+    std::vector<rt::CensusRow> threads;  ///< of the census, early in the walk; empty where none was taken
+    std::string uncalibrated;            ///< the cost table is missing: what, and the remedy
+    std::vector<rt::Lack> degraded;      ///< what is not real-time here, and how to grant it
     ControlSummary control;
     InputSummary input;
 };
 
-/// Pure: percentiles and sums over the records (control blocks' bare frames excluded from the walk's figures).
-Quantiles quantiles(std::vector<double> values);
+/// Pure: quantiles and sums over the records (control blocks' bare frames excluded from the walk's figures).
 void summarize(std::span<const rt::FrameRecord> records, std::int64_t period_ns, WalkSummary& summary);
 
 std::string to_json(const WalkSummary& summary);

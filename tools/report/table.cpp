@@ -66,7 +66,7 @@ void real_time_rows(TextTable& table, const WalkSummary& s) {
     if (!s.threads.empty()) table.row("threads", threads_words(s.threads));
     for (const std::string& problem : s.census_problems) table.row("census", problem, "31");
     if (!s.uncalibrated.empty()) table.row("uncalibrated", s.uncalibrated, "33");
-    for (const Degraded& d : s.degraded)
+    for (const rt::Lack& d : s.degraded)
         table.row("degraded", d.remedy.empty() ? d.what : fmt::format("{}: {}", d.what, d.remedy), "33");
     if (s.control.ran) table.row("control", control_words(s.control), rule_broken(s.control) ? "31" : "");
 }

@@ -67,7 +67,7 @@ std::string off_axis_words(const WalkSummary& s) {
 std::string input_words(const InputSummary& in) {
     if (!in.given) return {};
     std::string text = counted(in.reports, "report", "reports");
-    for (const InputSummary::Device& d : in.devices)
+    for (const rt::SteeringDevice& d : in.devices)
         text += fmt::format(" of {} ({})", d.name.empty() ? "a " + d.device_class + " device" : d.name, d.mapping);
     if (in.refused > 0) text += fmt::format(", {} refused", grouped(static_cast<double>(in.refused)));
     text += fmt::format("; from report to submitted frame {:.1f} ms (p50), {:.1f} (p99), {:.1f} at most", in.age_ms.p50,
@@ -79,14 +79,14 @@ std::string input_words(const InputSummary& in) {
     return text + ".";
 }
 
-std::string threads_words(std::span<const ThreadRow> threads) {
+std::string threads_words(std::span<const rt::CensusRow> threads) {
     std::string text;
-    for (const ThreadRow& t : threads) {
+    for (const rt::CensusRow& t : threads) {
         text += text.empty() ? "" : "; ";
         if (t.count > 1) text += fmt::format("{} ", t.count);
-        text += t.name + " " + t.policy;
+        text += fmt::format("{} {}", t.name, rt::policy_name(t.policy));
         if (t.priority > 0) text += fmt::format(" {}", t.priority);
-        text += " on " + t.cores;
+        text += " on " + t.cpus.text();
     }
     return text;
 }

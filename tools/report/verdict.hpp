@@ -23,7 +23,7 @@ std::string off_axis_words(const WalkSummary& summary);
 /// What steered, how soon it was seen, and whether it stood still by order; empty where a path was followed.
 std::string input_words(const InputSummary& input);
 /// "sf-frame fifo 80 on 1; 2 llvmpipe- fifo 70 on 0-1".
-std::string threads_words(std::span<const ThreadRow> threads);
+std::string threads_words(std::span<const rt::CensusRow> threads);
 /// The largest angular error of an accuracy: "0.24°", "3.1′"; "exact" where no error was drawn.
 std::string accuracy_words(double accuracy);
 /// "14.2 dB", "∞ dB" for equal pictures, "undefined" where there is no signal.

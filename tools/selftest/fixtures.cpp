@@ -84,7 +84,6 @@ Result<Bytes> walk_fixture() {
     auto model = import_and_bake(two_triangles());
     if (!model) return model.error();
     model->provenance.sources = {"by hand"};
-    model->provenance.bake_s = 0;
     if (auto written = model::write_walk(scratch.file("m.walk"), *model); !written) return written.error();
     return read_file(scratch.file("m.walk"));
 }

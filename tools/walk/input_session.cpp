@@ -85,14 +85,14 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     report::InputSummary s;
     s.given = true;
     s.source = source_name_;
-    for (const input::SteeringDevice& d : source_->devices())
+    for (const rt::SteeringDevice& d : source_->devices())
         s.devices.push_back({printable(d.name), d.device_class, printable(d.mapping)});
     s.reports = source_->log().count();
     s.refused = source_->refused();
     const std::vector<double> ages = report_ages_ms(records, source_->log().stamps());
     // Of a long live walk the first reports' ages are kept, not all.
     s.reports_shown = records.empty() ? 0 : std::max<std::uint64_t>(ages.size(), records.back().input_reports);
-    s.age_ms = report::quantiles(ages);
+    s.age_ms = quantiles(ages);
     const input::SafetyState& safety = steering_->safety();
     s.stops = safety.stops;
     s.stop_latched = safety.latched;

@@ -44,8 +44,8 @@ public:
     }
     [[nodiscard]] bool live() const { return live_.has_value(); }
     /// As of the last attend().
-    [[nodiscard]] WalkInput now() const {
-        return live_ ? WalkInput{true, live_->steering_now(), live_->stop_latched()} : WalkInput{};
+    [[nodiscard]] rt::InputState now() const {
+        return live_ ? rt::InputState{true, live_->steering_now(), live_->stop_latched()} : rt::InputState{};
     }
     /// The thread ends. What kept it from its place, if anything did.
     std::optional<Error> end(const Progress& progress, std::vector<std::string>& notes);

@@ -37,38 +37,42 @@ Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock,
     const rt::Capabilities c = rt::probe_capabilities(request.frame_priority);
     auto plan = plan_placing(request, c.fifo_priority >= request.frame_priority);
     if (!plan) return plan;
-    const auto lack = [&](const std::string& what, const std::string& remedy) { facts.degraded.push_back({what, remedy}); };
+    using enum rt::LackKind;
+    const auto lack = [&](rt::LackKind kind, const std::string& what, const std::string& remedy) {
+        facts.degraded.push_back({kind, what, remedy});
+    };
     rt::Capabilities wanted = c;  // whoever does not ask for FIFO does not lack it
     if (!request.fifo) wanted.fifo_priority = request.frame_priority;
-    for (const rt::Lack& missing : rt::find_lacking(wanted, request.frame_priority)) lack(missing.what, missing.remedy);
-    if (!request.fifo) lack("real-time scheduling is switched off", "leave out --no-fifo");
+    facts.degraded = rt::find_lacking(wanted, request.frame_priority);
+    if (!request.fifo) lack(switched_off, "real-time scheduling is switched off", "leave out --no-fifo");
     if (plan->absent_core >= 0) {
-        lack(fmt::format("frame core {} is not there, or not for this process: core {} serves", plan->absent_core,
+        lack(placing,
+             fmt::format("frame core {} is not there, or not for this process: core {} serves", plan->absent_core,
                          plan->frame_core),
              "choose one of " + plan->all.text() + " with --frame-core");
     }
     facts.isolated = c.isolated.has(plan->frame_core);
     if (!facts.isolated && !c.isolated.empty()) {
-        lack(fmt::format("the frame core {} is not isolated", plan->frame_core),
+        lack(isolated_core, fmt::format("the frame core {} is not isolated", plan->frame_core),
              fmt::format("--frame-core {}", c.isolated.cpus().back()));
     }
-    if (auto refused = placing_refused(*plan)) lack(refused->place + ": " + refused->what, refused->remedy);
+    if (auto refused = placing_refused(*plan)) lack(placing, refused->place + ": " + refused->what, refused->remedy);
     if (!rt::guard_active()) {
-        lack("a sanitizer build: allocations are not guarded, memory is not locked", "use the release build");
+        lack(sanitizer, "a sanitizer build: allocations are not guarded, memory is not locked", "use the release build");
         return plan;
     }
     facts.minor_fault_ns = rt::minor_fault_cost_ns();  // before locking: then nothing faults
     auto locked = rt::prepare_memory({});
     facts.locked = locked.ok();
     // The limit itself may be among the lacks already.
-    if (!locked && c.can_lock) lack(locked.error().place + " " + locked.error().what, locked.error().remedy);
+    if (!locked && c.can_lock) lack(memory_lock, locked.error().place + " " + locked.error().what, locked.error().remedy);
     return plan;
 }
 
-Result<void> require_real_time(std::span<const report::Degraded> lacks) {
+Result<void> require_real_time(std::span<const rt::Lack> lacks) {
     if (lacks.empty()) return {};
     std::string all;
-    for (const report::Degraded& lack : lacks) {
+    for (const rt::Lack& lack : lacks) {
         all += fmt::format("{}{}{}", all.empty() ? "" : "; ", lack.what, lack.remedy.empty() ? "" : " -> " + lack.remedy);
     }
     return Error{"--strict", "does not start: " + all, "grant these, or leave out --strict: the figures will be marked"};

@@ -15,6 +15,6 @@ namespace surefoot::walk {
 Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock, WalkFacts& facts);
 
 /// --strict: success, or one Error that names every lack with its remedy.
-Result<void> require_real_time(std::span<const report::Degraded> lacks);
+Result<void> require_real_time(std::span<const rt::Lack> lacks);
 
 }  // namespace surefoot::walk

@@ -1,6 +1,8 @@
 // From settings to a request; what it may not ask for.
 #include "tools/walk/settings_request.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "render/gl/backends.hpp"
@@ -80,6 +82,15 @@ Result<void> check_request(const WalkRequest& r) {
     if (r.clear_stop && r.input_file != live_input)
         return Error{"--clear-stop", "is for devices, and none steers", "add --input devices"};
     return r.endless ? check_endless(r) : Result<void>{};
+}
+
+void prepare_process(const WalkRequest& first) { gl::prepare_process(first.rasterisers); }
+
+std::string keep_process(const WalkRequest& first, WalkRequest& request) {
+    const int wanted = gl::effective_rasterisers(request.rasterisers), have = gl::effective_rasterisers(first.rasterisers);
+    request.rasterisers = first.rasterisers;
+    if (wanted == have) return {};
+    return fmt::format("rasterisers: {} take effect at the next start of the process; until then it draws with {}", wanted, have);
 }
 
 }  // namespace surefoot::walk

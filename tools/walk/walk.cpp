@@ -44,10 +44,7 @@ void tell_started(const Session& s) {
     start.uncalibrated = s.facts.uncalibrated;
     start.renderer = s.facts.renderer;
     start.path = s.path.source;
-    start.fifo = s.plan.fifo;
-    start.locked = s.facts.locked;
-    start.isolated = s.facts.isolated;
-    start.frame_core = s.plan.frame_core;
+    start.granted = {s.plan.fifo, s.facts.locked, s.facts.isolated, s.plan.frame_core};
     start.rasterisers = s.plan.rasterisers;
     s.watch.on_started(start);
 }
@@ -60,7 +57,8 @@ void tell_input(Session& s) {
 
 void tell_census(const Session& s) {
     if (!s.watch.on_degraded) return;
-    for (const std::string& problem : s.facts.census_problems) s.watch.on_degraded({"thread census: " + problem, ""});
+    for (const std::string& problem : s.facts.census_problems)
+        s.watch.on_degraded({rt::LackKind::census, "thread census: " + problem, ""});
 }
 
 /// How much of the walk is done, 0..1; of a walk without end nothing.
@@ -72,7 +70,7 @@ double share_done(const Session& s, double slots_ran) {
 void end_input(Session& s, const Progress& progress) {
     if (!s.input) return;
     if (const auto misplaced = s.input->end(progress, s.notes))
-        s.facts.degraded.push_back({misplaced->place + ": " + misplaced->what, misplaced->remedy});
+        s.facts.degraded.push_back({rt::LackKind::placing, misplaced->place + ": " + misplaced->what, misplaced->remedy});
 }
 
 rt::FrameLoopOptions loop_options(const Session& s, const Progress& progress) {
@@ -133,7 +131,8 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     PlaceBuffer* places = s.input ? s.input->places() : nullptr;
     if (!s.virtual_clock) {
         preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, places, prepare_placement(s.plan));
-        if (const auto& refused = preparing->misplaced()) s.facts.degraded.push_back({refused->what, refused->remedy});
+        if (const auto& refused = preparing->misplaced())
+            s.facts.degraded.push_back({rt::LackKind::placing, refused->what, refused->remedy});
     }
     PathPoses path_poses(s.path.path, s.grid.period_ns);
     if (s.input) s.input->begin(s.path.path, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
@@ -164,7 +163,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     s.facts.pinned = !misplaced && !s.virtual_clock;
     if (misplaced) {
         s.plan.fifo = false;  // the figures must say so
-        s.facts.degraded.push_back({misplaced->what, misplaced->remedy});
+        s.facts.degraded.push_back({rt::LackKind::placing, misplaced->what, misplaced->remedy});
     }
     if (preparing) preparing->stop();
     end_input(s, progress);

@@ -65,19 +65,11 @@ using FaultHook = std::function<Fault(FramePhase, const rt::FrameRecord&)>;
 /// Known when all threads are in place; the spans are valid during the call only.
 struct WalkStart {
     std::int64_t t0_ns = 0, period_ns = 0;  ///< slot k is due at t0 + k * period
-    std::span<const report::Degraded> degraded;
+    std::span<const rt::Lack> degraded;
     std::string uncalibrated;  ///< the cost table is missing or another machine's: what, and the remedy; else empty
     std::string renderer, path;
-    bool fifo = false, locked = false, isolated = false;
-    int frame_core = 0, rasterisers = 0;
-};
-
-/// What steers now.
-struct WalkInput {
-    bool live = false;            ///< devices steer; else a path or a recording
-    int devices = 0;              ///< that steer
-    bool emergency_stop = false;  ///< latched
-    friend bool operator==(const WalkInput&, const WalkInput&) = default;
+    rt::Granted granted;
+    int rasterisers = 0;
 };
 
 /// Who looks on while a walk runs: telemetry, the daemon, soaks. Each may be empty.
@@ -85,8 +77,8 @@ struct WalkWatch {
     std::function<void(WalkStep)> on_step;                  ///< on the caller's thread, as each begins
     std::function<void(const WalkStart&)> on_started;       ///< on the caller's thread, before the first slot is due (real clock)
     std::function<void(const rt::FrameRecord&)> on_record;  ///< on the monitor thread: every frame, in order
-    std::function<void(const report::Degraded&)> on_degraded;  ///< on the caller's thread: found after on_started
-    std::function<void(const WalkInput&)> on_input;            ///< on the caller's thread: whenever it has changed
+    std::function<void(const rt::Lack&)> on_degraded;       ///< on the caller's thread: found after on_started
+    std::function<void(const rt::InputState&)> on_input;    ///< on the caller's thread: whenever it has changed
     /// On the caller's thread, a tenth of a second later at most: a missed frame as `surefoot replay` takes it, the first one
     /// since the last call. Not of frames drawn from coarse levels, nor beside capture_file, nor of the largest models.
     std::function<void(const capture::Capture&)> on_missed_frame;

@@ -39,7 +39,7 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
     s.degraded = facts.degraded;
     s.uncalibrated = facts.uncalibrated;
     if (facts.dropped_records > 0) {
-        s.degraded.push_back({fmt::format("{} frame records were dropped", facts.dropped_records),
+        s.degraded.push_back({rt::LackKind::other, fmt::format("{} frame records were dropped", facts.dropped_records),
                               "give the monitor thread a core with time left"});
     }
     report::summarize(outcome.records, period_ns, s);
@@ -84,9 +84,8 @@ void take_census(const PlacingPlan& plan, WalkFacts& facts) {
     }
     facts.census_problems = rt::census(table, *threads);
     facts.census_problems.insert(facts.census_problems.end(), facts.worker_problems.begin(), facts.worker_problems.end());
-    for (const rt::CensusRow& row : rt::census_rows(table, *threads)) {
-        facts.threads.push_back({row.name, row.count, std::string(rt::policy_name(row.policy)), row.priority, row.cpus.text()});
-    }
+    const std::vector<rt::CensusRow> rows = rt::census_rows(table, *threads);
+    facts.threads.insert(facts.threads.end(), rows.begin(), rows.end());
 }
 
 ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,

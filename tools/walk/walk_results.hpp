@@ -14,11 +14,11 @@ namespace surefoot::walk {
 
 /// Found out on the way, for the summary.
 struct WalkFacts {
-    std::vector<report::Degraded> degraded;
+    std::vector<rt::Lack> degraded;
     std::string uncalibrated;  ///< the cost table is missing or another machine's: what, and the remedy
     std::vector<std::string> census_problems;
     std::vector<std::string> worker_problems;  ///< of the workers' first tasks; the census takes them in
-    std::vector<report::ThreadRow> threads;
+    std::vector<rt::CensusRow> threads;
     std::string renderer, machine;
     bool pinned = false, locked = false, isolated = false;
     double steal_ms = 0;

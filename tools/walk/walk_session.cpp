@@ -53,8 +53,8 @@ Result<void> claim(Session& s) {
     s.costs = std::move(*costs);
     if (!r.strict) return {};
     tell(s, WalkStep::real_time);
-    std::vector<report::Degraded> lacks = s.facts.degraded;
-    if (!s.facts.uncalibrated.empty()) lacks.push_back({s.facts.uncalibrated, ""});
+    std::vector<rt::Lack> lacks = s.facts.degraded;
+    if (!s.facts.uncalibrated.empty()) lacks.push_back({rt::LackKind::cost_table, s.facts.uncalibrated, ""});
     return require_real_time(lacks);
 }
 
@@ -103,7 +103,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     if (!engine) return engine.error();
     s.engine = std::move(*engine);
     if (const auto refused = s.worker_places->refused())
-        s.facts.degraded.push_back({"a worker: " + refused->what, refused->remedy});
+        s.facts.degraded.push_back({rt::LackKind::placing, "a worker: " + refused->what, refused->remedy});
     s.facts.worker_problems = s.worker_places->problems();
     s.facts.renderer = s.engine->device().renderer();
     s.facts.machine = measure::machine_identity(s.facts.renderer, r.rasterisers);
@@ -112,7 +112,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
                                "\"; run `surefoot calibrate` here";
         if (r.strict) {
             tell(s, WalkStep::real_time);
-            return require_real_time(std::vector<report::Degraded>{{s.facts.uncalibrated, ""}});
+            return require_real_time(std::vector<rt::Lack>{{rt::LackKind::cost_table, s.facts.uncalibrated, ""}});
         }
     }
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));

@@ -36,7 +36,7 @@ struct Session {
     std::unique_ptr<Engine> engine;
     ChosenPath path;
     std::unique_ptr<InputSession> input;  ///< null: the path is followed
-    WalkInput input_told;
+    rt::InputState input_told;
     std::vector<std::string> notes;
     rt::Grid grid;
     const bool virtual_clock = request.clock == rt::ClockKind::virtual_time;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "tests/walk/walk_fixture.hpp"
+#include "tools/walk/settings_request.hpp"
 
 namespace surefoot {
 namespace {
@@ -27,6 +28,7 @@ TEST(DriverBaseline, AFramesAllocationsInTheDriverDoNotGrow) {
     request.width = 320;
     request.height = 240;
     request.rasterisers = 2;
+    walk::prepare_process(request);
     const auto outcome = walk::run_walk(request, {}, {});
     if (!outcome && outcome.error().text().find("libEGL") != std::string::npos) GTEST_SKIP() << outcome.error().text();
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();

@@ -17,7 +17,7 @@ using test::GamepadSession;
 
 constexpr std::int64_t period_ns = 33'333'333;
 
-const report::ThreadRow* row(const report::WalkSummary& s, const std::string& name) {
+const rt::CensusRow* row(const report::WalkSummary& s, const std::string& name) {
     const auto found = std::find_if(s.threads.begin(), s.threads.end(), [&](const auto& t) { return t.name == name; });
     return found == s.threads.end() ? nullptr : &*found;
 }
@@ -77,7 +77,7 @@ TEST(SteeredRealWalk, TenThousandReportsReachTheirFramesInTimeThroughTheInputThr
     const report::InputSummary& in = s.input;
     EXPECT_LE(frames_behind(outcome), outcome.records.size() / 50) << "of " << outcome.records.size() << " frames";
     EXPECT_TRUE(s.census_problems.empty()) << s.census_problems.front();
-    const report::ThreadRow *input = row(s, "sf-input"), *frame = row(s, "sf-frame");
+    const rt::CensusRow *input = row(s, "sf-input"), *frame = row(s, "sf-frame");
     ASSERT_TRUE(input != nullptr && frame != nullptr) << "the census has no such thread";
     EXPECT_EQ(input->policy, rt::policy_name(rt::Policy::fifo));
     EXPECT_LT(input->priority, frame->priority);

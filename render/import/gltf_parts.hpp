@@ -1,0 +1,63 @@
+// The parts of the glTF reader, in the order in which they are used; gltf.cpp puts them together.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/import/scene.hpp"
+#include "render/import/tinygltf.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::importer {
+
+// ---- bytes to structures: the checks that tinygltf 2.7 does not make, then tinygltf ----
+
+/// The remedy for a file that is damaged.
+inline constexpr const char* export_again = "export the model again";
+
+/// Buffers are loaded and at least as long as their byteLength says; nothing else in the model may be trusted: accessors,
+/// views (but those of images), indices of every kind are checked where they are used.
+/// Images: `image` holds the encoded bytes of a data URI; else `bufferView` or `uri` says where they are.
+Result<tinygltf::Model> load_gltf(const std::string& file, std::vector<std::string>& warnings);
+
+/// %20 and the like, as URIs write them.
+std::string decode_uri(const std::string& uri);
+
+// ---- accessors as flat arrays: every offset, stride, count and sparse index checked (tinygltf checks none) ----
+
+/// An accessor as floats; normalised integers become 0..1 or -1..1 (glTF 2.0, 3.11).
+struct FloatArray {
+    std::vector<float> values;  ///< count * components
+    std::size_t components = 0;
+    [[nodiscard]] std::size_t count() const { return components == 0 ? 0 : values.size() / components; }
+};
+
+/// `place` names file and mesh in errors.
+Result<FloatArray> read_floats(const tinygltf::Model& model, int accessor, const std::string& place);
+/// Scalar unsigned integers.
+Result<std::vector<std::uint32_t>> read_indices(const tinygltf::Model& model, int accessor, const std::string& place);
+
+// ---- materials, textures and pictures to a Scene's ----
+
+/// What a primitive needs to know of its material's texture: which coordinates, and how they are moved.
+struct TextureUse {
+    int set = 0;               ///< TEXCOORD_<set>
+    vec2 offset{0}, scale{1};  ///< KHR_texture_transform
+    float rotation_rad = 0;
+    [[nodiscard]] bool identity() const { return offset == vec2(0) && scale == vec2(1) && rotation_rad == 0; }
+    [[nodiscard]] vec2 apply(vec2 uv) const;
+};
+
+/// Fills scene.materials (one a glTF material, then a default white one) and the images that they use. Returns a TextureUse a
+/// material.
+std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::string& file, Scene& scene,
+                                       const Progress& progress);
+
+// ---- the node graph to a Scene's nodes: world matrices in double, instances, cycles refused ----
+
+/// The default scene (else the first, else every root). Errors: a cycle, by node name. Warnings: what is taken otherwise than
+/// written.
+Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, Scene& scene);
+
+}  // namespace surefoot::importer

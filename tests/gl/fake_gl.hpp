@@ -1,0 +1,107 @@
+// An OpenGL without a driver: every function of the table does nothing and returns 0, but those that a test replaces.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "render/gl/api.hpp"
+#include "render/gl/context.hpp"
+
+namespace surefoot::test {
+
+/// What the functions of the fake count and answer; one at a time.
+struct FakeGl {
+    std::vector<GLenum> wait_results;  ///< of glClientWaitSync in turn; the last one again and again
+    int waits = 0, presents = 0;
+    int shaders = 0, programs = 0, syncs = 0;  ///< made and not deleted
+    int compiles = 0, bad_compile = 0;         ///< bad_compile: the how many-th compile fails, from 1
+    bool links = true;
+    GLuint names = 0;
+    std::vector<std::vector<std::byte>> mapped;  ///< memory of the mapped buffers
+
+    static FakeGl& get() {
+        static FakeGl fake;
+        return fake;
+    }
+};
+
+template <class Function>
+struct Nothing;
+template <class R, class... A>
+struct Nothing<R(APIENTRYP)(A...)> {
+    static R APIENTRY call(A...) {
+        if constexpr (!std::is_void_v<R>) return R{};
+    }
+};
+
+inline gl::Api fake_api() {
+    gl::Api api;
+#define SUREFOOT_GL_FAKE(name, type) api.name = Nothing<type>::call;
+    SUREFOOT_GL_FUNCTIONS(SUREFOOT_GL_FAKE)
+#undef SUREFOOT_GL_FAKE
+    api.version = 43;
+    api.GetIntegerv = [](GLenum what, GLint* value) {
+        *value = what == GL_MAJOR_VERSION ? 4 : what == GL_MINOR_VERSION ? 5 : 4096;
+    };
+    api.CheckFramebufferStatus = [](GLenum) -> GLenum { return GL_FRAMEBUFFER_COMPLETE; };
+    api.MapBufferRange = [](GLenum, GLintptr, GLsizeiptr bytes, GLbitfield) -> void* {
+        return FakeGl::get().mapped.emplace_back(static_cast<std::size_t>(bytes)).data();
+    };
+    api.CreateShader = [](GLenum) -> GLuint {
+        ++FakeGl::get().shaders;
+        return ++FakeGl::get().names;
+    };
+    api.DeleteShader = [](GLuint shader) { FakeGl::get().shaders -= shader != 0 ? 1 : 0; };
+    api.CreateProgram = []() -> GLuint {
+        ++FakeGl::get().programs;
+        return ++FakeGl::get().names;
+    };
+    api.DeleteProgram = [](GLuint program) { FakeGl::get().programs -= program != 0 ? 1 : 0; };
+    api.CompileShader = [](GLuint) { ++FakeGl::get().compiles; };
+    api.GetShaderiv = [](GLuint, GLenum, GLint* ok) {
+        *ok = FakeGl::get().compiles == FakeGl::get().bad_compile ? GL_FALSE : GL_TRUE;
+    };
+    api.GetProgramiv = [](GLuint, GLenum, GLint* ok) { *ok = FakeGl::get().links ? GL_TRUE : GL_FALSE; };
+    api.FenceSync = [](GLenum, GLbitfield) -> GLsync {
+        ++FakeGl::get().syncs;
+        return reinterpret_cast<GLsync>(&FakeGl::get());
+    };
+    api.DeleteSync = [](GLsync sync) { FakeGl::get().syncs -= sync != nullptr ? 1 : 0; };
+    api.ClientWaitSync = [](GLsync, GLbitfield, GLuint64) -> GLenum {
+        FakeGl& fake = FakeGl::get();
+        const auto at = static_cast<std::size_t>(fake.waits++);
+        if (fake.wait_results.empty()) return GL_ALREADY_SIGNALED;
+        return fake.wait_results[std::min(at, fake.wait_results.size() - 1)];
+    };
+    return api;
+}
+
+/// The fake as a context with a window; making it starts the counts anew.
+class FakeContext final : public gl::Context {
+public:
+    FakeContext() {
+        FakeGl::get() = {};
+        const gl::Api api = fake_api();
+#define SUREFOOT_GL_NAMED(name, type) functions_["gl" #name] = reinterpret_cast<void*>(api.name);
+        SUREFOOT_GL_FUNCTIONS(SUREFOOT_GL_NAMED)
+#undef SUREFOOT_GL_NAMED
+    }
+    bool make_current() override { return true; }
+    void release() override {}
+    [[nodiscard]] void* find(const char* function) const override {
+        const auto found = functions_.find(function);
+        return found == functions_.end() ? nullptr : found->second;
+    }
+    [[nodiscard]] std::string name() const override { return "fake"; }
+    [[nodiscard]] bool has_window() const override { return true; }
+    void present() override { ++FakeGl::get().presents; }
+
+private:
+    std::map<std::string, void*> functions_;
+};
+
+}  // namespace surefoot::test
