@@ -12,7 +12,6 @@
 #include "render/model/walk_file.hpp"
 #include "rt/base/statistics.hpp"
 #include "rt/clock/clock.hpp"
-#include "tools/report/report.hpp"
 #include "tools/walk/path_source.hpp"
 #include "tools/walk/state.hpp"
 
