@@ -54,6 +54,7 @@ Trend robust_trend(std::span<const TrendPoint> points) {
     trend.known = true;
     trend.per_s = middle_of(slopes);
     std::vector<double> left;
+    left.reserve(kept.size());
     for (const TrendPoint& p : kept) left.push_back(p.value - trend.per_s * p.time_s);
     trend.at_s0 = middle_of(left);
     return trend;
