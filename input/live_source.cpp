@@ -32,6 +32,7 @@ LiveSource::LiveSource(LiveOptions options, std::unique_ptr<DeviceSource> device
       }),
       devices_(std::move(devices)) {
     log_.reserve(options_.stamps);
+    if (devices_->trouble()) tell(say_, *devices_->trouble());
     if (!options_.lines.empty())
         panel_.emplace(options_.lines, options_.mappings, options_.open_lines, options_.lines_context, say_,
                        options_.lines_opened);

@@ -3,9 +3,13 @@
 
 #include <algorithm>
 
+#include "rt/base/check.hpp"
+
 namespace surefoot::input {
 
 namespace {
+
+bool is_device(int number) { return number >= 0 && static_cast<std::size_t>(number) < max_devices; }
 
 bool free_again(const Source& source) { return !source.connected && !source.asked.has_stop && !source.asked.has_dead_man; }
 
@@ -47,7 +51,7 @@ int Steering::attach(Mapper&& mapper, std::size_t controls, Reporting reporting,
 }
 
 void Steering::detach(int device) {
-    if (device < 0 || static_cast<std::size_t>(device) >= max_devices) return;
+    if (!is_device(device)) return;
     Source& source = sources_[static_cast<std::size_t>(device)];
     const Asked before = source.asked;
     source.connected = false;
@@ -57,11 +61,12 @@ void Steering::detach(int device) {
 }
 
 void Steering::ended(int device) {
-    if (device < 0 || static_cast<std::size_t>(device) >= max_devices) return;
+    if (!is_device(device)) return;
     sources_[static_cast<std::size_t>(device)].reporting = Reporting::streaming;
 }
 
 void Steering::report(int number, const DeviceState& state, std::int64_t now_ns) {
+    CHECK(is_device(number), "a report has a number that attach() gave");
     const auto at = static_cast<std::size_t>(number);
     Source& source = sources_[at];
     if (!source.connected) return;
@@ -87,6 +92,7 @@ void Steering::report(int number, const DeviceState& state, std::int64_t now_ns)
 }
 
 void Steering::drained(int number, std::uint32_t reports, bool lost) {
+    CHECK(is_device(number), "a drain has a number that attach() gave");
     Source& source = sources_[static_cast<std::size_t>(number)];
     source.drained = std::max(source.drained, reports);
     source.lost = source.lost || lost;
@@ -105,6 +111,11 @@ NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const G
         devices_[i].ticked = true;
     }
     return surefoot::input::step(motion_, motion_limits_, command, now_ns, ground);
+}
+
+const Mapper& Steering::mapper(int device) const {
+    CHECK(is_device(device), "a mapper is asked for by a number that attach() gave");
+    return devices_[static_cast<std::size_t>(device)].mapper;
 }
 
 double Steering::worst_lag_s() const {

@@ -40,7 +40,7 @@ public:
     bool place(const Pose& pose) { return surefoot::input::place(motion_, pose); }
     [[nodiscard]] const SafetyState& safety() const { return safety_; }
     [[nodiscard]] const MotionState& motion() const { return motion_; }
-    [[nodiscard]] const Mapper& mapper(int device) const { return devices_[static_cast<std::size_t>(device)].mapper; }
+    [[nodiscard]] const Mapper& mapper(int device) const;
     /// Largest lag of mapping and filter together, seconds; limits of speed and acceleration are not counted.
     [[nodiscard]] double worst_lag_s() const;
 

@@ -9,6 +9,8 @@
 #include "render/effects/effects.hpp"
 #include "render/model/pixels.hpp"
 #include "render/model/view.hpp"
+#include "rt/base/check.hpp"
+#include "rt/base/thread_annotations.hpp"
 
 namespace surefoot {
 
@@ -62,24 +64,25 @@ struct Engine::Impl {
     std::unique_ptr<prepare::Preparer> preparer;
     bool full_depth_always = false;  ///< as asked for, whatever the selector
     const select::Selector* selector = nullptr;
-    select::SelectState state;
-    select::Cut cut;
-    select::SlicePlan plan;
-    std::vector<gl::DrawItem> drawn;
+    [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
+    select::SelectState state GUARDED_BY(draws);
+    select::Cut cut GUARDED_BY(draws);
+    select::SlicePlan plan GUARDED_BY(draws);
+    std::vector<gl::DrawItem> drawn GUARDED_BY(draws);
     std::vector<gl::DrawItem> coarse;
-    bool use_coarse = false;
-    const prepare::PreparedFrame* prepared = nullptr;
-    Correction correction;
-    double upper_factor = 1;  ///< that the last select() spent
+    bool use_coarse GUARDED_BY(draws) = false;
+    const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
+    Correction correction GUARDED_BY(draws);
+    double upper_factor GUARDED_BY(draws) = 1;  ///< that the last select() spent
 
     void use(const select::SelectorEntry& entry);
     double now_us(const SubmitLimits& limits) const {
         return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
     }
-    model::Frustum frustum;  ///< of the pose that is drawn: narrower than the region that was prepared
-    model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report);
-    void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report);
-    void submit_coarse(const Pose& pose, SubmitReport& report);
+    model::Frustum frustum GUARDED_BY(draws);  ///< of the pose that is drawn: narrower than the region that was prepared
+    model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report) REQUIRES(draws);
+    void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
+    void submit_coarse(const Pose& pose, SubmitReport& report) REQUIRES(draws);
 };
 
 Engine::Engine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -87,6 +90,7 @@ Engine::~Engine() = default;
 
 Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::CostModel& costs, const EngineOptions& options) {
     auto impl = std::make_unique<Impl>();
+    impl->draws.plays();  // nobody else has it yet
     impl->model = std::move(model);
     impl->costs = costs;
     impl->options = options;
@@ -129,8 +133,14 @@ const model::Model& Engine::model() const { return impl_->model; }
 const model::CostModel& Engine::costs() const { return impl_->costs; }
 gl::Device& Engine::device() { return *impl_->device; }
 const EngineOptions& Engine::options() const { return impl_->options; }
-std::span<const gl::DrawItem> Engine::drawn() const { return impl_->drawn; }
-std::size_t Engine::drawn_capacity() const { return impl_->drawn.capacity(); }
+std::span<const gl::DrawItem> Engine::drawn() const {
+    impl_->draws.plays();
+    return impl_->drawn;
+}
+std::size_t Engine::drawn_capacity() const {
+    impl_->draws.plays();
+    return impl_->drawn.capacity();
+}
 
 void Engine::reserve(prepare::PreparedFrame& frame) const { impl_->preparer->reserve(frame); }
 
@@ -151,6 +161,7 @@ void Engine::set_in_frame_check(bool on) { impl_->options.in_frame_check = on; }
 const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction,
                                   double target_error_rad) {
     Impl& e = *impl_;
+    e.draws.plays();
     e.use_coarse = false;
     e.prepared = &prepared;
     e.correction = correction;
@@ -162,16 +173,22 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     return e.cut;
 }
 
-const select::SelectState& Engine::selection_memory() const { return impl_->state; }
+const select::SelectState& Engine::selection_memory() const {
+    impl_->draws.plays();
+    return impl_->state;
+}
 
-void Engine::select_coarse() { impl_->use_coarse = true; }
+void Engine::select_coarse() {
+    impl_->draws.plays();
+    impl_->use_coarse = true;
+}
 
 /// Draws what of a slice the pose really sees; returns what that was predicted to cost.
 model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitReport& report) {
     const std::size_t first = drawn.size();
     model::ItemCost cost;
     for (const select::CutItem& item : items) {
-        if (drawn.size() == drawn.capacity()) break;  // cannot happen: capacity is twice the candidates
+        if (!CHECK_RARE(drawn.size() < drawn.capacity(), "twice the candidates have room for a cut and its stand-ins")) break;
         if (!model::visible(frustum, model.nodes[item.node].box)) {
             ++report.culled;
             continue;
@@ -250,6 +267,8 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
 
 SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     Impl& e = *impl_;
+    e.draws.plays();
+    CHECK(e.use_coarse || e.prepared != nullptr, "what is submitted was selected before");
     SubmitReport report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "rt/base/check.hpp"
+
 namespace surefoot::input {
 
 namespace {
@@ -109,6 +111,7 @@ void Attendant::added(const DeviceEvent& e) {
                                                           number_before(ready->identity));
     if (number < 0) return tell(say_, "{} ({}): {} devices steer already; unplug one", p.node, p.name, max_devices);
     tell(say_, "{} ({}): steers, by the mapping \"{}\"", p.node, p.name, ready->mapping);
+    CHECK(static_cast<std::size_t>(number) < identities_.size(), "the steering numbers no more devices than there is room for");
     slot->device = e.device;
     slot->steering = number;
     slot->ready = ready;

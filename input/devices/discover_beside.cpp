@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "input/devices/discoverer.hpp"
+#include "rt/base/thread_annotations.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/exchange/spsc_ring.hpp"
 #include "rt/threads/placement.hpp"
@@ -68,6 +69,7 @@ public:
 
 private:
     void run() {
+        finds_.plays();
         (void)rt::place_thread(0, {rt::Policy::other, 0, {}, devices_thread_name});
         std::deque<std::unique_ptr<Discovery>> waiting;
         while (!stopping_.load()) {
@@ -87,7 +89,7 @@ private:
             sleep(waiting.empty() ? finder_.due_ns() : clock_.now_ns() + 10'000'000);
         }
     }
-    void sleep(std::int64_t until_ns) const {
+    void sleep(std::int64_t until_ns) const REQUIRES(finds_) {
         const std::int64_t left = std::max<std::int64_t>(0, until_ns - clock_.now_ns());
         const timespec wait{left / 1'000'000'000, left % 1'000'000'000};
         pollfd fds[] = {{to_finder_, POLLIN, 0}, {finder_.fd(), POLLIN, 0}};
@@ -95,7 +97,8 @@ private:
         if ((fds[0].revents & POLLIN) != 0) silence(to_finder_);
     }
 
-    Finder finder_;
+    [[no_unique_address]] ThreadRole finds_;  ///< the thread below
+    Finder finder_ GUARDED_BY(finds_);
     rt::RealClock clock_;
     int to_reader_, to_finder_;
     rt::SpscRing<Discovery*> found_{128};

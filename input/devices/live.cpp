@@ -16,10 +16,11 @@ constexpr std::size_t most_events = most_reports + 4 * most_devices;  // each of
 
 }  // namespace
 
-LiveDevices::LiveDevices(std::unique_ptr<Discoverer> discoverer)
+LiveDevices::LiveDevices(std::unique_ptr<Discoverer> discoverer, std::optional<Error> trouble)
     : discoverer_(std::move(discoverer)),
       bytes_(bytes_per_take + largest_report),
-      unplugged_{"", "was unplugged, or cannot be read any more", ""} {
+      unplugged_{"", "was unplugged, or cannot be read any more", ""},
+      trouble_(std::move(trouble)) {
     open_.reserve(most_devices);
     told_.reserve(2 * most_devices);
     others_.reserve(most_others);
@@ -156,10 +157,11 @@ void LiveDevices::discover(std::int64_t now_ns) {
 Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool beside) {
     auto finder = Finder::create(std::move(options));
     if (!finder) return finder.error();
-    if (!beside) return std::make_unique<LiveDevices>(discover_here(std::move(*finder)));
+    std::optional<Error> trouble = finder->without_monitor();
+    if (!beside) return std::make_unique<LiveDevices>(discover_here(std::move(*finder)), std::move(trouble));
     auto discoverer = discover_beside(std::move(*finder));
     if (!discoverer) return discoverer.error();
-    return std::make_unique<LiveDevices>(std::move(*discoverer));
+    return std::make_unique<LiveDevices>(std::move(*discoverer), std::move(trouble));
 }
 
 }  // namespace surefoot::input

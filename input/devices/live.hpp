@@ -18,12 +18,14 @@ constexpr std::uint32_t max_drain = 256;
 
 class LiveDevices final : public DeviceSource {
 public:
-    explicit LiveDevices(std::unique_ptr<Discoverer> discoverer);
+    /// trouble: what the discoverer has to do without.
+    explicit LiveDevices(std::unique_ptr<Discoverer> discoverer, std::optional<Error> trouble = {});
     ~LiveDevices() override;
 
     void wait(std::int64_t until_ns) override;
     std::span<const DeviceEvent> take() override;
     void watch_also(std::span<const pollfd> others) override;
+    [[nodiscard]] const std::optional<Error>& trouble() const override { return trouble_; }
 
     /// Open now.
     [[nodiscard]] std::size_t devices() const { return open_.size(); }
@@ -46,6 +48,7 @@ private:
     std::vector<DeviceEvent> events_;
     std::vector<std::byte> bytes_;
     const Error unplugged_;
+    std::optional<Error> trouble_;
     std::size_t used_ = 0;
     bool unwatchable_ = false;  ///< a device has no descriptor that is known
 };

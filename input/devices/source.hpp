@@ -74,6 +74,11 @@ public:
     virtual std::span<const DeviceEvent> take() = 0;
     /// Descriptors of others that end wait() too, instead of those that were given before.
     virtual void watch_also(std::span<const pollfd> /*others*/) {}
+    /// What it has to do without, from its start on; to be said once.
+    [[nodiscard]] virtual const std::optional<Error>& trouble() const {
+        static const std::optional<Error> none;
+        return none;
+    }
 };
 
 /// Waits, then takes: events, or none at `deadline_ns` or after a signal.

@@ -9,6 +9,8 @@
 #include <thread>
 
 #include "input/retry.hpp"
+#include "rt/base/check.hpp"
+#include "rt/base/thread_annotations.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/exchange/spsc_ring.hpp"
 #include "rt/threads/placement.hpp"
@@ -89,7 +91,8 @@ public:
     }
     /// There is always room: no more are under way than the ring to the reader holds.
     void give_back(std::unique_ptr<OpenedLines> opened, std::int64_t /*now_ns*/) override {
-        if (returned_.try_push(opened.get())) (void)opened.release();
+        if (CHECK_RARE(!returned_.full(), "no more lines are under way than fit the ring") && returned_.try_push(opened.get()))
+            (void)opened.release();
         bell_.release();
     }
 
@@ -97,6 +100,7 @@ private:
     static constexpr std::size_t under_way_most = 8;
 
     void run() {
+        opens_.plays();
         (void)rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = lines_thread_name});
         std::string said;
         for (bool first = true; first || !stopping_.load(); first = false) {
@@ -109,7 +113,7 @@ private:
         }
     }
     /// Each reason once, until another one or the lines come.
-    void hand_over(std::unique_ptr<OpenedLines> made, std::string& said) {
+    void hand_over(std::unique_ptr<OpenedLines> made, std::string& said) REQUIRES(opens_) {
         const std::string reason = made->error.text();
         if (!made->lines && reason == said) return;
         said = reason;
@@ -117,15 +121,16 @@ private:
         (void)made.release();
         ++under_way_;
     }
-    void sleep() {
+    void sleep() REQUIRES(opens_) {
         if (tries_.given() || under_way_ == under_way_most) return bell_.acquire();
         (void)bell_.try_acquire_for(std::chrono::nanoseconds(std::max<std::int64_t>(0, tries_.next_ns() - clock_.now_ns())));
     }
 
-    LineTries tries_;
+    [[no_unique_address]] ThreadRole opens_;  ///< the thread below
+    LineTries tries_ GUARDED_BY(opens_);
     rt::RealClock clock_;
     rt::SpscRing<OpenedLines*> found_{under_way_most}, returned_{under_way_most};
-    std::size_t under_way_ = 0;  ///< with the reader, or on their way there or back
+    std::size_t under_way_ GUARDED_BY(opens_) = 0;  ///< with the reader, or on their way there or back
     std::counting_semaphore<> bell_{0};
     std::latch first_{1};
     std::atomic<bool> stopping_{false};

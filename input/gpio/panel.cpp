@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "rt/base/check.hpp"
 #include "rt/threads/guard.hpp"
 
 namespace surefoot::input {
@@ -80,6 +81,7 @@ GpioPanel::GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* cont
             }
         controls_.push_back(control_of(config));
     }
+    CHECK(configs_.size() <= max_lines, "the lines were checked: at most 64");
     opener_ = make_line_opener(std::move(to_open), where);
 }
 

@@ -69,7 +69,6 @@ public:
     [[nodiscard]] std::optional<Leader> leader() const;
     [[nodiscard]] std::span<const Learned> learned() const { return learned_; }
     [[nodiscard]] const ControlInfo& control(int device, std::size_t control) const;
-    [[nodiscard]] std::size_t questions_left() const { return steps_.size(); }
 
     /// A mapping for each device that has an answer, matched by its ids.
     [[nodiscard]] std::vector<DeviceMapping> mappings() const;

@@ -177,8 +177,4 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     return sample;
 }
 
-double filter_lag_s(const MotionState& state, const MotionLimits& limits) {
-    return std::max(state.walk.lag_s(limits.filter), state.turning.lag_s(limits.filter));
-}
-
 }  // namespace surefoot::input

@@ -83,7 +83,4 @@ Pose carried(const NavigationSample& sample, double by_s);
 /// A = a + |v0| (|w0| + alpha t / 2) since the walker's frame turns.
 Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double stair_m = 0);
 
-/// What the filter adds now and at most; seconds. The acceleration limit is a limit, not a lag.
-double filter_lag_s(const MotionState& state, const MotionLimits& limits);
-
 }  // namespace surefoot::input

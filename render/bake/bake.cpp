@@ -10,7 +10,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <thread>
 
 #include "render/bake/limits.hpp"
@@ -18,6 +17,7 @@
 #include "render/bake/proxies.hpp"
 #include "render/model/pixels.hpp"
 #include "rt/base/fork_join.hpp"
+#include "rt/base/mutex.hpp"
 
 namespace surefoot::bake {
 
@@ -61,8 +61,8 @@ private:
     std::string_view name_;
     std::size_t total_;
     std::atomic<std::size_t> done_{0};
-    std::mutex mutex_;
-    std::chrono::steady_clock::time_point said_{};
+    Mutex mutex_;
+    std::chrono::steady_clock::time_point said_ GUARDED_BY(mutex_){};
 };
 
 struct Bakery {

@@ -11,6 +11,7 @@
 #include "render/measure/calibrate_run.hpp"
 #include "render/measure/calibrate_scene.hpp"
 #include "render/model/item_costs.hpp"
+#include "rt/base/statistics.hpp"
 #include "rt/clock/clock.hpp"
 
 namespace surefoot::measure {

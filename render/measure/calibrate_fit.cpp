@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "rt/base/statistics.hpp"
 
 namespace surefoot::measure {
 
@@ -135,13 +138,6 @@ double value_in(const Level& level, std::size_t kind, double pixels) {
 
 }  // namespace
 
-double quantile_of(std::vector<double> values, double quantile) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const auto at = static_cast<std::size_t>(quantile * static_cast<double>(values.size()));
-    return values[std::min(at, values.size() - 1)];
-}
-
 Settled settle(std::span<const std::vector<FrameSample>> rounds) {
     Settled settled;
     std::vector<double> longer;
@@ -150,12 +146,11 @@ Settled settle(std::span<const std::vector<FrameSample>> rounds) {
         std::vector<double> times;
         for (const FrameSample& s : of_frame)
             if (s.submit_us == last.submit_us && s.raster_us == last.raster_us) times.push_back(s.actual_us);
-        std::sort(times.begin(), times.end());
-        settled.frames.push_back({last.submit_us, last.raster_us, times.front()});
+        const double least = *std::min_element(times.begin(), times.end());
+        settled.frames.push_back({last.submit_us, last.raster_us, least});
         if (times.size() < 2) continue;
         ++settled.repeated;
-        const double median = 0.5 * (times[(times.size() - 1) / 2] + times[times.size() / 2]);
-        longer.push_back(median / std::max(1.0, times.front()));
+        longer.push_back(median_of(std::move(times)) / std::max(1.0, least));
     }
     if (!longer.empty()) settled.slowdown = std::max(1.0, quantile_of(std::move(longer), 0.5));
     for (FrameSample& frame : settled.frames) frame.actual_us *= settled.slowdown;
@@ -199,7 +194,7 @@ model::FrameCombine fit_combine(std::span<const FrameSample> samples, const mode
         for (std::size_t s = 0; s < samples.size(); ++s) {
             const double actual = std::max(1.0, samples[s].actual_us);
             const double error = round == 0 ? 0.0 : std::abs(predicted(samples[s], w) - actual) / actual;
-            weights[s] = (error <= tolerated ? 1.0 : tolerated / error) / (actual * actual);
+            weights[s] = huber_weight(error, tolerated) / (actual * actual);
         }
         w = non_negative(samples, weights, start);
     }

@@ -28,8 +28,6 @@ double relative_error(std::span<const FrameSample> samples, const model::FrameCo
 /// actual / predicted at a quantile.
 double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile);
 
-double quantile_of(std::vector<double> values, double quantile);
-
 /// Frames, from several measurements of each.
 struct Settled {
     std::vector<FrameSample> frames;  ///< as last drawn; actual_us: its least, times `slowdown`

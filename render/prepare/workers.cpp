@@ -7,6 +7,7 @@
 
 #include <tbb/info.h>
 
+#include "rt/base/check.hpp"
 #include "rt/base/fork_join.hpp"
 #include "rt/base/mutex.hpp"
 
@@ -50,8 +51,8 @@ std::uint64_t next_id() {
 
 }  // namespace
 
-Workers::Observer::Observer(tbb::task_arena& arena, const WorkerHooks& hooks)
-    : task_scheduler_observer(arena), hooks_(hooks), id_(next_id()) {
+Workers::Observer::Observer(tbb::task_arena& arena, const WorkerHooks& hooks, int most)
+    : task_scheduler_observer(arena), hooks_(hooks), most_(most), id_(next_id()) {
     observe(true);
 }
 
@@ -59,7 +60,9 @@ void Workers::Observer::on_scheduler_entry(bool is_worker) {
     thread_local std::uint64_t told_to = 0;
     if (!is_worker || told_to == id_) return;
     told_to = id_;
-    if (hooks_.on_start) hooks_.on_start(++started_);
+    const int number = ++started_;
+    (void)CHECK_RARE(number <= most_, "an arena has no more workers than were asked for");
+    if (hooks_.on_start) hooks_.on_start(number);
 }
 
 Workers::Workers(int count, WorkerHooks hooks) : hooks_(std::move(hooks)) {
@@ -70,7 +73,7 @@ Workers::Workers(int count, WorkerHooks hooks) : hooks_(std::move(hooks)) {
     arena_.emplace(count);
     if (!hooks_.any()) return;
     arena_->initialize();
-    observer_.emplace(*arena_, hooks_);
+    observer_.emplace(*arena_, hooks_, count - 1);
     start_all(count - 1);
 }
 

@@ -27,7 +27,7 @@ public:
 private:
     class Observer final : public tbb::task_scheduler_observer {
     public:
-        Observer(tbb::task_arena& arena, const WorkerHooks& hooks);
+        Observer(tbb::task_arena& arena, const WorkerHooks& hooks, int most);
         ~Observer() override { observe(false); }
         Observer(const Observer&) = delete;
         Observer& operator=(const Observer&) = delete;
@@ -35,6 +35,7 @@ private:
 
     private:
         const WorkerHooks& hooks_;
+        const int most_;
         const std::uint64_t id_;
         std::atomic<int> started_{0};
     };

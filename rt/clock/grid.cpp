@@ -4,8 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+
+#include "rt/base/check.hpp"
 
 namespace surefoot::rt {
 
@@ -16,7 +17,7 @@ Result<std::int64_t> period_of_rate_ns(double rate_hz) {
 }
 
 NextSlot next_slot(const Grid& grid, LatePolicy late, std::uint64_t slot, std::int64_t finished_ns) {
-    assert(grid.period_ns > 0);
+    CHECK(grid.period_ns > 0, "a grid has a period");
     const std::int64_t deadline = grid.deadline_ns(slot);
     NextSlot next;
     if (finished_ns <= deadline) {

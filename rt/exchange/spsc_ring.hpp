@@ -8,6 +8,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "rt/base/check.hpp"
+#include "rt/base/thread_annotations.hpp"
+
 namespace surefoot::rt {
 
 template <class T>
@@ -17,12 +20,15 @@ class SpscRing {  // NOLINT(clang-analyzer-optin.performance.Padding): each side
 public:
     /// At least `capacity` places, rounded up to a power of two.
     explicit SpscRing(std::size_t capacity)
-        : places_(std::bit_ceil(capacity < 2 ? std::size_t{2} : capacity)), mask_(places_.size() - 1) {}
+        : places_(std::bit_ceil(capacity < 2 ? std::size_t{2} : capacity)), mask_(places_.size() - 1) {
+        CHECK(std::has_single_bit(places_.size()), "a ring has a power of two of places");
+    }
     SpscRing(const SpscRing&) = delete;
     SpscRing& operator=(const SpscRing&) = delete;
 
     /// Producer. False, and counted: full.
     bool try_push(const T& value) noexcept {
+        producer_.plays();
         if (full()) {
             dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
             return false;
@@ -34,12 +40,14 @@ public:
     }
     /// Producer: whether the next push would be dropped.
     [[nodiscard]] bool full() noexcept {
+        producer_.plays();
         const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
         if (tail - head_seen_ > mask_) head_seen_ = head_.load(std::memory_order_acquire);
         return tail - head_seen_ > mask_;
     }
     /// Consumer. False: empty.
     bool try_pop(T& value) noexcept {
+        consumer_.plays();
         const std::uint64_t head = head_.load(std::memory_order_relaxed);
         if (head == tail_seen_) {
             tail_seen_ = tail_.load(std::memory_order_acquire);
@@ -54,13 +62,14 @@ public:
     [[nodiscard]] std::size_t capacity() const noexcept { return places_.size(); }
 
 private:
+    [[no_unique_address]] ThreadRole producer_, consumer_;
     std::vector<T> places_;
     std::size_t mask_;
-    alignas(64) std::atomic<std::uint64_t> tail_{0};  ///< producer's, with what follows
-    std::uint64_t head_seen_ = 0;
+    alignas(64) std::atomic<std::uint64_t> tail_{0};  ///< written by the producer, beside what is its own
+    std::uint64_t head_seen_ GUARDED_BY(producer_) = 0;
     std::atomic<std::uint64_t> dropped_{0};
-    alignas(64) std::atomic<std::uint64_t> head_{0};  ///< consumer's, with what follows
-    std::uint64_t tail_seen_ = 0;
+    alignas(64) std::atomic<std::uint64_t> head_{0};  ///< written by the consumer, beside what is its own
+    std::uint64_t tail_seen_ GUARDED_BY(consumer_) = 0;
 };
 
 }  // namespace surefoot::rt

@@ -5,6 +5,9 @@
 #include <atomic>
 #include <cstdint>
 
+#include "rt/base/check.hpp"
+#include "rt/base/thread_annotations.hpp"
+
 namespace surefoot::rt {
 
 /// Three slots: the writer fills one, the reader holds one, the third changes hands. T's memory is reserved beforehand through
@@ -21,33 +24,47 @@ public:
     T& slot(std::size_t i) { return slots_[i].value; }
 
     /// Writer: the slot to fill. It holds what was written there some publications ago.
-    T& back() { return slots_[back_].value; }
+    T& back() {
+        writer_.plays();
+        return slots_[back_].value;
+    }
     /// Writer: hands the filled slot over; back() is another from now on.
     void publish() {
+        writer_.plays();
         const std::uint8_t before = middle_.exchange(static_cast<std::uint8_t>(back_ | fresh), std::memory_order_acq_rel);
         back_ = before & index_mask;
+        CHECK(back_ < slots_.size(), "the slot that came back is one of three");
     }
 
     /// Reader: takes the newest published value, if there is one since the last call.
     bool refresh() {
+        reader_.plays();
         if ((middle_.load(std::memory_order_relaxed) & fresh) == 0) return false;
         const std::uint8_t before = middle_.exchange(front_, std::memory_order_acq_rel);
         front_ = before & index_mask;
+        CHECK(front_ < slots_.size(), "the slot that was handed over is one of three");
         return true;
     }
     /// Reader: what the last refresh() took (the initial value before the first). The reader may change it.
-    T& front() { return slots_[front_].value; }
-    [[nodiscard]] const T& front() const { return slots_[front_].value; }
+    T& front() {
+        reader_.plays();
+        return slots_[front_].value;
+    }
+    [[nodiscard]] const T& front() const {
+        reader_.plays();
+        return slots_[front_].value;
+    }
 
 private:
     static constexpr std::uint8_t index_mask = 3, fresh = 4;
     struct alignas(64) Slot {
         T value{};
     };
+    [[no_unique_address]] ThreadRole writer_, reader_;
     std::array<Slot, 3> slots_{};
-    alignas(64) std::uint8_t back_ = 0;  ///< writer's
+    alignas(64) std::uint8_t back_ GUARDED_BY(writer_) = 0;
     alignas(64) std::atomic<std::uint8_t> middle_{1};
-    alignas(64) std::uint8_t front_ = 2;  ///< reader's
+    alignas(64) std::uint8_t front_ GUARDED_BY(reader_) = 2;
 };
 
 }  // namespace surefoot::rt

@@ -1,9 +1,10 @@
-// Counting blocks and judging them: sums over records, an exact permutation test, the deadline rule.
+// Counting blocks and judging them: sums over records, the deadline rule.
 #include "rt/frame/control.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+
+#include "rt/base/statistics.hpp"
 
 namespace surefoot::rt {
 
@@ -48,31 +49,6 @@ std::vector<BlockTally> tally_blocks(std::span<const FrameRecord> records) {
     BlockTallies tallies;
     for (const FrameRecord& r : records) tallies.add(r);
     return tallies.blocks();
-}
-
-double sign_flip_p_value(std::span<const int> differences) {
-    int sum = 0, reach = 0;
-    for (const int d : differences) {
-        sum += d;
-        reach += std::abs(d);
-    }
-    if (reach == 0) return 1.0;
-    // chance[s + reach]: of the sum s, over all signs of the differences taken so far.
-    std::vector<double> chance(2 * static_cast<std::size_t>(reach) + 1, 0.0), next(chance.size());
-    chance[static_cast<std::size_t>(reach)] = 1.0;
-    for (const int d : differences) {
-        const auto step = static_cast<std::size_t>(std::abs(d));
-        std::ranges::fill(next, 0.0);
-        for (std::size_t s = 0; s < chance.size(); ++s) {
-            if (chance[s] == 0.0) continue;
-            next[s + step] += 0.5 * chance[s];
-            next[s - step] += 0.5 * chance[s];
-        }
-        chance.swap(next);
-    }
-    double p = 0;
-    for (std::size_t s = static_cast<std::size_t>(sum + reach); s < chance.size(); ++s) p += chance[s];
-    return std::min(p, 1.0);
 }
 
 DeadlineVerdict judge(std::span<const BlockTally> blocks, double other_miss_share) {

@@ -55,10 +55,6 @@ private:
 /// The same over records that were kept.
 std::vector<BlockTally> tally_blocks(std::span<const FrameRecord> records);
 
-/// One-sided sign-flip permutation test: the chance, if walk and control were the same, of a sum of differences at least as
-/// large as the one seen. Exact (all 2^n sign patterns, by dynamic programming over sums). 1 for no differences.
-double sign_flip_p_value(std::span<const int> differences);
-
 /// The deadline rule.
 struct DeadlineVerdict {
     std::uint64_t walk_frames = 0, walk_misses = 0, own_misses = 0, control_frames = 0, control_misses = 0;

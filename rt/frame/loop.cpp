@@ -4,6 +4,7 @@
 #include <sched.h>
 #include <signal.h>
 
+#include "rt/base/check.hpp"
 #include "rt/frame/frame_account.hpp"
 #include "rt/threads/guard.hpp"
 
@@ -95,6 +96,7 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
         hand_over(options, record, records);
 
         const NextSlot next = next_slot(grid, options.late, s.slot, record.presented_ns);
+        CHECK(next.slot > s.slot, "slots go forward");
         s.slot = next.slot;
         s.skipped_before = next.skipped;
         s.ready_ns = next.start_ns;

@@ -18,7 +18,6 @@ void Recorder::stop() {
     if (!thread_.joinable()) return;
     stopping_.store(true, std::memory_order_release);
     thread_.join();
-    flight_.finish();
 }
 
 void Recorder::run() {
@@ -37,10 +36,7 @@ void Recorder::run() {
 void Recorder::drain() {
     FrameRecord record;
     while (ring_.try_pop(record)) {
-        if (options_.keep) {
-            records_.push_back(record);
-            flight_.add(record);
-        }
+        if (options_.keep) records_.push_back(record);
         if (options_.on_record) options_.on_record(record);
     }
 }

@@ -10,7 +10,6 @@
 
 #include "rt/exchange/spsc_ring.hpp"
 #include "rt/frame/record.hpp"
-#include "rt/monitor/flight_recorder.hpp"
 
 namespace surefoot::rt {
 
@@ -35,7 +34,6 @@ public:
     /// After stop().
     [[nodiscard]] const std::vector<FrameRecord>& records() const { return records_; }
     [[nodiscard]] std::vector<FrameRecord> take_records() { return std::move(records_); }
-    [[nodiscard]] const FlightRecorder& flight() const { return flight_; }
 
 private:
     void run();
@@ -43,7 +41,6 @@ private:
     SpscRing<FrameRecord>& ring_;
     RecorderOptions options_;
     std::vector<FrameRecord> records_;
-    FlightRecorder flight_;
     std::atomic<bool> stopping_{false};
     std::thread thread_;
 };

@@ -79,7 +79,7 @@ Log::~Log() {
 }
 
 void Log::say(Priority priority, const Event& event, std::string_view text, std::initializer_list<Field> fields) {
-    const std::lock_guard lock(one_at_a_time_);
+    const MutexLock lock(one_at_a_time_);
     text = text.substr(0, longest_text);
     const std::uint64_t lost = dropped_.load() - dropped_told_;
     bool taken = false;

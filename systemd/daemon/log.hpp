@@ -5,9 +5,10 @@
 #include <atomic>
 #include <cstdint>
 #include <initializer_list>
-#include <mutex>
 #include <string>
 #include <string_view>
+
+#include "rt/base/mutex.hpp"
 
 namespace surefoot::daemon {
 
@@ -62,13 +63,13 @@ public:
     [[nodiscard]] std::uint64_t dropped() const { return dropped_.load(); }
 
 private:
-    bool to_journal(std::string_view message);
-    bool to_stream(std::string_view line) const;
+    bool to_journal(std::string_view message) REQUIRES(one_at_a_time_);
+    bool to_stream(std::string_view line) const REQUIRES(one_at_a_time_);
     LogTarget target_;
     int socket_ = -1;
-    std::mutex one_at_a_time_;  // lines stay whole, and the count of dropped ones is told once
+    Mutex one_at_a_time_;  // lines stay whole, and the count of dropped ones is told once
     std::atomic<std::uint64_t> dropped_{0};
-    std::uint64_t dropped_told_ = 0;
+    std::uint64_t dropped_told_ GUARDED_BY(one_at_a_time_) = 0;
 };
 
 /// Pure: a message in journald's native format; values with line breaks go with their length, as it wants them.

@@ -34,7 +34,7 @@ std::string status_text(const Facts& f) {
 
 void Standing::open(const config::Settings& settings) {
     if (leaving.load()) return;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     facts_.phase = Phase::opening;
     facts_.model = std::filesystem::path(settings.model_file).filename().string();
     facts_.in_short = in_short(settings);
@@ -47,7 +47,7 @@ void Standing::open(const config::Settings& settings) {
 }
 
 void Standing::walking(std::int64_t period_ns) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     facts_.phase = Phase::walking;
     facts_.period_ns = period_ns;
 }
@@ -60,39 +60,39 @@ void Standing::count(const rt::FrameRecord& record) {
 }
 
 bool Standing::lacks(const rt::Lack& lack) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     facts_.lacks.push_back(lack.what);
     return said_.insert(lack.what).second;
 }
 
 bool Standing::uncalibrated(const std::string& why) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     facts_.uncalibrated = true;
     return said_.insert(why).second;
 }
 
 std::optional<config::Configuration> Standing::take_next() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return std::exchange(next_, std::nullopt);
 }
 
 void Standing::put_next(config::Configuration configuration) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     next_ = std::move(configuration);
 }
 
 void Standing::stopping() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     facts_.phase = Phase::stopping;
 }
 
 void Standing::refuse(const std::string& why) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     facts_.refused = why;
 }
 
 Facts Standing::facts() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     Facts facts = facts_;
     facts.frames = frames_.load();
     facts.walk_frames = walk_frames_.load();

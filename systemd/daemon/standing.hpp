@@ -3,13 +3,13 @@
 
 #include <atomic>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "config/settings.hpp"
+#include "rt/base/mutex.hpp"
 #include "rt/threads/capability.hpp"
 #include "tools/walk/walk.hpp"
 
@@ -64,10 +64,10 @@ public:
     [[nodiscard]] std::uint64_t walk_frames() const { return walk_frames_.load(); }
 
 private:
-    mutable std::mutex mutex_;  // of what follows; no real-time thread comes here
-    Facts facts_;
-    std::set<std::string> said_;
-    std::optional<config::Configuration> next_;
+    mutable Mutex mutex_;  // no real-time thread comes here
+    Facts facts_ GUARDED_BY(mutex_);
+    std::set<std::string> said_ GUARDED_BY(mutex_);
+    std::optional<config::Configuration> next_ GUARDED_BY(mutex_);
     std::atomic<std::uint64_t> frames_{0}, walk_frames_{0}, misses_{0}, skipped_{0};
 };
 

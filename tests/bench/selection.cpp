@@ -6,13 +6,12 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/bench/statistics.hpp"
+#include "rt/base/statistics.hpp"
 #include "tests/select/scene.hpp"
 
 namespace {
 
 using namespace surefoot;
-using bench::quantile;
 
 template <class Work>
 double milliseconds(Work work) {
@@ -25,7 +24,7 @@ double milliseconds(Work work) {
 double select_ms(test::Scene& scene, const char* selector, double budget_us) {
     std::vector<double> ms;
     for (int i = 0; i < 31; ++i) ms.push_back(milliseconds([&] { scene.run(selector, budget_us); }));
-    return quantile(ms, 0.5);
+    return quantile_of(ms, 0.5);
 }
 
 Pose street_pose(double t) {
@@ -67,6 +66,7 @@ int main() {
     fmt::print(
         "}}, \"prepare\": {{\"nodes\": {}, \"visits\": {{\"p50\": {:.0f}, \"p99\": {:.0f}}}, \"cpu_ms\": {{\"p50\": {:.3f}, "
         "\"p99\": {:.3f}}}}}}}\n",
-        town.model.nodes.size(), quantile(visits, 0.5), quantile(visits, 0.99), quantile(cpu_ms, 0.5), quantile(cpu_ms, 0.99));
+        town.model.nodes.size(), quantile_of(visits, 0.5), quantile_of(visits, 0.99), quantile_of(cpu_ms, 0.5),
+        quantile_of(cpu_ms, 0.99));
     return 0;
 }

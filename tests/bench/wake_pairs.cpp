@@ -7,16 +7,15 @@
 #include <cstdlib>
 #include <vector>
 
+#include "rt/base/statistics.hpp"
 #include "rt/threads/capability.hpp"
 #include "rt/threads/placement.hpp"
-#include "tests/bench/statistics.hpp"
 #include "tools/doctor/cyclictest.hpp"
 #include "tools/doctor/wake_up.hpp"
 
 namespace {
 
 using namespace surefoot;
-using bench::median;
 
 std::string list(const std::vector<double>& v) {
     std::string text;
@@ -58,14 +57,14 @@ int main(int argc, char** argv) {
         difference.push_back(ours.p99_us - theirs_p99.back());
         fmt::print(stderr, "pair {:2}: p99 {:.1f} us, cyclictest {:.1f} us\n", pair + 1, ours.p99_us, theirs_p99.back());
     }
-    const double middle = median(difference);
+    const double middle = median_of(difference);
     fmt::print(
         "{{\"pairs\": {}, \"block_s\": {}, \"period_us\": {}, \"core\": {}, \"priority\": {}, \"p99_us\": {{\"surefoot\": "
         "{:.1f}, "
         "\"cyclictest\": {:.1f}}}, \"max_us\": {{\"surefoot\": {:.0f}, \"cyclictest\": {:.0f}}}, "
         "\"p99_difference_us\": {{\"median\": {:.1f}, \"blocks\": [{}]}}, \"steal_ms\": {:.0f}}}\n",
-        pairs, options.seconds, options.period_ns / 1000, options.core, options.priority, median(ours_p99), median(theirs_p99),
-        *std::max_element(ours_max.begin(), ours_max.end()), *std::max_element(theirs_max.begin(), theirs_max.end()), middle,
-        list(difference), steal_ms);
+        pairs, options.seconds, options.period_ns / 1000, options.core, options.priority, median_of(ours_p99),
+        median_of(theirs_p99), *std::max_element(ours_max.begin(), ours_max.end()),
+        *std::max_element(theirs_max.begin(), theirs_max.end()), middle, list(difference), steal_ms);
     return middle <= 50 ? 0 : 1;
 }

@@ -15,9 +15,9 @@
 #include "render/measure/calibrate_fit.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/random.hpp"
+#include "rt/base/statistics.hpp"
 #include "rt/threads/memory.hpp"
 #include "rt/threads/placement.hpp"
-#include "tests/bench/statistics.hpp"
 #include "tools/walk/path_source.hpp"
 #include "tools/walk/placing.hpp"
 #include "tools/walk/state.hpp"
@@ -25,7 +25,6 @@
 namespace {
 
 using namespace surefoot;
-using bench::quantile;
 
 std::int64_t now_ns(void* /*context*/) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -93,9 +92,9 @@ std::vector<double> relative_errors(const std::vector<double>& of, const std::ve
     return errors;
 }
 
-std::string quantiles(const std::vector<double>& v) {
-    return fmt::format("{{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}", quantile(v, 0.5), quantile(v, 0.9),
-                       quantile(v, 0.99));
+std::string quantiles_json(const std::vector<double>& v) {
+    return fmt::format("{{\"p50\": {:.4f}, \"p90\": {:.4f}, \"p99\": {:.4f}}}", quantile_of(v, 0.5), quantile_of(v, 0.9),
+                       quantile_of(v, 0.99));
 }
 
 }  // namespace
@@ -141,16 +140,16 @@ int main(int argc, char** argv) {
         ratios.push_back(took.back() / predicted.back());
     }
     // What a correction of the run's own speed would leave: the machine's speed moves between calibration and this run.
-    const double speed = quantile(ratios, 0.5);
+    const double speed = quantile_of(ratios, 0.5);
     for (const double us : predicted) at_speed.push_back(speed * us);
     fmt::print(
         "{{\"model\": \"{}\", \"poses\": {}, \"error\": {}, \"error_at_the_runs_speed\": {}, \"actual_over_predicted\": "
         "{{\"p10\": {:.3f}, \"p50\": {:.3f}, \"p90\": {:.3f}}}, \"frame_ms\": {{\"p50\": {:.2f}, \"p90\": {:.2f}}}, "
         "\"slowdown\": {:.3f}, \"repeated\": {}, \"two_measurements\": {{\"of_a_round_each\": {}, \"of_four_rounds_each\": "
         "{}}}}}\n",
-        argv[1], poses, quantiles(relative_errors(predicted, took)), quantiles(relative_errors(at_speed, took)),
-        quantile(ratios, 0.1), speed, quantile(ratios, 0.9), 1e-3 * quantile(took, 0.5), 1e-3 * quantile(took, 0.9),
-        settled.slowdown, settled.repeated, quantiles(apart(round_of(frames, 1), round_of(frames, rounds - 1))),
-        quantiles(apart(measure::settle(half_of(frames, 0)).frames, measure::settle(half_of(frames, 1)).frames)));
+        argv[1], poses, quantiles_json(relative_errors(predicted, took)), quantiles_json(relative_errors(at_speed, took)),
+        quantile_of(ratios, 0.1), speed, quantile_of(ratios, 0.9), 1e-3 * quantile_of(took, 0.5), 1e-3 * quantile_of(took, 0.9),
+        settled.slowdown, settled.repeated, quantiles_json(apart(round_of(frames, 1), round_of(frames, rounds - 1))),
+        quantiles_json(apart(measure::settle(half_of(frames, 0)).frames, measure::settle(half_of(frames, 1)).frames)));
     return 0;
 }

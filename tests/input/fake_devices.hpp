@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "input/devices/source.hpp"
@@ -68,6 +69,8 @@ public:
         waiting_.clear();
         return taken_;
     }
+    [[nodiscard]] const std::optional<Error>& trouble() const override { return without; }
+    std::optional<Error> without;
     std::int64_t now_ns = 1'000'000'000;
     std::function<std::unique_ptr<Readied>(const PluggedDevice&)> ready;  ///< as FinderOptions::ready
 

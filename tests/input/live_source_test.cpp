@@ -2,10 +2,14 @@
 // needs memory.
 #include "input/live_source.hpp"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <thread>
 
+#include "input/devices/live.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/placement.hpp"
@@ -144,6 +148,35 @@ TEST(LiveSource, NobodyToSteerIsRestAndSaidOnce) {
     steered.devices->pull(device);
     steered.run(2000);
     EXPECT_EQ(steered.times_said("no device is there"), 0) << "it was, and its going is said";
+}
+
+TEST(LiveSource, WhatTheDevicesHaveToDoWithoutIsSaidOnce) {
+    auto fake = std::make_unique<FakeDevices>();
+    fake->without = Error{"udev", "its events cannot be received", "allow netlink sockets"};
+    LiveSource source(LiveOptions{}, std::move(fake));
+    Steering steering{MotionLimits{}, SafetyLimits{}};
+    source.begin(steering, 1'000'000'000);
+    for (int i = 0; i < 100; ++i) (void)source.drain(steering, 1'000'000'000 + i * tick_ns);
+    int said = 0;
+    for (NoteLine note; source.next_note(note);)
+        said += note.view().find("its events cannot be received") != std::string::npos ? 1 : 0;
+    EXPECT_EQ(said, 1);
+}
+
+// A service that may open no netlink socket looks around instead; here no descriptor is left for one.
+TEST(LiveDevices, KnowWhyNoEventsCome) {
+    rlimit before{};
+    getrlimit(RLIMIT_NOFILE, &before);
+    rlimit none = before;
+    none.rlim_cur = static_cast<rlim_t>(::dup(STDERR_FILENO));
+    ::close(static_cast<int>(none.rlim_cur));
+    setrlimit(RLIMIT_NOFILE, &none);
+    const auto blind = open_live({});
+    setrlimit(RLIMIT_NOFILE, &before);
+    ASSERT_TRUE(blind.ok());
+    ASSERT_TRUE((*blind)->trouble().has_value());
+    EXPECT_NE((*blind)->trouble()->text().find("udev"), std::string::npos);
+    EXPECT_FALSE((*blind)->trouble()->remedy.empty());
 }
 
 TEST(LiveSource, AMappingThatFitsNothingIsSaidOnceAndTheOthersAreNot) {

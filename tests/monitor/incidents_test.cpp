@@ -141,7 +141,6 @@ TEST(Incidents, AFullDiskIsSaidOnceAndSurvived) {
         }
         for (int i = 0; i < 500 && (*writer)->written() + (*writer)->failed() < outcomes; ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));  // and given back
     };
     burst(1);
     EXPECT_EQ((*writer)->written(), 1U);

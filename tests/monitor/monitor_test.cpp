@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "rt/base/check.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/recorder.hpp"
 #include "rt/threads/usage.hpp"
@@ -70,6 +71,22 @@ test::Exposed scrape(const Monitor& monitor) {
     return e;
 }
 
+bool holds(int number) { return CHECK_RARE(number < 0, "the test's own check holds"); }
+
+TEST(Monitor, ShowsWhatCannotHappenAndDid) {
+    for (int i = 0; i < 3; ++i) EXPECT_FALSE(holds(i));
+    const auto monitor = opened({});
+    const auto status = nlohmann::json::parse(*monitor->page("/status.json")->body);
+    const auto& checks = status.at("rare_checks");
+    const auto own = std::find_if(checks.begin(), checks.end(),
+                                  [](const auto& c) { return c.at("sentence") == "the test's own check holds"; });
+    ASSERT_NE(own, checks.end()) << checks;
+    EXPECT_EQ(own->at("count"), 3);
+    EXPECT_EQ(own->at("place").get<std::string>().rfind("tests/monitor/monitor_test.cpp:", 0), 0U);
+    const test::Exposed e = test::ExpositionReader::read(*monitor->page("/metrics")->body);
+    EXPECT_EQ(e.at("surefoot_rare_checks_failed_total"), static_cast<double>(rare_check_count()));
+}
+
 TEST(Monitor, ServesTheFiguresOfAWalkAndOfTheNext) {
     const TemporaryFolder folder;
     MonitorOptions options;
@@ -89,8 +106,9 @@ TEST(Monitor, ServesTheFiguresOfAWalkAndOfTheNext) {
         monitor->set_input({true, 1, n == 2});
         monitor->add_note("a device came");
         monitor->end_walk();
-        std::this_thread::sleep_for(std::chrono::milliseconds(250));  // a page is kept for 200 ms
-        const auto e = scrape(*monitor);
+        test::Exposed e = scrape(*monitor);  // a page is kept for 200 ms
+        const std::int64_t deadline_ns = rt::monotonic_ns() + 10'000'000'000;
+        while (e.at("surefoot_frames_total") != 120 * n && rt::monotonic_ns() < deadline_ns) e = scrape(*monitor);
         EXPECT_EQ(e.at("surefoot_frames_total"), 120 * n);
         EXPECT_EQ(e.at("surefoot_misses_total{cause=\"raster\"}"), n);
         EXPECT_EQ(e.at("surefoot_degraded{reason=\"isolated_core\"}"), 1);

@@ -67,6 +67,15 @@ TEST(View, StatusIsAPageThatNamesWhatMatters) {
     EXPECT_NE(status_page(viewed_status(400), a_look(80, 24, true))[0].find("\033["), std::string::npos);
 }
 
+TEST(View, AFailedCheckIsNamedWithItsPlaceAndCount) {
+    json status = viewed_status(400);
+    EXPECT_EQ(joined(status_page(status, {})).find("check failed"), std::string::npos) << "none has";
+    status["rare_checks"] = {{{"place", "render/engine.cpp:171"}, {"sentence", "there is room"}, {"count", 12}}};
+    EXPECT_NE(joined(status_page(status, {})).find("a check failed, 12 times: not so that there is room (render/engine.cpp:171)"),
+              std::string::npos)
+        << joined(status_page(status, {}));
+}
+
 TEST(View, BeforeTheFirstFrameThereIsAPageToo) {
     for (const json& status : {viewed_status(0), viewed_status(0, ""), viewed_status(1)}) {
         EXPECT_GT(status_page(status, {}).size(), 3U);

@@ -16,34 +16,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(Quantiles, AreNearestRanksThatOccurred) {
-    std::vector<double> values;
-    for (int i = 1000; i >= 1; --i) values.push_back(i);
-    const auto q = quantiles(values);
-    EXPECT_EQ(q.p50, 500);
-    EXPECT_EQ(q.p90, 900);
-    EXPECT_EQ(q.p99, 990);
-    EXPECT_EQ(q.p999, 999);
-    EXPECT_EQ(q.max, 1000);
-    EXPECT_EQ(q.min, 1);
-    EXPECT_DOUBLE_EQ(q.mean, 500.5);
-}
-
-TEST(Quantiles, OneSlowFrameOfThousandIsTheMaximumAndNoMore) {
-    std::vector<double> values(1000, 1.0);
-    values[3] = 50;
-    EXPECT_EQ(quantiles(values).p999, 1.0);
-    EXPECT_EQ(quantiles(values).max, 50.0);
-    values.resize(999);
-    EXPECT_EQ(quantiles(values).p999, 50.0);
-}
-
-TEST(Quantiles, EmptyAndNotFiniteValues) {
-    EXPECT_EQ(quantiles({}).max, 0);
-    EXPECT_EQ(quantiles({std::nan(""), infinity, 3.0}).max, 3);
-    EXPECT_EQ(quantiles({7.0}).p50, 7);
-}
-
 TEST(Summary, RunAndSkippedSlotsAddUp) {
     WalkSummary s;
     summarize(frames_with_a_miss(), period_ns, s);

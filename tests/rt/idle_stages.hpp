@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rt/frame/loop.hpp"
+#include "tests/rt/in_child.hpp"
 
 namespace surefoot::rt::test {
 
@@ -12,6 +13,19 @@ public:
     void submit(FrameRecord&) override {}
     void finish(FrameRecord&) override {}
     void account(FrameRecord&) override {}
+};
+
+/// Says when the loop is well under way.
+class TellingStages final : public IdleStages {
+public:
+    explicit TellingStages(Told& under_way) : under_way_(under_way) {}
+    void sample(FrameRecord& r) override {
+        IdleStages::sample(r);
+        if (r.frame == 8) under_way_.tell();
+    }
+
+private:
+    Told& under_way_;
 };
 
 }  // namespace surefoot::rt::test

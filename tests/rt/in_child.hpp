@@ -4,12 +4,34 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdio>
 #include <functional>
 
 namespace surefoot::rt::test {
 
 constexpr int passed = 0, failed = 1;
+
+/// Told once by one process and waited for by another; made before the fork.
+class Told {
+public:
+    Told() : open_(::pipe(ends_.data()) == 0) {}
+    ~Told() {
+        for (const int end : ends_)
+            if (open_) ::close(end);
+    }
+    Told(const Told&) = delete;
+    Told& operator=(const Told&) = delete;
+    void tell() { (void)!::write(ends_[1], "x", 1); }
+    void wait() {
+        char told = 0;
+        (void)!::read(ends_[0], &told, 1);
+    }
+
+private:
+    std::array<int, 2> ends_{};
+    bool open_;
+};
 
 /// Runs `body` in a forked child; its exit code. `meanwhile` runs here, beside it.
 inline int in_child(const std::function<int()>& body, const std::function<void(pid_t)>& meanwhile = {}) {

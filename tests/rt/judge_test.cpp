@@ -1,4 +1,4 @@
-// Blame from evidence, the deadline rule, the lossless histogram, the flight recorder.
+// Blame from evidence, the deadline rule, the lossless histogram.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include "rt/base/random.hpp"
 #include "rt/frame/blame.hpp"
 #include "rt/frame/control.hpp"
-#include "rt/monitor/flight_recorder.hpp"
 #include "rt/monitor/histogram.hpp"
 
 namespace surefoot::rt {
@@ -108,26 +107,6 @@ TEST(Blame, AMissIsOwnWhenTheStolenTimeDoesNotExplainIt) {
     EXPECT_TRUE(is_own_miss(r, limits));
 }
 
-TEST(Control, ThePermutationTestIsExact) {
-    EXPECT_DOUBLE_EQ(sign_flip_p_value({}), 1.0);
-    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{0, 0, 0}), 1.0);
-    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{1}), 0.5);
-    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{1, 1, 1}), 0.125);
-    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{2, -1}), 0.5);  // +2-1 and +2+1 of four
-    EXPECT_DOUBLE_EQ(sign_flip_p_value(std::vector<int>{-1, -1}), 1.0);
-    Random random(3);
-    std::vector<int> d;
-    for (int i = 0; i < 12; ++i) d.push_back(static_cast<int>(random.below(7)) - 3);
-    int seen = 0, least = 0;
-    for (const int x : d) seen += x;
-    for (unsigned mask = 0; mask < 4096; ++mask) {
-        int sum = 0;
-        for (unsigned i = 0; i < 12; ++i) sum += (mask >> i & 1U) != 0 ? std::abs(d[i]) : -std::abs(d[i]);
-        least += sum >= seen ? 1 : 0;
-    }
-    EXPECT_NEAR(sign_flip_p_value(d), least / 4096.0, 1e-12);
-}
-
 TEST(Control, TheDeadlineRuleWantsAllOfItsParts) {
     std::vector<BlockTally> blocks;
     for (std::uint32_t b = 0; b < 180; ++b) {
@@ -209,23 +188,6 @@ TEST(Histogram, ClipsNothingAndItsQuantilesAreWithinABin) {
     EXPECT_EQ(h.max(), values.back());
     EXPECT_EQ(h.min(), -7);
     for (std::size_t b = 1; b + 1 < Histogram::bins; ++b) ASSERT_EQ(Histogram::bin_high(b) + 1, Histogram::bin_low(b + 1)) << b;
-}
-
-TEST(FlightRecorder, KeepsTheFramesAroundAMissAndCountsWhatItSuppresses) {
-    FlightRecorder recorder(2);
-    for (std::uint64_t i = 0; i < 1000; ++i) {
-        FrameRecord r;
-        r.frame = i;
-        r.missed = i == 200 || i == 205 || i == 400 || i == 600;
-        recorder.add(r);
-    }
-    recorder.finish();
-    ASSERT_EQ(recorder.dumps().size(), 2U);
-    EXPECT_EQ(recorder.dumps()[0].missed_frame, 200U);
-    EXPECT_EQ(recorder.dumps()[0].records.size(), 120U);
-    EXPECT_EQ(recorder.dumps()[0].records.front().frame, 111U);
-    EXPECT_EQ(recorder.dumps()[0].records.back().frame, 230U);
-    EXPECT_EQ(recorder.suppressed(), 1U);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include <optional>
 #include <thread>
 
+#include "rt/base/mutex.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/frame/loop.hpp"
 #include "rt/threads/capability.hpp"
@@ -34,7 +36,7 @@ using test::failed;
 using test::in_child;
 using test::passed;
 
-void doze() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+constexpr auto start_within = std::chrono::seconds(5);
 
 /// Names and places each worker as it starts.
 class Placing final : public tbb::task_scheduler_observer {
@@ -49,9 +51,13 @@ public:
     }
 };
 
-/// Makes oneTBB start its workers: three tasks that all wait until three threads have met (or a second has passed).
+/// Makes oneTBB start its workers: three tasks that all wait until three threads have met (or none more comes).
 int start_workers(bool placed) {
-    std::atomic<pid_t> tids[3] = {};
+    std::array<pid_t, 3> tids{};
+    int met = 0;
+    Mutex mutex;
+    Condition changed;
+    const auto deadline = std::chrono::steady_clock::now() + start_within;
     tbb::task_arena arena(3);
     arena.initialize();
     std::optional<Placing> placing;
@@ -60,12 +66,16 @@ int start_workers(bool placed) {
         tbb::parallel_for(
             0, 3,
             [&](int i) {
-                tids[i] = own_tid();
-                for (int n = 0; n < 1000 && (tids[0] == 0 || tids[1] == 0 || tids[2] == 0); ++n) doze();
+                const MutexLock lock(mutex);
+                tids[static_cast<std::size_t>(i)] = own_tid();
+                ++met;
+                changed.notify_all();
+                while (met < 3 && changed.wait_until(mutex, deadline)) {
+                }
             },
             tbb::simple_partitioner{});
     });
-    return static_cast<int>(std::count_if(std::begin(tids), std::end(tids), [](const auto& t) { return t != own_tid(); }));
+    return static_cast<int>(std::count_if(std::begin(tids), std::end(tids), [](pid_t t) { return t != own_tid(); }));
 }
 
 /// Who makes the workers, and whether they are placed as they start.
@@ -130,9 +140,10 @@ TEST(CensusWithTbb, OnlyWorkersThatArePlacedAsTheyStartPass) {
 
 TEST(Stopped, AProcessStoppedForThreeTenthsOfASecondCountsItsSlotsAndNamesTheCause) {
     if (!guard_active()) GTEST_SKIP() << "sanitizers make a forked child's signals unreliable";
-    const auto body = [] {
+    test::Told under_way;
+    const auto body = [&] {
         RealClock clock;
-        test::IdleStages stages;
+        test::TellingStages stages(under_way);
         SpscRing<FrameRecord> ring(128);
         FrameLoopOptions options;
         options.frames = 30;
@@ -149,8 +160,8 @@ TEST(Stopped, AProcessStoppedForThreeTenthsOfASecondCountsItsSlotsAndNamesTheCau
         return result.run + result.skipped == result.elapsed && result.skipped >= 16 && stopped == 1 ? passed : failed;
     };
     EXPECT_EQ(in_child(body,
-                       [](pid_t child) {
-                           std::this_thread::sleep_for(std::chrono::milliseconds(150));
+                       [&](pid_t child) {
+                           under_way.wait();
                            ::kill(child, SIGSTOP);
                            std::this_thread::sleep_for(std::chrono::milliseconds(300));
                            ::kill(child, SIGCONT);

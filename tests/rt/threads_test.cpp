@@ -56,9 +56,10 @@ std::vector<std::string> census_of_helpers(bool place_first, bool& refused) {
             p.reset_on_fork = false;
             (void)place_thread(0, p);
             named = true;
-            while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            named.notify_one();
+            stop.wait(false);
         });
-        while (!named) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        named.wait(false);
         if (!place_first) place();
         auto threads = read_threads();
         std::erase_if(*threads, [](const ThreadInfo& t) { return !t.name.starts_with("sf-t-"); });
@@ -71,6 +72,7 @@ std::vector<std::string> census_of_helpers(bool place_first, bool& refused) {
         table[1].cpus = allowed_cpus();
         problems = census(table, *threads);
         stop = true;
+        stop.notify_one();
         helper.join();
     });
     return problems;

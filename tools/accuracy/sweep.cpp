@@ -10,6 +10,7 @@
 #include "render/measure/calibrate.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "render/model/walk_file.hpp"
+#include "rt/base/statistics.hpp"
 #include "rt/clock/clock.hpp"
 #include "tools/walk/path_source.hpp"
 #include "tools/walk/state.hpp"
@@ -17,12 +18,6 @@
 namespace surefoot::accuracy {
 
 namespace {
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// dB. Every picture equal to full detail is infinite; none that defines a ratio is no number.
 double mean_snr(double sum_db, std::uint32_t finite, std::uint32_t infinite) {
@@ -53,7 +48,7 @@ double Sweep::time_full(const Station& station, const std::vector<gl::DrawItem>&
         engine.draw_unbudgeted(station.pose, items);
         ms.push_back(static_cast<double>(rt::monotonic_ns() - begun) * 1e-6);
     }
-    return median(ms);
+    return quantile_of(ms, 0.5);
 }
 
 Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_us, double target_error_rad) {
@@ -78,7 +73,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
         cost += cut.predicted_us;
         std::vector<double> ms;
         for (int i = 0; i < repeats; ++i) ms.push_back(engine.submit(station.pose, limits).finished_us * 1e-3);
-        frame_ms.push_back(median(ms));
+        frame_ms.push_back(quantile_of(ms, 0.5));
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
         const measure::Snr snr = measure::snr(image->rgba, station.full);
@@ -92,7 +87,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
         }
         ssim_sum += measure::ssim(image->rgba, station.full, image->width, image->height);
     }
-    const report::Quantiles q = report::quantiles(frame_ms);
+    const Quantiles q = quantiles(frame_ms);
     point.frame_ms_p50 = q.p50;
     point.frame_ms_p90 = q.p90;
     const auto inexact = static_cast<double>(stations.size() - point.exact);
@@ -172,7 +167,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
         station.full = std::move(image->rgba);
         engine.reserve(station.prepared);
     }
-    run.full_frame_ms = median(full_ms);
+    run.full_frame_ms = quantile_of(full_ms, 0.5);
 
     std::vector<double> budgets = request.budgets_ms;
     if (budgets.empty()) {

@@ -159,39 +159,40 @@ IncidentWriter::~IncidentWriter() {
 }
 
 void IncidentWriter::run() {
+    writes_.plays();
     if (auto own = rt::read_thread(0)) {
         own->name = "sf-incidents";
         (void)rt::restore_thread(*own);
     }
     while (const rt::BlackBox::Incident* incident = box_.wait()) {
-        write(*incident);
+        const bool done = write(*incident);
         box_.done();
+        (done ? written_ : failed_).fetch_add(1, std::memory_order_release);  // whoever sees it may offer the next
     }
 }
 
 void IncidentWriter::offer(MissedFrame missed) {
-    const std::lock_guard lock(missed_mutex_);
+    const MutexLock lock(missed_mutex_);
     missed_ = std::move(missed);
 }
 
-void IncidentWriter::write(const rt::BlackBox::Incident& incident) {
+bool IncidentWriter::write(const rt::BlackBox::Incident& incident) {
     MissedFrame missed;
     {
-        const std::lock_guard lock(missed_mutex_);
+        const MutexLock lock(missed_mutex_);
         missed = missed_;
     }
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     const auto folder =
         write_incident(dir_, incident, limits_, std::chrono::duration_cast<std::chrono::seconds>(now).count(), &missed);
     if (folder) {
-        written_.fetch_add(1, std::memory_order_relaxed);
         if (say_) say_(fmt::format("a burst of misses from frame {} on: {}", incident.first_frame, *folder));
         failing_ = false;
-        return;
+        return true;
     }
-    failed_.fetch_add(1, std::memory_order_relaxed);
     if (!failing_ && say_) say_("a burst of misses could not be written down: " + folder.error().text());
     failing_ = true;
+    return false;
 }
 
 }  // namespace surefoot::monitor

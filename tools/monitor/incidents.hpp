@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
 
+#include "rt/base/mutex.hpp"
 #include "rt/base/result.hpp"
 #include "rt/monitor/black_box.hpp"
 
@@ -40,23 +40,25 @@ public:
     IncidentWriter& operator=(const IncidentWriter&) = delete;
 
     /// Any thread: goes into the next incident that it belongs to; a later one takes its place.
-    void offer(MissedFrame missed);
+    void offer(MissedFrame missed) EXCLUDES(missed_mutex_);
 
-    [[nodiscard]] std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
-    [[nodiscard]] std::uint64_t failed() const { return failed_.load(std::memory_order_relaxed); }
+    [[nodiscard]] std::uint64_t written() const { return written_.load(std::memory_order_acquire); }
+    [[nodiscard]] std::uint64_t failed() const { return failed_.load(std::memory_order_acquire); }
 
 private:
     IncidentWriter(std::string dir, rt::BlackBox& box, const IncidentLimits& limits, std::function<void(std::string_view)> say);
     void run();
-    void write(const rt::BlackBox::Incident& incident);
+    /// False: it could not be, and that was said.
+    bool write(const rt::BlackBox::Incident& incident) REQUIRES(writes_) EXCLUDES(missed_mutex_);
 
     std::string dir_;
     rt::BlackBox& box_;
     IncidentLimits limits_;
     std::function<void(std::string_view)> say_;
-    bool failing_ = false;
-    std::mutex missed_mutex_;
-    MissedFrame missed_;
+    [[no_unique_address]] ThreadRole writes_;  ///< the thread below
+    bool failing_ GUARDED_BY(writes_) = false;
+    Mutex missed_mutex_;
+    MissedFrame missed_ GUARDED_BY(missed_mutex_);
     std::atomic<std::uint64_t> written_{0}, failed_{0};
     std::thread thread_;
 };

@@ -77,7 +77,7 @@ void Monitor::offer(MissedFrame missed) {
 std::string Monitor::address() const { return server_ ? server_->address().text() : std::string(); }
 
 void Monitor::begin_walk(const MonitoredWalk& walk) {
-    const std::lock_guard lock(facts_mutex_);
+    const MutexLock lock(facts_mutex_);
     facts_.walk = walk;
     facts_.state = ServiceState::walking;
     setup_ = walk.setup;
@@ -88,32 +88,32 @@ void Monitor::end_walk() {
     // The monitor thread of that walk has ended: its part is ours.
     black_box_.finish();
     telemetry_.publish();
-    const std::lock_guard lock(facts_mutex_);
+    const MutexLock lock(facts_mutex_);
     facts_.state = ServiceState::stopped;
 }
 
 void Monitor::set_state(ServiceState state) {
-    const std::lock_guard lock(facts_mutex_);
+    const MutexLock lock(facts_mutex_);
     facts_.state = state;
 }
 
 void Monitor::set_degraded(std::vector<rt::Lack> degraded) {
-    const std::lock_guard lock(facts_mutex_);
+    const MutexLock lock(facts_mutex_);
     facts_.degraded = std::move(degraded);
 }
 
 void Monitor::add_degraded(const rt::Lack& degraded) {
-    const std::lock_guard lock(facts_mutex_);
+    const MutexLock lock(facts_mutex_);
     facts_.degraded.push_back(degraded);
 }
 
 void Monitor::set_input(const rt::InputState& input) {
-    const std::lock_guard lock(facts_mutex_);
+    const MutexLock lock(facts_mutex_);
     facts_.input = input;
 }
 
 void Monitor::add_note(std::string_view text) {
-    const std::lock_guard lock(facts_mutex_);
+    const MutexLock lock(facts_mutex_);
     notes_.push_back({rt::monotonic_ns(), std::string(text.substr(0, note_bytes_most))});
     if (notes_.size() > notes_most) notes_.pop_front();
 }
@@ -121,7 +121,7 @@ void Monitor::add_note(std::string_view text) {
 void Monitor::take_walk() {
     rt::TelemetrySetup setup;
     {
-        const std::lock_guard lock(facts_mutex_);
+        const MutexLock lock(facts_mutex_);
         setup = setup_;
         walk_waits_.store(false, std::memory_order_relaxed);
     }
@@ -130,6 +130,7 @@ void Monitor::take_walk() {
 }
 
 void Monitor::on_record(const rt::FrameRecord& record) {
+    monitor_thread_.plays();
     if (walk_waits_.load(std::memory_order_acquire)) take_walk();
     telemetry_.add(record);
     black_box_.add(record);
@@ -145,7 +146,7 @@ const MonitorPage& Monitor::fill_page(bool with_threads) {
     MonitorPage& p = cached_->page;
     const rt::ProcessFigures process = p.process;
     {
-        const std::lock_guard lock(facts_mutex_);
+        const MutexLock lock(facts_mutex_);
         p = facts_;
         for (const Note& n : notes_) p.notes.push_back({static_cast<double>(now_ns - n.at_ns) * 1e-9, n.text});
     }
@@ -156,6 +157,7 @@ const MonitorPage& Monitor::fill_page(bool with_threads) {
     }
     if (with_threads) p.threads = rt::read_busy_threads();
     p.figures = &telemetry_.newest();
+    p.rare_checks = rare_checks();
     p.up_s = static_cast<double>(now_ns - started_ns_) * 1e-9;
     p.last_frame_age_s = p.figures->frames > 0 && p.walk.clock == rt::name_of(rt::ClockKind::real)
                              ? static_cast<double>(std::max<std::int64_t>(now_ns - p.figures->last.presented_ns, 0)) * 1e-9

@@ -10,11 +10,11 @@
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "rt/base/mutex.hpp"
 #include "rt/base/result.hpp"
 #include "rt/monitor/black_box.hpp"
 #include "rt/monitor/telemetry.hpp"
@@ -68,26 +68,27 @@ public:
 
 private:
     explicit Monitor(MonitorOptions options);
-    void take_walk();
-    const MonitorPage& fill_page(bool with_threads);
+    void take_walk() REQUIRES(monitor_thread_) EXCLUDES(facts_mutex_);
+    const MonitorPage& fill_page(bool with_threads) EXCLUDES(facts_mutex_);
 
     MonitorOptions options_;
+    [[no_unique_address]] ThreadRole monitor_thread_;
     // The monitor thread's, and (the published copy) the readers'.
     rt::Telemetry telemetry_;
     rt::BlackBox black_box_;
-    std::atomic<bool> walk_waits_{false};  ///< setup_ is to be taken before the next record
-    std::atomic<std::int64_t> cpu_ns_{0};  ///< of all walks' monitor threads
-    std::int64_t cpu_read_ns_ = 0;         ///< record time
-    std::int64_t cpu_seen_ns_ = 0;
+    std::atomic<bool> walk_waits_{false};                       ///< setup_ is to be taken before the next record
+    std::atomic<std::int64_t> cpu_ns_{0};                       ///< of all walks' monitor threads
+    std::int64_t cpu_read_ns_ GUARDED_BY(monitor_thread_) = 0;  ///< record time
+    std::int64_t cpu_seen_ns_ GUARDED_BY(monitor_thread_) = 0;
 
-    std::mutex facts_mutex_;  ///< of what callers set and readers copy; never taken for a record, but for a walk's first
-    rt::TelemetrySetup setup_;
-    MonitorPage facts_;
+    Mutex facts_mutex_;  ///< of what callers set and readers copy; never taken for a record, but for a walk's first
+    rt::TelemetrySetup setup_ GUARDED_BY(facts_mutex_);
+    MonitorPage facts_ GUARDED_BY(facts_mutex_);
     struct Note {
         std::int64_t at_ns = 0;
         std::string text;
     };
-    std::deque<Note> notes_;
+    std::deque<Note> notes_ GUARDED_BY(facts_mutex_);
 
     // The readers'.
     struct Cached;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rt/base/check.hpp"
 #include "rt/monitor/process.hpp"
 #include "rt/monitor/telemetry.hpp"
 #include "tools/report/report.hpp"
@@ -58,6 +59,7 @@ struct MonitorPage {
     rt::ProcessFigures process;
     std::vector<rt::BusyThread> threads;  ///< only in the JSON
     MonitorCounts counts;
+    std::vector<RareCheck> rare_checks;  ///< of this process: what "cannot happen", and did
 };
 
 /// What a lack is about, as a label's value: fifo, memory_lock, isolated_core, throttled, placing, cost_table, switched_off,

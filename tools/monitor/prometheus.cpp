@@ -282,6 +282,11 @@ std::string prometheus_text(const MonitorPage& page) {
     add_times(e, *page.figures);
     add_work(e, *page.figures);
     add_now(e, page);
+    std::uint64_t failed_checks = 0;
+    for (const RareCheck& c : page.rare_checks) failed_checks += c.count;
+    e.counter("surefoot_rare_checks_failed_total",
+              "Times that something was seen that cannot happen: there should be none; `surefoot status` names the places.",
+              failed_checks);
     add_process(e, page.process);
     add_monitor(e, page.counts);
     return e.take();

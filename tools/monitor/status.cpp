@@ -30,7 +30,7 @@ ordered_json distribution_json(const rt::Histogram& h, double ns_per_unit) {
 
 /// Exact quantiles of a few values; changes their order.
 ordered_json few_json(std::vector<double> values) {
-    const report::Quantiles q = report::quantiles(std::move(values));
+    const Quantiles q = quantiles(std::move(values));
     return {{"min", q.min}, {"p50", q.p50}, {"p99", q.p99}, {"max", q.max}, {"mean", q.mean}};
 }
 
@@ -198,6 +198,9 @@ std::string status_json(const MonitorPage& p) {
                     {"cpu_s", p.process.cpu_s >= 0 ? ordered_json(p.process.cpu_s) : ordered_json(nullptr)},
                     {"host_steal_s", p.process.steal_s >= 0 ? ordered_json(p.process.steal_s) : ordered_json(nullptr)}};
     j["threads"] = threads_json(p.threads);
+    j["rare_checks"] = ordered_json::array();
+    for (const RareCheck& c : p.rare_checks)
+        j["rare_checks"].push_back({{"place", c.place}, {"sentence", c.sentence}, {"count", c.count}});
     j["monitor"] = monitor_json(p.counts);
     return j.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

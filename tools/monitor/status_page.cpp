@@ -70,6 +70,15 @@ void add_counts(const json& s, const Look& look, std::vector<std::string>& lines
                                 grouped(number_at(s, "/totals/guard_violations"))));
 }
 
+/// A fault of the program that it has outlived: to be reported.
+void add_rare_checks(const json& s, const Look& look, std::vector<std::string>& lines) {
+    if (!s.contains("rare_checks") || !s["rare_checks"].is_array()) return;
+    for (const json& c : s["rare_checks"])
+        lines.push_back(inked(look, Ink::bad,
+                              fmt::format("a check failed, {} times: not so that {} ({})", grouped(number_at(c, "/count")),
+                                          text_at(c, "/sentence"), text_at(c, "/place"))));
+}
+
 void add_times(const json& s, std::vector<std::string>& lines) {
     lines.push_back(fmt::format("{:<20}{:>10}{:>10}{:>10}{:>10}", "since the start", "p50", "p99", "p99.9", "max"));
     for (const TimeRow& row : time_rows) {
@@ -138,6 +147,7 @@ std::vector<std::string> status_page(const json& status, const Look& look) {
     add_lacks(status, look, lines);
     lines.emplace_back();
     add_counts(status, look, lines);
+    add_rare_checks(status, look, lines);
     add_recent(status, look, lines);
     add_input(status, look, lines);
     lines.emplace_back();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rt/base/result.hpp"
+#include "rt/base/statistics.hpp"
 #include "rt/frame/control.hpp"
 #include "rt/frame/record.hpp"
 #include "rt/monitor/facts.hpp"
@@ -20,10 +21,6 @@ class AtomicFile;
 }
 
 namespace surefoot::report {
-
-struct Quantiles {
-    double p50 = 0, p90 = 0, p99 = 0, p999 = 0, max = 0, mean = 0, min = 0;
-};
 
 struct ControlBlock {
     bool walk = false;  ///< else the bare loop
@@ -84,8 +81,7 @@ struct WalkSummary {
     InputSummary input;
 };
 
-/// Pure: percentiles and sums over the records (control blocks' bare frames excluded from the walk's figures).
-Quantiles quantiles(std::vector<double> values);
+/// Pure: quantiles and sums over the records (control blocks' bare frames excluded from the walk's figures).
 void summarize(std::span<const rt::FrameRecord> records, std::int64_t period_ns, WalkSummary& summary);
 
 std::string to_json(const WalkSummary& summary);

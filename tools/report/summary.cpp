@@ -18,12 +18,6 @@ namespace {
 
 using rt::FrameRecord;
 
-/// Nearest rank: the smallest value that at least a share q of all values do not exceed. Never a value that did not occur.
-double nearest_rank(const std::vector<double>& sorted, double q) {
-    const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size()) - 1e-9));
-    return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
-}
-
 template <class Value>
 Quantiles quantiles_of(std::span<const FrameRecord* const> frames, Value value) {
     std::vector<double> values;
@@ -97,23 +91,6 @@ void clear_counts(WalkSummary& s) {
 }
 
 }  // namespace
-
-Quantiles quantiles(std::vector<double> values) {
-    std::erase_if(values, [](double v) { return !std::isfinite(v); });
-    Quantiles q;
-    if (values.empty()) return q;
-    std::sort(values.begin(), values.end());
-    q.p50 = nearest_rank(values, 0.50);
-    q.p90 = nearest_rank(values, 0.90);
-    q.p99 = nearest_rank(values, 0.99);
-    q.p999 = nearest_rank(values, 0.999);
-    q.min = values.front();
-    q.max = values.back();
-    double sum = 0;
-    for (const double v : values) sum += v;
-    q.mean = sum / static_cast<double>(values.size());
-    return q;
-}
 
 void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, WalkSummary& summary) {
     std::vector<const FrameRecord*> frames;

@@ -88,9 +88,9 @@ std::vector<SoakSample> after_warm_up(const SoakSummary& s) {
 }
 
 SoakCheck judge_memory(SoakSummary& s, const std::vector<SoakSample>& samples) {
-    std::vector<rt::TrendPoint> points;
+    std::vector<TrendPoint> points;
     for (const SoakSample& sample : samples) points.push_back({sample.time_s, sample.memory_kib});
-    s.memory = rt::robust_trend(points);
+    s.memory = robust_trend(points);
     SoakCheck check{"memory", Judged::not_judged, ""};
     const double window_s = points.empty() ? 0 : points.back().time_s - points.front().time_s;
     if (!s.memory.known) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "rt/base/result.hpp"
-#include "rt/monitor/trend.hpp"
+#include "rt/base/statistics.hpp"
 #include "tools/report/report.hpp"
 
 namespace surefoot::soak {
@@ -94,7 +94,7 @@ struct SoakSummary {
     std::vector<SoakMiss> misses;  ///< the first few hundred
     std::uint64_t misses_untold = 0;
     std::vector<SoakSample> samples;
-    rt::Trend memory;                ///< of memory_kib over time_s, after the warm-up
+    Trend memory;                    ///< of memory_kib over time_s, after the warm-up
     std::int64_t grid_drift_ns = 0;  ///< largest difference of a frame's due time from t0 + slot x period
     std::uint64_t slots_elapsed = 0, slots_run = 0, slots_skipped = 0;  ///< the control's among them
     std::uint64_t records_lost = 0;

@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::size_t most_columns = 600, most_misses = 400;
 
-report::Quantiles quantiles_of(const rt::Histogram& h, double factor) {
+Quantiles quantiles_of(const rt::Histogram& h, double factor) {
     const auto at = [&](double q) { return static_cast<double>(h.quantile(q)) * factor; };
-    report::Quantiles q;
+    Quantiles q;
     q.p50 = at(0.5), q.p90 = at(0.9), q.p99 = at(0.99), q.p999 = at(0.999);
     q.max = static_cast<double>(h.max()) * factor;
     q.min = static_cast<double>(h.min()) * factor;

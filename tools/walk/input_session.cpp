@@ -92,7 +92,7 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     const std::vector<double> ages = report_ages_ms(records, source_->log().stamps());
     // Of a long live walk the first reports' ages are kept, not all.
     s.reports_shown = records.empty() ? 0 : std::max<std::uint64_t>(ages.size(), records.back().input_reports);
-    s.age_ms = report::quantiles(ages);
+    s.age_ms = quantiles(ages);
     const input::SafetyState& safety = steering_->safety();
     s.stops = safety.stops;
     s.stop_latched = safety.latched;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "rt/base/check.hpp"
+
 namespace surefoot::walk {
 
 InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit,
@@ -31,7 +33,10 @@ void InputStepper::step(std::int64_t now_ns) {
 }
 
 void InputStepper::advance_to(std::int64_t now_ns) {
-    for (std::int64_t due = next_ns(); due <= now_ns; due = next_ns()) step(due);
+    for (std::int64_t due = next_ns(); due <= now_ns; due = next_ns()) {
+        step(due);
+        CHECK(next_ns() > due, "a step reads all that was due");
+    }
 }
 
 void InputStepper::publish(const input::NavigationSample& sample, std::int64_t now_ns) {

@@ -58,6 +58,7 @@ void PrepareThread::prepare_newest() {
 }
 
 void PrepareThread::run() {
+    prepares_.plays();
     if (auto placed = rt::place_thread(0, placement_); !placed) {
         misplaced_ = placed.error();
         (void)rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = placement_.cpus, .name = placement_.name});

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "render/engine.hpp"
+#include "rt/base/thread_annotations.hpp"
 #include "rt/clock/grid.hpp"
 #include "rt/exchange/triple_buffer.hpp"
 #include "rt/threads/placement.hpp"
@@ -57,13 +58,14 @@ public:
 
 private:
     void run();
-    void prepare_newest();
+    void prepare_newest() REQUIRES(prepares_);
+    [[no_unique_address]] ThreadRole prepares_;  ///< the thread below
     Engine& engine_;
     rt::Grid grid_;
     rt::TripleBuffer<PoseSample>& poses_;
     rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
     PlaceBuffer* places_;
-    std::uint64_t seen_ = ~0ULL;  ///< frame prepared after last
+    std::uint64_t seen_ GUARDED_BY(prepares_) = ~0ULL;  ///< frame prepared after last
     const rt::Placement placement_;
     std::optional<Error> misplaced_;  ///< written before placed_
     std::latch placed_{1};

@@ -9,6 +9,7 @@
 
 #include "render/image/image.hpp"
 #include "render/measure/image_metrics.hpp"
+#include "rt/base/check.hpp"
 
 namespace surefoot::walk {
 
@@ -28,7 +29,7 @@ void ShotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, f
                          std::span<const gl::DrawItem> items) {
     if (every_ == 0 || frame % every_ != 0 || used_ == shots_.size()) return;
     Shot& shot = shots_[used_];
-    if (items.size() > shot.items.capacity()) return;
+    if (!CHECK_RARE(items.size() <= shot.items.capacity(), "a shot has room for all that is drawn")) return;
     shot.frame = frame;
     shot.time_s = time_s;
     shot.pose = pose;

@@ -131,7 +131,8 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     PlaceBuffer* places = s.input ? s.input->places() : nullptr;
     if (!s.virtual_clock) {
         preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, places, prepare_placement(s.plan));
-        if (const auto& refused = preparing->misplaced()) s.facts.degraded.push_back({refused->what, refused->remedy});
+        if (const auto& refused = preparing->misplaced())
+            s.facts.degraded.push_back({rt::LackKind::placing, refused->what, refused->remedy});
     }
     PathPoses path_poses(s.path.path, s.grid.period_ns);
     if (s.input) s.input->begin(s.path.path, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));

@@ -107,9 +107,10 @@ TEST(NothingHidden, TwentyStallsOfFiftyMillisecondsAppearInFull) {
 
 TEST(NothingHidden, AStopOfHalfASecondCostsThirtySlotsAndLeavesThePhase) {
     if (!guard_active()) GTEST_SKIP() << "sanitizers make a forked child's signals unreliable";
-    const auto body = [] {
+    test::Told under_way;
+    const auto body = [&] {
         RealClock clock;
-        test::IdleStages stages;
+        test::TellingStages stages(under_way);
         SpscRing<FrameRecord> ring(256);
         FrameLoopOptions options;
         options.period_ns = period_ns;
@@ -143,7 +144,7 @@ TEST(NothingHidden, AStopOfHalfASecondCostsThirtySlotsAndLeavesThePhase) {
     double stopped_for_ms = 0;
     EXPECT_EQ(test::in_child(body,
                              [&](pid_t child) {
-                                 std::this_thread::sleep_for(std::chrono::milliseconds(200));
+                                 under_way.wait();
                                  const std::int64_t from_ns = monotonic_ns();
                                  ::kill(child, SIGSTOP);
                                  std::this_thread::sleep_for(std::chrono::milliseconds(500));
