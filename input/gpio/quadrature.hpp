@@ -15,7 +15,7 @@ struct Quadrature {
 
     /// Returns -1, 0 or 1.
     int turn(bool a, bool b) {
-        constexpr std::array<std::int8_t, 16> table = {0, 1, -1, 2, -1, 0, 2, 1, 1, 2, 0, -1, 2, -1, 1, 0};  // [old * 4 + new]
+        constexpr std::array<int, 16> table = {0, 1, -1, 2, -1, 0, 2, 1, 1, 2, 0, -1, 2, -1, 1, 0};  // [old * 4 + new]
         const auto next = static_cast<std::uint8_t>((a ? 2U : 0U) | (b ? 1U : 0U));
         const std::uint8_t old = state;
         state = next;
