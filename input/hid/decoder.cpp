@@ -31,7 +31,8 @@ ReportDecoder::ReportDecoder(const HidDevice& device) {
         std::uint16_t control;
     };
     std::vector<Bound> bound;
-    for (std::uint16_t c = 0; c < device.sources.size(); ++c) bound.push_back({device.sources[c], c});
+    bound.reserve(device.sources.size());
+    for (const ControlSource& source : device.sources) bound.push_back({source, static_cast<std::uint16_t>(bound.size())});
     std::sort(bound.begin(), bound.end(), [&](const Bound& a, const Bound& b) {
         const auto id_a = l.fields[a.source.field].report_id, id_b = l.fields[b.source.field].report_id;
         if (id_a != id_b) return id_a < id_b;

@@ -44,8 +44,9 @@ std::string path_of(const Layout& layout, std::uint32_t collection) {
                                                : "Vendor";
         }
         // Deep nests are cut: a path is for people.
-        if (path.size() > 200) return "…/" + path;
-        path = path.empty() ? name : name + "/" + path;
+        if (path.size() > 200) return path.insert(0, "…/");
+        if (!path.empty()) path.insert(0, "/");
+        path.insert(0, name);
     }
     return path;
 }

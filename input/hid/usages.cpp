@@ -150,7 +150,6 @@ Application application_of(std::uint32_t usage) {
             if (u == 0x80 || u == 0x09) return Application::system;
             return Application::other;
         case page::simulation:
-            return Application::steering;
         case page::game:
             return Application::steering;
         case page::vr:
@@ -232,7 +231,7 @@ std::string usage_name(std::uint32_t usage) {
 }
 
 std::string usage_text(std::uint32_t usage) {
-    if (const auto name = usage_name(usage); !name.empty()) return name;
+    if (auto name = usage_name(usage); !name.empty()) return name;
     switch (usage >> 16U) {
         case page::button:
             return fmt::format("Button {}", usage & 0xffffU);

@@ -88,6 +88,7 @@ Trend robust_trend(std::span<const TrendPoint> points) {
     trend.known = true;
     trend.per_s = median_of(std::move(slopes));
     std::vector<double> left;
+    left.reserve(kept.size());
     for (const TrendPoint& p : kept) left.push_back(p.value - trend.per_s * p.time_s);
     trend.at_s0 = median_of(std::move(left));
     return trend;
