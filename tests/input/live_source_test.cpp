@@ -165,6 +165,9 @@ TEST(LiveSource, WhatTheDevicesHaveToDoWithoutIsSaidOnce) {
 
 // A service that may open no netlink socket looks around instead; here no descriptor is left for one.
 TEST(LiveDevices, KnowWhyNoEventsCome) {
+#ifdef SUREFOOT_SANITIZED
+    GTEST_SKIP() << "the sanitizer opens a pipe to check an object's type, and here no descriptor is left for one";
+#endif
     rlimit before{};
     getrlimit(RLIMIT_NOFILE, &before);
     rlimit none = before;
