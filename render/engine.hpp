@@ -27,7 +27,7 @@ struct EngineOptions {
     std::string selector{select::usual_selector};
     double slice_us = 1000;  ///< predicted length of a slice
     float hysteresis = 1.25F;
-    bool in_frame_check = true;  ///< DESIGN 1.2; off only to show what it is worth
+    bool in_frame_check = true;  ///< slices are checked against the time left; off only to show what it is worth
 };
 
 /// What one frame may spend and against which clock it is checked.

@@ -48,7 +48,7 @@ struct DrawTables {
 
 DrawTables make_tables(const model::Model& model);
 
-/// The eye-relative rows of a placement: the origin is made relative in double (DESIGN 1.7).
+/// The eye-relative rows of a placement: the origin is made relative in double, since floats lose millimetres far from it.
 void eye_relative_rows(const Placed& placed, const dvec3& eye, std::array<float, 12>& rows);
 
 inline Culling culling(const DrawPart& part, const Placed& placed) {

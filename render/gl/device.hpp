@@ -109,7 +109,7 @@ public:
 void prepare_process(int rasterisers);
 
 /// Opens the library at run time (dlopen); an absent one is an Error with the Debian package to install.
-/// Call it from a neutral thread (not FIFO, not pinned): driver threads inherit from their creator (DESIGN 7).
+/// Call it from a neutral thread (not FIFO, not pinned): driver threads inherit policy and cores from their creator.
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options);
 
 Result<std::unique_ptr<Device>> open_null_device(const DeviceOptions& options, const NullOptions& null_options);

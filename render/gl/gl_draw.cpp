@@ -44,7 +44,7 @@ void GlDevice::begin_frame(const Pose& pose) {
 
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer);
     gl_.Viewport(0, 0, static_cast<GLsizei>(options_.viewport.width), static_cast<GLsizei>(options_.viewport.height));
-    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // reversed-Z needs 0..1: -1..1 would round near 1 (DESIGN 8)
+    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // reversed-Z needs 0..1: -1..1 would round near 1
     gl_.Enable(GL_DEPTH_TEST);
     gl_.DepthFunc(GL_GREATER);
     gl_.CullFace(GL_BACK);

@@ -1,4 +1,4 @@
-// Mends one primitive: drops what cannot be drawn, with counts, and makes the normals that are missing (DESIGN 8).
+// Mends one primitive: drops what cannot be drawn, with counts, and makes the normals that are missing.
 #include <algorithm>
 #include <cmath>
 

@@ -3,30 +3,17 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "rt/base/file.hpp"
 #include "tests/temporary_folder.hpp"
+#include "tests/text_pieces.hpp"
 #include "tools/accuracy/page.hpp"
 
 namespace surefoot::accuracy {
 namespace {
-
-std::vector<std::string> split(const std::string& text, char by) {
-    std::vector<std::string> parts;
-    std::stringstream stream(text);
-    for (std::string part; std::getline(stream, part, by);) parts.push_back(part);
-    return parts;
-}
-
-std::size_t count_of(const std::string& text, std::string_view what) {
-    std::size_t count = 0;
-    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
-    return count;
-}
 
 AccuracyRun sweep() {
     AccuracyRun run;
@@ -58,7 +45,7 @@ TEST(AccuracyPage, AndItsFiles) {
     ASSERT_TRUE(write_accuracy_page(in("a"), run).ok());
     const auto page = *read_text(in("a/index.html"));
     EXPECT_EQ(page.find("http"), std::string::npos);
-    EXPECT_EQ(split(*read_text(in("a/accuracy.csv")), '\n').size(), run.points.size() + 1);
+    EXPECT_EQ(test::split(*read_text(in("a/accuracy.csv")), '\n').size(), run.points.size() + 1);
     const auto json = nlohmann::json::parse(*read_text(in("a/accuracy.json")));
     EXPECT_EQ(json["points"].size(), run.points.size());
     EXPECT_TRUE(json["points"].back()["snr_db"].is_null());
@@ -69,8 +56,8 @@ TEST(AccuracyPage, AndItsFiles) {
         const auto svg = accuracy_svg(run, dark);
         EXPECT_EQ(svg.rfind("<svg xmlns=", 0), 0U);
         // 9 points in three panels, the exact one in none but the last; a dot each for two mended selectors in the legend.
-        EXPECT_EQ(count_of(svg, "<title>two-stage"), 18U);
-        EXPECT_EQ(count_of(svg, "<title>flat"), 7U);
+        EXPECT_EQ(test::count_of(svg, "<title>two-stage"), 18U);
+        EXPECT_EQ(test::count_of(svg, "<title>flat"), 7U);
         EXPECT_EQ(svg.find("nan"), std::string::npos);
         EXPECT_EQ(svg.find("inf"), std::string::npos);
     }

@@ -14,6 +14,7 @@
 #include "rt/base/file.hpp"
 #include "tests/report/records.hpp"
 #include "tests/temporary_folder.hpp"
+#include "tests/text_pieces.hpp"
 #include "tools/report/pictures.hpp"
 #include "tools/report/report.hpp"
 
@@ -28,19 +29,6 @@ protected:
     test::TemporaryFolder folder_;
 };
 
-std::vector<std::string> split(const std::string& text, char by) {
-    std::vector<std::string> parts;
-    std::stringstream stream(text);
-    for (std::string part; std::getline(stream, part, by);) parts.push_back(part);
-    return parts;
-}
-
-std::size_t count_of(const std::string& text, std::string_view what) {
-    std::size_t count = 0;
-    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
-    return count;
-}
-
 TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     auto records = frames_with_a_miss();
     records[3].control = true;
@@ -48,16 +36,16 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     records[1].input_reports = 17;
     records[1].stopped = true;
     ASSERT_TRUE(write_ledger(in("l.csv"), records).ok());
-    const auto lines = split(*read_text(in("l.csv")), '\n');
+    const auto lines = test::split(*read_text(in("l.csv")), '\n');
     ASSERT_EQ(lines.size(), records.size() + 1);
-    const auto names = split(lines[0], ',');
+    const auto names = test::split(lines[0], ',');
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size()) << "a column twice";
     for (const auto* wanted :
          {"wake_us", "select_us", "submit_us", "raster_us", "present_us", "slack_us", "predicted_us", "actual_us", "nodes",
           "triangles", "accuracy", "benefit", "switches", "cause", "waited_us", "preempted_us"})
         EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end()) << wanted;
     std::map<std::string, std::string> miss;
-    const auto cells = split(lines[2], ',');
+    const auto cells = test::split(lines[2], ',');
     ASSERT_EQ(cells.size(), names.size());
     for (std::size_t i = 0; i < names.size(); ++i) miss[names[i]] = cells[i];
     EXPECT_EQ(miss["wake_us"], "50.000");
@@ -71,7 +59,7 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     EXPECT_EQ(miss["input_reports"], "17");
     EXPECT_EQ(miss["stopped"], "1");
     EXPECT_EQ(miss["cut_hash"], "0000000000001235");
-    for (const auto& line : lines) EXPECT_EQ(split(line, ',').size(), names.size());
+    for (const auto& line : lines) EXPECT_EQ(test::split(line, ',').size(), names.size());
 }
 
 TEST_F(ReportFiles, TraceParsesAndHasOneFrameEventARecord) {
@@ -142,8 +130,8 @@ TEST_F(ReportFiles, PageNeedsNothingOutsideItself) {
     EXPECT_EQ(page.find("url("), std::string::npos);
     EXPECT_EQ(page.find("@import"), std::string::npos);
     EXPECT_EQ(page.find("nan"), std::string::npos) << "a figure that is none";
-    EXPECT_EQ(count_of(page, "data:image/jpeg;base64,"), 6U);
-    EXPECT_EQ(count_of(page, "<svg"), count_of(page, "</svg>"));
+    EXPECT_EQ(test::count_of(page, "data:image/jpeg;base64,"), 6U);
+    EXPECT_EQ(test::count_of(page, "<svg"), test::count_of(page, "</svg>"));
     EXPECT_NE(page.find("prefers-color-scheme:dark"), std::string::npos);
     EXPECT_NE(page.find("4 frames, 1 missed"), std::string::npos);
     EXPECT_NE(page.find("grant rtprio"), std::string::npos);
@@ -193,7 +181,7 @@ TEST_F(ReportFiles, CostPlotDoesNotDivideByZero) {
         {"plain", 1, 1, 3.0}, {"plain", 1, 0, 3.0}, {"plain", 4, 16, std::numeric_limits<double>::infinity()}};
     const auto svg = cost_plot_svg("cost", one);
     EXPECT_EQ(svg.find("nan"), std::string::npos);
-    EXPECT_EQ(count_of(svg, "<circle"), 1U);
+    EXPECT_EQ(test::count_of(svg, "<circle"), 1U);
 }
 
 TEST(Pictures, Base64IsPadded) {
