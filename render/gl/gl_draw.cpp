@@ -202,6 +202,7 @@ void GlDevice::issue(const State& state, std::uint32_t first, std::uint32_t coun
     apply(state);
     ++stats_.batches;
     stats_.draws += count;
+    // The API takes an offset in a buffer as a pointer.  NOLINTNEXTLINE(performance-no-int-to-ptr)
     const auto offset = reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * sizeof(DrawCommand));
     gl_.MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset, static_cast<GLsizei>(count), sizeof(DrawCommand));
 }
