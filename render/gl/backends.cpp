@@ -12,7 +12,7 @@ namespace {
 
 using Options = const DeviceOptions&;
 
-constexpr std::array all = {
+constexpr std::array all_backends = {
     Backend{usual_backend, "EGL without a surface, on the driver that it finds first", BackendKind::egl,
             [](Options) { return open_egl_surfaceless(); }},
     Backend{"device", "EGL on the first device that it lists: a GPU without a display", BackendKind::device,
@@ -28,27 +28,27 @@ constexpr std::array absent = {Named{"kms", "is planned, and not in this version
 
 }  // namespace
 
-std::span<const Backend> backends() { return all; }
+std::span<const Backend> backends() { return all_backends; }
 
 std::span<const Named> absent_backends() { return absent; }
 
 const Backend& backend_of(BackendKind kind) {
-    for (const Backend& backend : all)
+    for (const Backend& backend : all_backends)
         if (backend.kind == kind) return backend;
     assert(false);  // every kind has its entry: tests/gl
-    return all.back();
+    return all_backends.back();
 }
 
 Result<const Backend*> backend_named(std::string_view name) {
-    if (const Backend* backend = find_named(all, name)) return backend;
+    if (const Backend* backend = find_named(all_backends, name)) return backend;
     const Named* known = find_named(absent, name);
     return Error{"backend '" + std::string(name) + "'", std::string(known != nullptr ? known->help : "there is no such backend"),
-                 "one of: " + names_in_words(all)};
+                 "one of: " + names_in_words(all_backends)};
 }
 
 std::string drawing_backends() {
     std::string text;
-    for (const Backend& backend : all)
+    for (const Backend& backend : all_backends)
         if (backend.draws()) text += (text.empty() ? "" : ", ") + std::string(backend.name);
     return text;
 }

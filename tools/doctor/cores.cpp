@@ -174,7 +174,7 @@ Finding rivals(const Machine& m) {
     return fail("may run before the frame thread: " + found, "chrt --other --pid 0 TID, or taskset it to other cores");
 }
 
-constexpr std::array checks = {
+constexpr std::array all_core_checks = {
     Check{"cores.count", "two or more", count},
     Check{"cores.isolated", "the frame core is kept free", isolated},
     Check{"cores.tickless", "no tick on the frame core", tickless},
@@ -186,6 +186,6 @@ constexpr std::array checks = {
 
 }  // namespace
 
-std::span<const Check> core_checks() { return checks; }
+std::span<const Check> core_checks() { return all_core_checks; }
 
 }  // namespace surefoot::doctor

@@ -82,7 +82,7 @@ Finding rule(const Machine& m) {
     return fail("70-surefoot.rules is not installed: controls stay closed to the service", std::string(install_rule));
 }
 
-constexpr std::array checks = {
+constexpr std::array all_device_checks = {
     Check{"devices.hidraw", "controls may be opened", controls},
     Check{"devices.gpio", "wired buttons too", wires},
     Check{"devices.dri", "graphics too", graphics},
@@ -92,6 +92,6 @@ constexpr std::array checks = {
 
 }  // namespace
 
-std::span<const Check> device_checks() { return checks; }
+std::span<const Check> device_checks() { return all_device_checks; }
 
 }  // namespace surefoot::doctor

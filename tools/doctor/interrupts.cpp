@@ -114,7 +114,7 @@ Finding kernel_work(const Machine& m) {
                 fmt::format("echo {} > {}", without_bit(*mask, *core), file));
 }
 
-constexpr std::array checks = {
+constexpr std::array all_interrupt_checks = {
     Check{"interrupts.affinity", "devices interrupt other cores", affinity},
     Check{"interrupts.new_devices", "new devices do so too", fresh},
     Check{"interrupts.irqbalance", "nobody moves them back", balancer},
@@ -123,6 +123,6 @@ constexpr std::array checks = {
 
 }  // namespace
 
-std::span<const Check> interrupt_checks() { return checks; }
+std::span<const Check> interrupt_checks() { return all_interrupt_checks; }
 
 }  // namespace surefoot::doctor

@@ -153,7 +153,7 @@ Finding watchdog(const Machine& m) {
                          "an interrupt that nothing holds off, on every core");
 }
 
-constexpr std::array checks = {
+constexpr std::array all_kernel_checks = {
     Check{"kernel.version", "no known fault", version},
     Check{"kernel.preemption", "the kernel yields at once", preemption},
     Check{"kernel.rt_throttling", "FIFO keeps 90 % of a core", throttling},
@@ -166,6 +166,6 @@ constexpr std::array checks = {
 
 }  // namespace
 
-std::span<const Check> kernel_checks() { return checks; }
+std::span<const Check> kernel_checks() { return all_kernel_checks; }
 
 }  // namespace surefoot::doctor

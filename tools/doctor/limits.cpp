@@ -85,7 +85,7 @@ Finding locking(const Machine& m) {
     return fail("1 GiB of addresses could not be locked", grant("LimitMEMLOCK=infinity", "@surefoot - memlock unlimited"));
 }
 
-constexpr std::array checks = {
+constexpr std::array all_limit_checks = {
     Check{"limits.rtprio", "real-time priority", priority}, Check{"limits.rttime", "real-time without end", time},
     Check{"limits.memlock", "locked memory", lock},         Check{"limits.fifo_tried", "SCHED_FIFO, tried", fifo},
     Check{"limits.lock_tried", "locking, tried", locking},
@@ -93,6 +93,6 @@ constexpr std::array checks = {
 
 }  // namespace
 
-std::span<const Check> limit_checks() { return checks; }
+std::span<const Check> limit_checks() { return all_limit_checks; }
 
 }  // namespace surefoot::doctor

@@ -77,7 +77,7 @@ Finding merging(const Machine& m) {
     return fail("equal pages are merged, and copied again at the next write", "echo 2 > /sys/kernel/mm/ksm/run");
 }
 
-constexpr std::array checks = {
+constexpr std::array all_memory_checks = {
     Check{"memory.available", "room to lock everything", available},
     Check{"memory.huge_pages", "no joining of pages", huge_pages},
     Check{"memory.swap", "nothing is swapped", swap},
@@ -87,6 +87,6 @@ constexpr std::array checks = {
 
 }  // namespace
 
-std::span<const Check> memory_checks() { return checks; }
+std::span<const Check> memory_checks() { return all_memory_checks; }
 
 }  // namespace surefoot::doctor

@@ -30,13 +30,13 @@ Finding cost_table(const Machine& m) {
     return fail(fmt::format("{} is of \"{}\", this is \"{}\"", table->file, table->machine, drawn->machine), calibrate);
 }
 
-constexpr std::array checks = {
+constexpr std::array all_picture_checks = {
     Check{"picture.renderer", "GL opens", renderer},
     Check{"picture.cost_table", "costs are of this machine", cost_table},
 };
 
 }  // namespace
 
-std::span<const Check> picture_checks() { return checks; }
+std::span<const Check> picture_checks() { return all_picture_checks; }
 
 }  // namespace surefoot::doctor

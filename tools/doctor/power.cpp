@@ -91,7 +91,7 @@ Finding hold(const Machine& m) {
                 "/etc/udev/rules.d/71-surefoot-latency.rules; udevadm trigger");
 }
 
-constexpr std::array checks = {
+constexpr std::array all_power_checks = {
     Check{"power.governor", "full speed, always", governor},
     Check{"power.frequency", "one speed", spread},
     Check{"power.turbo", "no turbo", turbo},
@@ -101,6 +101,6 @@ constexpr std::array checks = {
 
 }  // namespace
 
-std::span<const Check> power_checks() { return checks; }
+std::span<const Check> power_checks() { return all_power_checks; }
 
 }  // namespace surefoot::doctor

@@ -41,7 +41,7 @@ Finding disk(const Machine& m) {
     return fail(std::move(evidence) + ", 1024 are wanted for recordings of misses", "journalctl --vacuum-size=200M; apt clean");
 }
 
-constexpr std::array checks = {
+constexpr std::array all_service_checks = {
     Check{"service.systemd", "somebody restarts it", manager},
     Check{"service.journald", "somebody takes its words", journal},
     Check{"service.journal_kept", "and keeps them", kept},
@@ -50,6 +50,6 @@ constexpr std::array checks = {
 
 }  // namespace
 
-std::span<const Check> service_checks() { return checks; }
+std::span<const Check> service_checks() { return all_service_checks; }
 
 }  // namespace surefoot::doctor

@@ -66,7 +66,7 @@ Finding steal(const Machine& m) {
     return unknown(label + " is not in /proc/stat, or has run for less than a second", "ask again later");
 }
 
-constexpr std::array checks = {
+constexpr std::array all_time_checks = {
     Check{"time.clock_source", "the clock is quick to read", clock_source},
     Check{"time.tsc", "it keeps one rate", tsc},
     Check{"time.hypervisor", "no host above", hypervisor},
@@ -75,6 +75,6 @@ constexpr std::array checks = {
 
 }  // namespace
 
-std::span<const Check> time_checks() { return checks; }
+std::span<const Check> time_checks() { return all_time_checks; }
 
 }  // namespace surefoot::doctor

@@ -77,14 +77,14 @@ Finding longest(const Machine& m) {
                                          : "as root: hwlatdetect --duration=60 (firmware), rtla timerlat top -a 500 (kernel)");
 }
 
-constexpr std::array checks = {
+constexpr std::array all_wake_up_checks = {
     Check{"wake_up.usual", "p99 within 1 ms", usual},
     Check{"wake_up.longest", "no wake-up costs a frame", longest},
 };
 
 }  // namespace
 
-std::span<const Check> wake_up_checks() { return checks; }
+std::span<const Check> wake_up_checks() { return all_wake_up_checks; }
 
 void count_wakes(rt::Clock& clock, std::int64_t period_ns, std::uint64_t slots, const std::atomic<bool>* stop, WakeCount& count) {
     const rt::Grid grid{clock.now_ns() + period_ns, period_ns};
