@@ -62,8 +62,10 @@ build() {
   local preset=$1 targets=()
   shift
   if (( $# > 0 )); then targets=(--target "$@"); fi
-  local linker=()
+  local linker=() compiler=()
+  # Presets name clang for the sanitizers; without it GCC does, in twice the time.
+  if [[ $preset == *san* ]] && ! command -v clang++ >/dev/null; then compiler=(-DCMAKE_CXX_COMPILER=c++); fi
   if command -v mold >/dev/null; then linker=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=mold); fi  # the same programs, linked in a tenth of the time
-  cmake --preset "$preset" --log-level=WARNING "${linker[@]}" &&
+  cmake --preset "$preset" --log-level=WARNING "${linker[@]}" "${compiler[@]}" &&
     cmake --build --preset "$preset" --parallel "$(parallel_jobs)" "${targets[@]}"
 }
