@@ -150,7 +150,7 @@ Finding rivals(const Machine& m) {
     for (const std::string& process : *processes) {
         if (!number_in(process)) continue;
         for (const std::string& task : m.names("/proc/" + process + "/task").value_or(std::vector<std::string>{})) {
-            const std::string folder = "/proc/" + process + "/task/" + task;
+            const std::string folder = fmt::format("/proc/{}/task/{}", process, task);
             const auto stat = m.text(folder + "/stat");
             const auto thread = stat ? thread_of(*stat) : std::nullopt;
             if (!thread) continue;

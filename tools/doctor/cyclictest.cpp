@@ -45,6 +45,7 @@ Result<Child> start(const std::string& program, std::vector<std::string> words) 
     if (pipe2(ends, O_CLOEXEC) != 0)
         return Error{program, fmt::format("no pipe to it: {}", std::strerror(errno)), "close other programs"};
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t actions;
@@ -83,7 +84,8 @@ Result<WakeFigures> read_cyclictest(std::string_view printed) {
         if (fields.size() != 2) continue;
         const auto us = number_in(fields[0]), times = number_in(fields[1]);
         if (!us || !times || *us < 0 || *us > 1'000'000'000 || *times < 0)
-            return Error{"cyclictest", fmt::format("said '{}', which is no line of a histogram of one thread", line), run_by_hand};
+            return Error{"cyclictest", fmt::format("said '{}', which is no line of a histogram of one thread", line),
+                         run_by_hand};
         if (*times > 0) late->add(*us * 1000, static_cast<std::uint64_t>(*times));
     }
     if (over > 0 && max_us >= 0 && max_us < 1'000'000'000) late->add(max_us * 1000, static_cast<std::uint64_t>(over));
