@@ -155,6 +155,22 @@ done
 "$surefoot" inspect f.walk >&- 2>/dev/null && complain "a closed stdout is a success"
 "$surefoot" inspect absent.walk 2>/dev/full; [ $? -eq 1 ] || complain "a full stderr is a crash"
 
+# The manual: a page a command, which man takes without a warning, and every option of --help on it.
+json manual -o man
+for command in $("$surefoot" --help | sed -n '/Subcommands:/,$s/^  \([a-z][a-z]*\) .*/\1/p'); do
+  [ -s "man/surefoot-$command.1" ] || { complain "no manual page of $command"; continue; }
+  for option in $("$surefoot" "$command" --help | grep -oE '^  (-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'); do
+    grep -qF -- "$(sed 's/-/\\-/g' <<<"$option")" "man/surefoot-$command.1" || complain "manual page of $command lacks $option"
+  done
+done
+grep -q 'rate_hz' man/surefoot.toml.5 || complain "surefoot.toml(5) lacks rate_hz"
+if command -v groff >/dev/null; then
+  for page in man/*; do
+    [ -z "$(groff -man -Tutf8 -ww -z "$page" 2>&1)" ] || complain "$page: $(groff -man -Tutf8 -ww -z "$page" 2>&1 | head -3)"
+  done
+fi
+expect 1 '/dev/null/man: The folder cannot be made' manual -o /dev/null/man
+
 # Figures and forms.
 json inspect f.walk --tree
 grep -q '"parent"' out || complain "inspect --tree --json has no parents"

@@ -66,5 +66,7 @@ void add_selftest(CLI::App& app, Context& context);
 void add_config(CLI::App& app, Context& context);
 void add_status(CLI::App& app, Context& context);
 void add_top(CLI::App& app, Context& context);
+/// `app` must outlive the run: the pages are made of all of it.
+void add_manual(CLI::App& app, Context& context);
 
 }  // namespace surefoot::cli

@@ -114,6 +114,7 @@ int main(int argc, char** argv) {
     cli::add_selftest(app, context);
     cli::add_status(app, context);
     cli::add_top(app, context);
+    cli::add_manual(app, context);
     app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {
         const std::vector<std::string_view> arguments(argv + 1, argv + argc);
         const auto renamed = cli::renamed_option(arguments);

@@ -30,7 +30,7 @@ struct PlacingPlan {
 Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted);
 
 /// Places the driver's rasterisers below the frame thread, on all cores: pinned one a core, the one on the frame core would
-/// keep each scene's barrier waiting until the frame thread sleeps (measured: ARCHITECTURE). Call when the context exists.
+/// keep each scene's barrier waiting until the frame thread sleeps (figures: render/gl/README.md). Call when the context exists.
 Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan);
 /// Rasterisers whose CPU time counts as the frame core's, for the control.
 std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_t>& rasterisers);
