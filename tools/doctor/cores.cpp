@@ -95,7 +95,7 @@ Finding cpuset(const Machine& m) {
             *core));
 }
 
-Finding affinity(const Machine& m) {
+Finding own_affinity(const Machine& m) {
     const auto core = m.frame_core();
     const auto list = m.own_status("Cpus_allowed_list");
     if (!core || !list) return unknown("the cores of this process are not to be seen", "mount -t proc proc /proc");
@@ -179,7 +179,7 @@ constexpr std::array all_core_checks = {
     Check{"cores.isolated", "the frame core is kept free", isolated},
     Check{"cores.tickless", "no tick on the frame core", tickless},
     Check{"cores.cpuset", "the cpuset holds the frame core", cpuset},
-    Check{"cores.affinity", "this process may use it", affinity},
+    Check{"cores.affinity", "this process may use it", own_affinity},
     Check{"cores.smt_sibling", "nobody shares its hardware", sibling},
     Check{"cores.rivals", "no thread before the frame's", rivals},
 };

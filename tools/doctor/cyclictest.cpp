@@ -27,7 +27,7 @@ namespace surefoot::doctor {
 
 namespace {
 
-constexpr const char* remedy = "run it by hand to see what it says, or ask again with --quick";
+constexpr const char* run_by_hand = "run it by hand to see what it says, or ask again with --quick";
 
 /// The number behind "# Max Latencies:".
 std::optional<std::int64_t> figure(std::string_view line, std::string_view name) {
@@ -83,11 +83,11 @@ Result<WakeFigures> read_cyclictest(std::string_view printed) {
         if (fields.size() != 2) continue;
         const auto us = number_in(fields[0]), times = number_in(fields[1]);
         if (!us || !times || *us < 0 || *us > 1'000'000'000 || *times < 0)
-            return Error{"cyclictest", fmt::format("said '{}', which is no line of a histogram of one thread", line), remedy};
+            return Error{"cyclictest", fmt::format("said '{}', which is no line of a histogram of one thread", line), run_by_hand};
         if (*times > 0) late->add(*us * 1000, static_cast<std::uint64_t>(*times));
     }
     if (over > 0 && max_us >= 0 && max_us < 1'000'000'000) late->add(max_us * 1000, static_cast<std::uint64_t>(over));
-    if (late->count() == 0) return Error{"cyclictest", "said nothing that could be counted", remedy};
+    if (late->count() == 0) return Error{"cyclictest", "said nothing that could be counted", run_by_hand};
     return figures_of(*late, "cyclictest");
 }
 
@@ -128,11 +128,11 @@ Result<WakeFigures> run_cyclictest(const std::string& program, const WakeOptions
     int status = 0;
     while (waitpid(child->pid, &status, 0) < 0 && errno == EINTR) {
     }
-    if (given_up) return Error{program, "was stopped before it was done", remedy};
+    if (given_up) return Error{program, "was stopped before it was done", run_by_hand};
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         return Error{program,
                      WIFEXITED(status) ? fmt::format("ended with status {}", WEXITSTATUS(status)) : "was ended by a signal",
-                     remedy};
+                     run_by_hand};
     auto figures = read_cyclictest(printed);
     if (figures) {
         figures->seconds = passed();

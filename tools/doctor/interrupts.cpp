@@ -41,7 +41,7 @@ std::string other_cores(const Machine& m, int core) {
     return others.empty() ? "0" : others.text();
 }
 
-Finding affinity(const Machine& m) {
+Finding device_affinity(const Machine& m) {
     const auto core = m.frame_core();
     const auto numbers = m.names("/proc/irq");
     if (!core || !numbers) return unknown("/proc/irq or the frame core is not to be seen", "mount -t proc proc /proc");
@@ -115,7 +115,7 @@ Finding kernel_work(const Machine& m) {
 }
 
 constexpr std::array all_interrupt_checks = {
-    Check{"interrupts.affinity", "devices interrupt other cores", affinity},
+    Check{"interrupts.affinity", "devices interrupt other cores", device_affinity},
     Check{"interrupts.new_devices", "new devices do so too", fresh},
     Check{"interrupts.irqbalance", "nobody moves them back", balancer},
     Check{"interrupts.kernel_work", "deferred work runs elsewhere", kernel_work},
