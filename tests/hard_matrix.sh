@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
 # Do compilers, levels and contraction agree? Builds the rows that draw nothing with each, and compares their digests (verdicts,
-# triangle counts, cut hashes). Minutes a build; not part of tools/test.
+# triangle counts, cut hashes). Minutes a build, SUREFOOT_JOBS at once (2). Part of: tools/test --nightly matrix
 # usage: tests/hard_matrix.sh [--scale S] [--work DIR] [NAME...]   NAME: gcc-O2 gcc-O0 gcc-O3 gcc-fma clang-O2 clang-fma; all, if none
 set -uo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 scale=0.04
-work=${TMPDIR:-/tmp}/surefoot-hard-matrix
+work=$top/build/hard-matrix
+source "$top/tools/prepare.sh"  # at_once, end_children
+linker=()
+if command -v mold >/dev/null; then linker=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=mold); fi
 names=()
 while (( $# > 0 )); do
   case $1 in
@@ -28,28 +31,46 @@ flags_of() {
   esac
 }
 
-first='' failed=0
 for name in "${names[@]}"; do
-  flags=$(flags_of "$name") || { echo "$name: no such build" >&2; exit 2; }
-  compiler=g++; [[ $name == clang-* ]] && compiler=clang++
-  if ! command -v $compiler >/dev/null; then echo "$name: skipped, $compiler is not installed"; continue; fi
-  if [[ $name == *-fma ]] && ! grep -qw fma /proc/cpuinfo; then echo "$name: skipped, this CPU has no FMA"; continue; fi
-  build=$work/$name
-  # The project's own -ffp-contract=off comes later on the command line; a wrapper puts ours last.
+  flags_of "$name" >/dev/null || { echo "$name: no such build" >&2; exit 2; }
+done
+
+# try NAME: one build and its rows, on one core; $work/NAME/outcome says in one line what became of it, and fails if it is bad.
+try() {
+  local name=$1 build=$work/$1 compiler=g++ flags code=0 began=$SECONDS built
+  flags=$(flags_of "$name")
+  if [[ $name == clang-* ]]; then compiler=clang++; fi
   mkdir -p "$build"
-  printf '#!/bin/sh\nexec %s "$@" %s\n' "$compiler" "$flags -Wno-error -w" >"$build/compiler"
-  chmod +x "$build/compiler"
-  if ! { cmake -S "$top" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$build/compiler" -DCMAKE_CXX_FLAGS_RELEASE="-g0" &&
-         cmake --build "$build" --target hard_rows -j "${SUREFOOT_JOBS:-2}"; } >"$build/log" 2>&1; then
-    echo "$name: does not build, see $build/log"; failed=1; continue
+  rm -f "$build/digests" "$build/outcome"
+  if ! command -v $compiler >/dev/null; then echo "$name: skipped, $compiler is not installed" | tee "$build/outcome"; return; fi
+  if [[ $name == *-fma ]] && ! grep -qw fma /proc/cpuinfo; then echo "$name: skipped, this CPU has no FMA" | tee "$build/outcome"; return; fi
+  # The project's own options come later on a command line than a user's; the rule puts ours last.
+  if ! { cmake -S "$top" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=$compiler -DCMAKE_CXX_FLAGS_RELEASE=-g0 "${linker[@]}" \
+           "-DCMAKE_CXX_COMPILE_OBJECT=<CMAKE_CXX_COMPILER> <DEFINES> <INCLUDES> <FLAGS> $flags -w -o <OBJECT> -c <SOURCE>" &&
+         cmake --build "$build" --target hard_rows -j 1; } >"$build/log" 2>&1; then
+    echo "$name: does not build, see $build/log" | tee "$build/outcome"
+    return 1
   fi
-  "$build/tests/hard_rows" "$scale" "${rows[@]}" >"$build/rows" 2>&1 </dev/null
-  code=$?
+  built=$SECONDS
+  "$build/tests/hard_rows" "$scale" "${rows[@]}" >"$build/rows" 2>&1 </dev/null || code=$?
   # What each row was, and its digest: timings and pictures are left out.
   awk '/^[A-Z][0-9]+[a-z]? /{row=$1; verdict=$2} /digest/ && !/hard cases/{print row, verdict, $2}' "$build/rows" >"$build/digests"
-  echo "$name ($flags): exit $code, $(tail -1 "$build/rows")"
-  if [[ -z "$first" ]]; then first=$build; continue; fi
-  if ! diff "$first/digests" "$build/digests"; then failed=1; fi
-  (( code == 0 )) || failed=1
+  echo "$name ($flags): exit $code, $(tail -1 "$build/rows"); built in $((built - began)) s, run in $((SECONDS - built)) s" | tee "$build/outcome"
+  return $code
+}
+
+trap end_children EXIT
+trap 'exit 130' INT TERM
+failed=0
+at_once try "${names[@]}" || failed=1
+first=''
+for name in "${names[@]}"; do
+  digests=$work/$name/digests
+  [[ -s "$digests" ]] || continue
+  if [[ -z "$first" ]]; then first=$name; continue; fi
+  if ! different=$(diff "$work/$first/digests" "$digests"); then
+    failed=1
+    printf '%s and %s do not agree:\n%s\n' "$first" "$name" "$different"
+  fi
 done
 exit $failed

@@ -57,6 +57,50 @@ install_missing() {
 
 parallel_jobs() { echo "${SUREFOOT_JOBS:-2}"; }
 
+# at_once COMMAND ARGUMENT...: COMMAND with each argument in turn, as many at once as parallel_jobs says. Fails if one of them fails.
+at_once() {
+  local command=$1 argument running=0 status=0
+  shift
+  for argument in "$@"; do
+    if (( running >= $(parallel_jobs) )); then wait -n || status=1; running=$((running - 1)); fi
+    "$command" "$argument" &
+    running=$((running + 1))
+  done
+  for (( ; running > 0; --running )); do wait -n || status=1; done
+  return "$status"
+}
+
+# Prints the processes below this script, parents first, without the one that prints.
+processes_below() {
+  local stat line words pid known=" $$ " grew=1
+  local -A parent_of=()
+  for stat in /proc/[0-9]*/stat; do
+    { read -r line <"$stat"; } 2>/dev/null || continue
+    read -ra words <<<"${line##*) }"  # the name before it may hold anything
+    parent_of[${line%% *}]=${words[1]}
+  done
+  while (( grew )); do
+    grew=0
+    for pid in "${!parent_of[@]}"; do
+      if [[ $known == *" ${parent_of[$pid]} "* && $known != *" $pid "* ]]; then known+="$pid " grew=1; fi
+    done
+  done
+  for pid in ${known#" $$ "}; do if (( pid != BASHPID )); then printf '%s\n' "$pid"; fi; done
+}
+
+# Ends all that still runs below this script. What runs in the background does not hear Ctrl-C; scripts get two seconds to tidy up.
+end_children() {
+  local pids tries
+  mapfile -t pids < <(processes_below)
+  (( ${#pids[@]} > 0 )) || return 0
+  kill "${pids[@]}" 2>/dev/null || true
+  for (( tries = 0; tries < 20; ++tries )); do
+    kill -0 "${pids[@]}" 2>/dev/null || return 0
+    sleep 0.1
+  done
+  kill -KILL "${pids[@]}" 2>/dev/null || true
+}
+
 # build PRESET [TARGET…]
 build() {
   local preset=$1 targets=()
