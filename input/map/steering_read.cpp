@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "input/map/steering_file.hpp"
 #include "input/map/steering_words.hpp"
 #include "input/map/toml_reader.hpp"
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::input {
 
@@ -38,10 +38,7 @@ void time_ms(TableReader& table, std::string_view key, double max_ms, double& va
 
 std::optional<std::uint16_t> hex(std::string_view text) {
     if (!text.starts_with("0x")) return std::nullopt;
-    text.remove_prefix(2);
-    std::uint16_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-    return error == std::errc{} && end == text.data() + text.size() && !text.empty() ? std::optional(value) : std::nullopt;
+    return number_in<std::uint16_t>(text.substr(2), 16);
 }
 
 /// "x", or "0x01:0x30".

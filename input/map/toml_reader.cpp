@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "rt/base/nearest.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::input {
 

@@ -1,8 +1,6 @@
 // surefoot devices describe: what a report descriptor says, and what recorded reports mean, without any device.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <functional>
 #include <map>
 
@@ -10,6 +8,7 @@
 #include "input/hid/usages.hpp"
 #include "input/replay/recording.hpp"
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 #include "tools/cli/devices.hpp"
 
 namespace surefoot::cli {
@@ -34,24 +33,18 @@ struct Material {
     std::string name;
 };
 
-/// Names in recordings are bytes of unknown sort; JSON wants UTF-8.
-std::string printable(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(),
-        [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f; }, '?');
-    return text;
-}
-
 std::string hex_usage(std::uint32_t usage) { return fmt::format("{:04x}:{:04x}", usage >> 16U, usage & 0xffffU); }
 
 bool parse_id(const std::string& text, std::uint16_t& vendor, std::uint16_t& product) {
     const auto colon = text.find(':');
     if (colon == std::string::npos) return false;
-    const auto read = [](const char* from, const char* to, std::uint16_t& value) {
-        const auto [end, code] = std::from_chars(from, to, value, 16);
-        return code == std::errc{} && end == to;
-    };
-    return read(text.data(), text.data() + colon, vendor) && read(text.data() + colon + 1, text.data() + text.size(), product);
+    const std::string_view all = text;
+    const auto read_vendor = number_in<std::uint16_t>(all.substr(0, colon), 16);
+    const auto read_product = number_in<std::uint16_t>(all.substr(colon + 1), 16);
+    if (!read_vendor || !read_product) return false;
+    vendor = *read_vendor;
+    product = *read_product;
+    return true;
 }
 
 Result<Material> gather(const DescribeArguments& a) {

@@ -2,9 +2,9 @@
 #include "tools/soak/proc_figure.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::soak {
 
@@ -14,9 +14,7 @@ std::uint64_t proc_figure(std::string_view text, std::string_view name) {
         const bool is_whole = (at == 0 || text[at - 1] == '\n') && rest.find_first_of(" :") == 0;
         if (!is_whole) continue;
         rest.remove_prefix(std::min(rest.find_first_not_of(" :\t"), rest.size()));
-        std::uint64_t value = 0;
-        std::from_chars(rest.data(), rest.data() + rest.size(), value);
-        return value;
+        return leading_number<std::uint64_t>(rest, 0);
     }
     return 0;
 }

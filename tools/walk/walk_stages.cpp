@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "rt/frame/blame.hpp"
 #include "rt/threads/guard.hpp"
 
 namespace surefoot::walk {
 
 namespace {
-constexpr std::uint64_t oldest_prepared = 3;  // frames; older sets are not used (DESIGN 1.4)
-
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
 }  // namespace
 
@@ -95,7 +94,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.prepared_age = static_cast<std::uint32_t>(age);
     record.correction = static_cast<float>(request_.correct_costs ? controller_.factor() : 1.0);
     record.budget_us = static_cast<float>(options_.budget_us);
-    coarse_ = age > oldest_prepared || !covers(set.region, now_.pose, set.viewport);
+    coarse_ = age > rt::oldest_prepared || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_coarse();
         return;
