@@ -163,7 +163,7 @@ private:
         if (!lines_.next(text)) return wrong("truncated after START_TAG");
         object.name = text;
         if (!lines_.next(text)) return wrong(fmt::format("truncated in '{}'", object.name));
-        const auto triangles = number_in<decltype(object.triangles)>(text);
+        const auto triangles = surefoot::number_in<decltype(object.triangles)>(text);
         if (!triangles) return wrong(fmt::format("'{}' is not the number of triangles of '{}'", text.substr(0, 40), object.name));
         object.triangles = *triangles;
         if (object.triangles > total_ / (lines_a_triangle * 4))

@@ -1,13 +1,12 @@
-// Bars, and drawing in place: plain escape sequences, so that nothing but the cursor has to be put back.
+// Bars by kind of control.
 #include "tools/cli/bars.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
+
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -16,27 +15,12 @@ namespace {
 constexpr std::array<const char*, 8> directions = {"north", "north-east", "east", "south-east",
                                                    "south", "south-west", "west", "north-west"};
 
-winsize terminal_size() {
-    winsize size{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) {
-        size.ws_col = 80;
-        size.ws_row = 24;
-    }
-    return size;
-}
-
 }  // namespace
 
 std::string bar(const input::ControlInfo& c, std::int32_t value, std::size_t width) {
     const double range = static_cast<double>(c.logical_max) - c.logical_min;
     const double at = range > 0 ? std::clamp((static_cast<double>(value) - c.logical_min) / range, 0.0, 1.0) : 0.0;
-    std::string text(width, '-');
-    const std::size_t middle = width / 2;
-    const auto cell = std::min(width - 1, static_cast<std::size_t>(at * static_cast<double>(width)));
-    for (std::size_t i = std::min(middle, cell); i <= std::max(middle, cell); ++i) text[i] = '#';
-    text[middle] = '|';
-    if (cell != middle) text[cell] = '#';
-    return text;
+    return report::deflection_bar(at, width);
 }
 
 std::vector<std::string> control_lines(std::span<const input::ControlInfo> controls, const input::DeviceState& state,
@@ -60,42 +44,8 @@ std::vector<std::string> control_lines(std::span<const input::ControlInfo> contr
         }
     }
     if (buttons) lines.push_back(fmt::format("{:<16}{}", "pressed", pressed.empty() ? " none" : pressed));
-    for (std::string& line : lines)
-        if (line.size() > width) line.resize(width);
+    for (std::string& line : lines) line = report::cut_to(line, width);
     return lines;
-}
-
-Redraw::Redraw() {
-    (void)std::fputs("\033[?25l", stdout);
-    std::fflush(stdout);
-}
-
-Redraw::~Redraw() {
-    (void)std::fputs("\033[?25h", stdout);
-    std::fflush(stdout);
-}
-
-std::size_t Redraw::width() { return terminal_size().ws_col; }
-
-void Redraw::draw(std::span<const std::string> lines) {
-    const winsize size = terminal_size();
-    const std::size_t room = size.ws_row - 1U;
-    std::string out;
-    if (drawn_ > 0) out += fmt::format("\033[{}F", drawn_);
-    std::size_t n = 0;
-    for (const std::string& line : lines) {
-        if (n + 1 == room && lines.size() > room) {
-            out += fmt::format("\033[K... and {} more lines: make the window higher\n", lines.size() - n);
-            ++n;
-            break;
-        }
-        out += "\033[K" + line.substr(0, size.ws_col) + "\n";
-        ++n;
-    }
-    out += "\033[J";
-    drawn_ = n;
-    (void)std::fputs(out.c_str(), stdout);
-    std::fflush(stdout);
 }
 
 }  // namespace surefoot::cli

@@ -1,4 +1,4 @@
-// Live values as lines of text: a bar an axis, the pressed buttons by name. Pure functions; and the terminal they are drawn on.
+// Live values as lines of text: a bar an axis, the pressed buttons by name. Pure functions.
 #pragma once
 
 #include <span>
@@ -15,20 +15,5 @@ std::string bar(const input::ControlInfo& control, std::int32_t value, std::size
 /// Axes one a line, hats by direction, all pressed buttons in one line; each at most `width` characters.
 std::vector<std::string> control_lines(std::span<const input::ControlInfo> controls, const input::DeviceState& state,
                                        std::size_t width);
-
-/// Redraws some lines in place on stdout; the cursor is hidden as long as it lives.
-class Redraw {
-public:
-    Redraw();
-    ~Redraw();
-    Redraw(const Redraw&) = delete;
-    Redraw& operator=(const Redraw&) = delete;
-    /// Cut to the terminal's size; what does not fit is told in the last line.
-    void draw(std::span<const std::string> lines);
-    [[nodiscard]] static std::size_t width();
-
-private:
-    std::size_t drawn_ = 0;
-};
 
 }  // namespace surefoot::cli

@@ -15,6 +15,7 @@
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -112,7 +113,7 @@ private:
             if (teach_.phase() == Teach::Phase::ask) shown_ = question;
             return;
         }
-        std::string line = "\r\033[K" + question;
+        std::string line = std::string(report::clear_line) + question;
         if (numbers_.empty()) line += " (no device yet: plug one in)";
         if (teach_.phase() == Teach::Phase::ask)
             line += fmt::format("  [Enter: skip, {:.0f} s]", teach_.seconds_left(rt::monotonic_ns()));

@@ -10,6 +10,8 @@
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/cli/screen.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -67,7 +69,7 @@ std::string plain_line(const LiveStates::Device& d) {
 }
 
 std::vector<std::string> screen(LiveStates& states, const std::vector<std::string>& notes) {
-    const std::size_t width = Redraw::width();
+    const std::size_t width = report::terminal_look(false).width;
     std::vector<std::string> lines;
     for (const auto& [number, d] : states.devices()) {
         const double age_s = static_cast<double>(rt::monotonic_ns() - d->first_ns) * 1e-9;

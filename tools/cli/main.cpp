@@ -19,6 +19,7 @@
 #include "rt/base/text.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace {
 
@@ -76,7 +77,7 @@ int main(int argc, char** argv) {
     cli::Context context;
     context.stop = &stop_requested;
     context.terminal = isatty(STDERR_FILENO) == 1;
-    context.colour = isatty(STDOUT_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr;
+    context.colour = report::colour_wanted();
 
     CLI::App app{
         "Surefoot walks through 3D models that are too complex to draw whole, every frame by its deadline.\n\n"

@@ -5,15 +5,11 @@
 #include <string>
 
 #include "tools/doctor/check.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::doctor {
 
-struct TableOptions {
-    bool colour = false;
-    bool utf8 = false;        ///< marks beyond ASCII
-    std::size_t width = 120;  ///< evidence is wrapped here; remedies are not, so that they can be copied
-};
-
-std::string table(const Machine& machine, std::span<const Examined> examined, const TableOptions& options);
+/// Evidence is wrapped at the look's width; remedies are not, so that they can be copied.
+std::string table(const Machine& machine, std::span<const Examined> examined, const report::Look& look);
 
 }  // namespace surefoot::doctor
