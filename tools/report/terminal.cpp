@@ -35,7 +35,7 @@ std::string end_of(const std::string& text, std::size_t most) {
     return "…" + text.substr(at);
 }
 
-void append_cell(std::string& line, const Column& column, std::string_view text, bool first) {
+void append_cell(std::string& line, const TextColumn& column, std::string_view text, bool first) {
     if (!first) line.append(column.gap, ' ');
     line += column.width < 0 ? fmt::format("{:>{}}", text, -column.width) : fmt::format("{:<{}}", text, column.width);
 }
@@ -150,7 +150,7 @@ std::string progress_line(std::string_view stage, double done, std::string_view 
 
 std::string Columns::heading() const {
     std::string line;
-    for (const Column& column : columns_) append_cell(line, column, column.heading, &column == columns_.data());
+    for (const TextColumn& column : columns_) append_cell(line, column, column.heading, &column == columns_.data());
     return line;
 }
 

@@ -45,7 +45,7 @@ std::string deflection_bar(double at, std::size_t width);
 std::string progress_line(std::string_view stage, double done, std::string_view left);
 
 /// A column of a table for people.
-struct Column {
+struct TextColumn {
     std::string_view heading;
     int width = 0;        ///< places; negative: its cells end at its right edge
     std::size_t gap = 1;  ///< spaces between it and the column before
@@ -54,12 +54,12 @@ struct Column {
 /// Rows below a heading. A cell that is too long moves the rest of its row; cells at the end may be left out.
 class Columns {
 public:
-    Columns(std::initializer_list<Column> columns) : columns_(columns) {}
+    Columns(std::initializer_list<TextColumn> columns) : columns_(columns) {}
     [[nodiscard]] std::string heading() const;
     [[nodiscard]] std::string row(std::initializer_list<std::string> cells) const;
 
 private:
-    std::vector<Column> columns_;
+    std::vector<TextColumn> columns_;
 };
 
 constexpr std::size_t max_columns = 100;
