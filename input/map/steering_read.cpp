@@ -6,9 +6,9 @@
 
 #include "input/map/steering_file.hpp"
 #include "input/map/steering_words.hpp"
-#include "input/map/toml_reader.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/text.hpp"
+#include "rt/base/toml_reader.hpp"
 
 namespace surefoot::input {
 
@@ -245,8 +245,7 @@ Result<SteeringFile> parse_steering(std::string_view text, const std::string& na
         table.tables("gpio", [&](TableReader& t) { return read_line(t, steering.lines); });
         if (const auto done = table.finish(); !done) return done.error();
     } catch (const toml::parse_error& error) {
-        return Error{fmt::format("{}:{}", name, error.source().begin.line), std::string(error.description()),
-                     "see https://toml.io for the syntax"};
+        return toml_syntax_error(name, error);
     }
     if (const auto lines = check_lines(steering.lines); !lines) {
         Error error = lines.error();
