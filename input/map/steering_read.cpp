@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "input/map/steering_file.hpp"
-#include "input/map/steering_words.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/text.hpp"
 #include "rt/base/toml_reader.hpp"

@@ -20,7 +20,7 @@
 #include "systemd/daemon/monitoring.hpp"
 #include "systemd/daemon/service.hpp"
 #include "systemd/daemon/standing.hpp"
-#include "tools/monitor/watch.hpp"
+#include "tools/monitor/monitor.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::daemon {

@@ -8,8 +8,6 @@
 
 #include "tests/time_units.hpp"
 #include "tools/doctor/check.hpp"
-#include "tools/doctor/cyclictest.hpp"
-#include "tools/doctor/table.hpp"
 
 namespace surefoot::doctor {
 namespace {

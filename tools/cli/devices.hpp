@@ -1,4 +1,4 @@
-// The subcommands of `surefoot devices`: a file each, registered here.
+// The subcommands of `surefoot devices`: a file each; devices_list.cpp registers them.
 #pragma once
 
 #include "tools/cli/command.hpp"

@@ -11,7 +11,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/screen.hpp"
-#include "tools/monitor/client.hpp"
+#include "tools/monitor/address.hpp"
 #include "tools/monitor/view.hpp"
 #include "tools/report/terminal.hpp"
 

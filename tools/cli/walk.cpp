@@ -4,7 +4,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
-#include "tools/monitor/watch.hpp"
+#include "tools/monitor/monitor.hpp"
 #include "tools/report/verdict.hpp"
 #include "tools/walk/settings_request.hpp"
 #include "tools/walk/walk.hpp"

@@ -1,5 +1,5 @@
 // Topics, findings, remedies, and what a wake-up run measured.
-#include "tools/doctor/table.hpp"
+#include "tools/doctor/check.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Connect, ask, read to the end; one deadline for all of it.
-#include "tools/monitor/client.hpp"
+#include "tools/monitor/address.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>

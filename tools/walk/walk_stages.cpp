@@ -13,6 +13,21 @@ namespace {
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
 }  // namespace
 
+void KeptFrame::reserve(const Engine& engine) {
+    engine.reserve(prepared);
+    select::reserve(cut, engine.options().prepare.max_candidates);
+    memory.reserve(engine.options().prepare.max_candidates);
+}
+
+capture::Capture capture_of(const KeptFrame& kept, const WalkRequest& request, const Engine& engine) {
+    const select::SelectInput input{&engine.model(),        &kept.prepared,        &engine.costs(),  kept.budget_us,
+                                    kept.correction.factor, kept.target_error_rad, request.slice_us, kept.correction.upper};
+    capture::Capture taken =
+        capture::take(input, request.selector, static_cast<float>(request.hysteresis), kept.memory, kept.cut);
+    taken.frame = kept.frame;
+    return taken;
+}
+
 WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
                        rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
                        const WalkStagesOptions& options)
