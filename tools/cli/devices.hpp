@@ -5,6 +5,9 @@
 
 namespace surefoot::cli {
 
+/// The argument that names one device, for open_devices().
+void add_device_choice(CLI::App& command, std::string& device);
+
 /// devices_describe.cpp: a descriptor and recorded reports, without any device.
 void add_devices_describe(CLI::App& devices, Context& context);
 /// devices_list.cpp: what is plugged in. Also what `surefoot devices` does by itself, with --json of either.

@@ -96,6 +96,11 @@ void add_devices_list(CLI::App& devices, Context& context) {
     });
 }
 
+void add_device_choice(CLI::App& command, std::string& device) {
+    command.add_option("device", device,
+                       "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
+}
+
 void add_devices(CLI::App& app, Context& context) {
     CLI::App* c = app.add_subcommand("devices", "Joysticks, 3D mice, pedals and buttons: what they are and what they say");
     c->footer(

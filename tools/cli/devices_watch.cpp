@@ -188,8 +188,7 @@ void add_devices_watch(CLI::App& devices, Context& context) {
     auto a = std::make_shared<WatchArguments>();
     CLI::App* c = devices.add_subcommand("watch", "What the controls say, live; devices may come and go");
     c->footer("Example:\n  surefoot devices watch\n  surefoot devices watch 046d:c626 --seconds 10 --json");
-    c->add_option("device", a->device,
-                  "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
+    add_device_choice(*c, a->device);
     c->add_option("--seconds", a->seconds, "End after so long")->check(number_within(0.01, 1e6, "s"));
     c->add_flag("--json", a->json, "One JSON object a line on stdout for each report and each device that comes or goes");
     c->callback([&context, a] {
