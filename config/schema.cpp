@@ -8,7 +8,7 @@
 
 #include "config/settings.hpp"
 #include "config/values.hpp"
-#include "rt/base/nearest.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::config {
 

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "render/import/mend.hpp"
 #include "rt/base/file.hpp"
 
 namespace surefoot::importer {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "render/model/cost.hpp"
-#include "rt/base/random_point.hpp"
+#include "rt/base/random.hpp"
 
 namespace surefoot::measure {
 

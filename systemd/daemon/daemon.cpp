@@ -1,12 +1,9 @@
 // One walk after another, each as the newest good configuration says.
 #include "systemd/daemon/daemon.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -23,19 +20,12 @@
 #include "systemd/daemon/monitoring.hpp"
 #include "systemd/daemon/service.hpp"
 #include "systemd/daemon/standing.hpp"
-#include "tools/monitor/watch.hpp"
+#include "tools/monitor/monitor.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::daemon {
 
 namespace {
-
-/// A closed stdin, stdout or stderr would give its number to the next file that is opened, and the log would go there.
-void keep_standard_files() {
-    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
-        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF) (void)open("/dev/null", fd == STDERR_FILENO ? O_WRONLY : O_RDONLY);
-    }
-}
 
 /// What a walk ended with.
 struct Ending {

@@ -4,7 +4,7 @@
 #include "systemd/daemon/exit_code.hpp"
 #include "systemd/daemon/monitoring.hpp"
 #include "tests/daemon/running.hpp"
-#include "tools/monitor/client.hpp"
+#include "tools/monitor/address.hpp"
 
 namespace surefoot::daemon::test {
 namespace {

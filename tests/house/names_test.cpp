@@ -13,7 +13,7 @@
 #include "render/effects/effects.hpp"
 #include "render/gl/backends.hpp"
 #include "render/import/formats.hpp"
-#include "render/model/forms.hpp"
+#include "render/model/model.hpp"
 #include "render/select/registry.hpp"
 
 namespace surefoot::house {

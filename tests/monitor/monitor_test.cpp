@@ -19,7 +19,7 @@
 #include "tests/monitor/exposition.hpp"
 #include "tests/monitor/http.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tools/monitor/client.hpp"
+#include "tools/monitor/address.hpp"
 #include "tools/monitor/monitor.hpp"
 
 namespace surefoot::monitor {

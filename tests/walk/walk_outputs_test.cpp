@@ -11,9 +11,9 @@
 #include "render/capture/capture.hpp"
 #include "rt/base/file.hpp"
 #include "tests/walk/walk_fixture.hpp"
-#include "tools/walk/outputs.hpp"
 #include "tools/walk/real_time.hpp"
 #include "tools/walk/shots.hpp"
+#include "tools/walk/walk_results.hpp"
 
 namespace surefoot {
 namespace {

@@ -8,6 +8,7 @@
 #include "tools/accuracy/sweep.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -21,14 +22,21 @@ struct AccuracyArguments {
 void print_points(const accuracy::AccuracyRun& run) {
     fmt::print("{} at {} poses, {}x{}; full detail takes {:.1f} ms a frame\n", run.model, run.poses, run.width, run.height,
                run.full_frame_ms);
-    fmt::print("{:<18} {:>10} {:>10} {:>10} {:>12} {:>6} {:>8} {:>7} {:>11}\n", "selector", "budget ms", "p50 ms", "p90 ms",
-               "accuracy 1/r", "exact", "SNR dB", "SSIM", "triangles");
-    for (const accuracy::AccuracyPoint& p : run.points) {
-        fmt::print("{:<18} {:>10.2f} {:>10.2f} {:>10.2f} {:>12} {:>6} {:>8.2f} {:>7.4f} {:>11.0f}\n", p.selector, p.budget_ms,
-                   p.frame_ms_p50, p.frame_ms_p90,
-                   std::isfinite(p.accuracy_mean) ? fmt::format("{:.1f}", p.accuracy_mean) : "exact", p.exact, p.snr_db, p.ssim,
-                   p.triangles);
-    }
+    const report::Columns columns({{"selector", 18},
+                                   {"budget ms", -10},
+                                   {"p50 ms", -10},
+                                   {"p90 ms", -10},
+                                   {"accuracy 1/r", -12},
+                                   {"exact", -6},
+                                   {"SNR dB", -8},
+                                   {"SSIM", -7},
+                                   {"triangles", -11}});
+    fmt::print("{}\n", columns.heading());
+    const auto text = [](double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); };
+    for (const accuracy::AccuracyPoint& p : run.points)
+        fmt::print("{}\n", columns.row({p.selector, text(p.budget_ms, 2), text(p.frame_ms_p50, 2), text(p.frame_ms_p90, 2),
+                                        std::isfinite(p.accuracy_mean) ? text(p.accuracy_mean, 1) : "exact",
+                                        std::to_string(p.exact), text(p.snr_db, 2), text(p.ssim, 4), text(p.triangles, 0)}));
 }
 
 int run_accuracy_command(AccuracyArguments& a, const Context& context) {

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <memory>
 
+#include "tools/report/terminal.hpp"
+
 namespace surefoot::cli {
 
 namespace {
@@ -29,11 +31,9 @@ void draw_bar(BarState& bar, std::string_view stage, double done) {
     if (now - bar.drawn < std::chrono::milliseconds(100) && done < 1.0) return;
     bar.drawn = now;
     const double spent = std::chrono::duration<double>(now - bar.begun).count();
-    const int filled = static_cast<int>(std::clamp(done, 0.0, 1.0) * 24.0);
     std::string left;
     if (done > 0.02 && spent > 0.5) left = fmt::format("{:.0f} s left", spent / done * (1.0 - done));
-    const std::string line = fmt::format("\r\033[K{:<22} [{:<24}] {:3.0f} %  {}", bar.stage,
-                                         std::string(static_cast<std::size_t>(filled), '#'), 100.0 * done, left);
+    const std::string line = fmt::format("{}{}", report::clear_line, report::progress_line(bar.stage, done, left));
     (void)std::fputs(line.c_str(), stderr);
     std::fflush(stderr);
 }
@@ -63,7 +63,7 @@ Progress terminal_progress(const Context& context) {
     Progress progress;
     progress.stop = context.stop;
     progress.note = [terminal = context.terminal](std::string_view text) {
-        if (terminal) (void)std::fputs("\r\033[K", stderr);
+        if (terminal) (void)std::fputs(report::clear_line, stderr);
         note(std::string(text));
     };
     if (context.terminal) {
@@ -74,7 +74,7 @@ Progress terminal_progress(const Context& context) {
 }
 
 void end_progress(const Context& context) {
-    if (context.terminal) (void)std::fputs("\r\033[K", stderr);
+    if (context.terminal) (void)std::fputs(report::clear_line, stderr);
 }
 
 int fail(const Error& error) {

@@ -1,4 +1,5 @@
-// surefoot devices list: what is plugged in, what it would steer with, and why it would not.
+// surefoot devices list: what is plugged in, what it would steer with, and why it would not; and the
+// group of commands `surefoot devices`.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -93,6 +94,24 @@ void add_devices_list(CLI::App& devices, Context& context) {
     devices.callback([&devices, &context, a] {
         if (devices.get_subcommands().empty()) context.run = [a] { return run_list(*a); };
     });
+}
+
+void add_device_choice(CLI::App& command, std::string& device) {
+    command.add_option("device", device,
+                       "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
+}
+
+void add_devices(CLI::App& app, Context& context) {
+    CLI::App* c = app.add_subcommand("devices", "Joysticks, 3D mice, pedals and buttons: what they are and what they say");
+    c->footer(
+        "Without a subcommand: list.\n\nExample:\n  surefoot devices\n  surefoot devices watch\n  surefoot devices map -o "
+        "steering.toml");
+    c->require_subcommand(0, 1);
+    add_devices_list(*c, context);
+    add_devices_watch(*c, context);
+    add_devices_record(*c, context);
+    add_devices_map(*c, context);
+    add_devices_describe(*c, context);
 }
 
 }  // namespace surefoot::cli

@@ -15,6 +15,7 @@
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -112,7 +113,7 @@ private:
             if (teach_.phase() == Teach::Phase::ask) shown_ = question;
             return;
         }
-        std::string line = "\r\033[K" + question;
+        std::string line = std::string(report::clear_line) + question;
         if (numbers_.empty()) line += " (no device yet: plug one in)";
         if (teach_.phase() == Teach::Phase::ask)
             line += fmt::format("  [Enter: skip, {:.0f} s]", teach_.seconds_left(rt::monotonic_ns()));
@@ -195,8 +196,7 @@ void add_devices_map(CLI::App& devices, Context& context) {
     auto a = std::make_shared<MapArguments>();
     CLI::App* c = add_command(devices, "map", "Writes a mapping: asks for each movement, and sees which control does it",
                               "surefoot devices map -o steering.toml", a->json);
-    c->add_option("device", a->device,
-                  "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
+    add_device_choice(*c, a->device);
     c->add_option("-o,--output", a->file, "The steering file; what it says of other things stays. Without it: to stdout");
     c->add_option("--timeout", a->timeout_s, "A question is skipped after so long")->check(number_within(0.1, 3600, "s"));
     c->callback([&context, a] { context.run = [&context, a] { return run_map(*a, context); }; });

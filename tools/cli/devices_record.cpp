@@ -7,6 +7,7 @@
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -53,7 +54,7 @@ public:
             if (bytes_ > input::max_recording_bytes / 2) ended_ = "full";
             if (context_.terminal && rt::monotonic_ns() >= due) {
                 due = rt::monotonic_ns() + progress_ns;
-                (void)std::fputs(fmt::format("\r\033[K{} reports", reports_).c_str(), stderr);
+                (void)std::fputs(fmt::format("{}{} reports", report::clear_line, reports_).c_str(), stderr);
             }
         }
         end_progress(context_);

@@ -1,9 +1,6 @@
 // surefoot doctor: is this machine fit? Checks with evidence and remedy, and a wake-up run.
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <tuple>
 
@@ -12,10 +9,9 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/doctor/check.hpp"
-#include "tools/doctor/cyclictest.hpp"
-#include "tools/doctor/probe.hpp"
-#include "tools/doctor/table.hpp"
+#include "tools/doctor/machine.hpp"
 #include "tools/doctor/wake_up.hpp"
+#include "tools/report/terminal.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::cli {
@@ -53,21 +49,6 @@ nlohmann::ordered_json to_json(const doctor::Machine& machine, std::span<const d
             {"summary", {{"pass", s.pass}, {"fail", s.fail}, {"unknown", s.unknown}, {"fit", s.fail == 0}, {"frame_core", core}}},
             {"wake_up", wake_json(machine.probed().wake_up)},
             {"cyclictest", wake_json(machine.probed().cyclictest)}};
-}
-
-doctor::TableOptions table_options(const Context& context) {
-    doctor::TableOptions options;
-    options.colour = context.colour;
-    for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        const char* const value = std::getenv(name);
-        if (value == nullptr || *value == '\0') continue;
-        const std::string locale = value;
-        options.utf8 = locale.find("UTF-8") != std::string::npos || locale.find("utf8") != std::string::npos;
-        break;
-    }
-    winsize size{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) options.width = size.ws_col;
-    return options;
 }
 
 /// Ours first, while nothing else is loaded; then theirs, on the same core and priority.
@@ -113,7 +94,7 @@ int run_doctor(const DoctorArguments& a, const Context& context) {
     if (a.json) {
         print_json(to_json(machine, examined));
     } else {
-        fmt::print("{}", doctor::table(machine, examined, table_options(context)));
+        fmt::print("{}", doctor::table(machine, examined, report::terminal_look(context.colour, 120)));
     }
     return doctor::summarise(examined).fail == 0 ? exit_success : exit_failure;
 }

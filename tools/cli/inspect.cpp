@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "render/effects/effects.hpp"
-#include "render/model/forms.hpp"
+#include "render/model/model.hpp"
 #include "render/model/walk_file.hpp"
 #include "tools/cli/command.hpp"
 

@@ -1,10 +1,8 @@
 // surefoot: bakes models, measures the machine, runs walks, and shows what accuracy costs. A thin main: one file a command.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -17,9 +15,11 @@
 
 #include "render/gl/device.hpp"
 #include "render/import/formats.hpp"
-#include "rt/base/nearest.hpp"
+#include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace {
 
@@ -29,13 +29,6 @@ std::atomic<bool> stop_requested{false};
 void on_signal(int number) {
     stop_requested.store(true);
     std::signal(number, SIG_DFL);
-}
-
-/// A closed stdin, stdout or stderr would give its number to the next file that is opened, and print into that.
-void keep_standard_files() {
-    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
-        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF) (void)open("/dev/null", fd == STDERR_FILENO ? O_WRONLY : O_RDONLY);
-    }
 }
 
 /// Errors are values; what is thrown all the same ends here, and so does what stdout did not take.
@@ -84,7 +77,7 @@ int main(int argc, char** argv) {
     cli::Context context;
     context.stop = &stop_requested;
     context.terminal = isatty(STDERR_FILENO) == 1;
-    context.colour = isatty(STDOUT_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr;
+    context.colour = report::colour_wanted();
 
     CLI::App app{
         "Surefoot walks through 3D models that are too complex to draw whole, every frame by its deadline.\n\n"

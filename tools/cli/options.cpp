@@ -4,26 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "render/gl/backends.hpp"
+#include "rt/base/text.hpp"
 #include "tools/walk/settings_request.hpp"
 
 namespace surefoot::cli {
-
-namespace {
-
-template <class Number>
-std::optional<Number> number_in(std::string_view text) {
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
-}  // namespace
 
 CLI::Validator number_within(double least, double most, const std::string& unit) {
     return {[=](std::string& text) {

@@ -5,6 +5,7 @@
 #include "render/select/registry.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -55,12 +56,13 @@ int run_replay(const ReplayArguments& a) {
     }
     fmt::print("{}: frame {}, {} candidates, budget {:.2f} ms; the cut is repeated exactly\n", a.file, captured->frame,
                captured->prepared.candidates.size(), captured->budget_us * 1e-3);
-    fmt::print("{:<18} {:>16} {:>7} {:>13} {:>10} {:>12}\n", "selector", "hash", "items", "predicted us", "triangles",
-               "refinements");
-    for (std::size_t i = 0; i < cuts.size(); ++i) {
-        fmt::print("{:<18} {:016x} {:>7} {:>13.0f} {:>10} {:>12}\n", selectors[i], cuts[i].hash, cuts[i].items.size(),
-                   cuts[i].predicted_us, cuts[i].triangles, cuts[i].refinements);
-    }
+    const report::Columns columns(
+        {{"selector", 18}, {"hash", -16}, {"items", -7}, {"predicted us", -13}, {"triangles", -10}, {"refinements", -12}});
+    fmt::print("{}\n", columns.heading());
+    for (std::size_t i = 0; i < cuts.size(); ++i)
+        fmt::print("{}\n", columns.row({selectors[i], fmt::format("{:016x}", cuts[i].hash), std::to_string(cuts[i].items.size()),
+                                        fmt::format("{:.0f}", cuts[i].predicted_us), std::to_string(cuts[i].triangles),
+                                        std::to_string(cuts[i].refinements)}));
     return exit_success;
 }
 }  // namespace

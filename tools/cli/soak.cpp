@@ -99,19 +99,7 @@ void add_soak(CLI::App& app, Context& context) {
         ->capture_default_str();
     c->add_option("--seed", r.seed, "Of the timetable: the same seed loads in the same order")->capture_default_str();
     c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html, and DIR/soak.json");
-    add_settings(c, a->settings,
-                 {{"--lift", "lift_m"},
-                  {"--rate", "rate_hz"},
-                  {"--budget", "budget_ms"},
-                  {"--selector", "selector"},
-                  {"--late", "late"},
-                  {"--backend", "backend"},
-                  {"--shift-x", "shift_x"},
-                  {"--shift-y", "shift_y"},
-                  {"--clock", "clock"},
-                  {"--workers", "workers"},
-                  {"--rasterisers", "rasterisers"},
-                  {"--frame-core", "frame_core"}});
+    add_settings(c, a->settings);
     c->add_flag("--no-control", a->no_control,
                 "The walk alone, without a bare loop in turn with it: twice the frames, judged by its own misses alone");
     c->add_flag("--strict", a->strict, "Do not start where anything that real time needs is refused");

@@ -10,9 +10,10 @@
 #include "rt/clock/clock.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
-#include "tools/cli/terminal.hpp"
-#include "tools/monitor/client.hpp"
+#include "tools/cli/screen.hpp"
+#include "tools/monitor/address.hpp"
 #include "tools/monitor/view.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -52,7 +53,8 @@ int run_status(const LookArguments& a, const Context& context) {
         print_json(nlohmann::ordered_json::parse(asked->text));
         return exit_success;
     }
-    for (const std::string& line : monitor::status_page(asked->status, terminal_look(context.colour))) fmt::print("{}\n", line);
+    for (const std::string& line : monitor::status_page(asked->status, report::terminal_look(context.colour)))
+        fmt::print("{}\n", line);
     return exit_success;
 }
 
@@ -119,10 +121,10 @@ private:
         return std::fputs(line.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
     }
     void draw() {
-        const monitor::Look look = terminal_look(context_.colour);
+        const report::Look look = report::terminal_look(context_.colour);
         std::vector<std::string> lines = monitor::top_page(status_, before_, between_s_, look);
         if (!trouble_.empty() && !lines.empty())
-            lines.back() = ("the service is gone, asking again: " + trouble_).substr(0, look.width);
+            lines.back() = report::cut_to("the service is gone, asking again: " + trouble_, look.width);
         screen_->draw(lines);
     }
     static std::string time_of_day() {

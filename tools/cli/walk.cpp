@@ -4,7 +4,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
-#include "tools/monitor/watch.hpp"
+#include "tools/monitor/monitor.hpp"
 #include "tools/report/verdict.hpp"
 #include "tools/walk/settings_request.hpp"
 #include "tools/walk/walk.hpp"
@@ -165,23 +165,8 @@ void add_walk(CLI::App& app, Context& context) {
         ->check(whole_number_within(1, 4'000'000));
     c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")
         ->check(number_within(0.001, 1e6, "s"));
-    add_settings(c, a->settings,
-                 {{"--lift", "lift_m"},
-                  {"--rate", "rate_hz"},
-                  {"--budget", "budget_ms"},
-                  {"--accuracy", "accuracy"},
-                  {"--cost-scale", "cost_scale"},
-                  {"--selector", "selector"},
-                  {"--late", "late"},
-                  {"--backend", "backend"},
-                  {"--shift-x", "shift_x"},
-                  {"--shift-y", "shift_y"},
-                  {"--clock", "clock"},
-                  {"--workers", "workers"},
-                  {"--rasterisers", "rasterisers"},
-                  {"--frame-core", "frame_core"},
-                  {"--slice", "slice_us"},
-                  {"--hysteresis", "hysteresis"}});
+    add_settings(c, a->settings, {{"--accuracy", "accuracy"}, {"--cost-scale", "cost_scale"}},
+                 {{"--slice", "slice_us"}, {"--hysteresis", "hysteresis"}});
     c->add_option("--cost-noise", r.cost_noise, "Virtual clock: relative noise on costs")->check(number_within(0, 10));
     for (const char* experiment : {"--slice", "--hysteresis", "--cost-noise"}) c->get_option(experiment)->group(hidden_group);
     c->add_flag("--strict", r.strict,

@@ -37,10 +37,23 @@ void add_setting(CLI::App* c, const std::shared_ptr<SettingArguments>& a, const 
 
 }  // namespace
 
-void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& a,
-                  std::initializer_list<std::pair<const char*, const char*>> flags_and_keys) {
+void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& a, FlagsAndKeys more, FlagsAndKeys last) {
     command->add_option("--size", a->size, "Picture size [1280x720]");
-    for (const auto& [flag, key] : flags_and_keys) add_setting(command, a, flag, key);
+    const auto add = [&](FlagsAndKeys settings) {
+        for (const auto& [flag, key] : settings) add_setting(command, a, flag, key);
+    };
+    add({{"--lift", "lift_m"}, {"--rate", "rate_hz"}, {"--budget", "budget_ms"}});
+    add(more);
+    add({{"--selector", "selector"},
+         {"--late", "late"},
+         {"--backend", "backend"},
+         {"--shift-x", "shift_x"},
+         {"--shift-y", "shift_y"},
+         {"--clock", "clock"},
+         {"--workers", "workers"},
+         {"--rasterisers", "rasterisers"},
+         {"--frame-core", "frame_core"}});
+    add(last);
     command->add_flag("--no-fifo", a->no_fifo, "Ordinary scheduling (the figures are marked)");
     command->add_option("--config", a->config_file, "Settings in TOML; the command line wins");
     command->add_option("--profile", a->profile, "A [profile.NAME] of the settings file");

@@ -1,5 +1,5 @@
 // cyclictest: found, run as a child, its histogram read.
-#include "tools/doctor/cyclictest.hpp"
+#include "tools/doctor/wake_up.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -12,7 +12,7 @@
 
 namespace surefoot::doctor {
 
-/// What a wake-up run found (wake_up.hpp, cyclictest.hpp); times in microseconds, how late a slot's start was.
+/// What a wake-up run found (wake_up.hpp); times in microseconds, how late a slot's start was.
 struct WakeFigures {
     std::string source;  ///< "surefoot" or "cyclictest"
     double seconds = 0;
@@ -110,5 +110,9 @@ private:
     std::optional<int> frame_core_;
     std::optional<std::string> build_configuration_;
 };
+
+/// What only this machine itself can tell, by trying: FIFO, locking, the renderer, the cost table, disk space; everything but the
+/// wake-up run. Leaves limits, threads and files as they were; opens GL once (a few tenths of a second).
+Probed probe_machine(const Wanted& wanted);
 
 }  // namespace surefoot::doctor

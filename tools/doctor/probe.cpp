@@ -1,5 +1,5 @@
 // Trying, and putting back.
-#include "tools/doctor/probe.hpp"
+#include "tools/doctor/machine.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>

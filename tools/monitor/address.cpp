@@ -7,10 +7,11 @@
 #include <sys/un.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+
+#include "rt/base/text.hpp"
 
 namespace surefoot::monitor {
 
@@ -56,9 +57,9 @@ Result<Address> parse_address(const std::string& text) {
     if (address.host.size() > 2 && address.host.front() == '[' && address.host.back() == ']')
         address.host = address.host.substr(1, address.host.size() - 2);
     if (address.host == "localhost") address.host = "127.0.0.1";
-    const char* end = text.data() + text.size();
-    const auto [read_to, problem] = std::from_chars(text.data() + colon + 1, end, address.port);
-    if (problem != std::errc{} || read_to != end) return Error{text, "has no port from 0 to 65535", std::string(forms)};
+    const auto port = number_in<std::uint16_t>(std::string_view(text).substr(colon + 1));
+    if (!port) return Error{text, "has no port from 0 to 65535", std::string(forms)};
+    address.port = *port;
     if (!is_loopback(address.host)) {
         return Error{text, "is not on loopback: whoever reaches this machine could look",
                      "name 127.0.0.1, [::1] or a socket; to look from elsewhere, put a proxy that knows its users before it"};

@@ -1,5 +1,5 @@
 // Connect, ask, read to the end; one deadline for all of it.
-#include "tools/monitor/client.hpp"
+#include "tools/monitor/address.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
+#include "rt/base/text.hpp"
 #include "rt/clock/clock.hpp"
 
 namespace surefoot::monitor {
@@ -61,10 +61,9 @@ bool ready(int fd, short what, std::int64_t deadline_ns) {
 /// The body, where the answer is a whole page with status 200.
 Result<std::string> body_of(const Address& address, std::string_view path, const std::string& answer) {
     const Error strange{address.text(), "something else than a surefoot monitor answers there", "name its place with --socket"};
-    int code = 0;
     const std::size_t head_end = answer.find("\r\n\r\n");
     if (!answer.starts_with("HTTP/1.") || answer.size() < 12 || head_end == std::string::npos) return strange;
-    std::from_chars(answer.data() + 9, answer.data() + 12, code);
+    const int code = leading_number(std::string_view(answer).substr(9, 3), 0);
     if (code == 404)
         return Error{address.text(), fmt::format("knows no page {}", path), "is it an older surefoot, or another program?"};
     if (code != 200)
@@ -72,9 +71,8 @@ Result<std::string> body_of(const Address& address, std::string_view path, const
     const std::string_view head = std::string_view(answer).substr(0, head_end);
     constexpr std::string_view length_is = "Content-Length: ";
     const std::size_t at = head.find(length_is);
-    std::size_t length = 0;
     if (at == std::string_view::npos) return strange;
-    std::from_chars(head.data() + at + length_is.size(), head.data() + head.size(), length);
+    const auto length = leading_number<std::size_t>(head.substr(at + length_is.size()), 0);
     std::string body = answer.substr(head_end + 4);
     if (body.size() != length) return Error{address.text(), "the answer was cut off", "try again"};
     return body;

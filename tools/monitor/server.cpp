@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 
+#include "rt/base/text.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/threads/placement.hpp"
 #include "tools/monitor/listen.hpp"
@@ -44,10 +45,7 @@ HostField host_of(std::string_view request) {
         if (!std::equal(name.begin(), name.end(), field.begin(), field.begin() + std::min(field.size(), name.size()), is_name))
             continue;
         if (found != HostField::absent) return HostField::twice;
-        field.remove_prefix(name.size());
-        field.remove_prefix(std::min(field.find_first_not_of(" \t"), field.size()));
-        field = field.substr(0, field.find_last_not_of(" \t") + 1);
-        found = host_is_loopback(field) ? HostField::loopback : HostField::foreign;
+        found = host_is_loopback(trimmed(field.substr(name.size()))) ? HostField::loopback : HostField::foreign;
     }
     return found;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/monitor/text.hpp"
+#include "tools/monitor/view.hpp"
 
 namespace surefoot::monitor {
 
@@ -80,17 +81,18 @@ void add_rare_checks(const json& s, const Look& look, std::vector<std::string>& 
 }
 
 void add_times(const json& s, std::vector<std::string>& lines) {
-    lines.push_back(fmt::format("{:<20}{:>10}{:>10}{:>10}{:>10}", "since the start", "p50", "p99", "p99.9", "max"));
+    const report::Columns columns(
+        {{"since the start", 20}, {"p50", -10, 0}, {"p99", -10, 0}, {"p99.9", -10, 0}, {"max", -10, 0}});
+    lines.push_back(columns.heading());
     for (const TimeRow& row : time_rows) {
         const auto at = [&](const char* q) {
             return short_number(number_at(s, fmt::format("/times/{}/{}", row.series, q).c_str()));
         };
         if (std::isnan(number_at(s, fmt::format("/times/{}/count", row.series).c_str()))) continue;
-        lines.push_back(
-            fmt::format("{:<20}{:>10}{:>10}{:>10}{:>10} {}", row.label, at("p50"), at("p99"), at("p999"), at("max"), row.unit));
+        lines.push_back(columns.row({row.label, at("p50"), at("p99"), at("p999"), at("max")}) + " " + row.unit);
     }
     if (const double low = number_at(s, "/times/one_percent_low_hz"); !std::isnan(low))
-        lines.push_back(fmt::format("{:<20}{:>10} Hz", "1 % low", short_number(low)));
+        lines.push_back(columns.row({"1 % low", short_number(low)}) + " Hz");
 }
 
 void add_recent(const json& s, const Look& look, std::vector<std::string>& lines) {

@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "tools/report/charts.hpp"
-#include "tools/report/pictures.hpp"
 #include "tools/report/svg.hpp"
 #include "tools/report/verdict.hpp"
 

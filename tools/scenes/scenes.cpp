@@ -13,7 +13,6 @@
 #include "tools/scenes/forest.hpp"
 #include "tools/scenes/room.hpp"
 #include "tools/scenes/town.hpp"
-#include "tools/scenes/writers.hpp"
 
 namespace surefoot::scenes {
 namespace {

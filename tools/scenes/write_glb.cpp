@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "render/image/srgb.hpp"
+#include "render/image/image.hpp"
 #include "rt/base/file.hpp"
-#include "tools/scenes/writers.hpp"
+#include "tools/scenes/scenes.hpp"
 
 namespace surefoot::scenes {
 namespace {

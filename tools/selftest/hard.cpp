@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "rt/base/hash.hpp"
-#include "rt/base/nearest.hpp"
+#include "rt/base/text.hpp"
 #include "tools/selftest/families.hpp"
 
 namespace surefoot::selftest {

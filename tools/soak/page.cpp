@@ -15,7 +15,6 @@
 #include "tools/report/verdict.hpp"
 #include "tools/soak/charts.hpp"
 #include "tools/soak/summary.hpp"
-#include "tools/soak/words.hpp"
 
 namespace surefoot::soak {
 

@@ -101,6 +101,8 @@ struct SoakSummary {
     SoakMachine machine;
 };
 
+/// "45 seconds", "20 minutes", "2 hours".
+std::string duration_words(double seconds);
 /// holds: every check does; broken: one is; else not judged.
 Judged verdict_of(const SoakSummary& summary);
 /// "20 minutes under load: 36 012 frames, 2 missed, none by its own doing."

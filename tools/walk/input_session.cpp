@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "input/replay/replay_source.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::walk {
 
@@ -22,14 +23,6 @@ void say_what_is_passed_over(const input::SteeringFile& steering, const input::R
                                     recorded.recording.other_devices));
     }
     for (const std::string& left_out : recorded.mapper.notes) notes.push_back(request.input_file + ": " + left_out);
-}
-
-/// Names in recordings are bytes of unknown sort.
-std::string printable(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(),
-        [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f; }, '?');
-    return text;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // A walk's outputs, checked before it begins.
-#include "tools/walk/outputs.hpp"
+#include "tools/walk/walk_results.hpp"
 
 #include <fmt/format.h>
 

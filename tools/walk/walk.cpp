@@ -11,8 +11,8 @@
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/recorder.hpp"
 #include "tools/walk/control_proof.hpp"
-#include "tools/walk/outputs.hpp"
 #include "tools/walk/prepare_thread.hpp"
+#include "tools/walk/walk_results.hpp"
 #include "tools/walk/walk_session.hpp"
 
 namespace surefoot::walk {

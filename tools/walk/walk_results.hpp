@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/engine.hpp"
+#include "rt/base/result.hpp"
 #include "tools/walk/placing.hpp"
 #include "tools/walk/shots.hpp"
 #include "tools/walk/walk.hpp"
@@ -40,5 +41,9 @@ ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std:
 /// written. The device must be bound to the calling thread.
 void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots,
                    WalkOutcome& outcome, const Progress& progress);
+
+/// Every output could be written now, none is another output or a file that is read, and none asks for what cannot be (pictures
+/// of the null backend). Nothing is left behind; what is there is not touched.
+Result<void> check_outputs(const WalkRequest& request);
 
 }  // namespace surefoot::walk

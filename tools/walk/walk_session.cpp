@@ -9,11 +9,11 @@
 #include "render/gl/backends.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
-#include "tools/walk/outputs.hpp"
 #include "tools/walk/pose_source.hpp"
 #include "tools/walk/real_time.hpp"
 #include "tools/walk/settings_request.hpp"
 #include "tools/walk/state.hpp"
+#include "tools/walk/walk_results.hpp"
 
 namespace surefoot::walk {
 

@@ -1,11 +1,35 @@
-// Edit distance, and the nearest of some words.
-#include "rt/base/nearest.hpp"
+// Trimming, splitting, printable bytes, and edit distance.
+#include "rt/base/text.hpp"
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 namespace surefoot {
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blanks = " \t\r\n";
+    const auto from = text.find_first_not_of(blanks);
+    return from == std::string_view::npos ? std::string_view() : text.substr(from, text.find_last_not_of(blanks) - from + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+    std::vector<std::string_view> parts;
+    while (true) {
+        const auto from = text.find_first_not_of(separators);
+        if (from == std::string_view::npos) return parts;
+        text.remove_prefix(from);
+        const auto end = std::min(text.find_first_of(separators), text.size());
+        parts.push_back(text.substr(0, end));
+        text.remove_prefix(end);
+    }
+}
+
+std::string printable(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(),
+        [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f; }, '?');
+    return text;
+}
 
 std::size_t edits_between(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);

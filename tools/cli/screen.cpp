@@ -1,44 +1,15 @@
 // Escape sequences that every terminal of the last decades knows, and termios.
-#include "tools/cli/terminal.hpp"
+#include "tools/cli/screen.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <string_view>
+
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
-
-namespace {
-
-/// As locales are chosen: the first of these that is set says it.
-bool speaks_utf8() {
-    for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
-        if (value == nullptr || *value == '\0') continue;
-        const std::string_view text(value);
-        return text.find("UTF-8") != std::string_view::npos || text.find("utf8") != std::string_view::npos ||
-               text.find("utf-8") != std::string_view::npos;
-    }
-    return false;
-}
-
-}  // namespace
-
-monitor::Look terminal_look(bool colour) {
-    monitor::Look look;
-    look.colour = colour;
-    look.unicode = speaks_utf8();
-    winsize size{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
-        look.width = size.ws_col;
-        look.height = std::max<std::size_t>(size.ws_row, 3);
-    }
-    return look;
-}
 
 FullScreen::FullScreen() {
     keys_ = isatty(STDIN_FILENO) == 1 && tcgetattr(STDIN_FILENO, &before_) == 0;
@@ -77,6 +48,37 @@ char FullScreen::wait_key(std::int64_t timeout_ms) {
     if (::read(STDIN_FILENO, &key, 1) == 1) return key;
     keys_over_ = true;  // else it would be ready for ever
     return 0;
+}
+
+Redraw::Redraw() {
+    (void)std::fputs("\033[?25l", stdout);
+    std::fflush(stdout);
+}
+
+Redraw::~Redraw() {
+    (void)std::fputs("\033[?25h", stdout);
+    std::fflush(stdout);
+}
+
+void Redraw::draw(std::span<const std::string> lines) {
+    const report::Look look = report::terminal_look(false);
+    const std::size_t room = look.height - 1;
+    std::string out;
+    if (drawn_ > 0) out += fmt::format("\033[{}F", drawn_);
+    std::size_t n = 0;
+    for (const std::string& line : lines) {
+        if (n + 1 == room && lines.size() > room) {
+            out += fmt::format("\033[K... and {} more lines: make the window higher\n", lines.size() - n);
+            ++n;
+            break;
+        }
+        out += "\033[K" + report::cut_to(line, look.width) + "\n";
+        ++n;
+    }
+    out += "\033[J";
+    drawn_ = n;
+    (void)std::fputs(out.c_str(), stdout);
+    std::fflush(stdout);
 }
 
 }  // namespace surefoot::cli

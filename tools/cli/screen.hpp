@@ -1,4 +1,5 @@
-// A whole screen to draw on, and keys; the terminal is as it was when it goes.
+// What is drawn again and again on a terminal: a whole screen with keys, or some lines in place. Afterwards the terminal is as it
+// was.
 #pragma once
 
 #include <termios.h>
@@ -7,12 +8,7 @@
 #include <span>
 #include <string>
 
-#include "tools/monitor/view.hpp"
-
 namespace surefoot::cli {
-
-/// Colour, characters and size of stdout as it is now.
-monitor::Look terminal_look(bool colour);
 
 /// The other screen of the terminal on stdout, without a cursor; keys come at once and are not shown. Ctrl-Z does nothing
 /// meanwhile (the shell would inherit the screen).
@@ -30,6 +26,20 @@ private:
     termios before_{};
     bool keys_ = false;       ///< stdin is a terminal
     bool keys_over_ = false;  ///< stdin has ended
+};
+
+/// Redraws some lines in place on stdout; the cursor is hidden as long as it lives.
+class Redraw {
+public:
+    Redraw();
+    ~Redraw();
+    Redraw(const Redraw&) = delete;
+    Redraw& operator=(const Redraw&) = delete;
+    /// Cut to the terminal's size; what does not fit is told in the last line.
+    void draw(std::span<const std::string> lines);
+
+private:
+    std::size_t drawn_ = 0;
 };
 
 }  // namespace surefoot::cli
