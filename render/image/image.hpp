@@ -44,7 +44,7 @@ inline float decode_srgb(float encoded) {
 /// 0..1 to 0..255, rounded; not a number to 255.
 inline std::uint8_t to_byte(float v) {
     if (!(v < 1.0F)) return 255;
-    return static_cast<std::uint8_t>(std::max(v, 0.0F) * 255.0F + 0.5F);
+    return static_cast<std::uint8_t>(std::max(v, 0.0F) * 255.0F + 0.5F);  // NOLINT(bugprone-incorrect-roundings): never negative
 }
 
 }  // namespace surefoot::image

@@ -72,6 +72,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
         triangles += static_cast<double>(cut.triangles);
         cost += cut.predicted_us;
         std::vector<double> ms;
+        ms.reserve(static_cast<std::size_t>(repeats));
         for (int i = 0; i < repeats; ++i) ms.push_back(engine.submit(station.pose, limits).finished_us * 1e-3);
         frame_ms.push_back(quantile_of(ms, 0.5));
         auto image = engine.device().read_pixels();
