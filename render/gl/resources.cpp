@@ -2,7 +2,9 @@
 #include "render/gl/resources.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 
 #include "render/draw/texture_arrays.hpp"
 
@@ -45,6 +47,38 @@ Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw
 
 constexpr GLbitfield mapped_bits = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
 
+/// Something that is made step by step, and freed again unless every step succeeds: keep().
+template <class Objects>
+struct Undone {
+    using Free = void (*)(const Api& gl, Objects& objects);
+    Undone(const Api& api, Free with) : gl(api), free(with) {}
+    ~Undone() {
+        if (free != nullptr) free(gl, value);
+    }
+    Undone(const Undone&) = delete;
+    Undone& operator=(const Undone&) = delete;
+    Objects keep() {
+        free = nullptr;
+        return std::move(value);
+    }
+
+    const Api& gl;
+    Free free;
+    Objects value;
+};
+
+void free_target(const Api& gl, Target& target) {
+    const std::array<GLuint, 2> buffers{target.colour, target.depth};
+    gl.DeleteRenderbuffers(2, buffers.data());
+    gl.DeleteFramebuffers(1, &target.framebuffer);
+}
+
+/// A mapped buffer is unmapped as it is deleted.
+void free_frame_buffers(const Api& gl, FrameBuffers& frame) {
+    const std::array<GLuint, 2> buffers{frame.instance_buffer, frame.command_buffer};
+    gl.DeleteBuffers(2, buffers.data());
+}
+
 template <class T>
 Result<std::span<T>> make_mapped(const Api& gl, GLenum target, GLuint& buffer, std::uint32_t count) {
     const auto bytes = static_cast<GLsizeiptr>(static_cast<std::size_t>(count) * sizeof(T));
@@ -79,7 +113,8 @@ Result<void> check_errors(const Api& gl, const std::string& place, const std::st
 }
 
 Result<Target> make_target(const Api& gl, model::Viewport viewport) {
-    Target target;
+    Undone<Target> made(gl, free_target);
+    Target& target = made.value;
     const auto w = static_cast<GLsizei>(viewport.width);
     const auto h = static_cast<GLsizei>(viewport.height);
     gl.GenFramebuffers(1, &target.framebuffer);
@@ -96,33 +131,35 @@ Result<Target> make_target(const Api& gl, model::Viewport viewport) {
         return Error{"frame of " + std::to_string(viewport.width) + " x " + std::to_string(viewport.height),
                      "the device cannot draw into it (RGBA8 with 32-bit float depth)", "ask for a smaller --size"};
     }
-    return target;
+    return made.keep();
 }
 
 Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items) {
-    FrameBuffers buffers;
+    Undone<FrameBuffers> made(gl, free_frame_buffers);
+    FrameBuffers& buffers = made.value;
     auto instances = make_mapped<Instance>(gl, GL_ARRAY_BUFFER, buffers.instance_buffer, max_items);
     if (!instances) return instances.error();
     auto commands = make_mapped<DrawCommand>(gl, GL_DRAW_INDIRECT_BUFFER, buffers.command_buffer, max_items);
     if (!commands) return commands.error();
     buffers.instances = *instances;
     buffers.commands = *commands;
-    return buffers;
+    return made.keep();
 }
 
 Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
                                  const draw::TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
                                  bool soft) {
-    Resources resources;
+    Undone<Resources> made(gl, free_resources);
+    Resources& resources = made.value;
     gl.BindVertexArray(0);  // the index buffer's binding belongs to the vertex array
     resources.vertices = make_static(gl, GL_ARRAY_BUFFER, model.vertices.data(), model.vertices.size() * sizeof(model::Vertex));
     resources.indices = make_static(gl, GL_ARRAY_BUFFER, model.indices.data(), model.indices.size() * sizeof(std::uint32_t));
     const std::string remedy = "the model's geometry does not fit the device: bake a smaller part of it";
     if (auto fine = check_errors(gl, "uploading geometry", remedy); !fine) return fine.error();
     for (const draw::TextureArray& array : layout.arrays) {
-        auto made = upload_array(gl, model, array, soft);
-        if (!made) return made.error();
-        resources.textures.push_back(*made);
+        auto texture = upload_array(gl, model, array, soft);
+        if (!texture) return texture.error();
+        resources.textures.push_back(*texture);
     }
     const std::string smaller = "the model's textures do not fit the device: scale them down";
     if (auto fine = check_errors(gl, "uploading textures", smaller); !fine) return fine.error();
@@ -132,7 +169,7 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
         if (!program) return program.error();
         resources.programs.push_back(std::move(*program));
     }
-    return resources;
+    return made.keep();
 }
 
 void free_resources(const Api& gl, Resources& resources) {

@@ -41,7 +41,7 @@ TEST(Lifetime, WhatIsWrongInTheFileIsSaidWithLineAndKey) {
     EXPECT_EQ(daemon.wait_exit(start_s), exit_config);
     EXPECT_EQ(daemon.lines_with("surefoot.toml:5: unknown key 'widht' (did you mean 'width'?)"), 1) << daemon.said();
     EXPECT_EQ(daemon.lines_with("surefoot.toml:6: height = 0 is not a whole number from 16 to 16384 (px)"), 1) << daemon.said();
-    daemon.socket.listen(0.1);
+    daemon.socket.take_all();
     EXPECT_EQ(daemon.socket.count("READY=1"), 0U);
 }
 
@@ -106,7 +106,7 @@ TEST_P(Degraded, WithStrictItDoesNotStart) {
     daemon.start({}, GetParam().taken);
     EXPECT_EQ(daemon.wait_exit(start_s), exit_no_real_time) << daemon.said();
     EXPECT_GE(daemon.lines_with(GetParam().words), 1) << daemon.said();
-    daemon.socket.listen(0.1);
+    daemon.socket.take_all();
     EXPECT_EQ(daemon.socket.count("READY=1"), 0U) << daemon.socket.text();
 }
 

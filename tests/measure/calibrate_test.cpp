@@ -307,6 +307,7 @@ private:
 
 TEST(TimerQuery, that_says_almost_nothing_is_called_dishonest) {
     MockDevice liar(0.001);
+    liar.draws.plays();
     const auto check = measure::check_timer(liar, Pose{}, {});
     EXPECT_TRUE(check.available);
     EXPECT_FALSE(check.honest);
@@ -315,6 +316,7 @@ TEST(TimerQuery, that_says_almost_nothing_is_called_dishonest) {
 
 TEST(TimerQuery, that_is_absent_is_not_trusted) {
     MockDevice none(-1);
+    none.draws.plays();
     const auto check = measure::check_timer(none, Pose{}, {});
     EXPECT_FALSE(check.available);
     EXPECT_FALSE(check.honest);

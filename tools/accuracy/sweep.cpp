@@ -58,6 +58,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
     std::vector<double> frame_ms;
     double accuracy = 0, snr_sum = 0, ssim_sum = 0, triangles = 0, cost = 0;
     std::uint32_t snr_count = 0;
+    engine.device().draws.plays();
     SubmitLimits limits;
     limits.now_ns = [](void*) { return rt::monotonic_ns(); };
     limits.limit_us = 1e12;

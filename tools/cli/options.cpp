@@ -55,7 +55,7 @@ CLI::Validator drawing_backend() {
             ""};
 }
 
-std::span<const config::Renamed> renamed_options() { return {}; }  // no option has had another name yet
+std::span<const config::Renamed> renamed_options() { return {}; }  // no option has had another name yet: tests/known_names.txt
 
 std::optional<std::string> renamed_option(std::span<const std::string_view> arguments) {
     for (const std::string_view argument : arguments) {

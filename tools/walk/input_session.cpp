@@ -70,11 +70,13 @@ std::optional<Error> InputSession::end(const Progress& progress, std::vector<std
     if (!thread_) return {};
     thread_->stop();
     guard_violations_ = thread_->guard_violations();
+    steering_->steers.plays();  // its thread has ended
     if (live_) live_->finish(steering_->safety().latched, progress, notes);
     return thread_->misplaced();
 }
 
 report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> records) const {
+    steering_->steers.plays();  // its thread has ended
     report::InputSummary s;
     s.given = true;
     s.source = source_name_;

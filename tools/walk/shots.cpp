@@ -81,6 +81,7 @@ Result<report::ReportShot> develop(Engine& engine, const Shot& shot) {
     for (const gl::DrawItem& item : full) out.full_triangles += engine.model().reps[item.rep].triangles;
     if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
 
+    engine.device().draws.plays();
     engine.draw_unbudgeted(shot.pose, shot.items);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
@@ -98,6 +99,7 @@ Result<report::ReportShot> develop(Engine& engine, const Shot& shot) {
 }
 
 Result<void> write_snaps(Engine& engine, const ShotStore& store, const std::string& dir, const Progress& progress) {
+    engine.device().draws.plays();
     std::error_code error;
     std::filesystem::create_directories(dir, error);
     if (error) return Error{dir, "cannot be made: " + error.message(), "name another folder with --snap"};

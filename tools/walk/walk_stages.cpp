@@ -162,6 +162,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
         limits.now_context = &clock_;
     }
     report_ = engine_.submit(now_.pose, limits);
+    engine_.device().draws.plays();
     if (engine_.device().lost() && options_.lost != nullptr) options_.lost->store(true);
     if (virtual_clock_) {
         const double charged_us = report_.finished_us > 0 ? report_.finished_us : report_.predicted_us * request_.cost_scale;
