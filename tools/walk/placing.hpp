@@ -1,4 +1,4 @@
-// Which thread runs where, at which priority: the declared table of the session, and putting it in force (DESIGN 7).
+// The declared table of the session's threads (core, policy, priority), and the functions that apply it.
 #pragma once
 
 #include <string>
