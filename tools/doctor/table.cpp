@@ -11,7 +11,7 @@ namespace surefoot::doctor {
 
 namespace {
 
-constexpr std::size_t name_width = 17, what_width = 33, indent = 4 + name_width + what_width;
+constexpr std::size_t name_width = 17, what_width = 37, indent = 4 + name_width + what_width;
 
 class Pen {
 public:
@@ -99,8 +99,8 @@ std::string table(const Machine& machine, std::span<const Examined> examined, co
     const std::string counts = fmt::format("{} pass, {} fail, {} unknown", s.pass, s.fail, s.unknown);
     const std::string core = machine.frame_core() ? fmt::format("frame core {}", *machine.frame_core()) : "no frame core found";
     text += fmt::format("\n{} ({}): {}\n", pen.bold(counts), core,
-                        s.fail > 0      ? pen.paint("1;31", "not fit as it stands")
-                        : s.unknown > 0 ? pen.paint("33", "nothing fails, but not all could be told")
+                        s.fail > 0      ? pen.paint("1;31", "not fit")
+                        : s.unknown > 0 ? pen.paint("33", "nothing fails, but some checks are unknown")
                                         : pen.paint("32", "fit"));
     return text;
 }
