@@ -62,7 +62,7 @@ std::string soak_table(const SoakSummary& s, bool colour) {
     report::TextTable table(colour);
     const Judged verdict = verdict_of(s);
     table.row("soak", soak_headline(s), fmt::format("1;{}", colour_of(verdict)));
-    if (s.stopped) table.row("", fmt::format("stopped by the user: {} were asked for", duration_words(s.asked_s)), "33");
+    if (s.stopped) table.row("", fmt::format("stopped by the user; {} were requested", duration_words(s.asked_s)), "33");
     for (const SoakCheck& check : s.checks)
         table.row(check.name, fmt::format("{}: {}", judged_name(check.judged), check.words), colour_of(check.judged));
     for (const SoakLoad& load : s.loads) table.row("load " + load.name, load.words, load.ran && !load.real ? "33" : "");
@@ -82,7 +82,7 @@ std::string soak_table(const SoakSummary& s, bool colour) {
         table.row("degraded", d.remedy.empty() ? d.what : fmt::format("{}: {}", d.what, d.remedy), "33");
     const std::string last = verdict == Judged::holds    ? "the verdict holds"
                              : verdict == Judged::broken ? "the verdict is broken"
-                                                         : "nothing is broken, but not all of it could be judged";
+                                                         : "no rule is broken, but some cannot be judged";
     table.row("verdict", last, fmt::format("1;{}", colour_of(verdict)));
     return table.text();
 }
