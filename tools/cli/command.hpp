@@ -13,9 +13,9 @@
 
 namespace surefoot::cli {
 
-/// Exit codes of the contract (DESIGN 6).
+/// Exit codes. They are a contract: scripts rely on them.
 constexpr int exit_success = 0, exit_failure = 1, exit_usage = 2;
-/// Ended by Ctrl-C (or SIGTERM, SIGHUP) before it was done, as a shell would say it.
+/// Ended early by Ctrl-C, SIGTERM or SIGHUP; the number is that of shells.
 constexpr int exit_stopped = 130;
 
 /// Handed to the commands: what to run after parsing, and the wish to stop.

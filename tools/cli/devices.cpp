@@ -4,9 +4,10 @@
 namespace surefoot::cli {
 
 void add_devices(CLI::App& app, Context& context) {
-    CLI::App* c = app.add_subcommand("devices", "Joysticks, 3D mice, pedals and buttons: what they are and what they say");
+    CLI::App* c = app.add_subcommand("devices", "List, watch, record and map joysticks, 3D mice, pedals and buttons");
     c->footer(
-        "Without a subcommand: list.\n\nExample:\n  surefoot devices\n  surefoot devices watch\n  surefoot devices map -o "
+        "Without a subcommand, devices are listed.\n\nExample:\n  surefoot devices\n  surefoot devices watch\n  surefoot devices "
+        "map -o "
         "steering.toml");
     c->require_subcommand(0, 1);
     add_devices_list(*c, context);
