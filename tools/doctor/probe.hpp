@@ -1,4 +1,4 @@
-// What only this machine itself can tell, by trying: FIFO, locking, the renderer, the cost table, disk space.
+// Tries what files cannot show: FIFO, locking, the renderer, the cost table, disk space.
 #pragma once
 
 #include "tools/doctor/machine.hpp"

@@ -1,4 +1,4 @@
-// Asks a monitor for a page, and never waits longer than it was told to.
+// Fetches a page from a monitor, within a time limit.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A monitor wired to what a walk tells: for `walk --monitor` and for the daemon.
+// Connects a monitor to the events of a walk, for `walk --monitor` and for the daemon.
 #pragma once
 
 #include "tools/monitor/monitor.hpp"
@@ -6,7 +6,7 @@
 
 namespace surefoot::monitor {
 
-/// From now on `watch` tells the monitor too, after whomever it told before. Monitor and request must outlive the walk.
+/// Adds the monitor to the observers of `watch`, after those it has. Monitor and request must outlive the walk.
 void watch_with(Monitor& monitor, const walk::WalkRequest& request, walk::WalkWatch& watch);
 
 }  // namespace surefoot::monitor

@@ -11,7 +11,7 @@
 
 namespace surefoot::walk {
 
-/// The frame thread writes while `kept` is false, whoever puts it together reads while it is true.
+/// The frame thread writes while `kept` is false. The reader may read while it is true.
 struct KeptFrame {
     std::atomic<bool> kept{false};
     std::uint64_t frame = 0;  ///< of the walk

@@ -1,4 +1,4 @@
-// A walk's outputs, asked for their places before it begins: an hour's walk is not lost for a wrong name.
+// Checks a walk's outputs before it starts, so that a long walk is not lost to a wrong file name.
 #pragma once
 
 #include "rt/base/result.hpp"
@@ -6,8 +6,8 @@
 
 namespace surefoot::walk {
 
-/// Every output could be written now, none is another output or a file that is read, and none asks for what cannot be (pictures
-/// of the null backend). Nothing is left behind; what is there is not touched.
+/// Errors: an output that cannot be written, that is an input or another output, or that the backend cannot make (pictures of
+/// the null backend). Creates and changes no file.
 Result<void> check_outputs(const WalkRequest& request);
 
 }  // namespace surefoot::walk

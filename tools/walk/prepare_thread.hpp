@@ -1,6 +1,6 @@
-// The coordinator of preparation: on its own grid point a little after each frame's start it takes the newest pose, lets
-// the workers prepare, and publishes. The frame thread never waits for it, nor wakes it. Where an input puts the eye elsewhere
-// (a viewpoint), it is told between the frames, so that the first picture there is prepared like any other.
+// The coordinator of preparation. A little after each frame's start it takes the newest pose, lets the workers prepare, and
+// publishes. The frame thread neither waits for it nor wakes it. It is notified of jumps (to a viewpoint) between frames, so that
+// the first frame there is prepared too.
 #pragma once
 
 #include <atomic>
