@@ -122,7 +122,7 @@ private:
         const monitor::Look look = terminal_look(context_.colour);
         std::vector<std::string> lines = monitor::top_page(status_, before_, between_s_, look);
         if (!trouble_.empty() && !lines.empty())
-            lines.back() = ("the service is gone, asking again: " + trouble_).substr(0, look.width);
+            lines.back() = ("the service does not answer, trying again: " + trouble_).substr(0, look.width);
         screen_->draw(lines);
     }
     static std::string time_of_day() {

@@ -75,7 +75,7 @@ Result<void> require_real_time(std::span<const rt::Lack> lacks) {
     for (const rt::Lack& lack : lacks) {
         all += fmt::format("{}{}{}", all.empty() ? "" : "; ", lack.what, lack.remedy.empty() ? "" : " -> " + lack.remedy);
     }
-    return Error{"--strict", "The walk does not start, because real time lacks: " + all,
+    return Error{"--strict", "The walk does not start: " + all,
                  "Grant these. Without --strict the walk starts and its figures are marked", ErrorKind::no_real_time};
 }
 
