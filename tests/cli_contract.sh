@@ -30,7 +30,7 @@ expect 2 '--scale.*0.* 0.001 to' selftest --hard --scale 0
 
 # Wrong use is 2, bad input 1; what was there is still there.
 expect 2 'required|subcommand' --no-such-option
-expect 2 "no command 'wlak'; did you mean 'walk'" wlak f.walk
+expect 2 "no command 'wlak'. Did you mean 'walk'" wlak f.walk
 expect 2 "no command 'xyzzy' " xyzzy
 expect 2 'Required|required' bake f.glb
 expect 2 'one of|selector' walk f.walk --selector best
@@ -68,7 +68,7 @@ printf 'rate_hz = 30\nselektor = "flat"\n' > s.toml
 expect 2 's.toml:2.*selek' walk f.walk --config s.toml
 mkdir -p below; printf 'model = "../f.walk"\nclock = "virtual"\nbackend = "null"\nrate_hz = 50\n' > below/m.toml
 json walk --config below/m.toml --frames 5  # the model is relative to the settings' file
-expect 2 'MODEL.walk: is not named' walk --frames 5
+expect 2 'MODEL.walk: The model is not named' walk --frames 5
 
 # Values that are not allowed: the option, what was found and what is allowed, before anything is opened.
 virtual="--clock virtual --backend null"
@@ -146,7 +146,7 @@ for command in "scene forest --scale 0.1 -o s.glb" "bake f.glb -o s.walk" "inspe
     [ -n "$more" ] && case $command in *--help) continue ;; esac
     "$surefoot" $command $more >/dev/full 2>err; got=$?
     [ $got -eq 1 ] || complain "exit $got, not 1, on a full stdout: $command $more"
-    grep -q 'standard output: cannot be written' err || complain "nothing said of a full stdout: $command $more"
+    grep -q 'standard output: The output cannot be written' err || complain "nothing said of a full stdout: $command $more"
     "$surefoot" $command $more 2>err | head -0; got=${PIPESTATUS[0]}
     [ $got -le 1 ] || complain "exit $got where the reader left: $command $more"
     grep -q 'standard output\|terminate' err && complain "said of a reader that left: $command $more: $(cat err)"

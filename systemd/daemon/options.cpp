@@ -22,17 +22,16 @@ namespace {
 constexpr const char* hidden_group = "Build";
 
 constexpr const char* what =
-    "Walks through a 3D model in real time, for months: the service behind a kiosk or a simulator channel.\n\n"
-    "One settings file holds everything. First steps:\n"
+    "Walks through a 3D model in real time: the service for kiosks and simulator channels, made to run for months.\n\n"
+    "One settings file configures it. First steps:\n"
     "  surefoot bake lobby.glb -o /var/lib/surefoot/lobby.walk   prepare a model\n"
     "  surefoot config --print --defaults                        list every key with unit, limits and default\n"
     "  surefootd --check                                         check the file\n"
     "  systemctl start surefootd                                 start; then: systemctl status surefootd";
 
 constexpr const char* under_systemd =
-    "Under systemd (Type=notify) the service is ready when frames run. Its status line names what real time lacks. The watchdog "
-    "is "
-    "fed only while frames are presented.";
+    "Under systemd (Type=notify) the service is ready when the first frames are presented. Its status line names what real time "
+    "lacks. The watchdog is notified only while frames are presented.";
 
 constexpr const char* examples =
     "Examples:\n"
@@ -45,19 +44,19 @@ constexpr std::array signals = {
     Named{"SIGHUP",
           "Reads the settings again. A wrong file is refused, and the walk goes on unchanged. If no walk can start with the "
           "new settings, the old ones are used again. A new number of rasterisers needs a restart."},
-    Named{"SIGTERM", "Ends within two seconds. So does SIGINT."},
+    Named{"SIGTERM", "The service ends within two seconds. SIGINT does the same."},
 };
 
 constexpr std::array exit_statuses = {
-    Named{"0", "Ended as asked."},
-    Named{"1", "A failure without a number of its own. With --check: the file is wrong."},
+    Named{"0", "The service ended as requested."},
+    Named{"1", "A failure without its own number. With --check: the settings file has errors."},
     Named{"2", "Wrong use."},
     Named{"66", "The model, path, steering file, recording or cost table cannot be read."},
-    Named{"69", "No graphics context, or it was lost."},
-    Named{"70", "A real-time thread never slept. It lost its priority first."},
+    Named{"69", "There is no graphics context, or it was lost."},
+    Named{"70", "A real-time thread ran without sleeping. Its priority was taken first."},
     Named{"73", "The state folder cannot be written, so an emergency stop would be forgotten."},
     Named{"77", "The setting strict is on, and the machine refuses what real time needs."},
-    Named{"78", "The settings file is wrong."},
+    Named{"78", "The settings file has errors."},
 };
 
 constexpr std::array files = {
@@ -98,10 +97,10 @@ std::optional<Options> read_options(int argc, char** argv, int& code) {
     app.footer(std::string(under_systemd) + "\n\n" + listed("Signals", signals) + listed("Exit status", exit_statuses) +
                examples);
     app.set_version_flag("--version", SUREFOOT_VERSION);
-    app.add_option("--config", options.config_file, "The settings file, TOML")->capture_default_str();
-    app.add_option("--profile", options.profile, "Lay [profile.NAME] of the file over the rest");
-    app.add_option("--set", options.set, "KEY=VALUE over the file; may be given more than once")->type_name("KEY=VALUE");
-    app.add_flag("--check", options.check, "Say OK, or everything that is wrong in the settings file, and end");
+    app.add_option("--config", options.config_file, "Settings file (TOML)")->capture_default_str();
+    app.add_option("--profile", options.profile, "Apply the table [profile.NAME] of the file");
+    app.add_option("--set", options.set, "Set a key, over the file; may be repeated")->type_name("KEY=VALUE");
+    app.add_flag("--check", options.check, "Check the settings file, print OK or every error, and exit");
     bool write_manual = false;
     app.add_flag("--manual", write_manual, "Print the manual page; the build uses it")->group(hidden_group);
     try {

@@ -41,7 +41,7 @@ TEST(Faults, TheWatchdogStarvesWhileTheFrameThreadAloneIsFrozen) {
     ASSERT_EQ(::ptrace(PTRACE_DETACH, frame, nullptr, nullptr), 0);
     EXPECT_TRUE(daemon.socket.wait_for("WATCHDOG=1", 5)) << "recovery does not resume the pings: " << daemon.socket.text();
     EXPECT_TRUE(daemon.socket.wait_for("STATUS=walking", 5)) << "the status still says that none come: " << daemon.socket.text();
-    EXPECT_EQ(daemon.lines_with("frames come again"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("frames are presented again"), 1) << daemon.said();
     EXPECT_TRUE(daemon.wait_line("missed", missed_before, 20)) << "a burst is told once it is over: " << daemon.said();
     ::kill(daemon.pid, SIGTERM);
     EXPECT_EQ(daemon.wait_exit(20), exit_success);
@@ -69,7 +69,7 @@ TEST(Faults, ALostContextHasItsOwnExitCode) {
     daemon.start({}, {}, SUREFOOT_DAEMON_WITH_FAULTS);
     ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
     EXPECT_EQ(daemon.wait_exit(20), exit_unavailable) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("graphics context: was lost while walking"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("graphics context: The context was lost while walking"), 1) << daemon.said();
 }
 
 TEST(Faults, AStateFolderThatCannotBeWrittenIsKnownAtTheStart) {
@@ -79,7 +79,7 @@ TEST(Faults, AStateFolderThatCannotBeWrittenIsKnownAtTheStart) {
     EXPECT_TRUE(write_text(daemon.dir + "/file", "").ok());
     daemon.start({"--set", "state=" + daemon.dir + "/file"});
     EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("the state folder must keep a stop"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("The emergency stop cannot be stored in the state folder"), 1) << daemon.said();
 }
 
 TEST(Faults, AFullDiskIsKnownAtTheStart) {
@@ -87,7 +87,7 @@ TEST(Faults, AFullDiskIsKnownAtTheStart) {
     daemon.write_config("input = \"devices\"\n");
     daemon.start({}, {.file_bytes = 3000});  // enough for what it says, not for a page
     EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("the state folder must keep a stop"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("The emergency stop cannot be stored in the state folder"), 1) << daemon.said();
 }
 
 }  // namespace

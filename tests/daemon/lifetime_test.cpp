@@ -113,7 +113,7 @@ TEST_P(Degraded, WithStrictItDoesNotStart) {
 INSTANTIATE_TEST_SUITE_P(Privileges, Degraded,
                          testing::Values(Lacking{"nice", {.sys_nice = true}, "", "SCHED_FIFO is refused"},
                                          Lacking{"lock", {.memory_lock = true}, "", "memory cannot be locked beyond 1 MiB"},
-                                         Lacking{"core", {}, "frame_core = 1000\n", "frame core 1000 is not there"}),
+                                         Lacking{"core", {}, "frame_core = 1000\n", "Frame core 1000 does not exist"}),
                          [](const auto& lacking) { return std::string(lacking.param.name); });
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST(Monitoring, AnAddressThatCannotBeHadCostsTheFiguresAndNotTheWalk) {
     daemon.write_config("monitor = \"unix:" + daemon.dir + "/absent/s.sock\"\n");
     daemon.start();
     ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("nobody can look on, the walk goes on"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("the monitor cannot start, the walk goes on"), 1) << daemon.said();
 }
 
 TEST(Monitoring, AnAddressThatIsNoneIsRefusedByLine) {

@@ -11,12 +11,12 @@ socket=unix:$work/s.sock
 
 # Nobody there: the place, the remedy, and exit 1; wrong use is 2.
 for command in status top "status --json"; do
-  expect 1 's.sock.*nobody serves there.*surefootd' $command --socket "$socket"
+  expect 1 's.sock.*Nobody serves there.*surefootd' $command --socket "$socket"
   expect 2 'loopback' $command --socket 192.168.0.1:9464
-  expect 2 'no address' $command --socket nonsense
+  expect 2 'not an address' $command --socket nonsense
 done
 RUNTIME_DIRECTORY=$work/run expect 1 "$work/run/surefoot.sock" status
-expect 2 'no address' walk f.walk --clock virtual --backend null --frames 5 --monitor nonsense
+expect 2 'not an address' walk f.walk --clock virtual --backend null --frames 5 --monitor nonsense
 expect 1 'nonexistent' walk f.walk --clock virtual --backend null --frames 5 --monitor /nonexistent/s.sock
 expect 1 'incidents|proc' walk f.walk --clock virtual --backend null --frames 5 --incidents /proc/nowhere
 

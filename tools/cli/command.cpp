@@ -55,7 +55,7 @@ std::shared_ptr<CLI::Formatter> help_formatter() { return std::make_shared<HelpF
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example, bool& json) {
     CLI::App* command = app.add_subcommand(name, what);
     command->footer("Example:\n  " + example);
-    command->add_flag("--json", json, "One JSON object on stdout; everything else on stderr");
+    command->add_flag("--json", json, "Print one JSON object on stdout, and everything else on stderr");
     return command;
 }
 
@@ -103,8 +103,9 @@ int finish_output(int code, int error) {
     if (error == 0) error = errno;
     if (flushed && std::ferror(stdout) == 0) return code;
     if (error != EPIPE) {
-        fail({"standard output", fmt::format("cannot be written: {}", error != 0 ? std::strerror(error) : "a part of it is lost"),
-              "free some space, or send it elsewhere"});
+        fail({"standard output",
+              fmt::format("The output cannot be written: {}", error != 0 ? std::strerror(error) : "a part of it is lost"),
+              "Free some space, or send the output elsewhere", ErrorKind::unwritable});
     }
     return code == exit_success ? exit_failure : code;
 }

@@ -59,7 +59,8 @@ Result<Material> gather(const DescribeArguments& a) {
         auto recording = input::parse_recording(text, a.file);
         if (!recording) return recording.error();
         if (recording->descriptor.empty())
-            return Error{a.file, "no R: line gives the report descriptor", "record it again, or give the descriptor's file"};
+            return Error{a.file, "The recording has no R: line with the report descriptor",
+                         "Record it again, or name the descriptor's file", ErrorKind::damaged};
         m.descriptor = recording->descriptor;
         m.descriptor_place += ": R:";
         m.recording = std::move(*recording);
@@ -71,9 +72,10 @@ Result<Material> gather(const DescribeArguments& a) {
         auto recording = input::read_recording(a.reports);
         if (!recording) return recording.error();
         if (recording->reports.empty())
-            return Error{a.reports, "holds no reports (E: lines)", "record it again while the device is moved"};
+            return Error{a.reports, "The recording holds no reports (E: lines)", "Record it again while you move the device",
+                         ErrorKind::damaged};
         if (!recording->descriptor.empty() && recording->descriptor != m.descriptor) {
-            note(a.reports + " was recorded from a device with another descriptor");
+            note(a.reports + ": the recording is of a device with another descriptor");
         }
         m.recording = std::move(*recording);
         have_recording = true;
@@ -275,7 +277,7 @@ void print_tables(const input::HidDevice& d) {
                                  fmt::format("{} to {}", c.logical_min, c.logical_max), physical, c.collection}),
                    c.relative ? "  (relative)" : "");
     }
-    if (d.controls_left_out > 0) fmt::print("and {} more, which are left out\n", d.controls_left_out);
+    if (d.controls_left_out > 0) fmt::print("and {} more, which are not shown\n", d.controls_left_out);
 }
 
 const report::Columns report_columns({{"time", -12}, {"id", -3}, {"status", 8}});
@@ -299,7 +301,8 @@ void print_decoded(const input::HidDevice& d, const input::Recording& recording)
     const auto count = [&](const char* name) { return counts[name].get<std::uint64_t>(); };
     fmt::print("reports: {} accepted, {} short, {} long, {} unknown\n", count("accepted"), count("short"), count("long"),
                count("unknown"));
-    if (count("before_the_last") > 0) fmt::print("{} of them bear a time before the last one's\n", count("before_the_last"));
+    if (count("before_the_last") > 0)
+        fmt::print("{} of them have a time before that of the previous report\n", count("before_the_last"));
 }
 
 /// `head`'s object, with the decoded reports and their counts as its last members.
@@ -320,10 +323,11 @@ int refuse(const DescribeArguments& a, const Material& m, const input::Refusal& 
         print_json({{"file", a.file},
                     {"bytes", m.descriptor.size()},
                     {"class", "reject"},
-                    {"reason", "its report descriptor is refused: " + refusal.what},
+                    {"reason", "The report descriptor is refused: " + refusal.what},
                     {"error", {{"offset", refusal.offset}, {"what", refusal.what}, {"remedy", refusal.remedy}}}});
     }
-    return fail({fmt::format("{}: byte {}", m.descriptor_place, refusal.offset), refusal.what, refusal.remedy});
+    return fail(
+        {fmt::format("{}: byte {}", m.descriptor_place, refusal.offset), refusal.what, refusal.remedy, ErrorKind::damaged});
 }
 
 int run_describe(const DescribeArguments& a) {
@@ -362,16 +366,16 @@ int run_describe(const DescribeArguments& a) {
 
 void add_devices_describe(CLI::App& devices, Context& context) {
     auto a = std::make_shared<DescribeArguments>();
-    CLI::App* c =
-        add_command(devices, "describe", "What a report descriptor says, and what recorded reports mean; needs no device",
-                    "surefoot devices describe stick.bin --reports stick.hid --json", a->json);
-    c->add_option("descriptor", a->file, "The report descriptor: binary, or a recording by hid-recorder with an R: line")
+    CLI::App* c = add_command(devices, "describe", "Decode a report descriptor and recorded reports; no device is needed",
+                              "surefoot devices describe stick.bin --reports stick.hid --json", a->json);
+    c->add_option("descriptor", a->file, "Report descriptor: a binary file, or a recording by hid-recorder with an R: line")
         ->required();
-    c->add_option("--reports", a->reports, "A recording by hid-recorder: its reports are decoded");
-    c->add_option("--vid-pid", a->id, "Vendor and product id, 046d:c626: selects quirks; else those of the recording")
+    c->add_option("--reports", a->reports, "Recording by hid-recorder whose reports are decoded");
+    c->add_option("--vid-pid", a->id,
+                  "Vendor and product id that select quirks, for example 046d:c626 (else those of the recording)")
         ->check([](const std::string& text) {
             std::uint16_t v = 0, p = 0;
-            return parse_id(text, v, p) ? std::string() : std::string("ids look like 046d:c626");
+            return parse_id(text, v, p) ? std::string() : std::string("vendor and product ids look like 046d:c626");
         });
     c->callback([&context, a] { context.run = [a] { return run_describe(*a); }; });
 }

@@ -134,7 +134,7 @@ public:
         std::int64_t due = start;
         bool going = true;
         for (const DeviceEvent& e : source_.take()) going = take(e, start) && going;
-        if (!bars_ && states_.devices().empty()) note("no device that is meant is plugged in: waiting for one");
+        if (!bars_ && states_.devices().empty()) note("no such device is plugged in: waiting for one");
         while (going && !context_.stop->load() && rt::monotonic_ns() < end) {
             for (const DeviceEvent& e : input::poll(source_, std::min(end, due))) going = take(e, start) && going;
             if (rt::monotonic_ns() < due) continue;
@@ -186,11 +186,11 @@ private:
 
 void add_devices_watch(CLI::App& devices, Context& context) {
     auto a = std::make_shared<WatchArguments>();
-    CLI::App* c = devices.add_subcommand("watch", "What the controls say, live; devices may come and go");
+    CLI::App* c = devices.add_subcommand("watch", "Show the controls of devices live; devices may be plugged and unplugged");
     c->footer("Example:\n  surefoot devices watch\n  surefoot devices watch 046d:c626 --seconds 10 --json");
     add_device_choice(*c, a->device);
-    c->add_option("--seconds", a->seconds, "End after so long")->check(number_within(0.01, 1e6, "s"));
-    c->add_flag("--json", a->json, "One JSON object a line on stdout for each report and each device that comes or goes");
+    c->add_option("--seconds", a->seconds, "Seconds after which the command ends")->check(number_within(0.01, 1e6, "s"));
+    c->add_flag("--json", a->json, "Print one JSON object per line, for each report and each device added or removed");
     c->callback([&context, a] {
         context.run = [&context, a] {
             auto source = open_devices(a->device);

@@ -43,7 +43,7 @@ int run_effects(const EffectsArguments& a) {
 
 void add_effects(CLI::App& app, Context& context) {
     auto a = std::make_shared<EffectsArguments>();
-    CLI::App* c = add_command(app, "effects", "Which effects a scene calls for, and why; the others cost it nothing",
+    CLI::App* c = add_command(app, "effects", "List the effects of a model with the reason for each; unused effects cost nothing",
                               "surefoot effects town.walk", a->json);
     c->add_option("model", a->file, "The .walk model")->required();
     c->callback([&context, a] { context.run = [a] { return run_effects(*a); }; });

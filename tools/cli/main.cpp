@@ -31,17 +31,19 @@ void on_signal(int number) {
     std::signal(number, SIG_DFL);
 }
 
-/// Errors are values; what is thrown all the same ends here, and so does what stdout did not take.
+/// Reports exceptions, and output that stdout refused. All other errors are values.
 int run(const surefoot::cli::Context& context) {
     using namespace surefoot;
     int code = cli::exit_failure, output_error = 0;
     const auto unexpected = [](const std::exception& error) {
-        cli::fail({"surefoot", std::string("unexpected: ") + error.what(), "please report this with the command line"});
+        cli::fail({"surefoot", std::string("An unexpected error happened: ") + error.what(),
+                   "Please report this with the command line", ErrorKind::failed});
     };
     try {
         code = context.run();
     } catch (const std::bad_alloc&) {
-        cli::fail({"memory", "not enough for this work", "close other programs, or use a machine with more"});
+        cli::fail({"memory", "There is not enough memory for this work",
+                   "Close other programs, or use a machine with more memory", ErrorKind::no_memory});
     } catch (const std::system_error& error) {
         output_error = std::ferror(stdout) != 0 ? error.code().value() : 0;
         if (output_error == 0) unexpected(error);
@@ -51,7 +53,7 @@ int run(const surefoot::cli::Context& context) {
     return cli::finish_output(code, output_error);
 }
 
-/// What CLI11 says of a word that is no command is only that one is required.
+/// CLI11 only reports that a command is required. This names the unknown word and the nearest command.
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return std::nullopt;
     std::vector<std::string> names;
@@ -59,8 +61,8 @@ std::optional<std::string> unknown_command(const CLI::App& app, int argc, char**
     if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return std::nullopt;
     const std::vector<std::string_view> words(names.begin(), names.end());
     const std::string_view nearest = surefoot::nearest_word(argv[1], words);
-    return fmt::format("there is no command '{}'{}", argv[1],
-                       nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+    return fmt::format("There is no command '{}'{}", argv[1],
+                       nearest.empty() ? "" : fmt::format(". Did you mean '{}'?", nearest));
 }
 
 }  // namespace
@@ -80,7 +82,7 @@ int main(int argc, char** argv) {
     context.colour = report::colour_wanted();
 
     CLI::App app{
-        "Surefoot walks through 3D models that are too complex to draw whole, every frame by its deadline.\n\n"
+        "Surefoot walks through 3D models that are too complex to draw in full, and finishes every frame by its deadline.\n\n"
         "First steps:\n"
         "  surefoot scene forest --scale 10 -o forest.glb     a model and a path (or bring your own: " +
             importer::endings_in_words() +

@@ -51,7 +51,9 @@ std::vector<ManualPage> pages_of(const CLI::App& app) {
 int run_manual(const CLI::App& app, const std::string& folder, bool json) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) return fail({folder, "The folder cannot be made: " + error.message(), "Name another folder with -o."});
+    if (error)
+        return fail(
+            {folder, "The folder cannot be made: " + error.message(), "Name another folder with -o", ErrorKind::unwritable});
     nlohmann::ordered_json files = nlohmann::ordered_json::array();
     for (const ManualPage& page : pages_of(app)) {
         const std::string file = fmt::format("{}/{}.{}", folder, page.name, page.section);
@@ -72,9 +74,9 @@ int run_manual(const CLI::App& app, const std::string& folder, bool json) {
 void add_manual(CLI::App& app, Context& context) {
     auto folder = std::make_shared<std::string>();
     auto json = std::make_shared<bool>(false);
-    CLI::App* c = add_command(app, "manual", "Write the manual pages, made from --help and the settings' schema",
+    CLI::App* c = add_command(app, "manual", "Write the manual pages from --help and the settings schema",
                               "surefoot manual -o man && man man/surefoot-walk.1", *json);
-    c->add_option("-o,--out", *folder, "The folder to write them into; it is made if it is not there")->required();
+    c->add_option("-o,--out", *folder, "Output folder; it is created if it does not exist")->required();
     c->callback(
         [&app, &context, folder, json] { context.run = [&app, folder, json] { return run_manual(app, *folder, *json); }; });
 }

@@ -50,7 +50,7 @@ CLI::Validator drawing_backend() {
                 const auto backend = gl::backend_named(text);
                 if (!backend) return backend.error().text();
                 if ((*backend)->draws()) return std::string();
-                return fmt::format("'{}' draws nothing and takes no time; one of: {}", text, gl::drawing_backends());
+                return fmt::format("'{}' draws nothing; use one of: {}", text, gl::drawing_backends());
             },
             ""};
 }
@@ -79,8 +79,10 @@ Result<Size> parse_size(const std::string& text) {
         const auto w = side(all.substr(0, x), width), h = side(all.substr(x + 1), height);
         if (w && h) return Size{*w, *h};
     }
-    return Error{"--size " + text, "is no size of a picture",
-                 fmt::format("WIDTHxHEIGHT, e.g. 1280x720, each a whole number from {} to {}", width.min, width.max)};
+    return Error{
+        "--size " + text, "This is not the size of a picture",
+        fmt::format("Write WIDTHxHEIGHT, for example 1280x720. Each is a whole number from {} to {}", width.min, width.max),
+        ErrorKind::misuse};
 }
 
 }  // namespace surefoot::cli

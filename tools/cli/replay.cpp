@@ -33,7 +33,7 @@ int run_replay(const ReplayArguments& a) {
     auto captured = capture::read_capture(a.file);
     if (!captured) return fail(captured.error());
     if (auto same = capture::verify(*captured); !same) {
-        return fail({a.file + ", " + same.error().place, same.error().what, same.error().remedy});
+        return fail({a.file + ", " + same.error().place, same.error().what, same.error().remedy, same.error().kind});
     }
     std::vector<std::string> selectors{captured->selector};
     selectors.insert(selectors.end(), a.selectors.begin(), a.selectors.end());
@@ -54,7 +54,7 @@ int run_replay(const ReplayArguments& a) {
                     {"cuts", list}});
         return exit_success;
     }
-    fmt::print("{}: frame {}, {} candidates, budget {:.2f} ms; the cut is repeated exactly\n", a.file, captured->frame,
+    fmt::print("{}: frame {}, {} candidates, budget {:.2f} ms; the repeated cut is equal\n", a.file, captured->frame,
                captured->prepared.candidates.size(), captured->budget_us * 1e-3);
     const report::Columns columns(
         {{"selector", 18}, {"hash", -16}, {"items", -7}, {"predicted us", -13}, {"triangles", -10}, {"refinements", -12}});
@@ -70,11 +70,11 @@ int run_replay(const ReplayArguments& a) {
 void add_replay(CLI::App& app, Context& context) {
     auto a = std::make_shared<ReplayArguments>();
     CLI::App* c = add_command(
-        app, "replay", "Repeat a captured frame's selection off line: the same cut, or an error that names the difference",
+        app, "replay", "Repeat the selection of a captured frame; any difference to the captured cut is an error",
         "surefoot walk town.walk --capture frame.cap --capture-frame 120\n  surefoot replay frame.cap --selector best-first",
         a->json);
-    c->add_option("capture", a->file, "A file from `surefoot walk --capture`")->required();
-    c->add_option("--selector", a->selectors, "Other selectors to try on the same frame")
+    c->add_option("capture", a->file, "File from `surefoot walk --capture`")->required();
+    c->add_option("--selector", a->selectors, "Additional selectors to run on the same frame")
         ->check(one_of(select::selector_names()));
     c->callback([&context, a] { context.run = [a] { return run_replay(*a); }; });
 }

@@ -35,7 +35,7 @@ public:
     ~Redraw();
     Redraw(const Redraw&) = delete;
     Redraw& operator=(const Redraw&) = delete;
-    /// Cut to the terminal's size; what does not fit is told in the last line.
+    /// Cut to the terminal's size; the last line counts what does not fit.
     void draw(std::span<const std::string> lines);
 
 private:

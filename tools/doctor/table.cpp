@@ -15,7 +15,7 @@ using report::Ink;
 using report::inked;
 using report::Look;
 
-constexpr std::size_t name_width = 17, what_width = 33, indent = 4 + name_width + what_width;
+constexpr std::size_t name_width = 17, what_width = 37, indent = 4 + name_width + what_width;
 
 std::string mark(Status status, const Look& look) {
     switch (status) {
@@ -95,8 +95,8 @@ std::string table(const Machine& machine, std::span<const Examined> examined, co
     const std::string counts = fmt::format("{} pass, {} fail, {} unknown", s.pass, s.fail, s.unknown);
     const std::string core = machine.frame_core() ? fmt::format("frame core {}", *machine.frame_core()) : "no frame core found";
     text += fmt::format("\n{} ({}): {}\n", inked(look, Ink::bold, counts), core,
-                        s.fail > 0      ? inked(look, Ink::strong_bad, "not fit as it stands")
-                        : s.unknown > 0 ? inked(look, Ink::warn, "nothing fails, but not all could be told")
+                        s.fail > 0      ? inked(look, Ink::strong_bad, "not fit")
+                        : s.unknown > 0 ? inked(look, Ink::warn, "nothing fails, but some checks are unknown")
                                         : inked(look, Ink::good, "fit"));
     return text;
 }

@@ -25,7 +25,7 @@ inline std::optional<bool> in_hex_mask(std::string_view mask, int bit) {
     return (*bits >> static_cast<unsigned>(bit % 32) & 1U) != 0;
 }
 
-/// The same mask without one bit, for whoever has to write it back; as it is where it is no such mask.
+/// The same mask without one bit, in the same format. Text that is not a mask comes back unchanged.
 inline std::string without_bit(std::string_view mask, int bit) {
     std::string text;
     const auto groups = split(mask, ",");

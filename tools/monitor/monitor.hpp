@@ -106,7 +106,7 @@ private:
     std::unique_ptr<Server> server_;  ///< last: its thread uses all the others
 };
 
-/// From now on `watch` tells the monitor too, after whomever it told before. Monitor and request must outlive the walk.
+/// Adds the monitor to the observers of `watch`, after those it has. Monitor and request must outlive the walk.
 void watch_with(Monitor& monitor, const walk::WalkRequest& request, walk::WalkWatch& watch);
 
 }  // namespace surefoot::monitor

@@ -77,7 +77,9 @@ Result<std::unique_ptr<Server>> Server::listen(const Address& address, Pages pag
     server->listener_ = listener->fd;
     server->socket_inode_ = listener->socket_inode;
     server->wake_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (server->wake_ < 0) return Error{address.text(), "no descriptor is left", "raise the limit of open files (ulimit -n)"};
+    if (server->wake_ < 0)
+        return Error{address.text(), "No file descriptor is left", "Raise the limit of open files (ulimit -n)",
+                     ErrorKind::out_of_limits};
     server->thread_ = std::thread([s = server.get()] { s->run(); });
     return server;
 }

@@ -106,7 +106,7 @@ void add_events(const json& s, const json& before, double between_s, const Look&
     if (flag_at(s, "/input/emergency_stop"))
         lines.push_back(inked(look, Ink::bad, "EMERGENCY STOP: the walk stands still"));
     else if (flag_at(s, "/now/standing_still"))
-        lines.push_back(inked(look, Ink::warn, "the walk stands still by order"));
+        lines.push_back(inked(look, Ink::warn, "the walk stands still: stop or dead-man"));
     const std::string note = s.contains("notes") && !s["notes"].empty() ? text_at(s["notes"].back(), "/text") : "";
     if (flag_at(s, "/input/live"))
         lines.push_back(
@@ -168,7 +168,7 @@ std::vector<std::string> top_page(const json& status, const json& before, double
     if (lines.size() + 4 <= look.height) lines.emplace_back();
     add_threads(status, before, between_s, look, lines);
     if (lines.size() >= look.height) lines.resize(look.height - 1);
-    lines.push_back(inked(look, Ink::dim, "q ends it"));
+    lines.push_back(inked(look, Ink::dim, "q: quit"));
     for (std::string& line : lines) line = cut_to(line, look.width);
     return lines;
 }

@@ -38,9 +38,8 @@ void timing_rows(LabelledText& table, const WalkSummary& s) {
 }
 
 void quality_rows(LabelledText& table, const WalkSummary& s) {
-    table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget by the clock on the wall",
-                                    s.budget_ms, percent(s.budget_used_mean), percent(s.budget_used_p99),
-                                    percent(s.budget_used_wall_mean)));
+    table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget in wall time", s.budget_ms,
+                                    percent(s.budget_used_mean), percent(s.budget_used_p99), percent(s.budget_used_wall_mean)));
     table.row("accuracy",
               fmt::format("mean {} /rad ({}), worst {} /rad ({})", short_number(s.accuracy_mean), accuracy_words(s.accuracy_mean),
                           short_number(s.accuracy_min), accuracy_words(s.accuracy_min)));
@@ -48,9 +47,9 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
         fmt::format("mean {}, most {}", short_number(s.triangles_mean), short_number(static_cast<double>(s.triangles_max)));
     if (s.model_triangles > 0)
         triangles += fmt::format(" of the model's {}", short_number(static_cast<double>(s.model_triangles)));
-    if (s.hidden.max > 0) triangles += fmt::format("; {:.0f} nodes a frame left out behind others", s.hidden.mean);
+    if (s.hidden.max > 0) triangles += fmt::format("; {:.0f} occluded nodes a frame left out", s.hidden.mean);
     table.row("triangles", triangles);
-    table.row("stability", fmt::format("{:.2f} switches a frame, {} slices drawn coarser, floor bound {} frames",
+    table.row("stability", fmt::format("{:.2f} switches a frame, {} slices drawn coarser, floor reached in {} frames",
                                        s.switches_per_frame, s.downgrades, s.floor_bound_frames));
 }
 

@@ -158,7 +158,8 @@ private:
         text.resize((text.size() + 3) / 4 * 4, ' ');
         const std::uint64_t total = 12 + 8 + text.size() + 8 + binary_.size();
         if (total > std::numeric_limits<std::uint32_t>::max())
-            return Error{file, "the scene needs more than the 4 GiB that a GLB may have", "choose a smaller --scale"};
+            return Error{file, "The scene needs more than the 4 GiB that a GLB may have", "Choose a smaller --scale",
+                         ErrorKind::out_of_limits};
         std::vector<std::byte> out;
         out.reserve(total);
         const auto word = [&](std::uint64_t value) {

@@ -12,7 +12,7 @@
 
 namespace surefoot::soak {
 
-/// not_judged: what ran was too short, or too little, to tell. A verdict holds only if nothing of it is broken or not judged.
+/// not_judged: the run was too short, or there was too little data. A verdict holds only if every rule holds.
 enum class Judged : std::uint8_t { holds, broken, not_judged };
 std::string_view judged_name(Judged judged);  ///< "holds", "broken", "not judged"
 

@@ -19,7 +19,7 @@ void say_what_is_passed_over(const input::SteeringFile& steering, const input::R
             fmt::format("{}: its {} GPIO lines are not read: a recording steers", request.steering_file, steering.lines.size()));
     }
     if (recorded.recording.other_devices > 0) {
-        notes.push_back(fmt::format("{}: {} reports of other devices are passed over: one device steers", request.input_file,
+        notes.push_back(fmt::format("{}: {} reports of other devices are ignored: only one device steers", request.input_file,
                                     recorded.recording.other_devices));
     }
     for (const std::string& left_out : recorded.mapper.notes) notes.push_back(request.input_file + ": " + left_out);

@@ -102,11 +102,15 @@ Result<void> write_snaps(Engine& engine, const ShotStore& store, const std::stri
     engine.device().draws.plays();
     std::error_code error;
     std::filesystem::create_directories(dir, error);
-    if (error) return Error{dir, "cannot be made: " + error.message(), "name another folder with --snap"};
+    if (error)
+        return Error{dir, "The folder cannot be made: " + error.message(), "Name another folder with --snap",
+                     ErrorKind::unwritable};
     for (std::size_t i = 0; i < store.used(); ++i) {
         if (progress.stopped()) {
-            return Error{dir, fmt::format("stopped by the user with {} of {} pictures written", i, store.used()),
-                         "the rest is lost"};
+            return Error{
+                dir,
+                fmt::format("The walk was stopped by the user with {} of {} pictures written: the rest is lost", i, store.used()),
+                "", ErrorKind::stopped};
         }
         progress.say("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const Shot& shot = store.shots()[i];

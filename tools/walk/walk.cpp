@@ -181,8 +181,8 @@ void note_loss(const Session& s, WalkOutcome& outcome) {
     outcome.lost = s.lost.load();
     if (!outcome.lost) return;
     tell(s, WalkStep::device);
-    outcome.failures.push_back({"graphics context", "was lost while walking: the driver was reset, or took it away",
-                                "start again; see the kernel's log for resets of the GPU"});
+    outcome.failures.push_back(Error{"graphics context", "The context was lost while walking: the driver was reset or removed",
+                                     "Start again, and see the kernel's log for resets of the GPU", ErrorKind::no_device});
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std:
 void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots,
                    WalkOutcome& outcome, const Progress& progress);
 
-/// Every output could be written now, none is another output or a file that is read, and none asks for what cannot be (pictures
-/// of the null backend). Nothing is left behind; what is there is not touched.
+/// Errors: an output that cannot be written, that is an input or another output, or that the backend cannot make (pictures of
+/// the null backend). Creates and changes no file.
 Result<void> check_outputs(const WalkRequest& request);
 
 }  // namespace surefoot::walk

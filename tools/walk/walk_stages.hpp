@@ -19,7 +19,7 @@
 namespace surefoot::walk {
 
 /// One frame kept for `surefoot replay`: copied by the frame thread into memory that was sized before, put together by another.
-/// The frame thread writes while `kept` is false, whoever puts it together reads while it is true.
+/// The frame thread writes while `kept` is false. The reader may read while it is true.
 struct KeptFrame {
     std::atomic<bool> kept{false};
     std::uint64_t frame = 0;  ///< of the walk
