@@ -1,4 +1,4 @@
-// A random point of a box, drawn in one order by every compiler: that of a call's arguments is the compiler's.
+// A random point of a box. Draws its components in a fixed order; the order of call arguments depends on the compiler.
 #pragma once
 
 #include "rt/base/geometry.hpp"
@@ -6,7 +6,7 @@
 
 namespace surefoot {
 
-/// Uniform in [low, high), component by component, z first; one that has no room to vary draws nothing.
+/// Uniform in [low, high), component by component, z first. A component with low >= high is low and draws no number.
 inline dvec3 any_in(Random& random, const dvec3& low, const dvec3& high) {
     dvec3 point = low;
     for (int axis = 2; axis >= 0; --axis)

@@ -1,4 +1,4 @@
-// What a frame took of its grid: one formula, for the live figures and for the summary after the walk.
+// The part of a period that a frame used: one formula for live figures and for the summary.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace surefoot::rt {
 
-/// CPU time that the frame took of its grid: the frame thread's, and the rasterisers' as spread over their threads. Where a
-/// clock is not known (a GPU, the virtual clock), the wall time of that part less what was stolen.
+/// CPU time used by the frame, ns: that of the frame thread, plus that of the rasterisers divided by their number. If a CPU clock
+/// is unknown (GPU, virtual clock): the wall time of that part minus stolen time.
 inline double busy_ns(const FrameRecord& f, std::uint32_t rasterisers) {
     const double stolen = static_cast<double>(f.stolen_ns);
     const double raster_wall = std::max(0.0, static_cast<double>(f.rastered_ns - f.submitted_ns) - stolen);

@@ -1,4 +1,4 @@
-// One frame's bookkeeping around the loop: usage before and after each tier, and what follows from it.
+// Bookkeeping of one frame: resource usage before and after each tier, and the record fields derived from it.
 #pragma once
 
 #include <atomic>
@@ -26,7 +26,7 @@ public:
     void close(FrameRecord& record);
     /// Last: allocations since the last frame, those of the accounting stage included.
     void before_push(FrameRecord& record);
-    /// What the frame took of the frame core: the control burns as much.
+    /// CPU time of the frame on the frame core; the control burns as much.
     [[nodiscard]] std::int64_t core_cpu_ns() const { return core_cpu_ns_; }
 
 private:

@@ -1,4 +1,4 @@
-// What is kept of every frame: times, predictions, counts, and the one cause of a miss. Plain data through the ring.
+// The record of a frame: times, predictions, counts, and the cause of a miss. Plain data for the ring.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace surefoot::rt {
 
-/// One cause a miss (DESIGN 7). none: on time.
+/// The cause of a miss, one a frame. none: on time.
 enum class Cause : std::uint8_t {
     none,
     woken_late,
@@ -62,7 +62,7 @@ struct FrameRecord {
     float accuracy = 0;  ///< rad^-1
     float benefit = 0;   ///< mean over items
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
-    bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man): no cause of a miss
+    bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;
     std::uint32_t block = 0;              ///< control blocks: number of the 2 s block
     std::array<double, 3> eye{};          ///< metres
