@@ -47,15 +47,17 @@ const toml::node* TableReader::node(std::string_view key) {
 
 void TableReader::wrong(std::string_view key, const toml::node& node, const std::string& allowed, std::string remedy) {
     if (error_) return;
-    error_ = Error{fmt::format("{}:{}", file_, node.source().begin.line),
-                   fmt::format("{} = {} is not {}", full(key), shown(node), allowed), std::move(remedy)};
+    error_ =
+        Error{fmt::format("{}:{}", file_, node.source().begin.line),
+              fmt::format("The value {} = {} is not {}", full(key), shown(node), allowed), std::move(remedy), ErrorKind::misuse};
 }
 
 void TableReader::refuse(std::string_view key, std::string what, std::string remedy) {
     if (error_) return;
     const toml::node* at = table_.get(key);
     const auto line = at != nullptr ? at->source().begin.line : table_.source().begin.line;
-    error_ = Error{fmt::format("{}:{}", file_, line), fmt::format("{} {}", full(key), what), std::move(remedy)};
+    error_ = Error{fmt::format("{}:{}", file_, line), fmt::format("The key {} {}", full(key), what), std::move(remedy),
+                   ErrorKind::misuse};
 }
 
 void TableReader::number(std::string_view key, double min, double max, std::string_view unit, double& value) {
@@ -102,7 +104,7 @@ std::optional<std::size_t> TableReader::word_of(std::string_view key, const toml
     const auto found = text ? std::find(words.begin(), words.end(), *text) : words.end();
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
     const auto nearest = text ? nearest_word(*text, words) : std::string_view{};
-    wrong(key, node, "one of " + listed(words), nearest.empty() ? "" : fmt::format("did you mean \"{}\"?", nearest));
+    wrong(key, node, "one of " + listed(words), nearest.empty() ? "" : fmt::format("Did you mean \"{}\"?", nearest));
     return std::nullopt;
 }
 
@@ -155,9 +157,9 @@ void TableReader::tables(std::string_view key, const std::function<Result<void>(
     const toml::node* at = node(key);
     if (at == nullptr) return;
     const toml::array* array = at->as_array();
-    if (array == nullptr) return wrong(key, *at, "a list of tables", fmt::format("write [[{}]]", full(key)));
+    if (array == nullptr) return wrong(key, *at, "a list of tables", fmt::format("Write [[{}]]", full(key)));
     for (const toml::node& element : *array) {
-        if (!element.is_table()) return wrong(key, element, "a table", fmt::format("write [[{}]]", full(key)));
+        if (!element.is_table()) return wrong(key, element, "a table", fmt::format("Write [[{}]]", full(key)));
         TableReader inner(*element.as_table(), file_, full(key));
         if (const auto done = read(inner); !done) {
             error_ = done.error();
@@ -171,8 +173,9 @@ Result<void> TableReader::finish() {
     for (const auto& [key, node] : table_) {
         if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
         const auto nearest = nearest_word(key.str(), known_);
-        return Error{fmt::format("{}:{}", file_, key.source().begin.line), fmt::format("unknown key '{}'", full(key.str())),
-                     nearest.empty() ? "allowed are " + listed(known_) : fmt::format("did you mean '{}'?", nearest)};
+        return Error{
+            fmt::format("{}:{}", file_, key.source().begin.line), fmt::format("The key '{}' is unknown", full(key.str())),
+            nearest.empty() ? "Use one of " + listed(known_) : fmt::format("Did you mean '{}'?", nearest), ErrorKind::misuse};
     }
     return {};
 }

@@ -1,4 +1,4 @@
-// One TOML table read key by key, every error with file, line, key, what is allowed and the nearest known name.
+// Reads one TOML table key by key. Errors name file, line, key, the allowed values and the nearest known name.
 #pragma once
 
 #include <toml++/toml.h>
@@ -15,11 +15,11 @@
 
 namespace surefoot::input {
 
-/// Ask for every key that may be there, then finish(), which refuses what else is in the table. After the first error every
-/// further call does nothing; values that are not in the table keep what they were.
+/// Read every allowed key, then call finish(), which refuses all other keys. After the first error all calls do nothing. Values
+/// that are not in the table do not change.
 class TableReader {
 public:
-    /// `path` is how the table is called: "device.axis".
+    /// `path`: the name of the table, such as "device.axis".
     TableReader(const toml::table& table, std::string file, std::string path)
         : table_(table), file_(std::move(file)), path_(std::move(path)) {}
 
@@ -38,7 +38,7 @@ public:
     void tables(std::string_view key, const std::function<Result<void>(TableReader&)>& read);
 
     [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
-    /// An error of this table: `what` is wrong with the key (with the table where the key is not there).
+    /// An error about a key: "The key PATH.KEY `what`". Its place is the key's line, or the table's if the key is missing.
     void refuse(std::string_view key, std::string what, std::string remedy);
     [[nodiscard]] Result<void> finish();
 

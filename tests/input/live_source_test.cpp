@@ -113,7 +113,7 @@ TEST(LiveSource, ComesWalksGoesComesBackAndNeedsNoMemoryForIt) {
     EXPECT_EQ(rig.violations, 0U);
     if (!rt::guard_active()) std::printf("allocations are not counted in this build\n");
     EXPECT_EQ(rig.source->log().count(), 960U);
-    EXPECT_EQ(rig.times_said("steers, by the mapping \"default: joystick\""), 3);
+    EXPECT_EQ(rig.times_said("The device steers by the mapping \"default: joystick\""), 3);
     EXPECT_EQ(rig.times_said("was unplugged"), 3);
     ASSERT_EQ(rig.source->devices().size(), 1U) << "one device, however often it comes";
     EXPECT_EQ(rig.source->devices()[0].name, "test stick");
@@ -152,14 +152,14 @@ TEST(LiveSource, NobodyToSteerIsRestAndSaidOnce) {
 
 TEST(LiveSource, WhatTheDevicesHaveToDoWithoutIsSaidOnce) {
     auto fake = std::make_unique<FakeDevices>();
-    fake->without = Error{"udev", "its events cannot be received", "allow netlink sockets"};
+    fake->without = Error{"udev", "Events cannot be received", "Allow netlink sockets"};
     LiveSource source(LiveOptions{}, std::move(fake));
     Steering steering{MotionLimits{}, SafetyLimits{}};
     source.begin(steering, 1'000'000'000);
     for (int i = 0; i < 100; ++i) (void)source.drain(steering, 1'000'000'000 + i * tick_ns);
     int said = 0;
     for (NoteLine note; source.next_note(note);)
-        said += note.view().find("its events cannot be received") != std::string::npos ? 1 : 0;
+        said += note.view().find("Events cannot be received. Allow netlink sockets.") != std::string::npos ? 1 : 0;
     EXPECT_EQ(said, 1);
 }
 
@@ -205,13 +205,13 @@ TEST(LiveSource, AMappingThatFitsNothingIsSaidOnceAndTheOthersAreNot) {
 
 TEST(LiveSource, ARefusedDeviceIsSaidWithItsRemedy) {
     Rig rig;
-    Error why{"/dev/hidraw7 (pad)", "may not be opened: Permission denied", "install the rules"};
+    Error why{"/dev/hidraw7 (pad)", "The device cannot be opened: Permission denied", "Install the rules"};
     DeviceEvent e;
     e.kind = DeviceEvent::Kind::refused;
     e.why = &why;
     rig.devices->push(e);
     rig.tick();
-    EXPECT_EQ(rig.times_said("/dev/hidraw7 (pad): may not be opened: Permission denied (install the rules)"), 1);
+    EXPECT_EQ(rig.times_said("/dev/hidraw7 (pad): The device cannot be opened: Permission denied. Install the rules."), 1);
     Error endless{"place", std::string(5000, 'x'), "remedy"};
     e.why = &endless;
     rig.devices->push(e);
@@ -287,12 +287,12 @@ TEST(LivePanel, AVanishedChipIsAStopSaidOnceAndTheNextOneServesAgain) {
     EXPECT_TRUE(rig.tick().stopped);
     rig.run(3000);
     EXPECT_TRUE(rig.sample.stopped);
-    EXPECT_EQ(rig.times_said("the chip is gone"), 1);
+    EXPECT_EQ(rig.times_said("The chip is gone"), 1);
     EXPECT_GT(rig.chip.tried, 2);
     EXPECT_LE(rig.times_said(std::string(panel_name)), 2) << "each trouble once";
     rig.chip.gone = false;
     rig.run(1200);  // tried every 2 s by now
-    EXPECT_EQ(rig.times_said("its lines are there"), 1);
+    EXPECT_EQ(rig.times_said("The lines are open"), 1);
     EXPECT_TRUE(rig.steering.safety().latched) << "back is not reset";
     rig.chip.set(2, true, rig.devices->now_ns + 1);
     rig.chip.set(1, true, rig.devices->now_ns + 1);
@@ -339,7 +339,7 @@ public:
     [[nodiscard]] std::span<const pollfd> polled() const override { return {}; }
     Result<std::size_t> read(std::span<LineEdge>) override {
         if (chip_.there) return std::size_t{0};
-        return Error{"gpiochip7 of the panel", "the chip is gone, as far as anybody can tell", "plug it in again"};
+        return Error{"gpiochip7 of the panel", "The chip is gone, as far as anybody can tell", "Plug it in again"};
     }
     Result<void> levels(std::span<bool> active) override {
         std::fill(active.begin(), active.end(), true);

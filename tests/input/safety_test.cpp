@@ -1,4 +1,4 @@
-// Safety: rest after loss, silence, overflow and replug; stops that latch; the dead-man. R5 to R7, R9, R12 to R14 as logic.
+// Safety: rest after loss, silence, overflow and replug; stops that latch; the dead-man.
 #include "input/safety/safety.hpp"
 
 #include <gtest/gtest.h>

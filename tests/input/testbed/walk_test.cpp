@@ -149,7 +149,7 @@ double ride() {
     const Recording device = test::GamepadSession().recording();
     auto plug = bed.plug(device, {.serial = "0001", .wire = Wire::terminal});
     Tool tool(Place::get().walk("600"), false, "walk");
-    EXPECT_TRUE(tool.until("steers, by the mapping", 30'000)) << tool.err();
+    EXPECT_TRUE(tool.until("The device steers by the mapping", 30'000)) << tool.err();
     usleep(400'000);
     hold(plug, 0, 200);
     const double pushed = seconds_now();
@@ -242,7 +242,7 @@ action = "stop_reset"
         std::vector<std::string> words = {"--steering", dir + "/stop.toml"};
         words.insert(words.end(), more.begin(), more.end());
         Tool tool(Place::get().walk("600", words), false, "walk");
-        EXPECT_TRUE(tool.until("steers, by the mapping", 30'000)) << tool.err();
+        EXPECT_TRUE(tool.until("The device steers by the mapping", 30'000)) << tool.err();
         usleep(400'000);
         hands(tool, plug);
         usleep(200'000);
