@@ -1,4 +1,4 @@
-// The forms in which a node may be drawn, by name: what RepKind stands for.
+// The forms in which a node may be drawn: a name and help for each RepKind.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@ namespace surefoot::model {
 
 /// In RepKind's order.
 inline constexpr std::array forms = {
-    Named{"mesh", "triangles of its own, coarse to fine"},
-    Named{"colour_box", "its box in a mean colour a side"},
-    Named{"textured_box", "its box with pictures of it on the sides"},
+    Named{"mesh", "triangles, coarse to fine"},
+    Named{"colour_box", "a box with one mean colour a side"},
+    Named{"textured_box", "a box with captured images on its sides"},
 };
 
 constexpr const Named& form_of(RepKind kind) { return forms[static_cast<std::size_t>(kind)]; }

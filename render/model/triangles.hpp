@@ -7,8 +7,8 @@
 
 namespace surefoot::model {
 
-/// use(const Material&, const vec3& a, const vec3& b, const vec3& c) for every triangle of a part, corners as they are stored:
-/// in the part's own coordinates (Representation::placement brings them into the world).
+/// Calls use(const Material&, const vec3& a, const vec3& b, const vec3& c) for every triangle of a part. Corners are in the
+/// part's coordinates; Representation::placement maps them to the world.
 template <class Use>
 void for_triangles(const Model& model, Index of_part, Use use) {
     const Part& part = model.parts[of_part];
