@@ -11,7 +11,8 @@ Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw
     gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     if (std::max(array.width, array.height) > static_cast<std::uint32_t>(largest)) {
         return Error{"texture of " + std::to_string(array.width) + " x " + std::to_string(array.height),
-                     "is larger than the device takes", "scale the image down to " + std::to_string(largest)};
+                     "The texture is larger than the device's limit", "Scale the image down to " + std::to_string(largest),
+                     ErrorKind::out_of_limits};
     }
     GLuint id = 0;
     gl.GenTextures(1, &id);

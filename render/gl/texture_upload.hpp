@@ -1,4 +1,4 @@
-// Uploads an array of textures of one form.
+// Uploads an array of textures of equal size, levels and wrap.
 #pragma once
 
 #include "render/draw/texture_arrays.hpp"
@@ -8,7 +8,7 @@
 
 namespace surefoot::gl {
 
-/// soft: nearest mip level instead of trilinear, which software pays for a pixel.
+/// soft: nearest mip level instead of trilinear, which costs software GL time for every pixel.
 Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw::TextureArray& array, bool soft);
 
 }  // namespace surefoot::gl
