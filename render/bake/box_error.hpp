@@ -1,4 +1,4 @@
-// How far a box with captured faces is from what it shows.
+// The geometric error of a box impostor: how far its captured faces lie from the surface.
 #pragma once
 
 #include "render/bake/emit.hpp"
@@ -6,8 +6,8 @@
 
 namespace surefoot::bake {
 
-/// Upper bound: the parallax of a picture (the deepest captured point behind its face), the two-sided distance between the
-/// opaque texels and the surface, whichever is more, and a texel. `shown` is about the box's centre.
+/// Upper bound: the larger of parallax and distance, plus one texel. Parallax: the deepest captured point behind its face.
+/// Distance: two-sided, between opaque texels and surface. `shown` is relative to the box's centre. `slack`: as in ChainOptions.
 float box_error(const BoxForm& form, const Geometry& shown, const vec3& half, float slack);
 
 }  // namespace surefoot::bake

@@ -77,9 +77,9 @@ Result<void> check_limits(const Counts& counts, const std::string& place) {
     for (const Limit& limit : limits) {
         if (limit.count <= limit.most) continue;
         return Error{place,
-                     fmt::format("out of limits: {} {} with all levels of detail; a model holds at most {}", limit.count,
+                     fmt::format("The model is out of limits: {} {} with all levels of detail, at most {}", limit.count,
                                  limit.what, limit.most),
-                     "bake it in several parts, or with fewer triangles"};
+                     "Bake it in several parts, or with fewer triangles", ErrorKind::out_of_limits};
     }
     return {};
 }

@@ -1,4 +1,4 @@
-// What a .walk model can count: its records and the draw commands made from them name each other by 32-bit numbers.
+// The size limits of a .walk model: records and draw commands refer to each other by 32-bit numbers.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ struct Counts {
     Counts& operator+=(const Counts& more);
 };
 
-/// What emitting all of it adds up to, every box with all its faces: no less than what the model will hold.
+/// Upper bounds of what the model will hold: all levels emitted, and every box with all its faces.
 Counts counts_of(const ProxyInput& input, std::span<const BoxForm> object_boxes);
 
-/// Error "out of limits" at `place`, with the first that is too many.
+/// Error "out of limits" at `place`, for the first count that is too large.
 Result<void> check_limits(const Counts& counts, const std::string& place);
 
 }  // namespace surefoot::bake
