@@ -13,7 +13,7 @@
 
 namespace surefoot::cli {
 
-/// Exit codes of the contract (DESIGN 6).
+/// Exit codes of the contract.
 constexpr int exit_success = 0, exit_failure = 1, exit_usage = 2;
 /// Ended by Ctrl-C (or SIGTERM, SIGHUP) before it was done, as a shell would say it.
 constexpr int exit_stopped = 130;

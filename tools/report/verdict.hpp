@@ -9,7 +9,7 @@ namespace surefoot::report {
 
 enum class Verdict { good, warn, bad };
 
-/// good: nothing missed; warn: misses, but within the deadline rule (DESIGN 7: own misses at most 2 per 1800 frames);
+/// good: nothing missed; warn: misses, but within the deadline rule (own misses at most 2 per 1800 frames);
 /// bad: beyond it, or nothing ran.
 Verdict verdict_of(const WalkSummary& summary);
 /// A control ran, and the walk had too many own misses, or more misses than the control.

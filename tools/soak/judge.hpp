@@ -22,7 +22,7 @@ SoakLoad describe_load(const LoadFigures& figures, double other_miss_share);
 
 /// Fills in warm_up_s, memory and checks. Needs all the rest.
 ///
-///   deadlines    DESIGN 7's rule: own misses at most 2 per 1800 frames, and, where a control ran, walk minus control over
+///   deadlines    the deadline rule: own misses at most 2 per 1800 frames, and, where a control ran, walk minus control over
 ///                at least 90 pairs not above zero, the load so heavy that the bare loop under SCHED_OTHER misses a fifth
 ///   load         every load that was asked for and permitted was real
 ///   grid         run + skipped = elapsed, no frame's due time off its place, no record lost

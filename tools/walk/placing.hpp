@@ -1,4 +1,4 @@
-// Which thread runs where, at which priority: the declared table of the session, and putting it in force (DESIGN 7).
+// Which thread runs where, at which priority: the declared table of the session, and putting it in force.
 #pragma once
 
 #include <string>

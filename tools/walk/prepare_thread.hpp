@@ -34,7 +34,7 @@ struct PoseSample {
     bool valid = false;
 };
 
-/// The pictures of the next frames are prepared for: this many periods ahead of the newest pose (DESIGN 1.4: 3 at most).
+/// The pictures of the next frames are prepared for: this many periods ahead of the newest pose, at most 3.
 constexpr double horizon_periods = 3.0;
 
 /// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.

@@ -9,7 +9,7 @@
 namespace surefoot::walk {
 
 namespace {
-constexpr std::uint64_t oldest_prepared = 3;  // frames; older sets are not used (DESIGN 1.4)
+constexpr std::uint64_t oldest_prepared = 3;  // frames; older sets are not used
 
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
 }  // namespace
