@@ -75,8 +75,8 @@ void LiveSource::say_if_nobody_steers(std::int64_t now_ns) {
     } else if (now_ns >= start_ns_ + look_for_ns) {
         somebody_ = true;
         tell(say_,
-             "no device is there that steers: the walk rests at its start until one is plugged in "
-             "(`surefoot devices list` says what is there, and why it does not steer)");
+             "No connected device steers. The walk rests at its start until one is plugged in. "
+             "See `surefoot devices list` for the reasons.");
     }
 }
 

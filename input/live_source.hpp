@@ -1,4 +1,4 @@
-// Live devices as the source of a walk's reports: the finder beside, the attendant between, wired switches with them.
+// Live devices as a source of reports: a thread finds and opens them, the attendant maps them; wired switches included.
 //
 //   sf-devices: finds, opens, maps ─► LiveDevices ─► Attendant ─┐
 //   sf-lines: opens ─► GpioPanel ─► PanelDevice ────────────────┴► Steering           notes ─► ring ─► whoever prints
@@ -23,10 +23,10 @@ struct LiveOptions {
     OpenLines open_lines = input::open_lines;
     void* lines_context = nullptr;
     Opening lines_opened = Opening::beside;
-    std::size_t stamps = std::size_t{1} << 20U;  ///< of so many reports the age is kept: 17 minutes at 1 kHz
+    std::size_t stamps = std::size_t{1} << 20U;  ///< number of reports whose age is kept: 17 minutes at 1 kHz
 };
 
-/// For the real clock only. No device at all is no error: the walk rests until one is plugged in, and that is said once.
+/// For the real clock only. Without any device the walk rests until one is plugged in; this is noted once, and is no error.
 class LiveSource final : public ReportSource {
 public:
     /// The real devices, found from now on. Error: udev cannot be used.
@@ -43,7 +43,7 @@ public:
     /// How many devices steer now, as of the last drain; any thread.
     [[nodiscard]] int steering_now() const { return steering_now_.load(std::memory_order_relaxed); }
 
-    /// What a person should know; false: nothing (more). For one thread, any but the one that drains.
+    /// The next note for the user; false: none. For one thread other than the draining one.
     bool next_note(NoteLine& note) { return notes_.try_pop(note); }
     /// Notes that came too fast for that thread.
     [[nodiscard]] std::uint64_t lost_notes() const { return notes_.dropped(); }
@@ -64,7 +64,7 @@ private:
     bool waiting_said_ = false;  ///< of mappings that fit no device
 };
 
-/// Whether anything in the steering file can stop the walk for good: then that is remembered across restarts.
+/// Whether the steering file has an emergency stop. If so, a latched stop is kept across restarts.
 bool has_stop(const SteeringFile& steering);
 
 }  // namespace surefoot::input

@@ -1,4 +1,4 @@
-// What the input thread has to tell a person: lines of fixed size, so that telling neither allocates, nor locks, nor waits.
+// Notes of the input thread for people: lines of fixed size, so that emitting one neither allocates, locks nor waits.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,14 +13,14 @@
 
 namespace surefoot::input {
 
-/// One line; what does not fit is cut off.
+/// One line; longer text is cut off.
 struct NoteLine {
     std::array<char, 760> text{};
     std::size_t size = 0;
     [[nodiscard]] std::string_view view() const { return {text.data(), size}; }
 };
 
-/// Who listens. Must neither allocate nor lock where the teller may not.
+/// The receiver of notes. Must neither allocate nor lock if its caller must not.
 using Say = std::function<void(std::string_view)>;
 
 template <class... T>
@@ -31,10 +31,10 @@ NoteLine noted(fmt::format_string<T...> format, T&&... what) {
     return line;
 }
 
-/// As Error::text().
+/// As Error::text(); no remedy that comes here ends in a question mark.
 inline NoteLine noted(const Error& error) {
     if (error.remedy.empty()) return noted("{}: {}", error.place, error.what);
-    return noted("{}: {} ({})", error.place, error.what, error.remedy);
+    return noted("{}: {}. {}.", error.place, error.what, error.remedy);
 }
 
 template <class... T>

@@ -66,7 +66,7 @@ void Steering::ended(int device) {
 }
 
 void Steering::report(int number, const DeviceState& state, std::int64_t now_ns) {
-    CHECK(is_device(number), "a report has a number that attach() gave");
+    CHECK(is_device(number), "A report has a number that attach() gave");
     const auto at = static_cast<std::size_t>(number);
     Source& source = sources_[at];
     if (!source.connected) return;
@@ -92,7 +92,7 @@ void Steering::report(int number, const DeviceState& state, std::int64_t now_ns)
 }
 
 void Steering::drained(int number, std::uint32_t reports, bool lost) {
-    CHECK(is_device(number), "a drain has a number that attach() gave");
+    CHECK(is_device(number), "A drain has a number that attach() gave");
     Source& source = sources_[static_cast<std::size_t>(number)];
     source.drained = std::max(source.drained, reports);
     source.lost = source.lost || lost;
@@ -114,7 +114,7 @@ NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const G
 }
 
 const Mapper& Steering::mapper(int device) const {
-    CHECK(is_device(device), "a mapper is asked for by a number that attach() gave");
+    CHECK(is_device(device), "A mapper is asked for by a number that attach() gave");
     return devices_[static_cast<std::size_t>(device)].mapper;
 }
 

@@ -191,7 +191,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
     const std::size_t first = drawn.size();
     model::ItemCost cost;
     for (const select::CutItem& item : items) {
-        if (!CHECK_RARE(drawn.size() < drawn.capacity(), "twice the candidates have room for a cut and its stand-ins")) break;
+        if (!CHECK_RARE(drawn.size() < drawn.capacity(), "A cut and its stand-ins are at most twice the candidates")) break;
         if (!model::visible(frustum, model.nodes[item.node].box)) {
             ++report.culled;
             continue;
@@ -273,7 +273,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     Impl& e = *impl_;
     e.draws.plays();
     e.device->draws.plays();
-    CHECK(e.use_coarse || e.prepared != nullptr, "what is submitted was selected before");
+    CHECK(e.use_coarse || e.prepared != nullptr, "A submitted frame was selected before");
     SubmitReport report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();

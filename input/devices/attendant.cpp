@@ -110,9 +110,9 @@ void Attendant::added(const DeviceEvent& e) {
     const int number = slot == nullptr ? -1
                                        : steering_.attach(std::move(ready->mapper), p.device.controls.size(), ready->reporting,
                                                           number_before(ready->identity));
-    if (number < 0) return tell(say_, "{} ({}): {} devices steer already; unplug one", p.node, p.name, max_devices);
-    tell(say_, "{} ({}): steers, by the mapping \"{}\"", p.node, p.name, ready->mapping);
-    CHECK(static_cast<std::size_t>(number) < identities_.size(), "the steering numbers no more devices than there is room for");
+    if (number < 0) return tell(say_, "{} ({}): {} devices steer already. Unplug one.", p.node, p.name, max_devices);
+    tell(say_, "{} ({}): The device steers by the mapping \"{}\"", p.node, p.name, ready->mapping);
+    CHECK(static_cast<std::size_t>(number) < identities_.size(), "A number of the steering fits the table of identities");
     slot->device = e.device;
     slot->steering = number;
     slot->ready = ready;
@@ -125,8 +125,7 @@ void Attendant::added(const DeviceEvent& e) {
 void Attendant::say_waiting(const std::function<bool(const DeviceMapping&)>& elsewhere) const {
     for (std::size_t i = 0; i < mappings_.size(); ++i) {
         if (fitted_[i] || !steers(mappings_[i]) || elsewhere(mappings_[i])) continue;
-        tell(say_, "[[device]] {} \"{}\" steers none of the devices so far (`surefoot devices list` says what is there)", i + 1,
-             mappings_[i].name);
+        tell(say_, "[[device]] {} \"{}\" matches no connected device. See `surefoot devices list`.", i + 1, mappings_[i].name);
     }
 }
 

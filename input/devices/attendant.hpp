@@ -1,4 +1,4 @@
-// Between live devices and the steering: gives each device its mapping, decodes its reports, and passes on what comes and goes.
+// Connects live devices to the steering: gives each device its mapping, decodes its reports, attaches and detaches it.
 #pragma once
 
 #include <array>
@@ -18,18 +18,18 @@
 
 namespace surefoot::input {
 
-/// Devices that a mapping names, whatever they are, and those that steer by their class.
+/// Wants devices that a mapping names, and those that steer by their class.
 Wanted wanted_by(std::vector<DeviceMapping> mappings);
 /// For find_mapping().
 DeviceIdentity identity_for_mapping(const PluggedDevice& device);
 
-/// One that steered at some time.
+/// A device that steered at any time.
 struct MetDevice {
     std::string identity;
     rt::SteeringDevice words;
 };
 
-/// A device as the attendant takes it: everything that needs memory.
+/// A device made ready for the attendant: holds everything that needs memory.
 struct ReadyDevice final : Readied {
     explicit ReadyDevice(const HidDevice& device) : decoder(device) {}
     Mapper mapper;
@@ -38,18 +38,18 @@ struct ReadyDevice final : Readied {
     DeviceState state;
     std::string identity, mapping;
     int configured = -1;  ///< which of the mappings; -1: the default of its class
-    MetDevice met;        ///< goes to the list of those that were met
+    MetDevice met;        ///< entry for the list of met devices
 };
-/// By the first mapping that fits, else the default of the device's class.
+/// Uses the first matching mapping, else the default of the device's class.
 std::unique_ptr<ReadyDevice> make_ready(std::span<const DeviceMapping> mappings, const PluggedDevice& device);
 /// For FinderOptions: makes ReadyDevices where devices are opened.
 std::function<std::unique_ptr<Readied>(const PluggedDevice&)> readier(std::vector<DeviceMapping> mappings);
 
-/// Of the thread that plays its steering's `steers`. attend() neither allocates nor frees, also while devices come and go, if
-/// they come readied; else it makes them ready itself.
+/// Belongs to the thread that plays its steering's `steers`. attend() neither allocates nor frees if devices come readied, also
+/// while they come and go. Else it makes them ready itself.
 class Attendant {
 public:
-    /// `say` is told, once each: devices that come, go or are refused, and controls of a mapping that a device has not got.
+    /// `say` gets a note, once each: devices that come, go or are refused; controls of a mapping that a device lacks.
     Attendant(std::vector<DeviceMapping> mappings, Steering& steering, Say say = {});
 
     void attend(const DeviceEvent& event);
@@ -71,7 +71,7 @@ public:
     [[nodiscard]] int steering_now() const;
     /// How many pluggings have steered.
     [[nodiscard]] std::uint64_t pluggings() const { return pluggings_; }
-    /// Says which mappings no device has come by yet, but for those that `elsewhere` knows to be in use.
+    /// Notes the mappings that match no device yet, except those that `elsewhere` reports as in use.
     void say_waiting(const std::function<bool(const DeviceMapping&)>& elsewhere) const;
     /// Short, long and undeclared reports: they changed nothing.
     [[nodiscard]] std::uint64_t refused_reports() const { return refused_reports_; }
@@ -95,7 +95,7 @@ private:
     Steering& steering_;
     Say say_;
     std::array<Slot, max_devices> slots_;
-    std::array<std::string, max_devices> identities_;  ///< by Steering's numbers: a device that comes back gets its own
+    std::array<std::string, max_devices> identities_;  ///< by the numbers of Steering; a returning device gets its old number
     std::vector<MetDevice> met_;
     std::uint64_t pluggings_ = 0, refused_reports_ = 0, accepted_reports_ = 0;
 };

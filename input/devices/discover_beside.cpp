@@ -113,7 +113,8 @@ Result<std::unique_ptr<Discoverer>> discover_beside(Finder finder) {
     const int to_reader = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     const int to_finder = to_reader < 0 ? -1 : eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (to_finder < 0) {
-        const Error error{"eventfd", std::strerror(errno), "raise the limit of open files (ulimit -n)"};
+        const Error error{"eventfd", std::string("No event descriptor can be made: ") + std::strerror(errno),
+                          "Raise the limit of open files (ulimit -n)", ErrorKind::failed};
         if (to_reader >= 0) ::close(to_reader);
         return error;
     }

@@ -21,13 +21,13 @@ std::string place_text(const PluggedDevice& p) { return p.name.empty() ? p.node 
 
 Error open_error(const PluggedDevice& p, int code, const std::string& what) {
     if (code == EACCES || code == EPERM) {
-        return {place_text(p), "may not be opened: " + what,
-                fmt::format(
-                    "install systemd/70-surefoot.rules as /etc/udev/rules.d/70-surefoot.rules, run `udevadm control --reload` "
-                    "and `udevadm trigger --subsystem-match=hidraw`, and add this user to the group surefoot-input; it is "
-                    "tried again by itself")};
+        return {place_text(p), "The device cannot be opened and is tried again: " + what,
+                "Install 70-surefoot.rules in /etc/udev/rules.d, run `udevadm control --reload` and "
+                "`udevadm trigger --subsystem-match=hidraw`, and add this user to the group surefoot-input",
+                ErrorKind::no_device};
     }
-    return {place_text(p), "cannot be opened: " + what, "it is tried again by itself; else unplug it and plug it in again"};
+    return {place_text(p), "The device cannot be opened and is tried again: " + what, "Unplug it and plug it in again",
+            ErrorKind::no_device};
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ Result<Finder> Finder::create(FinderOptions options) {
     Finder f;
     f.options_ = std::move(options);
     f.context_.reset(udev_new());
-    if (!f.context_) return Error{"udev", "its library cannot be used: no memory", "close other programs"};
+    if (!f.context_) return Error{"udev", "The library cannot be used: no memory", "Close other programs", ErrorKind::no_memory};
     auto monitor = UdevMonitor::listen(f.context_.get());
     if (monitor)
         f.monitor_ = std::move(*monitor);
@@ -93,7 +93,7 @@ void Finder::scan(std::vector<Discovery>& out, std::int64_t now_ns) {
             d.kind = Discovery::Kind::lost;
             d.device = i->second.device;
             d.plugged = i->second.plugged;
-            d.why = {place_text(*d.plugged), "was unplugged", ""};
+            d.why = {place_text(*d.plugged), "The device was unplugged", "", ErrorKind::no_device};
             out.push_back(std::move(d));
         }
         i = entries_.erase(i);
@@ -118,7 +118,8 @@ void Finder::meet(std::vector<Discovery>& out, const std::string& place, Entry& 
         out.push_back(std::move(d));
     } else if (!options_.wanted(p)) {
         d.refused = Refused::unwanted;
-        d.why = {place_text(p), p.device.reason, "name it in the steering file's [[device]] to use it all the same"};
+        d.why = {place_text(p), "The device does not steer: " + p.device.reason,
+                 "Name it in a [[device]] of the steering file to use it all the same", ErrorKind::unsupported};
         out.push_back(std::move(d));
     } else {
         entry.state = State::waiting;  // due at once

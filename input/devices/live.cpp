@@ -19,7 +19,7 @@ constexpr std::size_t most_events = most_reports + 4 * most_devices;  // each of
 LiveDevices::LiveDevices(std::unique_ptr<Discoverer> discoverer, std::optional<Error> trouble)
     : discoverer_(std::move(discoverer)),
       bytes_(bytes_per_take + largest_report),
-      unplugged_{"", "was unplugged, or cannot be read any more", ""},
+      unplugged_{"", "The device was unplugged, or cannot be read any more", "", ErrorKind::no_device},
       trouble_(std::move(trouble)) {
     open_.reserve(most_devices);
     told_.reserve(2 * most_devices);

@@ -16,8 +16,10 @@ Result<UdevMonitor> UdevMonitor::listen(udev* context) {
     m.monitor_.reset(udev_monitor_new_from_netlink(context, "udev"));
     if (!m.monitor_ || udev_monitor_filter_add_match_subsystem_devtype(m.monitor_.get(), "hidraw", nullptr) < 0 ||
         udev_monitor_enable_receiving(m.monitor_.get()) < 0) {
-        return Error{"udev", std::string("its events cannot be received: ") + std::strerror(errno),
-                     "devices are looked for four times a second instead; allow netlink sockets (AF_NETLINK) to this service"};
+        return Error{
+            "udev",
+            std::string("Events cannot be received; devices are looked for four times a second instead: ") + std::strerror(errno),
+            "Allow netlink sockets (AF_NETLINK) to this service", ErrorKind::no_device};
     }
     return m;
 }

@@ -20,7 +20,7 @@ using UdevContext = std::unique_ptr<udev, UdevDeleter>;
 
 class UdevMonitor {
 public:
-    /// Listens from now on. Errors: no netlink socket (a container may forbid it): then devices have to be looked for.
+    /// Listens from now on. Error: no netlink socket, as in some containers; then devices must be found by scanning.
     static Result<UdevMonitor> listen(udev* context);
 
     [[nodiscard]] int fd() const;

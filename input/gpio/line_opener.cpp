@@ -91,7 +91,7 @@ public:
     }
     /// There is always room: no more are under way than the ring to the reader holds.
     void give_back(std::unique_ptr<OpenedLines> opened, std::int64_t /*now_ns*/) override {
-        if (CHECK_RARE(!returned_.full(), "no more lines are under way than fit the ring") && returned_.try_push(opened.get()))
+        if (CHECK_RARE(!returned_.full(), "No more lines are under way than the ring holds") && returned_.try_push(opened.get()))
             (void)opened.release();
         bell_.release();
     }

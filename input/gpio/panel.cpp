@@ -34,20 +34,23 @@ ControlInfo control_of(const LineConfig& line) {
 
 Result<void> check_lines(std::span<const LineConfig> lines) {
     const auto refuse = [](const LineConfig& line, std::string what, std::string remedy) {
-        return Error{fmt::format("gpio line '{}'", line.name), std::move(what), std::move(remedy)};
+        return Error{fmt::format("gpio line '{}'", line.name), std::move(what), std::move(remedy), ErrorKind::misuse};
     };
-    if (lines.size() > max_lines) return Error{"gpio", fmt::format("{} lines", lines.size()), "at most 64 are allowed"};
+    if (lines.size() > max_lines)
+        return Error{"gpio", fmt::format("The file declares {} lines; at most 64 are allowed", lines.size()), "Remove some",
+                     ErrorKind::out_of_limits};
     for (const LineConfig& line : lines) {
         if (line.name.empty() || line.request.chip.empty() || line.request.line.empty())
-            return refuse(line, "has no name, chip or line", "give all three");
+            return refuse(line, "The line has no name, chip or offset", "Give all three");
         const auto count = [&](auto&& fits) { return std::count_if(lines.begin(), lines.end(), fits); };
         const auto same_name = count([&](const LineConfig& other) { return other.name == line.name; });
         const auto same_place = count([&](const LineConfig& other) {
             return other.request.chip == line.request.chip && other.request.line == line.request.line;
         });
-        if (same_place != 1) return refuse(line, "uses a line that another one uses", "a line has one role");
+        if (same_place != 1) return refuse(line, "Another entry uses the same line", "Give each line one role");
         if (!is_encoder(line.role)) {
-            if (same_name != 1) return refuse(line, "is there twice", "only an encoder's two lines share a name");
+            if (same_name != 1)
+                return refuse(line, "The name is used twice", "Choose another name: only an encoder's two lines share one");
             continue;
         }
         const LineRole other_role = line.role == LineRole::encoder_a ? LineRole::encoder_b : LineRole::encoder_a;
@@ -55,8 +58,8 @@ Result<void> check_lines(std::span<const LineConfig> lines) {
             return other.name == line.name && other.role == other_role && other.request.chip == line.request.chip;
         });
         if (same_name != 2 || partners != 1)
-            return refuse(line, "is not one of a pair",
-                          "an encoder has one encoder_a and one encoder_b of the same name and chip");
+            return refuse(line, "The encoder line has no partner",
+                          "Give an encoder one encoder_a and one encoder_b of the same name and chip");
     }
     return {};
 }
@@ -81,7 +84,7 @@ GpioPanel::GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* cont
             }
         controls_.push_back(control_of(config));
     }
-    CHECK(configs_.size() <= max_lines, "the lines were checked: at most 64");
+    CHECK(configs_.size() <= max_lines, "At most 64 lines pass the check");
     opener_ = make_line_opener(std::move(to_open), where);
 }
 

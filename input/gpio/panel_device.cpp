@@ -59,9 +59,9 @@ void PanelDevice::service(std::int64_t now_ns) {
     if (panel_.problem() == said_.view()) return;
     said_ = noted("{}", panel_.problem());
     if (said_.size == 0)
-        tell(say_, "{}: its lines are there", panel_name);
+        tell(say_, "{}: The lines are open", panel_name);
     else
-        tell(say_, "{}: {}; tried again by itself, a stop among its lines is asserted until then", panel_name, said_.view());
+        tell(say_, "{}: {} The lines are tried again. A stop among them is asserted until then.", panel_name, said_.view());
 }
 
 void PanelDevice::open() {
@@ -73,7 +73,7 @@ void PanelDevice::open() {
 /// The steering gives the mapper back that the number had before: the first time an empty one, later the panel's other one.
 void PanelDevice::attach(Steering& steering) {
     number_ = steering.attach(std::move(mapper_), panel_.controls().size(), Reporting::on_change, known_);
-    if (number_ < 0) return tell(say_, "{}: {} devices steer already; unplug one", panel_name, max_devices);
+    if (number_ < 0) return tell(say_, "{}: {} devices steer already. Unplug one.", panel_name, max_devices);
     if (!attached_once_) std::swap(mapper_, spare_);
     attached_once_ = true;
     known_ = number_;

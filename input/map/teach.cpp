@@ -226,17 +226,18 @@ std::string Teach::question() const {
     const bool other_way = steps_.front().sign < 0;
     switch (steps_.front().action) {
         case Action::forward:
-            return other_way ? "Move what walks backward" : "Move what walks forward, as far as it goes";
+            return other_way ? "Move the control that walks backward" : "Move the control that walks forward, as far as it goes";
         case Action::side:
-            return other_way ? "Move what walks to the left" : "Move what walks to the right";
+            return other_way ? "Move the control that walks to the left" : "Move the control that walks to the right";
         case Action::up:
-            return other_way ? "Move what sinks" : "Move what rises";
+            return other_way ? "Move the control that sinks" : "Move the control that rises";
         case Action::turn:
-            return other_way ? "Move what turns to the right" : "Move what turns to the left";
+            return other_way ? "Move the control that turns to the right" : "Move the control that turns to the left";
         case Action::look:
-            return other_way ? "Move what looks down" : "Move what looks up";
+            return other_way ? "Move the control that looks down" : "Move the control that looks up";
         case Action::speed:
-            return other_way ? "Move what makes it slower" : "Move what makes it faster (a lever: to its fast end)";
+            return other_way ? "Move the control that makes it slower"
+                             : "Move the control that makes it faster (a lever: to its fast end)";
         case Action::next_viewpoint:
             return "Press the button for the next viewpoint";
         case Action::reset:

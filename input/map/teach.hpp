@@ -1,5 +1,4 @@
-// Learning a mapping by showing: asks for one movement after the other, and recognises which control moved furthest from its
-// rest.
+// Learns a mapping by demonstration: asks for one movement after the other, and recognises the control that moved furthest.
 //
 //   settle (everything keeps still) ─► ask ─► one control moved far ─► it is back, or stays ─► learned ─► settle for the next
 //                                      └─► skipped, or time is up ─────────────────────────────────────┘
@@ -56,7 +55,7 @@ public:
     void finish() { phase_ = Phase::done; }
 
     [[nodiscard]] Phase phase() const { return phase_; }
-    /// What to say to the user now: "Move what shall walk forward", ...
+    /// The prompt for the user: "Move the control that walks forward", ...
     [[nodiscard]] std::string question() const;
     [[nodiscard]] Action action() const { return steps_.empty() ? Action::none : steps_.front().action; }
     [[nodiscard]] double seconds_left(std::int64_t now_ns) const;

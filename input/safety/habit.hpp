@@ -1,10 +1,10 @@
-// What a device's silence means: a fault where it streams, "as before" where it reports changes only.
+// Report cadence: silence of a streaming device is a fault; silence of a device that reports changes means "as before".
 //
-// A device that reports changes only never sends the same report twice; one that streams does, whenever the hand keeps still (or
-// when it tells its controls in turns). So equal reports in close succession while deflected prove streaming. A deflected gap
-// that ends by itself disproves it, unless our own reader was the one that slept. A fine control's noise makes no two reports
-// equal: many that stay within the play, though nothing moves, prove it as well. Until it is proved, silence does not stop:
-// stopping a pad that is simply held would take the walk from every visitor who walks straight on.
+// A device that reports changes never sends the same report twice. A streaming device does, whenever the hand is still. So equal
+// reports in close succession while deflected prove streaming. The noise of a fine control makes all reports different; then many
+// reports within the hysteresis band prove it too. A gap while deflected that ends by itself disproves streaming, unless our own
+// reader slept. Until streaming is proved, silence does not stop: that would stop every visitor who holds a pad and walks
+// straight.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +27,8 @@ constexpr std::uint32_t equal_reports_that_prove = 16, still_reports_that_prove 
 /// What came since the last step.
 struct News {
     bool fresh = false;  ///< reports did, the newest at stamp_ns
-    bool equal = false;  ///< one of them repeated its forerunner
-    bool still = false;  ///< none of them moved anything beyond its play, and noise would show (Mapper::still)
+    bool equal = false;  ///< one of them was equal to the one before
+    bool still = false;  ///< none moved a control beyond its hysteresis band, and noise would show (Mapper::still)
     bool deflected = false;
     std::int64_t stamp_ns = 0;
 };

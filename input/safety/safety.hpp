@@ -1,4 +1,4 @@
-// What may be walked: lets each device's wish through, holds it back, or stops everything. It may only reduce.
+// Safety: passes each device's request, holds it at rest, or stops everything. It may only reduce motion.
 //
 //   Asked of each device ─► at rest if gone, silent, overflowed, or not yet seen neutral ─► bounded sum ─► slew ─► Command
 //   lines (GPIO), buttons ─► emergency stop (latched), dead-man ──────────────────────────────────────────► Order::stop
@@ -21,11 +21,11 @@ constexpr std::size_t max_devices = 16;
 
 struct SafetyLimits {
     std::int64_t age_limit_ns = 100'000'000;  ///< no deflection of a streaming device is believed for longer
-    /// So many reports in one drain: the kernel's ring was full and has dropped the newest ones. hidraw's 64 slots hold 63
-    /// (one stays free to tell full from empty), so 63 is the least count after which nothing is known.
+    /// This many reports in one drain mean overflow: the kernel's ring was full and dropped the newest. hidraw's ring of 64 slots
+    /// holds 63, so from 63 on reports may be missing.
     std::uint32_t full_drain = 63;
     double slew_per_s = 8;  ///< of a wish, full deflections a second
-    double brake_s = 0.03;  ///< a lost device's full deflection is gone after this; within R6's 50 ms with a tick to spare
+    double brake_s = 0.03;  ///< time to rest after a device is lost; with one tick this stays below 50 ms
     DeadManSettings dead_man;
 };
 
@@ -35,8 +35,8 @@ struct Source {
     std::uint32_t connection = 0;  ///< counts its connections: a replug between two steps is still seen
     std::uint64_t reports = 0;     ///< accepted since it was connected
     std::uint32_t drained = 0;     ///< most reports that one drain of this step read (every drain reads until nothing is left)
-    bool equal_report = false;     ///< one of them was equal to its forerunner
-    bool moved = false;            ///< one of them moved something, or nothing can be told from its noise (Mapper::still)
+    bool equal_report = false;     ///< one of them was equal to the one before
+    bool moved = false;            ///< one of them moved a control, or its noise cannot show (Mapper::still)
     bool lost = false;             ///< its reader knows that reports were lost (a ring of our own overflowed)
     bool seen_neutral = false;     ///< in some report of this step
     std::int64_t stamp_ns = 0;     ///< of the newest report
@@ -61,7 +61,7 @@ struct SafetyState {
         std::uint64_t reports = 0;
         Habit habit;
         Held held = Held::disconnected;
-        Wish passed;  ///< what it contributed to the last step
+        Wish passed;  ///< its contribution to the last step
     };
     std::array<Device, max_devices> devices{};
     Wish slewed;

@@ -25,7 +25,9 @@ namespace {
 
 std::string place_of(const importer::Scene& scene) { return scene.sources.empty() ? "bake" : scene.sources.front(); }
 
-Error stopped_by_user(const importer::Scene& scene) { return {place_of(scene), "stopped by the user", "nothing was written"}; }
+Error stopped_by_user(const importer::Scene& scene) {
+    return {place_of(scene), "The user stopped the bake; nothing was written", "", ErrorKind::stopped};
+}
 
 /// body(0) to body(count - 1) on all threads of the arena.
 template <class Body>
@@ -379,7 +381,8 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     });
     if (!done) return stopped_by_user(scene);
     if (bakery.objects.empty()) {
-        return Error{place_of(scene), "there is nothing to draw in it", "check that its nodes have meshes with triangles"};
+        return Error{place_of(scene), "The scene holds nothing to draw", "Check that its nodes have meshes with triangles",
+                     ErrorKind::damaged};
     }
     if (auto ok = check_limits(counts_of(bakery.proxy_input(), bakery.object_boxes), place_of(scene), options.most); !ok)
         return ok.error();

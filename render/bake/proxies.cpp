@@ -55,9 +55,9 @@ void add_face(Squares& to, const BoxForm& form, std::size_t face, const vec3& ha
     }
 }
 
-/// How far a box with captured faces is from what it shows. Upper bound: the parallax of a picture (the deepest captured point
-/// behind its face), the two-sided distance between the opaque texels and the surface, whichever is more, and a texel. `shown`
-/// is about the box's centre.
+/// The geometric error of a box impostor: how far its captured faces lie from the surface. Upper bound: the larger of parallax
+/// and distance, plus one texel. Parallax: the deepest captured point behind its face. Distance: two-sided, between opaque texels
+/// and surface. `shown` is relative to the box's centre. `slack`: as in ChainOptions.
 float box_error(const BoxForm& form, const Geometry& shown, const vec3& half, float slack) {
     Squares box;
     float depth = 0;

@@ -1,4 +1,4 @@
-// Which things lie in exactly one place, and who of them shows: a rank for each, by their order in the model.
+// Coincident surfaces (z-fighting): ranks them by their order in the model; the first in the model wins.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,16 @@
 
 namespace surefoot::draw {
 
-/// Ranks of a representation's parts: ranks[first_of_rep[rep] + k] for its k-th part. 0: in nobody's place, or the first there.
+/// Ranks of parts: ranks[first_of_rep[rep] + k] for the k-th part of rep. 0: not coincident, or first of its group.
 struct TieRanks {
     std::vector<std::uint32_t> first_of_rep;
     std::vector<std::uint8_t> ranks;
 };
 
-/// Leaves whose parts fill the same box (a game's two banners on one pole), and flat parts across an axis that overlap in one
-/// plane (a poster on its wall): each gets the least rank that none before it there has. Forms of one leaf with the same parts
-/// have the same ranks, so that a change of form changes nothing; with other parts they have the first part's. O(n log n).
+/// Finds leaves whose parts fill the same box (two banners on one pole), and flat parts across an axis that overlap in one plane
+/// (a poster on a wall). Each gets the smallest rank that no earlier one of its group has. O(n log n).
+/// Representations of one leaf with the same parts have the same ranks, so that a switch does not change the winner.
+/// Representations with other parts have the rank of the first part.
 TieRanks tie_ranks(const model::Model& model);
 
 }  // namespace surefoot::draw

@@ -20,7 +20,7 @@ public:
     /// True where the default framebuffer is a window: the frame is blitted there, then present() swaps.
     [[nodiscard]] virtual bool has_window() const { return false; }
     virtual void present() {}
-    /// Whether the driver says when it was reset, through glGetGraphicsResetStatus.
+    /// Whether the driver reports resets, through glGetGraphicsResetStatus.
     [[nodiscard]] virtual bool tells_resets() const { return false; }
 };
 

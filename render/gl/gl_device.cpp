@@ -63,7 +63,7 @@ Result<void> GlDevice::set_up() {
     gl_.GenQueries(1, &timer_);
     if (context_->tells_resets() && gl_.version >= 45)
         reset_status_ = reinterpret_cast<PFNGLGETGRAPHICSRESETSTATUSPROC>(context_->find("glGetGraphicsResetStatus"));
-    return check_errors(gl_, context_->name(), "see `surefoot doctor`");
+    return check_errors(gl_, context_->name(), "See `surefoot doctor`");
 }
 
 Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
@@ -74,8 +74,10 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     resources_ = std::move(*resources);
     sun_direction_ = vec3(glm::normalize(model.sun_direction));
     warm_up();
-    if (lost_) return Error{"warming up " + renderer_, "the driver does not finish", "restart it, or use another --backend"};
-    return check_errors(gl_, "warming up " + renderer_, "report this together with the driver's version");
+    if (lost_)
+        return Error{"warming up " + renderer_, "The driver does not finish", "Restart the driver, or use another --backend",
+                     ErrorKind::no_device};
+    return check_errors(gl_, "warming up " + renderer_, "Report this together with the driver's version");
 }
 
 /// Every combination of program, texture and culling in the model is drawn once: drivers compile on first use, and the frame
@@ -162,7 +164,7 @@ void GlDevice::finish_frame() {
 }
 
 Result<PixelImage> GlDevice::read_pixels() {
-    if (lost_) return Error{"reading the picture", "the device is lost", "open it again"};
+    if (lost_) return Error{"reading the picture", "The device is lost", "Open the device again", ErrorKind::no_device};
     PixelImage image;
     image.width = options_.viewport.width;
     image.height = options_.viewport.height;
@@ -172,7 +174,7 @@ Result<PixelImage> GlDevice::read_pixels() {
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl_.ReadPixels(0, 0, static_cast<GLsizei>(image.width), static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE,
                    upside_down.data());
-    if (auto fine = check_errors(gl_, "reading the picture", "see `surefoot doctor`"); !fine) return fine.error();
+    if (auto fine = check_errors(gl_, "reading the picture", "See `surefoot doctor`"); !fine) return fine.error();
     image.rgba.resize(upside_down.size());
     for (std::uint32_t y = 0; y < image.height; ++y) {
         std::copy_n(upside_down.data() + row * (image.height - 1 - y), row, image.rgba.data() + row * y);

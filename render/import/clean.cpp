@@ -162,21 +162,21 @@ void mend(Primitive& primitive, Mended& counts) {
 void say(const Mended& counts, const std::string& mesh_name, std::vector<std::string>& warnings,
          std::vector<std::string>& lacks) {
     const auto line = [&](std::uint64_t count, const char* what) {
-        if (count > 0) warnings.push_back(fmt::format("mesh '{}': {} {}", mesh_name, count, what));
+        if (count > 0) warnings.push_back(fmt::format("Mesh '{}': {} {}", mesh_name, count, what));
     };
     const auto broken = [&](std::uint64_t count, const char* what) {
         line(count, what);
         if (count > 0) lacks.push_back(warnings.back());
     };
-    line(counts.arrays, "arrays of normals, coordinates or colours dropped: not as long as the positions");
-    line(counts.partial, "incomplete last triangles dropped");
-    broken(counts.out_of_range, "triangles dropped: index out of range");
-    broken(counts.non_finite, "triangles dropped: position not finite");
-    broken(counts.enormous, "triangles dropped: coordinate beyond 1e12 m");
-    line(counts.repeated, "triangles dropped: repeated index");
-    line(counts.zero_area, "triangles dropped: zero area");
-    broken(counts.uvs, "texture coordinates not finite: set to 0");
-    line(counts.normals, "normals of no length or not finite: made from the triangles");
+    line(counts.arrays, "arrays of normals, coordinates or colours are dropped: not as long as the positions");
+    line(counts.partial, "incomplete last triangles are dropped");
+    broken(counts.out_of_range, "triangles are dropped: index out of range");
+    broken(counts.non_finite, "triangles are dropped: position not finite");
+    broken(counts.enormous, "triangles are dropped: coordinate beyond 1e12 m");
+    line(counts.repeated, "triangles are dropped: repeated index");
+    line(counts.zero_area, "triangles are dropped: zero area");
+    broken(counts.uvs, "texture coordinates are not finite and set to 0");
+    line(counts.normals, "normals have no length or are not finite; they are made from the triangles");
 }
 
 void clean(Primitive& primitive, const std::string& mesh_name, std::vector<std::string>& warnings) {

@@ -83,7 +83,7 @@ public:
 
 private:
     Index missing(Material& material, const std::string& why) {
-        scene_.warnings.push_back(fmt::format("material '{}' left white: {}", material.name, why));
+        scene_.warnings.push_back(fmt::format("Material '{}' is left white: {}", material.name, why));
         material.lacks.push_back(scene_.warnings.back());
         return none;
     }
@@ -92,7 +92,7 @@ private:
         for (const auto& [extension, kind] :
              {std::pair{"KHR_texture_basisu", "KTX2"}, {"EXT_texture_webp", "WebP"}, {"MSFT_texture_dds", "DDS"}}) {
             if (wanted.extensions.contains(extension))
-                return fmt::format("has only a {} picture, which is not read: convert it to PNG or JPEG", kind);
+                return fmt::format("has only a {} picture, which is not read; convert it to PNG or JPEG", kind);
         }
         return "has no picture that can be read";
     }

@@ -57,7 +57,7 @@ public:
 
 private:
     Error wrong(std::uint64_t line, std::string what) const {
-        return {fmt::format("{}:{}", file_, line), std::move(what), "export the model again"};
+        return {fmt::format("{}:{}", file_, line), std::move(what), "Export the model again", ErrorKind::damaged};
     }
 
     Result<void> parse(const std::string& text) {
@@ -66,7 +66,7 @@ private:
             if (cursor.at_line_end()) continue;
             if (auto read = statement(cursor); !read) return read;
             if (++statements % 65536 != 0) continue;
-            if (progress_.stopped()) return Error{file_, "import stopped", ""};
+            if (progress_.stopped()) return Error{file_, "The import was stopped", "", ErrorKind::stopped};
             progress_.say("import", 1.0 - static_cast<double>(cursor.rest().size()) / static_cast<double>(text.size()));
         }
         return {};
@@ -103,10 +103,10 @@ private:
         std::array<double, 8> n{};
         std::size_t count = 0;
         while (count < n.size() && !cursor.at_line_end()) {
-            if (!cursor.number(n[count])) return wrong(line, fmt::format("'{}' is not a number", cursor.word()));
+            if (!cursor.number(n[count])) return wrong(line, fmt::format("The word '{}' is not a number", cursor.word()));
             ++count;
         }
-        if (count < 3) return wrong(line, fmt::format("position of {} numbers", count));
+        if (count < 3) return wrong(line, fmt::format("A position has only {} numbers", count));
         positions_.emplace_back(n[0], n[1], n[2]);
         // v x y z [w] [r g b]: six or seven numbers end with a colour.
         if (count >= 6) {
@@ -121,7 +121,7 @@ private:
     Result<void> vector(TextCursor& cursor, std::uint64_t line, std::vector<vec3>& to) const {
         vec3 v(0);
         for (int i = 0; i < 3; ++i) {
-            if (!cursor.number(v[i])) return wrong(line, "normal without three numbers");
+            if (!cursor.number(v[i])) return wrong(line, "A normal has fewer than three numbers");
         }
         to.push_back(v);
         return {};
@@ -129,7 +129,7 @@ private:
 
     Result<void> coordinate(TextCursor& cursor, std::uint64_t line) {
         vec2 uv(0);
-        if (!cursor.number(uv.x)) return wrong(line, "texture coordinate without a number");
+        if (!cursor.number(uv.x)) return wrong(line, "A texture coordinate has no number");
         (void)cursor.number(uv.y);
         uvs_.emplace_back(uv.x, 1.0F - uv.y);  // OBJ counts from the picture's lower edge
         return {};
@@ -166,7 +166,7 @@ private:
                 lost_.note(line);
                 return {};
             }
-            if (!cursor.at_word_end()) return wrong(line, "a face's corner is none of v, v/vt, v//vn, v/vt/vn");
+            if (!cursor.at_word_end()) return wrong(line, "A corner of a face is none of v, v/vt, v//vn, v/vt/vn");
             polygon_.push_back(c);
         }
         if (polygon_.size() < 3) {
@@ -296,14 +296,14 @@ private:
         const auto say = [&](const Skipped& skipped, const char* what) {
             if (skipped.count > 0) scene_.warnings.push_back(text(skipped, what));
         };
-        say(bad_faces_, "faces dropped: index out of range, or fewer than three corners");
+        say(bad_faces_, "faces are dropped: index out of range, or fewer than three corners");
         // Loose edges are useless, not broken.
-        if (lost_.count > 0) scene_.damage.push_back({file_, text(lost_, "faces dropped: index out of range")});
+        if (lost_.count > 0) scene_.damage.push_back({file_, text(lost_, "faces are dropped: index out of range")});
         if (bad_corners_.count > 0)
-            scene_.damaged(text(bad_corners_, "faces name a texture coordinate or normal that is not there"));
-        say(crossing_, "polygons that cross themselves: triangles may overlap");
-        say(points_and_lines_, "points or lines dropped");
-        say(unknown_, "statements not understood");
+            scene_.damaged(text(bad_corners_, "faces name a texture coordinate or normal that does not exist"));
+        say(crossing_, "polygons cross themselves, so triangles may overlap");
+        say(points_and_lines_, "points or lines are dropped");
+        say(unknown_, "statements are not understood");
     }
 
     const std::string& file_;

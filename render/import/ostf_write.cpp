@@ -143,7 +143,7 @@ private:
                 vertex(p, p.indices[i + k], world, normals);
             }
             if (text_.size() < flush_bytes) continue;
-            if (progress_.stopped()) return Error{file_, "writing stopped", ""};
+            if (progress_.stopped()) return Error{file_, "The writing was stopped", "", ErrorKind::stopped};
             if (auto done = out_.write(text_); !done) return done;
             text_.clear();
         }

@@ -1,4 +1,4 @@
-// Simple polygons to triangles: a fan where convex, ear clipping with exact orientation tests where not (DESIGN 8).
+// Triangulates simple polygons: a fan if convex, else ear clipping with exact orientation tests.
 #include "render/import/polygon.hpp"
 
 #include <array>

@@ -1,5 +1,5 @@
-// Calibration: measures cells in interleaved order, then whole frames, and fits how items add up. Source: Maciel 3.3.1 (the
-// measured table), DESIGN 5 (sums instead of the larger).
+// Calibration: measures cells in interleaved order, then whole frames, and fits how items add up. Source: Maciel 1994, 3.3.1, for
+// the measured table; here sums replace the larger of two costs.
 #include "render/measure/calibrate.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr double slice_target_us = 1000;  // the engine's
 
 double now_s() { return 1e-9 * static_cast<double>(rt::monotonic_ns()); }
 
-const Error stopped{"calibration", "was stopped", "run it again: nothing was written"};
+const Error stopped{"calibration", "The calibration was stopped; nothing was written", "Run it again", ErrorKind::stopped};
 
 /// A random order of n things.
 std::vector<std::size_t> shuffled(std::size_t n, Random& random) {
@@ -195,7 +195,7 @@ Result<void> Run::frames(Calibration& out) {
 
 Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& progress) {
     if (options.device.kind == gl::BackendKind::null) {
-        return Error{"calibration", "the null backend draws nothing", "use one of: " + gl::drawing_backends()};
+        return Error{"calibration", "The null backend draws nothing", "Use one of: " + gl::drawing_backends(), ErrorKind::misuse};
     }
     const double start_s = now_s();
     progress.say("opening", 0);
@@ -213,7 +213,8 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     if (auto done = run.cells(out); !done) return done.error();
     if (auto done = run.frames(out); !done) return done.error();
     if ((*device)->lost())
-        return Error{"calibration", "the device was lost: its times are none", "restart the driver, and try again"};
+        return Error{"calibration", "The device was lost, so its times mean nothing", "Restart the driver, and try again",
+                     ErrorKind::no_device};
     out.seconds = now_s() - start_s;
     progress.say("done", 1);
     return out;

@@ -20,7 +20,7 @@ constexpr std::string_view hash_key = "hash = \"";
 constexpr std::uint32_t most_steps = 32;
 constexpr int format_version = 1;
 constexpr int estimate = 2;  // what is counted: 1 by boxes and whole representations, at a median; 2 as model::ItemCosts does
-const char* const remedy = "run `surefoot calibrate` on this machine";
+const char* const remedy = "Run `surefoot calibrate` on this machine";
 
 std::string hash_text(std::string_view body) {
     return fmt::format("{:016x}", hash_bytes(std::as_bytes(std::span<const char>(body))));
@@ -93,7 +93,9 @@ void needed_numbers(TableReader& table, std::string_view key, model::CostGrid& g
 
 Result<model::CostModel> costs_of(const toml::table& table, const std::string& file) {
     model::CostModel costs;
-    const auto refuse = [&](const std::string& key) { return Error{file, "'" + key + "' is missing or out of range", remedy}; };
+    const auto refuse = [&](const std::string& key) {
+        return Error{file, "The key '" + key + "' is missing or out of range", remedy, ErrorKind::damaged};
+    };
     TableReader top(table, file, {});
     if (needed_count(top, "version", 1000) != format_version) return refuse("version");
     costs.machine = table["machine"].value_or(std::string());
@@ -144,11 +146,12 @@ Result<model::CostModel> read_costs(const std::string& file, const std::string& 
     auto text = read_text(file, 1U << 24U);
     if (!text) return text.error();
     const std::size_t line = text->find('\n');
-    if (!text->starts_with(hash_key) || line == std::string::npos) return Error{file, "is not a cost table", remedy};
+    if (!text->starts_with(hash_key) || line == std::string::npos)
+        return Error{file, "The file is not a cost table", remedy, ErrorKind::damaged};
     const std::string_view body = std::string_view(*text).substr(line + 1);
     const std::string_view first = std::string_view(*text).substr(0, line);
     if (first != fmt::format("{}{}\"", hash_key, hash_text(body))) {
-        return Error{file, "was changed since it was measured: its checksum does not fit", remedy};
+        return Error{file, "The file was changed since it was measured: its checksum does not match", remedy, ErrorKind::damaged};
     }
     model::CostModel costs;
     try {
@@ -156,10 +159,11 @@ Result<model::CostModel> read_costs(const std::string& file, const std::string& 
         if (!read) return read.error();
         costs = std::move(*read);
     } catch (const toml::parse_error& error) {
-        return Error{file, fmt::format("is not TOML: {}", error.description()), remedy};
+        return Error{file, fmt::format("The file is not valid TOML: {}", error.description()), remedy, ErrorKind::damaged};
     }
     if (!machine.empty() && costs.machine != machine) {
-        return Error{file, fmt::format("was measured on another machine: '{}', this is '{}'", costs.machine, machine), remedy};
+        return Error{file, fmt::format("The file was measured on another machine: '{}', this is '{}'", costs.machine, machine),
+                     remedy, ErrorKind::misuse};
     }
     return costs;
 }

@@ -1,6 +1,6 @@
-// Whether a flat triangle lies wholly within some distance of a surface: what surface triangles cover of it, subtracted piece
-// by piece in its plane. Where many small triangles lie along a large one, no single one of them is near all of it; together
-// they are. Exact but for a stated margin.
+// Triangle coverage: tests whether a triangle lies wholly within some distance of a surface. Surface triangles are projected into
+// its plane and subtracted from it, one by one. Needed where many small triangles lie along a large one: only together do they
+// cover it. Exact, but for a stated margin.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@ namespace surefoot::measure {
 
 class Cover {
 public:
-    /// The triangle to be covered. margin: pieces narrower than this count as covered; callers add it to their bound.
+    /// The triangle to be covered. margin: narrower pieces count as covered, so callers must add it to their bound.
     Cover(const vec3& a, const vec3& b, const vec3& c, double margin);
-    /// Takes away what lies under or over the triangle (along this one's normal) within `within` of it.
-    /// False: too many pieces are left to go on; nothing is lost, but ask again with a smaller triangle.
+    /// Subtracts the part that lies along this triangle's normal within distance `within` of the triangle a, b, c.
+    /// False: too many pieces are left. The state stays valid; try again with a smaller triangle.
     bool subtract(const vec3& a, const vec3& b, const vec3& c, double within);
     [[nodiscard]] bool done() const { return left_.empty(); }
-    /// Largest distance along the normal at which something was covered.
+    /// Largest distance along the normal of any covered part.
     [[nodiscard]] double reach() const { return reach_; }
-    /// The middle of one of the pieces left; not done().
+    /// The centre of one remaining piece. Requires !done().
     [[nodiscard]] vec3 uncovered() const;
 
 private:
@@ -31,7 +31,7 @@ private:
         dvec2 low{0}, high{0};  ///< of its points
         void measure();
     };
-    /// Splits `inside` at the line; what is to its right is added to `outside`.
+    /// Splits `inside` at the line. The part to the right of the line is added to `outside`.
     void split(Polygon& inside, const dvec2& from, const dvec2& to, std::vector<Polygon>& outside) const;
 
     dvec3 origin_, u_, v_, normal_;

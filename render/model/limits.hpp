@@ -1,4 +1,4 @@
-// What a model can count: its records, and the draw commands made from them, name each other by 32-bit numbers.
+// The size limits of a model: records and draw commands refer to each other by 32-bit numbers.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ constexpr Counts most_counts{std::numeric_limits<std::int32_t>::max(), none, non
 
 Counts counts_of(const Model& model);
 
-/// Error "out of limits" at `place`, with the first that is too many.
+/// Error "out of limits" at `place`, for the first count that is too large.
 Result<void> check_limits(const Counts& counts, const std::string& place, const Counts& most = most_counts);
 
 }  // namespace surefoot::model

@@ -1,5 +1,5 @@
-// How many pixels a representation rasterises, seen from a pose. Nearby, where it matters on which side of its box a wall stands,
-// by where the surface lies: thinned, and from within or close by triangle for triangle.
+// Estimates the rasterised pixels of a representation seen from a pose. Far away by its box; nearby by samples of the surface,
+// since it matters on which side of its box a wall stands; very near by every triangle.
 #pragma once
 
 #include <cstdint>
@@ -11,31 +11,30 @@
 
 namespace surefoot::model {
 
-/// Of every representation at most 128 of its largest triangles as they are, and at most 128 samples that stand for all the
-/// others, each for the same area; once for representations that share their parts. Every call is given the model that it was
-/// made of.
+/// Keeps at most 128 of the largest triangles of every representation, and at most 128 samples of equal area for the rest.
+/// Representations with the same parts share them. Every call must pass the model that this was made of.
 class Surfaces {
 public:
-    static constexpr std::uint32_t most_parts = 64;  ///< that part_pixels() tells apart
+    static constexpr std::uint32_t most_parts = 64;  ///< limit of part_pixels()
 
     Surfaces() = default;
-    /// Allocates: at most 128 triangles of 40 bytes and 128 samples of 28 for each different mesh (8.5 KiB). Passes twice over
-    /// the triangles, 50 to 60 ms a million.
+    /// Allocates at most 128 triangles of 40 bytes and 128 samples of 28 bytes for each different mesh (8.5 KiB). Passes twice
+    /// over the triangles: 50 to 60 ms a million.
     explicit Surfaces(const Model& model);
 
-    /// Of the representation `r` of a node with box `node_box`. The sum of part_pixels() where these are known; else
-    /// rasterised_pixels(), and nearer than three half diagonals of the box two thirds by the surface: the box's third keeps
-    /// what samples enter and leave from showing from frame to frame, and costs some of what the surface gains on random poses
-    /// (figures: render/model/README.md). Nearby 1 to 4 us, with part_pixels() up to 25.
+    /// Pixels of the representation `r` of a node with box `node_box`. The sum of part_pixels() if available; else the box
+    /// estimate, if farther than 3 half diagonals of the box. Nearer: 2/3 surface_pixels() + 1/3 box estimate. The box term damps
+    /// noise from samples that enter or leave the view, and costs some accuracy on random poses (figures:
+    /// render/model/README.md). Nearby 1 to 4 us; with part_pixels() up to 25 us.
     [[nodiscard]] float pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const;
-    /// Of each of its parts, every triangle cut to the view: true where the eye is nearer than one and a half half diagonals and
-    /// all representations of the node have at most 1024 triangles in at most `most_parts` parts (so that one and the next are
-    /// counted alike). Else false, and of_part says nothing. Samples do not do there: of what is seen, most is next to the eye.
+    /// Pixels by part, every triangle clipped to the view. True if the eye is nearer than 1.5 half diagonals, and all
+    /// representations of the node have at most 1024 triangles in at most `most_parts` parts, so that all are estimated alike.
+    /// Else false, and of_part is undefined. Samples are too coarse there: most visible pixels lie next to the eye.
     /// 22 to 35 ns a triangle.
     bool part_pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale,
                      std::span<float> of_part) const;
-    /// By the surface alone: triangles cut to the view, and samples that lie in it; what faces away and is culled counts nothing.
-    /// Negative where that is not known: no triangles, or a placement that cannot be turned back.
+    /// Pixels from triangles clipped to the view and samples inside it; culled back faces do not count.
+    /// Negative if unknown: no triangles, or a placement without an inverse.
     [[nodiscard]] float surface_pixels(Index r, const dvec3& eye, const ViewScale& scale) const;
 
 private:
@@ -45,13 +44,13 @@ private:
     };
     struct Sample {
         vec3 at, area;  ///< m^2 along the normal
-        float back;     ///< what counts of it from behind: -1 all, 0 nothing
+        float back;     ///< its weight from behind: -1 all, 0 nothing
     };
     /// Of one run of parts, in their own coordinates.
     struct Surface {
         std::uint32_t first_triangle = 0, triangles = 0, first_sample = 0, samples = 0;
-        float whole_m2 = 0;   ///< larger triangles are kept as they are
-        float sample_m2 = 0;  ///< that one sample stands for
+        float whole_m2 = 0;   ///< larger triangles are kept whole
+        float sample_m2 = 0;  ///< represented by one sample
     };
     /// Of one representation.
     struct Placed {
@@ -60,10 +59,10 @@ private:
     struct Place {
         dvec3 origin{0.0};
         mat3 linear{1.0F}, inverse{1.0F};
-        float determinant = 0;  ///< 0: cannot be turned back, so the box decides
+        float determinant = 0;  ///< 0: no inverse, so the box decides
     };
     struct LocalView;
-    /// False where a placement cannot be turned back.
+    /// False if the placement has no inverse.
     bool look(Index r, const dvec3& eye, const ViewScale& scale, LocalView& view) const;
 
     /// Its counts and shares; `areas` is scratch.
@@ -77,7 +76,7 @@ private:
     std::vector<Surface> surfaces_;
     std::vector<Placed> placed_;  ///< [representation]
     std::vector<Place> places_;   ///< as the model's placements
-    std::vector<bool> each_;  ///< [representation] of a node whose representations all have few enough triangles to look at each
+    std::vector<bool> each_;      ///< [representation]: part_pixels() may test each triangle
 };
 
 }  // namespace surefoot::model

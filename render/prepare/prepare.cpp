@@ -223,7 +223,7 @@ void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& 
             used += children;
             block.push_back(at);
         }
-        CHECK(!block.empty() || at == end, "a block holds at least the children of one node");
+        CHECK(!block.empty() || at == end, "A block holds at least the children of one node");
         out.visits += used;
         const auto parents = static_cast<std::uint32_t>(block.size());
         for_chunks((parents + parents_a_chunk - 1) / parents_a_chunk, [&](std::uint32_t chunk) {
@@ -242,7 +242,7 @@ void Preparer::Impl::drop_false_positives(PreparedFrame& out) {
         visit.live = false;
         for (std::uint32_t k = 0; k < visit.child_count && !visit.live; ++k) visit.live = visits[visit.first_child + k].live;
     }
-    CHECK(visits.size() <= candidate_of.size(), "no more nodes are visited than there is room for");
+    CHECK(visits.size() <= candidate_of.size(), "No more nodes are visited than were reserved");
     Index candidate = 0;
     std::uint32_t choice = 0;
     for (std::size_t i = 0; i < visits.size(); ++i) {

@@ -61,7 +61,7 @@ void Workers::Observer::on_scheduler_entry(bool is_worker) {
     if (!is_worker || told_to == id_) return;
     told_to = id_;
     const int number = ++started_;
-    (void)CHECK_RARE(number <= most_, "an arena has no more workers than were asked for");
+    (void)CHECK_RARE(number <= most_, "An arena has no more workers than requested");
     if (hooks_.on_start) hooks_.on_start(number);
 }
 

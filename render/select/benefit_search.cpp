@@ -257,9 +257,9 @@ const Selector& make_two_stage() {
 
 }  // namespace
 
-const SelectorEntry best_first_entry{"best-first", "the greatest benefit of its own next, within the budget", GoesBy::budget,
+const SelectorEntry best_first_entry{"best-first", "the node of the greatest own benefit next, within the budget", GoesBy::budget,
                                      true, make_best_first};
-const SelectorEntry two_stage_entry{usual_selector, "the greatest benefit below it next, within the budget", GoesBy::budget, true,
-                                    make_two_stage};
+const SelectorEntry two_stage_entry{usual_selector, "the node of the greatest benefit in its subtree next, within the budget",
+                                    GoesBy::budget, true, make_two_stage};
 
 }  // namespace surefoot::select

@@ -8,7 +8,7 @@
 
 namespace surefoot::select {
 
-/// Sums over items in double: upgrades add and take away thousands of times a frame.
+/// Sums over items. In double, because thousands of upgrades a frame add and subtract.
 struct Sum {
     double submit_us = 0, raster_us = 0;
     void add(const model::ItemCost& cost) {
@@ -21,7 +21,7 @@ struct Sum {
     }
 };
 
-/// Whole-frame prediction: FrameCombine over the sums, what ending the slices costs, times correction and upper quantile.
+/// Whole-frame prediction: (FrameCombine of the sums + cost of ending slices) x correction x headroom.
 class Budget {
 public:
     explicit Budget(const SelectInput& input) {
@@ -41,8 +41,7 @@ public:
                static_cast<double>(combine_.max_weight) * std::max(sum.submit_us, sum.raster_us);
     }
     [[nodiscard]] double predicted_us(const Sum& sum) const { return (fixed_us_ + items_us(sum) * per_item_us_) * factor_; }
-    /// Within `share` of the budget. The margin of a millionth covers rounding: the cut's own sum, taken afresh and in float,
-    /// is still within it.
+    /// Within `share` of the budget. The margin of 1e-6 covers rounding: the final sum of the cut, computed in float, fits too.
     [[nodiscard]] bool fits(const Sum& sum, double share = 1.0) const { return fits_us(predicted_us(sum), share); }
     [[nodiscard]] bool fits_us(double predicted_us, double share = 1.0) const {
         return predicted_us * (1.0 + 1e-6) <= budget_us_ * share;

@@ -167,22 +167,22 @@ std::string check_legal(const prepare::PreparedFrame& prepared, const Cut& cut) 
     const auto& candidates = prepared.candidates;
     std::vector<std::uint8_t> covered(candidates.size(), 0);
     for (const CutItem& item : cut.items) {
-        if (item.candidate >= candidates.size()) return "an item's candidate does not exist";
+        if (item.candidate >= candidates.size()) return "The candidate of an item does not exist";
         const prepare::Candidate& c = candidates[item.candidate];
-        if (item.node != c.node) return "item of candidate " + std::to_string(item.candidate) + " names another node";
+        if (item.node != c.node) return "The item of candidate " + std::to_string(item.candidate) + " names another node";
         if (item.choice < c.first_choice || item.choice - c.first_choice >= c.choice_count ||
             prepared.choices[item.choice].rep != item.rep) {
-            return "candidate " + std::to_string(item.candidate) + " is drawn by a form that is none of its choices";
+            return "Candidate " + std::to_string(item.candidate) + " is drawn by a form that is none of its choices";
         }
-        if (covered[item.candidate] != 0) return "candidate " + std::to_string(item.candidate) + " is drawn twice";
+        if (covered[item.candidate] != 0) return "Candidate " + std::to_string(item.candidate) + " is drawn twice";
         covered[item.candidate] = 1;
     }
     for (std::size_t i = 0; i < candidates.size(); ++i) {  // parents before children: one pass hands the cover down
         const prepare::Candidate& c = candidates[i];
         const bool above = c.parent != none && covered[c.parent] != 0;
-        if (above && covered[i] != 0) return "candidate " + std::to_string(i) + " is drawn below a drawn ancestor";
+        if (above && covered[i] != 0) return "Candidate " + std::to_string(i) + " is drawn below a drawn ancestor";
         if (above) covered[i] = 1;
-        if (c.child_count == 0 && covered[i] == 0) return "visible leaf " + std::to_string(i) + " is not covered";
+        if (c.child_count == 0 && covered[i] == 0) return "The visible leaf " + std::to_string(i) + " is not covered";
     }
     return {};
 }

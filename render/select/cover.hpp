@@ -1,4 +1,4 @@
-// A cut in the making: which choice every candidate has, from the cheapest cut to the finished list.
+// Builds a cut: the choice of every candidate, from the cheapest cut to the finished list of items.
 #pragma once
 
 #include <span>
@@ -8,22 +8,22 @@
 
 namespace surefoot::select {
 
-/// chosen[candidate]: offset of its choice, SelectState::opened, or none (below an item). Lives in the state's scratch.
+/// chosen[candidate]: offset of its choice, SelectState::opened, or none (below an item). Uses the state's scratch memory.
 class Cover {
 public:
     Cover(const SelectInput& input, SelectState& state);
 
-    /// Starts from the cheapest legal cut (PreparedFrame's floor). Returns its items, ascending, in scratch().
+    /// Starts from the floor, the cheapest legal cut. Returns its items, ascending, in scratch().
     std::span<std::uint32_t> take_floor();
-    /// From the floor to full detail: every leaf's finest choice. Returns the number of steps that a search would have taken.
+    /// From the floor to full detail, every leaf at its finest choice. Returns how many steps a search would have taken.
     std::uint32_t take_finest();
-    /// Full detail costs less than the floor: the floor is made bottom-up, each family by itself, and the larger of two sums
-    /// does not add up so. To be asked after take_floor().
+    /// Whether full detail costs less than the floor. Possible, since the floor is made bottom-up for each family, and the
+    /// maximum of two sums is not additive. Call it after take_floor().
     [[nodiscard]] bool finest_is_cheapest(const Budget& budget) const;
     /// Starts with the root alone at choice `offset`.
     void take_root(std::uint32_t offset);
 
-    /// Of the items that take_floor() found.
+    /// Sum over the items of take_floor().
     [[nodiscard]] const Sum& floor_sum() const { return floor_; }
 
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(chosen_.size()); }
@@ -40,7 +40,7 @@ public:
     void open(Index c) { chosen_[c] = SelectState::opened; }
     [[nodiscard]] std::span<std::uint32_t> scratch() { return scratch_; }
 
-    /// Writes the list, its sums and its hash, and remembers it for the next frame. refinements: for the report.
+    /// Writes the items, their sums and hash, and stores them for the next frame's hysteresis. refinements: for the report.
     void finish(const Budget& budget, std::uint32_t refinements, Cut& cut);
 
 private:
@@ -54,10 +54,10 @@ private:
     Sum floor_;
 };
 
-/// Empties a cut and keeps its room.
+/// Empties a cut and keeps its capacity.
 void clear(Cut& cut);
 
-/// Whether the state is large enough for the prepared frame; every selector gives an empty cut otherwise.
+/// Whether the state is large enough for the prepared frame. If not, every selector returns an empty cut.
 bool has_room(const SelectInput& input, const SelectState& state, const Cut& cut);
 
 }  // namespace surefoot::select

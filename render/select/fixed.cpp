@@ -70,9 +70,9 @@ const Selector& make_by_distance() {
 
 }  // namespace
 
-const SelectorEntry flat_entry{full_detail_selector, "all of it in full detail, whatever that costs", GoesBy::nothing, false,
+const SelectorEntry flat_entry{full_detail_selector, "everything in full detail, whatever the cost", GoesBy::nothing, false,
                                make_flat};
-const SelectorEntry by_distance_entry{"distance", "what is far is coarse, by a fixed angle; no budget", GoesBy::threshold, true,
-                                      make_by_distance};
+const SelectorEntry by_distance_entry{"distance", "level of detail by distance, at a fixed angle; no budget", GoesBy::threshold,
+                                      true, make_by_distance};
 
 }  // namespace surefoot::select

@@ -10,9 +10,9 @@
 
 namespace surefoot::select {
 
-/// Greatest key first; equal (quantised) keys in order of arrival. A key above the last one popped counts as equal to it, which
-/// is what a search down a tree of monotone benefits needs: the bucket pointer only moves down. 128 buckets an octave: keys
-/// closer than 0.8 % are equal; 32 octaves below 2, what is smaller shares the last bucket.
+/// Largest key first; equal (quantised) keys in order of arrival. A key above the last popped one counts as equal to it. So the
+/// bucket pointer only moves down, as a search down a tree of monotone benefits allows.
+/// 128 buckets an octave: keys closer than 0.8 % are equal. 32 octaves below 2; smaller keys share the last bucket.
 class BucketQueue {
 public:
     static constexpr std::uint32_t buckets = 4096;

@@ -106,7 +106,7 @@ const Selector& make_depth_first() {
 
 }  // namespace
 
-const SelectorEntry depth_first_entry{"depth-first", "one thing all the way down before the next, within the budget",
+const SelectorEntry depth_first_entry{"depth-first", "one object to full detail before the next, within the budget",
                                       GoesBy::budget, true, make_depth_first};
 
 }  // namespace surefoot::select

@@ -1,5 +1,4 @@
-// Online correction of predicted costs: one factor, bounded, deaf to outliers, never jumping; and how far frames lie above it.
-// A plain struct.
+// Online correction of predicted costs: one bounded factor, robust against outliers, that changes slowly; and the headroom on it.
 #pragma once
 
 #include <array>
@@ -7,10 +6,10 @@
 
 namespace surefoot::rt {
 
-/// factor = median of the last 15 ratios actual / predicted, within [0.5, 2], moving by at most 6 % a frame: a step of 2 in true
-/// cost is met within 8 + 12 frames, and up to 7 outliers in 15 frames change nothing.
-/// upper = 90 % quantile of the last 64 actual / (predicted x the factor then): what a frame may be planned to cost. A table's
-/// own upper factor is of any view of any scene; a walk's next frame is much like its last, and half of that was budget unspent.
+/// factor: median of the last 15 ratios actual / predicted, within [0.5, 2], changing by at most 6 % a frame. Follows a step of 2
+/// within 8 + 12 frames. Up to 7 outliers in 15 frames change nothing.
+/// upper, the headroom: 90 % quantile of the last 64 ratios actual / (predicted x factor). The headroom of a cost table covers
+/// any view of any scene. The next frame of a walk resembles the last, so the table's headroom would leave much budget unspent.
 class CostController {
 public:
     static constexpr std::size_t window = 15, upper_window = 64;
@@ -20,8 +19,8 @@ public:
     /// predicted_us: uncorrected (factor 1). Pairs that are not positive and finite are ignored.
     void update(double predicted_us, double actual_us);
     [[nodiscard]] double factor() const { return factor_; }
-    /// At most the table's, which it is until 58 frames have passed. It falls as fast as it rises: falling by 1 % a frame, it
-    /// stood above the quantile, and frames were no steadier for it.
+    /// The headroom; at most the table's, which it equals for the first 58 frames. Falls as fast as it rises: a slow fall of 1 %
+    /// a frame used more time and made frames no steadier.
     [[nodiscard]] double upper(double of_table) const;
 
 private:

@@ -1,4 +1,4 @@
-// The service's flight recorder: the last minute of records, handed to a writer when a burst of misses happens.
+// Keeps the last minute of frame records, and hands them to a writer after a burst of misses.
 #pragma once
 
 #include <atomic>
@@ -11,31 +11,31 @@
 namespace surefoot::rt {
 
 struct BlackBoxOptions {
-    double keep_s = 60;              ///< how much is kept
+    double keep_s = 60;              ///< length of the kept history
     std::uint32_t burst_misses = 3;  ///< late frames and skipped slots within burst_s that make a burst
     double burst_s = 1;
-    double after_s = 1;     ///< recorded on after the burst, so that one sees how it ended
-    double between_s = 60;  ///< least time between two hand-overs; a burst before that is suppressed
+    double after_s = 1;     ///< recording continues so long after the burst
+    double between_s = 60;  ///< minimum time between two hand-overs; earlier bursts are suppressed
 };
 
-/// Fed by the monitor thread, which never waits: a burst that comes while the writer still holds the last one, or too soon after
-/// it, is suppressed and counted. One writer thread. Times are those of the records.
+/// Fed by the monitor thread, which never waits. A burst is suppressed and counted if the writer still holds the last one, or if
+/// it comes too soon after it. One writer thread. All times are those of the records.
 class BlackBox {
 public:
     explicit BlackBox(const BlackBoxOptions& options);
 
-    /// A walk begins, before its first record; what was kept of an earlier one is forgotten.
+    /// Starts a walk; call it before the first record. Discards the records of an earlier walk.
     void begin(std::int64_t period_ns);
     /// Monitor thread, in order.
     void add(const FrameRecord& record);
-    /// Monitor thread, or after it has ended: a burst that is still being recorded is handed over as it stands.
+    /// Monitor thread, or after it has ended: hands over a burst that is still being recorded.
     void finish();
 
-    /// What the writer gets.
+    /// One burst, for the writer.
     struct Incident {
         std::uint64_t number = 0;       ///< of all bursts, from 1
         std::uint64_t first_frame = 0;  ///< whose miss or skipped slots began the burst
-        std::uint64_t suppressed = 0;   ///< bursts so far that nobody wrote down
+        std::uint64_t suppressed = 0;   ///< bursts so far that were not handed over
         std::int64_t period_ns = 0;
         std::vector<FrameRecord> records;  ///< in order; at most keep_s
     };

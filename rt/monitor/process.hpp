@@ -1,4 +1,4 @@
-// What this process takes of its machine: memory, descriptors, threads, CPU time. Read from /proc by a thread that may wait.
+// Resource usage of this process: memory, descriptors, threads, CPU time. Read from /proc, by a thread that may wait.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct BusyThread {
     ThreadInfo info;
     std::int64_t cpu_ns = 0;
 };
-/// Of this process, by rising tid.
+/// Threads of this process, by ascending tid.
 std::vector<BusyThread> read_busy_threads();
 
 }  // namespace surefoot::rt

@@ -71,7 +71,7 @@ void Telemetry::add(const FrameRecord& record) {
     // The first slot of a walk may be any; after it, what is neither run nor skipped was lost on the way here.
     const std::uint64_t expected = next_slot_ + record.skipped_before;
     const std::uint64_t lost = any_ && record.slot > expected ? record.slot - expected : 0;
-    (void)CHECK_RARE(!any_ || record.slot >= expected, "records come in the order of their slots");
+    (void)CHECK_RARE(!any_ || record.slot >= expected, "Records come in the order of their slots");
     any_ = true;
     next_slot_ = record.slot + 1;
     figures_.lost_slots += lost;
@@ -108,7 +108,7 @@ void Telemetry::count(const FrameRecord& f) {
     ++s.frames;
     s.skipped_slots += f.skipped_before;
     if (f.missed) {
-        CHECK(static_cast<std::size_t>(f.cause) < s.misses.size(), "a miss has one of the causes");
+        CHECK(static_cast<std::size_t>(f.cause) < s.misses.size(), "Every miss has one of the known causes");
         ++s.misses[static_cast<std::size_t>(f.cause)];
     }
     s.own_misses += f.own_miss ? 1 : 0;

@@ -22,7 +22,7 @@ namespace surefoot::rt {
 
 namespace {
 
-constexpr const char* lock_remedy = "grant CAP_IPC_LOCK, or RLIMIT_MEMLOCK unlimited (LimitMEMLOCK=infinity in the unit)";
+constexpr const char* lock_remedy = "Grant CAP_IPC_LOCK, or RLIMIT_MEMLOCK unlimited (LimitMEMLOCK=infinity in the unit)";
 
 /// The number of kB behind `key` in /proc/self/status, in bytes; 0 when it is not there.
 std::uint64_t status_bytes(std::string_view key) {
@@ -44,13 +44,14 @@ Result<void> lock_all(std::uint64_t growth_bytes) {
     }
     const std::uint64_t mapped = status_bytes("VmSize:");
     if (limit.rlim_cur < mapped + growth_bytes && !lock_unlimited())
-        return Error{"memory",
-                     fmt::format("cannot be locked: the limit is {} MiB, {} MiB are wanted", limit.rlim_cur >> 20U,
+        return Error{"mlockall",
+                     fmt::format("Memory cannot be locked: the limit is {} MiB, {} MiB are wanted", limit.rlim_cur >> 20U,
                                  (mapped + growth_bytes) >> 20U),
-                     lock_remedy};
+                     lock_remedy, ErrorKind::no_real_time};
     if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
-        return Error{"memory", fmt::format("cannot be locked: {}", std::strerror(errno)),
-                     lock_remedy};  // NOLINT(concurrency-mt-unsafe)
+        return Error{"mlockall",
+                     fmt::format("Memory cannot be locked: {}", std::strerror(errno)),  // NOLINT(concurrency-mt-unsafe)
+                     lock_remedy, ErrorKind::no_real_time};
     return {};
 }
 

@@ -55,8 +55,9 @@ Result<void> guard_runaways(std::int64_t limit_us) {
     getrlimit(RLIMIT_RTTIME, &limit);
     limit.rlim_cur = std::min<rlim_t>(static_cast<rlim_t>(limit_us), limit.rlim_max);
     if (setrlimit(RLIMIT_RTTIME, &limit) == 0) return {};
-    return Error{"RLIMIT_RTTIME", std::string("cannot be set: ") + std::strerror(errno),  // NOLINT(concurrency-mt-unsafe)
-                 "a real-time thread that never sleeps would not be stopped"};
+    return Error{"runaway guard",
+                 std::string("RLIMIT_RTTIME cannot be set: ") + std::strerror(errno),  // NOLINT(concurrency-mt-unsafe)
+                 "Allow this limit: without it, a real-time thread that never sleeps is not stopped", ErrorKind::no_real_time};
 }
 
 std::optional<Runaway> runaway_seen() {

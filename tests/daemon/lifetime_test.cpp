@@ -39,8 +39,9 @@ TEST(Lifetime, WhatIsWrongInTheFileIsSaidWithLineAndKey) {
     daemon.write_config("widht = 640\nheight = 0\n");
     daemon.start();
     EXPECT_EQ(daemon.wait_exit(start_s), exit_config);
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: unknown key 'widht' (did you mean 'width'?)"), 1) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:6: height = 0 is not a whole number from 16 to 16384 (px)"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: The key 'widht' is unknown. Did you mean 'width'?"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:6: The value height = 0 is not a whole number from 16 to 16384 (px)"), 1)
+        << daemon.said();
     daemon.socket.take_all();
     EXPECT_EQ(daemon.socket.count("READY=1"), 0U);
 }
@@ -112,7 +113,7 @@ TEST_P(Degraded, WithStrictItDoesNotStart) {
 
 INSTANTIATE_TEST_SUITE_P(Privileges, Degraded,
                          testing::Values(Lacking{"nice", {.sys_nice = true}, "", "SCHED_FIFO is refused"},
-                                         Lacking{"lock", {.memory_lock = true}, "", "memory cannot be locked beyond 1 MiB"},
+                                         Lacking{"lock", {.memory_lock = true}, "", "Memory cannot be locked beyond 1 MiB"},
                                          Lacking{"core", {}, "frame_core = 1000\n", "Frame core 1000 does not exist"}),
                          [](const auto& lacking) { return std::string(lacking.param.name); });
 

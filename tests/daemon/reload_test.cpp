@@ -54,8 +54,8 @@ TEST(Reload, ABadOneIsRefusedOnceAndTheWalkGoesOn) {
     ::kill(daemon.pid, SIGHUP);
     ASSERT_TRUE(daemon.socket.wait_for("RELOADING=1", 5)) << daemon.said();
     ASSERT_TRUE(daemon.socket.wait_for("READY=1", 5)) << daemon.said();
-    EXPECT_TRUE(daemon.socket.all.back().has("unknown key 'widht'")) << "not in the status: " << daemon.socket.text();
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: unknown key 'widht'"), 1) << daemon.said();
+    EXPECT_TRUE(daemon.socket.all.back().has("The key 'widht' is unknown")) << "not in the status: " << daemon.socket.text();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: The key 'widht' is unknown"), 1) << daemon.said();
     EXPECT_EQ(daemon.thread("sf-frame"), frame_thread) << "the walk was interrupted";
     // A good one clears it.
     daemon.write_config();

@@ -164,12 +164,12 @@ TEST(Status, SaysTheMostImportantFirst) {
     f.skipped = 1;
     EXPECT_EQ(status_text(f), "walking lobby.walk (60 Hz, 1280x720, egl): 1000 frames, 2 missed, 1 slots skipped");
     f.lacks = {"SCHED_FIFO is refused", "no isolated core among 0-1"};
-    f.refused = "s.toml:3: unknown key 'x'";
+    f.refused = "s.toml:3: The key 'x' is unknown";
     f.uncalibrated = true;
     EXPECT_EQ(
         status_text(f),
         "walking lobby.walk (60 Hz, 1280x720, egl): 1000 frames, 2 missed, 1 slots skipped; the configuration was refused, the "
-        "last good one is in use: s.toml:3: unknown key 'x'; not fully real-time: SCHED_FIFO is refused, no isolated core "
+        "last good one is in use: s.toml:3: The key 'x' is unknown; not fully real-time: SCHED_FIFO is refused, no isolated core "
         "among 0-1; uncalibrated");
     f.stalled = true;
     EXPECT_TRUE(status_text(f).starts_with("NO FRAMES COME; "));

@@ -118,9 +118,9 @@ TEST(Panel, ConfigurationsAreCheckedWithTheLinesName) {
         return checked.ok() ? std::string() : checked.error().text();
     };
     EXPECT_NE(problem([](auto& l) { l.erase(l.begin() + 4); }).find("'knob'"), std::string::npos);
-    EXPECT_NE(problem([](auto& l) { l[4].request.chip = "gpiochip1"; }).find("pair"), std::string::npos) << "one request";
+    EXPECT_NE(problem([](auto& l) { l[4].request.chip = "gpiochip1"; }).find("partner"), std::string::npos) << "one request";
     EXPECT_NE(problem([](auto& l) { l[2].name = "stop"; }).find("twice"), std::string::npos);
-    EXPECT_NE(problem([](auto& l) { l[2].request.line = "stop"; }).find("another"), std::string::npos);
+    EXPECT_NE(problem([](auto& l) { l[2].request.line = "stop"; }).find("Another entry uses the same line"), std::string::npos);
     EXPECT_NE(problem([](auto& l) { l[2].name = ""; }), "");
 }
 

@@ -356,7 +356,7 @@ TEST(Mapper, WhatCannotBeBoundIsNamedWithTheNearest) {
     auto bad = compile(m, test::stick_controls());
     ASSERT_FALSE(bad.ok());
     EXPECT_NE(bad.error().text().find("'yy'"), std::string::npos);
-    EXPECT_NE(bad.error().text().find("did you mean 'y'"), std::string::npos) << bad.error().text();
+    EXPECT_NE(bad.error().text().find("Did you mean 'y'"), std::string::npos) << bad.error().text();
     EXPECT_EQ(compile_what_fits(m, test::stick_controls()).notes.size(), 1U);
     m = {};
     AxisMapping a;

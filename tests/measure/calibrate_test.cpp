@@ -239,13 +239,13 @@ TEST_F(CostFile, with_a_wrong_key_is_refused_by_its_name) {
         EXPECT_EQ(read.error().place, file_);
         return read.error().what;
     };
-    EXPECT_EQ(problem("slice_us", ""), "'slice_us' is missing or out of range");
-    EXPECT_EQ(problem("upper_factor", "upper_factor = 101"), "'upper_factor' is missing or out of range");
-    EXPECT_EQ(problem("max_weight =", "max_weight = \"1\""), "'combine.max_weight' is missing or out of range");
-    EXPECT_EQ(problem("pixel_steps", "pixel_steps = 0"), "'class.triangle_steps' is missing or out of range");
-    EXPECT_EQ(problem("effects", "effects = -1"), "'class.effects' is missing or out of range");
-    EXPECT_EQ(problem("submit_us = [", "submit_us = [ -1,"), "'class.submit_us' is missing or out of range");
-    EXPECT_EQ(problem("version", "version = 9"), "'version' is missing or out of range");
+    EXPECT_EQ(problem("slice_us", ""), "The key 'slice_us' is missing or out of range");
+    EXPECT_EQ(problem("upper_factor", "upper_factor = 101"), "The key 'upper_factor' is missing or out of range");
+    EXPECT_EQ(problem("max_weight =", "max_weight = \"1\""), "The key 'combine.max_weight' is missing or out of range");
+    EXPECT_EQ(problem("pixel_steps", "pixel_steps = 0"), "The key 'class.triangle_steps' is missing or out of range");
+    EXPECT_EQ(problem("effects", "effects = -1"), "The key 'class.effects' is missing or out of range");
+    EXPECT_EQ(problem("submit_us = [", "submit_us = [ -1,"), "The key 'class.submit_us' is missing or out of range");
+    EXPECT_EQ(problem("version", "version = 9"), "The key 'version' is missing or out of range");
     EXPECT_EQ(problem("version", "version = 1"), "nothing");
 }
 

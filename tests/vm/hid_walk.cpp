@@ -72,7 +72,7 @@ public:
             std::array<char, 4096> line{};
             while (pipe_ != nullptr && std::fgets(line.data(), static_cast<int>(line.size()), pipe_) != nullptr) {
                 said_ += line.data();
-                if (std::string_view(line.data()).find("steers, by the mapping") != std::string_view::npos) ++steers_;
+                if (std::string_view(line.data()).find("The device steers by the mapping") != std::string_view::npos) ++steers_;
             }
             ended_ = true;
         });

@@ -206,14 +206,14 @@ TEST(SteeredWalk, RefusalsNameFilePlaceAndRemedy) {
     };
     const std::string good = input::test::walk_and_turn().text();
     const std::string head = good.substr(0, good.find("\nE:") + 1);
-    says("", "bad.hid: has no R: line");
-    says(head, "bad.hid: holds no reports");
+    says("", "bad.hid: The recording has no R: line");
+    says(head, "bad.hid: The recording holds no reports");
     says(good.substr(0, good.size() - 8), "bad.hid: line ");
     says(good.substr(0, good.size() - 8), "cut off");
     says("hello\n", "bad.hid: line 1");
     says("R: 3 05 01 c0\nE: 0.0 1 00\n", "bad.hid: R: byte 2");
     says(head + "E: 0.0 2 00 00\n", "5");  // bytes it declares
-    says(head + "E: 0.0 2 00 00\n", "none of the 1 reports fits");
+    says(head + "E: 0.0 2 00 00\n", "None of the 1 reports fits");
     says(head + "E: 0.0 5 80 80 80 80 00\nE: 99999999.0 5 80 80 80 80 00\n", "span");
     says(*read_text(std::string(SUREFOOT_SOURCE_DIR) + "/tests/input/devices/boot-keyboard.hid"), "class reject");
     says(good, "bad.toml:2", "[motion]\nwalk_speed = 9\n");

@@ -149,7 +149,7 @@ double ride() {
     const Recording device = test::GamepadSession().recording();
     auto plug = bed.plug(device, {.serial = "0001", .wire = Wire::terminal});
     Tool tool(Place::get().walk("600"), false, "walk");
-    EXPECT_TRUE(tool.until("steers, by the mapping", 30'000)) << tool.err();
+    EXPECT_TRUE(tool.until("The device steers by the mapping", 30'000)) << tool.err();
     usleep(400'000);
     hold(plug, 0, 200);
     const double pushed = seconds_now();
@@ -210,9 +210,9 @@ TEST(WalkTool, WithoutADeviceItRestsAndSaysSoOnce) {
     Tool tool(Place::get().walk("2"), false, "walk");
     ASSERT_EQ(tool.wait(30'000), 0) << tool.err();
     const std::string said = tool.err();
-    const auto first = said.find("no device is there that steers");
+    const auto first = said.find("No connected device steers");
     ASSERT_NE(first, std::string::npos) << said;
-    EXPECT_EQ(said.find("no device is there that steers", first + 1), std::string::npos) << said;
+    EXPECT_EQ(said.find("No connected device steers", first + 1), std::string::npos) << said;
     EXPECT_NE(said.find("[[device]]"), std::string::npos) << "why the mouse does not steer: " << said;
     const auto rows = ledger(Place::get().dir + "/ledger.csv");
     ASSERT_EQ(rows.size(), 60U);
@@ -242,7 +242,7 @@ action = "stop_reset"
         std::vector<std::string> words = {"--steering", dir + "/stop.toml"};
         words.insert(words.end(), more.begin(), more.end());
         Tool tool(Place::get().walk("600", words), false, "walk");
-        EXPECT_TRUE(tool.until("steers, by the mapping", 30'000)) << tool.err();
+        EXPECT_TRUE(tool.until("The device steers by the mapping", 30'000)) << tool.err();
         usleep(400'000);
         hands(tool, plug);
         usleep(200'000);
