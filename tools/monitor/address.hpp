@@ -38,7 +38,8 @@ struct SocketAddress {
 };
 SocketAddress socket_address(const Address& address);
 
-/// The body of GET `path`; never waits longer than it was told to. Errors name the place and the remedy: nobody there, no permission, no answer in time, another program.
+/// The body of GET `path`; never waits longer than it was told to. Errors name the place and the remedy: nobody there, no
+/// permission, no answer in time, another program.
 Result<std::string> fetch(const Address& address, std::string_view path, std::int64_t timeout_ms = 3000);
 
 }  // namespace surefoot::monitor
