@@ -145,7 +145,7 @@ void for_triangles(const Model& model, const Representation& rep, Use use) {
     for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) for_triangles(model, p, use);
 }
 
-/// In RepKind's order.
+/// The forms in which a node may be drawn, by name, in RepKind's order.
 inline constexpr std::array forms = {
     Named{"mesh", "triangles of its own, coarse to fine"},
     Named{"colour_box", "its box in a mean colour a side"},

@@ -61,7 +61,7 @@ public:
     /// An error of this table: `what` is wrong with the key (with the table where the key is not there).
     void refuse(std::string_view key, std::string what, std::string remedy);
     [[nodiscard]] Result<void> finish();
-    /// Of the first error so far: "path.key"; empty where there is none.
+    /// The first key that was refused: "path.key"; empty where none was.
     [[nodiscard]] const std::string& wrong_key() const { return wrong_key_; }
 
 private:
@@ -232,7 +232,10 @@ inline void TableReader::table(std::string_view key, const std::function<Result<
     if (at == nullptr) return;
     if (!at->is_table()) return wrong(key, *at, "a table");
     TableReader inner(*at->as_table(), file_, full(key));
-    if (const auto done = read(inner); !done) error_ = done.error();
+    if (const auto done = read(inner); !done) {
+        wrong_key_ = inner.wrong_key_;
+        error_ = done.error();
+    }
 }
 
 inline void TableReader::tables(std::string_view key, const std::function<Result<void>(TableReader&)>& read) {
@@ -244,6 +247,7 @@ inline void TableReader::tables(std::string_view key, const std::function<Result
         if (!element.is_table()) return wrong(key, element, "a table", fmt::format("write [[{}]]", full(key)));
         TableReader inner(*element.as_table(), file_, full(key));
         if (const auto done = read(inner); !done) {
+            wrong_key_ = inner.wrong_key_;
             error_ = done.error();
             return;
         }

@@ -72,8 +72,9 @@ struct FrameRecord {
 
 inline std::string_view cause_of(const FrameRecord& f) { return cause_names[static_cast<std::size_t>(f.cause)]; }
 
-/// CPU time that the frame took of its grid: the frame thread's, and the rasterisers' as spread over their threads. Where a
-/// clock is not known (a GPU, the virtual clock), the wall time of that part less what was stolen.
+/// What a frame took of its grid, for the live figures and for the summary alike. CPU time: the frame thread's, and the
+/// rasterisers' as spread over their threads. Where a clock is not known (a GPU, the virtual clock), the wall time of that part
+/// less what was stolen.
 inline double busy_ns(const FrameRecord& f, std::uint32_t rasterisers) {
     const double stolen = static_cast<double>(f.stolen_ns);
     const double raster_wall = std::max(0.0, static_cast<double>(f.rastered_ns - f.submitted_ns) - stolen);
