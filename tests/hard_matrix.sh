@@ -21,7 +21,7 @@ while (( $# > 0 )); do
     *) names+=("$1"); shift ;;
   esac
 done
-(( ${#names[@]} > 0 )) || names=(gcc-O2 clang-fma gcc-fma gcc-O3 clang-O2 gcc-O0)  # the longest first
+(( ${#names[@]} > 0 )) || names=(gcc-O2 gcc-O0 clang-fma gcc-fma gcc-O3 clang-O2)  # the longest first; what is compared with comes before all
 rows=(O1 A1 A2 A3 A4 N9 N10 N11 N13 N1 N2 N3 N4 N5 N15 N22 N7 N20 L1 L6 F1 F2 F3 F4 F5 F6 F7 N21)
 
 flags_of() {
@@ -61,7 +61,9 @@ try() {
   "$program" "$scale" "${rows[@]}" >"$build/rows" 2>&1 </dev/null || code=$?
   # What each row was, and its digest: timings and pictures are left out.
   awk '/^[A-Z][0-9]+[a-z]? /{row=$1; verdict=$2} /digest/ && !/hard cases/{print row, verdict, $2}' "$build/rows" >"$build/digests"
-  echo "$name ($flags): exit $code, $(tail -1 "$build/rows"); built in $((built - began)) s, run in $((SECONDS - built)) s" | tee "$build/outcome"
+  times >"$build/times"  # not through a pipe: a subshell has times of its own
+  echo "$name ($flags): exit $code, $(tail -1 "$build/rows"); built in $((built - began)) s, run in $((SECONDS - built)) s;" \
+    "$(awk -F '[ms ]+' 'END { printf "%d", 60 * ($1 + $3) + $2 + $4 }' "$build/times") CPU s" | tee "$build/outcome"
   return $code
 }
 
