@@ -29,6 +29,7 @@ Result<SteeringFile> parse_steering(std::string_view text, const std::string& na
 std::string steering_text(const SteeringFile& steering);
 std::string device_text(const DeviceMapping& mapping);
 
+/// The words of enums as the file writes them, in the enums' order.
 namespace words {
 constexpr std::array<std::string_view, 4> curves = {"linear", "power", "expo", "smooth"};
 constexpr std::array<std::string_view, 3> rests = {"centre", "min", "max"};

@@ -235,7 +235,10 @@ inline void TableReader::table(std::string_view key, const std::function<Result<
     if (at == nullptr) return;
     if (!at->is_table()) return wrong(key, *at, "a table");
     TableReader inner(*at->as_table(), file_, full(key));
-    if (const auto done = read(inner); !done) error_ = done.error();
+    if (const auto done = read(inner); !done) {
+        wrong_key_ = inner.wrong_key_;
+        error_ = done.error();
+    }
 }
 
 inline void TableReader::tables(std::string_view key, const std::function<Result<void>(TableReader&)>& read) {
@@ -247,6 +250,7 @@ inline void TableReader::tables(std::string_view key, const std::function<Result
         if (!element.is_table()) return wrong(key, element, "a table", fmt::format("Write [[{}]]", full(key)));
         TableReader inner(*element.as_table(), file_, full(key));
         if (const auto done = read(inner); !done) {
+            wrong_key_ = inner.wrong_key_;
             error_ = done.error();
             return;
         }

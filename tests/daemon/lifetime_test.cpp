@@ -63,9 +63,9 @@ TEST(Lifetime, CheckReadsTheConfigurationOnly) {
     daemon.write_config("control = true\nclock = \"virtual\"\nsteering = \"s.toml\"\n");
     daemon.start({"--check"});
     EXPECT_EQ(daemon.wait_exit(start_s), exit_failure);
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: control"), 1) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:6: clock"), 1) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:7: steering"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:5, control: "), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:6, clock: "), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:7, steering: "), 1) << daemon.said();
     daemon.start({"--chekc"});
     EXPECT_EQ(daemon.wait_exit(start_s), exit_usage);
     daemon.write_config();

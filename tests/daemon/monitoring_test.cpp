@@ -55,7 +55,7 @@ TEST(Monitoring, AnAddressThatIsNoneIsRefusedByLine) {
     daemon.write_config("monitor = \"0.0.0.0:80\"\n");
     daemon.start();
     EXPECT_EQ(daemon.wait_exit(start_s), exit_config);
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: monitor"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:5, monitor: "), 1) << daemon.said();
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ std::vector<Case> machine_cases() {
         {"memory.compaction", true, "does not move locked pages", {{vm + "compact_unevictable_allowed", "0\n"}}, {}},
         {"memory.compaction", false, "moves locked pages", {{vm + "compact_unevictable_allowed", "1\n"}}, {}},
         {"memory.merging", true, "not merged", {{"/sys/kernel/mm/ksm/run", "0\n"}}, {}},
-        {"memory.merging", false, "merged", {{"/sys/kernel/mm/ksm/run", "1\n"}}, {}},
+        {"memory.merging", false, "merges equal pages", {{"/sys/kernel/mm/ksm/run", "1\n"}}, {}},
     };
 }
 

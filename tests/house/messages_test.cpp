@@ -16,7 +16,7 @@ namespace surefoot::house {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path tree = SUREFOOT_SOURCE_DIR;
+const fs::path source_tree = SUREFOOT_SOURCE_DIR;
 
 constexpr std::size_t max_words = 25;
 
@@ -183,10 +183,10 @@ std::string words(std::size_t count) {
 TEST(Messages, HaveSentencesOfAtMost25Words) {
     std::size_t texts = 0;
     for (const auto* top : {"config", "input", "render", "rt", "tools", "systemd"}) {
-        for (const auto& entry : fs::recursive_directory_iterator(tree / top)) {
+        for (const auto& entry : fs::recursive_directory_iterator(source_tree / top)) {
             const auto kind = entry.path().extension();
             if (!entry.is_regular_file() || (kind != ".cpp" && kind != ".hpp")) continue;
-            const std::string file = fs::relative(entry.path(), tree).generic_string();
+            const std::string file = fs::relative(entry.path(), source_tree).generic_string();
             const auto source = read_text(entry.path().string());
             ASSERT_TRUE(source) << file;
             const Found found = texts_of(file, *source);

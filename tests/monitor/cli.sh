@@ -31,7 +31,7 @@ says() {
   while IFS= read -r -t 30 said <&3; do printf '%s\n' "$said" >>walk.err; case $said in *"$1"*) return ;; esac; done
   complain "the walk never says '$1': $(cat walk.err)"
 }
-says 'look at it with'
+says 'watch it live with'
 "$surefoot" top --socket "$socket" --every 0.2 --seconds 30 --json </dev/null 2>/dev/null |
   grep -qm 1 '"state":"walking".*"totals":{"frames":[1-9][0-9]' || complain "no frames are seen: $(cat walk.err)"
 grep -q "surefoot top --socket $socket" walk.err || complain "the walk does not say how to look at it: $(cat walk.err)"

@@ -9,11 +9,11 @@ source tests/vm/image.sh
 skip() { echo "SKIPPED: $*"; exit 77; }
 
 cache="${XDG_CACHE_HOME:-$HOME/.cache}/surefoot/vm"
-share='' qemu=''
+share=''
 start=$SECONDS
 
 cleanup() {
-  if [[ -n "$qemu" ]]; then kill "$qemu" 2>/dev/null || true; fi
+  end_children
   if [[ -n "$share" ]]; then rm -rf "$share"; fi
 }
 
@@ -34,11 +34,11 @@ open_guest() {
   [[ -n "$(kernel_release)" ]] || apt-get update -q >/dev/null 2>&1 || true
   exec 9>"$(mkdir -p "$cache" && echo "$cache/lock")"
   flock -n 9 || skip "another run uses $cache"
+  trap cleanup EXIT
   make_image || skip "the guest's image could not be made: is the network there? (logs are in $cache)"
   image_s=$((SECONDS - start))
   if (( image_only )); then echo "$cache: $image_was in $image_s s"; exit 0; fi
   share=$(mktemp -d "$cache/share.XXXXXX")
-  trap cleanup EXIT
   mkdir -p "$share/in/kept" "$share/kept"
 }
 
@@ -69,7 +69,7 @@ kvm_works() {
 # boot LIMIT_S KERNEL_PARAMETERS: until the guest goes off, its log shown as it comes. Without virtualisation the same kernel is
 # emulated, slower.
 boot() {
-  local limit_s=$1 parameters=$2 from tail_pid
+  local limit_s=$1 parameters=$2 from qemu tail_pid
   local accelerator=(-accel tcg -cpu max)
   accelerated=tcg
   if kvm_works; then accelerator=(-accel kvm -cpu host) accelerated=kvm; fi
@@ -87,7 +87,6 @@ boot() {
   tail_pid=$!
   qemu_status=0
   wait "$qemu" || qemu_status=$?
-  qemu=''
   wait "$tail_pid" || true
   guest_s=$((SECONDS - from))
 }
