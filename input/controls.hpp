@@ -1,6 +1,6 @@
 // Types shared by the rooms of the device layer: controls, device states, motion requests, samples.
 //
-//   hid/, gpio/ ──► DeviceState ──► map/ ──► Wish ──► safety/ ──► motion/ ──► NavigationSample (latest value)
+//   hid/, gpio/ ──► DeviceState ──► map/ ──► MotionRequest ──► safety/ ──► motion/ ──► NavigationSample (latest value)
 //   (raw values)    (per device)    (actions, -1..1)  (may only     (limits, filter,
 //                                                      reduce it)    pose in double)
 #pragma once
@@ -48,7 +48,7 @@ struct DeviceState {
 };
 
 /// The requested motion, before any limit: each -1..1, in the eye's frame. +forward is along -Z, +side to the right.
-struct Wish {
+struct MotionRequest {
     double forward = 0, side = 0, up = 0;
     double turn = 0, look = 0;  ///< turn > 0: to the left (counter-clockwise from above); look > 0: upwards
     double speed = 0;           ///< -1..1: from the slowest to the fastest factor; 0 leaves it
@@ -60,7 +60,7 @@ enum class Order : std::uint8_t { walk, brake, stop };
 
 /// The command that safety/ passes to motion/.
 struct Command {
-    Wish wish;
+    MotionRequest request;
     Order order = Order::walk;
     std::int64_t stamp_ns = 0;  ///< of the newest report in it
 };

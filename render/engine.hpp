@@ -41,7 +41,7 @@ struct SubmitLimits {
 /// Actual / predicted cost of recent frames: the median, and the headroom (p90) on top of it.
 struct Correction {
     double factor = 1;
-    double upper = 0;  ///< 0: the cost table's
+    double headroom = 0;  ///< 0: the cost table's
 };
 
 /// Results of a submission. Times in us from the call.

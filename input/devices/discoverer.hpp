@@ -22,10 +22,10 @@ public:
 };
 
 /// Looks whenever it is asked.
-std::unique_ptr<Discoverer> discover_here(Finder finder);
+std::unique_ptr<Discoverer> inline_discoverer(Finder finder);
 constexpr const char* devices_thread_name = "sf-devices";
 /// Starts a thread named devices_thread_name, at SCHED_OTHER. Opening and closing devices never delays the reader, whose calls
 /// neither allocate, free nor lock.
-Result<std::unique_ptr<Discoverer>> discover_beside(Finder finder);
+Result<std::unique_ptr<Discoverer>> threaded_discoverer(Finder finder);
 
 }  // namespace surefoot::input

@@ -65,13 +65,13 @@ std::int64_t Finder::due_ns() const {
 
 std::vector<Discovery> Finder::look(std::int64_t now_ns) {
     std::vector<Discovery> out;
-    UdevMonitor::News news;
-    if (monitor_) news = monitor_->news();
+    UdevMonitor::Changes changes;
+    if (monitor_) changes = monitor_->take_changes();
     for (auto& [place, entry] : entries_) {
-        const bool touched = std::find(news.changed.begin(), news.changed.end(), place) != news.changed.end();
-        if (entry.state == State::waiting && (touched || news.lost)) entry.retry.hurry(now_ns);
+        const bool touched = std::find(changes.changed.begin(), changes.changed.end(), place) != changes.changed.end();
+        if (entry.state == State::waiting && (touched || changes.lost)) entry.retry.hurry(now_ns);
     }
-    if (news.any || now_ns >= scan_due_ns_) scan(out, now_ns);
+    if (changes.any || now_ns >= scan_due_ns_) scan(out, now_ns);
     for (auto& [place, entry] : entries_)
         if (entry.state == State::waiting && entry.retry.due(now_ns)) try_open(out, entry, now_ns);
     return out;
@@ -103,11 +103,11 @@ void Finder::scan(std::vector<Discovery>& out, std::int64_t now_ns) {
         std::optional<Error> trouble;
         Entry entry;
         entry.plugged = std::make_shared<const PluggedDevice>(read_node(context_.get(), n, trouble));
-        meet(out, n.place, entry, trouble);
+        classify(out, n.place, entry, trouble);
     }
 }
 
-void Finder::meet(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble) {
+void Finder::classify(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble) {
     const PluggedDevice& p = *entry.plugged;
     Discovery d;
     d.kind = Discovery::Kind::refused;
@@ -133,9 +133,9 @@ void Finder::try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t no
     if (!options_.open || d.handle.open(entry.plugged->node)) {
         d.kind = Discovery::Kind::found;
         d.device = entry.device = next_number_++;
-        if (options_.ready) d.readied = options_.ready(*entry.plugged);
+        if (options_.attachment_factory) d.attachment = options_.attachment_factory(*entry.plugged);
         entry.state = State::open;
-        entry.said.clear();
+        entry.last_reported.clear();
         out.push_back(std::move(d));
         return;
     }
@@ -145,8 +145,8 @@ void Finder::try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t no
     d.kind = Discovery::Kind::refused;
     d.refused = code == EACCES || code == EPERM ? Refused::permission : Refused::failed;
     d.why = open_error(*entry.plugged, code, d.handle.what());
-    if (entry.said == d.why.what) return;
-    entry.said = d.why.what;
+    if (entry.last_reported == d.why.what) return;
+    entry.last_reported = d.why.what;
     out.push_back(std::move(d));
 }
 

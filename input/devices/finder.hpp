@@ -23,8 +23,8 @@ struct Discovery {
     Kind kind = Kind::found;
     int device = -1;  ///< found, lost
     std::shared_ptr<const PluggedDevice> plugged;
-    std::unique_ptr<Readied> readied;  ///< found, where the options make one
-    HidHandle handle;                  ///< found: open
+    std::unique_ptr<DeviceAttachment> attachment;  ///< found, where the options make one
+    HidHandle handle;                              ///< found: open
     Refused refused = Refused::failed;
     Error why;  ///< lost, refused
 };
@@ -36,8 +36,9 @@ bool steers_by_class(const PluggedDevice& device);
 
 struct FinderOptions {
     Wanted wanted = steers_by_class;
-    std::function<std::unique_ptr<Readied>(const PluggedDevice&)> ready;  ///< called for each that is found; may be empty
-    bool open = true;  ///< false: devices are listed only; `found` then carries no open handle
+    std::function<std::unique_ptr<DeviceAttachment>(const PluggedDevice&)>
+        attachment_factory;  ///< called for each that is found; may be empty
+    bool open = true;        ///< false: devices are listed only; `found` then carries no open handle
 };
 
 class Finder {
@@ -62,11 +63,11 @@ private:
         State state = State::left_alone;
         int device = -1;
         Retry retry;
-        std::string said;
+        std::string last_reported;
     };
 
     void scan(std::vector<Discovery>& out, std::int64_t now_ns);
-    void meet(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble);
+    void classify(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble);
     void try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t now_ns);
 
     FinderOptions options_;

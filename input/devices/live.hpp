@@ -39,11 +39,11 @@ private:
     rt::RealClock clock_;
     std::unique_ptr<Discoverer> discoverer_;
     std::vector<std::unique_ptr<Discovery>> open_;
-    struct Told {
+    struct Retired {
         std::unique_ptr<Discovery> discovery;
         bool failed = false;
     };
-    std::vector<Told> told_;  ///< targets of pointers in the events of the last take()
+    std::vector<Retired> retired_;  ///< targets of pointers in the events of the last take()
     std::vector<pollfd> others_, watched_;
     std::vector<DeviceEvent> events_;
     std::vector<std::byte> bytes_;
@@ -53,8 +53,8 @@ private:
     bool unwatchable_ = false;  ///< some device has no known file descriptor
 };
 
-/// Live devices with the finder in the same thread, or (`beside`) in its own: then wait() and take() neither allocate, free nor
+/// Live devices with the finder in the same thread, or (`threaded`) in its own: then wait() and take() neither allocate, free nor
 /// lock, also while devices come and go.
-Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool beside = false);
+Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool threaded = false);
 
 }  // namespace surefoot::input

@@ -1,6 +1,6 @@
 // The interface of live devices: events (added, refused, removed, report) in the order in which they were seen.
 //
-//   udev monitor, schedule ─► Finder ─► (open, described) ─► LiveDevices ─► events ─► Attendant ─► Steering
+//   udev monitor, schedule ─► Finder ─► (open, described) ─► LiveDevices ─► events ─► DeviceRouter ─► Steering
 //   (hot-plug, permissions)             a handle each        (poll, drain)            (mapping)
 #pragma once
 
@@ -43,11 +43,11 @@ enum class Refused : std::uint8_t {
 
 /// User data of a device, made and destroyed on the thread that opens devices, so that the reader does not allocate when one
 /// comes or goes.
-struct Readied {
-    Readied() = default;
-    Readied(const Readied&) = delete;
-    Readied& operator=(const Readied&) = delete;
-    virtual ~Readied() = default;
+struct DeviceAttachment {
+    DeviceAttachment() = default;
+    DeviceAttachment(const DeviceAttachment&) = delete;
+    DeviceAttachment& operator=(const DeviceAttachment&) = delete;
+    virtual ~DeviceAttachment() = default;
 };
 
 struct DeviceEvent {
@@ -61,7 +61,7 @@ struct DeviceEvent {
     Refused refused = Refused::failed;
     const Error* why = nullptr;                    ///< refused, removed; valid until the next take()
     std::shared_ptr<const PluggedDevice> plugged;  ///< added, removed, refused
-    Readied* readied = nullptr;                    ///< added: its user data, or null; valid until the take() after `removed`
+    DeviceAttachment* attachment = nullptr;        ///< added: its user data, or null; valid until the take() after `removed`
 };
 
 /// One thread.

@@ -26,22 +26,22 @@ Result<UdevMonitor> UdevMonitor::listen(udev* context) {
 
 int UdevMonitor::fd() const { return udev_monitor_get_fd(monitor_.get()); }
 
-UdevMonitor::News UdevMonitor::news() {
-    News news;
+UdevMonitor::Changes UdevMonitor::take_changes() {
+    Changes changes;
     for (;;) {
         errno = 0;
         udev_device* device = udev_monitor_receive_device(monitor_.get());
         if (device == nullptr) {
             if (errno == ENOBUFS) {
-                news.any = news.lost = true;
+                changes.any = changes.lost = true;
                 continue;
             }
-            return news;
+            return changes;
         }
-        news.any = true;
+        changes.any = true;
         const char* action = udev_device_get_action(device);
         const char* path = udev_device_get_syspath(device);
-        if (path != nullptr && action != nullptr && std::strcmp(action, "remove") != 0) news.changed.emplace_back(path);
+        if (path != nullptr && action != nullptr && std::strcmp(action, "remove") != 0) changes.changed.emplace_back(path);
         udev_device_unref(device);
     }
 }

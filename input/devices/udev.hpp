@@ -25,12 +25,12 @@ public:
 
     [[nodiscard]] int fd() const;
     /// What came since the last call, without blocking.
-    struct News {
+    struct Changes {
         bool any = false;
         bool lost = false;                 ///< more came than the socket holds: anything may have changed
         std::vector<std::string> changed;  ///< sysfs paths that were added or changed
     };
-    News news();
+    Changes take_changes();
 
 private:
     std::unique_ptr<udev_monitor, UdevDeleter> monitor_;

@@ -1,7 +1,7 @@
 // Debounce of one contact: asserted at its first edge, released after it was stable; lost edges are found and counted. Pure.
 //
 // Assertion is never delayed, because a stop asserted late is a walk that stops late. The kernel's debounce is not used: it runs
-// in jiffies, and stamps an edge after its settle time.
+// in jiffies, and stamps an edge after its debounce time.
 #pragma once
 
 #include <cstdint>
@@ -18,16 +18,16 @@ struct Contact {
 };
 
 /// Ends the debounce of a release; call at every tick.
-inline void settle(Contact& c, std::int64_t settle_ns, std::int64_t now_ns) {
-    if (c.asserted && c.released_ns >= 0 && now_ns - c.released_ns >= settle_ns) {
+inline void release_when_due(Contact& c, std::int64_t debounce_ns, std::int64_t now_ns) {
+    if (c.asserted && c.released_ns >= 0 && now_ns - c.released_ns >= debounce_ns) {
         c.asserted = false;
         c.released_ns = -1;
     }
 }
 
 /// An edge to `level` at `stamp_ns`. If the contact already has this level, the edge in between was lost.
-inline void edge(Contact& c, bool level, std::int64_t stamp_ns, std::int64_t settle_ns) {
-    settle(c, settle_ns, stamp_ns);
+inline void edge(Contact& c, bool level, std::int64_t stamp_ns, std::int64_t debounce_ns) {
+    release_when_due(c, debounce_ns, stamp_ns);
     if (level == c.level) {
         ++c.lost_edges;
         // The lost one went the other way; a stop that was asserted for a moment was asserted.
@@ -48,13 +48,13 @@ inline void edge(Contact& c, bool level, std::int64_t stamp_ns, std::int64_t set
 }
 
 /// The level, read again after a burst of edges. Repairs edges that the kernel's full queue has dropped.
-inline void reread(Contact& c, bool level, std::int64_t now_ns, std::int64_t settle_ns) {
+inline void reread(Contact& c, bool level, std::int64_t now_ns, std::int64_t debounce_ns) {
     if (level != c.level) {
         ++c.lost_edges;
         c.level = !level;  // as before the lost edge
-        edge(c, level, now_ns, settle_ns);
+        edge(c, level, now_ns, debounce_ns);
     }
-    settle(c, settle_ns, now_ns);
+    release_when_due(c, debounce_ns, now_ns);
 }
 
 }  // namespace surefoot::input

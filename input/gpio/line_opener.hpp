@@ -41,7 +41,7 @@ public:
 };
 
 /// Where lines are opened.
-enum class Opening : std::uint8_t { here, beside };
+enum class Opening : std::uint8_t { same_thread, own_thread };
 
 constexpr const char* lines_thread_name = "sf-lines";
 /// here: inside next(), when a try is due. beside: in its own thread named lines_thread_name, at SCHED_OTHER; then the calls

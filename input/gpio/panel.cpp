@@ -103,7 +103,7 @@ void GpioPanel::take_opened(std::int64_t now_ns) {
             opened_ = std::move(made);
             return start();
         }
-        problem_ = noted(made->error);
+        problem_ = format_message(made->error);
         was_closed_ = true;
         opener_->give_back(std::move(made), now_ns);
     }
@@ -128,9 +128,9 @@ void GpioPanel::start() {
     }
 }
 
-/// With the reason that ask_library() has left.
+/// With the reason that call_library() has left.
 void GpioPanel::close(std::int64_t now_ns) {
-    problem_ = noted(opened_->error);
+    problem_ = format_message(opened_->error);
     opener_->give_back(std::move(opened_), now_ns);
     was_closed_ = true;
     state_.connected = false;
@@ -144,7 +144,7 @@ void GpioPanel::close(std::int64_t now_ns) {
 
 /// Only this is the library's. False, and the reason kept: the chip is gone.
 template <class Read>
-bool GpioPanel::ask_library(const Read& read) {
+bool GpioPanel::call_library(const Read& read) {
     const rt::DriverScope library;
     const auto done = read(*opened_->lines);
     if (!done) opened_->error = done.error();
@@ -155,7 +155,7 @@ bool GpioPanel::drain(std::int64_t now_ns) {
     std::array<LineEdge, edges_at_once> edges;
     for (int i = 0; i < drains_a_service; ++i) {
         std::size_t count = 0;
-        const bool there = ask_library([&](GpioLines& lines) {
+        const bool there = call_library([&](GpioLines& lines) {
             auto got = lines.read(edges);
             count = got ? std::min(*got, edges.size()) : 0;
             return got;
@@ -167,13 +167,13 @@ bool GpioPanel::drain(std::int64_t now_ns) {
         for (std::size_t k = 0; k < count; ++k) take(edges[k]);
         if (count < edges.size()) break;
     }
-    if (!ask_library([&](GpioLines& lines) { return lines.levels({levels_.data(), configs_.size()}); })) {
+    if (!call_library([&](GpioLines& lines) { return lines.levels({levels_.data(), configs_.size()}); })) {
         close(now_ns);
         return false;
     }
     for (std::size_t i = 0; i < configs_.size(); ++i) {
         const bool before = state_of_[i].contact.level;
-        reread(state_of_[i].contact, asserted_by(i, levels_[i]), now_ns, configs_[i].settle_ns);
+        reread(state_of_[i].contact, asserted_by(i, levels_[i]), now_ns, configs_[i].debounce_ns);
         if (is_encoder(configs_[i].role) && before != state_of_[i].contact.level) turn(i);
     }
     return true;
@@ -192,7 +192,7 @@ void GpioPanel::take(const LineEdge& got) {
             line.contact.lost_edges += lost - (asserted == line.contact.level ? 1 : 0);  // that one is counted below
         }
     }
-    edge(line.contact, asserted, got.stamp_ns, configs_[got.line].settle_ns);
+    edge(line.contact, asserted, got.stamp_ns, configs_[got.line].debounce_ns);
     if (is_encoder(configs_[got.line].role)) turn(got.line);
 }
 

@@ -15,7 +15,7 @@
 #include "input/gpio/line_opener.hpp"
 #include "input/gpio/lines.hpp"
 #include "input/gpio/quadrature.hpp"
-#include "input/notes.hpp"
+#include "input/messages.hpp"
 #include "input/safety/safety.hpp"
 
 namespace surefoot::input {
@@ -26,8 +26,8 @@ struct LineConfig {
     std::string name;  ///< of the control; an encoder's two lines have the same
     LineRole role = LineRole::button;
     LineRequest request;
-    bool normally_closed = false;         ///< asserted while the contact is open, so a broken wire asserts; always true for stops
-    std::int64_t settle_ns = 10'000'000;  ///< debounce of the release; also for stops and resets, never for a dead-man
+    bool normally_closed = false;  ///< asserted while the contact is open, so a broken wire asserts; always true for stops
+    std::int64_t debounce_ns = 10'000'000;  ///< debounce of the release; also for stops and resets, never for a dead-man
 };
 
 /// Checks: names are unique except for encoders; an encoder has two lines of one chip; at most 64 lines. Errors name the line.
@@ -38,7 +38,7 @@ Result<void> check_lines(std::span<const LineConfig> lines);
 class GpioPanel {
 public:
     /// `lines` must have passed check_lines. `opener` and `context`: open_lines, or a fake.
-    GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* context, Opening where = Opening::here);
+    GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* context, Opening where = Opening::same_thread);
 
     /// Returns when the lines have been tried once.
     void wait_for_first_try() { opener_->wait_for_first(); }
@@ -77,7 +77,7 @@ private:
     void start();
     void close(std::int64_t now_ns);
     template <class Read>
-    bool ask_library(const Read& read);
+    bool call_library(const Read& read);
     bool drain(std::int64_t now_ns);
     void take(const LineEdge& edge);
     void turn(std::size_t line);
@@ -87,7 +87,7 @@ private:
     std::vector<LineConfig> configs_;
     std::unique_ptr<LineOpener> opener_;
     std::unique_ptr<OpenedLines> opened_;  ///< null, or with lines
-    NoteLine problem_;
+    MessageLine problem_;
     std::vector<Line> state_of_;
     std::vector<Encoder> encoders_;
     std::vector<ControlInfo> controls_;

@@ -8,7 +8,7 @@
 
 #include "input/gpio/panel.hpp"
 #include "input/map/mapping.hpp"
-#include "input/notes.hpp"
+#include "input/messages.hpp"
 #include "input/steering.hpp"
 
 namespace surefoot::input {
@@ -24,9 +24,9 @@ DeviceMapping panel_mapping(std::span<const DeviceMapping> mappings, std::span<c
 /// goes. Allocations of the GPIO library count as the driver's. A missing chip is tried again after 0.1 to 2 s.
 class PanelDevice {
 public:
-    /// `lines` must have passed check_lines. `say` gets a note for each new problem, and when it is over.
-    PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context, Say say,
-                Opening where);
+    /// `lines` must have passed check_lines. `sink` gets a note for each new problem, and when it is over.
+    PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context,
+                MessageSink sink, Opening where);
 
     /// The first try, before the input thread starts.
     void open();
@@ -47,9 +47,9 @@ private:
     void attach(Steering& steering) REQUIRES(steering.steers);
 
     GpioPanel panel_;
-    Say say_;
+    MessageSink sink_;
     std::string mapping_;
-    NoteLine said_;
+    MessageLine last_problem_;
     Mapper mapper_, spare_;  ///< after the first attach, the steering holds one of them
     bool attached_once_ = false;
     int number_ = -1, known_ = -1;  ///< Steering's, now and ever

@@ -16,12 +16,12 @@ struct Count {
     void add(ControlKind kind) { ++(kind == ControlKind::axis ? axes : kind == ControlKind::hat ? hats : buttons); }
     [[nodiscard]] std::string text() const {
         std::string t;
-        const auto say = [&](std::uint32_t n, const char* one, const char* many) {
+        const auto append_count = [&](std::uint32_t n, const char* one, const char* many) {
             if (n > 0) t += fmt::format("{}{} {}", t.empty() ? "" : ", ", n, n == 1 ? one : many);
         };
-        say(axes, "axis", "axes");
-        say(hats, "hat", "hats");
-        say(buttons, "button", "buttons");
+        append_count(axes, "axis", "axes");
+        append_count(hats, "hat", "hats");
+        append_count(buttons, "button", "buttons");
         return t;
     }
 };
@@ -98,17 +98,17 @@ std::uint32_t nameless_buttons(const Layout& layout, const std::vector<Element>&
 }  // namespace
 
 std::uint32_t application_usage(const Layout& layout, std::uint32_t collection) {
-    std::uint32_t outermost = 0, telling = 0, any = 0;
+    std::uint32_t outermost = 0, significant = 0, any = 0;
     for (; collection != no_collection; collection = layout.collections[collection].parent) {
         const Collection& c = layout.collections[collection];
         any = c.usage;
         if (c.type != collection_type::application) continue;
         outermost = c.usage;
         const Application a = application_of(c.usage);
-        if (a != Application::none && a != Application::other && a != Application::vendor) telling = c.usage;
+        if (a != Application::none && a != Application::other && a != Application::vendor) significant = c.usage;
     }
     // Some makers put a joystick into a physical collection and forget the application; the kernel takes those as well.
-    return telling != 0 ? telling : outermost != 0 ? outermost : any;
+    return significant != 0 ? significant : outermost != 0 ? outermost : any;
 }
 
 bool pointer_with_constant_buttons(const Layout& layout) {

@@ -56,7 +56,7 @@ private:
     [[nodiscard]] static Refusal refuse(const Item& item, std::string what, std::string remedy = device_is_broken) {
         return {item.offset, std::move(what), std::move(remedy)};
     }
-    void note(std::uint32_t offset, std::string what) {
+    void add_note(std::uint32_t offset, std::string what) {
         ++layout_.note_count;
         if (layout_.notes.size() < max_notes) layout_.notes.push_back({offset, std::move(what)});
     }
@@ -100,7 +100,7 @@ std::optional<Refusal> DescriptorParser::run() {
                 wrong = local_item(item);
                 break;
             case ItemType::reserved:
-                note(item.offset, "An item of a reserved type is ignored");
+                add_note(item.offset, "An item of a reserved type is ignored");
                 break;
         }
         if (wrong) return wrong;
@@ -160,9 +160,9 @@ DescriptorParser::Outcome DescriptorParser::main_item(const Item& item) {
                 open_.pop_back();
             break;
         default:
-            note(item.offset, fmt::format("An unknown main item (tag {}) is ignored", item.tag));
+            add_note(item.offset, fmt::format("An unknown main item (tag {}) is ignored", item.tag));
     }
-    if (locals_.delimited) note(item.offset, "A main item stands inside an open delimiter and ends it");
+    if (locals_.delimited) add_note(item.offset, "A main item stands inside an open delimiter and ends it");
     if (!kept) layout_.runs.resize(locals_.first_run);
     locals_ = {};
     locals_.first_run = static_cast<std::uint32_t>(layout_.runs.size());
@@ -179,7 +179,7 @@ DescriptorParser::Outcome DescriptorParser::open_collection(const Item& item) {
     open_.push_back(static_cast<std::uint32_t>(layout_.collections.size()));
     layout_.collections.push_back(c);
     // Depth is not refused: parents are indexes in a flat array, so depth costs nothing, and the kernel has no limit.
-    if (open_.size() == 65) note(item.offset, "Collections are nested more than 64 deep");
+    if (open_.size() == 65) add_note(item.offset, "Collections are nested more than 64 deep");
     return std::nullopt;
 }
 
@@ -210,8 +210,8 @@ DescriptorParser::Outcome DescriptorParser::add_field(const Item& item, ReportKi
     }
     if (locals_.usages == 0) return std::nullopt;  // padding
     if (report.fields == max_fields_per_report) {
-        note(item.offset, fmt::format("Report {} has more than {} fields; this field and later ones give no control", g.report_id,
-                                      max_fields_per_report));
+        add_note(item.offset, fmt::format("Report {} has more than {} fields; this field and later ones give no control",
+                                          g.report_id, max_fields_per_report));
         return std::nullopt;
     }
     ++report.fields;
@@ -233,12 +233,12 @@ DescriptorParser::Outcome DescriptorParser::add_field(const Item& item, ReportKi
     f.run_count = static_cast<std::uint32_t>(layout_.runs.size()) - locals_.first_run;
     f.usages = std::max(locals_.usages, g.count);
     f.collection = innermost();
-    if (f.collection == no_collection) note(item.offset, "A field outside every collection gives no control");
-    if (g.size == 0 || g.count == 0) note(item.offset, "A field without bits gives no control");
-    if (g.size > 32) note(item.offset, fmt::format("Elements of {} bits give no control; at most 32 are read", g.size));
+    if (f.collection == no_collection) add_note(item.offset, "A field outside every collection gives no control");
+    if (g.size == 0 || g.count == 0) add_note(item.offset, "A field without bits gives no control");
+    if (g.size > 32) add_note(item.offset, fmt::format("Elements of {} bits give no control; at most 32 are read", g.size));
     if (g.logical_min >= 0 && g.logical_max < 0 && !f.constant()) {
-        note(item.offset, fmt::format("A range reaches {}; above 2147483647 only buttons give a control",
-                                      static_cast<std::uint32_t>(g.logical_max)));
+        add_note(item.offset, fmt::format("A range reaches {}; above 2147483647 only buttons give a control",
+                                          static_cast<std::uint32_t>(g.logical_max)));
     }
     layout_.fields.push_back(f);
     return std::nullopt;
@@ -318,7 +318,7 @@ DescriptorParser::Outcome DescriptorParser::usage_range(const Item& item) {
         maximum = max_usages - locals_.usages + minimum - 1;
         if (maximum == 0) return refuse(item, fmt::format("A field has more than {} usages", max_usages));
         if (maximum != 0xffffffffU)
-            note(item.offset, fmt::format("A range of usages is cut: a field holds at most {}", max_usages));
+            add_note(item.offset, fmt::format("A range of usages is cut: a field holds at most {}", max_usages));
     }
     if (maximum == 0xffffffffU) return refuse(item, "A range of usages has no end");
     return maximum < minimum ? std::nullopt : add_usages(item, minimum, maximum - minimum + 1);

@@ -92,7 +92,7 @@ struct Report {
 };
 
 /// Accepted, but worth saying.
-struct Note {
+struct DescriptorNote {
     std::uint32_t offset = 0;  ///< byte in the descriptor
     std::string what;
 };
@@ -103,8 +103,8 @@ struct Layout {
     std::vector<UsageRun> runs;
     std::vector<Field> fields;
     std::vector<Report> reports;
-    std::array<bool, 3> numbered{};  ///< by ReportKind: every report of that kind begins with its id
-    std::vector<Note> notes;         ///< the first max_notes
+    std::array<bool, 3> numbered{};     ///< by ReportKind: every report of that kind begins with its id
+    std::vector<DescriptorNote> notes;  ///< the first max_notes
     std::uint32_t note_count = 0;
 
     /// The k-th usage of a field, k < field.usages; the last one repeats.

@@ -98,7 +98,7 @@ public:
         b.source = Binding::Source::button;
         set(b, 0, *at, from.action, from.scale, Rest::centre);
         b.smoothing_s = from.smoothing_s;
-        b.settle_ns = static_cast<std::int64_t>(std::llround(from.settle_s * 1e9));
+        b.debounce_ns = static_cast<std::int64_t>(std::llround(from.debounce_s * 1e9));
         b.normally_closed = from.normally_closed;
         push(b);
     }

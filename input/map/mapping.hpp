@@ -21,11 +21,11 @@ enum class Action : std::uint8_t {
     up,
     turn,
     look,
-    speed,  // the six that have a size, as in Wish
+    speed,  // the six that have a size, as in MotionRequest
     next_viewpoint,
     reset,
     tour,
-    pause,       // edges, as in Wish
+    pause,       // edges, as in MotionRequest
     dead_man,    // walks only while held
     stop,        // emergency stop: latched
     stop_reset,  // takes the latch off once the stop is no longer asserted
@@ -82,7 +82,7 @@ struct ButtonMapping {
     Action action = Action::none;
     double scale = 1;              ///< request of the held button, -1..1; for actions that have a size
     double smoothing_s = 0;        ///< of those: time constant
-    double settle_s = 0;           ///< a release counts once it lasted so long (contact bounce); a press counts at once
+    double debounce_s = 0;         ///< a release counts once it lasted so long (contact bounce); a press counts at once
     bool normally_closed = false;  ///< asserted while the contact is open or its state unknown: for stops
 };
 

@@ -9,9 +9,9 @@ namespace surefoot::input {
 
 /// Shortens the walk (forward, side, up) and the turning (turn, look) to length 1 each, clamps speed, sets non-finite values to
 /// 0. True: all were finite.
-bool bound(Wish& wish);
+bool bound(MotionRequest& request);
 
 /// The bounded sum, with the edges of both. Opposite requests cancel out; with "strongest wins" they would not.
-Wish merge(std::span<const Wish> wishes);
+MotionRequest merge(std::span<const MotionRequest> requests);
 
 }  // namespace surefoot::input

@@ -151,7 +151,7 @@ Result<void> read_button(TableReader& table, std::vector<ButtonMapping>& into) {
     choose(table, "action", action_names(), m.action);
     table.number("scale", -1, 1, "", m.scale);
     time_ms(table, "smoothing_ms", 1000, m.smoothing_s);
-    time_ms(table, "settle_ms", 1000, m.settle_s);
+    time_ms(table, "settle_ms", 1000, m.debounce_s);
     table.flag("normally_closed", m.normally_closed);
     into.push_back(m);
     return table.finish();
@@ -227,7 +227,7 @@ Result<void> read_line(TableReader& table, std::vector<LineConfig>& into) {
         table.refuse("normally_closed", "= false is not allowed for a stop",
                      "Wire the stop normally closed: a broken wire must stop the walk");
     if (line.role == LineRole::stop) line.normally_closed = true;
-    time(table, "settle_ms", 1000, "ms", 1e6, line.settle_ns);
+    time(table, "settle_ms", 1000, "ms", 1e6, line.debounce_ns);
     into.push_back(line);
     return table.finish();
 }

@@ -30,7 +30,7 @@ struct MotionLimits {
     double turn_rad_s = 1.2, look_rad_s = 0.9;
     double accel_rad_s2 = 8;
     double max_pitch_rad = 1.48;
-    double brake_s = 0.03;      ///< Order::brake reaches its wish within this, from any speed
+    double brake_s = 0.03;      ///< Order::brake reaches its request within this, from any speed
     bool level = false;         ///< true: forward is level however the eye looks; false: along the eye's -Z
     double frame_s = 1.0 / 30;  ///< how far ahead a sample's uncertainty is stated
     FilterSettings filter;

@@ -26,10 +26,10 @@ Cards cards_of(const Geometry& g, const GeometryPart& part);
 /// cards_of() if the part can be thinned out, else none.
 Cards thinnable_cards(const Geometry& g, const GeometryPart& part);
 
-/// Orders cards up to a sum of `most_triangles`: the middle card first, then always the farthest from all before it. Distances
+/// Orders cards up to a sum of `max_triangles`: the middle card first, then always the farthest from all before it. Distances
 /// are divided by the square root of a card's triangles, so that many small cards replace a large one. The first few then
 /// represent all, out to the tips. Time: cards x ordered cards. Source: Gonzalez 1985, farthest-point clustering.
-void spread(const Geometry& g, Cards& cards, std::size_t most_triangles);
+void spread(const Geometry& g, Cards& cards, std::size_t max_triangles);
 
 /// The first cards that hold about `share` of the triangles; at least one. A smaller share is a subset of a larger one, so
 /// that no card comes and goes between levels.

@@ -15,9 +15,9 @@ std::vector<GeometryPart> take_cards(Geometry& g, const std::vector<bool>& cut_o
                                      std::uint32_t largest_triangles);
 
 struct CardLimits {
-    std::uint32_t most = 1000;  ///< triangles of cards in the finest level
-    std::uint32_t least = 16;   ///< and in the coarsest
-    float slack = 0.25F;        ///< relative gap allowed between upper and lower bound
+    std::uint32_t max_triangles = 1000;  ///< triangles of cards in the finest level
+    std::uint32_t min_triangles = 16;    ///< and in the coarsest
+    float slack = 0.25F;                 ///< relative gap allowed between upper and lower bound
 };
 
 /// Levels of cards, each with about half the triangles of the next finer one. The solid rest of a level is as coarse as the

@@ -42,7 +42,7 @@ struct LodChain {
 
 /// Minimum error of levels with baked colours, as a share of their size. Such a level has lost its texture, so it may only be
 /// shown small: an error of 1/8 pixel is then an object of 8 pixels.
-constexpr double least_proxy_error = 1.0 / 64;
+constexpr double min_proxy_error = 1.0 / 64;
 
 /// The texture of a material, and how it wraps.
 enum class Picture : std::uint8_t { none, repeats, clamped };

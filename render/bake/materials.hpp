@@ -19,10 +19,10 @@ std::vector<bool> cut_out_materials(const importer::Scene& scene);
 /// Sets the vertex colour effect of materials whose primitives have colours other than white.
 void mark_vertex_colours(const importer::Scene& scene, model::Model& model);
 
-/// Adds an RGBA8 texture with at most `most_levels` mip levels; returns its index. cutoff: alpha (0..255) of the alpha test, or 0
+/// Adds an RGBA8 texture with at most `max_levels` mip levels; returns its index. cutoff: alpha (0..255) of the alpha test, or 0
 /// without one. Levels of an alpha-tested texture keep its coverage; they end where they no longer can.
 model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height,
-                         bool clamp, std::uint32_t most_levels, float cutoff = 0);
+                         bool clamp, std::uint32_t max_levels, float cutoff = 0);
 
 /// Vertex colour x material colour x texture colour, 0..255 each.
 std::array<std::uint8_t, 4> tinted(const model::Material& material, const model::Vertex& vertex, const vec3& picture);

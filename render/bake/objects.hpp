@@ -28,14 +28,14 @@ struct PlacedObject {
 };
 
 struct CutLimits {
-    std::uint32_t most_triangles = 8192;  ///< of a piece; keeps its cost below 1/16 of a frame
-    double longest_m = 1e30;              ///< of a piece, mesh frame; limits what is drawn for one corner in view
-    std::uint32_t least_triangles =
+    std::uint32_t max_triangles = 8192;  ///< of a piece; keeps its cost below 1/16 of a frame
+    double longest_m = 1e30;             ///< of a piece, mesh frame; limits what is drawn for one corner in view
+    std::uint32_t min_triangles =
         512;  ///< geometry below twice this is not cut for length alone: a draw costs as much as 50 triangles
-    /// Replaces least_triangles for few triangles in several layers (the walls of a storey). Drawn whole, most of its pixels
+    /// Replaces min_triangles for few triangles in several layers (the walls of a storey). Drawn whole, most of its pixels
     /// lie behind its own front, and an extra layer costs more than extra draws.
-    std::uint32_t least_hidden = 32;
-    std::uint32_t most_hidden = 4096;  ///< triangles that count as few
+    std::uint32_t min_hidden = 32;
+    std::uint32_t max_hidden = 4096;  ///< triangles that count as few
 };
 
 /// Largest factor by which `linear` stretches a length; errors grow by it. An upper bound, within 1e-8.

@@ -27,7 +27,7 @@ struct ProxyInput {
     std::vector<bool> cut_out;    ///< by material: alpha-tested cards, which keep their material (cards.hpp)
     bool textured_boxes = false;
     float slack = 0.25F;  ///< relative gap allowed between upper and lower bound
-    std::uint32_t most_input =
+    std::uint32_t max_input =
         24000;  ///< maximum triangles merged; objects enter at coarser levels to fit, and their errors are added
 
     [[nodiscard]] bool is_cut_out(model::Index material) const { return material < cut_out.size() && cut_out[material]; }

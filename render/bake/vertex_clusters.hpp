@@ -12,9 +12,9 @@
 namespace surefoot::bake {
 
 struct ClusteringLimits {
-    std::uint32_t most = 1000;  ///< triangles of the finest level; exceeded only if two cells an axis need more
-    std::uint32_t least = 64;   ///< the chain ends at the first level with at most this many triangles
-    float slack = 0.25F;        ///< relative gap allowed between upper and lower bound
+    std::uint32_t max_triangles = 1000;  ///< triangles of the finest level; exceeded only if two cells an axis need more
+    std::uint32_t min_triangles = 64;    ///< the chain ends at the first level with at most this many triangles
+    float slack = 0.25F;                 ///< relative gap allowed between upper and lower bound
 };
 
 /// A chain of levels of g (not g itself), with vertices of its own and g's centre; at least one level.

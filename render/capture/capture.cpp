@@ -19,7 +19,7 @@ Capture take(const select::SelectInput& input, std::string_view selector, float 
     c.target_error_rad = input.target_error_rad;
     c.slice_us = input.slice_us;
     c.combine = input.costs->combine;
-    c.upper_factor = static_cast<float>(select::upper_factor_of(input));
+    c.headroom = static_cast<float>(select::headroom_of(input));
     c.slice_end_us = input.costs->slice_us;
     c.hysteresis = hysteresis;
     c.node_count = static_cast<std::uint32_t>(input.model->nodes.size());
@@ -47,7 +47,7 @@ Result<select::Cut> replay(const Capture& capture, std::string_view selector_nam
     state.touched = capture.memory;
     model::CostModel costs;
     costs.combine = capture.combine;
-    costs.upper_factor = capture.upper_factor;
+    costs.headroom = capture.headroom;
     costs.slice_us = capture.slice_end_us;
     select::SelectInput input{&nodes_only,        &capture.prepared,        &costs,          capture.budget_us,
                               capture.correction, capture.target_error_rad, capture.slice_us};

@@ -21,8 +21,8 @@ using model::none;
 
 constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
 constexpr std::uint32_t version = 3;
-constexpr std::uint64_t most_bytes = 1ULL << 31U;  // unpacked
-constexpr std::uint32_t most_nodes = 1U << 26U;    // replay makes room for them
+constexpr std::uint64_t max_bytes = 1ULL << 31U;  // unpacked
+constexpr std::uint32_t max_nodes = 1U << 26U;    // replay makes room for them
 constexpr std::size_t header_bytes = 40;
 constexpr const char* remedy = "Capture the frame again";
 
@@ -37,7 +37,7 @@ void each_field(Io& io, Frame& f) {
 template <class Io, class C>
 void each_setting(Io& io, C& c) {
     io(c.frame, c.budget_us, c.correction, c.target_error_rad, c.slice_us, c.combine.fixed_us, c.combine.submit_weight,
-       c.combine.raster_weight, c.combine.max_weight, c.upper_factor, c.slice_end_us, c.hysteresis, c.node_count, c.hash,
+       c.combine.raster_weight, c.combine.max_weight, c.headroom, c.slice_end_us, c.hysteresis, c.node_count, c.hash,
        c.predicted_us);
 }
 template <class Io, class C>
@@ -149,7 +149,7 @@ const char* wrong_in(const prepare::Candidate& c, std::size_t at, std::size_t& n
 
 Result<void> check(const Capture& c, const std::string& place) {
     const auto bad = [&](std::string_view what) { return Error{place, std::string(what), remedy, ErrorKind::damaged}; };
-    if (c.node_count == 0 || c.node_count > most_nodes) return bad("The number of nodes is out of range");
+    if (c.node_count == 0 || c.node_count > max_nodes) return bad("The number of nodes is out of range");
     if (!(c.hysteresis >= 1.0F && c.hysteresis <= 16.0F)) return bad("The hysteresis is out of range");
     const auto& f = c.prepared;
     std::size_t next_child = 1;
@@ -202,7 +202,7 @@ Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::strin
         return Error{place, "The file is truncated, or has bytes after its end", remedy, ErrorKind::damaged};
     const auto payload = header.bytes(packed);
     if (hash_bytes(payload) != sum) return Error{place, "The checksum does not match", remedy, ErrorKind::damaged};
-    if (unpacked > most_bytes) return Error{place, "The frame is too large", remedy, ErrorKind::out_of_limits};
+    if (unpacked > max_bytes) return Error{place, "The frame is too large", remedy, ErrorKind::out_of_limits};
     std::vector<std::byte> body(unpacked);
     const std::size_t got = ZSTD_decompress(body.data(), body.size(), payload.data(), payload.size());
     if (ZSTD_isError(got) != 0 || got != unpacked) return Error{place, "The frame does not unpack", remedy, ErrorKind::damaged};
@@ -216,7 +216,7 @@ Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::strin
 }
 
 Result<Capture> read_capture(const std::string& file) {
-    auto bytes = read_file(file, most_bytes);
+    auto bytes = read_file(file, max_bytes);
     if (!bytes) return bytes.error();
     return parse_capture(*bytes, file);
 }

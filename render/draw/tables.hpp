@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/draw/coincidence.hpp"
 #include "render/draw/texture_arrays.hpp"
-#include "render/draw/ties.hpp"
 #include "render/model/model.hpp"
 
 namespace surefoot::draw {
@@ -41,7 +41,7 @@ struct DrawTables {
     std::vector<DrawPart> parts;
     std::vector<DrawRep> reps;
     std::vector<Placed> placements;
-    TieRanks ties;
+    DepthBiasRanks depth_bias;
     std::vector<vec4> centres;  ///< of a node's box, relative to `middle`; for sorting only
     dvec3 middle{0.0};
 };

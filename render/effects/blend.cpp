@@ -7,7 +7,7 @@ constexpr EffectModule blend{
     .bit = model::effect_blend,
     .name = "blend",
     .help = "transparent surfaces, drawn last, back to front",
-    .asked_by = "a material whose alpha mode is blend",
+    .requested_by = "a material whose alpha mode is blend",
     .vertex_declarations = "",
     .vertex_code = "",
     .fragment_declarations = "",

@@ -16,7 +16,7 @@ namespace surefoot::effects {
 struct EffectModule {
     model::Effect bit;
     std::string_view name, help;                            ///< help: one line for people
-    std::string_view asked_by;                              ///< what in a scene asks for it
+    std::string_view requested_by;                          ///< what in a scene asks for it
     std::string_view vertex_declarations, vertex_code;      ///< may read `world_rows`, write `v_colour`
     std::string_view fragment_declarations, fragment_code;  ///< may change `colour`, discard
 };

@@ -21,7 +21,7 @@ public:
     [[nodiscard]] virtual bool has_window() const { return false; }
     virtual void present() {}
     /// Whether the driver reports resets, through glGetGraphicsResetStatus.
-    [[nodiscard]] virtual bool tells_resets() const { return false; }
+    [[nodiscard]] virtual bool reports_resets() const { return false; }
 };
 
 Result<std::unique_ptr<Context>> open_egl_surfaceless();

@@ -82,18 +82,18 @@ void EglContext::destroy() {
     surface_ = EGL_NO_SURFACE;
 }
 
-void EglContext::create_of_version(EGLConfig config, EGLint minor, bool tells_resets) {
+void EglContext::create_of_version(EGLConfig config, EGLint minor, bool reports_resets) {
     const std::array<EGLint, 9> wanted{EGL_CONTEXT_MAJOR_VERSION,
                                        4,
                                        EGL_CONTEXT_MINOR_VERSION,
                                        minor,
                                        EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                       tells_resets ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
-                                       tells_resets ? EGL_LOSE_CONTEXT_ON_RESET : EGL_NONE,
+                                       reports_resets ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+                                       reports_resets ? EGL_LOSE_CONTEXT_ON_RESET : EGL_NONE,
                                        EGL_NONE};
     context_ = egl_.CreateContext(display_, config, EGL_NO_CONTEXT, wanted.data());
-    tells_resets_ = tells_resets && context_ != EGL_NO_CONTEXT;
+    reports_resets_ = reports_resets && context_ != EGL_NO_CONTEXT;
 }
 
 Result<void> EglContext::create(EGLConfig config) {

@@ -64,7 +64,7 @@ public:
     void release() override;
     [[nodiscard]] void* find(const char* function) const override;
     [[nodiscard]] std::string name() const override { return name_; }
-    [[nodiscard]] bool tells_resets() const override { return tells_resets_; }
+    [[nodiscard]] bool reports_resets() const override { return reports_resets_; }
     [[nodiscard]] EGLDisplay display() const { return display_; }
 
 protected:
@@ -77,8 +77,8 @@ protected:
     EGLSurface surface_ = EGL_NO_SURFACE;
 
 private:
-    void create_of_version(EGLConfig config, EGLint minor, bool tells_resets);
-    bool counted_, tells_resets_ = false;
+    void create_of_version(EGLConfig config, EGLint minor, bool reports_resets);
+    bool counted_, reports_resets_ = false;
     std::string name_;
 };
 

@@ -9,10 +9,10 @@ namespace surefoot::gl {
 
 namespace {
 
-constexpr std::uint32_t most_slices = 1024;  // fences kept a frame; beyond it the oldest is waited for first
+constexpr std::uint32_t max_slices = 1024;  // fences kept a frame; beyond it the oldest is waited for first
 // A driver that has not finished a slice after ten waits of a second hangs.
 constexpr GLuint64 wait_ns = 1'000'000'000;
-constexpr int most_waits = 10;
+constexpr int max_waits = 10;
 
 bool is_software(std::string_view renderer) {
     for (const std::string_view name : {"llvmpipe", "softpipe", "swrast", "Software"}) {
@@ -23,7 +23,7 @@ bool is_software(std::string_view renderer) {
 
 /// False: the fence cannot be waited for, or the GPU has not reached it within the bound.
 bool reached(const Api& gl, GLsync fence) {
-    for (int i = 0; i < most_waits; ++i) {
+    for (int i = 0; i < max_waits; ++i) {
         const GLenum result = gl.ClientWaitSync(fence, 0, wait_ns);
         if (result != GL_TIMEOUT_EXPIRED) return result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED;
     }
@@ -59,9 +59,9 @@ Result<void> GlDevice::set_up() {
     frame_ = *frame;
     pending_.resize(frame_.instances.size());
     blended_.resize(frame_.instances.size());
-    fences_.resize(most_slices, nullptr);
+    fences_.resize(max_slices, nullptr);
     gl_.GenQueries(1, &timer_);
-    if (context_->tells_resets() && gl_.version >= 45)
+    if (context_->reports_resets() && gl_.version >= 45)
         reset_status_ = reinterpret_cast<PFNGLGETGRAPHICSRESETSTATUSPROC>(context_->find("glGetGraphicsResetStatus"));
     return check_errors(gl_, context_->name(), "See `surefoot doctor`");
 }
@@ -132,8 +132,8 @@ std::string GlDevice::program_text(model::EffectMask mask) const {
 }
 
 std::uint32_t GlDevice::end_slice() {
-    if (slices_ - slices_done_ >= most_slices) wait_slices(most_slices - 1);
-    fences_[slices_ % most_slices] = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    if (slices_ - slices_done_ >= max_slices) wait_slices(max_slices - 1);
+    fences_[slices_ % max_slices] = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl_.Flush();
     return ++slices_;
 }
@@ -142,7 +142,7 @@ std::uint32_t GlDevice::end_slice() {
 
 void GlDevice::wait_slices(std::uint32_t in_flight) {
     while (slices_ - slices_done_ > in_flight) {
-        GLsync& fence = fences_[slices_done_ % most_slices];
+        GLsync& fence = fences_[slices_done_ % max_slices];
         lost_ = lost_ || !reached(gl_, fence);
         gl_.DeleteSync(fence);
         fence = nullptr;

@@ -19,12 +19,12 @@ namespace {
 
 constexpr std::uint32_t largest_side = 16384;
 /// No deflate stream unpacks to more than this many times its size: a smaller file cannot hold the picture it promises.
-constexpr std::uint64_t most_unpacked = 1040;
+constexpr std::uint64_t max_unpacked = 1040;
 /// Nor does a JPEG of 1 bit for 8 x 8 texels of brightness hold more than these texels a byte. (Arithmetic coding could, of
 /// one colour throughout.)
-constexpr std::uint64_t most_jpeg_texels_a_byte = 8 * 64;
+constexpr std::uint64_t max_jpeg_texels_a_byte = 8 * 64;
 /// Of a progressive JPEG: each goes over the whole picture, and a file of some kilobytes could ask for thousands.
-constexpr int most_jpeg_scans = 200;
+constexpr int max_jpeg_scans = 200;
 
 Error bad_image(const std::string& place, std::string what) {
     return Error{place, std::move(what), "Export the picture again as PNG or JPEG", ErrorKind::damaged};
@@ -49,8 +49,8 @@ Result<Image> decode_png(std::span<const std::byte> bytes, const std::string& pl
         png_image_free(&png);
         return fits.error();
     }
-    const std::uint64_t least_unpacked = std::uint64_t{png.width} * png.height / 8;  // 1 bit a texel at least
-    if (least_unpacked > most_unpacked * bytes.size()) {
+    const std::uint64_t min_unpacked = std::uint64_t{png.width} * png.height / 8;  // 1 bit a texel at least
+    if (min_unpacked > max_unpacked * bytes.size()) {
         png_image_free(&png);
         return bad_image(place, "The PNG is truncated");
     }
@@ -90,8 +90,8 @@ void jpeg_message(j_common_ptr state, int level) {
 
 void jpeg_scanned(j_common_ptr state) {
     auto* errors = reinterpret_cast<JpegErrors*>(state->err);
-    if (reinterpret_cast<j_decompress_ptr>(state)->input_scan_number <= most_jpeg_scans) return;
-    *fmt::format_to_n(errors->message.begin(), errors->message.size() - 1, "more than {} scans", most_jpeg_scans).out = '\0';
+    if (reinterpret_cast<j_decompress_ptr>(state)->input_scan_number <= max_jpeg_scans) return;
+    *fmt::format_to_n(errors->message.begin(), errors->message.size() - 1, "more than {} scans", max_jpeg_scans).out = '\0';
     std::longjmp(errors->jump, 1);
 }
 
@@ -141,7 +141,7 @@ Result<Image> decode_jpeg(std::span<const std::byte> bytes, const std::string& p
             jpeg_destroy_decompress(&jpeg);
             return fits.error();
         }
-        if (std::uint64_t{jpeg.image_width} * jpeg.image_height > most_jpeg_texels_a_byte * bytes.size()) {
+        if (std::uint64_t{jpeg.image_width} * jpeg.image_height > max_jpeg_texels_a_byte * bytes.size()) {
             jpeg_destroy_decompress(&jpeg);
             return bad_image(place, "The JPEG is truncated");
         }

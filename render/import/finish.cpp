@@ -65,14 +65,14 @@ std::string why_not_drawable(const Box& box, const dmat4& world) {
 void clean_meshes(Scene& scene, const Progress& progress) {
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         Mesh& mesh = scene.meshes[i];
-        Mended counts;
+        Repairs counts;
         for (Primitive& primitive : mesh.primitives) {
-            mend(primitive, counts);
+            repair(primitive, counts);
             if (primitive.material >= scene.materials.size()) primitive.material = 0;
         }
-        say(counts, mesh.name, scene.warnings, mesh.lacks);
+        report_repairs(counts, mesh.name, scene.warnings, mesh.lacks);
         std::erase_if(mesh.primitives, [](const Primitive& p) { return p.indices.empty(); });
-        progress.say("clean", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
+        progress.update("clean", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
     }
 }
 

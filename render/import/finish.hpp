@@ -37,7 +37,7 @@ Picture load_texture(Scene& scene, const std::string& file, const std::string& n
 Picture add_picture(Scene& scene, const std::string& name, Result<image::Image> image);
 
 /// Counts of repairs; sums over the primitives of a mesh. A mesh of many primitives gets one warning of each kind.
-struct Mended {
+struct Repairs {
     std::uint64_t arrays = 0;  ///< dropped: their length is not that of the positions
     std::uint64_t partial = 0, out_of_range = 0, non_finite = 0, enormous = 0;  ///< triangles
     std::uint64_t repeated = 0, zero_area = 0;                                  ///< triangles
@@ -45,8 +45,9 @@ struct Mended {
 };
 
 /// Cleans the primitive and adds to the counts.
-void mend(Primitive& primitive, Mended& counts);
+void repair(Primitive& primitive, Repairs& counts);
 /// Adds one warning for each count above zero. Those of broken (not only useless) data are added to `lacks` too.
-void say(const Mended& counts, const std::string& mesh_name, std::vector<std::string>& warnings, std::vector<std::string>& lacks);
+void report_repairs(const Repairs& counts, const std::string& mesh_name, std::vector<std::string>& warnings,
+                    std::vector<std::string>& lacks);
 
 }  // namespace surefoot::importer

@@ -168,7 +168,7 @@ Result<Scene> import_gltf(const std::string& file, const Progress& progress) {
         if (progress.stopped()) return Error{file, "The import was stopped", "", ErrorKind::stopped};
         scene.meshes[i].name = model->meshes[i].name.empty() ? fmt::format("mesh {}", i) : model->meshes[i].name;
         read_mesh(context, model->meshes[i], scene.meshes[i]);
-        progress.say("import", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
+        progress.update("import", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
     }
     if (auto placed = read_nodes(*model, file, scene); !placed) return placed.error();
     model->buffers.clear();

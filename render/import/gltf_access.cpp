@@ -10,7 +10,7 @@ namespace surefoot::importer {
 namespace {
 
 /// An accessor without a view is all zeros and has no bytes to bound its count: more than this is a mistake.
-constexpr std::uint64_t most_implicit_elements = 1U << 24U;
+constexpr std::uint64_t max_implicit_elements = 1U << 24U;
 
 Error bad_accessor(const std::string& place, int accessor, std::string what) {
     return Error{place, fmt::format("Accessor {} {}", accessor, what), export_again, ErrorKind::damaged};
@@ -130,7 +130,7 @@ Result<Located> locate_accessor(const tinygltf::Model& model, int index, const s
     found.component_size = component_bytes(found.accessor->componentType);
     if (found.components == 0 || found.component_size == 0) return bad_accessor(place, index, "has an unsupported type");
     if (found.accessor->bufferView < 0) {
-        if (found.accessor->count > most_implicit_elements)
+        if (found.accessor->count > max_implicit_elements)
             return bad_accessor(place, index, fmt::format("has {} elements without data", found.accessor->count));
         return found;
     }

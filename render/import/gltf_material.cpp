@@ -161,7 +161,7 @@ std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::
         material.unlit = from.extensions.contains("KHR_materials_unlit");
         scene.materials.push_back(std::move(material));
         uses.push_back(use_of(reference));
-        progress.say("textures", static_cast<double>(i + 1) / static_cast<double>(model.materials.size()));
+        progress.update("textures", static_cast<double>(i + 1) / static_cast<double>(model.materials.size()));
     }
     scene.materials.push_back(Material{.name = "default"});
     uses.emplace_back();

@@ -35,7 +35,7 @@ struct Group {
 
 struct Skipped {
     std::uint64_t count = 0, first_line = 0;
-    void note(std::uint64_t line) {
+    void add(std::uint64_t line) {
         if (count++ == 0) first_line = line;
     }
 };
@@ -50,7 +50,7 @@ public:
         if (auto parsed = parse(*text); !parsed) return parsed.error();
         text = std::string();
         make_meshes();
-        say_skipped();
+        warn_skipped();
         if (auto usable = finish(scene_, file_, progress_); !usable) return usable.error();
         return std::move(scene_);
     }
@@ -67,7 +67,7 @@ private:
             if (auto read = statement(cursor); !read) return read;
             if (++statements % 65536 != 0) continue;
             if (progress_.stopped()) return Error{file_, "The import was stopped", "", ErrorKind::stopped};
-            progress_.say("import", 1.0 - static_cast<double>(cursor.rest().size()) / static_cast<double>(text.size()));
+            progress_.update("import", 1.0 - static_cast<double>(cursor.rest().size()) / static_cast<double>(text.size()));
         }
         return {};
     }
@@ -92,9 +92,9 @@ private:
         } else if (key == "mtllib") {
             library(std::string(cursor.line_text()));
         } else if (key == "p" || key == "l") {
-            points_and_lines_.note(line);
+            points_and_lines_.add(line);
         } else if (key != "s" && key != "vp") {
-            unknown_.note(line);
+            unknown_.add(line);
         }
         return {};
     }
@@ -152,7 +152,7 @@ private:
             bool wrong = false;
             if (cursor.integer(index)) wrong = (corner.uv = resolve(index, uvs_.size())) == none;
             if (cursor.take('/') && cursor.integer(index)) wrong |= (corner.normal = resolve(index, normals_.size())) == none;
-            if (wrong) bad_corners_.note(line);
+            if (wrong) bad_corners_.add(line);
         }
         return corner.position != none;
     }
@@ -162,15 +162,15 @@ private:
         while (!cursor.at_line_end()) {
             Corner c{};
             if (!corner(cursor, line, c)) {
-                bad_faces_.note(line);
-                lost_.note(line);
+                bad_faces_.add(line);
+                lost_.add(line);
                 return {};
             }
             if (!cursor.at_word_end()) return wrong(line, "A corner of a face is none of v, v/vt, v//vn, v/vt/vn");
             polygon_.push_back(c);
         }
         if (polygon_.size() < 3) {
-            bad_faces_.note(line);
+            bad_faces_.add(line);
             return {};
         }
         add_polygon(line);
@@ -185,7 +185,7 @@ private:
         } else {
             outline_.clear();
             for (const Corner& c : polygon_) outline_.push_back(positions_[c.position]);
-            if (!triangulate(outline_, triples_)) crossing_.note(line);
+            if (!triangulate(outline_, triples_)) crossing_.add(line);
         }
         for (const std::uint32_t i : triples_) {
             const auto next = static_cast<std::uint32_t>(part.vertices.size());
@@ -289,21 +289,21 @@ private:
         return found->second;
     }
 
-    void say_skipped() {
+    void warn_skipped() {
         const auto text = [](const Skipped& skipped, const char* what) {
             return fmt::format("{} {} (first in line {})", skipped.count, what, skipped.first_line);
         };
-        const auto say = [&](const Skipped& skipped, const char* what) {
+        const auto warn = [&](const Skipped& skipped, const char* what) {
             if (skipped.count > 0) scene_.warnings.push_back(text(skipped, what));
         };
-        say(bad_faces_, "faces are dropped: index out of range, or fewer than three corners");
+        warn(bad_faces_, "faces are dropped: index out of range, or fewer than three corners");
         // Loose edges are useless, not broken.
         if (lost_.count > 0) scene_.damage.push_back({file_, text(lost_, "faces are dropped: index out of range")});
         if (bad_corners_.count > 0)
             scene_.damaged(text(bad_corners_, "faces name a texture coordinate or normal that does not exist"));
-        say(crossing_, "polygons cross themselves, so triangles may overlap");
-        say(points_and_lines_, "points or lines are dropped");
-        say(unknown_, "statements are not understood");
+        warn(crossing_, "polygons cross themselves, so triangles may overlap");
+        warn(points_and_lines_, "points or lines are dropped");
+        warn(unknown_, "statements are not understood");
     }
 
     const std::string& file_;

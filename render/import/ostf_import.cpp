@@ -159,7 +159,7 @@ Result<Scene> import_ostf(const std::string& file, const Progress& progress) {
             scene.meshes.back().primitives.push_back(std::move(primitive));
         }
         scene.nodes.push_back(std::move(node));
-        progress.say("import", static_cast<double>(i + 1) / static_cast<double>(index->objects.size()));
+        progress.update("import", static_cast<double>(i + 1) / static_cast<double>(index->objects.size()));
     }
     if (auto usable = finish(scene, file, progress); !usable) return usable.error();
     return scene;

@@ -207,7 +207,7 @@ private:
                 return wrong(fmt::format("The line '{}' stands among the triangles of '{}'", text.substr(0, 40), object.name));
             if ((i & 0xffffU) != 0) continue;
             if (progress_.stopped()) return Error{index_.file, "The import was stopped", "", ErrorKind::stopped};
-            progress_.say("index", static_cast<double>(lines_.consumed()) / static_cast<double>(total_));
+            progress_.update("index", static_cast<double>(lines_.consumed()) / static_cast<double>(total_));
         }
         return {};
     }

@@ -63,7 +63,7 @@ private:
             if (top.next == children_[top.node].size()) {
                 text_ += "END_TAG\n";
                 stack.pop_back();
-                progress_.say("write", static_cast<double>(++written_) / static_cast<double>(scene_.nodes.size()));
+                progress_.update("write", static_cast<double>(++written_) / static_cast<double>(scene_.nodes.size()));
             } else if (auto done = enter(children_[top.node][top.next++]); !done) {
                 return done;
             }

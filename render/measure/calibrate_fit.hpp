@@ -29,7 +29,7 @@ double relative_error(std::span<const FrameSample> samples, const model::FrameCo
 double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile);
 
 /// One time for each frame, from several measurements of it.
-struct Settled {
+struct FrameTimes {
     std::vector<FrameSample> frames;  ///< sums as last drawn; actual_us: minimum of the rounds, times `slowdown`
     double slowdown = 1;              ///< median over the frames of (median / minimum of the rounds)
     std::size_t repeated = 0;         ///< frames with at least two rounds of equal sums
@@ -38,6 +38,6 @@ struct Settled {
 /// varies by a factor of two within milliseconds, so single measurements do not compare.
 /// rounds: [frame][round], none empty. The rounds of a frame must lie far apart in time, so that one disturbance does not hit
 /// all. Only rounds with the same sums as the last one count: hysteresis of the first frames may differ between rounds.
-Settled settle(std::span<const std::vector<FrameSample>> rounds);
+FrameTimes robust_frame_times(std::span<const std::vector<FrameSample>> rounds);
 
 }  // namespace surefoot::measure

@@ -7,7 +7,7 @@
 
 #include "render/gl/device.hpp"
 #include "render/model/model.hpp"
-#include "render/model/surfaces.hpp"
+#include "render/model/pixel_estimator.hpp"
 #include "render/model/view.hpp"
 #include "rt/base/random.hpp"
 
@@ -33,7 +33,7 @@ struct TownObject {
 
 struct CalibrationScene {
     model::Model model;
-    model::Surfaces surfaces;  ///< of the model
+    model::PixelEstimator estimator;  ///< of the model
     std::vector<CalibrationCell> cells;
     std::vector<TownObject> town;  ///< in blocks: neighbours in the list are neighbours in space
     Box town_box;

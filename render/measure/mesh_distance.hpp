@@ -3,8 +3,8 @@
 // A simplifier's own error number is no bound, so the bake measures here. The directed distance from A to B is the largest
 // distance of a point of A to the surface B. The two-sided distance is the larger of both directions (Hausdorff).
 // Method: branch and bound over the triangles of A. The distance to one triangle of B is convex, so its maximum over a triangle
-// of A is at a corner. If no single triangle of B is near enough, several may cover the triangle of A (cover.hpp). If they do
-// not, it is split at its longest edge.
+// of A is at a corner. If no single triangle of B is near enough, several may cover the triangle of A (triangle_coverage.hpp). If
+// they do not, it is split at its longest edge.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,8 @@ public:
     /// Number in the mesh of a triangle of the tree. Its indices start at three times this number.
     [[nodiscard]] std::uint32_t in_mesh(std::uint32_t triangle) const { return in_mesh_[triangle]; }
     /// Calls visit(a, b, c) for each triangle in leaves whose box overlaps [low, high], until visit returns false.
-    template <class Visit>
-    void each_in(const vec3& low, const vec3& high, const Visit& visit) const {
+    template <class Visitor>
+    void each_in(const vec3& low, const vec3& high, const Visitor& visit) const {
         each_from(0, low, high, visit);
     }
 
@@ -54,8 +54,8 @@ private:
     struct Corners {
         vec3 a, b, c;
     };
-    template <class Visit>
-    bool each_from(std::uint32_t index, const vec3& low, const vec3& high, const Visit& visit) const {
+    template <class Visitor>
+    bool each_from(std::uint32_t index, const vec3& low, const vec3& high, const Visitor& visit) const {
         const Node& node = nodes_[index];
         if (glm::any(glm::greaterThan(node.min, high)) || glm::any(glm::lessThan(node.max, low))) return true;
         if (node.count == 0) return each_from(index + 1, low, high, visit) && each_from(node.first, low, high, visit);

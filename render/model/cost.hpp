@@ -46,9 +46,9 @@ struct FrameCombine {
 struct CostModel {
     std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
     FrameCombine combine;
-    float upper_factor = 1.25F;  ///< headroom: p90 of actual / predicted whole-frame cost at calibration
-    float slice_us = 30;         ///< cost of ending a slice (flush and fence)
-    std::string machine;         ///< CPU, renderer, rasteriser count; a table of another machine is refused
+    float headroom = 1.25F;  ///< headroom: p90 of actual / predicted whole-frame cost at calibration
+    float slice_us = 30;     ///< cost of ending a slice (flush and fence)
+    std::string machine;     ///< CPU, renderer, rasteriser count; a table of another machine is refused
     bool timer_query_honest = false;
     bool calibrated = false;  ///< false: built-in defaults
 

@@ -7,7 +7,7 @@
 
 #include "render/model/cost.hpp"
 #include "render/model/model.hpp"
-#include "render/model/surfaces.hpp"
+#include "render/model/pixel_estimator.hpp"
 
 namespace surefoot::model {
 
@@ -17,12 +17,12 @@ class ItemCosts {
 public:
     /// Allocates, and passes over every triangle. `model` and `costs` must outlive it; their arrays and grids must not change.
     ItemCosts(const Model& model, const CostModel& costs);
-    ItemCosts(const Model& model, const CostModel& costs, Surfaces surfaces);
+    ItemCosts(const Model& model, const CostModel& costs, PixelEstimator estimator);
     ItemCosts(Model&&, const CostModel&) = delete;
     ItemCosts(const Model&, CostModel&&) = delete;
 
     /// Cost of the representation `r` of a node with box `node_box`, seen from `eye`. Finite and >= 0.
-    /// Takes 0.1 us; nearby 1 to 4 us; up to 25 us where each triangle is tested (Surfaces::part_pixels).
+    /// Takes 0.1 us; nearby 1 to 4 us; up to 25 us where each triangle is tested (PixelEstimator::part_pixels).
     [[nodiscard]] ItemCost of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const;
 
 private:
@@ -40,7 +40,7 @@ private:
 
     const Model& model_;
     const CostModel& costs_;
-    Surfaces surfaces_;
+    PixelEstimator estimator_;
     std::vector<std::uint32_t> grid_of_part_;
     std::vector<Class> classes_;
     std::vector<Classes> classes_of_;  ///< [representation]; representations with the same parts share an entry

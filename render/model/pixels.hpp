@@ -1,5 +1,5 @@
 // Estimates the rasterised pixels of a representation seen from a pose, from its box and areas alone. Sufficient far away; nearby
-// it is a part of the estimate in surfaces.hpp.
+// it is a part of the estimate in pixel_estimator.hpp.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace surefoot::model {
 
-constexpr float most_pixels = 1e9F;  ///< a thousand layers of a megapixel; larger estimates are clamped
+constexpr float max_pixels = 1e9F;  ///< a thousand layers of a megapixel; larger estimates are clamped
 
 /// A view in the form that the estimates need, made once a frame. right, up, forward: unit vectors in world space.
 /// across, rise: the same, sheared so that an off-axis image is symmetric about 0. p is in the image if

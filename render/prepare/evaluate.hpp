@@ -54,7 +54,7 @@ inline float accuracy_gain(float error_rad, float pixel_angle_rad) {
 /// 0..1: penalty of an unusable representation that fills the view. With an error of about its distance or more, the eye sees
 /// through the shape, or the shape hangs before the eye. Motion and focus do not reduce this penalty.
 /// size: square root of its share of the view.
-inline float wrongness(float size, float error_rad) {
+inline float unusable_penalty(float size, float error_rad) {
     constexpr float begins_rad = 0.75F, full_rad = 2.0F, small = 0.2F;  // small: 1/25 of the view
     return std::clamp((error_rad - begins_rad) / (full_rad - begins_rad), 0.0F, 1.0F) * std::min(1.0F, size / small);
 }
@@ -71,7 +71,7 @@ inline float cost_metric(const model::FrameCombine& combine, const model::ItemCo
 /// Factor 0..1 by which an expensive step loses benefit: a half at 2 ms, which is 1/16 of a 30 Hz frame, the limit of an item.
 /// Of two equally wrong representations the cheaper step goes first. Otherwise one expensive step that does not fit would end
 /// the search before dozens of cheap ones.
-inline float thrift(float step_us) {
+inline float cost_penalty(float step_us) {
     constexpr float half_us = 2000.0F;
     return half_us / (half_us + std::max(step_us, 0.0F));
 }

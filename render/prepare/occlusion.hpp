@@ -36,10 +36,10 @@ public:
 
 private:
     static constexpr int columns = 128, rows = 72, tile = 8;
-    static constexpr std::size_t most_drawn = 320;
-    static constexpr std::size_t most_work = 3'000'000;  ///< limit on pixels of triangles and borders: about 2 ms
-    static constexpr float edge_slack = 0.01F;           ///< of a pixel, for rounding
-    static constexpr float beyond = 1e9F;                ///< any tangent, any 1/z
+    static constexpr std::size_t max_drawn = 320;
+    static constexpr std::size_t max_work = 3'000'000;  ///< limit on pixels of triangles and borders: about 2 ms
+    static constexpr float edge_slack = 0.01F;          ///< of a pixel, for rounding
+    static constexpr float beyond = 1e9F;               ///< any tangent, any 1/z
 
     struct Facing {
         float solid_angle;

@@ -35,7 +35,7 @@ private:
 
     private:
         const WorkerHooks& hooks_;
-        const int most_;
+        const int max_;
         const std::uint64_t id_;
         std::atomic<int> started_{0};
     };

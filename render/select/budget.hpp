@@ -28,7 +28,7 @@ public:
         const model::CostModel& costs = *input.costs;
         combine_ = costs.combine;
         const double correction = input.correction > 0.0 && std::isfinite(input.correction) ? input.correction : 1.0;
-        factor_ = correction * upper_factor_of(input);
+        factor_ = correction * headroom_of(input);
         // 1 + items / slice_us is never less than the number of slices that plan_slices makes.
         const double slice_end_us = static_cast<double>(costs.combine.submit_weight) * static_cast<double>(costs.slice_us);
         fixed_us_ = static_cast<double>(combine_.fixed_us) + slice_end_us;

@@ -48,11 +48,11 @@ struct SelectInput {
     double correction = 1;        ///< online factor on predictions
     double target_error_rad = 0;  ///< stop refining at this error; 0: refine as far as the budget goes
     double slice_us = 1000;       ///< predicted length of a slice; the prediction includes the cost of ending slices
-    double upper_factor = 0;      ///< headroom on corrected predictions; 0: that of the cost table
+    double headroom = 0;          ///< headroom on corrected predictions; 0: that of the cost table
 };
 
-inline double upper_factor_of(const SelectInput& input) {
-    return input.upper_factor > 0 ? input.upper_factor : static_cast<double>(input.costs->upper_factor);
+inline double headroom_of(const SelectInput& input) {
+    return input.headroom > 0 ? input.headroom : static_cast<double>(input.costs->headroom);
 }
 
 /// The last state of a node: a representation, or SelectState::opened.

@@ -13,7 +13,7 @@ namespace surefoot::select {
 
 namespace {
 
-constexpr std::size_t most_slices = 4096;
+constexpr std::size_t max_slices = 4096;
 
 /// Predicted time as a linear measure, so that parts add up to the whole: the larger sum carries the max term.
 struct Measure {
@@ -124,7 +124,7 @@ SlicePlan::SlicePlan(SlicePlan&&) noexcept = default;
 SlicePlan& SlicePlan::operator=(SlicePlan&&) noexcept = default;
 
 void SlicePlan::reserve(std::uint32_t max_candidates) {
-    slices.reserve(std::min<std::size_t>(max_candidates, most_slices));
+    slices.reserve(std::min<std::size_t>(max_candidates, max_slices));
     order.reserve(max_candidates);
     stand_ins.reserve(max_candidates);
     scratch_->below_us.resize(max_candidates);

@@ -1,7 +1,7 @@
 // The value of a candidate's next step: search keys with hysteresis, and the two thresholds of the budget.
 #pragma once
 
-#include "render/select/cover.hpp"
+#include "render/select/cut_builder.hpp"
 
 namespace surefoot::select {
 

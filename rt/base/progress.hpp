@@ -14,10 +14,10 @@ struct Progress {
     /// Set (by a signal handler) when the user wants the work to stop; the work returns an Error soon after.
     const std::atomic<bool>* stop = nullptr;
     /// Shows the user a note at once, on the calling thread. If empty, the result carries the note.
-    std::function<void(std::string_view text)> note;
+    std::function<void(std::string_view text)> notify;
 
     [[nodiscard]] bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
-    void say(std::string_view stage, double done) const {
+    void update(std::string_view stage, double done) const {
         if (report) report(stage, done);
     }
 };

@@ -12,26 +12,26 @@ namespace surefoot::rt {
 /// any view of any scene. The next frame of a walk resembles the last, so the table's headroom would leave much budget unspent.
 class CostController {
 public:
-    static constexpr std::size_t window = 15, upper_window = 64;
+    static constexpr std::size_t window = 15, headroom_window = 64;
     static constexpr double lowest = 0.5, highest = 2.0, slew = 1.06;
-    static constexpr double least_upper = 1.04;
+    static constexpr double min_headroom = 1.04;
 
     /// predicted_us: uncorrected (factor 1). Pairs that are not positive and finite are ignored.
     void update(double predicted_us, double actual_us);
     [[nodiscard]] double factor() const { return factor_; }
     /// The headroom; at most the table's, which it equals for the first 58 frames. Falls as fast as it rises: a slow fall of 1 %
     /// a frame used more time and made frames no steadier.
-    [[nodiscard]] double upper(double of_table) const;
+    [[nodiscard]] double headroom(double of_table) const;
 
 private:
-    void update_upper(double error);
+    void update_headroom(double error);
 
     std::array<double, window> ratios_{};
     std::size_t count_ = 0, next_ = 0;
     double factor_ = 1;
-    std::array<double, upper_window> errors_{};
+    std::array<double, headroom_window> errors_{};
     std::size_t errors_count_ = 0, errors_next_ = 0;
-    double upper_ = highest;
+    double headroom_ = highest;
 };
 
 }  // namespace surefoot::rt

@@ -12,7 +12,7 @@ namespace surefoot::rt {
 /// A number that cannot be read is -1.
 struct ProcessFigures {
     std::int64_t rss_bytes = -1, virtual_bytes = -1, locked_bytes = -1;
-    std::int64_t descriptors = -1, descriptors_most = -1;
+    std::int64_t descriptors = -1, max_descriptors = -1;
     std::int64_t threads = -1;
     double cpu_s = -1;      ///< user and system, all threads, ended ones included
     double started_s = -1;  ///< since boot

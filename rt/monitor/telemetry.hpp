@@ -18,20 +18,20 @@ namespace surefoot::rt {
 /// 15T/16, T, 5T/4, 2T, which are dense near the deadline.
 class Edges {
 public:
-    static constexpr std::size_t most = 27;
+    static constexpr std::size_t max_edges = 27;
     Edges() : Edges(16'666'667) {}
     explicit Edges(std::int64_t period_ns);
     [[nodiscard]] std::span<const std::int64_t> ns() const { return {edges_ns_.data(), count_}; }
 
 private:
-    std::array<std::int64_t, most> edges_ns_{};
+    std::array<std::int64_t, max_edges> edges_ns_{};
     std::size_t count_ = 0;
 };
 
 /// Distribution of nanoseconds, any value: without loss in the histogram, and exact at the edges.
 struct Distribution {
     Histogram fine;
-    std::array<std::uint64_t, Edges::most + 1> up_to{};  ///< [i]: above edge i-1, at most edge i; the last: above all edges
+    std::array<std::uint64_t, Edges::max_edges + 1> up_to{};  ///< [i]: above edge i-1, at most edge i; the last: above all edges
 
     void add(const Edges& edges, std::int64_t value_ns);
     void add_progression(const Edges& edges, std::int64_t first_ns, std::int64_t step_ns, std::uint64_t times);
@@ -73,7 +73,7 @@ struct TelemetrySetup {
 
 /// Everything that a reader may want, in one plain block (about 220 KiB). The control's bare frames count in bare_frames only.
 struct Figures {
-    static constexpr std::size_t recent_most = 1024;
+    static constexpr std::size_t max_recent = 1024;
 
     TelemetrySetup setup;
     Edges edges;
@@ -87,8 +87,8 @@ struct Figures {
     std::int64_t stolen_ns = 0, preempted_ns = 0, frame_cpu_ns = 0, raster_cpu_ns = 0;
     double prepare_cpu_us = 0;
     FrameRecord last;  ///< newest frame of the walk; meaningless while frames is 0
-    std::array<RecentFrame, recent_most> recent{};
-    std::uint64_t recent_count = 0;  ///< ever; the i-th is recent[i % recent_most]
+    std::array<RecentFrame, max_recent> recent{};
+    std::uint64_t recent_count = 0;  ///< ever; the i-th is recent[i % max_recent]
 
     [[nodiscard]] const Distribution& of(Series s) const { return series[static_cast<std::size_t>(s)]; }
     [[nodiscard]] std::uint64_t all_misses() const;

@@ -112,9 +112,9 @@ __attribute__((noinline)) void prefault_stack(std::size_t bytes) {
 
 std::int64_t minor_fault_cost_ns() {
     constexpr std::size_t pages = 1024, page = 4096;
-    constexpr std::int64_t least_ns = 500, most_ns = 5000;
+    constexpr std::int64_t min_ns = 500, max_ns = 5000;
     void* const mapped = mmap(nullptr, pages * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (mapped == MAP_FAILED) return most_ns;
+    if (mapped == MAP_FAILED) return max_ns;
     madvise(mapped, pages * page, MADV_NOHUGEPAGE);
     auto* const memory = static_cast<volatile unsigned char*>(mapped);
     const ThreadUsage before = read_own_usage();
@@ -122,7 +122,7 @@ std::int64_t minor_fault_cost_ns() {
     const ThreadUsage spent = read_own_usage() - before;
     munmap(mapped, pages * page);
     const auto faults = static_cast<std::int64_t>(spent.minor_faults);
-    return std::clamp(faults > 0 ? 2 * spent.cpu_ns / faults : least_ns, least_ns, most_ns);
+    return std::clamp(faults > 0 ? 2 * spent.cpu_ns / faults : min_ns, min_ns, max_ns);
 }
 
 bool lock_unlimited() {

@@ -54,7 +54,7 @@ public:
 /// Makes oneTBB start its workers: three tasks that all wait until three threads have met (or none more comes).
 int start_workers(bool placed) {
     std::array<pid_t, 3> tids{};
-    int met = 0;
+    int arrived = 0;
     Mutex mutex;
     Condition changed;
     const auto deadline = std::chrono::steady_clock::now() + start_within;
@@ -68,9 +68,9 @@ int start_workers(bool placed) {
             [&](int i) {
                 const MutexLock lock(mutex);
                 tids[static_cast<std::size_t>(i)] = own_tid();
-                ++met;
+                ++arrived;
                 changed.notify_all();
-                while (met < 3 && changed.wait_until(mutex, deadline)) {
+                while (arrived < 3 && changed.wait_until(mutex, deadline)) {
                 }
             },
             tbb::simple_partitioner{});
@@ -140,10 +140,10 @@ TEST(CensusWithTbb, OnlyWorkersThatArePlacedAsTheyStartPass) {
 
 TEST(Stopped, AProcessStoppedForThreeTenthsOfASecondCountsItsSlotsAndNamesTheCause) {
     if (!guard_active()) GTEST_SKIP() << "sanitizers make a forked child's signals unreliable";
-    test::Told under_way;
+    test::StartSignal under_way;
     const auto body = [&] {
         RealClock clock;
-        test::TellingStages stages(under_way);
+        test::SignallingStages stages(under_way);
         SpscRing<FrameRecord> ring(128);
         FrameLoopOptions options;
         options.frames = 30;

@@ -209,11 +209,11 @@ TEST(WalkTool, WithoutADeviceItRestsAndSaysSoOnce) {
     bed.plug(recorded("boot-mouse"));
     Tool tool(Place::get().walk("2"), false, "walk");
     ASSERT_EQ(tool.wait(30'000), 0) << tool.err();
-    const std::string said = tool.err();
-    const auto first = said.find("No connected device steers");
-    ASSERT_NE(first, std::string::npos) << said;
-    EXPECT_EQ(said.find("No connected device steers", first + 1), std::string::npos) << said;
-    EXPECT_NE(said.find("[[device]]"), std::string::npos) << "why the mouse does not steer: " << said;
+    const std::string errors = tool.err();
+    const auto first = errors.find("No connected device steers");
+    ASSERT_NE(first, std::string::npos) << errors;
+    EXPECT_EQ(errors.find("No connected device steers", first + 1), std::string::npos) << errors;
+    EXPECT_NE(errors.find("[[device]]"), std::string::npos) << "why the mouse does not steer: " << errors;
     const auto rows = ledger(Place::get().dir + "/ledger.csv");
     ASSERT_EQ(rows.size(), 60U);
     EXPECT_EQ(rows.front().eye, rows.back().eye);
@@ -265,10 +265,10 @@ action = "stop_reset"
     });
     EXPECT_TRUE(moved());
     EXPECT_EQ(*read_text(dir + "/emergency-stop"), "surefoot emergency stop: latched\n");
-    const auto [second, said] = walk({}, push);
+    const auto [second, errors] = walk({}, push);
     EXPECT_FALSE(moved()) << "the stop was forgotten";
     EXPECT_EQ(second["stop_latched"], true);
-    EXPECT_NE(said.find("still latched"), std::string::npos) << said;
+    EXPECT_NE(errors.find("still latched"), std::string::npos) << errors;
     const auto [third, reset] = walk({}, [&](Tool& tool, test::Plug& plug) {
         hold(plug, 0, 100);
         hold_until(tool, "emergency stop: released", plug, 32);
