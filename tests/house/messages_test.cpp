@@ -144,13 +144,13 @@ std::size_t words_of(std::string_view sentence) {
     return words;
 }
 
-struct Found {
+struct FoundTexts {
     std::vector<std::string> too_long;
     std::size_t texts = 0;
 };
 
 template <class Openers>
-void find_texts(std::string_view source, const Openers& of, Found& found) {
+void find_texts(std::string_view source, const Openers& of, FoundTexts& found) {
     for (const Opener& opener : of) {
         for (auto at = source.find(opener.word); at != std::string_view::npos; at = source.find(opener.word, at + 1)) {
             if (at > 0 && opener.word[0] != '_' && is_word(source[at - 1])) continue;
@@ -166,9 +166,9 @@ void find_texts(std::string_view source, const Openers& of, Found& found) {
     }
 }
 
-Found texts_of(const std::string& file, std::string source) {
+FoundTexts texts_of(const std::string& file, std::string source) {
     source = without_comments(std::move(source));
-    Found found;
+    FoundTexts found;
     find_texts(source, openers, found);
     if (file == "config/schema.cpp") find_texts(source, schema_openers, found);
     return found;
@@ -189,7 +189,7 @@ TEST(Messages, HaveSentencesOfAtMost25Words) {
             const std::string file = fs::relative(entry.path(), source_tree).generic_string();
             const auto source = read_text(entry.path().string());
             ASSERT_TRUE(source) << file;
-            const Found found = texts_of(file, *source);
+            const FoundTexts found = texts_of(file, *source);
             texts += found.texts;
             for (const std::string& sentence : found.too_long)
                 ADD_FAILURE() << file << ": " << words_of(sentence) << " words: " << sentence;
