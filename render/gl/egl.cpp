@@ -75,7 +75,7 @@ EglContext::~EglContext() {
 
 void EglContext::destroy() {
     if (context_ == EGL_NO_CONTEXT && surface_ == EGL_NO_SURFACE) return;
-    if (egl_.GetCurrentContext() == context_) release();
+    if (egl_.GetCurrentContext() == context_) EglContext::release();
     if (context_ != EGL_NO_CONTEXT) egl_.DestroyContext(display_, context_);
     if (surface_ != EGL_NO_SURFACE) egl_.DestroySurface(display_, surface_);
     context_ = EGL_NO_CONTEXT;

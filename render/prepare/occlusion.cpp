@@ -74,7 +74,7 @@ bool Occlusion::aim(const Region& region, model::Viewport viewport) {
         const float ty = static_cast<float>(2 * y + 1) * half_row_ - high_;
         for (int x = 0; x < columns; ++x) {
             const float tx = static_cast<float>(2 * x + 1) * half_column_ - wide_;
-            length_[static_cast<std::size_t>(y * columns + x)] = std::sqrt(tx * tx + ty * ty + 1.0F);
+            length_[pixel(x, y)] = std::sqrt(tx * tx + ty * ty + 1.0F);
         }
     }
     return true;
@@ -209,11 +209,11 @@ Occlusion::Rect Occlusion::rect_of(const Drawn& triangle) const {
 bool Occlusion::nearer_than(float inverse_depth, const Rect& rect) const {
     for (int ty = rect.y0 / tile; ty <= rect.y1 / tile; ++ty) {
         for (int tx = rect.x0 / tile; tx <= rect.x1 / tile; ++tx) {
-            if (tiles_[static_cast<std::size_t>(ty * (columns / tile) + tx)] > inverse_depth) continue;
+            if (tiles_[tile_at(tx, ty)] > inverse_depth) continue;
             const int y1 = std::min(rect.y1, ty * tile + tile - 1), x1 = std::min(rect.x1, tx * tile + tile - 1);
             for (int y = std::max(rect.y0, ty * tile); y <= y1; ++y) {
                 for (int x = std::max(rect.x0, tx * tile); x <= x1; ++x) {
-                    if (!(depth_[static_cast<std::size_t>(y * columns + x)] > inverse_depth)) return false;
+                    if (!(depth_[pixel(x, y)] > inverse_depth)) return false;
                 }
             }
         }

@@ -41,6 +41,11 @@ private:
     static constexpr float edge_slack = 0.01F;          ///< of a pixel, for rounding
     static constexpr float beyond = 1e9F;               ///< any tangent, any 1/z
 
+    static std::size_t pixel(int x, int y) { return static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x); }
+    static std::size_t tile_at(int x, int y) {
+        return static_cast<std::size_t>(y) * (columns / tile) + static_cast<std::size_t>(x);
+    }
+
     struct Facing {
         float solid_angle;
         std::uint32_t triangle;

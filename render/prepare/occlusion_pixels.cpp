@@ -94,10 +94,10 @@ void Occlusion::end_surface(const Rect& rect) {
             std::array<float, tile> least;
             least.fill(beyond);
             for (int y = ty * tile; y < (ty + 1) * tile; ++y) {
-                const float* row = &depth_[static_cast<std::size_t>(y * columns + tx * tile)];
+                const float* row = &depth_[pixel(tx * tile, y)];
                 for (std::size_t x = 0; x < tile; ++x) least[x] = std::min(least[x], row[x]);
             }
-            tiles_[static_cast<std::size_t>(ty * (columns / tile) + tx)] = *std::min_element(least.begin(), least.end());
+            tiles_[tile_at(tx, ty)] = *std::min_element(least.begin(), least.end());
         }
     }
 }

@@ -53,7 +53,7 @@ TEST(AlphaBleed, GivesTheColourOfANearestShownTexel) {
     }
 }
 
-image::Image image_of(std::vector<Texel> texels, std::uint32_t width, std::uint32_t height) {
+image::Image image_of(const std::vector<Texel>& texels, std::uint32_t width, std::uint32_t height) {
     image::Image image{"picture", width, height, {}, true};
     for (const Texel& t : texels) image.rgba.insert(image.rgba.end(), t.begin(), t.end());
     return image;

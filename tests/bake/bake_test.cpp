@@ -211,7 +211,8 @@ TEST(Bake, NothingDrawableAndStoppedAreNamed) {
 TEST(Clusters, GrowFromNearToFarAndHoldEveryObjectOnce) {
     std::vector<Box> boxes;
     for (int i = 0; i < 100; ++i) {
-        const dvec3 at(10.0 * (i % 10), 0, 10.0 * (i / 10));
+        const int column = i % 10, row = i / 10;
+        const dvec3 at(10.0 * column, 0, 10.0 * row);
         boxes.push_back({at, at + dvec3(1)});
     }
     boxes.push_back({dvec3(-5), dvec3(100)});  // one that encloses all

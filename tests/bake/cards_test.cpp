@@ -238,8 +238,10 @@ TEST(Cards, LeaveTheTrunkItsShapeAndAreNeverBoxed) {
     EXPECT_LE(chain.levels.front().triangles, 60U) << "the trunk did not keep it from getting small";
     for (const Level& level : chain.levels) {
         double leaves = 0, solid = 0;
-        for (const GeometryPart& part : level.parts)
-            (part.material == 0 ? leaves : solid) += static_cast<double>(part.indices.size() / 3);
+        for (const GeometryPart& part : level.parts) {
+            const std::size_t triangles = part.indices.size() / 3;
+            (part.material == 0 ? leaves : solid) += static_cast<double>(triangles);
+        }
         EXPECT_GT(leaves, 0) << "a box of " << solid;
         if (level.triangles < 490 && leaves > 4) {
             EXPECT_GE(solid / 290, 1.2 * leaves / 200);
@@ -304,9 +306,10 @@ Geometry orchard() {
     for (int tree = 0; tree < 9; ++tree) {
         const Geometry one = crown(60);
         const auto base = static_cast<std::uint32_t>(g.vertices.size());
+        const int column = tree % 3, row = tree / 3;
         for (model::Vertex v : one.vertices) {
-            v.position[0] += 6.0F * static_cast<float>(tree % 3);
-            v.position[2] += 6.0F * static_cast<float>(tree / 3);
+            v.position[0] += 6.0F * static_cast<float>(column);
+            v.position[2] += 6.0F * static_cast<float>(row);
             g.vertices.push_back(v);
         }
         g.baked.insert(g.baked.end(), one.baked.begin(), one.baked.end());

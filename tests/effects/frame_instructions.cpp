@@ -77,7 +77,8 @@ model::Model scene(model::EffectMask effects) {
     for (int i = 0; i < 48; ++i) {
         const auto shade = static_cast<float>(i) / 48.0F;
         const auto material = small.material(test::plain(shade, 1 - shade, 0.5F, 1, effects));
-        small.object(vertices, indices, material, test::at(-10.5 + 3 * (i % 8), -6 + 3 * ((i / 8) % 3), -12.0 - 3 * (i / 24)));
+        const int column = i % 8, row = i / 8 % 3, layer = i / 24;
+        small.object(vertices, indices, material, test::at(-10.5 + 3 * column, -6 + 3 * row, -12.0 - 3 * layer));
     }
     return small.finish();
 }

@@ -1,6 +1,7 @@
 // A recorded session of a gamepad that nobody built: its descriptor, and reports written as hid-recorder writes them.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -44,8 +45,8 @@ public:
     }
     /// The hand keeps still for so long while the pad reports on.
     GamepadSession& hold(const Hand& hand, double seconds, std::int64_t every_us = 4000) {
-        const auto count = static_cast<int>(seconds * 1e6 / static_cast<double>(every_us) + 0.5);
-        for (int i = 0; i < count; ++i) report(hand, every_us);
+        const auto count = std::lround(seconds * 1e6 / static_cast<double>(every_us));
+        for (long i = 0; i < count; ++i) report(hand, every_us);
         return *this;
     }
     /// A press and its release, 100 ms each.

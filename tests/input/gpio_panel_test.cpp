@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "rt/base/random.hpp"
 #include "tests/input/fake_lines.hpp"
 #include "tests/time_units.hpp"
@@ -82,7 +84,7 @@ TEST(Quadrature, IllegalTransitionsAreCountedNotGuessed) {
 
 LineConfig line(std::string name, LineRole role) {
     LineConfig c;
-    c.name = name;
+    c.name = std::move(name);
     c.role = role;
     c.request.chip = "gpiochip0";
     c.request.line = role == LineRole::encoder_b ? name + "-b" : name;

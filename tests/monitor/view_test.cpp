@@ -102,7 +102,7 @@ TEST(View, TopShowsRatesSlotsAndCauses) {
     EXPECT_NE(all.find("stolen 8"), std::string::npos) << all;
     EXPECT_NE(all.find("least -5.00 ms"), std::string::npos) << all;
     EXPECT_NE(all.find("not fully real-time: fifo"), std::string::npos) << all;
-    EXPECT_EQ(all.find("\xe2"), std::string::npos) << "plain characters where the terminal knows no others";
+    EXPECT_EQ(all.find('\xe2'), std::string::npos) << "plain characters where the terminal knows no others";
     // A service that was started anew has no rates against the old one.
     EXPECT_NE(top_line(before, now, 1).find("walking - frames/s"), std::string::npos) << top_line(before, now, 1);
 }

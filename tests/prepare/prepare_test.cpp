@@ -1,6 +1,8 @@
 // Preparation: legal trees, conservative visibility, equal arrays at any worker count, finite numbers everywhere.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -19,7 +21,7 @@ using test::random_pose;
 
 const model::CostModel costs = model::default_costs();
 
-PreparedFrame prepared(const model::Model& m, const Region& region, PrepareOptions options = {}) {
+PreparedFrame prepared(const model::Model& m, const Region& region, const PrepareOptions& options = {}) {
     Preparer preparer(m, costs, options);
     PreparedFrame frame;
     preparer.reserve(frame);
@@ -87,14 +89,16 @@ TEST(Prepare, RandomTreesAreSoundAndMonotone) {
     EXPECT_GT(seen, 150);
 }
 
+std::array<std::uint32_t, 2> bits(const model::ItemCost& cost) { return std::bit_cast<std::array<std::uint32_t, 2>>(cost); }
+
 bool same(const PreparedFrame& a, const PreparedFrame& b) {
     if (a.candidates.size() != b.candidates.size() || a.choices.size() != b.choices.size() || a.visits != b.visits) return false;
     for (std::size_t i = 0; i < a.candidates.size(); ++i) {
         const Candidate &x = a.candidates[i], &y = b.candidates[i];
         if (x.node != y.node || x.parent != y.parent || x.first_child != y.first_child || x.child_count != y.child_count ||
             x.first_choice != y.first_choice || x.choice_count != y.choice_count || x.pixels != y.pixels ||
-            x.floor_open != y.floor_open || std::memcmp(&x.children_cost, &y.children_cost, sizeof x.children_cost) != 0 ||
-            std::memcmp(&x.floor_cost, &y.floor_cost, sizeof x.floor_cost) != 0) {
+            x.floor_open != y.floor_open || bits(x.children_cost) != bits(y.children_cost) ||
+            bits(x.floor_cost) != bits(y.floor_cost)) {
             return false;
         }
     }

@@ -111,6 +111,7 @@ long change_mask(const std::array<long, 6>& arguments, ucontext_t& context) {
     std::uint64_t mask = 0;
     std::memcpy(&mask, &context.uc_sigmask, sizeof mask);
     const std::uint64_t before = mask;
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the kernel takes addresses as numbers
     if (const auto* requested = reinterpret_cast<const void*>(arguments[1]); requested != nullptr) {
         std::uint64_t set = 0;
         std::memcpy(&set, requested, sizeof set);
@@ -130,6 +131,7 @@ long change_mask(const std::array<long, 6>& arguments, ucontext_t& context) {
     }
     mask &= ~(1ULL << (SIGSYS - 1U));
     std::memcpy(&context.uc_sigmask, &mask, sizeof mask);
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the kernel takes addresses as numbers
     if (auto* old = reinterpret_cast<void*>(arguments[2]); old != nullptr) std::memcpy(old, &before, sizeof before);
     return 0;
 }

@@ -9,7 +9,7 @@
 
 namespace surefoot::vm {
 
-SimulatedChip::SimulatedChip(std::string label, std::vector<std::string> names)
+SimulatedChip::SimulatedChip(const std::string& label, std::vector<std::string> names)
     : folder_("/sys/kernel/config/gpio-sim/" + label), names_(std::move(names)) {
     std::error_code problem;
     std::filesystem::create_directory(folder_, problem);

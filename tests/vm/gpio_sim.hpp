@@ -9,7 +9,7 @@ namespace surefoot::vm {
 class SimulatedChip {
 public:
     /// There when it is made. Lines have these names; the chip has the label.
-    SimulatedChip(std::string label, std::vector<std::string> names);
+    SimulatedChip(const std::string& label, std::vector<std::string> names);
     ~SimulatedChip();
     SimulatedChip(const SimulatedChip&) = delete;
     SimulatedChip& operator=(const SimulatedChip&) = delete;

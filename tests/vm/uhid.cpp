@@ -20,7 +20,7 @@ namespace {
 bool write_event(int fd, const uhid_event& e) { return ::write(fd, &e, sizeof e) == static_cast<ssize_t>(sizeof e); }
 
 void copy_text(std::uint8_t* to, std::size_t room, const std::string& text) {
-    std::memcpy(to, text.data(), std::min(room - 1, text.size()));
+    std::copy_n(text.data(), std::min(room - 1, text.size()), to);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ FitConditions under(std::uint64_t model) { return {model, 1280, 720, "egl"}; }
 
 /// A state folder of its own with a folder for fits.
 std::string state_for(const std::string& name) {
-    const std::string state = test::Forest::get().dir + "/" + name;
+    std::string state = test::Forest::get().dir + "/" + name;
     std::filesystem::create_directories(state + "/models");
     return state;
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "rt/base/file.hpp"
@@ -14,7 +15,7 @@ namespace surefoot::test {
 using input::test::GamepadSession;
 
 inline std::string keep(const GamepadSession& session, const std::string& name) {
-    const std::string file = Forest::get().dir + "/" + name + ".hid";
+    std::string file = Forest::get().dir + "/" + name + ".hid";
     EXPECT_TRUE(write_text(file, session.text()).ok());
     return file;
 }
@@ -32,7 +33,7 @@ inline dquat orientation(const rt::FrameRecord& r) {
 }
 /// The frame at a time after the walk's start, at 30 Hz.
 inline const rt::FrameRecord& at(const walk::WalkOutcome& outcome, double seconds) {
-    return outcome.records.at(static_cast<std::size_t>(seconds * 30.0 + 0.5));
+    return outcome.records.at(static_cast<std::size_t>(std::lround(seconds * 30.0)));
 }
 
 /// Ten thousand reports at 1 kHz with every sort of movement in them, the first at rest.

@@ -1,6 +1,8 @@
 // The visitor's buttons: viewpoints in turn, the tour and who ends it, pause, and what a stop leaves of them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tools/walk/tour_controller.hpp"
 
 namespace surefoot::walk {
@@ -24,7 +26,7 @@ protected:
     /// Ticks for so long with nothing pressed but what `press` says in the first; the hand moves at `speed`.
     void run(double seconds, double speed = 0, bool input::NavigationSample::*press = nullptr, bool stopped = false) {
         steering_.steers.plays();
-        for (int i = 0; i < static_cast<int>(seconds * 500 + 0.5); ++i) {
+        for (long i = 0; i < std::lround(seconds * 500); ++i) {
             now_ns_ += tick_ns;
             sample_ = {};
             sample_.pose = eye_;

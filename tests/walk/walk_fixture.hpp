@@ -54,7 +54,7 @@ private:
         const auto baker = other != nullptr ? std::filesystem::path(other)
                                             : std::filesystem::read_symlink("/proc/self/exe").parent_path() / "baked_forest";
         const auto built = std::filesystem::last_write_time(baker).time_since_epoch().count();
-        const std::string folder = baker.string() + ".kept";
+        std::string folder = baker.string() + ".kept";
         const std::string done = folder + "/baked-by-" + std::to_string(built);
         std::filesystem::create_directories(folder);
         const int lock = ::open((folder + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);

@@ -17,7 +17,7 @@ constexpr std::string_view install_rule =
 std::vector<std::string> nodes(const Machine& m, const std::string& folder, std::string_view prefix) {
     std::vector<std::string> found;
     for (const std::string& name : m.names(folder).value_or(std::vector<std::string>{})) {
-        if (name.starts_with(prefix)) found.push_back(folder + "/" + name);
+        if (name.starts_with(prefix)) found.push_back(fmt::format("{}/{}", folder, name));
     }
     return found;
 }

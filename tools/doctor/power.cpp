@@ -64,14 +64,14 @@ Finding c_states(const Machine& m) {
     std::string deep, off;
     std::int64_t deepest = -1;
     for (const std::string& state : *states) {
-        const auto latency = m.number(folder + "/" + state + "/latency");
+        const auto latency = m.number(fmt::format("{}/{}/latency", folder, state));
         if (!latency) continue;
         deepest = std::max<std::int64_t>(deepest, 0);
-        if (m.number(folder + "/" + state + "/disable").value_or(0) != 0) continue;
+        if (m.number(fmt::format("{}/{}/disable", folder, state)).value_or(0) != 0) continue;
         deepest = std::max(deepest, *latency);
         if (*latency <= deep_us) continue;
-        deep += fmt::format("{}{} ({} us)", deep.empty() ? "" : ", ", m.text(folder + "/" + state + "/name").value_or(state),
-                            *latency);
+        deep += fmt::format("{}{} ({} us)", deep.empty() ? "" : ", ",
+                            m.text(fmt::format("{}/{}/name", folder, state)).value_or(state), *latency);
         off += fmt::format("{}echo 1 > {}/{}/disable", off.empty() ? "" : "; ", folder, state);
     }
     if (deepest < 0)

@@ -35,7 +35,7 @@ double strength(std::size_t line, std::size_t count) {
     return count < 2 ? 1 : 0.35 + 0.65 * static_cast<double>(line) / static_cast<double>(count - 1);
 }
 
-std::string panel(const std::string& state, Lines lines, const Limits& limits, double left, double top) {
+std::string panel(const std::string& state, const Lines& lines, const Limits& limits, double left, double top) {
     const PlotArea area{left + 56, top + 34, left + panel_width - 70, top + panel_height - 48};
     const Scale x{limits.pixels_low, std::max(limits.pixels_high, limits.pixels_low * 2), area.left, area.right, true};
     const Scale y{limits.cost_low / 1.3, std::max(limits.cost_high * 1.3, limits.cost_low * 2), area.bottom, area.top, true};
@@ -43,7 +43,8 @@ std::string panel(const std::string& state, Lines lines, const Limits& limits, d
     out += y_axis(area, y, log_ticks(y.from, y.to), "µs") + x_axis(area, x, log_ticks(x.from, x.to), "pixels");
     std::size_t number = 0;
     double label_above = std::numeric_limits<double>::infinity();
-    for (auto& [triangles, points] : lines) {
+    for (const auto& [triangles, measured] : lines) {
+        Line points = measured;
         std::stable_sort(points.begin(), points.end(), [](const auto* a, const auto* b) { return a->pixels < b->pixels; });
         const double opacity = strength(number++, lines.size());
         std::string path;
@@ -87,8 +88,9 @@ std::string cost_plot_svg(const std::string& title, std::span<const CostPoint> p
     if (states.empty()) out += text_at(16, 60, "note", "no points were measured");
     std::size_t number = 0;
     for (const auto& [state, lines] : states) {
-        out += panel(state, lines, limits, panel_width * static_cast<double>(number % across),
-                     44 + panel_height * static_cast<double>(number / across));
+        const std::size_t column = number % across, row = number / across;
+        out +=
+            panel(state, lines, limits, panel_width * static_cast<double>(column), 44 + panel_height * static_cast<double>(row));
         ++number;
     }
     return stand_alone(out + close_chart(), false);

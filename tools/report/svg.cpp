@@ -93,7 +93,9 @@ std::vector<double> nice_ticks(double from, double to, int about) {
     const double step = nice_step((to - from) / std::max(1, about));
     const double first = std::ceil(from / step - 1e-9);
     const double last = std::floor(to / step + 1e-9);
-    for (double k = first; k <= last; k += 1) ticks.push_back(k * step);
+    const auto count = static_cast<std::size_t>(std::max(0.0, last - first + 1));
+    ticks.reserve(count);
+    for (std::size_t k = 0; k < count; ++k) ticks.push_back((first + static_cast<double>(k)) * step);
     return ticks;
 }
 

@@ -77,7 +77,10 @@ void MeshMaker::emit(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
 void MeshMaker::emit_grid(std::span<const std::uint32_t> vertices, int columns, int rows) {
     for (int r = 0; r < rows; ++r) {
         for (int c = 0; c < columns; ++c) {
-            const auto at = [&](int column, int row) { return vertices[static_cast<std::size_t>(row * (columns + 1) + column)]; };
+            const auto at = [&](int column, int row) {
+                const int vertex = row * (columns + 1) + column;
+                return vertices[static_cast<std::size_t>(vertex)];
+            };
             emit(at(c, r), at(c + 1, r), at(c + 1, r + 1));
             emit(at(c, r), at(c + 1, r + 1), at(c, r + 1));
         }

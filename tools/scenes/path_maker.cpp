@@ -74,7 +74,8 @@ std::vector<T> smooth(const std::vector<T>& in, double sigma_s) {
         T sum(0);
         double total = 0;
         for (int k = -reach; k <= reach; ++k) {
-            const double weight = weights[static_cast<std::size_t>(k + reach)];
+            const int place = k + reach;
+            const double weight = weights[static_cast<std::size_t>(place)];
             sum += weight * in[static_cast<std::size_t>(std::clamp(i + k, 0, last))];
             total += weight;
         }
@@ -139,6 +140,7 @@ Path make_path(std::span<const Waypoint> waypoints, double duration_s, const std
     const std::vector<Place> curve = dense_curve(waypoints);
     const std::vector<Place> places = walk(curve, times_of(curve, waypoints, duration_s), waypoints, duration_s);
     std::vector<dvec3> eyes;
+    eyes.reserve(places.size());
     for (const Place& place : places) eyes.push_back(place.eye + dvec3(0, ground ? ground(place.eye.x, place.eye.z) : 0.0, 0));
     eyes = smooth(eyes, 0.3);
     const std::vector<dvec2> gazes = smooth(gazes_of(places, eyes, waypoints), 0.9);

@@ -209,6 +209,7 @@ importer::Mesh bush(const std::string& name, const PlantMaterials& materials, do
     shape.dark = dark;
     shape.light = light;
     std::vector<Clump> clumps;
+    clumps.reserve(7);
     for (int i = 0; i < 7; ++i) clumps.push_back({any_in(random, {-0.4, 0.5, -0.4}, {0.4, 0.95, 0.4}) * radius, 0.5 * radius});
     grow_leaves(maker, clumps, shape, triangles / 2, random);
     return maker.take();

@@ -39,6 +39,7 @@ constexpr std::array writers{
 
 std::vector<std::string> scene_names() {
     std::vector<std::string> names;
+    names.reserve(std::size(makers));
     for (const Maker& maker : makers) names.emplace_back(maker.name);
     return names;
 }

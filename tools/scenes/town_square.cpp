@@ -197,7 +197,8 @@ importer::Mesh market_stall(const TownStuff& stuff, const Detail& detail, const 
         maker.brush.material = stuff.stuff.plain;
         for (int i = 0; i < 18; ++i) {
             maker.brush.colour = shade(goods[static_cast<std::size_t>(crate) % goods.size()], random.range(0.85, 1.1));
-            maker.ellipsoid({x - 0.13 + 0.13 * (i % 3), 0.96, -0.12 + 0.125 * (i / 3)}, dvec3(0.065), detail.cut(10, 6),
+            const int column = i % 3, row = i / 3;
+            maker.ellipsoid({x - 0.13 + 0.13 * column, 0.96, -0.12 + 0.125 * row}, dvec3(0.065), detail.cut(10, 6),
                             detail.cut(7, 4));
         }
     }

@@ -103,9 +103,11 @@ private:
         std::vector<std::uint16_t> linear;
         linear.reserve(count * 4);
         for (const auto& c : p.colours) {
-            for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t i = 0; i < 3; ++i) {
+                const float value = image::decode_srgb(static_cast<float>(c[i]) / 255.0F) * 65535.0F;
                 linear.push_back(
-                    static_cast<std::uint16_t>(image::decode_srgb(static_cast<float>(c[i]) / 255.0F) * 65535.0F + 0.5F));
+                    static_cast<std::uint16_t>(value + 0.5F));  // NOLINT(bugprone-incorrect-roundings): never negative
+            }
             linear.push_back(static_cast<std::uint16_t>(c[3] * 257));
         }
         out["COLOR_0"] = accessor(linear, count, ushort_type, "VEC4", true);

@@ -168,7 +168,8 @@ importer::Scene bushes(std::uint8_t hidden) {
         importer::Node node;
         node.name = "bush";
         node.mesh = 0;
-        node.world = moved({4.0 * (i % 4) + 0.3 * i, 0, 5.0 * static_cast<double>(i / 4)});
+        const int column = i % 4, row = i / 4;
+        node.world = moved({4.0 * column + 0.3 * i, 0, 5.0 * row});
         scene.nodes.push_back(node);
     }
     return scene;

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/prepare/evaluate.hpp"
 
 namespace surefoot::selftest {
 
 CutFixture::CutFixture(model::Model model, prepare::PrepareOptions options)
-    : model_(std::move(model)), costs_(model::default_costs()), options_(options) {
+    : model_(std::move(model)), costs_(model::default_costs()), options_(std::move(options)) {
     options_.max_candidates = std::min<std::uint32_t>(options_.max_candidates, static_cast<std::uint32_t>(model_.nodes.size()));
     preparer_ = std::make_unique<prepare::Preparer>(model_, costs_, options_);
     preparer_->reserve(frame_);
@@ -90,7 +91,8 @@ model::Model star(std::uint32_t count, std::uint32_t forms) {
     const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(count))));
     for (std::uint32_t i = 0; i < count; ++i) {
         model::Node& node = m.nodes[i + 1];
-        const dvec3 low(3.0 * (i % side), 0, -3.0 * (i / side));
+        const auto column = i % side, row = i / side;
+        const dvec3 low(3.0 * column, 0, -3.0 * row);
         node.box = {low, low + dvec3(1)};
         node.parent = 0;
         m.nodes[0].box.grow(node.box);

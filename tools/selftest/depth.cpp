@@ -117,6 +117,7 @@ void order_by_number(const Effort& effort, Outcome& out) {
         const Sheet s = sheet(distance, 6 * distance, 0.4);
         Squares squares;
         std::vector<model::Index> nodes;
+        nodes.reserve(5);
         for (int i = 0; i < 5; ++i)
             nodes.push_back(squares.add(s.origin, s.along, s.up, {static_cast<float>(51 * i) / 255.0F, 0, 0}));
         const model::Model model = squares.finish();

@@ -44,7 +44,7 @@ std::string frame_band(const SoakSummary& s, const report::Scale& x, const repor
         const double at = x(c.from_s + s.column_s / 2);
         const double high = y(std::min<double>(c.high_ms, y.to)), low = y(std::min<double>(c.low_ms, y.to));
         up += fmt::format("{}{:.1f} {:.1f}", up.empty() ? "M" : "L", at, high);
-        down = fmt::format("L{:.1f} {:.1f}", at, low) + down;
+        down.insert(0, fmt::format("L{:.1f} {:.1f}", at, low));
         highest.push_back({at, high});
         mean.push_back({at, y(std::min<double>(c.mean_ms, y.to))});
     }
@@ -135,6 +135,7 @@ std::string soak_memory_chart(const SoakSummary& s) {
     }
     out += report::text_at(area.left - 8, area.top - 11, "unit end", "MiB") + time_axis(area, x, 5);
     std::vector<report::Point> line;
+    line.reserve(samples.size());
     for (const SoakSample& p : samples) line.push_back({x(p.time_s), y(p.memory_kib / 1024)});
     out += report::polyline(line, "line");
     if (s.memory.known) {

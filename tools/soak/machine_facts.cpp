@@ -65,11 +65,13 @@ void read_interrupts(const std::string& text, std::map<std::string, double>& cou
             counting = counting && value;
             if (counting) {
                 sum += *value;
+            } else if (numbered || what.empty()) {
+                what = word;
             } else {
-                what = numbered || what.empty() ? word : what + " " + word;
+                what.append(" ").append(word);
             }
         }
-        counts[what.empty() ? name : name + " " + what] = sum;
+        counts[what.empty() ? name : fmt::format("{} {}", name, what)] = sum;
     }
 }
 

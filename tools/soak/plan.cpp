@@ -80,10 +80,12 @@ LoadPlan plan_loads(LoadSet mix, double seconds, double pair_s, std::uint64_t se
     const double wanted_s = std::min(longest_phase_s, seconds / (2 * round_phases));
     const double phase_s = pair_s * std::max(1.0, std::floor(wanted_s / pair_s));
     std::vector<LoadSet> round;
-    for (double at = 0; at < seconds; at += phase_s) {
+    double at = 0;
+    while (at < seconds) {
         if (round.empty()) round = one_round(mix, random);
         plan.phases.push_back({at, std::min(at + phase_s, seconds), round.front()});
         round.erase(round.begin());
+        at += phase_s;
     }
     return plan;
 }

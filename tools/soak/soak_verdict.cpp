@@ -89,6 +89,7 @@ std::vector<SoakSample> after_warm_up(const SoakSummary& s) {
 
 SoakCheck judge_memory(SoakSummary& s, const std::vector<SoakSample>& samples) {
     std::vector<TrendPoint> points;
+    points.reserve(samples.size());
     for (const SoakSample& sample : samples) points.push_back({sample.time_s, sample.memory_kib});
     s.memory = robust_trend(points);
     SoakCheck check{"memory", Judged::not_judged, ""};

@@ -5,7 +5,6 @@
 namespace surefoot::input {
 namespace {
 
-using test::Facts;
 using test::Testbed;
 using test::Watcher;
 using test::Wire;

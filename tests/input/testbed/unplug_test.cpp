@@ -13,10 +13,8 @@ namespace surefoot::input {
 namespace {
 
 using test::at;
-using test::Facts;
 using test::stick;
 using test::Testbed;
-using test::Watcher;
 using test::Wire;
 using Kind = DeviceEvent::Kind;
 

@@ -172,7 +172,8 @@ double ride() {
     end(tool);
     bed.pull(plug);
 
-    const json all = json::parse(tool.out()), in = all["input"];
+    const json all = json::parse(tool.out());
+    const json& in = all["input"];
     EXPECT_EQ(in["source"], "devices");
     EXPECT_EQ(all["rt"]["guard_violations"], 0);
     EXPECT_EQ(in["guard_violations"], 0) << "the input thread needed memory";
