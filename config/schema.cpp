@@ -8,7 +8,7 @@
 
 #include "config/settings.hpp"
 #include "config/values.hpp"
-#include "rt/base/nearest.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::config {
 
@@ -102,7 +102,7 @@ std::string normalised(string_view key) {
     return text;
 }
 
-std::span<const Renamed> renamed_keys() { return {}; }  // no key has had another name yet
+std::span<const Renamed> renamed_keys() { return {}; }  // no key has had another name yet: tests/known_names.txt
 
 std::optional<Error> renamed_error(std::span<const Renamed> table, std::string place, string_view name) {
     const std::string wanted = normalised(name);

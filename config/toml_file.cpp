@@ -1,8 +1,6 @@
 // TOML into settings, with line and key in every error. toml++'s exceptions end here.
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -11,16 +9,13 @@
 #include "config/settings.hpp"
 #include "config/values.hpp"
 #include "rt/base/file.hpp"
+#include "rt/base/toml_reader.hpp"
 
 namespace surefoot::config {
 
 namespace {
 
 constexpr std::uint64_t max_bytes = 1U << 20U;  // no settings file is near a mebibyte
-
-std::string place_of(const std::string& name, const toml::source_region& source) {
-    return fmt::format("{}:{}", name, source.begin.line);
-}
 
 std::optional<Value> value_of(const toml::node& node) {
     if (const auto flag = node.value_exact<bool>()) return *flag;
@@ -40,7 +35,7 @@ struct Reading {
 void complain(Reading& into, const std::string& name, const toml::node& node, Problem problem) {
     problem.file = name;
     problem.line = node.source().begin.line;
-    problem.error.place = place_of(name, node.source());
+    problem.error.place = toml_place(name, node.source());
     into.problems.push_back(std::move(problem));
 }
 
@@ -114,7 +109,7 @@ Reading read_toml(Configuration before, std::string_view text, const std::string
         Problem problem;
         problem.file = name;
         problem.line = error.source().begin.line;
-        problem.error = {place_of(name, error.source()), std::string(error.description()), "see https://toml.io for the syntax"};
+        problem.error = toml_syntax_error(name, error);
         reading.problems.push_back(std::move(problem));
         return reading;
     }

@@ -11,6 +11,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "rt/base/text.hpp"
+
 namespace surefoot::config {
 
 namespace {
@@ -28,13 +30,6 @@ std::string toml_string(std::string_view text) {
 bool is_file_name(std::string_view text, double most) {
     const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
     return static_cast<double>(text.size()) <= most && std::none_of(text.begin(), text.end(), control);
-}
-
-std::optional<double> number_in(std::string_view text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return value;
 }
 
 bool is_colour(std::string_view text) {
@@ -161,7 +156,7 @@ Result<void> set_value(Configuration& configuration, std::string_view key, std::
     if (entry == nullptr) return unknown_key(*configuration.schema, "command line", key);
     Value value = std::string(text);
     if (entry->kind == Kind::number || entry->kind == Kind::integer) {
-        if (const auto number = number_in(text)) value = *number;
+        if (const auto number = number_in<double>(text)) value = *number;
     } else if (entry->kind == Kind::flag) {
         if (text == "true" || text == "on" || text == "yes" || text == "1") value = true;
         if (text == "false" || text == "off" || text == "no" || text == "0") value = false;

@@ -33,10 +33,10 @@ public:
     static Result<std::unique_ptr<LiveSource>> open(LiveOptions options);
     LiveSource(LiveOptions options, std::unique_ptr<DeviceSource> devices);
 
-    void begin(Steering& steering, std::int64_t start_ns) override;
+    void begin(Steering& steering, std::int64_t start_ns) override REQUIRES(steering.steers);
     [[nodiscard]] std::int64_t next_ns() const override { return never_ns; }
     void wait(rt::Clock& clock, std::int64_t until_ns) override;
-    Lines drain(Steering& steering, std::int64_t now_ns) override;
+    Lines drain(Steering& steering, std::int64_t now_ns) override REQUIRES(steering.steers);
     [[nodiscard]] const StampLog& log() const override { return log_; }
     [[nodiscard]] std::uint64_t refused() const override { return attendant_ ? attendant_->refused_reports() : 0; }
     [[nodiscard]] std::vector<rt::SteeringDevice> devices() const override;

@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "input/safety/safety.hpp"
+#include "input/steering.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/facts.hpp"
 
 namespace surefoot::input {
-
-class Steering;
 
 constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
 
@@ -42,14 +41,14 @@ public:
     virtual ~ReportSource() = default;
 
     /// The walk's time begins. Attaches the devices that are there. Before the input thread starts; may allocate.
-    virtual void begin(Steering& steering, std::int64_t start_ns) = 0;
+    virtual void begin(Steering& steering, std::int64_t start_ns) REQUIRES(steering.steers) = 0;
     /// When the next report comes, where that is known beforehand (a recording); else never_ns.
     [[nodiscard]] virtual std::int64_t next_ns() const = 0;
     /// Sleeps until something can be read, or until `until_ns`, whichever is first.
     virtual void wait(rt::Clock& clock, std::int64_t until_ns) = 0;
     /// Reads until nothing is left: Steering::report() for each, then drained(); attach() and detach() for what came and went.
     /// Returns the wired switches as they are.
-    virtual Lines drain(Steering& steering, std::int64_t now_ns) = 0;
+    virtual Lines drain(Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers) = 0;
 
     [[nodiscard]] virtual const StampLog& log() const = 0;
     /// Short, long and undeclared reports: they changed nothing.

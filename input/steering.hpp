@@ -8,41 +8,45 @@
 #include "input/map/mapper.hpp"
 #include "input/motion/motion.hpp"
 #include "input/safety/safety.hpp"
+#include "rt/base/thread_annotations.hpp"
 
 namespace surefoot::input {
 
-/// One thread. After the constructor nothing allocates, frees, locks or reads a clock.
+/// Of the thread that plays `steers`. After the constructor nothing allocates, frees, locks or reads a clock.
 ///
 ///   each wake-up:  for each readable device: read until nothing is left, report() each, then drained()
 ///                  then tick(): publish what it returns
 class Steering {
 public:
+    /// The input thread's; on the virtual clock the frame thread's; the maker's before and after.
+    [[no_unique_address]] ThreadRole steers;
+
     Steering(const MotionLimits& motion, const SafetyLimits& safety, bool stop_latched = false);
 
     /// A device came; its number, or -1 when max_devices are there. It asks for nothing until seen neutral. A device that comes
     /// back must get its number again (`again`) if it carries a stop or a dead-man: while it is away these hold the walk, and
     /// its number is not given to another. `mapper` is exchanged for the one that had the number before: whoever must not free
     /// memory keeps it.
-    int attach(Mapper&& mapper, std::size_t controls, Reporting reporting, int again = -1);
+    int attach(Mapper&& mapper, std::size_t controls, Reporting reporting, int again = -1) REQUIRES(steers);
     /// Unplugged, or its reader failed.
-    void detach(int device);
+    void detach(int device) REQUIRES(steers);
 
     /// No report will come any more though it is not unplugged (a recording's end): from now on silence means rest.
-    void ended(int device);
+    void ended(int device) REQUIRES(steers);
 
     /// One accepted report. Anything but `state.connected` false counts as the device being there.
-    void report(int device, const DeviceState& state, std::int64_t now_ns);
+    void report(int device, const DeviceState& state, std::int64_t now_ns) REQUIRES(steers);
     /// After a drain that read until nothing was left: how many reports it read, and whether some were lost on the way.
-    void drained(int device, std::uint32_t reports, bool lost = false);
+    void drained(int device, std::uint32_t reports, bool lost = false) REQUIRES(steers);
 
-    NavigationSample tick(const Lines& lines, std::int64_t now_ns, const Ground& ground = {});
+    NavigationSample tick(const Lines& lines, std::int64_t now_ns, const Ground& ground = {}) REQUIRES(steers);
 
-    bool place(const Pose& pose) { return surefoot::input::place(motion_, pose); }
-    [[nodiscard]] const SafetyState& safety() const { return safety_; }
-    [[nodiscard]] const MotionState& motion() const { return motion_; }
-    [[nodiscard]] const Mapper& mapper(int device) const;
+    bool place(const Pose& pose) REQUIRES(steers) { return surefoot::input::place(motion_, pose); }
+    [[nodiscard]] const SafetyState& safety() const REQUIRES(steers) { return safety_; }
+    [[nodiscard]] const MotionState& motion() const REQUIRES(steers) { return motion_; }
+    [[nodiscard]] const Mapper& mapper(int device) const REQUIRES(steers);
     /// Largest lag of mapping and filter together, seconds; limits of speed and acceleration are not counted.
-    [[nodiscard]] double worst_lag_s() const;
+    [[nodiscard]] double worst_lag_s() const REQUIRES(steers);
 
 private:
     struct Device {
@@ -51,14 +55,14 @@ private:
         DeviceState newest;
         bool ticked = true;  ///< nothing was asked since the last tick
     };
-    [[nodiscard]] std::int64_t age_limit_ns(std::size_t device) const;
+    [[nodiscard]] std::int64_t age_limit_ns(std::size_t device) const REQUIRES(steers);
 
     MotionLimits motion_limits_;
     SafetyLimits safety_limits_;
-    MotionState motion_;
-    SafetyState safety_;
-    std::vector<Device> devices_;  ///< max_devices of them
-    std::array<Source, max_devices> sources_{};
+    MotionState motion_ GUARDED_BY(steers);
+    SafetyState safety_ GUARDED_BY(steers);
+    std::vector<Device> devices_ GUARDED_BY(steers);  ///< max_devices of them
+    std::array<Source, max_devices> sources_ GUARDED_BY(steers){};
 };
 
 }  // namespace surefoot::input

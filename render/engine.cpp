@@ -76,7 +76,8 @@ struct Engine::Impl {
     double upper_factor GUARDED_BY(draws) = 1;  ///< that the last select() spent
 
     void use(const select::SelectorEntry& entry);
-    double now_us(const SubmitLimits& limits) const {
+    double now_us(const SubmitLimits& limits) const REQUIRES(draws) {
+        device->draws.plays();  // `draws` is the same thread
         return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
     }
     model::Frustum frustum GUARDED_BY(draws);  ///< of the pose that is drawn: narrower than the region that was prepared
@@ -100,6 +101,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     auto device = gl::open_device(impl->options.device);
     if (!device) return device.error();
     impl->device = std::move(*device);
+    impl->device->draws.plays();
     auto loaded = impl->device->load(impl->model, effects::assemble_program);
     if (!loaded) return loaded.error();
     decltype(impl->model.texels)().swap(impl->model.texels);  // the device has its own
@@ -185,6 +187,7 @@ void Engine::select_coarse() {
 
 /// Draws what of a slice the pose really sees; returns what that was predicted to cost.
 model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitReport& report) {
+    device->draws.plays();
     const std::size_t first = drawn.size();
     model::ItemCost cost;
     for (const select::CutItem& item : items) {
@@ -248,6 +251,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
 
 /// Predicted as the items of a prepared frame are: no array holds these, and they are few.
 void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
+    device->draws.plays();
     drawn.assign(coarse.begin(), coarse.end());
     device->draw(drawn);
     device->end_slice();
@@ -268,6 +272,7 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
 SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     Impl& e = *impl_;
     e.draws.plays();
+    e.device->draws.plays();
     CHECK(e.use_coarse || e.prepared != nullptr, "what is submitted was selected before");
     SubmitReport report;
     const double start_us = e.now_us(limits);
@@ -292,6 +297,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
 
 void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items) {
     gl::Device& device = *impl_->device;
+    device.draws.plays();
     device.begin_frame(pose);
     constexpr std::size_t chunk = 4096;  // below the device's max_items, and bounded work a slice
     for (std::size_t at = 0; at < items.size(); at += chunk) {

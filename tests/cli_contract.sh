@@ -30,7 +30,7 @@ expect 2 '--scale.*0.* 0.001 to' selftest --hard --scale 0
 
 # Wrong use is 2, bad input 1; what was there is still there.
 expect 2 'required|subcommand' --no-such-option
-expect 2 "no command 'wlak'; did you mean 'walk'" wlak f.walk
+expect 2 "no command 'wlak'. Did you mean 'walk'" wlak f.walk
 expect 2 "no command 'xyzzy' " xyzzy
 expect 2 'Required|required' bake f.glb
 expect 2 'one of|selector' walk f.walk --selector best
@@ -68,7 +68,7 @@ printf 'rate_hz = 30\nselektor = "flat"\n' > s.toml
 expect 2 's.toml:2.*selek' walk f.walk --config s.toml
 mkdir -p below; printf 'model = "../f.walk"\nclock = "virtual"\nbackend = "null"\nrate_hz = 50\n' > below/m.toml
 json walk --config below/m.toml --frames 5  # the model is relative to the settings' file
-expect 2 'MODEL.walk: is not named' walk --frames 5
+expect 2 'MODEL.walk: The model is not named' walk --frames 5
 
 # Values that are not allowed: the option, what was found and what is allowed, before anything is opened.
 virtual="--clock virtual --backend null"
@@ -146,7 +146,7 @@ for command in "scene forest --scale 0.1 -o s.glb" "bake f.glb -o s.walk" "inspe
     [ -n "$more" ] && case $command in *--help) continue ;; esac
     "$surefoot" $command $more >/dev/full 2>err; got=$?
     [ $got -eq 1 ] || complain "exit $got, not 1, on a full stdout: $command $more"
-    grep -q 'standard output: cannot be written' err || complain "nothing said of a full stdout: $command $more"
+    grep -q 'standard output: The output cannot be written' err || complain "nothing said of a full stdout: $command $more"
     "$surefoot" $command $more 2>err | head -0; got=${PIPESTATUS[0]}
     [ $got -le 1 ] || complain "exit $got where the reader left: $command $more"
     grep -q 'standard output\|terminate' err && complain "said of a reader that left: $command $more: $(cat err)"
@@ -154,6 +154,22 @@ for command in "scene forest --scale 0.1 -o s.glb" "bake f.glb -o s.walk" "inspe
 done
 "$surefoot" inspect f.walk >&- 2>/dev/null && complain "a closed stdout is a success"
 "$surefoot" inspect absent.walk 2>/dev/full; [ $? -eq 1 ] || complain "a full stderr is a crash"
+
+# The manual: a page a command, which man takes without a warning, and every option of --help on it.
+json manual -o man
+for command in $("$surefoot" --help | sed -n '/Subcommands:/,$s/^  \([a-z][a-z]*\) .*/\1/p'); do
+  [ -s "man/surefoot-$command.1" ] || { complain "no manual page of $command"; continue; }
+  for option in $("$surefoot" "$command" --help | grep -oE '^  (-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'); do
+    grep -qF -- "$(sed 's/-/\\-/g' <<<"$option")" "man/surefoot-$command.1" || complain "manual page of $command lacks $option"
+  done
+done
+grep -q 'rate_hz' man/surefoot.toml.5 || complain "surefoot.toml(5) lacks rate_hz"
+if command -v groff >/dev/null; then
+  for page in man/*; do
+    [ -z "$(groff -man -Tutf8 -ww -z "$page" 2>&1)" ] || complain "$page: $(groff -man -Tutf8 -ww -z "$page" 2>&1 | head -3)"
+  done
+fi
+expect 1 '/dev/null/man: The folder cannot be made' manual -o /dev/null/man
 
 # Figures and forms.
 json inspect f.walk --tree

@@ -41,13 +41,13 @@ expect 1 'cut.hid: line 2: ' devices describe stick.bin --reports cut.hid
 : >empty.bin
 expect 1 'empty.bin: byte 0: ' devices describe empty.bin
 printf '# no descriptor\nE: 0.0 1 00\n' >none.hid
-expect 1 'none.hid: no R: line' devices describe none.hid
+expect 1 'none.hid: The recording has no R: line' devices describe none.hid
 head -c 5000 /dev/zero >long.bin
 expect 1 'long.bin: byte 4096: ' devices describe long.bin
 printf '# nothing moved\n' >still.hid
-expect 1 'still.hid: holds no reports' devices describe stick.bin --reports still.hid
+expect 1 'still.hid: The recording holds no reports' devices describe stick.bin --reports still.hid
 printf '\xef\xbb\xbfE: 0.5 1 81\nE: 0.1 1 7f\n' >marked.hid
-says '2 accepted.*1 of them bear a time before' devices describe stick.bin --reports marked.hid
+says '2 accepted.*1 of them have a time before' devices describe stick.bin --reports marked.hid
 says '"before_the_last": 1' devices describe stick.bin --reports marked.hid --json
 seq -f 'E: %.0f.0 1 11' 400000 >long.hid
 # The sanitizers' own memory is larger than any such limit: there only the answer is checked.
@@ -69,8 +69,8 @@ expect 2 'seconds' devices watch --seconds -1
 expect 2 'seconds' devices record no-such-device -o x.hid --seconds 0
 expect 2 'output|required' devices record no-such-device
 expect 2 'timeout' devices map --timeout never
-expect 1 'no-such-device: no such device' devices record no-such-device -o x.hid
-expect 1 'no-such-device: no such device' devices map no-such-device -o x.toml
+expect 1 'no-such-device: No such device' devices record no-such-device -o x.hid
+expect 1 'no-such-device: No such device' devices map no-such-device -o x.toml
 [ -e x.hid ] || [ -e x.toml ] && complain "a file is left behind"
 printf '[motion]\nwalk = 1\n' >bad.toml
 expect 1 'bad.toml:2' devices map -o bad.toml

@@ -15,11 +15,11 @@ grep -q '"pass": 0,' out || complain "an empty root passes something"
 expect 1 '' doctor --root bad
 grep -q 'sysctl -w kernel.timer_migration=0' out || complain "no remedy in the table"
 grep -q $'\033' out && complain "colour where stdout is no terminal"
-expect 2 'is no folder' doctor --root absent
+expect 2 'This is not a folder' doctor --root absent
 expect 2 '--seconds.*--quick' doctor --seconds 2 --quick
 expect 2 '--seconds.*--root' doctor --root empty --seconds 2
 expect 2 'number from 1' doctor --seconds nan
-expect 2 'frame-core 1023.*choose' doctor --quick --frame-core 1023
+expect 2 'frame-core 1023.*Choose' doctor --quick --frame-core 1023
 "$surefoot" doctor --quick --json >out 2>err; got=$?
 [ $got -le 1 ] || complain "exit $got of doctor --quick"
 valid_json out || complain "doctor --quick --json is not one JSON object"

@@ -43,9 +43,9 @@ else
 fi
 lacks '"locked": false' 'memory cannot be locked beyond 2 MiB' prlimit --memlock=2097152:2097152 setpriv --bounding-set=-ipc_lock,-sys_resource
 walk="$walk --frame-core 1000"
-lacks '"isolated": false' 'frame core 1000 is not there' env
+lacks '"isolated": false' 'Frame core 1000 does not exist' env
 walk="$surefoot walk f.walk --backend null --frames 20 --frame-core 1"
-[ "$(nproc)" -ge 2 ] && lacks '"isolated": false' 'frame core 1 is not there, or not for this process: core 0 serves' taskset -c 0
+[ "$(nproc)" -ge 2 ] && lacks '"isolated": false' 'Frame core 1 does not exist, or this process may not use it: core 0 is used' taskset -c 0
 
 # An ordinary user lacks all of them at once, each said once, and the page is marked too.
 walk="$surefoot walk f.walk --backend null --frames 20"

@@ -55,6 +55,7 @@ Attendant::Slot* Attendant::find(int device) {
 }
 
 void Attendant::attend(const DeviceEvent& e) {
+    steering_.steers.plays();
     switch (e.kind) {
         case DeviceEvent::Kind::added:
             return added(e);

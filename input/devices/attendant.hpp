@@ -45,8 +45,8 @@ std::unique_ptr<ReadyDevice> make_ready(std::span<const DeviceMapping> mappings,
 /// For FinderOptions: makes ReadyDevices where devices are opened.
 std::function<std::unique_ptr<Readied>(const PluggedDevice&)> readier(std::vector<DeviceMapping> mappings);
 
-/// The input thread's. attend() neither allocates nor frees, also while devices come and go, if they come readied; else it makes
-/// them ready itself.
+/// Of the thread that plays its steering's `steers`. attend() neither allocates nor frees, also while devices come and go, if
+/// they come readied; else it makes them ready itself.
 class Attendant {
 public:
     /// `say` is told, once each: devices that come, go or are refused, and controls of a mapping that a device has not got.
@@ -84,8 +84,8 @@ private:
         std::unique_ptr<ReadyDevice> own;  ///< where the device did not come readied
         std::shared_ptr<const PluggedDevice> plugged;
     };
-    void added(const DeviceEvent& event);
-    void removed(const DeviceEvent& event);
+    void added(const DeviceEvent& event) REQUIRES(steering_.steers);
+    void removed(const DeviceEvent& event) REQUIRES(steering_.steers);
     [[nodiscard]] Slot* find(int device);
     [[nodiscard]] int number_before(const std::string& identity) const;
     void meet(ReadyDevice& device);

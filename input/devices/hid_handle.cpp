@@ -10,10 +10,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <utility>
+
+#include "rt/base/text.hpp"
 
 namespace surefoot::input {
 
@@ -27,8 +28,7 @@ int twin_of(int not_this) {
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", ignored)) {
         const std::string name = entry.path().filename();
-        int fd = -1;
-        std::from_chars(name.data(), name.data() + name.size(), fd);
+        const int fd = leading_number(name, -1);
         struct stat is {};
         if (fd < 0 || fd == not_this || fstat(fd, &is) != 0) continue;
         if (is.st_dev != wanted.st_dev || is.st_ino != wanted.st_ino) continue;

@@ -9,11 +9,11 @@
 #include <linux/input.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string_view>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::input {
 
@@ -36,8 +36,7 @@ std::string_view value_of(std::string_view lines, std::string_view key) {
 
 std::uint16_t hex_part(std::string_view& text) {
     const auto end = std::min(text.find(':'), text.size());
-    std::uint32_t value = 0;
-    std::from_chars(text.data(), text.data() + end, value, 16);
+    const auto value = leading_number<std::uint32_t>(text.substr(0, end), 0, 16);
     text.remove_prefix(std::min(end + 1, text.size()));
     return static_cast<std::uint16_t>(value);
 }

@@ -38,7 +38,7 @@ public:
         bool reported = false;  ///< a button or encoder moved
     };
     /// Takes lines that were opened, reads all, reports to `steering`, attaches and detaches there as the chip comes and goes.
-    Step step(Steering& steering, std::int64_t now_ns);
+    Step step(Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers);
 
     [[nodiscard]] std::span<const pollfd> polled() const { return panel_.polled(); }
     [[nodiscard]] bool has_controls() const { return !panel_.controls().empty(); }
@@ -46,7 +46,7 @@ public:
 
 private:
     void service(std::int64_t now_ns);
-    void attach(Steering& steering);
+    void attach(Steering& steering) REQUIRES(steering.steers);
 
     GpioPanel panel_;
     Say say_;

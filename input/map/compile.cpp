@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "input/map/mapper.hpp"
-#include "rt/base/nearest.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::input {
 

@@ -1,6 +1,7 @@
 // The file in which a user says how the walk is steered: [motion], [safety], [[device]] and [[gpio]]; read and written.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,5 +28,16 @@ Result<SteeringFile> parse_steering(std::string_view text, const std::string& na
 /// TOML that parse_steering() reads back to the same; keys at their defaults are left out.
 std::string steering_text(const SteeringFile& steering);
 std::string device_text(const DeviceMapping& mapping);
+
+/// The words of enums as the file writes them, in the enums' order.
+namespace words {
+constexpr std::array<std::string_view, 4> curves = {"linear", "power", "expo", "smooth"};
+constexpr std::array<std::string_view, 3> rests = {"centre", "min", "max"};
+constexpr std::array<std::string_view, 2> dead_zones = {"axial", "radial"};
+constexpr std::array<std::string_view, 3> reportings = {"learn", "streaming", "on_change"};
+constexpr std::array<std::string_view, 4> classes = {"navigation", "trackball", "buttons", "reject"};
+constexpr std::array<std::string_view, 6> roles = {"button", "stop", "stop_reset", "dead_man", "encoder_a", "encoder_b"};
+constexpr std::array<std::string_view, 4> biases = {"as_is", "pull_up", "pull_down", "off"};
+}  // namespace words
 
 }  // namespace surefoot::input

@@ -2,13 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "input/map/steering_file.hpp"
-#include "input/map/steering_words.hpp"
-#include "input/map/toml_reader.hpp"
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
+#include "rt/base/toml_reader.hpp"
 
 namespace surefoot::input {
 
@@ -38,10 +37,7 @@ void time_ms(TableReader& table, std::string_view key, double max_ms, double& va
 
 std::optional<std::uint16_t> hex(std::string_view text) {
     if (!text.starts_with("0x")) return std::nullopt;
-    text.remove_prefix(2);
-    std::uint16_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-    return error == std::errc{} && end == text.data() + text.size() && !text.empty() ? std::optional(value) : std::nullopt;
+    return number_in<std::uint16_t>(text.substr(2), 16);
 }
 
 /// "x", or "0x01:0x30".
@@ -248,8 +244,7 @@ Result<SteeringFile> parse_steering(std::string_view text, const std::string& na
         table.tables("gpio", [&](TableReader& t) { return read_line(t, steering.lines); });
         if (const auto done = table.finish(); !done) return done.error();
     } catch (const toml::parse_error& error) {
-        return Error{fmt::format("{}:{}", name, error.source().begin.line), std::string(error.description()),
-                     "see https://toml.io for the syntax"};
+        return toml_syntax_error(name, error);
     }
     if (const auto lines = check_lines(steering.lines); !lines) {
         Error error = lines.error();

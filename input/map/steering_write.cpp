@@ -6,7 +6,6 @@
 #include <toml++/toml.h>
 
 #include "input/map/steering_file.hpp"
-#include "input/map/steering_words.hpp"
 
 namespace surefoot::input {
 

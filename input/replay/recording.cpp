@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <optional>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::input {
 
@@ -42,18 +42,10 @@ private:
     std::string_view left_;
 };
 
-template <class T>
-std::optional<T> number(std::string_view word, int base) {
-    T value{};
-    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value, base);
-    if (word.empty() || code != std::errc{} || end != word.data() + word.size()) return std::nullopt;
-    return value;
-}
-
 /// "000012.345678": digits behind the sixth are cut off.
 std::optional<std::int64_t> time_of(std::string_view word) {
     const auto dot = word.find('.');
-    const auto seconds = number<std::uint64_t>(word.substr(0, dot), 10);
+    const auto seconds = number_in<std::uint64_t>(word.substr(0, dot), 10);
     if (!seconds || *seconds > static_cast<std::uint64_t>(max_time_s)) return std::nullopt;
     std::int64_t us = 0;
     if (dot != std::string_view::npos) {
@@ -120,7 +112,7 @@ private:
     }
 
     Result<void> read_device(Words& words) {
-        const auto n = number<std::uint32_t>(words.next(), 10);
+        const auto n = number_in<std::uint32_t>(words.next(), 10);
         if (!n) return error("a device line needs a number", "D: 0");
         device_ = *n;
         if (!chosen_named_) chosen_ = *n;
@@ -129,8 +121,8 @@ private:
     }
 
     Result<void> read_ids(Words& words) {
-        const auto bus = number<std::uint16_t>(words.next(), 16), vendor = number<std::uint16_t>(words.next(), 16),
-                   product = number<std::uint16_t>(words.next(), 16);
+        const auto bus = number_in<std::uint16_t>(words.next(), 16), vendor = number_in<std::uint16_t>(words.next(), 16),
+                   product = number_in<std::uint16_t>(words.next(), 16);
         if (!bus || !vendor || !product)
             return error("an id line needs bus, vendor and product in hexadecimal", "I: 3 046d c626");
         recording_.bus = *bus;
@@ -141,7 +133,7 @@ private:
 
     /// "LENGTH byte byte ...", appended to `to`.
     Result<void> read_bytes(Words& words, std::vector<std::byte>& to) {
-        const auto length = number<std::size_t>(words.next(), 10);
+        const auto length = number_in<std::size_t>(words.next(), 10);
         if (!length || *length > max_recorded_report_bytes) {
             return error(fmt::format("a length of 0 to {} bytes must stand before the bytes", max_recorded_report_bytes),
                          "E: 000000.000000 2 01 ff");
@@ -150,7 +142,7 @@ private:
             const auto word = words.next();
             if (word.empty())
                 return error(fmt::format("{} bytes are announced, {} are there", *length, i), "is the file cut off?");
-            const auto value = word.size() <= 2 ? number<std::uint8_t>(word, 16) : std::nullopt;
+            const auto value = word.size() <= 2 ? number_in<std::uint8_t>(word, 16) : std::nullopt;
             if (!value) return error(fmt::format("'{}' is no byte in hexadecimal", word.substr(0, 16)), "bytes are 00 to ff");
             to.push_back(static_cast<std::byte>(*value));
         }

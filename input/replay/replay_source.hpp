@@ -13,10 +13,10 @@ class ReplaySource final : public ReportSource {
 public:
     explicit ReplaySource(RecordedDevice recorded);
 
-    void begin(Steering& steering, std::int64_t start_ns) override;
+    void begin(Steering& steering, std::int64_t start_ns) override REQUIRES(steering.steers);
     [[nodiscard]] std::int64_t next_ns() const override;
     void wait(rt::Clock& clock, std::int64_t until_ns) override;
-    Lines drain(Steering& steering, std::int64_t now_ns) override;
+    Lines drain(Steering& steering, std::int64_t now_ns) override REQUIRES(steering.steers);
 
     [[nodiscard]] const StampLog& log() const override { return log_; }
     [[nodiscard]] std::uint64_t refused() const override { return refused_; }

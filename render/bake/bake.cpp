@@ -381,7 +381,8 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     if (bakery.objects.empty()) {
         return Error{place_of(scene), "there is nothing to draw in it", "check that its nodes have meshes with triangles"};
     }
-    if (auto ok = check_limits(counts_of(bakery.proxy_input(), bakery.object_boxes), place_of(scene)); !ok) return ok.error();
+    if (auto ok = check_limits(counts_of(bakery.proxy_input(), bakery.object_boxes), place_of(scene), options.most); !ok)
+        return ok.error();
     progress.say("write", 0.0);
     arena.execute([&] { bakery.emit(); });
     model::Model& model = bakery.model;

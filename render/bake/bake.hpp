@@ -5,6 +5,7 @@
 
 #include "render/import/scene.hpp"
 #include "render/model/cost.hpp"
+#include "render/model/limits.hpp"
 #include "render/model/model.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
@@ -18,6 +19,7 @@ struct BakeOptions {
     int workers = 0;                          ///< 0: all cores
     double frame_us = 33333;                  ///< the frame of the 1/16 rule, at 30 Hz
     const model::CostModel* costs = nullptr;  ///< calibrated; null: default_costs()
+    model::Counts most = model::most_counts;  ///< that the model may hold; less only where a test asks for it
 };
 
 /// Deterministic at any worker count. Errors: nothing drawable, stopped by the user, out of limits.

@@ -45,6 +45,7 @@ std::uint32_t Grower::make(std::vector<std::uint32_t> children) {
             groups = std::move(halves);
         }
         std::vector<std::uint32_t> made;
+        made.reserve(groups.size());
         for (auto& group : groups) made.push_back(make(std::move(group)));
         children = std::move(made);
     }

@@ -64,8 +64,8 @@ void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
         for (std::uint32_t f = 0; f < 6; ++f) {
             for (std::uint32_t y = 0; y < n; ++y) {
                 const std::uint8_t* row = form.faces[f].rgba.data() + static_cast<std::size_t>(y) * n * 4;
-                std::copy_n(row, n * 4,
-                            atlas.begin() + static_cast<std::ptrdiff_t>((((f / 3) * n + y) * 3 * n + (f % 3) * n) * 4));
+                const std::size_t pixel = std::size_t{(f / 3) * n + y} * 3 * n + std::size_t{f % 3} * n;
+                std::copy_n(row, n * 4, atlas.begin() + static_cast<std::ptrdiff_t>(pixel * 4));
             }
         }
         model::Material m;
@@ -103,8 +103,9 @@ void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
             v.normal[axis] = high ? 127 : -127;
             for (std::size_t k = 0; k < 4; ++k) v.colour[k] = form.textured ? 255 : form.faces[f].mean[k];
             const float inset = 0.5F / static_cast<float>(std::max(1U, form.pixels));  // half a texel: neighbours stay out
-            v.uv[0] = (static_cast<float>(f % 3) + (cu ? 1 - inset : inset)) / 3.0F;
-            v.uv[1] = (static_cast<float>(f / 3) + (cw ? 1 - inset : inset)) / 2.0F;
+            const auto column = f % 3, row = f / 3;
+            v.uv[0] = (static_cast<float>(column) + (cu ? 1 - inset : inset)) / 3.0F;
+            v.uv[1] = (static_cast<float>(row) + (cw ? 1 - inset : inset)) / 2.0F;
             model.vertices.push_back(v);
         }
         part.vertex_count += 4;

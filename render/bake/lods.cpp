@@ -55,8 +55,8 @@ namespace {
 /// vertices the full detail's alone: it takes any.
 std::vector<std::uint32_t> simplify_part(const Geometry& g, std::size_t vertices, const GeometryPart& part, double share,
                                          bool lock, bool sloppy) {
-    const std::size_t target =
-        std::max<std::size_t>(2, static_cast<std::size_t>(static_cast<double>(part.indices.size() / 3) * share)) * 3;
+    const std::size_t triangles = part.indices.size() / 3;
+    const std::size_t target = std::max<std::size_t>(2, static_cast<std::size_t>(static_cast<double>(triangles) * share)) * 3;
     if (target >= part.indices.size()) return part.indices;
     std::vector<std::uint32_t> out(part.indices.size());
     float unused = 0;  // its own error is no bound
@@ -92,7 +92,8 @@ Thinned find_cards(const Geometry& g, const ChainOptions& options) {
         auto found = thinnable_cards(g, part);
         if (found.empty()) continue;
         of_cards += area;
-        spread(g, found, static_cast<std::size_t>(options.ratio * static_cast<double>(part.indices.size() / 3)) + 1);
+        const std::size_t triangles = part.indices.size() / 3;
+        spread(g, found, static_cast<std::size_t>(options.ratio * static_cast<double>(triangles)) + 1);
         thinned.cards[part.material] = std::move(found);
     }
     thinned.mostly = of_cards > 0 && 2 * of_cards >= all;

@@ -82,7 +82,7 @@ struct Shown {
     std::optional<std::uint8_t> hidden;  ///< hidden_alpha()
     bool masked = false;                 ///< by a mask that hides something
 
-    auto operator<=>(const Shown&) const = default;
+    auto operator<=>(const Shown&) const = default;  // NOLINT(modernize-use-nullptr): the compiler's own comparison with 0
 };
 
 /// A texture, and the alpha, 0..255, from which the first mask that shows it does so.

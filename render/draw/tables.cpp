@@ -57,7 +57,7 @@ DrawTables make_tables(const model::Model& model) {
         Placed placed{placement.origin, {}, glm::determinant(placement.linear) < 0};
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column) {
-                placed.rows[static_cast<std::size_t>(3 * row + column)] = placement.linear[column][row];
+                placed.rows[3 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column)] = placement.linear[column][row];
             }
         }
         tables.placements.push_back(placed);

@@ -58,7 +58,7 @@ void describe(Entry& e) {
     }
     for (int axis = 0; axis < 3; ++axis) {
         e.key[static_cast<std::size_t>(axis)] = cell_of(e.box.min[axis], cell);
-        e.key[static_cast<std::size_t>(3 + axis)] = cell_of(e.box.max[axis], cell);
+        e.key[3 + static_cast<std::size_t>(axis)] = cell_of(e.box.max[axis], cell);
     }
 }
 

@@ -36,7 +36,9 @@ namespace surefoot::gl {
     X(CreateShader, PFNGLCREATESHADERPROC)                           \
     X(CullFace, PFNGLCULLFACEPROC)                                   \
     X(DeleteBuffers, PFNGLDELETEBUFFERSPROC)                         \
+    X(DeleteFramebuffers, PFNGLDELETEFRAMEBUFFERSPROC)               \
     X(DeleteProgram, PFNGLDELETEPROGRAMPROC)                         \
+    X(DeleteRenderbuffers, PFNGLDELETERENDERBUFFERSPROC)             \
     X(DeleteShader, PFNGLDELETESHADERPROC)                           \
     X(DeleteSync, PFNGLDELETESYNCPROC)                               \
     X(DeleteTextures, PFNGLDELETETEXTURESPROC)                       \

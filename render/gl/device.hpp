@@ -15,6 +15,7 @@
 #include "render/model/model.hpp"
 #include "render/model/view.hpp"
 #include "rt/base/result.hpp"
+#include "rt/base/thread_annotations.hpp"
 
 namespace surefoot::gl {
 
@@ -63,45 +64,48 @@ struct PixelImage {
 /// One context and one target. open() and load() may be slow and allocate; the rest is the frame's.
 class Device {
 public:
+    /// The thread that has the context: the one that opened the device, until another calls bind().
+    [[no_unique_address]] ThreadRole draws;
+
     virtual ~Device() = default;
     [[nodiscard]] virtual std::string renderer() const = 0;  ///< GL_RENDERER, or "null"
     [[nodiscard]] virtual bool software() const = 0;
     /// Uploads geometry and textures, compiles the programs of the scene's state classes (and only those), warms each up. The
     /// model stays as it is until the last draw, or the next load; but for its texels, which are not looked at again.
-    virtual Result<void> load(const model::Model& model, const ProgramFactory& programs) = 0;
+    virtual Result<void> load(const model::Model& model, const ProgramFactory& programs) REQUIRES(draws) = 0;
     [[nodiscard]] virtual std::vector<std::string> program_listing() const = 0;  ///< "mask: effects", for tests and `effects`
     [[nodiscard]] virtual std::string program_text(model::EffectMask mask) const = 0;
 
     /// Makes the context current on the calling thread; release() first on the thread that had it.
-    virtual void bind() = 0;
-    virtual void release() = 0;
+    virtual void bind() ASSERT_CAPABILITY(draws) = 0;
+    virtual void release() RELEASE(draws) = 0;
 
     // ---- the frame; no own allocation, no throw ----
-    virtual void begin_frame(const Pose& pose) = 0;
+    virtual void begin_frame(const Pose& pose) REQUIRES(draws) = 0;
     /// State-sorted and multi-drawn within the call. Items with blend are kept and drawn back to front by end_items().
-    virtual void draw(std::span<const DrawItem> items) = 0;
+    virtual void draw(std::span<const DrawItem> items) REQUIRES(draws) = 0;
     /// Ends a slice: flush and fence. Returns its number, from 1.
-    virtual std::uint32_t end_slice() = 0;
+    virtual std::uint32_t end_slice() REQUIRES(draws) = 0;
     /// Waits until at most `in_flight` slices are unfinished.
-    virtual void wait_slices(std::uint32_t in_flight) = 0;
+    virtual void wait_slices(std::uint32_t in_flight) REQUIRES(draws) = 0;
     /// Draws the kept blended items, back to front, as the last slice.
-    virtual void end_items() = 0;
+    virtual void end_items() REQUIRES(draws) = 0;
     /// Waits for everything; presents where there is something to present to.
-    virtual void finish_frame() = 0;
-    [[nodiscard]] virtual FrameStats stats() const = 0;
+    virtual void finish_frame() REQUIRES(draws) = 0;
+    [[nodiscard]] virtual FrameStats stats() const REQUIRES(draws) = 0;
     /// The context is gone (the GPU was reset, taken away, or does not finish), and nothing drawn since was seen. Calls are
     /// harmless from then on, and draw nothing.
-    [[nodiscard]] virtual bool lost() const { return false; }
+    [[nodiscard]] virtual bool lost() const REQUIRES(draws) { return false; }
     /// Of the current frame; slow.
-    virtual Result<PixelImage> read_pixels() = 0;
+    virtual Result<PixelImage> read_pixels() REQUIRES(draws) = 0;
 
     /// A GL_TIME_ELAPSED query around what is drawn in between; slow (waits). False, and nothing to end, where there is none.
     /// Software GL lies here: see measure::TimerQueryCheck.
-    virtual bool begin_timer() { return false; }
-    virtual double end_timer_ms() { return 0; }
+    virtual bool begin_timer() REQUIRES(draws) { return false; }
+    virtual double end_timer_ms() REQUIRES(draws) { return 0; }
 
     /// Virtual time charged so far, us (null backend); 0 elsewhere.
-    [[nodiscard]] virtual double charged_us() const { return 0; }
+    [[nodiscard]] virtual double charged_us() const REQUIRES(draws) { return 0; }
 };
 
 /// Settles how many threads software GL draws with, for the whole process; 0: the measured default. Call it before any other

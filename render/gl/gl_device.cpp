@@ -39,6 +39,7 @@ GlDevice::~GlDevice() = default;  // the context takes every object with it
 
 Result<std::unique_ptr<Device>> GlDevice::make(std::unique_ptr<Context> context, const DeviceOptions& options) {
     std::unique_ptr<GlDevice> device(new GlDevice(std::move(context), options));
+    device->draws.plays();  // nobody else has it yet
     if (auto ready = device->set_up(); !ready) return ready.error();
     return std::unique_ptr<Device>(std::move(device));
 }

@@ -22,23 +22,23 @@ public:
 
     [[nodiscard]] std::string renderer() const override { return renderer_; }
     [[nodiscard]] bool software() const override { return software_; }
-    Result<void> load(const model::Model& model, const ProgramFactory& programs) override;
+    Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
-    void bind() override { context_->make_current(); }
-    void release() override { context_->release(); }
+    void bind() override ASSERT_CAPABILITY(draws) { context_->make_current(); }
+    void release() override RELEASE(draws) NO_THREAD_SAFETY_ANALYSIS { context_->release(); }
 
-    void begin_frame(const Pose& pose) override;
-    void draw(std::span<const DrawItem> items) override;
-    std::uint32_t end_slice() override;
-    void wait_slices(std::uint32_t in_flight) override;
-    void end_items() override;
-    void finish_frame() override;
-    [[nodiscard]] FrameStats stats() const override { return stats_; }
-    [[nodiscard]] bool lost() const override { return lost_; }
-    Result<PixelImage> read_pixels() override;
-    bool begin_timer() override;
-    double end_timer_ms() override;
+    void begin_frame(const Pose& pose) override REQUIRES(draws);
+    void draw(std::span<const DrawItem> items) override REQUIRES(draws);
+    std::uint32_t end_slice() override REQUIRES(draws);
+    void wait_slices(std::uint32_t in_flight) override REQUIRES(draws);
+    void end_items() override REQUIRES(draws);
+    void finish_frame() override REQUIRES(draws);
+    [[nodiscard]] FrameStats stats() const override REQUIRES(draws) { return stats_; }
+    [[nodiscard]] bool lost() const override REQUIRES(draws) { return lost_; }
+    Result<PixelImage> read_pixels() override REQUIRES(draws);
+    bool begin_timer() override REQUIRES(draws);
+    double end_timer_ms() override REQUIRES(draws);
 
 private:
     /// One part of an item, waiting in draw() or, if blended, until end_items().
@@ -54,42 +54,42 @@ private:
     };
 
     GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options);
-    Result<void> set_up();
-    void warm_up();
+    Result<void> set_up() REQUIRES(draws);
+    void warm_up() REQUIRES(draws);
     [[nodiscard]] State state_of(const Pending& pending) const;
-    void submit(std::span<Pending> sorted);
-    void submit_blended();
-    void issue(const State& state, std::uint32_t first, std::uint32_t count);
-    void apply(const State& state);
-    void set_blending(bool on);
-    void write_instance(const Pending& pending, std::uint32_t at);
-    void append_command(const Pending& pending, std::uint32_t at, std::uint32_t first_of_batch);
+    void submit(std::span<Pending> sorted) REQUIRES(draws);
+    void submit_blended() REQUIRES(draws);
+    void issue(const State& state, std::uint32_t first, std::uint32_t count) REQUIRES(draws);
+    void apply(const State& state) REQUIRES(draws);
+    void set_blending(bool on) REQUIRES(draws);
+    void write_instance(const Pending& pending, std::uint32_t at) REQUIRES(draws);
+    void append_command(const Pending& pending, std::uint32_t at, std::uint32_t first_of_batch) REQUIRES(draws);
 
     std::unique_ptr<Context> context_;
     DeviceOptions options_;
     Api gl_;
     std::string renderer_;
     bool software_ = false;
-    Target target_;
-    FrameBuffers frame_;
+    Target target_ GUARDED_BY(draws);
+    FrameBuffers frame_ GUARDED_BY(draws);
     Resources resources_;
     draw::DrawTables tables_;
 
-    Pose pose_;
-    mat4 view_projection_{1.0F};
-    vec3 sun_direction_{0, 1, 0};
-    std::uint64_t frame_number_ = 0;
-    FrameStats stats_;
-    std::vector<Pending> pending_, blended_;
-    std::size_t blended_count_ = 0;
-    std::uint32_t used_instances_ = 0, used_commands_ = 0;
-    State current_{};
-    bool state_known_ = false;
-    std::vector<GLsync> fences_;  ///< of this frame's slices; waited ones are null
-    std::uint32_t slices_ = 0, slices_done_ = 0;
-    GLuint timer_ = 0;
+    Pose pose_ GUARDED_BY(draws);
+    mat4 view_projection_ GUARDED_BY(draws){1.0F};
+    vec3 sun_direction_ GUARDED_BY(draws){0, 1, 0};
+    std::uint64_t frame_number_ GUARDED_BY(draws) = 0;
+    FrameStats stats_ GUARDED_BY(draws);
+    std::vector<Pending> pending_ GUARDED_BY(draws), blended_ GUARDED_BY(draws);
+    std::size_t blended_count_ GUARDED_BY(draws) = 0;
+    std::uint32_t used_instances_ GUARDED_BY(draws) = 0, used_commands_ GUARDED_BY(draws) = 0;
+    State current_ GUARDED_BY(draws){};
+    bool state_known_ GUARDED_BY(draws) = false;
+    std::vector<GLsync> fences_ GUARDED_BY(draws);  ///< of this frame's slices; waited ones are null
+    std::uint32_t slices_ GUARDED_BY(draws) = 0, slices_done_ GUARDED_BY(draws) = 0;
+    GLuint timer_ GUARDED_BY(draws) = 0;
     PFNGLGETGRAPHICSRESETSTATUSPROC reset_status_ = nullptr;  ///< null: the driver tells no resets
-    bool lost_ = false;
+    bool lost_ GUARDED_BY(draws) = false;
 };
 
 }  // namespace surefoot::gl

@@ -23,33 +23,33 @@ public:
 
     [[nodiscard]] std::string renderer() const override { return "null"; }
     [[nodiscard]] bool software() const override { return true; }
-    Result<void> load(const model::Model& model, const ProgramFactory& programs) override;
+    Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
-    void bind() override {}
-    void release() override {}
+    void bind() override ASSERT_CAPABILITY(draws) {}
+    void release() override RELEASE(draws) NO_THREAD_SAFETY_ANALYSIS {}
 
-    void begin_frame(const Pose& pose) override;
-    void draw(std::span<const DrawItem> items) override;
-    std::uint32_t end_slice() override {
+    void begin_frame(const Pose& pose) override REQUIRES(draws);
+    void draw(std::span<const DrawItem> items) override REQUIRES(draws);
+    std::uint32_t end_slice() override REQUIRES(draws) {
         ++slices_;
         charge();
         return slices_;
     }
-    void wait_slices(std::uint32_t) override {}
-    void end_items() override {
+    void wait_slices(std::uint32_t) override REQUIRES(draws) {}
+    void end_items() override REQUIRES(draws) {
         if (blended_ > 0) end_slice();
         blended_ = 0;
     }
-    void finish_frame() override {}
-    [[nodiscard]] FrameStats stats() const override { return stats_; }
-    Result<PixelImage> read_pixels() override {
+    void finish_frame() override REQUIRES(draws) {}
+    [[nodiscard]] FrameStats stats() const override REQUIRES(draws) { return stats_; }
+    Result<PixelImage> read_pixels() override REQUIRES(draws) {
         return Error{"backend 'null'", "draws nothing, so there is no picture", "use --backend egl for pictures"};
     }
-    [[nodiscard]] double charged_us() const override { return before_us_ + frame_us_; }
+    [[nodiscard]] double charged_us() const override REQUIRES(draws) { return before_us_ + frame_us_; }
 
 private:
-    void charge();
+    void charge() REQUIRES(draws);
 
     DeviceOptions options_;
     NullOptions null_;
@@ -64,9 +64,10 @@ private:
     std::optional<model::ItemCosts> item_costs_;
     dvec3 eye_{0.0};
     model::ViewScale scale_;
-    FrameStats stats_;
-    double submit_us_ = 0, raster_us_ = 0, factor_ = 1, before_us_ = 0, frame_us_ = 0;
-    std::uint32_t slices_ = 0, blended_ = 0;
+    FrameStats stats_ GUARDED_BY(draws);
+    double submit_us_ GUARDED_BY(draws) = 0, raster_us_ GUARDED_BY(draws) = 0, factor_ GUARDED_BY(draws) = 1;
+    double before_us_ GUARDED_BY(draws) = 0, frame_us_ GUARDED_BY(draws) = 0;
+    std::uint32_t slices_ GUARDED_BY(draws) = 0, blended_ GUARDED_BY(draws) = 0;
 };
 
 Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& programs) {

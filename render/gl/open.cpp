@@ -13,7 +13,7 @@ namespace surefoot::gl {
 
 namespace {
 
-/// One a core (ARCHITECTURE, measured decisions); beyond sixteen the barriers between scenes eat what they win.
+/// One a core (figures: render/gl/README.md); beyond sixteen the barriers between scenes eat what they win.
 int default_rasterisers() { return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U)); }
 
 #ifdef SUREFOOT_WATCHES_THREADS

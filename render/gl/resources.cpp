@@ -2,15 +2,82 @@
 #include "render/gl/resources.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 
-#include "render/gl/texture_upload.hpp"
+#include "render/draw/texture_arrays.hpp"
 
 namespace surefoot::gl {
 
 namespace {
 
+/// soft: nearest mip level instead of trilinear, which software pays for a pixel.
+Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw::TextureArray& array, bool soft) {
+    GLint largest = 0;
+    gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    if (std::max(array.width, array.height) > static_cast<std::uint32_t>(largest)) {
+        return Error{"texture of " + std::to_string(array.width) + " x " + std::to_string(array.height),
+                     "is larger than the device takes", "scale the image down to " + std::to_string(largest)};
+    }
+    GLuint id = 0;
+    gl.GenTextures(1, &id);
+    gl.BindTexture(GL_TEXTURE_2D_ARRAY, id);
+    const auto levels = static_cast<GLsizei>(array.levels);
+    gl.TexStorage3D(GL_TEXTURE_2D_ARRAY, levels, GL_RGBA8, static_cast<GLsizei>(array.width), static_cast<GLsizei>(array.height),
+                    static_cast<GLsizei>(array.layers.size()));
+    for (std::size_t layer = 0; layer < array.layers.size(); ++layer) {
+        std::uint64_t byte = model.textures[array.layers[layer]].first_byte;
+        for (GLsizei level = 0; level < levels; ++level) {
+            const std::uint32_t w = std::max(1U, array.width >> static_cast<unsigned>(level));
+            const std::uint32_t h = std::max(1U, array.height >> static_cast<unsigned>(level));
+            gl.TexSubImage3D(GL_TEXTURE_2D_ARRAY, level, 0, 0, static_cast<GLint>(layer), static_cast<GLsizei>(w),
+                             static_cast<GLsizei>(h), 1, GL_RGBA, GL_UNSIGNED_BYTE, model.texels.data() + byte);
+            byte += 4ULL * w * h;
+        }
+    }
+    const GLint smaller = levels == 1 ? GL_LINEAR : soft ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
+    const GLint wrap = array.clamp ? GL_CLAMP_TO_EDGE : GL_REPEAT;
+    gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, smaller);
+    gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, wrap);
+    gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, wrap);
+    return id;
+}
+
 constexpr GLbitfield mapped_bits = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+
+/// Something that is made step by step, and freed again unless every step succeeds: keep().
+template <class Objects>
+struct Undone {
+    using Free = void (*)(const Api& gl, Objects& objects);
+    Undone(const Api& api, Free with) : gl(api), free(with) {}
+    ~Undone() {
+        if (free != nullptr) free(gl, value);
+    }
+    Undone(const Undone&) = delete;
+    Undone& operator=(const Undone&) = delete;
+    Objects keep() {
+        free = nullptr;
+        return std::move(value);
+    }
+
+    const Api& gl;
+    Free free;
+    Objects value;
+};
+
+void free_target(const Api& gl, Target& target) {
+    const std::array<GLuint, 2> buffers{target.colour, target.depth};
+    gl.DeleteRenderbuffers(2, buffers.data());
+    gl.DeleteFramebuffers(1, &target.framebuffer);
+}
+
+/// A mapped buffer is unmapped as it is deleted.
+void free_frame_buffers(const Api& gl, FrameBuffers& frame) {
+    const std::array<GLuint, 2> buffers{frame.instance_buffer, frame.command_buffer};
+    gl.DeleteBuffers(2, buffers.data());
+}
 
 template <class T>
 Result<std::span<T>> make_mapped(const Api& gl, GLenum target, GLuint& buffer, std::uint32_t count) {
@@ -46,7 +113,8 @@ Result<void> check_errors(const Api& gl, const std::string& place, const std::st
 }
 
 Result<Target> make_target(const Api& gl, model::Viewport viewport) {
-    Target target;
+    Undone<Target> made(gl, free_target);
+    Target& target = made.value;
     const auto w = static_cast<GLsizei>(viewport.width);
     const auto h = static_cast<GLsizei>(viewport.height);
     gl.GenFramebuffers(1, &target.framebuffer);
@@ -63,33 +131,35 @@ Result<Target> make_target(const Api& gl, model::Viewport viewport) {
         return Error{"frame of " + std::to_string(viewport.width) + " x " + std::to_string(viewport.height),
                      "the device cannot draw into it (RGBA8 with 32-bit float depth)", "ask for a smaller --size"};
     }
-    return target;
+    return made.keep();
 }
 
 Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items) {
-    FrameBuffers buffers;
+    Undone<FrameBuffers> made(gl, free_frame_buffers);
+    FrameBuffers& buffers = made.value;
     auto instances = make_mapped<Instance>(gl, GL_ARRAY_BUFFER, buffers.instance_buffer, max_items);
     if (!instances) return instances.error();
     auto commands = make_mapped<DrawCommand>(gl, GL_DRAW_INDIRECT_BUFFER, buffers.command_buffer, max_items);
     if (!commands) return commands.error();
     buffers.instances = *instances;
     buffers.commands = *commands;
-    return buffers;
+    return made.keep();
 }
 
 Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
                                  const draw::TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
                                  bool soft) {
-    Resources resources;
+    Undone<Resources> made(gl, free_resources);
+    Resources& resources = made.value;
     gl.BindVertexArray(0);  // the index buffer's binding belongs to the vertex array
     resources.vertices = make_static(gl, GL_ARRAY_BUFFER, model.vertices.data(), model.vertices.size() * sizeof(model::Vertex));
     resources.indices = make_static(gl, GL_ARRAY_BUFFER, model.indices.data(), model.indices.size() * sizeof(std::uint32_t));
     const std::string remedy = "the model's geometry does not fit the device: bake a smaller part of it";
     if (auto fine = check_errors(gl, "uploading geometry", remedy); !fine) return fine.error();
     for (const draw::TextureArray& array : layout.arrays) {
-        auto made = upload_array(gl, model, array, soft);
-        if (!made) return made.error();
-        resources.textures.push_back(*made);
+        auto texture = upload_array(gl, model, array, soft);
+        if (!texture) return texture.error();
+        resources.textures.push_back(*texture);
     }
     const std::string smaller = "the model's textures do not fit the device: scale them down";
     if (auto fine = check_errors(gl, "uploading textures", smaller); !fine) return fine.error();
@@ -99,7 +169,7 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
         if (!program) return program.error();
         resources.programs.push_back(std::move(*program));
     }
-    return resources;
+    return made.keep();
 }
 
 void free_resources(const Api& gl, Resources& resources) {

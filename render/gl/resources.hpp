@@ -1,4 +1,5 @@
 // What a loaded model holds on the device: buffers, textures, programs; and the frame's target. Made at load, freed together.
+// Each function makes all of it or nothing: what was made before a step failed is freed again.
 #pragma once
 
 #include <cstdint>

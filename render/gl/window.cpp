@@ -12,7 +12,7 @@ namespace surefoot::gl {
 namespace {
 
 // Of <X11/Xlib.h>: only what is called here, so that building needs no X11 headers.
-using XDisplay = struct _XDisplay;
+struct XDisplay;
 using XId = unsigned long;
 
 struct X11 {

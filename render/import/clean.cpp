@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "render/import/mend.hpp"
+#include "render/import/finish.hpp"
 
 namespace surefoot::importer {
 namespace {

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "render/import/mend.hpp"
 #include "rt/base/file.hpp"
 
 namespace surefoot::importer {
@@ -53,7 +52,7 @@ std::string why_not_drawable(const dmat4& world) {
 
 /// The mesh as it is placed: neither out of all measure nor too small to be anything.
 std::string why_not_drawable(const Box& box, const dmat4& world) {
-    if (const std::string why = why_not_drawable(world); !why.empty()) return why;
+    if (std::string why = why_not_drawable(world); !why.empty()) return why;
     const dmat3 linear(world);
     const dvec3 half =
         glm::abs(linear[0]) * box.half().x + glm::abs(linear[1]) * box.half().y + glm::abs(linear[2]) * box.half().z;

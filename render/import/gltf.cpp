@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "render/image/srgb.hpp"
+#include "render/image/image.hpp"
 #include "render/import/finish.hpp"
 #include "render/import/gltf_parts.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "render/image/srgb.hpp"
+#include "render/image/image.hpp"
 #include "render/import/corner_map.hpp"
 #include "render/import/finish.hpp"
 #include "render/import/obj_material.hpp"

@@ -1,13 +1,14 @@
 // One leaf of an OSTF file by its offset; and the whole file as a Scene.
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <bit>
 #include <filesystem>
 #include <map>
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "render/image/srgb.hpp"
+#include "render/image/image.hpp"
 #include "render/import/finish.hpp"
 #include "render/import/ostf.hpp"
 #include "render/import/text_cursor.hpp"
@@ -59,8 +60,11 @@ private:
 
 std::uint64_t hash_of(const OstfVertex& v) { return hash_bytes(std::as_bytes(std::span(&v, 1))); }
 
-bool same(const OstfVertex& a, const OstfVertex& b) { return std::memcmp(&a, &b, sizeof(OstfVertex)) == 0; }
-static_assert(sizeof(OstfVertex) == 11 * sizeof(float));
+/// Bit for bit, as the hash is.
+bool same(const OstfVertex& a, const OstfVertex& b) {
+    using Bits = std::array<std::uint32_t, 11>;
+    return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
 
 /// Raw triangles to an indexed primitive: equal vertices become one.
 Primitive weld(const std::vector<OstfVertex>& vertices) {

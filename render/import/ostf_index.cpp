@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "render/import/ostf.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::importer {
 namespace {
@@ -162,9 +163,9 @@ private:
         if (!lines_.next(text)) return wrong("truncated after START_TAG");
         object.name = text;
         if (!lines_.next(text)) return wrong(fmt::format("truncated in '{}'", object.name));
-        const auto [last, code] = std::from_chars(text.data(), text.data() + text.size(), object.triangles);
-        if (code != std::errc{} || last != text.data() + text.size())
-            return wrong(fmt::format("'{}' is not the number of triangles of '{}'", text.substr(0, 40), object.name));
+        const auto triangles = surefoot::number_in<decltype(object.triangles)>(text);
+        if (!triangles) return wrong(fmt::format("'{}' is not the number of triangles of '{}'", text.substr(0, 40), object.name));
+        object.triangles = *triangles;
         if (object.triangles > total_ / (lines_a_triangle * 4))
             return wrong(fmt::format("'{}' says {} triangles: more than the file can hold", object.name, object.triangles));
         open_.push_back(static_cast<Index>(index_.objects.size()));

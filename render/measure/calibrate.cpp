@@ -43,7 +43,10 @@ public:
           random_(options.seed),
           scene_(make_calibration_scene(options.device.viewport, options.quick, options.seed)) {}
 
-    Result<void> load() { return device_.load(scene_.model, effects::assemble_program); }
+    Result<void> load() {
+        device_.draws.plays();  // opened on this thread
+        return device_.load(scene_.model, effects::assemble_program);
+    }
     void timer(Calibration& out);
     void slices(Calibration& out);
     Result<void> cells(Calibration& out);
@@ -52,6 +55,7 @@ public:
 private:
     /// The frame twice: the second finds warm caches, as a walk's frames do.
     FrameTiming timed(const Pose& pose, std::span<const gl::DrawItem> items, std::size_t slice_items) {
+        device_.draws.plays();
         run_frame(device_, clocks_, pose, items, slice_items);
         return run_frame(device_, clocks_, pose, items, slice_items);
     }
@@ -73,6 +77,7 @@ void Run::timer(Calibration& out) {
     for (const CalibrationCell& cell : scene_.cells) {
         if (cell.effects == 0 && cell.pixels > 5000) items.insert(items.end(), cell.items.begin(), cell.items.end());
     }
+    device_.draws.plays();
     check_timer(device_, Pose{}, items);
     out.timer = check_timer(device_, Pose{}, items);
     out.costs.timer_query_honest = out.timer.honest;
@@ -196,6 +201,7 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     progress.say("opening", 0);
     auto device = gl::open_device(options.device);
     if (!device) return device.error();
+    (*device)->draws.plays();
     Run run(**device, options, progress);
     if (auto loaded = run.load(); !loaded) return loaded.error();
     if (options.opened) options.opened();

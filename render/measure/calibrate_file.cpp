@@ -1,7 +1,6 @@
 // The cost table as a file: TOML whose first line holds a checksum of the rest; and what machine it is valid for.
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "render/measure/calibrate.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/hash.hpp"
+#include "rt/base/toml_reader.hpp"
 
 namespace surefoot::measure {
 
@@ -65,75 +65,67 @@ std::string body_of(const model::CostModel& costs) {
     return text;
 }
 
-/// Reads numbers and remembers the first one that is missing or out of range.
-class Values {
-public:
-    explicit Values(const toml::table& table) : table_(table) {}
-    float number(std::string_view key, double low, double high) {
-        const auto value = table_[key].value<double>();
-        if (value && std::isfinite(*value) && *value >= low && *value <= high) return static_cast<float>(*value);
-        complain(key);
-        return 0;
-    }
-    std::uint32_t count(std::string_view key, std::uint32_t high) {
-        const auto value = table_[key].value<std::int64_t>();
-        if (value && *value >= 0 && *value <= static_cast<std::int64_t>(high)) return static_cast<std::uint32_t>(*value);
-        complain(key);
-        return 0;
-    }
-    void numbers(std::string_view key, model::CostGrid& grid, float model::ItemCost::*member) {
-        const toml::array* list = table_[key].as_array();
-        if (list == nullptr || list->size() != grid.cells.size()) return complain(key);
-        for (std::size_t i = 0; i < grid.cells.size(); ++i) {
-            const auto value = (*list)[i].value<double>();
-            if (!value || !std::isfinite(*value) || *value < 0) return complain(key);
-            grid.cells[i].*member = static_cast<float>(*value);
-        }
-    }
-    void complain(std::string_view key) {
-        if (wrong.empty()) wrong = key;
-    }
-    std::string wrong;
+/// What is not there is as wrong as what is out of range.
+void require_key(TableReader& table, std::string_view key) {
+    if (!table.has(key)) table.refuse(key, "is missing", remedy);
+}
 
-private:
-    const toml::table& table_;
-};
+float needed_number(TableReader& table, std::string_view key, double low, double high) {
+    double value = 0;
+    require_key(table, key);
+    table.number(key, low, high, {}, value);
+    return static_cast<float>(value);
+}
+
+std::uint32_t needed_count(TableReader& table, std::string_view key, std::uint32_t high) {
+    std::int64_t value = 0;
+    require_key(table, key);
+    table.integer(key, 0, high, value);
+    return static_cast<std::uint32_t>(value);
+}
+
+void needed_numbers(TableReader& table, std::string_view key, model::CostGrid& grid, float model::ItemCost::*member) {
+    std::vector<double> values(grid.cells.size());
+    require_key(table, key);
+    table.numbers(key, grid.cells.size(), 0, values);
+    for (std::size_t i = 0; i < values.size(); ++i) grid.cells[i].*member = static_cast<float>(values[i]);
+}
 
 Result<model::CostModel> costs_of(const toml::table& table, const std::string& file) {
     model::CostModel costs;
     const auto refuse = [&](const std::string& key) { return Error{file, "'" + key + "' is missing or out of range", remedy}; };
-    Values top(table);
-    if (top.count("version", 1000) != format_version) return refuse("version");
+    TableReader top(table, file, {});
+    if (needed_count(top, "version", 1000) != format_version) return refuse("version");
     costs.machine = table["machine"].value_or(std::string());
     // Then no machine's own: walks say so, and what to do.
     if (table["estimate"].value_or(1) != estimate) costs.machine += ", by another version of the estimate";
     costs.calibrated = table["calibrated"].value_or(false);
     costs.timer_query_honest = table["timer_query_honest"].value_or(false);
-    costs.upper_factor = top.number("upper_factor", 0.1, 100);
-    costs.slice_us = top.number("slice_us", 0, 1e6);
-    if (!top.wrong.empty()) return refuse(top.wrong);
+    costs.upper_factor = needed_number(top, "upper_factor", 0.1, 100);
+    costs.slice_us = needed_number(top, "slice_us", 0, 1e6);
+    if (!top.wrong_key().empty()) return refuse(top.wrong_key());
     const toml::table* combine = table["combine"].as_table();
     if (combine == nullptr) return refuse("combine");
-    Values weights(*combine);
-    costs.combine.fixed_us = weights.number("fixed_us", 0, 1e6);
-    costs.combine.submit_weight = weights.number("submit_weight", 0, 100);
-    costs.combine.raster_weight = weights.number("raster_weight", 0, 100);
-    costs.combine.max_weight = weights.number("max_weight", 0, 100);
-    if (!weights.wrong.empty()) return refuse("combine." + weights.wrong);
+    TableReader weights(*combine, file, "combine");
+    costs.combine.fixed_us = needed_number(weights, "fixed_us", 0, 1e6);
+    costs.combine.submit_weight = needed_number(weights, "submit_weight", 0, 100);
+    costs.combine.raster_weight = needed_number(weights, "raster_weight", 0, 100);
+    costs.combine.max_weight = needed_number(weights, "max_weight", 0, 100);
+    if (!weights.wrong_key().empty()) return refuse(weights.wrong_key());
     const toml::array* classes = table["class"].as_array();
     if (classes == nullptr || classes->empty()) return refuse("class");
     for (const auto& entry : *classes) {
         if (!entry.is_table()) return refuse("class");
-        Values values(*entry.as_table());
+        TableReader values(*entry.as_table(), file, "class");
         model::CostGrid grid;
-        grid.effects = values.count("effects", 0x7fffffffU);
-        grid.triangle_steps = values.count("triangle_steps", most_steps);
-        grid.pixel_steps = values.count("pixel_steps", most_steps);
-        if (grid.triangle_steps == 0 || grid.pixel_steps == 0) values.complain("triangle_steps");
+        grid.effects = needed_count(values, "effects", 0x7fffffffU);
+        grid.triangle_steps = needed_count(values, "triangle_steps", most_steps);
+        grid.pixel_steps = needed_count(values, "pixel_steps", most_steps);
+        if (grid.triangle_steps == 0 || grid.pixel_steps == 0) values.refuse("triangle_steps", "is 0", remedy);
         grid.cells.resize(static_cast<std::size_t>(grid.triangle_steps) * grid.pixel_steps);
-        values.numbers("submit_us", grid, &model::ItemCost::submit_us);
-        values.numbers("raster_us", grid, &model::ItemCost::raster_us);
-        if (!values.wrong.empty()) return refuse("class." + values.wrong);
+        needed_numbers(values, "submit_us", grid, &model::ItemCost::submit_us);
+        needed_numbers(values, "raster_us", grid, &model::ItemCost::raster_us);
+        if (!values.wrong_key().empty()) return refuse(values.wrong_key());
         costs.grids.push_back(std::move(grid));
     }
     return costs;

@@ -162,6 +162,7 @@ model::CostGrid fill_grid(model::EffectMask effects, std::span<const Calibration
     if (points.empty()) return grid;
     const std::vector<Level> levels = levels_of(points);
     std::vector<double> knots;
+    knots.reserve(levels.size());
     for (const Level& level : levels) knots.push_back(level.triangles);
     const auto value = [&](std::size_t kind, std::uint32_t t, std::uint32_t p) {
         const Place place = place_in(knots, std::max(std::ldexp(1.0, static_cast<int>(t)), knots.front()));

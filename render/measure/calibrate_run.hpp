@@ -29,10 +29,10 @@ private:
 
 /// Draws the items in slices of slice_items, at most one slice ahead of the rasterisers, as the engine does.
 FrameTiming run_frame(gl::Device& device, RasteriserClocks& rasterisers, const Pose& pose, std::span<const gl::DrawItem> items,
-                      std::size_t slice_items);
+                      std::size_t slice_items) REQUIRES(device.draws);
 
 /// The same work by timer query and by the wall. Draws `items` as one slice.
-TimerQueryCheck check_timer(gl::Device& device, const Pose& pose, std::span<const gl::DrawItem> items);
+TimerQueryCheck check_timer(gl::Device& device, const Pose& pose, std::span<const gl::DrawItem> items) REQUIRES(device.draws);
 /// Honest: within 20 % of the wall.
 TimerQueryCheck judge_timer(bool available, double query_ms, double wall_ms);
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "render/model/cost.hpp"
-#include "rt/base/random_point.hpp"
+#include "rt/base/random.hpp"
 
 namespace surefoot::measure {
 
@@ -297,7 +297,8 @@ void make_town(Builder& builder, const Meshes& meshes, const std::vector<std::ve
     for (const int cells : {1, 4, 12}) grounds.push_back({builder.ground(cells)});
     const auto any = [&](const std::vector<Index>& list) { return list[random.below(static_cast<std::uint32_t>(list.size()))]; };
     for (int b = 0; b < blocks * blocks; ++b) {
-        const dvec3 corner(block * (b % blocks) - 0.5 * town_side_m, 0, block * (b / blocks) - 0.5 * town_side_m + 1000);
+        const int column = b % blocks, row = b / blocks;
+        const dvec3 corner(block * column - 0.5 * town_side_m, 0, block * row - 0.5 * town_side_m + 1000);
         // Ground is never see-through or full of holes.
         const std::size_t ground = random.below(static_cast<std::uint32_t>(std::min<std::size_t>(4, materials.size())));
         add_town_object(builder, grounds, any(materials[ground]), corner + dvec3(0.5 * block, 0.0, 0.5 * block),

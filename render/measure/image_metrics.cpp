@@ -101,7 +101,8 @@ Snr snr(std::span<const std::uint8_t> simplified, std::span<const std::uint8_t> 
         result.defined = false;
         return result;
     }
-    const double count = static_cast<double>(simplified.size() / channels) * 3;
+    const std::size_t pixels = simplified.size() / channels;
+    const double count = static_cast<double>(pixels) * 3;
     std::uint64_t squared_error = 0;
     for (std::size_t i = 0; i < simplified.size(); i += channels)
         for (std::size_t c = 0; c < 3; ++c) {
@@ -141,7 +142,8 @@ double share_within(std::span<const std::uint8_t> a, std::span<const std::uint8_
         for (std::size_t c = 0; c < 3; ++c) near = near && std::abs(int{a[i + c]} - int{b[i + c]}) <= steps;
         within += near ? 1 : 0;
     }
-    return static_cast<double>(within) / static_cast<double>(a.size() / channels);
+    const std::size_t pixels = a.size() / channels;
+    return static_cast<double>(within) / static_cast<double>(pixels);
 }
 
 std::vector<std::uint8_t> difference_image(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "render/model/triangles.hpp"
+#include "render/model/model.hpp"
 
 namespace surefoot::model {
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "render/model/limits.hpp"
+
 namespace surefoot::model {
 
 namespace {
@@ -192,6 +194,7 @@ EffectMask Model::called_for() const {
 }
 
 Result<void> validate(const Model& model) {
+    if (auto fits = check_limits(counts_of(model), "model"); !fits) return fits;
     for (const auto check :
          {check_textures, check_materials, check_parts, check_placements, check_reps, check_tree, check_rest}) {
         if (Check result = check(model); !result) return result;

@@ -9,6 +9,7 @@
 
 #include "render/model/effects.hpp"
 #include "rt/base/geometry.hpp"
+#include "rt/base/named.hpp"
 #include "rt/base/page_memory.hpp"
 #include "rt/base/result.hpp"
 
@@ -124,5 +125,36 @@ struct Model {
 /// Checks every index, range, order and number that the renderer relies on; the error names array and element.
 /// Run on every model that comes from a file: a reader never trusts one.
 Result<void> validate(const Model& model);
+
+/// use(const Material&, const vec3& a, const vec3& b, const vec3& c) for every triangle of a part, corners as they are stored:
+/// in the part's own coordinates (Representation::placement brings them into the world).
+template <class Use>
+void for_triangles(const Model& model, Index of_part, Use use) {
+    const Part& part = model.parts[of_part];
+    const auto corner = [&](std::uint32_t i) {
+        const float* v = model.vertices[part.first_vertex + model.indices[part.first_index + i]].position;
+        return vec3(v[0], v[1], v[2]);
+    };
+    for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3)
+        use(model.materials[part.material], corner(i), corner(i + 1), corner(i + 2));
+}
+
+/// The same for every part of a representation, in order.
+template <class Use>
+void for_triangles(const Model& model, const Representation& rep, Use use) {
+    for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) for_triangles(model, p, use);
+}
+
+/// The forms in which a node may be drawn, by name, in RepKind's order.
+inline constexpr std::array forms = {
+    Named{"mesh", "triangles of its own, coarse to fine"},
+    Named{"colour_box", "its box in a mean colour a side"},
+    Named{"textured_box", "its box with pictures of it on the sides"},
+};
+
+constexpr const Named& form_of(RepKind kind) { return forms[static_cast<std::size_t>(kind)]; }
+
+static_assert(form_of(RepKind::mesh).name == "mesh" && form_of(RepKind::textured_box).name == "textured_box");
+static_assert(forms.size() == static_cast<std::size_t>(RepKind::textured_box) + 1);
 
 }  // namespace surefoot::model

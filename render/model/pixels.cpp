@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/model/triangles.hpp"
+#include "render/model/model.hpp"
 
 namespace surefoot::model {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "render/model/triangles.hpp"
+#include "render/model/model.hpp"
 
 namespace surefoot::model {
 

@@ -26,7 +26,7 @@ public:
     /// Of the representation `r` of a node with box `node_box`. The sum of part_pixels() where these are known; else
     /// rasterised_pixels(), and nearer than three half diagonals of the box two thirds by the surface: the box's third keeps
     /// what samples enter and leave from showing from frame to frame, and costs some of what the surface gains on random poses
-    /// (figures: ARCHITECTURE, "Measured decisions"). Nearby 1 to 4 us, with part_pixels() up to 25.
+    /// (figures: render/model/README.md). Nearby 1 to 4 us, with part_pixels() up to 25.
     [[nodiscard]] float pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const;
     /// Of each of its parts, every triangle cut to the view: true where the eye is nearer than one and a half half diagonals and
     /// all representations of the node have at most 1024 triangles in at most `most_parts` parts (so that one and the next are

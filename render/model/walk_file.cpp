@@ -17,6 +17,7 @@
 
 #include <fmt/format.h>
 
+#include "render/model/limits.hpp"
 #include "render/model/walk_fields.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/hash.hpp"
@@ -344,6 +345,10 @@ Result<Model> read_walk(const std::string& file, WalkFileInfo* info) {
     for (std::uint32_t section = 0; section < section_count; ++section) {
         if (auto taken = take_section(in, section, model, sizes, pages); !taken) return taken.error();
     }
+    Counts counts = counts_of(model);
+    counts.vertices = sizes.vertices / sizeof(Vertex);
+    counts.indices = sizes.indices / sizeof(std::uint32_t);
+    if (auto fits = check_limits(counts, file); !fits) return fits.error();
     if (auto checked = check_pages(in, sizes, pages); !checked) return checked.error();
     model.vertices.resize(sizes.vertices / sizeof(Vertex));
     model.indices.resize(sizes.indices / sizeof(std::uint32_t));

@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "render/model/triangles.hpp"
+#include "render/model/model.hpp"
 
 namespace surefoot::prepare {
 

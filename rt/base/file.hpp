@@ -75,4 +75,8 @@ private:
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);
 Result<void> write_text(const std::string& path, std::string_view text);
 
+/// Opens /dev/null in the place of a closed stdin, stdout or stderr. Their numbers would go to the next files that are opened,
+/// and what is printed or logged would go there. To be called first of all.
+void keep_standard_files();
+
 }  // namespace surefoot

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot {
 
@@ -21,13 +22,6 @@ namespace {
 constexpr double radians_per_degree = 0.017453292519943295;
 constexpr std::string_view columns = "time_s,x,y,z,qx,qy,qz,qw,fov_y_deg";
 constexpr std::size_t pose_columns = 8;
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view space = " \t\r";
-    const auto first = text.find_first_not_of(space);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(space) - first + 1);
-}
 
 std::vector<std::string_view> fields_of(std::string_view line) {
     std::vector<std::string_view> fields;
@@ -40,7 +34,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 }
 
 /// A number too large for a double reads as infinity, one too small as zero.
-std::optional<double> number_in(std::string_view field) {
+std::optional<double> saturated_number(std::string_view field) {
     double value = 0;
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
     const bool overflow = error == std::errc::result_out_of_range;
@@ -69,7 +63,7 @@ std::variant<PathSample, RowProblem> read_row(const std::vector<std::string_view
     std::array<double, pose_columns + 1> v{};
     for (std::size_t i = 0; i < fields.size(); ++i) {
         if (i == pose_columns && !last_is_fov) break;
-        const auto value = number_in(fields[i]);
+        const auto value = saturated_number(fields[i]);
         if (!value) return RowProblem{fmt::format("column {}: '{}' is not a number", i + 1, fields[i])};
         if (!std::isfinite(*value)) return RowProblem{fmt::format("column {}: '{}' is not finite", i + 1, fields[i])};
         if (std::abs(*value) > limit_of(i))

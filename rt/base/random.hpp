@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "rt/base/geometry.hpp"
+
 namespace surefoot {
 
 /// Deterministic generator. Source: Blackman & Vigna, xoshiro256** 1.0 (public domain reference algorithm).
@@ -40,5 +42,13 @@ private:
     static std::uint64_t rotl(std::uint64_t x, unsigned k) { return (x << k) | (x >> (64U - k)); }
     std::array<std::uint64_t, 4> state_{};
 };
+
+/// Uniform in [low, high), component by component, z first; one that has no room to vary draws nothing.
+inline dvec3 any_in(Random& random, const dvec3& low, const dvec3& high) {
+    dvec3 point = low;
+    for (int axis = 2; axis >= 0; --axis)
+        if (low[axis] < high[axis]) point[axis] = random.range(low[axis], high[axis]);
+    return point;
+}
 
 }  // namespace surefoot

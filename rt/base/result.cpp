@@ -1,13 +1,54 @@
-// How an error reads: "place: what (remedy)".
+// How an error reads: "place: What happened. What to do."
 #include "rt/base/result.hpp"
 
 namespace surefoot {
+
+namespace {
+
+void end_sentence(std::string& line) {
+    if (!line.empty() && line.find_first_of(".?!:", line.size() - 1) == std::string::npos) line += '.';
+}
+
+}  // namespace
+
+std::string_view name_of(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::failed:
+            return "failed";
+        case ErrorKind::misuse:
+            return "misuse";
+        case ErrorKind::not_found:
+            return "not_found";
+        case ErrorKind::unreadable:
+            return "unreadable";
+        case ErrorKind::unwritable:
+            return "unwritable";
+        case ErrorKind::damaged:
+            return "damaged";
+        case ErrorKind::unsupported:
+            return "unsupported";
+        case ErrorKind::out_of_limits:
+            return "out_of_limits";
+        case ErrorKind::no_memory:
+            return "no_memory";
+        case ErrorKind::no_device:
+            return "no_device";
+        case ErrorKind::no_real_time:
+            return "no_real_time";
+        case ErrorKind::stopped:
+            return "stopped";
+    }
+    return "failed";
+}
 
 std::string Error::text() const {
     std::string line = place;
     if (!line.empty() && !what.empty()) line += ": ";
     line += what;
-    if (!remedy.empty()) line += " (" + remedy + ")";
+    if (remedy.empty()) return line;
+    end_sentence(line);
+    line += ' ' + remedy;
+    end_sentence(line);
     return line;
 }
 

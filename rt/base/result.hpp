@@ -1,18 +1,39 @@
 // Errors as values: every error names the place, what is wrong there, and the remedy.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
 namespace surefoot {
 
-/// What went wrong, for a person who has to mend it. Printed as "place: what (remedy)".
+/// What sort of failure an error is. Programs decide by this, and labels of metrics are made of it; never by words of a sentence.
+enum class ErrorKind : std::uint8_t {
+    failed,         ///< no kind of its own
+    misuse,         ///< an option, argument or setting that cannot be taken
+    not_found,      ///< a file, device, name or command that is not there
+    unreadable,     ///< it is there and cannot be read
+    unwritable,     ///< it cannot be created, written or replaced
+    damaged,        ///< content that breaks its format: bytes, lines, checksums
+    unsupported,    ///< valid, and this version or this driver cannot do it
+    out_of_limits,  ///< too large, too many, too small
+    no_memory,
+    no_device,     ///< graphics, input or GPIO hardware that does not answer
+    no_real_time,  ///< the machine refuses what real time needs
+    stopped,       ///< the user ended it
+};
+/// "not_found": the name of a kind in JSON and metrics.
+std::string_view name_of(ErrorKind kind);
+
+/// What went wrong, for a person who has to correct it. Printed as "place: What happened. What to do."
 struct Error {
     std::string place;   ///< file, and line, key or byte offset where known
-    std::string what;    ///< what is wrong there
-    std::string remedy;  ///< what the user can do; may be empty
+    std::string what;    ///< a whole sentence, without its full stop
+    std::string remedy;  ///< what the user can do: a whole sentence, without its full stop; may be empty
+    ErrorKind kind = ErrorKind::failed;
 
     [[nodiscard]] std::string text() const;
 };

@@ -115,7 +115,8 @@ double sign_flip_p_value(std::span<const int> differences) {
         chance.swap(next);
     }
     double p = 0;
-    for (std::size_t s = static_cast<std::size_t>(sum + reach); s < chance.size(); ++s) p += chance[s];
+    const int first = sum + reach;
+    for (auto s = static_cast<std::size_t>(first); s < chance.size(); ++s) p += chance[s];
     return std::min(p, 1.0);
 }
 

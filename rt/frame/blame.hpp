@@ -7,6 +7,8 @@
 
 namespace surefoot::rt {
 
+constexpr std::uint32_t oldest_prepared = 3;  ///< frames: an older prepared set is not used
+
 /// What each phase may take, as shares of the period, and what counts as evidence.
 struct BlameLimits {
     std::int64_t period_ns = 33'333'333;
@@ -16,7 +18,7 @@ struct BlameLimits {
     double submit_share = 0.40;  ///< without uploads
     double raster_share = 0.40;
     double present_share = 0.05;
-    std::uint32_t oldest_prepared = 3;   ///< frames; older sets are not used (DESIGN 1.4)
+    std::uint32_t oldest_prepared = rt::oldest_prepared;
     std::int64_t minor_fault_ns = 1000;  ///< of one, at most (0.25 us native to 2 us in a guest); see minor_fault_cost_ns()
     bool fifo = true;  ///< the frame thread has SCHED_FIFO: a late wake-up is the platform's doing, not that of our scheduling
 };

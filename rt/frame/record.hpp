@@ -1,6 +1,7 @@
 // What is kept of every frame: times, predictions, counts, and the one cause of a miss. Plain data through the ring.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -70,5 +71,16 @@ struct FrameRecord {
 };
 
 inline std::string_view cause_of(const FrameRecord& f) { return cause_names[static_cast<std::size_t>(f.cause)]; }
+
+/// What a frame took of its grid, for the live figures and for the summary alike. CPU time: the frame thread's, and the
+/// rasterisers' as spread over their threads. Where a clock is not known (a GPU, the virtual clock), the wall time of that part
+/// less what was stolen.
+inline double busy_ns(const FrameRecord& f, std::uint32_t rasterisers) {
+    const double stolen = static_cast<double>(f.stolen_ns);
+    const double raster_wall = std::max(0.0, static_cast<double>(f.rastered_ns - f.submitted_ns) - stolen);
+    if (f.cpu_ns <= 0) return std::max(0.0, static_cast<double>(f.rastered_ns - f.woken_ns) - stolen);
+    const double raster = f.raster_cpu_ns > 0 ? static_cast<double>(f.raster_cpu_ns) / std::max(1U, rasterisers) : raster_wall;
+    return static_cast<double>(f.cpu_ns) + raster;
+}
 
 }  // namespace surefoot::rt

@@ -4,11 +4,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <filesystem>
 #include <string_view>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 #include "rt/threads/usage.hpp"
 
 namespace surefoot::rt {
@@ -25,9 +25,7 @@ std::int64_t status_number(std::string_view status, std::string_view name) {
         at += line.size() + 1;
         if (!line.starts_with(name) || line.size() <= name.size() || line[name.size()] != ':') continue;
         const std::size_t digits = line.find_first_of("0123456789");
-        std::int64_t value = -1;
-        if (digits != std::string_view::npos) std::from_chars(line.data() + digits, line.data() + line.size(), value);
-        return value;
+        return digits != std::string_view::npos ? leading_number<std::int64_t>(line.substr(digits), -1) : -1;
     }
     return -1;
 }
@@ -46,11 +44,7 @@ std::int64_t stat_field(std::string_view stat, int n) {
         const std::size_t begin = rest.find_first_not_of(' ');
         if (begin == std::string_view::npos) return -1;
         rest.remove_prefix(begin);
-        std::int64_t value = -1;
-        if (field == n) {
-            std::from_chars(rest.data(), rest.data() + rest.size(), value);
-            return value;
-        }
+        if (field == n) return leading_number<std::int64_t>(rest, -1);
         rest.remove_prefix(std::min(rest.find(' '), rest.size()));
     }
 }

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "rt/base/check.hpp"
-#include "rt/frame/busy.hpp"
+#include "rt/frame/record.hpp"
 
 namespace surefoot::rt {
 

@@ -6,10 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <thread>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 #include "rt/threads/memory.hpp"
 
 namespace surefoot::rt {
@@ -23,12 +23,7 @@ std::string first_line(const std::string& file) {
     return text ? text->substr(0, text->find('\n')) : std::string{};
 }
 
-std::int64_t number_in(const std::string& file, std::int64_t otherwise) {
-    const std::string line = first_line(file);
-    std::int64_t value = otherwise;
-    std::from_chars(line.data(), line.data() + line.size(), value);
-    return value;
-}
+std::int64_t number_of(const std::string& file, std::int64_t otherwise) { return leading_number(first_line(file), otherwise); }
 
 /// On a thread of its own, so that the caller's placing is not touched.
 bool fifo_granted(int priority) {
@@ -104,9 +99,9 @@ Capabilities probe_capabilities(int wanted_priority, const std::string& root) {
     c.rttime_us = soft_limit(RLIMIT_RTTIME);
     c.allowed = allowed_cpus();
     c.isolated = isolated_cpus(c.allowed, root);
-    c.rt_runtime_us = number_in(root + "/proc/sys/kernel/sched_rt_runtime_us", -1);
-    c.rt_period_us = number_in(root + "/proc/sys/kernel/sched_rt_period_us", 1'000'000);
-    c.preempt_rt = number_in(root + "/sys/kernel/realtime", 0) == 1;
+    c.rt_runtime_us = number_of(root + "/proc/sys/kernel/sched_rt_runtime_us", -1);
+    c.rt_period_us = number_of(root + "/proc/sys/kernel/sched_rt_period_us", 1'000'000);
+    c.preempt_rt = number_of(root + "/sys/kernel/realtime", 0) == 1;
     const auto processor = read_text(root + "/proc/cpuinfo", 1U << 24U);
     c.virtual_machine = processor && processor->find(" hypervisor") != std::string::npos;
     c.lacking = find_lacking(c, wanted_priority);

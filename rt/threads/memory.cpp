@@ -11,11 +11,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdlib>
 #include <string_view>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 #include "rt/threads/usage.hpp"
 
 namespace surefoot::rt {
@@ -32,9 +32,7 @@ std::uint64_t status_bytes(std::string_view key) {
     if (at == std::string::npos) return 0;
     const auto digit = text->find_first_of("0123456789", at + key.size());
     if (digit == std::string::npos) return 0;
-    std::uint64_t kb = 0;
-    std::from_chars(text->data() + digit, text->data() + text->size(), kb);
-    return kb << 10U;
+    return leading_number<std::uint64_t>(std::string_view(*text).substr(digit), 0) << 10U;
 }
 
 Result<void> lock_all(std::uint64_t growth_bytes) {

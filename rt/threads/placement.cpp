@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::rt {
 
@@ -204,9 +205,9 @@ Result<std::vector<ThreadInfo>> read_threads() {
     std::vector<ThreadInfo> threads;
     while (const dirent* entry = ::readdir(tasks.get())) {  // NOLINT(concurrency-mt-unsafe): this stream is ours alone
         const std::string_view name = entry->d_name;
-        pid_t tid = 0;
-        if (std::from_chars(name.data(), name.data() + name.size(), tid).ec != std::errc{}) continue;
-        if (auto info = read_thread(tid)) threads.push_back(std::move(*info));
+        const auto tid = number_in<pid_t>(name);
+        if (!tid) continue;
+        if (auto info = read_thread(*tid)) threads.push_back(std::move(*info));
     }
     std::ranges::sort(threads, {}, &ThreadInfo::tid);
     return threads;

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::rt {
 
@@ -31,10 +32,7 @@ std::uint64_t number_at(std::string_view line, int n) {
         const auto space = line.find(' ');
         if (space == std::string_view::npos) return 0;
         line.remove_prefix(std::min(line.find_first_not_of(' ', space), line.size()));
-        if (i < n) continue;
-        std::uint64_t value = 0;
-        std::from_chars(line.data(), line.data() + line.size(), value);
-        return value;
+        if (i == n) return leading_number<std::uint64_t>(line, 0);
     }
 }
 

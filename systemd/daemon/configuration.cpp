@@ -11,22 +11,24 @@ namespace surefoot::daemon {
 
 namespace {
 
-/// Keys that are for single walks, or say nothing alone.
+/// Rules of the service: keys that only single walks may have, and keys that need another key.
 std::vector<Error> own_rules(const config::Configuration& c, const std::string& file) {
     const config::Settings& s = c.values;
     std::vector<Error> problems;
     const auto wrong = [&](std::string_view key, std::string what, std::string remedy) {
         const config::Origin origin = c.origin(key);
         const std::string place = origin.text() == "default" ? file : origin.text();
-        problems.push_back({place, fmt::format("{} {}", key, what), std::move(remedy)});
+        problems.push_back({fmt::format("{}, {}", place, key), std::move(what), std::move(remedy), ErrorKind::misuse});
     };
     if (s.model_file.empty())
-        wrong("model", "is not set", "name the .walk file that `surefoot bake` made: model = \"lobby.walk\"");
-    if (s.control) wrong("control", "= true is for `surefoot walk`: every other two seconds show no frames", "take it out");
+        wrong("model", "The model is not set", "Name the .walk file that `surefoot bake` made: model = \"lobby.walk\"");
+    if (s.control)
+        wrong("control", "A service cannot run with the control, which shows no frames half of the time",
+              "Remove control, or use `surefoot walk`");
     if (s.clock != rt::ClockKind::real)
-        wrong("clock", fmt::format("= \"{}\" has no real time", rt::name_of(s.clock)), "take it out");
+        wrong("clock", fmt::format("A service needs the real clock, not \"{}\"", rt::name_of(s.clock)), "Remove clock");
     if (!s.steering_file.empty() && s.input_file.empty())
-        wrong("steering", "says how an input steers, and there is none", "add input = \"devices\", or take it out");
+        wrong("steering", "A steering file needs an input, and none is set", "Add input = \"devices\", or remove steering");
     if (!s.monitor.empty() && s.monitor != no_monitor) {
         if (const auto address = monitor::parse_address(s.monitor); !address)
             wrong("monitor", address.error().what, address.error().remedy);
@@ -36,10 +38,11 @@ std::vector<Error> own_rules(const config::Configuration& c, const std::string& 
 
 Result<void> apply_set(config::Configuration& c, const std::string& assignment) {
     const auto equals = assignment.find('=');
-    if (equals == std::string::npos) return Error{"--set " + assignment, "is no KEY=VALUE", "e.g. --set rate_hz=60"};
+    if (equals == std::string::npos)
+        return Error{"--set " + assignment, "This is not KEY=VALUE", "Write for example --set rate_hz=60", ErrorKind::misuse};
     auto set = config::set_value(c, assignment.substr(0, equals), assignment.substr(equals + 1));
     if (set) return {};
-    return Error{"--set " + assignment, set.error().what, set.error().remedy};
+    return Error{"--set " + assignment, set.error().what, set.error().remedy, set.error().kind};
 }
 
 }  // namespace

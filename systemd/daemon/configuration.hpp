@@ -1,4 +1,4 @@
-// The settings file as the daemon wants it: read whole, with everything that is wrong in it told.
+// Reads and checks the settings file for the daemon, and reports every error in it.
 #pragma once
 
 #include <string>

@@ -1,12 +1,9 @@
 // One walk after another, each as the newest good configuration says.
 #include "systemd/daemon/daemon.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -23,19 +20,12 @@
 #include "systemd/daemon/monitoring.hpp"
 #include "systemd/daemon/service.hpp"
 #include "systemd/daemon/standing.hpp"
-#include "tools/monitor/watch.hpp"
+#include "tools/monitor/monitor.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::daemon {
 
 namespace {
-
-/// A closed stdin, stdout or stderr would give its number to the next file that is opened, and the log would go there.
-void keep_standard_files() {
-    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
-        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF) (void)open("/dev/null", fd == STDERR_FILENO ? O_WRONLY : O_RDONLY);
-    }
-}
 
 /// What a walk ended with.
 struct Ending {
@@ -71,7 +61,7 @@ walk::WalkWatch watch_of(Log& log, Standing& standing, Bursts& bursts, const wal
             log.say(Priority::warning, event::uncalibrated, start.uncalibrated);
         // After the session has raised its limits.
         if (auto ok = rt::guard_runaways(rt::runaway_limit_us(start.period_ns)); !ok)
-            say_lack(log, standing, {rt::LackKind::other, ok.error().place + " " + ok.error().what, ok.error().remedy});
+            say_lack(log, standing, {rt::LackKind::other, ok.error().place + ": " + ok.error().what, ok.error().remedy});
         standing.walking(start.period_ns);
     };
     watch.on_record = [&](const rt::FrameRecord& record) {
@@ -83,7 +73,7 @@ walk::WalkWatch watch_of(Log& log, Standing& standing, Bursts& bursts, const wal
     return watch;
 }
 
-/// A stop that could not be remembered would be forgotten by the next start: known before the first frame.
+/// Checks before the first frame that an emergency stop can be stored. Otherwise the next start would forget it.
 Result<void> check_state(const walk::WalkRequest& request) {
     if (request.input_file != walk::live_input) return {};
     const std::string file = walk::state_directory(request.state_dir) + "/probe";
@@ -101,7 +91,9 @@ Ending walk(const config::Configuration& configuration, const walk::WalkRequest&
         log.say(Priority::warning, event::reloading, kept, {{"SUREFOOT_CONFIG", options.config_file}});
     if (auto ok = check_state(request); !ok) {
         const Error& e = ok.error();
-        return {true, {e.place, "the state folder must keep a stop, and cannot: " + e.what, e.remedy}, exit_cannot_write};
+        return {true,
+                {e.place, "The emergency stop cannot be stored in the state folder. " + e.what, e.remedy, e.kind},
+                exit_cannot_write};
     }
     Progress progress;
     progress.stop = &standing.stop_walk;
@@ -126,13 +118,13 @@ Ending walk(const config::Configuration& configuration, const walk::WalkRequest&
     return {};
 }
 
-/// Walks until the end; of a configuration that never showed a frame back to the last that did.
+/// Walks until the end. If a configuration never shows a frame, the last one that did is used again.
 ExitCode walk_on(config::Configuration current, const Options& options, Log& log, Standing& standing, monitor::Monitor* monitor,
                  const walk::FaultHook& inject) {
     const walk::WalkRequest first = request_of(current, options.config_file);
     std::optional<config::Configuration> good;
     while (true) {
-        // In this order: what a signal asks for in between is seen below, or ends the walk as it begins.
+        // This order loses no signal: a request that arrives in between is seen below, or ends the walk at its start.
         standing.open(current.values);
         standing.stop_walk.store(false);
         if (standing.leaving.load()) return exit_success;
@@ -152,7 +144,7 @@ ExitCode walk_on(config::Configuration current, const Options& options, Log& log
         const bool newer = standing.stop_walk.load();  // a reload came while this one failed
         if (standing.walk_frames() == 0 && (good || newer)) {
             const std::string why = ending.error.text();
-            log.say(Priority::error, event::refused, "the configuration does not walk, another one is taken: " + why);
+            log.say(Priority::error, event::refused, "the new configuration cannot start a walk, another one is used: " + why);
             if (newer) continue;
             standing.refuse(why);
             current = *std::exchange(good, std::nullopt);
@@ -202,16 +194,16 @@ int run(const Options& options, const walk::FaultHook& inject) {
 int run_main(int argc, char** argv, const walk::FaultHook& inject) {
     keep_standard_files();
     std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);  // a file limit is an error of that file, not the end of the program
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of that file; it must not end the program
     int code = exit_failure;
     const auto options = read_options(argc, argv, code);
     if (!options) return code;
     try {
         return run(*options, inject);
     } catch (const std::bad_alloc&) {
-        (void)std::fputs("surefootd: memory: not enough for this model\n", stderr);
+        (void)std::fputs("surefootd: memory: There is not enough memory for this model\n", stderr);
     } catch (const std::exception& error) {
-        (void)std::fprintf(stderr, "surefootd: unexpected: %s\n", error.what());
+        (void)std::fprintf(stderr, "surefootd: An unexpected error happened: %s\n", error.what());
     }
     return exit_failure;
 }

@@ -5,19 +5,19 @@
 
 namespace surefoot::daemon {
 
-/// What follows from one look.
+/// The result of one check.
 struct Beat {
     bool ping = false;     ///< send WATCHDOG=1
-    bool stalled = false;  ///< no frame for too long: said once
-    bool resumed = false;  ///< frames again after a stall: said once
+    bool stalled = false;  ///< no frame for too long; true once per stall
+    bool resumed = false;  ///< frames again after a stall; true once
 };
 
 class Heartbeat {
 public:
-    /// timeout_ns: systemd's; 0: it wants no pings, stalls are told all the same. period_ns: of a frame.
+    /// timeout_ns: systemd's watchdog timeout; 0: no pings, but stalls are still reported. period_ns: of a frame.
     Heartbeat(std::int64_t timeout_ns, std::int64_t period_ns);
 
-    /// No frame can come until frames_begin(): a model is opened. Pings are due for at most open_limit_ns.
+    /// Until frames_begin() a model is opened and no frame can come. Pings go on for at most open_limit_ns.
     void opening(std::int64_t now_ns, std::int64_t open_limit_ns);
     void frames_begin(std::int64_t now_ns, std::int64_t period_ns);
 

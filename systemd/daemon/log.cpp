@@ -10,11 +10,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <utility>
+
+#include "rt/base/text.hpp"
 
 namespace surefoot::daemon {
 
@@ -42,10 +43,8 @@ bool is_journal_stream(const char* text, int fd) {
     const std::string_view all = text;
     const std::size_t colon = all.find(':');
     if (colon == std::string_view::npos) return false;
-    std::uint64_t device = 0, inode = 0;
-    std::from_chars(text, text + colon, device);
-    std::from_chars(text + colon + 1, text + all.size(), inode);
-    return device == status.st_dev && inode == status.st_ino;
+    return leading_number<std::uint64_t>(all.substr(0, colon), 0) == status.st_dev &&
+           leading_number<std::uint64_t>(all.substr(colon + 1), 0) == status.st_ino;
 }
 
 }  // namespace

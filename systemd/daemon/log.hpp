@@ -1,5 +1,5 @@
-// The daemon's log: structured datagrams to journald where it reads our stderr, else lines on stderr. Never waits; what cannot be
-// taken is dropped and counted, and the next line that is taken says how many were.
+// The daemon's log: structured datagrams to journald if it reads our stderr, else lines on stderr. It never waits: a line that
+// cannot be written is dropped and counted, and the next line reports the count.
 #pragma once
 
 #include <atomic>

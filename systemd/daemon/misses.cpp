@@ -57,7 +57,7 @@ std::string Burst::text() const {
     for (std::size_t i = 0; i < causes.size(); ++i) {
         if (causes[i] > 0) why += fmt::format("{}{} {}", why.empty() ? ": " : ", ", rt::cause_names[i], causes[i]);
     }
-    return line + why + (goes_on ? "; it goes on" : "");
+    return line + why + (goes_on ? "; the burst goes on" : "");
 }
 
 }  // namespace surefoot::daemon

@@ -22,7 +22,7 @@ std::unique_ptr<monitor::Monitor> open_monitor(const config::Configuration& conf
     if (options.address.empty() && options.incidents_dir.empty()) return nullptr;
     auto monitor = monitor::Monitor::open(std::move(options));
     if (monitor) return std::move(*monitor);
-    log.say(Priority::error, event::fault, "nobody can look on, the walk goes on: " + monitor.error().text());
+    log.say(Priority::error, event::fault, "the monitor cannot start, the walk goes on: " + monitor.error().text());
     return nullptr;
 }
 

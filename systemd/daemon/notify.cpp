@@ -6,11 +6,12 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <utility>
+
+#include "rt/base/text.hpp"
 
 namespace surefoot::daemon {
 
@@ -20,10 +21,7 @@ constexpr std::size_t longest_line = 1500;  // of STATUS=; systemd takes more, a
 
 std::int64_t number_of(const char* variable, std::int64_t otherwise) {
     const char* text = std::getenv(variable);
-    if (text == nullptr) return otherwise;
-    std::int64_t value = otherwise;
-    std::from_chars(text, text + std::strlen(text), value);
-    return value;
+    return text != nullptr ? leading_number(text, otherwise) : otherwise;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ struct Options {
     bool check = false;            ///< the configuration only
 };
 
-/// What the command line says; or nothing, and the exit code in `code`: help and version were printed, or wrong use was told.
+/// Reads the command line. Nothing, with the exit code in `code`, after --help, --version or wrong use.
 std::optional<Options> read_options(int argc, char** argv, int& code);
 
 }  // namespace surefoot::daemon

@@ -84,7 +84,7 @@ void Service::reload() {
     notifier_.send(fmt::format("RELOADING=1\nMONOTONIC_USEC={}", clock.now_ns() / 1000));
     Loaded loaded = load(options_);
     if (loaded.problems.empty()) {
-        log_.say(Priority::notice, event::reloading, "the configuration is read again: the walk begins anew with it",
+        log_.say(Priority::notice, event::reloading, "the configuration is read again, and the walk restarts with it",
                  {{"SUREFOOT_CONFIG", options_.config_file}});
         standing_.refuse({});
         standing_.put_next(std::move(loaded.configuration));
@@ -94,7 +94,7 @@ void Service::reload() {
     }
     std::string why;
     for (const Error& problem : loaded.problems) why += (why.empty() ? "" : "; ") + problem.text();
-    log_.say(Priority::error, event::refused, "the configuration is refused, the last good one stays in force: " + why,
+    log_.say(Priority::error, event::refused, "the configuration is refused, the last good one stays in use: " + why,
              {{"SUREFOOT_CONFIG", options_.config_file}});
     standing_.refuse(why);
     // Still opening: READY=1 comes with the first frame, as ever.
@@ -153,11 +153,11 @@ void Service::feed(std::int64_t now_ns) {
     if (!beat.stalled && !beat.resumed) return;
     standing_.stalled.store(beat.stalled);
     if (beat.stalled) {
-        log_.say(
-            Priority::error, event::stalled,
-            fmt::format("no frame for {:.1f} s: the watchdog is fed no more", static_cast<double>(heartbeat_.stall_ns()) * 1e-9));
+        log_.say(Priority::error, event::stalled,
+                 fmt::format("no frame for {:.1f} s: the watchdog is no longer notified",
+                             static_cast<double>(heartbeat_.stall_ns()) * 1e-9));
     } else {
-        log_.say(Priority::notice, event::resumed, "frames come again");
+        log_.say(Priority::notice, event::resumed, "frames are presented again");
     }
     send_status({});
 }
@@ -166,7 +166,7 @@ void Service::guard(std::int64_t now_ns) {
     if (const auto runaway = rt::runaway_seen()) {
         const std::string who = runaway->tid != 0 ? fmt::format("thread {} ({})", runaway->name, runaway->tid) : "a thread";
         log_.say(Priority::error, event::fault,
-                 fmt::format("{} ran without sleeping for too long; {}: ends, to begin anew", who,
+                 fmt::format("{} ran without sleeping for too long; {}. The service ends and is restarted", who,
                              runaway->demoted ? "its real-time priority was taken" : "it could not be stopped"),
                  {{"SUREFOOT_FAULT", "runaway"}});
         _exit(exit_runaway);
@@ -174,7 +174,7 @@ void Service::guard(std::int64_t now_ns) {
     if (leaving_since_ns_ == 0 || now_ns - leaving_since_ns_ < stop_limit_ns) return;
     // What must be kept is on the disk already: a stop is written as it happens.
     log_.say(Priority::warning, event::stopping,
-             "the walk does not end in time (a model is opened, or the driver hangs): left as it is");
+             "the walk does not end in time (a model is being opened, or the driver hangs): the service ends without it");
     _exit(exit_success);
 }
 

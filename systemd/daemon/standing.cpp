@@ -26,7 +26,7 @@ std::string status_text(const Facts& f) {
             break;
     }
     if (f.stalled) text = "NO FRAMES COME; " + text;
-    if (!f.refused.empty()) text += "; the configuration was refused, the last good one is in force: " + f.refused;
+    if (!f.refused.empty()) text += "; the configuration was refused, the last good one is in use: " + f.refused;
     for (std::size_t i = 0; i < f.lacks.size(); ++i) text += (i == 0 ? "; not fully real-time: " : ", ") + f.lacks[i];
     if (f.uncalibrated) text += "; uncalibrated";
     return text;

@@ -46,9 +46,9 @@ public:
     void open(const config::Settings& settings);
     void walking(std::int64_t period_ns);
     void count(const rt::FrameRecord& record);
-    /// Of this walk. True: not known before in this process, so it is to be said.
+    /// Adds a lack of this walk. True if it is new in this process and must be logged.
     bool lacks(const rt::Lack& lack);
-    /// The same of the cost table.
+    /// The same for the cost table.
     bool uncalibrated(const std::string& why);
     /// The configuration that a reload brought, once.
     std::optional<config::Configuration> take_next();

@@ -46,7 +46,8 @@ const model::Model& town() {
 
 TEST(BakeByHand, NoSampleLiesBeyondItsBound) { expect_bounds_hold(town(), 4000, 1); }
 
-// DESIGN 5 asks for 10^5 points a representation: a minute for all of them, so every tenth, unless SUREFOOT_ALL_BOUNDS is set.
+// The rule: no error of 10^5 points per representation exceeds its bound. All take a minute, so every tenth is tested, unless
+// SUREFOOT_ALL_BOUNDS is set.
 TEST(BakeByHand, NoneOfAHundredThousandSamplesLiesBeyondItsBound) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "a sanitizer makes this twenty times as long, and finds its faults with fewer points";

@@ -19,10 +19,12 @@ TEST(Limits, TheMostOfEachIsAllowedAndOneMoreIsRefusedByName) {
         const char* name;
     };
     constexpr std::uint64_t signed_most = 0x7fffffff, most = 0xffffffff;
-    for (const Case& c : {Case{&Counts::vertices, signed_most, "vertices"}, Case{&Counts::indices, most, "indices"},
-                          Case{&Counts::parts, most, "parts"}, Case{&Counts::placements, most, "placements"},
-                          Case{&Counts::materials, most, "materials"}, Case{&Counts::representations, most, "representations"},
-                          Case{&Counts::nodes, most, "nodes"}, Case{&Counts::name_bytes, most, "bytes of names"}}) {
+    for (const Case& c :
+         {Case{&Counts::vertices, signed_most, "vertices"}, Case{&Counts::indices, most, "indices"},
+          Case{&Counts::parts, most, "parts"}, Case{&Counts::placements, most, "placements"},
+          Case{&Counts::materials, most, "materials"}, Case{&Counts::representations, most, "representations"},
+          Case{&Counts::nodes, most, "nodes"}, Case{&Counts::name_bytes, most, "bytes of names"},
+          Case{&Counts::textures, most, "textures"}, Case{&Counts::drawn_parts, most, "parts of representations"}}) {
         Counts counts;
         counts.*c.count = c.most;
         EXPECT_TRUE(check_limits(counts, "town.glb").ok()) << c.name;
@@ -38,9 +40,25 @@ TEST(Limits, TheMostOfEachIsAllowedAndOneMoreIsRefusedByName) {
     }
 }
 
+TEST(Limits, ABakeThatWouldHoldMoreIsRefused) {
+    importer::Scene scene;
+    scene.materials.emplace_back();
+    scene.sources = {"ball.glb"};
+    const importer::Index mesh = add_mesh(scene, ball(16, 1), "ball");
+    place(scene, mesh, dvec3(0));
+    BakeOptions options;
+    const auto whole = bake(scene, options, {});
+    ASSERT_TRUE(whole.ok()) << whole.error().text();
+    options.most.vertices = whole->vertices.size() - 1;
+    const auto refused = bake(scene, options, {});
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().place, "ball.glb");
+    EXPECT_NE(refused.error().what.find("out of limits"), std::string::npos) << refused.error().text();
+}
+
 TEST(Limits, CountsAddUp) {
-    Counts sum{1, 2, 3, 4, 5, 6, 7, 8};
-    sum += {10, 20, 30, 40, 50, 60, 70, 80};
+    Counts sum{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+    sum += {10, 20, 30, 40, 50, 60, 70, 80, 90, 100};
     EXPECT_EQ(sum.vertices, 11U);
     EXPECT_EQ(sum.indices, 22U);
     EXPECT_EQ(sum.parts, 33U);
@@ -49,6 +67,8 @@ TEST(Limits, CountsAddUp) {
     EXPECT_EQ(sum.representations, 66U);
     EXPECT_EQ(sum.nodes, 77U);
     EXPECT_EQ(sum.name_bytes, 88U);
+    EXPECT_EQ(sum.textures, 99U);
+    EXPECT_EQ(sum.drawn_parts, 110U);
 }
 
 TEST(Limits, WhatIsCountedBeforehandIsWhatEmittingAdds) {
@@ -80,6 +100,8 @@ TEST(Limits, WhatIsCountedBeforehandIsWhatEmittingAdds) {
     EXPECT_EQ(counts.representations, model.reps.size());
     EXPECT_EQ(counts.nodes, 3U);
     EXPECT_EQ(counts.name_bytes, 1U + 3 * 5);
+    EXPECT_EQ(counts.textures, model.textures.size());
+    EXPECT_EQ(counts.drawn_parts, model::counts_of(model).drawn_parts);
 
     BoxForm& box = boxes[1];
     box.textured = true, box.pixels = 1;
@@ -91,6 +113,8 @@ TEST(Limits, WhatIsCountedBeforehandIsWhatEmittingAdds) {
     EXPECT_EQ(with_a_box.placements, model.placements.size());
     EXPECT_EQ(with_a_box.materials, model.materials.size());
     EXPECT_EQ(with_a_box.representations, model.reps.size());
+    EXPECT_EQ(with_a_box.textures, model.textures.size());
+    EXPECT_EQ(with_a_box.drawn_parts, model::counts_of(model).drawn_parts);
 }
 
 }  // namespace

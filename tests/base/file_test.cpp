@@ -26,7 +26,8 @@ protected:
 };
 
 TEST_F(FileTest, ErrorReadsAsPlaceWhatRemedy) {
-    EXPECT_EQ((Error{"a.csv:3", "bad row", "mend it"}).text(), "a.csv:3: bad row (mend it)");
+    EXPECT_EQ((Error{"a.csv:3", "Row 3 has two columns", "Add the third one"}).text(),
+              "a.csv:3: Row 3 has two columns. Add the third one.");
     EXPECT_EQ((Error{"a", "b", ""}).text(), "a: b");
     EXPECT_EQ((Error{"", "b", ""}).text(), "b");
 }

@@ -32,8 +32,9 @@ extern "C" [[gnu::noinline]] void surefoot_counted_prepare(Engine& engine, const
 extern "C" [[gnu::noinline]] void surefoot_counted_select(Engine& engine, const prepare::PreparedFrame& prepared) {
     engine.select(prepared, budget_us, {}, 0);
 }
-extern "C" [[gnu::noinline]] SubmitReport surefoot_counted_submit(Engine& engine, const Pose& pose, const SubmitLimits& limits) {
-    return engine.submit(pose, limits);
+extern "C" [[gnu::noinline]] void surefoot_counted_submit(Engine& engine, const Pose& pose, const SubmitLimits& limits,
+                                                          SubmitReport& report) {
+    report = engine.submit(pose, limits);
 }
 
 std::int64_t cpu_ns() {
@@ -97,7 +98,8 @@ int run(Engine& engine, const Path& path, int frames) {
         const std::int64_t after_prepare = cpu_ns();
         surefoot_counted_select(engine, prepared);
         const std::int64_t after_select = cpu_ns();
-        const SubmitReport report = surefoot_counted_submit(engine, now, limits);
+        SubmitReport report;
+        surefoot_counted_submit(engine, now, limits, report);
         ns[0] += after_prepare - start;
         ns[1] += after_select - after_prepare;
         ns[2] += cpu_ns() - after_select;

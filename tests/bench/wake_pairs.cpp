@@ -10,7 +10,6 @@
 #include "rt/base/statistics.hpp"
 #include "rt/threads/capability.hpp"
 #include "rt/threads/placement.hpp"
-#include "tools/doctor/cyclictest.hpp"
 #include "tools/doctor/wake_up.hpp"
 
 namespace {

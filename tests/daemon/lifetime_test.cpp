@@ -41,7 +41,7 @@ TEST(Lifetime, WhatIsWrongInTheFileIsSaidWithLineAndKey) {
     EXPECT_EQ(daemon.wait_exit(start_s), exit_config);
     EXPECT_EQ(daemon.lines_with("surefoot.toml:5: unknown key 'widht' (did you mean 'width'?)"), 1) << daemon.said();
     EXPECT_EQ(daemon.lines_with("surefoot.toml:6: height = 0 is not a whole number from 16 to 16384 (px)"), 1) << daemon.said();
-    daemon.socket.listen(0.1);
+    daemon.socket.take_all();
     EXPECT_EQ(daemon.socket.count("READY=1"), 0U);
 }
 
@@ -62,9 +62,9 @@ TEST(Lifetime, CheckReadsTheConfigurationOnly) {
     daemon.write_config("control = true\nclock = \"virtual\"\nsteering = \"s.toml\"\n");
     daemon.start({"--check"});
     EXPECT_EQ(daemon.wait_exit(start_s), exit_failure);
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: control"), 1) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:6: clock"), 1) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:7: steering"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:5, control: "), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:6, clock: "), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:7, steering: "), 1) << daemon.said();
     daemon.start({"--chekc"});
     EXPECT_EQ(daemon.wait_exit(start_s), exit_usage);
     daemon.write_config();
@@ -106,14 +106,14 @@ TEST_P(Degraded, WithStrictItDoesNotStart) {
     daemon.start({}, GetParam().taken);
     EXPECT_EQ(daemon.wait_exit(start_s), exit_no_real_time) << daemon.said();
     EXPECT_GE(daemon.lines_with(GetParam().words), 1) << daemon.said();
-    daemon.socket.listen(0.1);
+    daemon.socket.take_all();
     EXPECT_EQ(daemon.socket.count("READY=1"), 0U) << daemon.socket.text();
 }
 
 INSTANTIATE_TEST_SUITE_P(Privileges, Degraded,
                          testing::Values(Lacking{"nice", {.sys_nice = true}, "", "SCHED_FIFO is refused"},
                                          Lacking{"lock", {.memory_lock = true}, "", "memory cannot be locked beyond 1 MiB"},
-                                         Lacking{"core", {}, "frame_core = 1000\n", "frame core 1000 is not there"}),
+                                         Lacking{"core", {}, "frame_core = 1000\n", "Frame core 1000 does not exist"}),
                          [](const auto& lacking) { return std::string(lacking.param.name); });
 
 }  // namespace

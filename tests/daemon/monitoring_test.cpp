@@ -4,7 +4,7 @@
 #include "systemd/daemon/exit_code.hpp"
 #include "systemd/daemon/monitoring.hpp"
 #include "tests/daemon/running.hpp"
-#include "tools/monitor/client.hpp"
+#include "tools/monitor/address.hpp"
 
 namespace surefoot::daemon::test {
 namespace {
@@ -47,7 +47,7 @@ TEST(Monitoring, AnAddressThatCannotBeHadCostsTheFiguresAndNotTheWalk) {
     daemon.write_config("monitor = \"unix:" + daemon.dir + "/absent/s.sock\"\n");
     daemon.start();
     ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("nobody can look on, the walk goes on"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("the monitor cannot start, the walk goes on"), 1) << daemon.said();
 }
 
 TEST(Monitoring, AnAddressThatIsNoneIsRefusedByLine) {
@@ -55,7 +55,7 @@ TEST(Monitoring, AnAddressThatIsNoneIsRefusedByLine) {
     daemon.write_config("monitor = \"0.0.0.0:80\"\n");
     daemon.start();
     EXPECT_EQ(daemon.wait_exit(start_s), exit_config);
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:5: monitor"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:5, monitor: "), 1) << daemon.said();
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -47,15 +48,9 @@ public:
     /// Takes messages until one fits, or `seconds` have passed: then false.
     bool wait_for(const std::function<bool(const Message&)>& fits, double seconds) {
         const std::int64_t until_ns = now_ns() + static_cast<std::int64_t>(seconds * 1e9);
-        while (now_ns() < until_ns) {
-            pollfd readable{fd_, POLLIN, 0};
-            if (::poll(&readable, 1, 20) <= 0) continue;
-            std::array<char, 8192> bytes{};
-            const ssize_t got = ::recv(fd_, bytes.data(), bytes.size(), 0);
-            if (got < 0) continue;
-            all.push_back({now_ns(), std::string(bytes.data(), static_cast<std::size_t>(got))});
-            if (fits(all.back())) return true;
-        }
+        do {
+            if (take_one(until_ns) && fits(all.back())) return true;
+        } while (now_ns() < until_ns);
         return false;
     }
     bool wait_for(std::string_view part, double seconds) {
@@ -64,6 +59,11 @@ public:
     /// Takes what comes in this time.
     void listen(double seconds) {
         wait_for([](const Message&) { return false; }, seconds);
+    }
+    /// Takes what is there already: all that a process sent before it ended.
+    void take_all() {
+        while (take_one(0)) {
+        }
     }
     [[nodiscard]] std::size_t count(std::string_view part, std::size_t from = 0) const {
         std::size_t found = 0;
@@ -80,6 +80,19 @@ public:
     std::vector<Message> all;
 
 private:
+    /// False: none came until then.
+    bool take_one(std::int64_t until_ns) {
+        const std::int64_t left_ns = std::max<std::int64_t>(0, until_ns - now_ns());
+        const timespec left{left_ns / 1'000'000'000, left_ns % 1'000'000'000};
+        pollfd readable{fd_, POLLIN, 0};
+        if (::ppoll(&readable, 1, &left, nullptr) <= 0) return false;
+        std::array<char, 8192> bytes{};
+        const ssize_t got = ::recv(fd_, bytes.data(), bytes.size(), 0);
+        if (got < 0) return false;
+        all.push_back({now_ns(), std::string(bytes.data(), static_cast<std::size_t>(got))});
+        return true;
+    }
+
     std::string name_;
     int fd_;
 };

@@ -9,6 +9,7 @@ namespace {
 
 TEST(Reload, AGoodConfigurationTakesOver) {
     Running daemon("reload-good");
+    daemon.environment = {{"WATCHDOG_USEC", "400000"}};  // a ping every 0.1 s, as long as frames come
     daemon.start();
     ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
     daemon.write_config("width = 640\n");
@@ -21,7 +22,8 @@ TEST(Reload, AGoodConfigurationTakesOver) {
     EXPECT_GE(std::stoll(reloading.substr(stamp + 15)), asked_us);
     ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
     EXPECT_TRUE(daemon.socket.all.back().has("640x720")) << daemon.socket.text();
-    EXPECT_EQ(daemon.wait_exit(0.1), -1000) << "it walks on: " << daemon.said();
+    EXPECT_TRUE(daemon.socket.wait_for("WATCHDOG=1", 10)) << "no more frames come: " << daemon.said();
+    EXPECT_TRUE(daemon.runs()) << daemon.said();
 }
 
 TEST(Reload, AnotherNumberOfRasterisersWaitsForTheNextStart) {

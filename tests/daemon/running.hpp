@@ -4,18 +4,22 @@
 #include <gtest/gtest.h>
 
 #include <linux/capability.h>
+#include <poll.h>
 #include <signal.h>
+#include <sys/inotify.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "rt/base/file.hpp"
@@ -44,6 +48,14 @@ inline void drop_capability(unsigned capability) {
     set.permitted &= ~bit;
     set.inheritable &= ~bit;
     syscall(SYS_capset, &header, sets.data());
+}
+
+/// A descriptor has something to read, or its process has ended; false: not within so long.
+inline bool readable(int fd, double seconds) {
+    const auto ns = static_cast<std::int64_t>(std::max(0.0, seconds) * 1e9);
+    const timespec limit{ns / 1'000'000'000, ns % 1'000'000'000};
+    pollfd one{fd, POLLIN, 0};
+    return ::ppoll(&one, 1, &limit, nullptr) > 0;
 }
 
 /// Below a folder of its own, which goes away with it. Everything is small, and drawn by nobody.
@@ -93,16 +105,29 @@ public:
     }
     /// The exit code, or -signal, or -1000 where it still runs after `seconds`.
     int wait_exit(double seconds) {
+        const int end = static_cast<int>(::syscall(SYS_pidfd_open, pid, 0));
+        EXPECT_GE(end, 0) << std::strerror(errno);
+        const bool ended = test::readable(end, seconds);
+        ::close(end);
+        int status = 0;
+        if (!ended || ::waitpid(pid, &status, WNOHANG) != pid) return -1000;
+        pid = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    }
+    [[nodiscard]] bool runs() { return wait_exit(0) == -1000; }
+    /// Waits until stderr has more lines with the words than `before`; false: none has come after `seconds`.
+    [[nodiscard]] bool wait_line(std::string_view words, int before, double seconds) const {
+        const int changes = ::inotify_init1(IN_CLOEXEC | IN_NONBLOCK);
+        EXPECT_GE(::inotify_add_watch(changes, (dir + "/stderr").c_str(), IN_MODIFY), 0) << std::strerror(errno);
         const std::int64_t until_ns = NotifySocket::now_ns() + static_cast<std::int64_t>(seconds * 1e9);
-        while (NotifySocket::now_ns() < until_ns) {
-            int status = 0;
-            if (::waitpid(pid, &status, WNOHANG) == pid) {
-                pid = -1;
-                return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-            }
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        bool found = false;
+        for (std::int64_t now_ns = 0; !(found = lines_with(words) > before) && (now_ns = NotifySocket::now_ns()) < until_ns;) {
+            if (!test::readable(changes, static_cast<double>(until_ns - now_ns) * 1e-9)) continue;
+            std::array<char, 4096> events{};
+            (void)!::read(changes, events.data(), events.size());
         }
-        return -1000;
+        ::close(changes);
+        return found;
     }
     [[nodiscard]] std::string said() const { return text_of(dir + "/stderr"); }
     [[nodiscard]] std::string printed() const { return text_of(dir + "/stdout"); }

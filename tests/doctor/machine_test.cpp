@@ -56,8 +56,8 @@ std::vector<Case> machine_cases() {
         {"power.c_states", true, "within 1 us", idle("1"), nothing},
         {"power.c_states", true, "no driver", {{cpu + "cpuidle/current_driver", "none\n"}}, {}},
         {"power.c_states", false, "C6 (133 us)", idle("0"), nothing},
-        {"power.cpu_dma_latency", true, "kept awake", {}, [](Probed& p) { p.holds_c_states = true; }},
-        {"power.cpu_dma_latency", false, "may not", {}, [](Probed& p) { p.holds_c_states = false; }},
+        {"power.cpu_dma_latency", true, "can be disabled", {}, [](Probed& p) { p.holds_c_states = true; }},
+        {"power.cpu_dma_latency", false, "cannot be opened", {}, [](Probed& p) { p.holds_c_states = false; }},
 
         {"time.clock_source", true, "tsc", {clock("tsc")}, {}},
         {"time.clock_source", false, "hpet", {clock("hpet")}, {}},
@@ -79,7 +79,7 @@ std::vector<Case> machine_cases() {
         {"limits.rtprio", true, "CAP_SYS_NICE", {limits("0", "unlimited", "unlimited"), capabilities("0000000000800000")}, {}},
         {"limits.rtprio",
          false,
-         "is 40, 80 is wanted",
+         "is 40, 80 is needed",
          {limits("40", "unlimited", "unlimited"), capabilities("0000000000000000")},
          {}},
         {"limits.rttime", true, "unlimited", {limits("0", "unlimited", "0")}, {}},
@@ -89,10 +89,10 @@ std::vector<Case> machine_cases() {
         {"limits.memlock", true, "CAP_IPC_LOCK", {limits("0", "unlimited", "8388608"), capabilities("0000000000004000")}, {}},
         {"limits.memlock", false, "8 MiB, 1024", {limits("0", "unlimited", "8388608")}, {}},
         {"limits.fifo_tried", true, "80 was granted", {}, [](Probed& p) { p.fifo_priority = 80; }},
-        {"limits.fifo_tried", false, "up to 20 only", {}, [](Probed& p) { p.fifo_priority = 20; }},
+        {"limits.fifo_tried", false, "only up to 20", {}, [](Probed& p) { p.fifo_priority = 20; }},
         {"limits.fifo_tried", false, "was refused", {}, [](Probed& p) { p.fifo_priority = 0; }},
-        {"limits.lock_tried", true, "could be locked", {}, [](Probed& p) { p.locks_memory = true; }},
-        {"limits.lock_tried", false, "could not", {}, [](Probed& p) { p.locks_memory = false; }},
+        {"limits.lock_tried", true, "can be locked", {}, [](Probed& p) { p.locks_memory = true; }},
+        {"limits.lock_tried", false, "cannot be locked", {}, [](Probed& p) { p.locks_memory = false; }},
 
         {"memory.available", true, "4096 MiB", {{"/proc/meminfo", "MemTotal: 9000000 kB\nMemAvailable:    4194304 kB\n"}}, {}},
         {"memory.available", false, "100 MiB", {{"/proc/meminfo", "MemAvailable:    102400 kB\n"}}, {}},
@@ -109,10 +109,10 @@ std::vector<Case> machine_cases() {
          "/dev/sda2 is on",
          {{"/proc/swaps", swaps + "/dev/sda2 partition 1 0 -2\n"}, {vm + "swappiness", "60\n"}},
          {}},
-        {"memory.compaction", true, "stay", {{vm + "compact_unevictable_allowed", "0\n"}}, {}},
-        {"memory.compaction", false, "locked pages too", {{vm + "compact_unevictable_allowed", "1\n"}}, {}},
+        {"memory.compaction", true, "does not move locked pages", {{vm + "compact_unevictable_allowed", "0\n"}}, {}},
+        {"memory.compaction", false, "moves locked pages", {{vm + "compact_unevictable_allowed", "1\n"}}, {}},
         {"memory.merging", true, "not merged", {{"/sys/kernel/mm/ksm/run", "0\n"}}, {}},
-        {"memory.merging", false, "merged", {{"/sys/kernel/mm/ksm/run", "1\n"}}, {}},
+        {"memory.merging", false, "merges equal pages", {{"/sys/kernel/mm/ksm/run", "1\n"}}, {}},
     };
 }
 

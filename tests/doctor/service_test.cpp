@@ -63,16 +63,16 @@ std::vector<Case> service_cases() {
          [](Probed& p) {
              p.renderer = RendererFound{"", "egl is absent", "apt install libegl1", "", false};
          }},
-        {"picture.cost_table", true, "of this machine", {}, costs_of("a", "a")},
-        {"picture.cost_table", false, "of \"b\", this is \"a\"", {}, costs_of("a", "b")},
+        {"picture.cost_table", true, "on this machine", {}, costs_of("a", "a")},
+        {"picture.cost_table", false, "on \"b\", this is \"a\"", {}, costs_of("a", "b")},
         {"picture.cost_table", false, "no cost table", {}, costs_of("a", "", false)},
         {"picture.cost_table", false, "is damaged", {}, costs_of("a", "", true, "is damaged")},
 
         {"service.systemd", true, "manages", {{"/run/systemd/system/", ""}}, {}},
         {"service.systemd", false, "'busybox'", {{"/proc/1/comm", "busybox\n"}}, {}},
-        {"service.journald", true, "is there", {{"/run/systemd/journal/socket", ""}}, {}},
-        {"service.journald", false, "not there", {{"/run/", ""}}, {}},
-        {"service.journal_kept", true, "outlives", {{"/var/log/journal/", ""}}, {}},
+        {"service.journald", true, "exists", {{"/run/systemd/journal/socket", ""}}, {}},
+        {"service.journald", false, "does not exist", {{"/run/", ""}}, {}},
+        {"service.journal_kept", true, "survives", {{"/var/log/journal/", ""}}, {}},
         {"service.journal_kept", false, "is lost", {{"/var/log/", ""}}, {}},
         {"service.disk", true, "2048 MiB", {}, [](Probed& p) { p.free_state_bytes = 2ULL << 30U; }},
         {"service.disk", false, "10 MiB", {}, [](Probed& p) { p.free_state_bytes = 10ULL << 20U; }},

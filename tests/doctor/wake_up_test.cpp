@@ -8,8 +8,6 @@
 
 #include "tests/time_units.hpp"
 #include "tools/doctor/check.hpp"
-#include "tools/doctor/cyclictest.hpp"
-#include "tools/doctor/table.hpp"
 
 namespace surefoot::doctor {
 namespace {
@@ -118,7 +116,7 @@ TEST(Table, SaysWhatFailsWithItsRemedyAndIsPlainWithoutColour) {
     EXPECT_NE(plain.find("1 pass, 1 fail, 1 unknown"), std::string::npos);
     EXPECT_NE(plain.find("not fit"), std::string::npos);
     EXPECT_TRUE(std::all_of(plain.begin(), plain.end(), [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); })) << plain;
-    const std::string coloured = table(machine, examined, {.colour = true, .utf8 = true});
+    const std::string coloured = table(machine, examined, {.colour = true, .unicode = true});
     EXPECT_NE(coloured.find("\033[1;31m✗\033[0m"), std::string::npos);
     const std::vector<Examined> well(examined.begin(), examined.begin() + 1);
     EXPECT_NE(table(machine, well, {}).find(": fit\n"), std::string::npos);

@@ -90,6 +90,7 @@ Pose looking_ahead() {
 
 /// For callgrind's --toggle-collect: a name of its own, never inlined.
 extern "C" [[gnu::noinline]] void surefoot_counted_frame(gl::Device& device, std::span<const gl::DrawItem> items) {
+    device.draws.plays();
     device.begin_frame(looking_ahead());
     device.draw(items);
     device.end_slice();
@@ -99,6 +100,7 @@ extern "C" [[gnu::noinline]] void surefoot_counted_frame(gl::Device& device, std
 
 /// Not counted.
 [[gnu::noinline]] void warm_up(gl::Device& device, std::span<const gl::DrawItem> items) {
+    device.draws.plays();
     device.begin_frame(looking_ahead());
     device.draw(items);
     device.end_slice();
@@ -120,6 +122,7 @@ int run(std::string_view what, int frames) {
     auto device = gl::open_device(options);
     if (!device) return fail(device.error());
     const gl::ProgramFactory programs = what == "bare" ? gl::ProgramFactory(bare_program) : effects::assemble_program;
+    (*device)->draws.plays();
     if (auto loaded = (*device)->load(model, programs); !loaded) return fail(loaded.error());
     (*device)->bind();
     std::vector<gl::DrawItem> items;

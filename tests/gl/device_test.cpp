@@ -40,6 +40,7 @@ Pixel pixel(const gl::PixelImage& image, std::uint32_t x, std::uint32_t y) {
 constexpr Pixel red{255, 0, 0}, green{0, 255, 0}, blue{0, 0, 255};
 
 void show(gl::Device& device, const std::vector<gl::DrawItem>& items, const Pose& pose) {
+    device.draws.plays();
     device.begin_frame(pose);
     device.draw(items);
     device.end_slice();
@@ -63,6 +64,7 @@ protected:
         device_ = std::move(*device);
     }
     gl::PixelImage picture(const model::Model& model, const std::vector<model::Index>& nodes, const Pose& pose = straight()) {
+        device_->draws.plays();
         const auto loaded = device_->load(model, effects::assemble_program);
         EXPECT_TRUE(loaded.ok()) << (loaded.ok() ? "" : loaded.error().text());
         std::vector<gl::DrawItem> items;
@@ -107,6 +109,7 @@ TEST_F(DeviceTest, of_two_in_one_place_the_same_one_shows_in_either_order) {
         const auto a = scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -distance, turned), half);
         const auto b = scene.square(scene.material(plain(0, 1, 0)), at(0, 0, -distance, turned), half);
         const auto model = scene.finish();
+        device_->draws.plays();
         ASSERT_TRUE(device_->load(model, effects::assemble_program).ok());
         std::vector<std::vector<std::uint8_t>> pictures;
         for (const auto& order : {std::vector<model::Index>{a, b}, std::vector<model::Index>{b, a}}) {
@@ -239,6 +242,7 @@ TEST_F(DeviceTest, equal_state_goes_out_in_one_batch) {
     std::vector<model::Index> nodes;
     for (int i = 0; i < 10; ++i) nodes.push_back(scene.square(i % 2 == 0 ? a : b, at(-0.9 + 0.2 * i, 0, -1), 0.05F));
     picture(scene.finish(), nodes);
+    device_->draws.plays();
     EXPECT_EQ(device_->stats().batches, 1U);
     EXPECT_EQ(device_->stats().draws, 10U);
     EXPECT_EQ(device_->stats().items, 10U);
@@ -258,6 +262,7 @@ TEST_F(DeviceTest, images_of_one_form_share_a_batch_and_show_their_own_texels) {
     EXPECT_EQ(pixel(image, 20, 50), red);
     EXPECT_EQ(pixel(image, 50, 50), green);
     EXPECT_EQ(pixel(image, 80, 50), (Pixel{255, 0, 255}));
+    device_->draws.plays();
     EXPECT_EQ(device_->stats().batches, 2U);  // the third is of another size
 }
 
@@ -273,6 +278,7 @@ TEST_F(DeviceTest, only_the_scenes_programs_are_compiled) {
 TEST_F(DeviceTest, a_program_that_does_not_compile_is_an_error_with_its_name) {
     SmallModel scene;
     scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1));
+    device_->draws.plays();
     const auto loaded = device_->load(scene.finish(), [](model::EffectMask) {
         return gl::ProgramSource{"nonsense", "nonsense", "bare"};
     });
@@ -284,6 +290,7 @@ TEST_F(DeviceTest, the_context_moves_between_threads) {
     SmallModel scene;
     const auto node = scene.square(scene.material(plain(1, 0, 0)), at(0, 0, -1), 0.5F);
     const auto model = scene.finish();
+    device_->draws.plays();
     ASSERT_TRUE(device_->load(model, effects::assemble_program).ok());
     device_->release();
     gl::PixelImage image;
@@ -327,6 +334,7 @@ TEST(Backends, osmesa_and_egl_agree_within_one_step) {
     for (const auto kind : {BackendKind::egl, BackendKind::osmesa}) {
         auto device = open(kind);
         if (!device) GTEST_SKIP() << device.error().text();
+        (*device)->draws.plays();
         ASSERT_TRUE((*device)->load(model, effects::assemble_program).ok());
         show(**device, items, straight());
         auto image = (*device)->read_pixels();
@@ -349,6 +357,7 @@ TEST(Backends, two_devices_live_side_by_side_and_one_after_the_other) {
     {
         auto second = open(BackendKind::egl);
         ASSERT_TRUE(second.ok());
+        (*second)->draws.plays();
         ASSERT_TRUE((*second)->load(model, effects::assemble_program).ok());
     }
     (*first)->bind();

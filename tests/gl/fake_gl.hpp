@@ -1,4 +1,4 @@
-// An OpenGL without a driver: every function of the table does nothing and returns 0, but those that a test replaces.
+// An OpenGL without a driver: every function of the table does nothing and returns 0, but those that count or fail on demand.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +18,19 @@ struct FakeGl {
     std::vector<GLenum> wait_results;  ///< of glClientWaitSync in turn; the last one again and again
     int waits = 0, presents = 0;
     int shaders = 0, programs = 0, syncs = 0;  ///< made and not deleted
-    int compiles = 0, bad_compile = 0;         ///< bad_compile: the how many-th compile fails, from 1
+    int buffers = 0, textures = 0, vertex_arrays = 0, framebuffers = 0, renderbuffers = 0;
+    int maps = 0, bad_map = 0;  ///< bad_map: the how many-th mapping fails, from 1
+    GLenum framebuffer_status = GL_FRAMEBUFFER_COMPLETE;
+    int errors_asked = 0, bad_error = 0;  ///< bad_error: the how many-th glGetError says out of memory, from 1
+    GLint max_texture_size = 4096;
+    int compiles = 0, bad_compile = 0;  ///< bad_compile: the how many-th compile fails, from 1
     bool links = true;
     GLuint names = 0;
     std::vector<std::vector<std::byte>> mapped;  ///< memory of the mapped buffers
+    /// Objects of every kind, made and not deleted.
+    [[nodiscard]] int objects() const {
+        return buffers + textures + vertex_arrays + framebuffers + renderbuffers + shaders + programs;
+    }
 
     static FakeGl& get() {
         static FakeGl fake;
@@ -38,6 +47,18 @@ struct Nothing<R(APIENTRYP)(A...)> {
     }
 };
 
+/// glGen… and glDelete… of one kind: names that nobody else has, and a count of those that are there. 0 is deleted in silence.
+template <int FakeGl::*count, class Gen, class Delete>
+void count_names(Gen& gen, Delete& remove) {
+    gen = [](GLsizei n, GLuint* names) {
+        for (GLsizei i = 0; i < n; ++i) names[i] = ++FakeGl::get().names;
+        FakeGl::get().*count += n;
+    };
+    remove = [](GLsizei n, const GLuint* names) {
+        for (GLsizei i = 0; i < n; ++i) FakeGl::get().*count -= names[i] != 0 ? 1 : 0;
+    };
+}
+
 inline gl::Api fake_api() {
     gl::Api api;
 #define SUREFOOT_GL_FAKE(name, type) api.name = Nothing<type>::call;
@@ -45,10 +66,19 @@ inline gl::Api fake_api() {
 #undef SUREFOOT_GL_FAKE
     api.version = 43;
     api.GetIntegerv = [](GLenum what, GLint* value) {
-        *value = what == GL_MAJOR_VERSION ? 4 : what == GL_MINOR_VERSION ? 5 : 4096;
+        *value = what == GL_MAJOR_VERSION ? 4 : what == GL_MINOR_VERSION ? 5 : FakeGl::get().max_texture_size;
     };
-    api.CheckFramebufferStatus = [](GLenum) -> GLenum { return GL_FRAMEBUFFER_COMPLETE; };
+    api.GetError = []() -> GLenum {
+        return ++FakeGl::get().errors_asked == FakeGl::get().bad_error ? GL_OUT_OF_MEMORY : GL_NO_ERROR;
+    };
+    count_names<&FakeGl::buffers>(api.GenBuffers, api.DeleteBuffers);
+    count_names<&FakeGl::textures>(api.GenTextures, api.DeleteTextures);
+    count_names<&FakeGl::vertex_arrays>(api.GenVertexArrays, api.DeleteVertexArrays);
+    count_names<&FakeGl::framebuffers>(api.GenFramebuffers, api.DeleteFramebuffers);
+    count_names<&FakeGl::renderbuffers>(api.GenRenderbuffers, api.DeleteRenderbuffers);
+    api.CheckFramebufferStatus = [](GLenum) -> GLenum { return FakeGl::get().framebuffer_status; };
     api.MapBufferRange = [](GLenum, GLintptr, GLsizeiptr bytes, GLbitfield) -> void* {
+        if (++FakeGl::get().maps == FakeGl::get().bad_map) return nullptr;
         return FakeGl::get().mapped.emplace_back(static_cast<std::size_t>(bytes)).data();
     };
     api.CreateShader = [](GLenum) -> GLuint {

@@ -29,6 +29,7 @@ protected:
         const auto material = scene.material(test::plain(1, 0, 0));
         for (int i = 0; i < 4; ++i) nodes_.push_back(scene.square(material, test::at(i, 0, -5)));
         model_ = scene.finish();
+        device_->draws.plays();
         const auto loaded = device_->load(model_, effects::assemble_program);
         ASSERT_TRUE(loaded.ok()) << loaded.error().text();
         FakeGl::get().waits = FakeGl::get().presents = 0;
@@ -36,10 +37,12 @@ protected:
     void draw(std::size_t from, std::size_t count) {
         std::vector<gl::DrawItem> items;
         for (std::size_t i = from; i < from + count; ++i) items.push_back({nodes_[i], model_.nodes[nodes_[i]].first_rep});
+        device_->draws.plays();
         device_->draw(items);
         device_->end_slice();
     }
     void frame(std::size_t from = 0) {
+        device_->draws.plays();
         device_->begin_frame(Pose{});
         draw(from, 2);
         device_->end_items();
@@ -52,6 +55,7 @@ protected:
 
 TEST_F(LostDevice, a_fence_that_takes_longer_than_a_wait_is_waited_for_again) {
     FakeGl::get().wait_results = {GL_TIMEOUT_EXPIRED, GL_TIMEOUT_EXPIRED, GL_CONDITION_SATISFIED};
+    device_->draws.plays();
     device_->begin_frame(Pose{});
     draw(0, 2);
     device_->wait_slices(0);
@@ -64,6 +68,7 @@ TEST_F(LostDevice, a_fence_that_takes_longer_than_a_wait_is_waited_for_again) {
 TEST_F(LostDevice, a_fence_that_never_passes_is_given_up_within_a_bound) {
     FakeGl::get().wait_results = {GL_TIMEOUT_EXPIRED};
     frame();
+    device_->draws.plays();
     EXPECT_TRUE(device_->lost());
     EXPECT_GT(FakeGl::get().waits, 1);
     EXPECT_LE(FakeGl::get().waits, 100);
@@ -75,6 +80,7 @@ TEST_F(LostDevice, a_fence_that_never_passes_is_given_up_within_a_bound) {
 TEST_F(LostDevice, a_wait_that_fails_loses_the_device_at_once) {
     FakeGl::get().wait_results = {GL_WAIT_FAILED};
     frame();
+    device_->draws.plays();
     EXPECT_TRUE(device_->lost());
     EXPECT_EQ(FakeGl::get().waits, 1);
 }
@@ -88,6 +94,7 @@ TEST_F(LostDevice, mapped_buffers_stay_as_they_are_once_it_is_lost) {
 }
 
 TEST_F(LostDevice, a_frame_that_was_abandoned_is_waited_for_before_its_buffers_are_written) {
+    device_->draws.plays();
     device_->begin_frame(Pose{});
     draw(0, 2);
     const auto before = FakeGl::get().mapped;
@@ -99,6 +106,7 @@ TEST_F(LostDevice, a_frame_that_was_abandoned_is_waited_for_before_its_buffers_a
 
 TEST_F(LostDevice, a_driver_that_hangs_while_a_model_is_loaded_is_an_error) {
     FakeGl::get().wait_results = {GL_TIMEOUT_EXPIRED};
+    device_->draws.plays();
     EXPECT_FALSE(device_->load(model_, effects::assemble_program).ok());
 }
 

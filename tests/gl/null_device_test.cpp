@@ -37,11 +37,13 @@ Scene scene_of_squares(int count) {
 std::unique_ptr<gl::Device> null_device(const Scene& scene, const gl::NullOptions& options) {
     auto device = gl::open_null_device({}, options);
     EXPECT_TRUE(device.ok());
+    (*device)->draws.plays();
     EXPECT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
     return std::move(*device);
 }
 
 double charge_of(gl::Device& device, const Scene& scene, int frames) {
+    device.draws.plays();
     for (int i = 0; i < frames; ++i) {
         Pose pose;
         pose.position.z = 0.01 * i;
@@ -129,6 +131,7 @@ TEST(NullDevice, the_same_seed_charges_the_same_noise) {
 TEST(NullDevice, the_charge_grows_within_the_frame) {
     const auto scene = scene_of_squares(4);
     const auto device = null_device(scene, {});
+    device->draws.plays();
     double before = device->charged_us();
     device->begin_frame(Pose{});
     for (const auto& item : scene.items) {
@@ -144,6 +147,7 @@ TEST(NullDevice, counts_and_lists_but_has_no_picture) {
     const auto scene = scene_of_squares(4);
     const auto device = null_device(scene, {});
     charge_of(*device, scene, 1);
+    device->draws.plays();
     EXPECT_EQ(device->stats().items, 4U);
     EXPECT_EQ(device->stats().triangles, 8U);
     EXPECT_EQ(device->program_listing(), std::vector<std::string>{"0: bare"});

@@ -139,6 +139,7 @@ TEST(Pixels, agree_with_what_gl_rasterises) {
         // The square's normal is the third column; every |component| of the area counts.
         for (int k = 0; k < 3; ++k)
             model.reps[0].area_m2[static_cast<std::size_t>(k)] = static_cast<float>(4 * size * size) * std::abs(turn[2][k]);
+        (*device)->draws.plays();
         ASSERT_TRUE((*device)->load(model, effects::assemble_program).ok());
         (*device)->begin_frame(Pose{});
         const gl::DrawItem item{node, 0};

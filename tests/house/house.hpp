@@ -1,4 +1,4 @@
-// The house plan as a table (DESIGN 3): which room may include which, and where a file belongs. Pure functions of paths.
+// The house plan as a table: which room may include which, and where a file belongs. Pure functions of paths.
 #pragma once
 
 #include <algorithm>
@@ -123,9 +123,9 @@ inline std::string include_in(std::string_view line) {
 
 /// Entries that the top level may hold, beside dot-files and what git ignores.
 inline bool top_level_allowed(std::string_view name) {
-    constexpr std::array<std::string_view, 13> planned = {"CMakeLists.txt",  "CMakePresets.json", "rt",     "render", "input",
-                                                          "config",          "systemd",           "tests",  "tools",  "README.md",
-                                                          "ARCHITECTURE.md", "CHANGELOG.md",      "LICENSE"};
+    constexpr std::array<std::string_view, 14> planned = {
+        "CMakeLists.txt", "CMakePresets.json", "rt",           "render",          "input",  "config", "systemd", "tests", "tools",
+        "README.md",      "ARCHITECTURE.md",   "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE"};
     const bool ignored = name.starts_with("build") || name == "compile_commands.json" || name.ends_with(".tmp");
     return name.starts_with('.') || ignored || std::find(planned.begin(), planned.end(), name) != planned.end();
 }

@@ -13,7 +13,7 @@
 #include "render/effects/effects.hpp"
 #include "render/gl/backends.hpp"
 #include "render/import/formats.hpp"
-#include "render/model/forms.hpp"
+#include "render/model/model.hpp"
 #include "render/select/registry.hpp"
 
 namespace surefoot::house {
@@ -107,6 +107,7 @@ bool is_meant(std::string_view file, std::string_view name) {
         {"systemd/daemon/options.cpp", "osmesa"},                // an example of use
         {"tools/cli/devices_watch.cpp", "device"},               // what is plugged in
         {"tools/cli/devices_map.cpp", "device"},                 // the same
+        {"tools/cli/devices_list.cpp", "device"},                // the same
         {"tools/cli/devices_record.cpp", "device"},              // the same
         {"render/gl/program.cpp", "vertex_colour"},              // an attribute of the shaders
         {"tools/scenes/write_glb.cpp", "mesh"},                  // glTF's word

@@ -1,7 +1,7 @@
 // glTF: hierarchy, instances, attributes of every kind, materials, and the traps of each.
 #include <gtest/gtest.h>
 
-#include "render/image/srgb.hpp"
+#include "render/image/image.hpp"
 #include "tests/import/fixtures.hpp"
 
 namespace surefoot::importer::test {

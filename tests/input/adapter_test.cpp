@@ -86,6 +86,7 @@ TEST(Adapter, AnEmptySocketsHatAndButtonsAreUnknownUntilItReports) {
 TEST(Adapter, APadThatIsPulledOutPushedStopsWhileAnotherReportsOn) {
     const HidDevice d = describe_device(layout_of(hex(pad("05", "01") + pad("05", "02"))), {});
     Steering steering(MotionLimits{}, SafetyLimits{});
+    steering.steers.plays();
     const DeviceMapping mapping = default_mapping(d.controls, d.device_class);
     const int device = steering.attach(*compile(mapping, d.controls), d.controls.size(), mapping.reporting);
     ReportDecoder decoder(d);

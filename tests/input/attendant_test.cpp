@@ -18,6 +18,7 @@ struct Hands {
     void tick() {
         attendant.attend(source.take());
         source.now_ns += tick_ns;
+        steering.steers.plays();
         sample = steering.tick({}, source.now_ns);
     }
     void hold(int device, int x, int y, int times) {

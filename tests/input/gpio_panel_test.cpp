@@ -1,4 +1,4 @@
-// Wired controls: debounce, lost edges, encoders, stops by broken wires and vanished chips. R13 to R16 as logic.
+// Wired controls: debounce, lost edges, encoders, stops by broken wires and vanished chips. As logic, without lines.
 #include "input/gpio/panel.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Layouts derived by hand from HID 1.11 and the rules of devices.md 2, each rule with its smallest descriptor.
+// Layouts derived by hand from HID 1.11 and the rules of input/hid/descriptor.hpp, each rule with its smallest descriptor.
 #include <fmt/format.h>
 
 #include "tests/input/hid_test.hpp"

@@ -12,7 +12,7 @@
 #include "tests/fuzz/targets.hpp"
 #include "tests/input/hid_corpus.hpp"
 
-// Peak of what is allocated by new, for this thread: R3 bounds it. Sanitizers bring their own new.
+// Peak of the memory that this thread allocates by new; the tests bound it. Sanitizers bring their own new.
 #ifndef SUREFOOT_SANITIZED
 namespace {
 thread_local std::size_t allocated_now = 0, allocated_peak = 0;
@@ -153,7 +153,7 @@ TEST_F(HidCorpus, MutatedDescriptorsBreakNothing) {
     }
 }
 
-/// R3's figures on the descriptors that ask for most: 4096 bytes of fields, collections, usages, ranges.
+/// Time and memory of the most expensive descriptors: 4096 bytes of fields, collections, usages, ranges.
 TEST(HidFuzz, TheWorstDescriptorsStayWithinTimeAndMemory) {
     const auto repeat = [](const char* head, const char* body, const char* tail) {
         auto bytes = hex(head);

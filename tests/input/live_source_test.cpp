@@ -64,6 +64,7 @@ struct Rig {
         const std::uint64_t before = rt::guard_counters().own_violations;
         {
             const rt::OwnScope own;
+            steering.steers.plays();
             const Lines wired = source->drain(steering, devices->now_ns);
             sample = steering.tick(wired, devices->now_ns);
         }
@@ -155,6 +156,7 @@ TEST(LiveSource, WhatTheDevicesHaveToDoWithoutIsSaidOnce) {
     fake->without = Error{"udev", "its events cannot be received", "allow netlink sockets"};
     LiveSource source(LiveOptions{}, std::move(fake));
     Steering steering{MotionLimits{}, SafetyLimits{}};
+    steering.steers.plays();
     source.begin(steering, 1'000'000'000);
     for (int i = 0; i < 100; ++i) (void)source.drain(steering, 1'000'000'000 + i * tick_ns);
     int said = 0;
@@ -226,6 +228,7 @@ TEST(LiveSource, NotesThatNobodyTakesAreCountedAndHarmNothing) {
         const int device = rig.devices->plug(stick());
         rig.devices->pull(device);
         rig.devices->now_ns += tick_ns;
+        rig.steering.steers.plays();
         (void)rig.source->drain(rig.steering, rig.devices->now_ns);
     }
     EXPECT_GT(rig.source->lost_notes(), 0U);
@@ -246,6 +249,7 @@ TEST(LivePanel, ItsStopLatchesInTheSameStepAndItsResetTakesItOff) {
     EXPECT_EQ(rig.speed(), 0);
     rig.chip.set(0, true, rig.devices->now_ns + 1);
     rig.hold(device, 0, -127, 100);
+    rig.steering.steers.plays();
     EXPECT_TRUE(rig.steering.safety().latched) << "closed again is not reset";
     rig.chip.set(1, true, rig.devices->now_ns + 1);
     rig.hold(device, 0, -127, 10);
@@ -293,6 +297,7 @@ TEST(LivePanel, AVanishedChipIsAStopSaidOnceAndTheNextOneServesAgain) {
     rig.chip.gone = false;
     rig.run(1200);  // tried every 2 s by now
     EXPECT_EQ(rig.times_said("its lines are there"), 1);
+    rig.steering.steers.plays();
     EXPECT_TRUE(rig.steering.safety().latched) << "back is not reset";
     rig.chip.set(2, true, rig.devices->now_ns + 1);
     rig.chip.set(1, true, rig.devices->now_ns + 1);
@@ -313,6 +318,7 @@ TEST(LivePanel, ABusyLineIsAStopThatNamesWhoHasIt) {
         lines(), {}, test::open_fake, &chip, [&](std::string_view text) { said.emplace_back(text); }, Opening::here);
     panel.open();
     Steering steering{MotionLimits{}, SafetyLimits{}};
+    steering.steers.plays();
     for (int i = 1; i < 200; ++i) EXPECT_TRUE(panel.step(steering, i * tick_ns).lines.stop);
     ASSERT_EQ(said.size(), 1U);
     EXPECT_NE(said[0].find("gpiomon"), std::string::npos) << said[0];
@@ -372,6 +378,7 @@ struct GuardedTicks {
             const rt::GuardCounters before = rt::guard_counters();
             {
                 const rt::OwnScope own;
+                steering.steers.plays();
                 stop = panel.step(steering, clock.now_ns()).lines.stop;
             }
             violations += rt::guard_counters().own_violations - before.own_violations;

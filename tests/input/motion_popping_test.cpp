@@ -24,6 +24,7 @@ public:
         for (int i = 0; i < milliseconds; ++i) {
             const std::array bytes = {static_cast<std::byte>(x), static_cast<std::byte>(y), std::byte{128}};
             EXPECT_EQ(live_.decoder.decode(bytes, now_ns, live_.state), ReportFate::accepted);
+            steering.steers.plays();
             steering.report(device_, live_.state, now_ns);
             steering.drained(device_, 1);
             tick();
@@ -34,6 +35,7 @@ private:
     int attach() {
         const HidDevice& d = live_.device;
         EXPECT_EQ(d.device_class, DeviceClass::navigation) << d.reason;
+        steering.steers.plays();
         return steering.attach(*compile(default_mapping(d.controls, d.device_class), d.controls), d.controls.size(),
                                Reporting::streaming);
     }
@@ -142,6 +144,7 @@ TEST(Popping, TremorAtASwitchingSpeedSwitchesATenthAtMost) {
         voids += per_s < 5 ? 1 : 0;
         worst = std::max(worst, filtered / per_s);
         EXPECT_LE(filtered, per_s / 10) << "held at " << hold << " counts: " << per_s << " without";
+        walk.steering.steers.plays();
         lag = walk.steering.worst_lag_s();
     }
     std::printf(

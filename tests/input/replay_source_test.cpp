@@ -24,6 +24,7 @@ RecordedDevice device_of(const GamepadSession& session) {
 
 /// Steps every millisecond until `until_ns`.
 NavigationSample run(ReplaySource& source, Steering& steering, std::int64_t& now_ns, std::int64_t until_ns) {
+    steering.steers.plays();
     NavigationSample last;
     for (; now_ns <= until_ns; now_ns += ms) last = steering.tick(source.drain(steering, now_ns), now_ns);
     return last;
@@ -34,6 +35,7 @@ TEST(ReplaySource, ReportsComeWhenTheirTimeHasComeStampedWithIt) {
     session.report({}, 5'000'000).report({}, 3000).report({}, 4500);  // the first one's time is the start
     ReplaySource source(device_of(session));
     Steering steering({}, {});
+    steering.steers.plays();
     source.begin(steering, 100 * ms);
     EXPECT_EQ(source.next_ns(), 100 * ms);
     source.drain(steering, 99 * ms);
@@ -59,6 +61,7 @@ TEST(ReplaySource, TimesThatGoBackAndReportsThatDoNotFitLoseNothing) {
     session.recording().add(15'000, std::vector<std::byte>(2));  // short, and earlier than the last
     ReplaySource source(device_of(session));
     Steering steering({}, {});
+    steering.steers.plays();
     source.begin(steering, ms);
     std::int64_t now = ms;
     run(source, steering, now, 100 * ms);
@@ -72,6 +75,7 @@ TEST(ReplaySource, AHandThatIsHeldWhenTheRecordingEndsComesToRestThoughItsPadRep
     session.report({}).report({}, 20'000).report({.forward = 1}, 20'000).report({.side = 0.1, .forward = 1}, 900'000);
     ReplaySource source(device_of(session));
     Steering steering({}, {});
+    steering.steers.plays();
     source.begin(steering, ms);
     std::int64_t now = ms;
     EXPECT_GT(glm::length(run(source, steering, now, 800 * ms).velocity_m_s), 1.0) << "held, and silent for long: it walks";

@@ -14,7 +14,7 @@ TEST(Attach, NumbersAreGivenAgainForEver) {
         const int device = walk.plug();
         ASSERT_EQ(device, 0);
         walk.hold(device, 128, 128, 2);
-        walk.steering.detach(device);
+        walk.detach(device);
         walk.tick();
     }
     for (int i = 0; i < static_cast<int>(max_devices); ++i) EXPECT_EQ(walk.plug(), i);
@@ -28,7 +28,7 @@ TEST(Attach, AnAbsentStopKeepsItsNumberAndHoldsTheWalk) {
     Walk walk;
     const int stop = walk.plug(m);
     walk.hold(stop, 128, 128, 5);
-    walk.steering.detach(stop);
+    walk.detach(stop);
     walk.tick();
     const int other = walk.plug();
     EXPECT_NE(other, stop);
@@ -39,10 +39,10 @@ TEST(Attach, AnAbsentStopKeepsItsNumberAndHoldsTheWalk) {
     test::set(walk.state, 2, 0);
     test::set(walk.state, 3, 0);
     walk.hold(stop, 128, 128, 5);
-    EXPECT_TRUE(walk.steering.safety().latched) << "back, but still latched";
+    EXPECT_TRUE(walk.safety().latched) << "back, but still latched";
     test::set(walk.state, 3, 1);
     walk.hold(stop, 128, 128, 5);
-    EXPECT_FALSE(walk.steering.safety().latched);
+    EXPECT_FALSE(walk.safety().latched);
 }
 
 }  // namespace

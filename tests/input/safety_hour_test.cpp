@@ -124,6 +124,7 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
     const MotionLimits motion;
     const SafetyLimits safety;
     Steering steering(motion, safety);
+    steering.steers.plays();
     Random random(2026);
     const auto compiled = compile(hostile.mapping, hostile.controls);
     ASSERT_TRUE(compiled.ok()) << compiled.error().text();

@@ -1,4 +1,4 @@
-// Safety: rest after loss, silence, overflow and replug; stops that latch; the dead-man. R5 to R7, R9, R12 to R14 as logic.
+// Safety: rest after loss, silence, overflow and replug; stops that latch; the dead-man. As logic, without devices.
 #include "input/safety/safety.hpp"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(Unplug, RestsWithinFiftyMillisecondsWhateverTheDeflection) {
             walk.hold(device, static_cast<int>(random.below(256)), static_cast<int>(random.below(256)),
                       static_cast<int>(random.below(300)));
         if (i % 2 == 0) walk.send(device, 255, 0);  // a report in flight
-        walk.steering.detach(device);
+        walk.detach(device);
         if (i % 3 == 0) walk.send(device, 0, 255);  // and one that was read too late
         walk.tick();
         worst = std::max(worst, 1 + ticks_to_rest(walk));
@@ -63,7 +63,7 @@ TEST(Unplug, AReleaseJustBeforeItDoesNotSlowTheBrake) {
     Walk walk;
     const int device = walking(walk);
     walk.hold(device, 128, 128, 2);
-    walk.steering.detach(device);
+    walk.detach(device);
     walk.tick();
     EXPECT_LE(ticks_to_rest(walk), 49);
 }
@@ -71,7 +71,7 @@ TEST(Unplug, AReleaseJustBeforeItDoesNotSlowTheBrake) {
 TEST(Unplug, AtThirtyHertzToo) {
     Walk walk;
     const int device = walking(walk);
-    walk.steering.detach(device);
+    walk.detach(device);
     const auto start = walk.now_ns;
     while (walk.tick(33'333'333).velocity_m_s != dvec3(0.0)) ASSERT_LT(walk.now_ns - start, 1'000'000'000);
     EXPECT_LE(walk.now_ns - start, 50'000'000 + 33'333'333) << "one tick later at most";
@@ -80,18 +80,18 @@ TEST(Unplug, AtThirtyHertzToo) {
 TEST(Replug, DeflectedStaysAtRestUntilSeenNeutral) {
     Walk walk;
     int device = walking(walk);
-    walk.steering.detach(device);
+    walk.detach(device);
     walk.tick();
     ticks_to_rest(walk);
     device = walk.plug(test::stick_mapping(), Reporting::streaming, device);
     walk.hold(device, 128, 0, 2000);
     EXPECT_EQ(walk.speed(), 0);
-    EXPECT_EQ(walk.steering.safety().devices[static_cast<std::size_t>(device)].held, Held::not_neutral);
+    EXPECT_EQ(walk.safety().devices[static_cast<std::size_t>(device)].held, Held::not_neutral);
     walk.hold(device, 128, 128, 1);
     walk.hold(device, 128, 0, 500);
     EXPECT_GT(walk.speed(), 1.0);
     // At rest at once: resumes.
-    walk.steering.detach(device);
+    walk.detach(device);
     device = walk.plug(test::stick_mapping(), Reporting::streaming, device);  // between two ticks: still seen
     walk.hold(device, 128, 0, 300);
     EXPECT_EQ(walk.speed(), 0);
@@ -105,7 +105,7 @@ TEST(Silence, AStreamingDeviceIsBelievedForAHundredMillisecondsOnly) {
     while (walk.tick().velocity_m_s != dvec3(0.0) && until < 1000) ++until;
     EXPECT_GT(until, 95);
     EXPECT_LE(until, 140);
-    EXPECT_EQ(walk.steering.safety().silences, 1U);
+    EXPECT_EQ(walk.safety().silences, 1U);
     EXPECT_LT(glm::length(walk.last.pose.position - at.position), 0.25);
     walk.hold(device, 128, 0, 500);
     EXPECT_GT(walk.speed(), 1.0) << "it speaks again: no neutral needed, nobody let go";
@@ -116,7 +116,7 @@ TEST(Silence, AtRestMeansNothing) {
     const int device = walk.plug();
     walk.hold(device, 128, 128, 20);
     for (int i = 0; i < 5000; ++i) walk.tick();
-    EXPECT_EQ(walk.steering.safety().silences, 0U);
+    EXPECT_EQ(walk.safety().silences, 0U);
     walk.hold(device, 128, 0, 300);
     EXPECT_GT(walk.speed(), 1.0);
 }
@@ -132,22 +132,22 @@ TEST(Silence, ADeviceThatReportsChangesOnlyIsNotPutToRest) {
     }
     for (int i = 0; i < 20'000; ++i) walk.tick();
     EXPECT_GT(walk.speed(), 1.3) << "held for 20 s without a report";
-    EXPECT_EQ(walk.steering.safety().silences, 0U);
+    EXPECT_EQ(walk.safety().silences, 0U);
 }
 
 TEST(Silence, StreamingIsLearnedFromEqualReportsAndUnlearnedFromGaps) {
     Walk walk;
     int device = walking(walk, Reporting::learn);
-    EXPECT_TRUE(walk.steering.safety().devices[0].habit.learned_streaming);
+    EXPECT_TRUE(walk.safety().devices[0].habit.learned_streaming);
     for (int i = 0; i < 200; ++i) walk.tick();
     EXPECT_EQ(walk.speed(), 0);
     // It goes on as if nothing had been, twice: so silence is its habit.
     walk.hold(device, 128, 0, 5);
-    EXPECT_FALSE(walk.steering.safety().devices[0].habit.learned_streaming);
+    EXPECT_FALSE(walk.safety().devices[0].habit.learned_streaming);
     walk.hold(device, 128, 0, 200);
     for (int i = 0; i < 200; ++i) walk.tick();
     walk.hold(device, 128, 0, 500);
-    EXPECT_TRUE(walk.steering.safety().devices[0].habit.barred);
+    EXPECT_TRUE(walk.safety().devices[0].habit.barred);
     for (int i = 0; i < 2000; ++i) walk.tick();
     EXPECT_GT(walk.speed(), 1.3);
     // Our own sleep proves nothing against a device.
@@ -155,13 +155,14 @@ TEST(Silence, StreamingIsLearnedFromEqualReportsAndUnlearnedFromGaps) {
     device = walking(other, Reporting::learn);
     other.now_ns += 500'000'000;
     other.hold(device, 128, 0, 10);
-    EXPECT_TRUE(other.steering.safety().devices[0].habit.learned_streaming);
+    EXPECT_TRUE(other.safety().devices[0].habit.learned_streaming);
 }
 
 /// 16 bits at 125 Hz: a second at rest, one pushed forward, each with noise of a few counts; then nothing more for a second.
 double speed_after_silence(int noise, int drift) {
     const std::vector controls = {test::axis("x", 0x30, 0, 65535), test::axis("y", 0x31, 0, 65535)};
     Steering steering(MotionLimits{}, SafetyLimits{});
+    steering.steers.plays();
     const int device = steering.attach(*compile(test::stick_mapping(), controls), controls.size(), Reporting::learn);
     DeviceState state;
     state.connected = true;
@@ -193,6 +194,7 @@ TEST(Silence, OneReportIdsStreamDoesNotKeepAnothersDeflection) {
         controls.push_back(test::axis(std::string(1, "xyzabc"[i]), static_cast<std::uint16_t>(0x30 + i), -350, 350,
                                       "Multi-axis Controller/Physical"));
     Steering steering(MotionLimits{}, SafetyLimits{});
+    steering.steers.plays();
     const DeviceMapping mapping = default_mapping(controls, DeviceClass::navigation);
     const int device = steering.attach(*compile(mapping, controls), controls.size(), mapping.reporting);
     DeviceState state;
@@ -225,9 +227,9 @@ TEST(Stall, ASleepOfHalfASecondEndsInTheNewestState) {
     walk.now_ns += 500'000'000;
     for (int i = 0; i < 49; ++i) walk.send(device, 128, 0);
     walk.send(device, 128, 128);
-    walk.steering.drained(device, 50);
+    walk.drained(device, 50);
     walk.tick();
-    EXPECT_EQ(walk.steering.safety().devices[0].passed.forward, 0) << "within one tick";
+    EXPECT_EQ(walk.safety().devices[0].passed.forward, 0) << "within one tick";
     for (int i = 0; i < 400; ++i) walk.tick();
     EXPECT_EQ(walk.speed(), 0);
 }
@@ -238,13 +240,13 @@ TEST(Stall, AFullRingIsRestUntilSomethingNewComes) {
         const int device = walking(walk);
         walk.now_ns += 500'000'000;
         for (std::uint32_t i = 0; i < count; ++i) walk.send(device, 128, 0);  // the release was dropped
-        walk.steering.drained(device, count);
+        walk.drained(device, count);
         walk.tick();
         const bool full = count >= 63;
-        EXPECT_EQ(walk.steering.safety().devices[0].held, full ? Held::overflow : Held::no);
+        EXPECT_EQ(walk.safety().devices[0].held, full ? Held::overflow : Held::no);
         if (!full) continue;
         EXPECT_LE(ticks_to_rest(walk), 49);
-        EXPECT_EQ(walk.steering.safety().overflows, 1U);
+        EXPECT_EQ(walk.safety().overflows, 1U);
         for (int i = 0; i < 100; ++i) walk.tick();
         EXPECT_EQ(walk.speed(), 0);
         walk.hold(device, 128, 0, 300);
@@ -256,7 +258,7 @@ TEST(Stall, RingsOfOurOwnCountToo) {
     Walk walk;
     const int device = walking(walk);
     walk.send(device, 128, 0);
-    walk.steering.drained(device, 3, true);
+    walk.drained(device, 3, true);
     walk.tick();
     EXPECT_LE(ticks_to_rest(walk), 49);
 }
@@ -274,7 +276,7 @@ TEST(Merge, TwoFullDevicesAreNoFasterAndSwitchingMakesNoStep) {
         walk.send(a, i % 400 < 200 ? 255 : 128, i % 300 < 150 ? 0 : 255);
         walk.send(b, i % 500 < 250 ? 0 : 255, i % 700 < 350 ? 0 : 128);
         walk.tick();
-        const Wish& now = walk.steering.safety().slewed;
+        const Wish& now = walk.safety().slewed;
         const double step = std::hypot(now.forward - before.forward, now.side - before.side, now.up - before.up);
         ASSERT_LE(step, limits.slew_per_s * 1e-3 + 1e-12);
         ASSERT_LE(std::hypot(now.forward, now.side, now.up), 1 + 1e-12);
@@ -296,15 +298,15 @@ TEST(EmergencyStop, IsThisTickLatchedAndResetOnlyByHand) {
     EXPECT_EQ(walk.speed(), 0) << "latched";
     walk.lines = {true, true, false, false};
     walk.hold(device, 128, 0, 50);
-    EXPECT_TRUE(walk.steering.safety().latched) << "no reset while it is asserted";
+    EXPECT_TRUE(walk.safety().latched) << "no reset while it is asserted";
     walk.lines = {false, true, false, false};
     walk.hold(device, 128, 0, 50);
-    EXPECT_TRUE(walk.steering.safety().latched) << "nor by a reset that was held since";
+    EXPECT_TRUE(walk.safety().latched) << "nor by a reset that was held since";
     walk.lines.stop_reset = false;
     walk.hold(device, 128, 0, 50);
     walk.lines.stop_reset = true;
     walk.hold(device, 128, 0, 500);
-    EXPECT_FALSE(walk.steering.safety().latched);
+    EXPECT_FALSE(walk.safety().latched);
     EXPECT_EQ(walk.speed(), 0) << "not by a stick that is still pushed";
     walk.hold(device, 128, 128, 1);
     walk.hold(device, 128, 0, 500);
@@ -317,10 +319,10 @@ TEST(EmergencyStop, APulledDeviceWithAStopIsABrokenWire) {
     Walk walk;
     const int device = walk.plug(m);
     walk.hold(device, 128, 128, 10);
-    EXPECT_FALSE(walk.steering.safety().latched);
-    walk.steering.detach(device);
+    EXPECT_FALSE(walk.safety().latched);
+    walk.detach(device);
     walk.tick();
-    EXPECT_TRUE(walk.steering.safety().latched);
+    EXPECT_TRUE(walk.safety().latched);
     EXPECT_TRUE(walk.last.stopped);
 }
 
@@ -335,7 +337,7 @@ TEST(EmergencyStop, ATouchBetweenTwoTicksCounts) {
     test::set(walk.state, 2, 0);
     walk.send(device, 128, 128);
     walk.tick();
-    EXPECT_TRUE(walk.steering.safety().latched);
+    EXPECT_TRUE(walk.safety().latched);
 }
 
 TEST(EmergencyStop, IsRememberedAcrossRestarts) {
@@ -346,7 +348,9 @@ TEST(EmergencyStop, IsRememberedAcrossRestarts) {
     keeper.set(true);
     ASSERT_TRUE(keeper.flush().ok());
     EXPECT_TRUE(load_stop(file).latched);
-    EXPECT_TRUE(Steering({}, {}, load_stop(file).latched).tick({}, 1).stopped);
+    Steering again({}, {}, load_stop(file).latched);
+    again.steers.plays();
+    EXPECT_TRUE(again.tick({}, 1).stopped);
     keeper.set(false);
     ASSERT_TRUE(keeper.flush().ok());
     EXPECT_FALSE(load_stop(file).latched);
@@ -408,7 +412,7 @@ TEST(DeadManSwitch, AsksToBePressedAnewWhenHeldLongWithoutAWalk) {
     EXPECT_FALSE(walk.last.stopped) << "a walk begins the time anew";
     walk.hold(device, 128, 128, 1'100);
     EXPECT_TRUE(walk.last.stopped);
-    EXPECT_TRUE(walk.steering.safety().wants_press);
+    EXPECT_TRUE(walk.safety().wants_press);
     walk.hold(device, 128, 0, 500);
     EXPECT_TRUE(walk.last.stopped) << "walking does not wake it";
     walk.lines.dead_man = false;
@@ -428,7 +432,7 @@ TEST(DeadManSwitch, OnAPulledDeviceIsNotHeld) {
     test::set(walk.state, 2, 1);
     walk.hold(device, 128, 0, 300);
     EXPECT_GT(walk.speed(), 1.0);
-    walk.steering.detach(device);
+    walk.detach(device);
     walk.tick();
     EXPECT_TRUE(walk.last.stopped);
     EXPECT_EQ(walk.speed(), 0);

@@ -62,15 +62,18 @@ public:
     int plug(const DeviceMapping& mapping = stick_mapping(), Reporting reporting = Reporting::streaming, int again = -1) {
         const auto controls = stick_controls();
         auto compiled = compile(mapping, controls);
+        steering.steers.plays();
         return steering.attach(std::move(*compiled), controls.size(), reporting, again);
     }
     void send(int device, std::int32_t x, std::int32_t y) {
         set(state, 0, x);
         set(state, 1, y);
         state.stamp_ns = now_ns;
+        steering.steers.plays();
         steering.report(device, state, now_ns);
     }
     NavigationSample tick(std::int64_t step_ns = tick_ns) {
+        steering.steers.plays();
         now_ns += step_ns;
         return last = steering.tick(lines, now_ns);
     }
@@ -78,10 +81,22 @@ public:
     NavigationSample hold(int device, std::int32_t x, std::int32_t y, int milliseconds) {
         for (int i = 0; i < milliseconds; ++i) {
             send(device, x, y);
-            steering.drained(device, 1);
+            drained(device, 1);
             tick();
         }
         return last;
+    }
+    void drained(int device, std::uint32_t reports, bool lost = false) {
+        steering.steers.plays();
+        steering.drained(device, reports, lost);
+    }
+    void detach(int device) {
+        steering.steers.plays();
+        steering.detach(device);
+    }
+    [[nodiscard]] const SafetyState& safety() const {
+        steering.steers.plays();
+        return steering.safety();
     }
     [[nodiscard]] double speed() const { return glm::length(last.velocity_m_s); }
 

@@ -225,6 +225,30 @@ TEST_F(CostFile, of_another_estimate_names_no_machine) {
     EXPECT_FALSE(measure::read_costs(file_, costs_.machine).ok());
 }
 
+TEST_F(CostFile, with_a_wrong_key_is_refused_by_its_name) {
+    std::string body = read_text(file_).value();
+    body.erase(0, body.find('\n') + 1);
+    const auto problem = [&](std::string_view line_begins, std::string_view instead) {
+        std::string changed = body;
+        const std::size_t at = changed.find(line_begins);
+        changed.replace(at, changed.find('\n', at) - at, instead);
+        const std::uint64_t hash = hash_bytes(std::as_bytes(std::span<const char>(changed)));
+        EXPECT_TRUE(write_text(file_, fmt::format("hash = \"{:016x}\"\n{}", hash, changed)).ok());
+        const auto read = measure::read_costs(file_, "");
+        if (read) return std::string("nothing");
+        EXPECT_EQ(read.error().place, file_);
+        return read.error().what;
+    };
+    EXPECT_EQ(problem("slice_us", ""), "'slice_us' is missing or out of range");
+    EXPECT_EQ(problem("upper_factor", "upper_factor = 101"), "'upper_factor' is missing or out of range");
+    EXPECT_EQ(problem("max_weight =", "max_weight = \"1\""), "'combine.max_weight' is missing or out of range");
+    EXPECT_EQ(problem("pixel_steps", "pixel_steps = 0"), "'class.triangle_steps' is missing or out of range");
+    EXPECT_EQ(problem("effects", "effects = -1"), "'class.effects' is missing or out of range");
+    EXPECT_EQ(problem("submit_us = [", "submit_us = [ -1,"), "'class.submit_us' is missing or out of range");
+    EXPECT_EQ(problem("version", "version = 9"), "'version' is missing or out of range");
+    EXPECT_EQ(problem("version", "version = 1"), "nothing");
+}
+
 TEST_F(CostFile, with_any_byte_changed_is_refused) {
     const std::string good = read_text(file_).value();
     Random random(9);
@@ -283,6 +307,7 @@ private:
 
 TEST(TimerQuery, that_says_almost_nothing_is_called_dishonest) {
     MockDevice liar(0.001);
+    liar.draws.plays();
     const auto check = measure::check_timer(liar, Pose{}, {});
     EXPECT_TRUE(check.available);
     EXPECT_FALSE(check.honest);
@@ -291,6 +316,7 @@ TEST(TimerQuery, that_says_almost_nothing_is_called_dishonest) {
 
 TEST(TimerQuery, that_is_absent_is_not_trusted) {
     MockDevice none(-1);
+    none.draws.plays();
     const auto check = measure::check_timer(none, Pose{}, {});
     EXPECT_FALSE(check.available);
     EXPECT_FALSE(check.honest);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "render/measure/mesh_distance.hpp"
-#include "rt/base/random_point.hpp"
+#include "rt/base/random.hpp"
 
 namespace surefoot {
 namespace {

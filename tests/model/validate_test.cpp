@@ -31,6 +31,14 @@ TEST_P(ValidateRefuses, AndNamesThePlace) {
     EXPECT_EQ(valid.error().place, GetParam().place) << valid.error().text();
 }
 
+/// Small in a file, and yet 2^32 parts to draw: every representation draws all of them.
+void share_parts(Model& m) {
+    m.parts.assign(0x10000, m.parts[0]);
+    Representation all = m.reps[3];
+    all.part_count = all.triangles = 0x10000;
+    m.reps.resize(0x10008, all);
+}
+
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 INSTANTIATE_TEST_SUITE_P(
@@ -66,6 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"NamesNotEnded", "names", [](Model& m) { m.names.back() = 'x'; }},
                     Wrong{"FindingMissing", "effects", [](Model& m) { m.effects.pop_back(); }},
                     Wrong{"EffectNotCalledFor", "effects", [](Model& m) { m.effects[0].called_for = false; }},
+                    Wrong{"MorePartsThanDrawingNumbers", "model", share_parts},
                     Wrong{"SunNotUnit", "sun_direction", [](Model& m) { m.sun_direction = dvec3(0.0); }}),
     [](const auto& wrong) { return wrong.param.name; });
 

@@ -62,7 +62,7 @@ TEST(Frustum, BoxesBehindAndBesideAreNot) {
     EXPECT_FALSE(visible(frustum, Box{}));
 }
 
-// Six planes alone keep this one: no plane has it wholly outside, yet it lies behind the eye's corner (research 0.8).
+// Six planes alone keep this one: no plane has it wholly outside, yet it lies behind the eye's corner.
 TEST(Frustum, LargeBoxAcrossTwoPlanesIsDropped) {
     Pose pose;
     pose.orientation = glm::angleAxis(0.785398, dvec3(0, 1, 0));  // looks along -x-z
@@ -82,7 +82,7 @@ TEST(Frustum, KeepsFewInvisibleBoxes) {
         ++invisible;
         kept += visible(make_frustum(pose, hd, 1000), box) ? 1 : 0;
     }
-    EXPECT_LT(kept, invisible / 25);  // sampled: some of these are in truth visible; six planes alone keep 13 % (research 0.8)
+    EXPECT_LT(kept, invisible / 25);  // sampled: some of these are in truth visible; six planes alone keep 13 %
 }
 
 TEST(Frustum, RegionHoldsEveryPoseInIt) {

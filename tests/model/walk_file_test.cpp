@@ -323,6 +323,27 @@ TEST_F(OpenTable, AMissingRequiredSectionIsAnErrorByItsName) {
     EXPECT_FALSE(read_walk(file).ok());
 }
 
+TEST_F(OpenTable, MoreThanDrawingCanNumberIsRefusedBeforeItIsRead) {
+    constexpr std::uint32_t pages_id = 0;
+    struct Case {
+        std::size_t at;  ///< of its bytes in the page directory
+        std::uint64_t bytes;
+        const char* what;
+    };
+    for (const Case& c : {Case{0, (std::uint64_t{1} << 31U) * sizeof(Vertex), "2147483648 vertices"},
+                          Case{8, (std::uint64_t{1} << 32U) * sizeof(std::uint32_t), "4294967296 indices"}}) {
+        Sections sections = sections_of_model();
+        ASSERT_EQ(sections.list[0].first, pages_id);
+        std::memcpy(sections.list[0].second.data() + c.at, &c.bytes, sizeof c.bytes);
+        put(sections.file());
+        const auto read = read_walk(file);
+        ASSERT_FALSE(read.ok()) << c.what;
+        EXPECT_EQ(read.error().place, file);
+        EXPECT_NE(read.error().what.find(std::string("out of limits: ") + c.what), std::string::npos) << read.error().text();
+        EXPECT_NE(read.error().remedy.find("several parts"), std::string::npos) << read.error().text();
+    }
+}
+
 TEST_F(OpenTable, ASectionThatIsThereTwiceIsAnError) {
     Sections sections = sections_of_model();
     sections.list.push_back(sections.list[3]);

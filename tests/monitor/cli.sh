@@ -11,20 +11,29 @@ socket=unix:$work/s.sock
 
 # Nobody there: the place, the remedy, and exit 1; wrong use is 2.
 for command in status top "status --json"; do
-  expect 1 's.sock.*nobody serves there.*surefootd' $command --socket "$socket"
+  expect 1 's.sock.*Nobody serves there.*surefootd' $command --socket "$socket"
   expect 2 'loopback' $command --socket 192.168.0.1:9464
-  expect 2 'no address' $command --socket nonsense
+  expect 2 'not an address' $command --socket nonsense
 done
 RUNTIME_DIRECTORY=$work/run expect 1 "$work/run/surefoot.sock" status
-expect 2 'no address' walk f.walk --clock virtual --backend null --frames 5 --monitor nonsense
+expect 2 'not an address' walk f.walk --clock virtual --backend null --frames 5 --monitor nonsense
 expect 1 'nonexistent' walk f.walk --clock virtual --backend null --frames 5 --monitor /nonexistent/s.sock
 expect 1 'incidents|proc' walk f.walk --clock virtual --backend null --frames 5 --incidents /proc/nowhere
 
 # A walk in real time without GL, looked at while it runs.
-"$surefoot" walk f.walk --backend null --no-fifo --seconds 60 --monitor "$socket" --incidents incidents --json >walk.out 2>walk.err &
+mkfifo said
+"$surefoot" walk f.walk --backend null --no-fifo --seconds 60 --monitor "$socket" --incidents incidents --json >walk.out 2>said &
 walk=$!
-for _ in $(seq 100); do "$surefoot" status --socket "$socket" --json 2>/dev/null | grep -q '"state": "walking"' && break; sleep 0.1; done
-sleep 1
+exec 3<said
+# says WORDS: waits until the walk says them, for half a minute at most; what it says goes on to walk.err.
+says() {
+  local said
+  while IFS= read -r -t 30 said <&3; do printf '%s\n' "$said" >>walk.err; case $said in *"$1"*) return ;; esac; done
+  complain "the walk never says '$1': $(cat walk.err)"
+}
+says 'watch it live with'
+"$surefoot" top --socket "$socket" --every 0.2 --seconds 30 --json </dev/null 2>/dev/null |
+  grep -qm 1 '"state":"walking".*"totals":{"frames":[1-9][0-9]' || complain "no frames are seen: $(cat walk.err)"
 grep -q "surefoot top --socket $socket" walk.err || complain "the walk does not say how to look at it: $(cat walk.err)"
 "$surefoot" status --socket "$socket" >out 2>err || complain "status: $(cat err)"
 grep -q 'f.walk' out && grep -q 'p99.9' out && grep -q 'slots:' out || complain "status says: $(cat out)"
@@ -45,7 +54,8 @@ fi
 
 # In a terminal: the other screen while it runs, and everything as it was after q.
 if command -v script >/dev/null; then
-  (sleep 1.2; printf q) | timeout 20 script -qec "stty rows 24 cols 80; stty -a > before.tty; \"$surefoot\" top --socket $socket; stty -a > after.tty" typescript >/dev/null 2>&1
+  : >typescript
+  (timeout 20 grep -qm 1 'frame time' <(tail -n +1 -f --pid=$$ typescript 2>/dev/null); printf q) | timeout 30 script -qefc "stty rows 24 cols 80; stty -a > before.tty; \"$surefoot\" top --socket $socket; stty -a > after.tty" typescript >/dev/null 2>&1
   cmp -s before.tty after.tty || complain "the terminal is not as it was"
   grep -q $'\033\\[?1049h' typescript && grep -q $'\033\\[?1049l' typescript && grep -q $'\033\\[?25h' typescript || complain "the screen is not given back"
   grep -q 'frame time' typescript || complain "top shows no frame times"
@@ -53,11 +63,11 @@ fi
 
 # A burst of misses is written down, with a frame of it that can be replayed.
 kill -STOP $walk; sleep 0.3; kill -CONT $walk
-for _ in $(seq 60); do ls incidents/incident-*/incident.json >/dev/null 2>&1 && break; sleep 0.1; done
+says 'a burst of misses'
 [ -s "$(ls incidents/incident-*/ledger.csv | head -1)" ] || complain "a stop of 0.3 s left no incident"
 "$surefoot" replay incidents/incident-*/frame.capture >out 2>err || complain "its frame cannot be replayed: $(cat err)"
 
-kill -INT $walk; wait $walk; got=$?
+kill -INT $walk; cat <&3 >>walk.err; wait $walk; got=$?
 [ $got -eq 130 ] || complain "exit $got, not 130, of the stopped walk: $(cat walk.err)"
 valid_json walk.out || complain "the walk's own figures are gone"
 [ -e s.sock ] && complain "the socket is left behind"

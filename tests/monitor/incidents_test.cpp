@@ -160,7 +160,7 @@ TEST(Incidents, AFullDiskIsSaidOnceAndSurvived) {
     EXPECT_EQ((*writer)->written(), 2U) << "it goes on when there is room again";
     writer->reset();
     ASSERT_EQ(said.size(), 3U) << "written; not written, once; written";
-    EXPECT_NE(said[1].find("could not be written"), std::string::npos) << said[1];
+    EXPECT_NE(said[1].find("could not be recorded"), std::string::npos) << said[1];
     for (const std::string& name : names_in(dir))
         EXPECT_TRUE(name.starts_with("incident-")) << name << ": something half is left";
     EXPECT_EQ(names_in(dir).size(), 2U);

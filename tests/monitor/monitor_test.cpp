@@ -16,10 +16,11 @@
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/recorder.hpp"
 #include "rt/threads/usage.hpp"
+#include "tests/appears.hpp"
 #include "tests/monitor/exposition.hpp"
 #include "tests/monitor/http.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tools/monitor/client.hpp"
+#include "tools/monitor/address.hpp"
 #include "tools/monitor/monitor.hpp"
 
 namespace surefoot::monitor {
@@ -153,11 +154,11 @@ TEST(Monitor, ABurstIsWrittenDownWhileReadersLook) {
         for (std::uint64_t i = 0; i < 600; ++i) monitor->on_record(frame_of_walk(i, 1'000'000'000, i >= 300 && i < 305));
     }).join();
     monitor->end_walk();
-    double written = 0;
-    for (int i = 0; i < 100 && written == 0; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    ASSERT_TRUE(test::appears(folder / "incidents", "incident-", 10));
+    double written = 0;  // a page is kept for 200 ms
+    const std::int64_t deadline_ns = rt::monotonic_ns() + 10'000'000'000;
+    while (written == 0 && rt::monotonic_ns() < deadline_ns)
         written = scrape(*monitor).at("surefoot_incidents_total{outcome=\"written\"}");
-    }
     EXPECT_EQ(written, 1);
     int folders = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "incidents")) {

@@ -16,7 +16,7 @@
 #include "rt/clock/clock.hpp"
 #include "tests/monitor/http.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tools/monitor/client.hpp"
+#include "tools/monitor/address.hpp"
 #include "tools/monitor/server.hpp"
 
 namespace surefoot::monitor {

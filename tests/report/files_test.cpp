@@ -15,7 +15,7 @@
 #include "tests/report/records.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/text_pieces.hpp"
-#include "tools/report/pictures.hpp"
+#include "tools/report/page_parts.hpp"
 #include "tools/report/report.hpp"
 
 namespace surefoot::report {

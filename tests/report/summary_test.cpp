@@ -258,7 +258,7 @@ TEST(Input, IsNullForAPathAndAnObjectWithUnitsAndWordsForAVisitor) {
     s.input.stops = 2;
     s.input.stopped_frames = 61;
     s.input.stop_latched = true;
-    EXPECT_NE(input_words(s.input).find("2 emergency stops; stood still by order for 61 frames, and does to the end"),
+    EXPECT_NE(input_words(s.input).find("2 emergency stops; the walk stood still for 61 frames, and until the end"),
               std::string::npos)
         << input_words(s.input);
 }

@@ -1,5 +1,6 @@
 // The frame loop on injected time: what was lost is told from what was spent, and each loss is named.
 #include "rt/frame/loop.hpp"
+#include "rt/frame/frame_account.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "rt/frame/wait_estimate.hpp"
 #include "rt/threads/guard.hpp"
 #include "tests/time_units.hpp"
 

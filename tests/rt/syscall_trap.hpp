@@ -1,5 +1,5 @@
 // Proof of the frame thread's system calls: a per-thread seccomp filter that counts and names what own code should not call.
-// For tests (research/realtime.md M7): a trapped call costs a signal, but is then carried out all the same.
+// For tests: a trapped call costs a signal and is then carried out.
 #pragma once
 
 #include <cstdint>

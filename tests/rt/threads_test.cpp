@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <latch>
 #include <thread>
 
 #include "rt/exchange/spsc_ring.hpp"
@@ -168,18 +169,26 @@ TEST(SystemCallTrap, NamesWhatTheFrameThreadsOwnCodeMayNotCall) {
 }
 
 TEST(Usage, ThreadsAreMeasuredApart) {
-    std::atomic<bool> stop{false};
-    std::atomic<pid_t> tid{0};
+    pid_t tid = 0;
+    std::latch known(1), work(1), worked(1), looked(1);
     std::thread busy([&] {
         tid = own_tid();
+        known.count_down();
+        work.wait();
         volatile double x = 1;
-        while (!stop) x = x * 1.0000001;
+        for (const std::int64_t from = own_cpu_ns(); own_cpu_ns() - from < 5'000'000;) x = x * 1.0000001;
+        worked.count_down();
+        looked.wait();  // its clock is there as long as it is
     });
-    while (tid == 0) std::this_thread::yield();
-    const std::int64_t before = thread_cpu_ns(tid);
-    while (thread_cpu_ns(tid) - before < 5'000'000) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    stop = true;
+    known.wait();
+    const std::int64_t before = thread_cpu_ns(tid), own_before = own_cpu_ns();
+    work.count_down();
+    worked.wait();
+    const std::int64_t after = thread_cpu_ns(tid), own_after = own_cpu_ns();
+    looked.count_down();
     busy.join();
+    EXPECT_GE(after - before, 5'000'000);
+    EXPECT_LT(own_after - own_before, after - before) << "waiting is no work";
     EXPECT_LT(own_cpu_ns(), 60'000'000'000);
 }
 

@@ -23,12 +23,12 @@ mean_triangles() { "$surefoot" soak f.walk $virtual --seconds 5 "$@" --json 2>/d
 
 # Wrong use is 2, bad input 1, before anything is loaded; a verdict that does not hold is 1.
 expect 2 'no load .disk.*devices' soak f.walk $virtual --mix cpu,disk
-expect 2 'two lengths' soak f.walk $virtual --hours 1 --seconds 5
+expect 2 'both set the length' soak f.walk $virtual --hours 1 --seconds 5
 expect 2 'seconds' soak f.walk $virtual --seconds 0
-expect 2 'strict.*real time' soak f.walk $virtual --strict
+expect 2 'strict.*real clock' soak f.walk $virtual --strict
 expect 1 'absent.walk' soak absent.walk $virtual
 expect 1 'report.*f.glb' soak f.walk $virtual --report f.glb
-expect 1 'not all can be judged' soak f.walk $virtual --seconds 5
+expect 1 'some rules cannot be judged' soak f.walk $virtual --seconds 5
 grep -q 'not judged' out || complain "what was too short is not said"
 
 # On the real clock, in a session of its own: stopped by Ctrl-C it sums up and ends its load; killed, the load ends by itself.

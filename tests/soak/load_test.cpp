@@ -17,7 +17,7 @@
 
 #include "rt/clock/clock.hpp"
 #include "tools/soak/load_runner.hpp"
-#include "tools/soak/proc_figure.hpp"
+#include "tools/soak/machine_facts.hpp"
 
 namespace surefoot::soak {
 namespace {

@@ -140,6 +140,7 @@ void check_stall(Checks& checks, const Guest& guest) {
     };
     // 1 kHz for half a second, ending in release: the ring is full, and the release was dropped.
     const auto full = stalled([&](int i) { device.send(pad_at(128, i < 480 ? 0 : 128)); }, 500);
+    walker.steering.steers.plays();
     checks.check(
         "stall.ring_overflow", full[0] > 0.5 && full[2] == 0 && walker.steering.safety().overflows >= 1,
         fmt::format("500 ms, 500 reports: speed {:.2f} before, {:.2f} one tick after, {:.2f} 100 ms after; {} overflows seen",

@@ -44,6 +44,7 @@ public:
             if (e.kind == input::DeviceEvent::Kind::report && first_report_ns == 0) first_report_ns = e.stamp_ns;
             attendant.attend(e);
         }
+        steering.steers.plays();
         sample = steering.tick(lines, now_ns());
         greatest = std::max(greatest, speed());
         if (!(speed() < 1e9)) ++wrong;  // NaN too

@@ -74,7 +74,7 @@ TEST(EndlessWalk, RefusesWhatNeedsItsFrames) {
     request.frames = 100;
     outcome = run_walk(request, {});
     ASSERT_FALSE(outcome.ok());
-    EXPECT_NE(outcome.error().what.find("was given an end"), std::string::npos) << outcome.error().text();
+    EXPECT_NE(outcome.error().what.find("An endless walk cannot have"), std::string::npos) << outcome.error().text();
 }
 
 TEST(WatchedWalk, AnErrorBelongsToTheStepToldLast) {

@@ -55,7 +55,7 @@ action = "stop"
 T
 walk stopped.hid --steering stop.toml; says '"stops":1,"stopped_frames":[1-9][0-9]*,"stop_latched":true'
 "$surefoot" walk f.walk $virtual --input stopped.hid --steering stop.toml >out 2>err
-tr -s ' \n' ' ' <out | grep -q '1 emergency stop; stood still by order for' || complain "the table does not tell of the stop: $(cat out)"
+tr -s ' \n' ' ' <out | grep -q '1 emergency stop; the walk stood still for' || complain "the table does not tell of the stop: $(cat out)"
 
 # Bad input is 1: the file, the place, what and the remedy. Wrong use is 2.
 refuse 1 '^surefoot: absent.hid' walk f.walk $virtual --input absent.hid

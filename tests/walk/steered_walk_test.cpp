@@ -180,7 +180,7 @@ action = "stop"
     EXPECT_TRUE(in.stop_latched);
     EXPECT_GT(in.stopped_frames, 55U);
     EXPECT_EQ(outcome.summary.misses, 0U) << "a stop is no miss";
-    EXPECT_NE(report::to_table(outcome.summary, false).find("stood still by"), std::string::npos);
+    EXPECT_NE(report::to_table(outcome.summary, false).find("stood still for"), std::string::npos);
     EXPECT_NE(report::to_json(outcome.summary).find("\"stops\": 1"), std::string::npos);
     EXPECT_EQ(in.devices.at(0).mapping, "pad with a stop");
 }

@@ -23,6 +23,7 @@ class VisitTest : public ::testing::Test {
 protected:
     /// Ticks for so long with nothing pressed but what `press` says in the first; the hand moves at `speed`.
     void run(double seconds, double speed = 0, bool input::NavigationSample::*press = nullptr, bool stopped = false) {
+        steering_.steers.plays();
         for (int i = 0; i < static_cast<int>(seconds * 500 + 0.5); ++i) {
             now_ns_ += tick_ns;
             sample_ = {};

@@ -11,9 +11,9 @@
 #include "render/capture/capture.hpp"
 #include "rt/base/file.hpp"
 #include "tests/walk/walk_fixture.hpp"
-#include "tools/walk/outputs.hpp"
 #include "tools/walk/real_time.hpp"
 #include "tools/walk/shots.hpp"
+#include "tools/walk/walk_results.hpp"
 
 namespace surefoot {
 namespace {
@@ -64,7 +64,7 @@ TEST(WalkOutputs, NeverReplaceWhatIsReadNorEachOther) {
     EXPECT_NE(refusal(request).find("reads"), std::string::npos);
     request.ledger_file = in_forest("both");
     request.trace_file = test::Forest::get().dir + "/./both";
-    EXPECT_NE(refusal(request).find("--ledger too"), std::string::npos);
+    EXPECT_NE(refusal(request).find("written by --ledger"), std::string::npos);
 }
 
 TEST(WalkOutputs, OneThatFailsAtTheEndSpoilsNoOther) {

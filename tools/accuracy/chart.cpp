@@ -1,4 +1,4 @@
-// What accuracy costs in time: accuracy, SNR and SSIM against frame time, a line a selector. The picture at the top of the
+// What accuracy costs in time: accuracy, SNR and SSIM against frame time, a line a selector. The chart in the
 // README.
 #include <fmt/format.h>
 

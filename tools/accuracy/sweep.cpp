@@ -58,6 +58,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
     std::vector<double> frame_ms;
     double accuracy = 0, snr_sum = 0, ssim_sum = 0, triangles = 0, cost = 0;
     std::uint32_t snr_count = 0;
+    engine.device().draws.plays();
     SubmitLimits limits;
     limits.now_ns = [](void*) { return rt::monotonic_ns(); };
     limits.limit_us = 1e12;
@@ -72,6 +73,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
         triangles += static_cast<double>(cut.triangles);
         cost += cut.predicted_us;
         std::vector<double> ms;
+        ms.reserve(static_cast<std::size_t>(repeats));
         for (int i = 0; i < repeats; ++i) ms.push_back(engine.submit(station.pose, limits).finished_us * 1e-3);
         frame_ms.push_back(quantile_of(ms, 0.5));
         auto image = engine.device().read_pixels();
@@ -106,7 +108,8 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
     const auto backend = gl::backend_named(request.backend);
     if (!backend) return backend.error();
     if (!(*backend)->draws())
-        return Error{"--backend " + request.backend, "draws no pictures to compare", "use one of: " + gl::drawing_backends()};
+        return Error{"--backend " + request.backend, "This backend draws no pictures to compare",
+                     "Use one of: " + gl::drawing_backends(), ErrorKind::misuse};
     options.device.kind = (*backend)->kind;
     options.device.viewport = request.viewport();
     options.device.rasterisers = request.rasterisers;
@@ -157,7 +160,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
     Sweep sweep{engine, std::vector<Station>(request.poses), std::max(1, request.repeats)};
     std::vector<double> full_ms;
     for (std::uint32_t i = 0; i < request.poses; ++i) {
-        if (progress.stopped()) return Error{request.model_file, "stopped by the user", ""};
+        if (progress.stopped()) return Error{request.model_file, "The sweep was stopped by the user", "", ErrorKind::stopped};
         progress.say("full detail", static_cast<double>(i) / request.poses);
         Station& station = sweep.stations[i];
         station.pose = sample_path(chosen->path, chosen->path.duration_s() * (i + 0.5) / request.poses);
@@ -182,7 +185,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
             engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
         const select::SelectorEntry& entry = **select::selector_named(selector);
         for (std::size_t b = 0; b < budgets.size(); ++b) {
-            if (progress.stopped()) return Error{request.model_file, "stopped by the user", ""};
+            if (progress.stopped()) return Error{request.model_file, "The sweep was stopped by the user", "", ErrorKind::stopped};
             progress.say(selector, static_cast<double>(done++) / points);
             const bool by_threshold = entry.goes_by == select::GoesBy::threshold;
             const double threshold = pixel * 32.0 * std::pow(0.5, static_cast<double>(b));  // 32 pixels down to a quarter

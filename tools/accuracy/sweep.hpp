@@ -12,7 +12,7 @@
 
 namespace surefoot::accuracy {
 
-/// Those that are worth a line where nobody says which.
+/// The selectors that are compared by default.
 std::vector<std::string> compared_selectors();
 
 struct AccuracyRequest {

@@ -8,6 +8,7 @@
 #include "tools/accuracy/sweep.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -21,14 +22,21 @@ struct AccuracyArguments {
 void print_points(const accuracy::AccuracyRun& run) {
     fmt::print("{} at {} poses, {}x{}; full detail takes {:.1f} ms a frame\n", run.model, run.poses, run.width, run.height,
                run.full_frame_ms);
-    fmt::print("{:<18} {:>10} {:>10} {:>10} {:>12} {:>6} {:>8} {:>7} {:>11}\n", "selector", "budget ms", "p50 ms", "p90 ms",
-               "accuracy 1/r", "exact", "SNR dB", "SSIM", "triangles");
-    for (const accuracy::AccuracyPoint& p : run.points) {
-        fmt::print("{:<18} {:>10.2f} {:>10.2f} {:>10.2f} {:>12} {:>6} {:>8.2f} {:>7.4f} {:>11.0f}\n", p.selector, p.budget_ms,
-                   p.frame_ms_p50, p.frame_ms_p90,
-                   std::isfinite(p.accuracy_mean) ? fmt::format("{:.1f}", p.accuracy_mean) : "exact", p.exact, p.snr_db, p.ssim,
-                   p.triangles);
-    }
+    const report::Columns columns({{"selector", 18},
+                                   {"budget ms", -10},
+                                   {"p50 ms", -10},
+                                   {"p90 ms", -10},
+                                   {"accuracy 1/r", -12},
+                                   {"exact", -6},
+                                   {"SNR dB", -8},
+                                   {"SSIM", -7},
+                                   {"triangles", -11}});
+    fmt::print("{}\n", columns.heading());
+    const auto text = [](double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); };
+    for (const accuracy::AccuracyPoint& p : run.points)
+        fmt::print("{}\n", columns.row({p.selector, text(p.budget_ms, 2), text(p.frame_ms_p50, 2), text(p.frame_ms_p90, 2),
+                                        std::isfinite(p.accuracy_mean) ? text(p.accuracy_mean, 1) : "exact",
+                                        std::to_string(p.exact), text(p.snr_db, 2), text(p.ssim, 4), text(p.triangles, 0)}));
 }
 
 int run_accuracy_command(AccuracyArguments& a, const Context& context) {
@@ -56,39 +64,44 @@ int run_accuracy_command(AccuracyArguments& a, const Context& context) {
 void add_accuracy(CLI::App& app, Context& context) {
     auto a = std::make_shared<AccuracyArguments>();
     CLI::App* c = add_command(
-        app, "accuracy", "Show what accuracy costs in time: budgets swept, accuracy, SNR and SSIM against frame time",
+        app, "accuracy", "Measure accuracy, SNR and SSIM against frame time over a range of budgets",
         "surefoot accuracy town.walk --path town.path.csv -o accuracy\n\n"
-        "The accuracy of a point is the mean over its places; places drawn exactly have no finite accuracy, are left\n"
-        "out of that mean and counted apart (a point with nothing but such places is 'exact').",
+        "The accuracy of a point is the mean over its poses. Poses drawn exactly have no finite accuracy: they are left out\n"
+        "of the mean and counted apart. A point with only such poses is 'exact'.",
         a->json);
     accuracy::AccuracyRequest& r = a->request;
     c->add_option("model", r.model_file, "The .walk model")->required();
-    c->add_option("--path", r.path_file, "Poses are taken along this path (else MODEL.path.csv, else a tour)");
-    c->add_option("-o,--out", a->out, "Folder for index.html, accuracy.svg, accuracy.csv")->capture_default_str();
-    c->add_option("--size", a->size, "Picture size")->capture_default_str();
-    c->add_option("--shift-x", r.shift_x, "Off axis: the picture's middle lies so far right of where the pose looks")
+    c->add_option("--path", r.path_file, "CSV file of the path along which poses are taken (else MODEL.path.csv, else a tour)");
+    c->add_option("-o,--out", a->out, "Output folder for index.html, accuracy.svg and accuracy.csv")->capture_default_str();
+    c->add_option("--size", a->size, "Size of the picture in pixels")->capture_default_str();
+    c->add_option("--shift-x", r.shift_x, "Off-axis projection: offset of the image centre to the right of the view direction")
         ->check(number_within(-8, 8, "half widths"))
         ->capture_default_str();
-    c->add_option("--shift-y", r.shift_y, "The same, upwards")
+    c->add_option("--shift-y", r.shift_y, "Off-axis projection: offset of the image centre upwards")
         ->check(number_within(-8, 8, "half heights"))
         ->capture_default_str();
-    c->add_option("--poses", r.poses, "Places along the path, 1..256")->check(whole_number_within(1, 256))->capture_default_str();
-    c->add_option("--repeats", r.repeats, "Timed submissions a place; the median counts")
+    c->add_option("--poses", r.poses, "Number of poses along the path, 1 to 256")
+        ->check(whole_number_within(1, 256))
+        ->capture_default_str();
+    c->add_option("--repeats", r.repeats, "Timed repetitions per pose; the median is used")
         ->check(whole_number_within(1, 100))
         ->capture_default_str();
     c->add_option("--selector", r.selectors, "Selectors to compare")
         ->check(one_of(select::selector_names()))
         ->capture_default_str();
-    c->add_option("--budget", r.budgets_ms, "Frame budgets in ms; default: eight shares of the full frame's time")
+    c->add_option("--budget", r.budgets_ms, "Frame budgets in ms (else eight fractions of the time of a full frame)")
         ->check(number_within(0.001, 1e5, "ms"));
-    c->add_option("--lift", r.lift_m, "Metres added to every height of the path")
+    c->add_option("--lift", r.lift_m, "Height added to every pose of the path, in metres")
         ->check(number_within(-1e7, 1e7, "m"))
         ->capture_default_str();
-    c->add_option("--backend", r.backend, gl::drawing_backends())->check(drawing_backend())->capture_default_str();
-    c->add_option("--workers", r.workers, "Threads that prepare; 0: one a core")->check(whole_number_within(0, 256));
-    c->add_option("--rasterisers", r.rasterisers, "Software GL threads; 0: the measured default")
+    c->add_option("--backend", r.backend, "Backend that draws: " + gl::drawing_backends())
+        ->check(drawing_backend())
+        ->capture_default_str();
+    c->add_option("--workers", r.workers, "Number of threads that prepare frames; 0: one per core")
+        ->check(whole_number_within(0, 256));
+    c->add_option("--rasterisers", r.rasterisers, "Number of software GL threads; 0: the measured default")
         ->check(whole_number_within(0, 64));
-    c->add_option("--state", r.state_dir, "Folder with the calibrated cost table");
+    c->add_option("--state", r.state_dir, "Folder of the calibrated cost table");
     c->callback([&context, a] { context.run = [a, &context] { return run_accuracy_command(*a, context); }; });
 }
 

@@ -33,15 +33,15 @@ double peak_memory_mib() {
     return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// A kiosk whose wall is white for want of a picture is found out by its visitors: better by who bakes it.
+/// A missing texture should stop the bake, so that visitors of a kiosk never see a white wall.
 Error incomplete(std::span<const importer::Damage> damage) {
-    std::string what = "incomplete: " + damage[0].what;
+    std::string what = "The scene is incomplete: " + damage[0].what;
     for (std::size_t i = 1; i < std::min<std::size_t>(damage.size(), 3); ++i) what += "; " + damage[i].what;
     if (damage.size() > 3) what += fmt::format("; and {} more", damage.size() - 3);
-    return {damage[0].file, what, "mend it, or bake what is left with --allow-incomplete"};
+    return {damage[0].file, what, "Repair it, or bake what is left with --allow-incomplete", ErrorKind::damaged};
 }
 
-/// How long each stage took, from what the work says of itself: what passes belongs to the stage that is told next.
+/// How long each stage took. Progress messages name a stage when it ends, so the time since the last message is that stage's.
 class StageTimes {
 public:
     void see(std::string_view stage) {
@@ -74,12 +74,12 @@ int run_bake(const BakeArguments& a, const Context& context) {
     for (const std::string& in : a.in) {
         std::error_code ignored;
         if (std::filesystem::equivalent(in, a.out, ignored)) {
-            return misuse({a.out, "is one of the files to bake", "name another file with -o"});
+            return misuse({a.out, "The output is one of the files to bake", "Name another file with -o", ErrorKind::misuse});
         }
     }
     // Pictures and buffers that the files to bake bring along are known only when these are read: no model has their endings.
     if (std::filesystem::path(a.out).extension() != ".walk") {
-        return misuse({"-o " + a.out, "does not end in .walk", "name the model to write MODEL.walk"});
+        return misuse({"-o " + a.out, "The output's name does not end in .walk", "Name a file MODEL.walk", ErrorKind::misuse});
     }
     if (auto ok = probe_writable(a.out); !ok) return fail(ok.error());
     Progress progress = terminal_progress(context);
@@ -131,21 +131,22 @@ int run_bake(const BakeArguments& a, const Context& context) {
 
 void add_bake(CLI::App& app, Context& context) {
     auto a = std::make_shared<BakeArguments>();
-    CLI::App* c = add_command(app, "bake", "Import, cluster, simplify, capture, and write a model to walk",
+    CLI::App* c = add_command(app, "bake", "Import scenes and write a .walk model with levels of detail",
                               "surefoot bake house.glb garden.obj -o home.walk", a->json);
-    c->add_option("in", a->in, "Model files: " + importer::endings_in_words() + "; several become one scene")->required();
-    c->add_option("-o,--out", a->out, "The model to write; what was there stays until it is complete")->required();
-    c->add_option("--quality", a->quality, "draft: at most a minute a million triangles; full: tighter error bounds")
+    c->add_option("in", a->in, "Input files (" + importer::endings_in_words() + "); several files become one scene")->required();
+    c->add_option("-o,--out", a->out, "The .walk model to write; an older file is replaced only when the new one is complete")
+        ->required();
+    c->add_option("--quality", a->quality, "draft: at most one minute per million triangles; full: tighter error bounds")
         ->check(CLI::IsMember({"draft", "full"}))
         ->capture_default_str();
-    c->add_option("--workers", a->workers, "Threads; 0: one a core. The result is the same at any number")
+    c->add_option("--workers", a->workers, "Number of threads; 0: one per core. The result does not depend on it")
         ->check(whole_number_within(0, 256));
-    c->add_option("--rate", a->rate_hz, "Frame rate in Hz for the rule that no item costs over 1/16 of a frame")
+    c->add_option("--rate", a->rate_hz, "Frame rate in Hz; no item of the model may cost more than 1/16 of a frame")
         ->check(number_within(1, 240, "Hz"))
         ->capture_default_str();
     c->add_flag("--allow-incomplete", a->allow_incomplete,
-                "Bake what is left where pictures, materials or coordinates are missing or broken, and say what");
-    c->add_option("--state", a->state, "Folder with the calibrated cost table");
+                "Bake a scene with missing or damaged textures, materials or coordinates, and warn about them");
+    c->add_option("--state", a->state, "Folder of the calibrated cost table");
     c->callback([&context, a] { context.run = [a, &context] { return run_bake(*a, context); }; });
 }
 

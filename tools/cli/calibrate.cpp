@@ -62,7 +62,7 @@ Result<std::function<void()>> placed_as_walked() {
     const rt::Capabilities capable = rt::probe_capabilities(walk::WalkRequest{}.frame_priority);
     auto plan = walk::plan_placing({}, capable.fifo_priority >= walk::WalkRequest{}.frame_priority);
     if (!plan) return plan.error();
-    if (!plan->fifo) note("not fully real-time: SCHED_FIFO is refused; the figures will be of ordinary scheduling");
+    if (!plan->fifo) note("not fully real-time: SCHED_FIFO is refused. The figures are measured with ordinary scheduling");
     if (rt::guard_active()) (void)rt::prepare_memory({});
     return std::function<void()>([plan = *plan]() mutable {
         if (auto placed = walk::place_rasterisers(plan); !placed) note(placed.error().text());
@@ -73,7 +73,9 @@ Result<std::function<void()>> placed_as_walked() {
 Result<void> make_folder(const std::string& dir) {
     std::error_code error;
     std::filesystem::create_directories(dir, error);
-    if (error) return Error{dir, "cannot be made: " + error.message(), "name another folder with --state"};
+    if (error)
+        return Error{dir, "The folder cannot be made: " + error.message(), "Name another folder with --state",
+                     ErrorKind::unwritable};
     return {};
 }
 
@@ -83,12 +85,16 @@ nlohmann::ordered_json to_json(const walk::FrameErrors& e) { return {{"p50", e.p
 int run_fit(const CalibrateArguments& a, const Context& context) {
     const auto backend = gl::backend_named(a.backend);
     if (!backend) return misuse(backend.error());
-    if (!a.plot.empty()) return misuse({"--plot", "belongs to the machine's table", "leave out the model, or leave out --plot"});
+    if (!a.plot.empty())
+        return misuse({"--plot", "A plot is made of the machine's table, not of a model's fit", "Remove the model or --plot",
+                       ErrorKind::misuse});
     const std::string dir = walk::state_directory(a.state);
     std::string lacking;
     auto table = walk::load_costs(dir, "", lacking);
     if (!table) return fail(table.error());
-    if (!lacking.empty()) return fail({a.model, "cannot be fitted: no cost table in " + dir, "run `surefoot calibrate` first"});
+    if (!lacking.empty())
+        return fail({a.model, "The model cannot be fitted: there is no cost table in " + dir, "Run `surefoot calibrate` first",
+                     ErrorKind::not_found});
     model::WalkFileInfo info;
     auto model = model::read_walk(a.model, &info);
     if (!model) return fail(model.error());
@@ -111,13 +117,14 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
     end_progress(context);
     if (!fit) return fail(fit.error());
     if (fit->machine != table->machine) {
-        return fail({a.model, "was drawn on \"" + fit->machine + "\", the table was measured on \"" + table->machine + "\"",
-                     "run `surefoot calibrate` with the same backend and rasterisers first"});
+        return fail({a.model,
+                     "The model was drawn on \"" + fit->machine + "\", but the table was measured on \"" + table->machine + "\"",
+                     "First run `surefoot calibrate` with the same backend and rasterisers", ErrorKind::misuse});
     }
     if (fit->after.p50 + fit->after.p90 >= fit->before.p50 + fit->before.p90) {
         note(
-            fmt::format("the fit is no better (held-out p50 {:.0f} %, p90 {:.0f} %) than the table (p50 {:.0f} %, p90 {:.0f} %), "
-                        "which stays",
+            fmt::format("the fit (held-out p50 {:.0f} %, p90 {:.0f} %) is no better than the table (p50 {:.0f} %, p90 {:.0f} %), "
+                        "so the table is kept",
                         100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->before.p50, 100 * fit->before.p90));
         fit->costs = *table;
     }
@@ -138,7 +145,7 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
     fmt::print("{}: {} frames near {}, {:.0f} s\n  fit {}\n", a.model, fit->frames, path->source, fit->seconds, file);
     print_frame(k);
     fmt::print(
-        "  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; by the machine's table alone {:.0f} %, {:.0f} %, "
+        "  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; with the machine's table alone {:.0f} %, {:.0f} %, "
         "{:.0f} %; the budget spends x{:.2f}\n  a frame's median time is {:.2f} of its best here ({} of {} frames were drawn "
         "alike)\n",
         100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->after.p99, 100 * fit->before.p50, 100 * fit->before.p90,
@@ -151,7 +158,9 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (!a.model.empty()) return run_fit(a, context);
     for (const auto& [given, option] :
          {std::pair{!a.path.empty(), "--path"}, {a.lift_m != 0, "--lift"}, {a.rate_hz != 30, "--rate"}}) {
-        if (given) return misuse({option, "belongs to a model", "name the model: surefoot calibrate MODEL.walk ..."});
+        if (given)
+            return misuse(
+                {option, "This option needs a model", "Name the model: surefoot calibrate MODEL.walk ...", ErrorKind::misuse});
     }
     const auto backend = gl::backend_named(a.backend);
     if (!backend) return misuse(backend.error());
@@ -174,7 +183,7 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (auto made = make_folder(dir); !made) return fail(made.error());
     if (auto written = measure::write_costs(file, c->costs); !written) return fail(written.error());
     if (const std::size_t old = walk::drop_old_fits(dir, c->costs); old > 0) {
-        note(fmt::format("{} to the old table {} removed; fit anew with `surefoot calibrate MODEL.walk`",
+        note(fmt::format("{} to the old table {} removed. Fit again with `surefoot calibrate MODEL.walk`",
                          old == 1 ? "the fit" : fmt::format("{} fits", old), old == 1 ? "is" : "are"));
     }
     std::vector<report::CostPoint> points;
@@ -187,7 +196,7 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     print_frame(c->costs.combine);
     fmt::print("  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; the budget spends x{:.2f}\n",
                100 * c->frame_error_p50, 100 * c->frame_error_p90, 100 * c->frame_error_p99, c->costs.upper_factor);
-    fmt::print("  timer query: {} (says {:.3f} ms where {:.3f} ms pass): {}\n",
+    fmt::print("  timer query: {} (reports {:.3f} ms where {:.3f} ms pass): {}\n",
                !c->timer.available ? "absent"
                : c->timer.honest   ? "honest"
                                    : "lies",
@@ -198,24 +207,29 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
 
 void add_calibrate(CLI::App& app, Context& context) {
     auto a = std::make_shared<CalibrateArguments>();
-    CLI::App* c = add_command(app, "calibrate", "Measure what drawing costs on this machine: the table that budgets are spent by",
+    CLI::App* c = add_command(app, "calibrate", "Measure what drawing costs on this machine, and write the cost table",
                               "surefoot calibrate && surefoot calibrate town.walk", a->json);
-    c->add_option("MODEL", a->model,
-                  "Fit the table to one model: how its items add up to a frame; walks of this model use it from then on");
-    c->add_option("--path", a->path, "With a model: near which path (else the one beside it, else a tour)");
-    c->add_option("--lift", a->lift_m, "With a model: metres added to every height of the path")
+    c->add_option("MODEL", a->model, "Fit the cost table to this model. Later walks of the model use the fit");
+    c->add_option("--path", a->path, "With a model: CSV file of the path to draw along (else MODEL.path.csv, else a tour)");
+    c->add_option("--lift", a->lift_m, "With a model: height added to every pose of the path, in metres")
         ->check(number_within(-1e7, 1e7, "m"));
-    c->add_option("--rate", a->rate_hz, "With a model: frames a second it will be walked at")
+    c->add_option("--rate", a->rate_hz, "With a model: frame rate of later walks")
         ->check(number_within(1, 1000, "Hz"))
         ->capture_default_str();
-    c->add_option("--state", a->state, "Folder for costs.toml and costs.svg (else $STATE_DIRECTORY, else XDG state)");
-    c->add_option("--backend", a->backend, gl::drawing_backends())->check(drawing_backend())->capture_default_str();
-    c->add_option("--rasterisers", a->rasterisers, "Software GL threads; 0: the measured default")
+    c->add_option("--state", a->state, "Folder for costs.toml and costs.svg (else $STATE_DIRECTORY, else the XDG state folder)");
+    c->add_option("--backend", a->backend, "Backend that draws: " + gl::drawing_backends())
+        ->check(drawing_backend())
+        ->capture_default_str();
+    c->add_option("--rasterisers", a->rasterisers, "Number of software GL threads; 0: the measured default")
         ->check(whole_number_within(0, 64));
-    c->add_option("--width", a->width, "Picture width, pixels")->check(whole_number_within(16, 8192))->capture_default_str();
-    c->add_option("--height", a->height, "Picture height, pixels")->check(whole_number_within(16, 8192))->capture_default_str();
-    c->add_option("--plot", a->plot, "Where the plot goes (Maciel's figure 3.4 for this machine)");
-    c->add_flag("--quick", a->quick, "A third of the frames and fewer classes; a wider error");
+    c->add_option("--width", a->width, "Width of the picture in pixels")
+        ->check(whole_number_within(16, 8192))
+        ->capture_default_str();
+    c->add_option("--height", a->height, "Height of the picture in pixels")
+        ->check(whole_number_within(16, 8192))
+        ->capture_default_str();
+    c->add_option("--plot", a->plot, "SVG file for the plot of costs (else costs.svg in the state folder)");
+    c->add_flag("--quick", a->quick, "Measure fewer frames and classes: faster, with larger errors");
     c->callback([&context, a] { context.run = [a, &context] { return run_calibrate(*a, context); }; });
 }
 

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <memory>
 
+#include "tools/report/terminal.hpp"
+
 namespace surefoot::cli {
 
 namespace {
@@ -29,11 +31,9 @@ void draw_bar(BarState& bar, std::string_view stage, double done) {
     if (now - bar.drawn < std::chrono::milliseconds(100) && done < 1.0) return;
     bar.drawn = now;
     const double spent = std::chrono::duration<double>(now - bar.begun).count();
-    const int filled = static_cast<int>(std::clamp(done, 0.0, 1.0) * 24.0);
     std::string left;
     if (done > 0.02 && spent > 0.5) left = fmt::format("{:.0f} s left", spent / done * (1.0 - done));
-    const std::string line = fmt::format("\r\033[K{:<22} [{:<24}] {:3.0f} %  {}", bar.stage,
-                                         std::string(static_cast<std::size_t>(filled), '#'), 100.0 * done, left);
+    const std::string line = fmt::format("{}{}", report::clear_line, report::progress_line(bar.stage, done, left));
     (void)std::fputs(line.c_str(), stderr);
     std::fflush(stderr);
 }
@@ -55,7 +55,7 @@ std::shared_ptr<CLI::Formatter> help_formatter() { return std::make_shared<HelpF
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example, bool& json) {
     CLI::App* command = app.add_subcommand(name, what);
     command->footer("Example:\n  " + example);
-    command->add_flag("--json", json, "One JSON object on stdout; everything else on stderr");
+    command->add_flag("--json", json, "Print one JSON object on stdout, and everything else on stderr");
     return command;
 }
 
@@ -63,7 +63,7 @@ Progress terminal_progress(const Context& context) {
     Progress progress;
     progress.stop = context.stop;
     progress.note = [terminal = context.terminal](std::string_view text) {
-        if (terminal) (void)std::fputs("\r\033[K", stderr);
+        if (terminal) (void)std::fputs(report::clear_line, stderr);
         note(std::string(text));
     };
     if (context.terminal) {
@@ -74,7 +74,7 @@ Progress terminal_progress(const Context& context) {
 }
 
 void end_progress(const Context& context) {
-    if (context.terminal) (void)std::fputs("\r\033[K", stderr);
+    if (context.terminal) (void)std::fputs(report::clear_line, stderr);
 }
 
 int fail(const Error& error) {
@@ -103,8 +103,9 @@ int finish_output(int code, int error) {
     if (error == 0) error = errno;
     if (flushed && std::ferror(stdout) == 0) return code;
     if (error != EPIPE) {
-        fail({"standard output", fmt::format("cannot be written: {}", error != 0 ? std::strerror(error) : "a part of it is lost"),
-              "free some space, or send it elsewhere"});
+        fail({"standard output",
+              fmt::format("The output cannot be written: {}", error != 0 ? std::strerror(error) : "a part of it is lost"),
+              "Free some space, or send the output elsewhere", ErrorKind::unwritable});
     }
     return code == exit_success ? exit_failure : code;
 }

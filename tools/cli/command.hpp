@@ -13,9 +13,9 @@
 
 namespace surefoot::cli {
 
-/// Exit codes of the contract (DESIGN 6).
+/// Exit codes. They are a contract: scripts rely on them.
 constexpr int exit_success = 0, exit_failure = 1, exit_usage = 2;
-/// Ended by Ctrl-C (or SIGTERM, SIGHUP) before it was done, as a shell would say it.
+/// Ended early by Ctrl-C, SIGTERM or SIGHUP; the number is that of shells.
 constexpr int exit_stopped = 130;
 
 /// Handed to the commands: what to run after parsing, and the wish to stop.
@@ -26,29 +26,29 @@ struct Context {
     bool colour = false;                      ///< stdout is a terminal and NO_COLOR is not set
 };
 
-/// Options of this group are taken, and left out of --help.
+/// Options of this group are accepted, but not shown in --help.
 constexpr const char* hidden_group = "Experiments";
-/// What writes --help.
+/// Formats --help.
 std::shared_ptr<CLI::Formatter> help_formatter();
 
 /// A subcommand with its help, an example, and --json.
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example, bool& json);
 
-/// A bar with the time left on stderr; silent where stderr is no terminal. `context` must outlive it.
+/// A bar with the time left on stderr; silent if stderr is not a terminal. `context` must outlive it.
 Progress terminal_progress(const Context& context);
 /// Clears the bar's line.
 void end_progress(const Context& context);
 
-/// "surefoot: place: what" and the remedy on its own line; returns exit_failure.
+/// Prints "surefoot: " and the error's text() on stderr; returns exit_failure.
 int fail(const Error& error);
 /// The same for wrong use; returns exit_usage.
 int misuse(const Error& error);
 void note(const std::string& text);
-/// As text that is valid UTF-8 whatever the names in it are; indent -1: one line.
+/// JSON as valid UTF-8, even if names in it are not; indent -1: one line.
 std::string json_text(const nlohmann::ordered_json& value, int indent);
 void print_json(const nlohmann::ordered_json& object);
-/// Writes out what waits for stdout. Returns `code`, or exit_failure where it could not be written: said on stderr, unless
-/// the reader of a pipe has just gone away. error: of a write that failed before, if one did.
+/// Flushes stdout. Returns `code`, or exit_failure if output is lost. Reports that on stderr, unless the reader of a pipe has
+/// gone. error: of an earlier failed write, or 0.
 int finish_output(int code, int error = 0);
 
 void add_scene(CLI::App& app, Context& context);
@@ -66,5 +66,7 @@ void add_selftest(CLI::App& app, Context& context);
 void add_config(CLI::App& app, Context& context);
 void add_status(CLI::App& app, Context& context);
 void add_top(CLI::App& app, Context& context);
+/// `app` must outlive the run: the pages are made of all of it.
+void add_manual(CLI::App& app, Context& context);
 
 }  // namespace surefoot::cli

@@ -70,9 +70,11 @@ int run_print(const ConfigArguments& a) {
     }
     for (const std::string& assignment : a.set) {
         const auto equals = assignment.find('=');
-        if (equals == std::string::npos) return misuse({"--set " + assignment, "is no KEY=VALUE", "e.g. --set rate_hz=60"});
+        if (equals == std::string::npos)
+            return misuse(
+                {"--set " + assignment, "This is not KEY=VALUE", "Write for example --set rate_hz=60", ErrorKind::misuse});
         if (auto set = config::set_value(c, assignment.substr(0, equals), assignment.substr(equals + 1)); !set)
-            return misuse({"--set " + assignment, set.error().what, set.error().remedy});
+            return misuse({"--set " + assignment, set.error().what, set.error().remedy, set.error().kind});
     }
     if (auto ok = config::check(c); !ok) return fail(ok.error());
     if (!a.json) return fmt::print("{}", config::explain(c)), exit_success;
@@ -87,16 +89,21 @@ int run_print(const ConfigArguments& a) {
 }
 
 int run_config(const ConfigArguments& a) {
-    if (a.check && (a.print || a.defaults)) return misuse({"--check", "prints no values", "leave out --print and --defaults"});
-    if (a.check && a.file.empty()) return misuse({"--check", "needs a file", "surefoot config FILE --check"});
+    if (a.check && (a.print || a.defaults))
+        return misuse({"--check", "A check prints no values", "Remove --print and --defaults", ErrorKind::misuse});
+    if (a.check && a.file.empty())
+        return misuse({"--check", "A check needs a file", "Run: surefoot config FILE --check", ErrorKind::misuse});
     if (a.check && (!a.profile.empty() || !a.set.empty()))
-        return misuse({"--check", "reads the file with every profile", "leave out --profile and --set, or use --print"});
+        return misuse({"--check", "A check reads the file with every profile", "Remove --profile and --set, or use --print",
+                       ErrorKind::misuse});
     if (a.check) return run_check(a);
     if (!a.profile.empty() && a.file.empty())
-        return misuse({"--profile " + a.profile, "is a part of a settings file", "name the file too"});
+        return misuse({"--profile " + a.profile, "A profile is a part of a settings file, and no file is named",
+                       "Name the file too", ErrorKind::misuse});
     if (!a.defaults) return run_print(a);
     if (!a.file.empty() || !a.set.empty() || a.json)
-        return misuse({"--defaults", "writes a settings file with nothing changed", "leave out the file, --set and --json"});
+        return misuse({"--defaults", "This option writes a settings file in which nothing is changed",
+                       "Remove the file, --set and --json", ErrorKind::misuse});
     fmt::print("{}", config::commented_defaults(walk::settings_schema()));
     return exit_success;
 }
@@ -106,17 +113,16 @@ int run_config(const ConfigArguments& a) {
 void add_config(CLI::App& app, Context& context) {
     auto a = std::make_shared<ConfigArguments>();
     CLI::App* c = add_command(
-        app, "config", "Settings: check a file, or print the values that hold and where each came from",
+        app, "config", "Check a settings file, or print every setting and its origin",
         "surefoot config --print --defaults > surefoot.toml\n  surefoot config surefoot.toml --check\n  surefoot config "
         "surefoot.toml --profile kiosk --print",
         a->json);
-    c->add_option("FILE", a->file, "The settings file (TOML); without one, the defaults");
-    c->add_flag("--check", a->check, "Say OK, or everything that is wrong: file, line, key, what was found and what is allowed");
-    c->add_flag("--print", a->print, "Every key: value, unit, where it came from, what is allowed (also without this flag)");
-    c->add_flag("--defaults", a->defaults, "With --print: a settings file with every key, commented out");
-    c->add_option("--profile", a->profile, "Lay [profile.NAME] of the file over the rest");
-    c->add_option("--set", a->set, "KEY=VALUE, as a command line would set it; may be given more than once")
-        ->type_name("KEY=VALUE");
+    c->add_option("FILE", a->file, "Settings file (TOML); without it the defaults are shown");
+    c->add_flag("--check", a->check, "Check the file: print OK, or each error with line, key, value and what is allowed");
+    c->add_flag("--print", a->print, "Print every setting: value, unit, origin and what is allowed (the default)");
+    c->add_flag("--defaults", a->defaults, "With --print: print a settings file in which every key is commented out");
+    c->add_option("--profile", a->profile, "Apply the table [profile.NAME] of the file");
+    c->add_option("--set", a->set, "Set a key, over the file; may be repeated")->type_name("KEY=VALUE");
     c->callback([&context, a] { context.run = [a] { return run_config(*a); }; });
 }
 

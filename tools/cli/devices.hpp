@@ -1,9 +1,12 @@
-// The subcommands of `surefoot devices`: a file each, registered here.
+// The subcommands of `surefoot devices`: a file each; devices_list.cpp registers them.
 #pragma once
 
 #include "tools/cli/command.hpp"
 
 namespace surefoot::cli {
+
+/// The argument that names one device, for open_devices().
+void add_device_choice(CLI::App& command, std::string& device);
 
 /// devices_describe.cpp: a descriptor and recorded reports, without any device.
 void add_devices_describe(CLI::App& devices, Context& context);

@@ -1,8 +1,6 @@
 // surefoot devices describe: what a report descriptor says, and what recorded reports mean, without any device.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <functional>
 #include <map>
 
@@ -10,7 +8,9 @@
 #include "input/hid/usages.hpp"
 #include "input/replay/recording.hpp"
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 #include "tools/cli/devices.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -34,24 +34,18 @@ struct Material {
     std::string name;
 };
 
-/// Names in recordings are bytes of unknown sort; JSON wants UTF-8.
-std::string printable(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(),
-        [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f; }, '?');
-    return text;
-}
-
 std::string hex_usage(std::uint32_t usage) { return fmt::format("{:04x}:{:04x}", usage >> 16U, usage & 0xffffU); }
 
 bool parse_id(const std::string& text, std::uint16_t& vendor, std::uint16_t& product) {
     const auto colon = text.find(':');
     if (colon == std::string::npos) return false;
-    const auto read = [](const char* from, const char* to, std::uint16_t& value) {
-        const auto [end, code] = std::from_chars(from, to, value, 16);
-        return code == std::errc{} && end == to;
-    };
-    return read(text.data(), text.data() + colon, vendor) && read(text.data() + colon + 1, text.data() + text.size(), product);
+    const std::string_view all = text;
+    const auto read_vendor = number_in<std::uint16_t>(all.substr(0, colon), 16);
+    const auto read_product = number_in<std::uint16_t>(all.substr(colon + 1), 16);
+    if (!read_vendor || !read_product) return false;
+    vendor = *read_vendor;
+    product = *read_product;
+    return true;
 }
 
 Result<Material> gather(const DescribeArguments& a) {
@@ -65,7 +59,8 @@ Result<Material> gather(const DescribeArguments& a) {
         auto recording = input::parse_recording(text, a.file);
         if (!recording) return recording.error();
         if (recording->descriptor.empty())
-            return Error{a.file, "no R: line gives the report descriptor", "record it again, or give the descriptor's file"};
+            return Error{a.file, "The recording has no R: line with the report descriptor",
+                         "Record it again, or name the descriptor's file", ErrorKind::damaged};
         m.descriptor = recording->descriptor;
         m.descriptor_place += ": R:";
         m.recording = std::move(*recording);
@@ -77,9 +72,10 @@ Result<Material> gather(const DescribeArguments& a) {
         auto recording = input::read_recording(a.reports);
         if (!recording) return recording.error();
         if (recording->reports.empty())
-            return Error{a.reports, "holds no reports (E: lines)", "record it again while the device is moved"};
+            return Error{a.reports, "The recording holds no reports (E: lines)", "Record it again while you move the device",
+                         ErrorKind::damaged};
         if (!recording->descriptor.empty() && recording->descriptor != m.descriptor) {
-            note(a.reports + " was recorded from a device with another descriptor");
+            note(a.reports + ": the recording is of a device with another descriptor");
         }
         m.recording = std::move(*recording);
         have_recording = true;
@@ -261,25 +257,30 @@ void print_tables(const input::HidDevice& d) {
     fmt::print("class: {}: {}\n", input::class_name(d.device_class), d.reason);
     for (const auto& q : d.quirks) fmt::print("quirk: {}\n", q);
     for (const auto& n : l.notes) fmt::print("note: byte {}: {}\n", n.offset, n.what);
-    fmt::print("\n{:<8} {:>3} {:>6} {:>5} {:>6} {:>24} {:<34} usages\n", "report", "id", "bit", "size", "count", "logical range",
-               "flags");
+    const report::Columns fields(
+        {{"report", 8}, {"id", -3}, {"bit", -6}, {"size", -5}, {"count", -6}, {"logical range", -24}, {"flags", 34}, {"usages"}});
+    fmt::print("\n{}\n", fields.heading());
     for (const std::uint32_t i : l.fields_by_report()) {
         const input::Field& f = l.fields[i];
-        fmt::print("{:<8} {:>3} {:>6} {:>5} {:>6} {:>24} {:<34} {}\n", kind_text(f.kind), f.report_id, f.bit_offset, f.size,
-                   f.count, fmt::format("{} to {}", f.logical_min, f.logical_max),
-                   fmt::format("{}", fmt::join(flag_names(f.flags), " ")), range_text(l, f));
+        fmt::print("{}\n", fields.row({std::string(kind_text(f.kind)), std::to_string(f.report_id), std::to_string(f.bit_offset),
+                                       std::to_string(f.size), std::to_string(f.count),
+                                       fmt::format("{} to {}", f.logical_min, f.logical_max),
+                                       fmt::format("{}", fmt::join(flag_names(f.flags), " ")), range_text(l, f)}));
     }
-    if (!d.controls.empty())
-        fmt::print("\n{:<18} {:<7} {:>18} {:<24} collection\n", "control", "kind", "range", "physical range");
+    const report::Columns controls({{"control", 18}, {"kind", 7}, {"range", -18}, {"physical range", 24}, {"collection"}});
+    if (!d.controls.empty()) fmt::print("\n{}\n", controls.heading());
     for (const auto& c : d.controls) {
         const std::string physical =
             c.physical_min == c.physical_max ? "" : fmt::format("{:g} to {:g} {}", c.physical_min, c.physical_max, c.unit);
-        fmt::print("{:<18} {:<7} {:>18} {:<24} {}{}\n", c.name, input::kind_name(c.kind),
-                   fmt::format("{} to {}", c.logical_min, c.logical_max), physical, c.collection,
+        fmt::print("{}{}\n",
+                   controls.row({c.name, std::string(input::kind_name(c.kind)),
+                                 fmt::format("{} to {}", c.logical_min, c.logical_max), physical, c.collection}),
                    c.relative ? "  (relative)" : "");
     }
-    if (d.controls_left_out > 0) fmt::print("and {} more, which are left out\n", d.controls_left_out);
+    if (d.controls_left_out > 0) fmt::print("and {} more, which are not shown\n", d.controls_left_out);
 }
+
+const report::Columns report_columns({{"time", -12}, {"id", -3}, {"status", 8}});
 
 void print_report(const ordered_json& r) {
     std::string values;
@@ -288,17 +289,20 @@ void print_report(const ordered_json& r) {
             if (!value.is_null() && (value.get<std::int64_t>() != 0 || !name.starts_with("button")))
                 values += fmt::format(" {}={}", name, value.get<std::int64_t>());
     }
-    fmt::print("{:>12.6f} {:>3} {:<8}{}\n", r["time_s"].get<double>(), r["report_id"].get<unsigned>(),
-               r["status"].get<std::string>(), values);
+    fmt::print("{}{}\n",
+               report_columns.row({fmt::format("{:.6f}", r["time_s"].get<double>()),
+                                   std::to_string(r["report_id"].get<unsigned>()), r["status"].get<std::string>()}),
+               values);
 }
 
 void print_decoded(const input::HidDevice& d, const input::Recording& recording) {
-    fmt::print("\n{:>12} {:>3} {:<8} values\n", "time", "id", "status");
+    fmt::print("\n{} values\n", report_columns.heading());
     const ordered_json counts = decode_each(d, recording, print_report);
     const auto count = [&](const char* name) { return counts[name].get<std::uint64_t>(); };
     fmt::print("reports: {} accepted, {} short, {} long, {} unknown\n", count("accepted"), count("short"), count("long"),
                count("unknown"));
-    if (count("before_the_last") > 0) fmt::print("{} of them bear a time before the last one's\n", count("before_the_last"));
+    if (count("before_the_last") > 0)
+        fmt::print("{} of them have a time before that of the previous report\n", count("before_the_last"));
 }
 
 /// `head`'s object, with the decoded reports and their counts as its last members.
@@ -319,10 +323,11 @@ int refuse(const DescribeArguments& a, const Material& m, const input::Refusal& 
         print_json({{"file", a.file},
                     {"bytes", m.descriptor.size()},
                     {"class", "reject"},
-                    {"reason", "its report descriptor is refused: " + refusal.what},
+                    {"reason", "The report descriptor is refused: " + refusal.what},
                     {"error", {{"offset", refusal.offset}, {"what", refusal.what}, {"remedy", refusal.remedy}}}});
     }
-    return fail({fmt::format("{}: byte {}", m.descriptor_place, refusal.offset), refusal.what, refusal.remedy});
+    return fail(
+        {fmt::format("{}: byte {}", m.descriptor_place, refusal.offset), refusal.what, refusal.remedy, ErrorKind::damaged});
 }
 
 int run_describe(const DescribeArguments& a) {
@@ -361,16 +366,16 @@ int run_describe(const DescribeArguments& a) {
 
 void add_devices_describe(CLI::App& devices, Context& context) {
     auto a = std::make_shared<DescribeArguments>();
-    CLI::App* c =
-        add_command(devices, "describe", "What a report descriptor says, and what recorded reports mean; needs no device",
-                    "surefoot devices describe stick.bin --reports stick.hid --json", a->json);
-    c->add_option("descriptor", a->file, "The report descriptor: binary, or a recording by hid-recorder with an R: line")
+    CLI::App* c = add_command(devices, "describe", "Decode a report descriptor and recorded reports; no device is needed",
+                              "surefoot devices describe stick.bin --reports stick.hid --json", a->json);
+    c->add_option("descriptor", a->file, "Report descriptor: a binary file, or a recording by hid-recorder with an R: line")
         ->required();
-    c->add_option("--reports", a->reports, "A recording by hid-recorder: its reports are decoded");
-    c->add_option("--vid-pid", a->id, "Vendor and product id, 046d:c626: selects quirks; else those of the recording")
+    c->add_option("--reports", a->reports, "Recording by hid-recorder whose reports are decoded");
+    c->add_option("--vid-pid", a->id,
+                  "Vendor and product id that select quirks, for example 046d:c626 (else those of the recording)")
         ->check([](const std::string& text) {
             std::uint16_t v = 0, p = 0;
-            return parse_id(text, v, p) ? std::string() : std::string("ids look like 046d:c626");
+            return parse_id(text, v, p) ? std::string() : std::string("vendor and product ids look like 046d:c626");
         });
     c->callback([&context, a] { context.run = [a] { return run_describe(*a); }; });
 }

@@ -1,4 +1,5 @@
-// surefoot devices list: what is plugged in, what it would steer with, and why it would not.
+// surefoot devices list: what is plugged in, what it would steer with, and why it would not; and the
+// group of commands `surefoot devices`.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -67,7 +68,7 @@ void print_list(const std::vector<input::Discovery>& all) {
             fmt::print("    steers by \"{}\"{}\n", default_name(device),
                        permitted(device)
                            ? ""
-                           : "; but this user may not open it: see systemd/70-surefoot.rules, and the group surefoot-input");
+                           : "; but this user cannot open it: see systemd/70-surefoot.rules and the group surefoot-input");
     }
 }
 
@@ -85,14 +86,32 @@ int run_list(const ListArguments& a) {
 
 void add_devices_list(CLI::App& devices, Context& context) {
     auto a = std::make_shared<ListArguments>();
-    CLI::App* c =
-        add_command(devices, "list", "What is plugged in, its class, and what it steers with when nothing is configured",
-                    "surefoot devices list --json", a->json);
+    CLI::App* c = add_command(devices, "list", "List connected devices with their class and default mapping",
+                              "surefoot devices list --json", a->json);
     c->callback([&context, a] { context.run = [a] { return run_list(*a); }; });
-    devices.add_flag("--json", a->parent_json, "The list as one JSON object");
+    devices.add_flag("--json", a->parent_json, "Print the list as one JSON object");
     devices.callback([&devices, &context, a] {
         if (devices.get_subcommands().empty()) context.run = [a] { return run_list(*a); };
     });
+}
+
+void add_device_choice(CLI::App& command, std::string& device) {
+    command.add_option("device", device,
+                       "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
+}
+
+void add_devices(CLI::App& app, Context& context) {
+    CLI::App* c = app.add_subcommand("devices", "List, watch, record and map joysticks, 3D mice, pedals and buttons");
+    c->footer(
+        "Without a subcommand, devices are listed.\n\nExample:\n  surefoot devices\n  surefoot devices watch\n  surefoot devices "
+        "map -o "
+        "steering.toml");
+    c->require_subcommand(0, 1);
+    add_devices_list(*c, context);
+    add_devices_watch(*c, context);
+    add_devices_record(*c, context);
+    add_devices_map(*c, context);
+    add_devices_describe(*c, context);
 }
 
 }  // namespace surefoot::cli

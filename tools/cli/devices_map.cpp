@@ -15,6 +15,7 @@
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -85,7 +86,7 @@ private:
         if (e.kind == DeviceEvent::Kind::added) {
             const auto& p = *e.plugged;
             numbers_[e.device] = teach_.add_device({p.vendor, p.product, p.name, p.device.device_class}, p.device.controls);
-            say(fmt::format("{}: is there", device_line(p)));
+            say(fmt::format("{}: connected", device_line(p)));
         } else if (e.kind == DeviceEvent::Kind::removed ||
                    (e.kind == DeviceEvent::Kind::refused && e.refused != input::Refused::unwanted)) {
             say(e.why->text());
@@ -101,18 +102,18 @@ private:
     }
     void tell(std::size_t before) {
         for (const auto& l : teach_.learned().subspan(before))
-            say(fmt::format("  {}{}: {}", input::name_of(l.action), l.sign < 0 ? " (the other way)" : "",
+            say(fmt::format("  {}{}: {}", input::name_of(l.action), l.sign < 0 ? " (reversed)" : "",
                             teach_.control(l.device, l.control).name));
     }
     /// On a terminal one line that changes; elsewhere each question once.
     void show() {
-        const std::string question = teach_.phase() == Teach::Phase::settle ? "Let go of everything" : teach_.question();
+        const std::string question = teach_.phase() == Teach::Phase::settle ? "Release all controls" : teach_.question();
         if (!context_.terminal) {
             if (teach_.phase() == Teach::Phase::ask && question != shown_) say(question + " (Enter: skip)");
             if (teach_.phase() == Teach::Phase::ask) shown_ = question;
             return;
         }
-        std::string line = "\r\033[K" + question;
+        std::string line = std::string(report::clear_line) + question;
         if (numbers_.empty()) line += " (no device yet: plug one in)";
         if (teach_.phase() == Teach::Phase::ask)
             line += fmt::format("  [Enter: skip, {:.0f} s]", teach_.seconds_left(rt::monotonic_ns()));
@@ -162,12 +163,12 @@ int run_map(const MapArguments& a, const Context& context) {
     if (!source) return fail(source.error());
     Session session(a, context, **source);
     if (!session.run()) {
-        if (context.stop->load()) return fail({"map", "was stopped: nothing is written", ""});
-        return fail(
-            {"map", "no device is there: nothing is written", "plug one in; `surefoot devices` tells why one is not taken"});
+        if (context.stop->load()) return fail({"map", "The mapping was stopped: nothing is written", "", ErrorKind::stopped});
+        return fail({"map", "There is no device: nothing is written",
+                     "Plug one in. `surefoot devices` shows why a device is refused", ErrorKind::no_device});
     }
     const auto shown = session.teach().mappings();
-    if (shown.empty()) return fail({"map", "no control was shown: nothing is written", "move each control as it is asked for"});
+    if (shown.empty()) return fail({"map", "No control was moved: nothing is written", "Move each control when it is asked for"});
     auto steering = merged(a.file, shown);
     if (!steering) return fail(steering.error());
     const std::string text = input::steering_text(*steering);
@@ -193,12 +194,11 @@ int run_map(const MapArguments& a, const Context& context) {
 
 void add_devices_map(CLI::App& devices, Context& context) {
     auto a = std::make_shared<MapArguments>();
-    CLI::App* c = add_command(devices, "map", "Writes a mapping: asks for each movement, and sees which control does it",
+    CLI::App* c = add_command(devices, "map", "Write a mapping interactively: move the control that it asks for",
                               "surefoot devices map -o steering.toml", a->json);
-    c->add_option("device", a->device,
-                  "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
-    c->add_option("-o,--output", a->file, "The steering file; what it says of other things stays. Without it: to stdout");
-    c->add_option("--timeout", a->timeout_s, "A question is skipped after so long")->check(number_within(0.1, 3600, "s"));
+    add_device_choice(*c, a->device);
+    c->add_option("-o,--output", a->file, "Steering file; its other entries are kept (else the mapping goes to stdout)");
+    c->add_option("--timeout", a->timeout_s, "Seconds until a question is skipped")->check(number_within(0.1, 3600, "s"));
     c->callback([&context, a] { context.run = [&context, a] { return run_map(*a, context); }; });
 }
 

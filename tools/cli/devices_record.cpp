@@ -7,6 +7,7 @@
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -53,7 +54,7 @@ public:
             if (bytes_ > input::max_recording_bytes / 2) ended_ = "full";
             if (context_.terminal && rt::monotonic_ns() >= due) {
                 due = rt::monotonic_ns() + progress_ns;
-                (void)std::fputs(fmt::format("\r\033[K{} reports", reports_).c_str(), stderr);
+                (void)std::fputs(fmt::format("{}{} reports", report::clear_line, reports_).c_str(), stderr);
             }
         }
         end_progress(context_);
@@ -71,7 +72,7 @@ private:
             case DeviceEvent::Kind::added:
                 if (device_ < 0) {
                     device_ = e.device;
-                    note(fmt::format("recording {} ({}) to {}; Ctrl-C ends it", e.plugged->node, e.plugged->name, a_.file));
+                    note(fmt::format("recording {} ({}) to {}. Ctrl-C ends it", e.plugged->node, e.plugged->name, a_.file));
                 }
                 return {};
             case DeviceEvent::Kind::refused:
@@ -88,7 +89,7 @@ private:
             case DeviceEvent::Kind::drained:
                 if (e.device != device_ || e.reports < ring_of_kernel) return {};
                 ++overflows_;
-                text_ += "# here the kernel's ring was full: reports are missing\n";
+                text_ += "# the kernel's ring was full here: reports are missing\n";
                 return {};
         }
         return {};
@@ -115,10 +116,10 @@ int run_record(const RecordArguments& a, const Context& context) {
     Recorder recorder(context, a, *file);
     if (auto recorded = recorder.run(**source); !recorded) return fail(recorded.error());
     if (auto done = file->commit(); !done) return fail(done.error());
-    if (recorder.ended() == "unplugged") note(fmt::format("{}: was unplugged", (*device)->node));
-    if (recorder.ended() == "full") note(fmt::format("{}: is as large as a recording may be", a.file));
+    if (recorder.ended() == "unplugged") note(fmt::format("{}: the device was unplugged", (*device)->node));
+    if (recorder.ended() == "full") note(fmt::format("{}: the recording has reached its maximum size and ends", a.file));
     if (recorder.overflows() > 0)
-        note(fmt::format("{} times reports were lost: this machine did not read in time", recorder.overflows()));
+        note(fmt::format("reports were lost {} times: this machine did not read them in time", recorder.overflows()));
     if (a.json) {
         print_json({{"file", a.file},
                     {"device", device_json(**device)},
@@ -136,11 +137,11 @@ int run_record(const RecordArguments& a, const Context& context) {
 
 void add_devices_record(CLI::App& devices, Context& context) {
     auto a = std::make_shared<RecordArguments>();
-    CLI::App* c = add_command(devices, "record", "Raw reports of one device to a file; Ctrl-C ends it, and the file is whole",
+    CLI::App* c = add_command(devices, "record", "Record the raw reports of one device to a file, until Ctrl-C",
                               "surefoot devices record hidraw0 -o stick.hid --seconds 10", a->json);
-    c->add_option("device", a->device, "Its node (hidraw0), its ids (046d:c626), or a part of its name")->required();
-    c->add_option("-o,--output", a->file, "The recording, in hid-recorder's text format")->required();
-    c->add_option("--seconds", a->seconds, "End after so long")->check(number_within(0.01, 1e6, "s"));
+    c->add_option("device", a->device, "Device: its node (hidraw0), its ids (046d:c626) or a part of its name")->required();
+    c->add_option("-o,--output", a->file, "File to write, in hid-recorder's text format")->required();
+    c->add_option("--seconds", a->seconds, "Seconds after which the recording ends")->check(number_within(0.01, 1e6, "s"));
     c->callback([&context, a] { context.run = [&context, a] { return run_record(*a, context); }; });
 }
 

@@ -2,14 +2,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 
+#include "input/controls.hpp"
 #include "rt/clock/clock.hpp"
-#include "tools/cli/bars.hpp"
 #include "tools/cli/devices.hpp"
 #include "tools/cli/live_devices.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/cli/screen.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -66,8 +70,44 @@ std::string plain_line(const LiveStates::Device& d) {
     return text;
 }
 
+constexpr std::array<const char*, 8> directions = {"north", "north-east", "east", "south-east",
+                                                   "south", "south-west", "west", "north-west"};
+
+/// From the middle of the bar to `value`.
+std::string bar(const input::ControlInfo& c, std::int32_t value, std::size_t width) {
+    const double range = static_cast<double>(c.logical_max) - c.logical_min;
+    const double at = range > 0 ? std::clamp((static_cast<double>(value) - c.logical_min) / range, 0.0, 1.0) : 0.0;
+    return report::deflection_bar(at, width);
+}
+
+/// Axes one a line, hats by direction, all pressed buttons in one line; each at most `width` characters.
+std::vector<std::string> control_lines(std::span<const input::ControlInfo> controls, const input::DeviceState& state,
+                                       std::size_t width) {
+    std::vector<std::string> lines;
+    std::string pressed;
+    bool buttons = false;
+    for (std::size_t i = 0; i < controls.size() && i < input::max_controls; ++i) {
+        const input::ControlInfo& c = controls[i];
+        const bool has = state.has_value.test(i);
+        if (c.kind == input::ControlKind::button) {
+            buttons = true;
+            if (has && state.value[i] != 0) pressed += " " + c.name;
+        } else if (c.kind == input::ControlKind::hat) {
+            const auto at = static_cast<std::size_t>(state.value[i]);
+            lines.push_back(fmt::format("{:<16} {}", c.name, has && at < directions.size() ? directions[at] : "centre"));
+        } else {
+            const std::size_t cells = std::clamp<std::size_t>(width > 60 ? width - 40 : 20, 20, 61) | 1U;
+            lines.push_back(has ? fmt::format("{:<16} [{}] {:>7}", c.name, bar(c, state.value[i], cells), state.value[i])
+                                : fmt::format("{:<16} [{}] {:>7}", c.name, std::string(cells, ' '), "-"));
+        }
+    }
+    if (buttons) lines.push_back(fmt::format("{:<16}{}", "pressed", pressed.empty() ? " none" : pressed));
+    for (std::string& line : lines) line = report::cut_to(line, width);
+    return lines;
+}
+
 std::vector<std::string> screen(LiveStates& states, const std::vector<std::string>& notes) {
-    const std::size_t width = Redraw::width();
+    const std::size_t width = report::terminal_look(false).width;
     std::vector<std::string> lines;
     for (const auto& [number, d] : states.devices()) {
         const double age_s = static_cast<double>(rt::monotonic_ns() - d->first_ns) * 1e-9;
@@ -94,7 +134,7 @@ public:
         std::int64_t due = start;
         bool going = true;
         for (const DeviceEvent& e : source_.take()) going = take(e, start) && going;
-        if (!bars_ && states_.devices().empty()) note("no device that is meant is plugged in: waiting for one");
+        if (!bars_ && states_.devices().empty()) note("no such device is plugged in: waiting for one");
         while (going && !context_.stop->load() && rt::monotonic_ns() < end) {
             for (const DeviceEvent& e : input::poll(source_, std::min(end, due))) going = take(e, start) && going;
             if (rt::monotonic_ns() < due) continue;
@@ -146,12 +186,11 @@ private:
 
 void add_devices_watch(CLI::App& devices, Context& context) {
     auto a = std::make_shared<WatchArguments>();
-    CLI::App* c = devices.add_subcommand("watch", "What the controls say, live; devices may come and go");
+    CLI::App* c = devices.add_subcommand("watch", "Show the controls of devices live; devices may be plugged and unplugged");
     c->footer("Example:\n  surefoot devices watch\n  surefoot devices watch 046d:c626 --seconds 10 --json");
-    c->add_option("device", a->device,
-                  "Only this one: its node, its ids (046d:c626), or a part of its name; all that steer if left out");
-    c->add_option("--seconds", a->seconds, "End after so long")->check(number_within(0.01, 1e6, "s"));
-    c->add_flag("--json", a->json, "One JSON object a line on stdout for each report and each device that comes or goes");
+    add_device_choice(*c, a->device);
+    c->add_option("--seconds", a->seconds, "Seconds after which the command ends")->check(number_within(0.01, 1e6, "s"));
+    c->add_flag("--json", a->json, "Print one JSON object per line, for each report and each device added or removed");
     c->callback([&context, a] {
         context.run = [&context, a] {
             auto source = open_devices(a->device);

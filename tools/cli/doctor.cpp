@@ -1,9 +1,6 @@
 // surefoot doctor: is this machine fit? Checks with evidence and remedy, and a wake-up run.
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <tuple>
 
@@ -12,10 +9,9 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/doctor/check.hpp"
-#include "tools/doctor/cyclictest.hpp"
-#include "tools/doctor/probe.hpp"
-#include "tools/doctor/table.hpp"
+#include "tools/doctor/machine.hpp"
 #include "tools/doctor/wake_up.hpp"
+#include "tools/report/terminal.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::cli {
@@ -55,22 +51,7 @@ nlohmann::ordered_json to_json(const doctor::Machine& machine, std::span<const d
             {"cyclictest", wake_json(machine.probed().cyclictest)}};
 }
 
-doctor::TableOptions table_options(const Context& context) {
-    doctor::TableOptions options;
-    options.colour = context.colour;
-    for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        const char* const value = std::getenv(name);
-        if (value == nullptr || *value == '\0') continue;
-        const std::string locale = value;
-        options.utf8 = locale.find("UTF-8") != std::string::npos || locale.find("utf8") != std::string::npos;
-        break;
-    }
-    winsize size{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) options.width = size.ws_col;
-    return options;
-}
-
-/// Ours first, while nothing else is loaded; then theirs, on the same core and priority.
+/// Our own wake-up run first, before other libraries are loaded; then cyclictest, on the same core at the same priority.
 void wake_up(const DoctorArguments& a, const Context& context, int core, doctor::Probed& probed) {
     doctor::WakeOptions options;
     options.seconds = a.seconds;
@@ -94,16 +75,19 @@ int run_doctor(const DoctorArguments& a, const Context& context) {
     if (a.frame_core >= 0) wanted.frame_core = a.frame_core;
     std::error_code ignored;
     if (!a.root.empty() && !std::filesystem::is_directory(a.root, ignored))
-        return misuse({"--root " + a.root, "is no folder", "name one that holds another machine's /proc, /sys and /etc"});
+        return misuse({"--root " + a.root, "This is not a folder", "Name one that holds another machine's /proc, /sys and /etc",
+                       ErrorKind::not_found});
     const rt::CpuMask allowed = rt::allowed_cpus();
     if (a.root.empty() && a.frame_core >= 0 && !allowed.has(a.frame_core))
-        return misuse(
-            {fmt::format("--frame-core {}", a.frame_core), "this process may not use it", "choose one of " + allowed.text()});
+        return misuse({fmt::format("--frame-core {}", a.frame_core), "This process may not use the core",
+                       "Choose one of " + allowed.text(), ErrorKind::misuse});
     doctor::Probed probed;
     if (a.root.empty()) {
         const auto core = doctor::Machine("", wanted, {}).frame_core();
         if (!a.quick && core) wake_up(a, context, *core, probed);
-        if (context.stop->load()) return fail({"doctor", "stopped before it was done", "--quick leaves the wake-up run out"});
+        if (context.stop->load())
+            return fail(
+                {"doctor", "The checks were stopped before the end", "Use --quick to skip the wake-up run", ErrorKind::stopped});
         const auto figures = std::pair(probed.wake_up, probed.cyclictest);
         probed = doctor::probe_machine(wanted);
         std::tie(probed.wake_up, probed.cyclictest) = figures;
@@ -113,7 +97,7 @@ int run_doctor(const DoctorArguments& a, const Context& context) {
     if (a.json) {
         print_json(to_json(machine, examined));
     } else {
-        fmt::print("{}", doctor::table(machine, examined, table_options(context)));
+        fmt::print("{}", doctor::table(machine, examined, report::terminal_look(context.colour, 120)));
     }
     return doctor::summarise(examined).fail == 0 ? exit_success : exit_failure;
 }
@@ -122,25 +106,28 @@ int run_doctor(const DoctorArguments& a, const Context& context) {
 
 void add_doctor(CLI::App& app, Context& context) {
     auto a = std::make_shared<DoctorArguments>();
-    CLI::App* c = add_command(
-        app, "doctor", "Is this machine fit for keeping deadlines? What is not, and how to mend it",
-        "surefoot doctor --quick\n\nExit status: 0 nothing fails, 1 something fails, 2 wrong use. What could not be told is "
-        "'unknown': no pass, and no failure.",
-        a->json);
-    c->add_option("--root", a->root, "Look at the files of another machine below this folder; nothing is tried or measured");
+    CLI::App* c = add_command(app, "doctor", "Check whether this machine can keep deadlines, and show how to fix what fails",
+                              "surefoot doctor --quick\n\nExit status: 0 nothing fails, 1 something fails, 2 wrong use.\nA check "
+                              "without an answer is 'unknown': "
+                              "neither a pass nor a failure.",
+                              a->json);
+    c->add_option("--root", a->root, "Check the files of another machine below this folder; nothing is tried or measured");
     auto* seconds =
-        c->add_option("--seconds", a->seconds, "How long to measure wake-ups; the same again by cyclictest where it is installed")
+        c->add_option("--seconds", a->seconds, "Duration of the wake-up run; cyclictest runs as long, if it is installed")
             ->check(number_within(1, 86400, "s"))
             ->capture_default_str();
-    c->add_option("--frame-core", a->frame_core, "Core of the frame thread (else an isolated one, else the last)")
+    c->add_option("--frame-core", a->frame_core, "Core of the frame thread (else an isolated core, else the last core)")
         ->check(whole_number_within(0, 1023));
-    c->add_option("--state", a->state, "Folder of the cost table (else $STATE_DIRECTORY, else XDG state)");
-    c->add_flag("--quick", a->quick, "Leave the wake-up run out");
+    c->add_option("--state", a->state, "Folder of the cost table (else $STATE_DIRECTORY, else the XDG state folder)");
+    c->add_flag("--quick", a->quick, "Skip the wake-up run");
     c->callback([&context, a, seconds] {
         context.run = [&context, a, given = seconds->count() > 0] {
-            if (given && a->quick) return misuse({"--seconds", "says how long to measure, and --quick not to", "leave one out"});
+            if (given && a->quick)
+                return misuse({"--seconds", "--quick measures nothing, so it has no length", "Remove --seconds or --quick",
+                               ErrorKind::misuse});
             if (given && !a->root.empty())
-                return misuse({"--seconds", "measures this machine, not the one below --root", "leave one out"});
+                return misuse({"--seconds", "Only this machine can be measured, not the one below --root",
+                               "Remove --seconds or --root", ErrorKind::misuse});
             return run_doctor(*a, context);
         };
     });

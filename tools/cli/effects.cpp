@@ -4,6 +4,7 @@
 #include "render/effects/effects.hpp"
 #include "render/model/walk_file.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -17,7 +18,8 @@ int run_effects(const EffectsArguments& a) {
     auto m = model::read_walk(a.file);
     if (!m) return fail(m.error());
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    if (!a.json) fmt::print("{:<14} {:<11} {:>12}  {}\n", "effect", "called for", "triangles", "reason");
+    const report::Columns columns({{"effect", 14}, {"called for", 11}, {"triangles", -12}, {"reason", 0, 2}});
+    if (!a.json) fmt::print("{}\n", columns.heading());
     for (const effects::EffectModule& effect : effects::all_effects()) {
         for (const model::EffectFinding& f : m->effects) {
             if (f.bit != effect.bit) continue;
@@ -29,7 +31,8 @@ int run_effects(const EffectsArguments& a) {
                                 {"triangles", f.triangles},
                                 {"reason", f.reason}});
             } else {
-                fmt::print("{:<14} {:<11} {:>12}  {}\n", effect.name, f.called_for ? "yes" : "no", f.triangles, f.reason);
+                fmt::print("{}\n", columns.row({std::string(effect.name), f.called_for ? "yes" : "no",
+                                                std::to_string(f.triangles), f.reason}));
             }
         }
     }
@@ -40,7 +43,7 @@ int run_effects(const EffectsArguments& a) {
 
 void add_effects(CLI::App& app, Context& context) {
     auto a = std::make_shared<EffectsArguments>();
-    CLI::App* c = add_command(app, "effects", "Which effects a scene calls for, and why; the others cost it nothing",
+    CLI::App* c = add_command(app, "effects", "List the effects of a model with the reason for each; unused effects cost nothing",
                               "surefoot effects town.walk", a->json);
     c->add_option("model", a->file, "The .walk model")->required();
     c->callback([&context, a] { context.run = [a] { return run_effects(*a); }; });

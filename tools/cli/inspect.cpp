@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "render/effects/effects.hpp"
-#include "render/model/forms.hpp"
+#include "render/model/model.hpp"
 #include "render/model/walk_file.hpp"
 #include "tools/cli/command.hpp"
 
@@ -118,11 +118,13 @@ int run_inspect(const InspectArguments& a) {
 
 void add_inspect(CLI::App& app, Context& context) {
     auto a = std::make_shared<InspectArguments>();
-    CLI::App* c = add_command(app, "inspect", "Say what is in a .walk model, as JSON", "surefoot inspect town.walk", a->json);
+    CLI::App* c =
+        add_command(app, "inspect", "Print the contents of a .walk model as JSON", "surefoot inspect town.walk", a->json);
     c->add_option("model", a->file, "The .walk model")->required();
-    c->add_flag("--tree", a->tree,
-                "The hierarchy instead: a line a node, with its representations as kind:triangles@error; with --json a list with "
-                "parents");
+    c->add_flag(
+        "--tree", a->tree,
+        "Print the hierarchy instead: one line per node, with its representations as kind:triangles@error. With --json: a list "
+        "with parents");
     c->callback([&context, a] { context.run = [a] { return run_inspect(*a); }; });
 }
 

@@ -82,11 +82,13 @@ Result<DevicePointer> one_device(const std::string& text) {
         there += (there.empty() ? "" : "; ") + fmt::format("{} {} {}", d.plugged->node, ids(*d.plugged), d.plugged->name);
     }
     if (meant.empty()) {
-        return Error{text, "no such device is plugged in",
-                     there.empty() ? "there is no HID device at all; plug it in" : "there are: " + there};
+        return Error{text, "No such device is plugged in",
+                     there.empty() ? "Plug one in: there is no HID device at all" : "Name one of: " + there,
+                     ErrorKind::not_found};
     }
     if (meant.size() > 1)
-        return Error{text, fmt::format("{} devices are meant", meant.size()), "name its node; there are: " + there};
+        return Error{text, fmt::format("The name fits {} devices", meant.size()), "Name one by its node: " + there,
+                     ErrorKind::misuse};
     if (meant.front()->kind == input::Discovery::Kind::refused) return meant.front()->why;
     return meant.front()->plugged;
 }

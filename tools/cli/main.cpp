@@ -1,10 +1,8 @@
 // surefoot: bakes models, measures the machine, runs walks, and shows what accuracy costs. A thin main: one file a command.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -17,9 +15,11 @@
 
 #include "render/gl/device.hpp"
 #include "render/import/formats.hpp"
-#include "rt/base/nearest.hpp"
+#include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace {
 
@@ -31,24 +31,19 @@ void on_signal(int number) {
     std::signal(number, SIG_DFL);
 }
 
-/// A closed stdin, stdout or stderr would give its number to the next file that is opened, and print into that.
-void keep_standard_files() {
-    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
-        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF) (void)open("/dev/null", fd == STDERR_FILENO ? O_WRONLY : O_RDONLY);
-    }
-}
-
-/// Errors are values; what is thrown all the same ends here, and so does what stdout did not take.
+/// Reports exceptions, and output that stdout refused. All other errors are values.
 int run(const surefoot::cli::Context& context) {
     using namespace surefoot;
     int code = cli::exit_failure, output_error = 0;
     const auto unexpected = [](const std::exception& error) {
-        cli::fail({"surefoot", std::string("unexpected: ") + error.what(), "please report this with the command line"});
+        cli::fail({"surefoot", std::string("An unexpected error happened: ") + error.what(),
+                   "Please report this with the command line", ErrorKind::failed});
     };
     try {
         code = context.run();
     } catch (const std::bad_alloc&) {
-        cli::fail({"memory", "not enough for this work", "close other programs, or use a machine with more"});
+        cli::fail({"memory", "There is not enough memory for this work",
+                   "Close other programs, or use a machine with more memory", ErrorKind::no_memory});
     } catch (const std::system_error& error) {
         output_error = std::ferror(stdout) != 0 ? error.code().value() : 0;
         if (output_error == 0) unexpected(error);
@@ -58,7 +53,7 @@ int run(const surefoot::cli::Context& context) {
     return cli::finish_output(code, output_error);
 }
 
-/// What CLI11 says of a word that is no command is only that one is required.
+/// CLI11 only reports that a command is required. This names the unknown word and the nearest command.
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return std::nullopt;
     std::vector<std::string> names;
@@ -66,8 +61,8 @@ std::optional<std::string> unknown_command(const CLI::App& app, int argc, char**
     if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return std::nullopt;
     const std::vector<std::string_view> words(names.begin(), names.end());
     const std::string_view nearest = surefoot::nearest_word(argv[1], words);
-    return fmt::format("there is no command '{}'{}", argv[1],
-                       nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+    return fmt::format("There is no command '{}'{}", argv[1],
+                       nearest.empty() ? "" : fmt::format(". Did you mean '{}'?", nearest));
 }
 
 }  // namespace
@@ -84,10 +79,10 @@ int main(int argc, char** argv) {
     cli::Context context;
     context.stop = &stop_requested;
     context.terminal = isatty(STDERR_FILENO) == 1;
-    context.colour = isatty(STDOUT_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr;
+    context.colour = report::colour_wanted();
 
     CLI::App app{
-        "Surefoot walks through 3D models that are too complex to draw whole, every frame by its deadline.\n\n"
+        "Surefoot walks through 3D models that are too complex to draw in full, and finishes every frame by its deadline.\n\n"
         "First steps:\n"
         "  surefoot scene forest --scale 10 -o forest.glb     a model and a path (or bring your own: " +
             importer::endings_in_words() +
@@ -114,6 +109,7 @@ int main(int argc, char** argv) {
     cli::add_selftest(app, context);
     cli::add_status(app, context);
     cli::add_top(app, context);
+    cli::add_manual(app, context);
     app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {
         const std::vector<std::string_view> arguments(argv + 1, argv + argc);
         const auto renamed = cli::renamed_option(arguments);

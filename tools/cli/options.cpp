@@ -4,26 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "render/gl/backends.hpp"
+#include "rt/base/text.hpp"
 #include "tools/walk/settings_request.hpp"
 
 namespace surefoot::cli {
-
-namespace {
-
-template <class Number>
-std::optional<Number> number_in(std::string_view text) {
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
-}  // namespace
 
 CLI::Validator number_within(double least, double most, const std::string& unit) {
     return {[=](std::string& text) {
@@ -62,12 +50,12 @@ CLI::Validator drawing_backend() {
                 const auto backend = gl::backend_named(text);
                 if (!backend) return backend.error().text();
                 if ((*backend)->draws()) return std::string();
-                return fmt::format("'{}' draws nothing and takes no time; one of: {}", text, gl::drawing_backends());
+                return fmt::format("'{}' draws nothing; use one of: {}", text, gl::drawing_backends());
             },
             ""};
 }
 
-std::span<const config::Renamed> renamed_options() { return {}; }  // no option has had another name yet
+std::span<const config::Renamed> renamed_options() { return {}; }  // no option has had another name yet: tests/known_names.txt
 
 std::optional<std::string> renamed_option(std::span<const std::string_view> arguments) {
     for (const std::string_view argument : arguments) {
@@ -91,8 +79,10 @@ Result<Size> parse_size(const std::string& text) {
         const auto w = side(all.substr(0, x), width), h = side(all.substr(x + 1), height);
         if (w && h) return Size{*w, *h};
     }
-    return Error{"--size " + text, "is no size of a picture",
-                 fmt::format("WIDTHxHEIGHT, e.g. 1280x720, each a whole number from {} to {}", width.min, width.max)};
+    return Error{
+        "--size " + text, "This is not the size of a picture",
+        fmt::format("Write WIDTHxHEIGHT, for example 1280x720. Each is a whole number from {} to {}", width.min, width.max),
+        ErrorKind::misuse};
 }
 
 }  // namespace surefoot::cli

@@ -24,7 +24,7 @@ CLI::Validator drawing_backend();
 
 /// Options that earlier versions had.
 std::span<const config::Renamed> renamed_options();
-/// What is said of the first of them on a command line that was refused; nothing where none is there.
+/// The error for the first of them on a refused command line; nothing if there is none.
 std::optional<std::string> renamed_option(std::span<const std::string_view> arguments);
 
 struct Size {

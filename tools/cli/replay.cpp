@@ -5,6 +5,7 @@
 #include "render/select/registry.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -32,7 +33,7 @@ int run_replay(const ReplayArguments& a) {
     auto captured = capture::read_capture(a.file);
     if (!captured) return fail(captured.error());
     if (auto same = capture::verify(*captured); !same) {
-        return fail({a.file + ", " + same.error().place, same.error().what, same.error().remedy});
+        return fail({a.file + ", " + same.error().place, same.error().what, same.error().remedy, same.error().kind});
     }
     std::vector<std::string> selectors{captured->selector};
     selectors.insert(selectors.end(), a.selectors.begin(), a.selectors.end());
@@ -53,14 +54,15 @@ int run_replay(const ReplayArguments& a) {
                     {"cuts", list}});
         return exit_success;
     }
-    fmt::print("{}: frame {}, {} candidates, budget {:.2f} ms; the cut is repeated exactly\n", a.file, captured->frame,
+    fmt::print("{}: frame {}, {} candidates, budget {:.2f} ms; the repeated cut is equal\n", a.file, captured->frame,
                captured->prepared.candidates.size(), captured->budget_us * 1e-3);
-    fmt::print("{:<18} {:>16} {:>7} {:>13} {:>10} {:>12}\n", "selector", "hash", "items", "predicted us", "triangles",
-               "refinements");
-    for (std::size_t i = 0; i < cuts.size(); ++i) {
-        fmt::print("{:<18} {:016x} {:>7} {:>13.0f} {:>10} {:>12}\n", selectors[i], cuts[i].hash, cuts[i].items.size(),
-                   cuts[i].predicted_us, cuts[i].triangles, cuts[i].refinements);
-    }
+    const report::Columns columns(
+        {{"selector", 18}, {"hash", -16}, {"items", -7}, {"predicted us", -13}, {"triangles", -10}, {"refinements", -12}});
+    fmt::print("{}\n", columns.heading());
+    for (std::size_t i = 0; i < cuts.size(); ++i)
+        fmt::print("{}\n", columns.row({selectors[i], fmt::format("{:016x}", cuts[i].hash), std::to_string(cuts[i].items.size()),
+                                        fmt::format("{:.0f}", cuts[i].predicted_us), std::to_string(cuts[i].triangles),
+                                        std::to_string(cuts[i].refinements)}));
     return exit_success;
 }
 }  // namespace
@@ -68,11 +70,11 @@ int run_replay(const ReplayArguments& a) {
 void add_replay(CLI::App& app, Context& context) {
     auto a = std::make_shared<ReplayArguments>();
     CLI::App* c = add_command(
-        app, "replay", "Repeat a captured frame's selection off line: the same cut, or an error that names the difference",
+        app, "replay", "Repeat the selection of a captured frame; any difference to the captured cut is an error",
         "surefoot walk town.walk --capture frame.cap --capture-frame 120\n  surefoot replay frame.cap --selector best-first",
         a->json);
-    c->add_option("capture", a->file, "A file from `surefoot walk --capture`")->required();
-    c->add_option("--selector", a->selectors, "Other selectors to try on the same frame")
+    c->add_option("capture", a->file, "File from `surefoot walk --capture`")->required();
+    c->add_option("--selector", a->selectors, "Additional selectors to run on the same frame")
         ->check(one_of(select::selector_names()));
     c->callback([&context, a] { context.run = [a] { return run_replay(*a); }; });
 }

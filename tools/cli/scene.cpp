@@ -27,7 +27,8 @@ int run_scene(const SceneArguments& a, const Context& context) {
     }
     auto scene = scenes::generate(a.name, a.scale, a.seed);
     if (!scene) return fail(scene.error());
-    if (context.stop->load()) return fail({a.out, "stopped by the user", "nothing was written"});
+    if (context.stop->load())
+        return fail({a.out, "The work was stopped by the user, and nothing was written", "", ErrorKind::stopped});
     if (auto written = scenes::write_scene(a.out, *scene); !written) return fail(written.error());
     const std::uint64_t triangles = scene->scene.triangles();
     if (a.json) {
@@ -49,21 +50,21 @@ int run_scene(const SceneArguments& a, const Context& context) {
 
 void add_scene(CLI::App& app, Context& context) {
     auto a = std::make_shared<SceneArguments>();
-    CLI::App* c = add_command(app, "scene", "Write a generated scene, and its path beside it",
+    CLI::App* c = add_command(app, "scene", "Generate a scene and a path through it",
                               "surefoot scene town --scale 1 --seed 1 -o town.glb", a->json);
     const std::vector<std::string> words = scenes::scene_names();
     const std::vector<std::string_view> names(words.begin(), words.end());
-    c->add_option("name", a->name, "forest (100 trees a scale), room, town (about 1 M triangles a scale)")
+    c->add_option("name", a->name, "Scene: forest (100 trees at scale 1), room, or town (about 1 M triangles at scale 1)")
         ->required()
         ->check(one_of(names));
-    c->add_option("--scale", a->scale, "Size of the scene")
+    c->add_option("--scale", a->scale, "Factor on the size of the scene")
         ->check(number_within(scenes::least_scale, scenes::most_scale))
         ->capture_default_str();
-    c->add_option("--seed", a->seed, "The same seed gives the same file, bit for bit")
+    c->add_option("--seed", a->seed, "Random seed; the same seed gives the same file, bit for bit")
         ->check(whole_number_within(0, std::numeric_limits<std::uint64_t>::max()))
         ->capture_default_str();
     c->add_option("-o,--out", a->out,
-                  "The file to write, by its ending: " + scenes::written_endings() + "; the path goes to OUT.path.csv")
+                  "Output file; its ending is the format: " + scenes::written_endings() + ". The path goes to OUT.path.csv")
         ->required();
     c->callback([&context, a] { context.run = [a, &context] { return run_scene(*a, context); }; });
 }

@@ -70,11 +70,11 @@ bool all_well(std::span<const selftest::RowResult> results) {
 }
 
 int run_selftest(const SelftestArguments& a, const Context& context) {
-    if (!a.hard) return misuse({"selftest", "does not say what to test", "surefoot selftest --hard"});
+    if (!a.hard) return misuse({"selftest", "Nothing to test is named", "Run: surefoot selftest --hard", ErrorKind::misuse});
     const auto selection = selftest::select_rows(a.rows);
     if (!selection) return misuse(selection.error());
     if (a.list && !a.backend.empty())
-        return misuse({"--backend", "says who draws, and --list runs nothing", "leave one of them out"});
+        return misuse({"--backend", "--list runs nothing, so no backend draws", "Remove --backend or --list", ErrorKind::misuse});
     if (a.list) return list_rows(a, *selection);
     const Progress progress = terminal_progress(context);
     const auto results = selftest::run_rows(*selection, {a.scale, &progress, a.backend}, [&](const selftest::RowResult& r) {
@@ -104,18 +104,20 @@ int run_selftest(const SelftestArguments& a, const Context& context) {
 void add_selftest(CLI::App& app, Context& context) {
     auto a = std::make_shared<SelftestArguments>();
     CLI::App* c = add_command(
-        app, "selftest", "Do the numbers hold in hard cases, on this machine? Each with what was measured and its limit",
-        "surefoot selftest --hard\n  surefoot selftest --hard N9 F1 --scale 10\n\nExit status: 0 no row is broken, 1 one "
-        "is, 2 wrong use. A row that cannot run (no software GL) is neither, and the last line names it.",
+        app, "selftest", "Test hard numerical cases on this machine, each with its measured value and limit",
+        "surefoot selftest --hard\n  surefoot selftest --hard N9 F1 --scale 10\n\nExit status: 0 no row is broken, 1 a row is "
+        "broken, 2 "
+        "wrong use.\nThe last line names rows that cannot run, for example without software GL. They count as neither.",
         a->json);
-    c->add_flag("--hard", a->hard, "The hard cases: far from the origin, inside boxes, broken meshes and files, endless runs");
-    c->add_flag("--list", a->list, "Only say which rows there are");
-    c->add_option("ROW", a->rows, "Rows to run (N9 is N9a and N9b); all, if none is named");
-    c->add_option("--scale", a->scale, "Times the usual number of samples")
+    c->add_flag("--hard", a->hard,
+                "Run the hard cases: far from the origin, inside boxes, damaged meshes and files, endless runs");
+    c->add_flag("--list", a->list, "List the rows and run none");
+    c->add_option("ROW", a->rows, "Rows to run; N9 runs N9a and N9b (else all rows)");
+    c->add_option("--scale", a->scale, "Factor on the number of samples")
         ->check(number_within(0.001, 100))
         ->capture_default_str();
     c->add_option("--backend", a->backend,
-                  "Rows that draw: by this backend only, of " + gl::drawing_backends() + " (else the first that opens)")
+                  "Backend for rows that draw: " + gl::drawing_backends() + " (else the first that opens)")
         ->check(drawing_backend());
     c->callback([&context, a] { context.run = [&context, a] { return run_selftest(*a, context); }; });
 }

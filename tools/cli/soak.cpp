@@ -24,7 +24,8 @@ struct SoakArguments {
 
 Result<soak::SoakRequest> to_soak_request(const SoakArguments& a) {
     soak::SoakRequest r = a.request;
-    if (a.seconds > 0 && a.hours > 0) return Error{"--hours", "and --seconds are two lengths", "give one of them"};
+    if (a.seconds > 0 && a.hours > 0)
+        return Error{"--hours", "--hours and --seconds both set the length", "Remove one of them", ErrorKind::misuse};
     if (a.seconds > 0) r.seconds = a.seconds;
     if (a.hours > 0) r.seconds = a.hours * 3600;
     if (!a.mix.empty()) {
@@ -48,7 +49,7 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
     if (!request) return misuse(request.error());
     walk::prepare_process(request->walk);
     if (request->seconds < judged_from_s) {
-        note(fmt::format("a verdict needs {:.1f} minutes or more; of {:.0f} s not all can be judged", judged_from_s / 60,
+        note(fmt::format("a verdict needs at least {:.1f} minutes: in {:.0f} s some rules cannot be judged", judged_from_s / 60,
                          request->seconds));
     }
     auto outcome = soak::run_soak(*request, terminal_progress(context));
@@ -66,7 +67,7 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
     }
     for (const Error& error : outcome->failures) fail(error);
     if (s.stopped)
-        note(fmt::format("stopped by the user after {:.0f} of {:.0f} s; the figures are of these", s.ran_s, s.asked_s));
+        note(fmt::format("stopped by the user after {:.0f} of {:.0f} s. The figures cover this time", s.ran_s, s.asked_s));
     const bool holds = soak::verdict_of(s) == soak::Judged::holds;
     return holds && outcome->failures.empty() && !s.stopped ? exit_success : exit_failure;
 }
@@ -77,45 +78,34 @@ void add_soak(CLI::App& app, Context& context) {
     auto a = std::make_shared<SoakArguments>();
     soak::SoakRequest& r = a->request;
     CLI::App* c =
-        add_command(app, "soak", "Walk for hours under a rotating mix of load, and judge it",
+        add_command(app, "soak", "Walk for hours under changing load, and judge the result",
                     "surefoot soak town.walk --rate 60 --size 640x480 --report soak\n"
                     "  surefoot soak town.walk --hours 8 --mix cpu,memory,io,forks,devices,reloads,caches\n"
                     "  surefoot soak town.walk --hours 1 --clock virtual --backend null --json      (seconds: for CI)\n\n"
-                    "Exit status 0 only if every point of the verdict holds. The load is processes of this command's own;\n"
-                    "they end with it, however it ends.",
+                    "The exit status is 0 only if every rule of the verdict holds. The load runs in child processes,\n"
+                    "which always end with this command.",
                     a->json);
     c->add_option("model", r.walk.model_file, "The .walk model")->required();
-    c->add_option("--path", r.walk.path_file, "Poses over time, CSV (else MODEL.path.csv, else a tour); walked forth and back");
-    c->add_option("--seconds", a->seconds, "How long; with the control whole pairs of blocks of it [1200]")
+    c->add_option("--path", r.walk.path_file,
+                  "CSV file of poses over time (else MODEL.path.csv, else a tour); walked back and forth");
+    c->add_option("--seconds", a->seconds, "Duration in seconds; with the control, whole pairs of blocks fit in it [1200]")
         ->check(number_within(1, 1e6, "s"));
-    c->add_option("--hours", a->hours, "The same in hours")->check(number_within(0.001, 240, "h"));
+    c->add_option("--hours", a->hours, "Duration in hours")->check(number_within(0.001, 240, "h"));
     c->add_option(
         "--mix", a->mix,
-        "Loads, apart by commas [cpu,memory,io,forks,devices,reloads,caches]. `caches` drops the machine's page cache, where "
-        "that is permitted. `clock` steps the time of day of the whole machine and back: only who asks for it gets it. On the "
-        "virtual clock nothing contends: of the mix only `reloads` is run there");
-    c->add_option("--clock-step", r.clock_step_s, "Seconds that the load `clock` steps, there and back")
+        "Loads, separated by commas [cpu,memory,io,forks,devices,reloads,caches]. `caches` drops the machine's page cache, if "
+        "permitted. `clock` steps the machine's time of day and back, and is never a default. On the virtual clock only "
+        "`reloads` runs");
+    c->add_option("--clock-step", r.clock_step_s, "Seconds by which the load `clock` steps the time of day")
         ->check(number_within(0.001, 86400, "s"))
         ->capture_default_str();
-    c->add_option("--seed", r.seed, "Of the timetable: the same seed loads in the same order")->capture_default_str();
-    c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html, and DIR/soak.json");
-    add_settings(c, a->settings,
-                 {{"--lift", "lift_m"},
-                  {"--rate", "rate_hz"},
-                  {"--budget", "budget_ms"},
-                  {"--selector", "selector"},
-                  {"--late", "late"},
-                  {"--backend", "backend"},
-                  {"--shift-x", "shift_x"},
-                  {"--shift-y", "shift_y"},
-                  {"--clock", "clock"},
-                  {"--workers", "workers"},
-                  {"--rasterisers", "rasterisers"},
-                  {"--frame-core", "frame_core"}});
+    c->add_option("--seed", r.seed, "Random seed; the same seed gives the same order of loads")->capture_default_str();
+    c->add_option("--report", r.report_dir, "Folder for a report: index.html and soak.json");
+    add_settings(c, a->settings);
     c->add_flag("--no-control", a->no_control,
-                "The walk alone, without a bare loop in turn with it: twice the frames, judged by its own misses alone");
-    c->add_flag("--strict", a->strict, "Do not start where anything that real time needs is refused");
-    c->add_option("--state", r.walk.state_dir, "Folder with the calibrated cost table");
+                "Run the walk without its control: twice the frames, judged by the own misses only");
+    c->add_flag("--strict", a->strict, "Do not start if the machine refuses anything that real time needs");
+    c->add_option("--state", r.walk.state_dir, "Folder of the calibrated cost table");
     c->callback([&context, a] { context.run = [a, &context] { return run_soak_command(*a, context); }; });
 }
 

@@ -10,9 +10,10 @@
 #include "rt/clock/clock.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
-#include "tools/cli/terminal.hpp"
-#include "tools/monitor/client.hpp"
+#include "tools/cli/screen.hpp"
+#include "tools/monitor/address.hpp"
 #include "tools/monitor/view.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
 
@@ -52,7 +53,8 @@ int run_status(const LookArguments& a, const Context& context) {
         print_json(nlohmann::ordered_json::parse(asked->text));
         return exit_success;
     }
-    for (const std::string& line : monitor::status_page(asked->status, terminal_look(context.colour))) fmt::print("{}\n", line);
+    for (const std::string& line : monitor::status_page(asked->status, report::terminal_look(context.colour)))
+        fmt::print("{}\n", line);
     return exit_success;
 }
 
@@ -119,10 +121,10 @@ private:
         return std::fputs(line.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
     }
     void draw() {
-        const monitor::Look look = terminal_look(context_.colour);
+        const report::Look look = report::terminal_look(context_.colour);
         std::vector<std::string> lines = monitor::top_page(status_, before_, between_s_, look);
         if (!trouble_.empty() && !lines.empty())
-            lines.back() = ("the service is gone, asking again: " + trouble_).substr(0, look.width);
+            lines.back() = report::cut_to("the service does not answer, trying again: " + trouble_, look.width);
         screen_->draw(lines);
     }
     static std::string time_of_day() {
@@ -144,15 +146,16 @@ private:
 };
 
 void add_place(CLI::App* c, const std::shared_ptr<LookArguments>& a) {
-    c->add_option("--socket", a->socket,
-                  "Where it listens: unix:PATH or 127.0.0.1:PORT [surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot]");
+    c->add_option(
+        "--socket", a->socket,
+        "Address of the monitor: unix:PATH or 127.0.0.1:PORT [surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot]");
 }
 
 }  // namespace
 
 void add_status(CLI::App& app, Context& context) {
     auto a = std::make_shared<LookArguments>();
-    CLI::App* c = add_command(app, "status", "What a running service says of itself: one page",
+    CLI::App* c = add_command(app, "status", "Show the state of a running service, on one page",
                               "surefoot status\n  surefoot status --socket 127.0.0.1:9464 --json", a->json);
     add_place(c, a);
     c->callback([&context, a] { context.run = [&context, a] { return run_status(*a, context); }; });
@@ -160,12 +163,11 @@ void add_status(CLI::App& app, Context& context) {
 
 void add_top(CLI::App& app, Context& context) {
     auto a = std::make_shared<LookArguments>();
-    CLI::App* c =
-        add_command(app, "top", "A running service live: frame times, slack, misses by cause, devices, threads; q ends it",
-                    "surefoot top\n  surefoot top --socket 127.0.0.1:9464 --seconds 60 > lines.txt", a->json);
+    CLI::App* c = add_command(app, "top", "Show a running service live: frame times, slack, misses by cause, devices, threads",
+                              "surefoot top\n  surefoot top --socket 127.0.0.1:9464 --seconds 60 > lines.txt", a->json);
     add_place(c, a);
-    c->add_option("--every", a->every_s, "Seconds between two looks [1]")->check(number_within(0.2, 3600, "s"));
-    c->add_option("--seconds", a->seconds, "End after so long")->check(number_within(0.2, 1e9, "s"));
+    c->add_option("--every", a->every_s, "Seconds between updates [1]")->check(number_within(0.2, 3600, "s"));
+    c->add_option("--seconds", a->seconds, "Seconds after which the command ends")->check(number_within(0.2, 1e9, "s"));
     c->callback([&context, a] {
         context.run = [&context, a] {
             const auto address = place_of(*a);

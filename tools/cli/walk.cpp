@@ -4,7 +4,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
-#include "tools/monitor/watch.hpp"
+#include "tools/monitor/monitor.hpp"
 #include "tools/report/verdict.hpp"
 #include "tools/walk/settings_request.hpp"
 #include "tools/walk/walk.hpp"
@@ -44,13 +44,16 @@ struct Given {
 
 /// Options that say nothing without another one, or the same twice, where a request as such is clear: frames go before seconds.
 Result<void> check_given(const walk::WalkRequest& r, const Given& given) {
-    if (r.frames > 0 && r.seconds > 0) return Error{"--seconds", "and --frames say the length twice", "leave one of them out"};
+    if (r.frames > 0 && r.seconds > 0)
+        return Error{"--seconds", "--seconds and --frames both set the length", "Remove one of them", ErrorKind::misuse};
     if (given.control_pairs && !r.control)
-        return Error{"--control-pairs", "says how long the control is, and there is none", "add --control"};
+        return Error{"--control-pairs", "This option sets the control's length, and there is no control", "Add --control",
+                     ErrorKind::misuse};
     if (given.every && r.snap_dir.empty())
-        return Error{"--every", "says how often pictures are taken, and none are", "add --snap DIR"};
+        return Error{"--every", "This option sets how often pictures are taken, and none are taken", "Add --snap DIR",
+                     ErrorKind::misuse};
     if (given.capture_frame && r.capture_file.empty())
-        return Error{"--capture-frame", "needs a file to go to", "add --capture FILE"};
+        return Error{"--capture-frame", "A captured frame needs a file", "Add --capture FILE", ErrorKind::misuse};
     return {};
 }
 
@@ -64,7 +67,8 @@ Result<walk::WalkRequest> to_request(WalkArguments& a) {
     walk::WalkRequest r = a.request;
     walk::apply_settings(c, r);
     if (r.model_file.empty())
-        return Error{"MODEL.walk", "is not named", "surefoot walk MODEL.walk, or `model = ...` in the --config file"};
+        return Error{"MODEL.walk", "The model is not named",
+                     "Run: surefoot walk MODEL.walk, or set `model = ...` in the --config file", ErrorKind::misuse};
     r.correct_costs = !a.no_correction;
     r.config_file = a.settings->config_file;
     const Given given{r.snap_every > 0, r.capture_frame != unset, a.control_pairs->count() > 0};
@@ -84,7 +88,7 @@ Result<std::unique_ptr<monitor::Monitor>> open_monitor(const MonitorArguments& a
     options.version = SUREFOOT_VERSION;
     options.say = [](std::string_view text) { note(std::string(text)); };
     auto monitor = monitor::Monitor::open(std::move(options));
-    if (monitor && !a.address.empty()) note(fmt::format("look at it with: surefoot top --socket {}", (*monitor)->address()));
+    if (monitor && !a.address.empty()) note(fmt::format("watch it live with: surefoot top --socket {}", (*monitor)->address()));
     return monitor;
 }
 
@@ -123,9 +127,9 @@ int run_walk_command(WalkArguments& a, const Context& context) {
     }
     for (const Error& error : outcome->failures) fail(error);
     if (outcome->stopped)
-        note(fmt::format("stopped by the user after {} frames; the figures are of these", outcome->summary.frames));
+        note(fmt::format("stopped by the user after {} frames. The figures cover these", outcome->summary.frames));
     const bool broken = report::rule_broken(outcome->summary.control);
-    if (broken) note("the deadline rule is broken: see the control's figures");
+    if (broken) note("the deadline rule is broken. See the control's figures");
     return outcome->failures.empty() && !outcome->stopped && !broken ? exit_success : exit_failure;
 }
 
@@ -136,7 +140,7 @@ void add_walk(CLI::App& app, Context& context) {
     walk::WalkRequest& r = a->request;
     r.capture_frame = unset;
     CLI::App* c =
-        add_command(app, "walk", "Walk through a model in real time, and show the figures",
+        add_command(app, "walk", "Walk through a model in real time, and print the figures",
                     "surefoot walk town.walk --seconds 30 --report report\n"
                     "  surefoot walk town.walk --input devices --seconds 600             (a gamepad or 3D mouse steers)\n"
                     "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
@@ -144,73 +148,61 @@ void add_walk(CLI::App& app, Context& context) {
                     "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
                     "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
                     a->json);
-    c->add_option("model", r.model_file, "The .walk model (else the one that --config names)");
+    c->add_option("model", r.model_file, "The .walk model (else `model` in the --config file)");
     c->add_option("--path", r.path_file,
-                  "Poses over time, CSV (else MODEL.path.csv, else a tour). With --input it is not followed: "
-                  "its first pose is the start, poses at equal times are the viewpoints, and `tour` follows it");
+                  "CSV file of poses over time (else MODEL.path.csv, else a tour). With --input the path is not followed: "
+                  "its first pose is the start, poses at equal times are viewpoints, and the action `tour` follows it");
     c->add_option(
          "--input", r.input_file,
-         "Who steers in place of the path. `devices`: what is plugged in, and what will be (a file of that name is ./devices); "
-         "ends with --seconds or --frames, else after the path's length; needs the real clock. Else a file: a device's reports "
-         "in "
-         "hid-recorder's text format, each in its recorded time; ends a second after the last report, or with --seconds or "
-         "--frames. Check it with `surefoot devices describe`")
+         "Source of steering, instead of the path: `devices` or a recording. `devices` uses all devices, plugged now or later. "
+         "It "
+         "needs the real clock, and ends with --seconds, --frames, or the path's length. A recording is in hid-recorder's text "
+         "format, and ends a second after its last report. Check it with `surefoot devices describe`. A file named devices is "
+         "./devices")
         ->check(names_something);
-    c->add_option("--steering", r.steering_file,
-                  "How --input steers, TOML: [motion], [safety], [[device]], [[gpio]] (else the default of the device's class)");
+    c->add_option(
+        "--steering", r.steering_file,
+        "TOML file with [motion], [safety], [[device]] and [[gpio]] for --input (else the default of the device's class)");
     c->add_flag("--clear-stop", r.clear_stop,
-                "--input devices: take off an emergency stop that an earlier walk left latched (else: what does stop_reset)");
+                "With --input devices: release an emergency stop that an earlier walk left latched");
     c->add_option("--frames", r.frames,
-                  "Frames to walk (else --seconds, else the recording and a second, else as long as the path)")
+                  "Frames to walk (else --seconds, else the recording and one second, else the path's length)")
         ->check(whole_number_within(1, 4'000'000));
-    c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked forth and back")
+    c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked back and forth")
         ->check(number_within(0.001, 1e6, "s"));
-    add_settings(c, a->settings,
-                 {{"--lift", "lift_m"},
-                  {"--rate", "rate_hz"},
-                  {"--budget", "budget_ms"},
-                  {"--accuracy", "accuracy"},
-                  {"--cost-scale", "cost_scale"},
-                  {"--selector", "selector"},
-                  {"--late", "late"},
-                  {"--backend", "backend"},
-                  {"--shift-x", "shift_x"},
-                  {"--shift-y", "shift_y"},
-                  {"--clock", "clock"},
-                  {"--workers", "workers"},
-                  {"--rasterisers", "rasterisers"},
-                  {"--frame-core", "frame_core"},
-                  {"--slice", "slice_us"},
-                  {"--hysteresis", "hysteresis"}});
-    c->add_option("--cost-noise", r.cost_noise, "Virtual clock: relative noise on costs")->check(number_within(0, 10));
+    add_settings(c, a->settings, {{"--accuracy", "accuracy"}, {"--cost-scale", "cost_scale"}},
+                 {{"--slice", "slice_us"}, {"--hysteresis", "hysteresis"}});
+    c->add_option("--cost-noise", r.cost_noise, "With --clock virtual: relative noise of the costs")->check(number_within(0, 10));
     for (const char* experiment : {"--slice", "--hysteresis", "--cost-noise"}) c->get_option(experiment)->group(hidden_group);
     c->add_flag("--strict", r.strict,
-                "Do not start where anything that real time needs is refused: FIFO, locked memory, an isolated core, "
-                "placing, a cost table");
-    c->add_flag("--no-check", a->settings->no_check, "Without the in-frame check, to see what it is worth");
-    c->add_flag("--no-occlusion", a->settings->no_occlusion, "Keep what other things hide, to see what leaving it out is worth");
-    c->add_flag("--no-correction", a->no_correction, "Predictions are not corrected online");
-    c->add_flag("--control", r.control, "Alternate blocks of the walk and of a bare loop, and judge by the deadline rule");
-    a->control_pairs = c->add_option("--control-pairs", r.control_pairs, "Pairs of blocks; the rule wants 90")
+                "Do not start if real time lacks anything: SCHED_FIFO, locked memory, an isolated core, thread placement or a "
+                "cost table");
+    c->add_flag("--no-check", a->settings->no_check, "Disable the in-frame check (for comparison)");
+    c->add_flag("--no-occlusion", a->settings->no_occlusion, "Disable occlusion culling (for comparison)");
+    c->add_flag("--no-correction", a->no_correction, "Disable the online correction of predicted costs (for comparison)");
+    c->add_flag("--control", r.control, "Alternate blocks of the walk with blocks of a bare loop, and apply the deadline rule");
+    a->control_pairs = c->add_option("--control-pairs", r.control_pairs, "Number of pairs of blocks; the deadline rule needs 90")
                            ->check(whole_number_within(1, 100000))
                            ->capture_default_str();
-    c->add_option("--state", r.state_dir, "Folder with the calibrated cost table");
-    c->add_option("--ledger", r.ledger_file, "CSV, a row a frame")->check(names_something);
-    c->add_option("--trace", r.trace_file, "A trace that ui.perfetto.dev opens")->check(names_something);
-    c->add_option("--report", r.report_dir, "A page to look at: DIR/index.html")->check(names_something);
-    c->add_option("--monitor", a->watch.address,
-                  "Serve live figures while it walks, for `surefoot status`, `surefoot top` and Prometheus (/metrics): "
-                  "unix:PATH, or 127.0.0.1:PORT (port 0: any)");
+    c->add_option("--state", r.state_dir, "Folder of the calibrated cost table");
+    c->add_option("--ledger", r.ledger_file, "CSV file with one row per frame")->check(names_something);
+    c->add_option("--trace", r.trace_file, "Trace file for ui.perfetto.dev")->check(names_something);
+    c->add_option("--report", r.report_dir, "Folder for a report: index.html")->check(names_something);
+    c->add_option(
+        "--monitor", a->watch.address,
+        "Address for live figures: unix:PATH, or 127.0.0.1:PORT (port 0: any free port). `surefoot status`, `surefoot top` "
+        "and Prometheus (/metrics) read them");
     c->add_option("--incidents", a->watch.incidents_dir,
-                  "Folder in which bursts of misses are written down as they happen: the last minute's ledger and trace; "
-                  "the newest 20, at most 256 MiB")
+                  "Folder for bursts of misses: the ledger and trace of the last minute. The newest 20 are kept, at most 256 MiB")
         ->check(names_something);
-    c->add_option("--snap", r.snap_dir, "Pictures of what the walk drew: DIR/00000.png, ...; what 256 MiB of memory hold")
+    c->add_option("--snap", r.snap_dir,
+                  "Folder for pictures of the walk: 00000.png and so on, as many as fit in 256 MiB of memory")
         ->check(names_something);
-    c->add_option("--every", r.snap_every, "A picture every N frames [30]")->check(whole_number_within(1, 1'000'000'000));
-    c->add_option("--capture", r.capture_file, "One frame's prepared arrays and cut, for `surefoot replay`")
+    c->add_option("--every", r.snap_every, "Take a picture every N frames [30]")->check(whole_number_within(1, 1'000'000'000));
+    c->add_option("--capture", r.capture_file, "File for the prepared arrays and cut of one frame, for `surefoot replay`")
         ->check(names_something);
-    c->add_option("--capture-frame", r.capture_frame, "Which frame to capture [0]")->check(whole_number_within(0, 4'000'000));
+    c->add_option("--capture-frame", r.capture_frame, "Number of the frame to capture [0]")
+        ->check(whole_number_within(0, 4'000'000));
     c->callback([&context, a] { context.run = [a, &context] { return run_walk_command(*a, context); }; });
 }
 

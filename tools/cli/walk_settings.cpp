@@ -11,16 +11,17 @@ namespace surefoot::cli {
 
 namespace {
 
-/// A value of the command line, through the schema; what is refused is named as the user wrote it.
+/// Sets a value of the command line through the schema. An error names the option as the user wrote it.
 Result<void> put_setting(config::Configuration& c, const std::string& flag, const std::string& key, const std::string& text) {
     const std::string place = flag + " " + text;
     if (config::set_value(c, key, text)) return {};
     const config::Entry& entry = *c.schema->find(key);
     const std::string_view why = config::absent_because(entry, text);
-    return Error{place, std::string(why.empty() ? "is not allowed" : why), config::allowed(entry)};
+    return Error{place, why.empty() ? "The value is not allowed" : fmt::format("The value {}", why),
+                 "Use " + config::allowed(entry), ErrorKind::misuse};
 }
 
-/// An option that goes through the settings' schema under `key`.
+/// Adds an option that is checked and stored by the settings' schema under `key`.
 void add_setting(CLI::App* c, const std::shared_ptr<SettingArguments>& a, const std::string& flag, const std::string& key) {
     const config::Schema& schema = walk::settings_schema();
     const config::Entry* entry = schema.find(key);
@@ -37,10 +38,23 @@ void add_setting(CLI::App* c, const std::shared_ptr<SettingArguments>& a, const 
 
 }  // namespace
 
-void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& a,
-                  std::initializer_list<std::pair<const char*, const char*>> flags_and_keys) {
-    command->add_option("--size", a->size, "Picture size [1280x720]");
-    for (const auto& [flag, key] : flags_and_keys) add_setting(command, a, flag, key);
+void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& a, FlagsAndKeys more, FlagsAndKeys last) {
+    command->add_option("--size", a->size, "Size of the picture in pixels [1280x720]");
+    const auto add = [&](FlagsAndKeys settings) {
+        for (const auto& [flag, key] : settings) add_setting(command, a, flag, key);
+    };
+    add({{"--lift", "lift_m"}, {"--rate", "rate_hz"}, {"--budget", "budget_ms"}});
+    add(more);
+    add({{"--selector", "selector"},
+         {"--late", "late"},
+         {"--backend", "backend"},
+         {"--shift-x", "shift_x"},
+         {"--shift-y", "shift_y"},
+         {"--clock", "clock"},
+         {"--workers", "workers"},
+         {"--rasterisers", "rasterisers"},
+         {"--frame-core", "frame_core"}});
+    add(last);
     command->add_flag("--no-fifo", a->no_fifo, "Ordinary scheduling (the figures are marked)");
     command->add_option("--config", a->config_file, "Settings in TOML; the command line wins");
     command->add_option("--profile", a->profile, "A [profile.NAME] of the settings file");
@@ -49,8 +63,8 @@ void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& a,
 Result<config::Configuration> read_settings(const SettingArguments& a) {
     config::Configuration c(walk::settings_schema());
     if (!a.profile.empty() && a.config_file.empty()) {
-        return Error{"--profile " + a.profile, "is a part of a settings file, and none is given",
-                     "add --config FILE.toml with a [profile." + a.profile + "]"};
+        return Error{"--profile " + a.profile, "A profile is a part of a settings file, and no file is named",
+                     "Add --config FILE.toml with a [profile." + a.profile + "]", ErrorKind::misuse};
     }
     if (!a.config_file.empty()) {
         if (auto ok = config::load_file(c, a.config_file, a.profile); !ok) return ok.error();

@@ -1,6 +1,7 @@
 // What the commands that walk share: settings from a file and from the command line, through the same schema and limits.
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
@@ -21,9 +22,12 @@ struct SettingArguments {
     bool no_fifo = false, no_check = false, no_occlusion = false;
 };
 
-/// --config, --profile, --size, --no-fifo, and an option for each flag and key.
-void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& arguments,
-                  std::initializer_list<std::pair<const char*, const char*>> flags_and_keys);
+using FlagsAndKeys = std::initializer_list<std::pair<const char*, const char*>>;
+
+/// --config, --profile, --size, --no-fifo, an option for each setting that every walk has, and for those that only this command
+/// offers: `more` stands in --help behind the budget, `last` at the end.
+void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& arguments, FlagsAndKeys more = {},
+                  FlagsAndKeys last = {});
 /// The file, then the command line; what is refused is named as the user wrote it.
 Result<config::Configuration> read_settings(const SettingArguments& arguments);
 

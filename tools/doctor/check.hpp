@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/doctor/machine.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::doctor {
 
@@ -57,5 +58,9 @@ struct Summary {
     int pass = 0, fail = 0, unknown = 0;
 };
 Summary summarise(std::span<const Examined> examined);
+
+/// The findings for people, grouped by topic. Evidence is wrapped at the look's width; remedies are not, so that they can be
+/// copied.
+std::string table(const Machine& machine, std::span<const Examined> examined, const report::Look& look);
 
 }  // namespace surefoot::doctor

@@ -11,7 +11,7 @@ namespace surefoot::doctor {
 
 namespace {
 
-constexpr std::string_view name_it = "name it: --frame-core N";
+constexpr std::string_view name_it = "name the core: --frame-core N";
 
 Finding no_core() { return unknown("the frame core is not known", std::string(name_it)); }
 
@@ -21,7 +21,7 @@ Finding count(const Machine& m) {
     std::string evidence = fmt::format("{} online ({})", online->count(), online->text());
     if (online->count() >= 2) return pass(std::move(evidence));
     return fail(std::move(evidence),
-                "switch more on: echo 1 > /sys/devices/system/cpu/cpu1/online; or give the machine a second core");
+                "enable more: echo 1 > /sys/devices/system/cpu/cpu1/online; or give the machine a second core");
 }
 
 Finding isolated(const Machine& m) {
@@ -44,9 +44,9 @@ Finding tickless(const Machine& m) {
         return fail("this kernel is built without CONFIG_NO_HZ_FULL: the tick interrupts every frame",
                     "apt install linux-image-amd64 (Debian's has it), and boot with nohz_full=" + std::to_string(*core));
     if (!list) return unknown("/sys/devices/system/cpu/nohz_full cannot be read", fmt::format("boot with nohz_full={}", *core));
-    if (list->has(*core)) return pass(fmt::format("core {} runs without a tick (nohz_full: {})", *core, list->text()));
+    if (list->has(*core)) return pass(fmt::format("core {} runs without a timer tick (nohz_full: {})", *core, list->text()));
     return fail(
-        fmt::format("core {} has its tick (nohz_full: {})", *core, list->empty() ? "none" : list->text()),
+        fmt::format("core {} runs with a timer tick (nohz_full: {})", *core, list->empty() ? "none" : list->text()),
         fmt::format("add nohz_full={0} rcu_nocbs={0} to GRUB_CMDLINE_LINUX in /etc/default/grub; update-grub; reboot", *core));
 }
 
@@ -84,28 +84,29 @@ Finding cpuset(const Machine& m) {
     const auto core = m.frame_core();
     if (!core) return no_core();
     const auto set = effective_cpuset(m);
-    if (!set) return unknown("no cpuset of this process is to be seen", "mount -t cgroup2 none /sys/fs/cgroup");
+    if (!set) return unknown("the cpuset of this process cannot be read", "mount -t cgroup2 none /sys/fs/cgroup");
     std::string evidence = fmt::format("cores {} ({})", set->cpus.text(), set->file);
     if (set->cpus.has(*core) && set->cpus.count() >= 2) return pass(std::move(evidence));
     return fail(
         std::move(evidence),
         fmt::format(
-            "systemctl set-property surefootd.service AllowedCPUs=: the frame core {} and at least one more; the same for "
-            "the slice above it",
+            "systemctl set-property surefootd.service AllowedCPUs= with the frame core {} and at least one more; the same for "
+            "its parent slice",
             *core));
 }
 
 Finding own_affinity(const Machine& m) {
     const auto core = m.frame_core();
     const auto list = m.own_status("Cpus_allowed_list");
-    if (!core || !list) return unknown("the cores of this process are not to be seen", "mount -t proc proc /proc");
+    if (!core || !list) return unknown("the cores of this process cannot be read", "mount -t proc proc /proc");
     const auto allowed = rt::CpuMask::parse(*list);
     if (!allowed) return unknown("Cpus_allowed_list is '" + *list + "'", std::string(name_it));
-    std::string evidence = fmt::format("this process may use cores {}; the frame thread's is {}", allowed->text(), *core);
+    std::string evidence = fmt::format("this process may use cores {}; the frame core is {}", allowed->text(), *core);
     if (allowed->has(*core) && allowed->count() >= 2) return pass(std::move(evidence));
     return fail(
         std::move(evidence),
-        fmt::format("take CPUAffinity= out of /etc/systemd/system.conf and the unit, or let it hold {} and one more", *core));
+        fmt::format("remove CPUAffinity= from /etc/systemd/system.conf and the unit, or let it contain {} and one more core",
+                    *core));
 }
 
 Finding sibling(const Machine& m) {
@@ -114,12 +115,12 @@ Finding sibling(const Machine& m) {
     const std::string file = fmt::format("/sys/devices/system/cpu/cpu{}/topology/thread_siblings_list", *core);
     const auto siblings = m.cpus(file);
     if (!siblings || !siblings->has(*core)) return unknown(file + " cannot be read", "mount -t sysfs sysfs /sys");
-    if (siblings->count() <= 1) return pass(fmt::format("core {} shares its hardware with none", *core));
+    if (siblings->count() <= 1) return pass(fmt::format("core {} shares its hardware with no other core", *core));
     std::string off;
     for (const int cpu : siblings->cpus()) {
         if (cpu != *core) off += fmt::format("echo 0 > /sys/devices/system/cpu/cpu{}/online; ", cpu);
     }
-    return fail(fmt::format("cores {} are one piece of hardware: load on one slows the other", siblings->text()),
+    return fail(fmt::format("cores {} are threads of one physical core: load on one slows the other", siblings->text()),
                 off + "or boot with nosmt");
 }
 
@@ -144,13 +145,13 @@ std::optional<Thread> thread_of(std::string_view stat) {
 Finding rivals(const Machine& m) {
     const auto core = m.frame_core();
     const auto processes = m.names("/proc");
-    if (!core || !processes) return unknown("the threads of this machine are not to be seen", "mount -t proc proc /proc");
+    if (!core || !processes) return unknown("the threads of this machine cannot be read", "mount -t proc proc /proc");
     std::string found;
     int seen = 0;
     for (const std::string& process : *processes) {
         if (!number_in(process)) continue;
         for (const std::string& task : m.names("/proc/" + process + "/task").value_or(std::vector<std::string>{})) {
-            const std::string folder = "/proc/" + process + "/task/" + task;
+            const std::string folder = fmt::format("/proc/{}/task/{}", process, task);
             const auto stat = m.text(folder + "/stat");
             const auto thread = stat ? thread_of(*stat) : std::nullopt;
             if (!thread) continue;
@@ -167,21 +168,21 @@ Finding rivals(const Machine& m) {
             found += fmt::format("{}{} (tid {}, priority {})", found.empty() ? "" : ", ", thread->name, task, thread->priority);
         }
     }
-    if (seen == 0) return unknown("no thread is to be seen in /proc", "run it as root, or mount /proc without hidepid");
+    if (seen == 0) return unknown("no thread can be read in /proc", "run as root, or mount /proc without hidepid");
     if (found.empty())
         return pass(
-            fmt::format("none of {} threads comes before priority {} on core {}", seen, m.wanted().frame_priority, *core));
-    return fail("may run before the frame thread: " + found, "chrt --other --pid 0 TID, or taskset it to other cores");
+            fmt::format("none of {} threads has a higher priority than {} on core {}", seen, m.wanted().frame_priority, *core));
+    return fail("threads may preempt the frame thread: " + found, "chrt --other --pid 0 TID; or taskset -p it to other cores");
 }
 
 constexpr std::array all_core_checks = {
-    Check{"cores.count", "two or more", count},
-    Check{"cores.isolated", "the frame core is kept free", isolated},
-    Check{"cores.tickless", "no tick on the frame core", tickless},
-    Check{"cores.cpuset", "the cpuset holds the frame core", cpuset},
-    Check{"cores.affinity", "this process may use it", own_affinity},
-    Check{"cores.smt_sibling", "nobody shares its hardware", sibling},
-    Check{"cores.rivals", "no thread before the frame's", rivals},
+    Check{"cores.count", "at least two cores", count},
+    Check{"cores.isolated", "the frame core is isolated", isolated},
+    Check{"cores.tickless", "no timer tick on the frame core", tickless},
+    Check{"cores.cpuset", "the cpuset contains the frame core", cpuset},
+    Check{"cores.affinity", "the affinity allows the frame core", own_affinity},
+    Check{"cores.smt_sibling", "no SMT sibling", sibling},
+    Check{"cores.rivals", "no higher priority on the frame core", rivals},
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // cyclictest: found, run as a child, its histogram read.
-#include "tools/doctor/cyclictest.hpp"
+#include "tools/doctor/wake_up.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ namespace surefoot::doctor {
 
 namespace {
 
-constexpr const char* run_by_hand = "run it by hand to see what it says, or ask again with --quick";
+constexpr const char* run_by_hand = "Run it by hand to see its output, or run again with --quick";
 
 /// The number behind "# Max Latencies:".
 std::optional<std::int64_t> figure(std::string_view line, std::string_view name) {
@@ -43,8 +43,10 @@ struct Child {
 Result<Child> start(const std::string& program, std::vector<std::string> words) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0)
-        return Error{program, fmt::format("no pipe to it: {}", std::strerror(errno)), "close other programs"};
+        return Error{program, fmt::format("No pipe to the program can be opened: {}", std::strerror(errno)),
+                     "Close other programs"};
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t actions;
@@ -58,7 +60,8 @@ Result<Child> start(const std::string& program, std::vector<std::string> words) 
     child.output = ends[0];
     if (failed == 0) return child;
     close(ends[0]);
-    return Error{program, fmt::format("cannot be started: {}", std::strerror(failed)), "apt install --reinstall rt-tests"};
+    return Error{program, fmt::format("The program cannot be started: {}", std::strerror(failed)),
+                 "Run: apt install --reinstall rt-tests", ErrorKind::not_found};
 }
 
 }  // namespace
@@ -83,11 +86,12 @@ Result<WakeFigures> read_cyclictest(std::string_view printed) {
         if (fields.size() != 2) continue;
         const auto us = number_in(fields[0]), times = number_in(fields[1]);
         if (!us || !times || *us < 0 || *us > 1'000'000'000 || *times < 0)
-            return Error{"cyclictest", fmt::format("said '{}', which is no line of a histogram of one thread", line), run_by_hand};
+            return Error{"cyclictest", fmt::format("It printed '{}', which is not a line of a histogram of one thread", line),
+                         run_by_hand, ErrorKind::damaged};
         if (*times > 0) late->add(*us * 1000, static_cast<std::uint64_t>(*times));
     }
     if (over > 0 && max_us >= 0 && max_us < 1'000'000'000) late->add(max_us * 1000, static_cast<std::uint64_t>(over));
-    if (late->count() == 0) return Error{"cyclictest", "said nothing that could be counted", run_by_hand};
+    if (late->count() == 0) return Error{"cyclictest", "It printed nothing that can be counted", run_by_hand, ErrorKind::damaged};
     return figures_of(*late, "cyclictest");
 }
 
@@ -128,10 +132,11 @@ Result<WakeFigures> run_cyclictest(const std::string& program, const WakeOptions
     int status = 0;
     while (waitpid(child->pid, &status, 0) < 0 && errno == EINTR) {
     }
-    if (given_up) return Error{program, "was stopped before it was done", run_by_hand};
+    if (given_up) return Error{program, "The program was stopped before its end", run_by_hand, ErrorKind::stopped};
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         return Error{program,
-                     WIFEXITED(status) ? fmt::format("ended with status {}", WEXITSTATUS(status)) : "was ended by a signal",
+                     WIFEXITED(status) ? fmt::format("The program ended with status {}", WEXITSTATUS(status))
+                                       : "The program was ended by a signal",
                      run_by_hand};
     auto figures = read_cyclictest(printed);
     if (figures) {

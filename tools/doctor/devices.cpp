@@ -35,22 +35,22 @@ Finding opened_by(const Machine& m, const std::vector<std::string>& found, std::
         if (!open) refused += fmt::format("{}{} (mode {:04o})", refused.empty() ? "" : ", ", path, node ? node->mode : 0U);
     }
     if (refused.empty())
-        return pass(fmt::format("{} node{}, open to group {}", found.size(), found.size() == 1 ? "" : "s", names));
-    return fail(fmt::format("not open to group {}: {}", names, refused), std::string(remedy));
+        return pass(fmt::format("{} node{}, which group {} can open", found.size(), found.size() == 1 ? "" : "s", names));
+    return fail(fmt::format("group {} cannot open: {}", names, refused), std::string(remedy));
 }
 
 Finding controls(const Machine& m) {
     const auto found = nodes(m, "/dev", "hidraw");
     if (found.empty())
-        return unknown("no /dev/hidraw* is there", "plug a control in; if it then is not there: modprobe hid-generic");
+        return unknown("there is no /dev/hidraw*", "plug in a control; if there is still none: modprobe hid-generic");
     return opened_by(m, found, {"surefoot-input"}, install_rule);
 }
 
 Finding wires(const Machine& m) {
     const auto found = nodes(m, "/dev", "gpiochip");
     if (found.empty())
-        return unknown("no /dev/gpiochip* is there",
-                       "nothing, unless buttons are wired to this machine; then: modprobe the board's GPIO driver");
+        return unknown("there is no /dev/gpiochip*",
+                       "nothing to do without wired buttons; with them: modprobe the board's GPIO driver");
     return opened_by(m, found, {"surefoot-input", "gpio"},
                      "echo 'SUBSYSTEM==\"gpio\", KERNEL==\"gpiochip*\", GROUP=\"surefoot-input\", MODE=\"0660\"' > "
                      "/etc/udev/rules.d/71-surefoot-gpio.rules; udevadm trigger");
@@ -59,14 +59,14 @@ Finding wires(const Machine& m) {
 Finding graphics(const Machine& m) {
     const auto found = nodes(m, "/dev/dri", "renderD");
     if (found.empty())
-        return unknown("no /dev/dri/renderD* is there",
-                       "nothing, where pictures are drawn by software; else: apt install the card's driver");
+        return unknown("there is no /dev/dri/renderD*",
+                       "nothing to do with software GL; else: apt install the graphics card's driver");
     return opened_by(m, found, {"render", "video"},
                      "systemctl edit surefootd, and add: [Service] SupplementaryGroups=render video");
 }
 
 Finding group(const Machine& m) {
-    if (!m.text("/etc/group")) return unknown("/etc/group cannot be read", "getent group surefoot-input says it");
+    if (!m.text("/etc/group")) return unknown("/etc/group cannot be read", "see getent group surefoot-input");
     if (const auto number = m.group("surefoot-input")) return pass(fmt::format("group surefoot-input is {}", *number));
     return fail("there is no group surefoot-input", "groupadd -f --system surefoot-input");
 }
@@ -76,18 +76,18 @@ Finding rule(const Machine& m) {
     for (const auto* place : {"/etc/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"}) {
         folder = folder || m.exists(place);
         const std::string file = std::string(place) + "/70-surefoot.rules";
-        if (m.exists(file)) return pass(file + " is there");
+        if (m.exists(file)) return pass(file + " exists");
     }
     if (!folder) return unknown("there is no udev on this machine (no rules.d)", "apt install udev");
-    return fail("70-surefoot.rules is not installed: controls stay closed to the service", std::string(install_rule));
+    return fail("70-surefoot.rules is not installed: the service cannot open controls", std::string(install_rule));
 }
 
 constexpr std::array all_device_checks = {
-    Check{"devices.hidraw", "controls may be opened", controls},
-    Check{"devices.gpio", "wired buttons too", wires},
-    Check{"devices.dri", "graphics too", graphics},
-    Check{"devices.group", "the service's group", group},
-    Check{"devices.udev_rule", "the rule that opens them", rule},
+    Check{"devices.hidraw", "controls can be opened", controls},
+    Check{"devices.gpio", "GPIO chips can be opened", wires},
+    Check{"devices.dri", "the GPU can be opened", graphics},
+    Check{"devices.group", "the group surefoot-input exists", group},
+    Check{"devices.udev_rule", "the udev rule is installed", rule},
 };
 
 }  // namespace

@@ -44,7 +44,7 @@ std::string other_cores(const Machine& m, int core) {
 Finding device_affinity(const Machine& m) {
     const auto core = m.frame_core();
     const auto numbers = m.names("/proc/irq");
-    if (!core || !numbers) return unknown("/proc/irq or the frame core is not to be seen", "mount -t proc proc /proc");
+    if (!core || !numbers) return unknown("/proc/irq or the frame core cannot be read", "mount -t proc proc /proc");
     const std::string interrupts = m.text("/proc/interrupts").value_or("");
     std::string there, move;
     int read = 0, on_core = 0;
@@ -61,7 +61,7 @@ Finding device_affinity(const Machine& m) {
         if (on_core <= 6) there += fmt::format("{}{} {} ({} so far)", on_core == 1 ? "" : ", ", number, line.name, line.on_core);
         move += (move.empty() ? "" : " ") + number;
     }
-    if (read == 0) return unknown("no interrupt's affinity can be read in /proc/irq", "run it as root");
+    if (read == 0) return unknown("no affinity of an interrupt can be read in /proc/irq", "run as root");
     if (on_core == 0) return pass(fmt::format("none of {} interrupts goes to core {}", read, *core));
     if (on_core > 6) there += fmt::format(", and {} more", on_core - 6);
     return fail(fmt::format("{} go to core {}: {}", on_core, *core, there),
@@ -84,12 +84,13 @@ Finding balancer(const Machine& m) {
     const auto processes = m.names("/proc");
     const auto core = m.frame_core();
     if (!core || !processes || !m.exists("/proc/1"))
-        return unknown("the processes of this machine are not to be seen", "mount -t proc proc /proc");
+        return unknown("the processes of this machine cannot be read", "mount -t proc proc /proc");
     bool running = false;
     for (const std::string& process : *processes)
         running = running || (number_in(process) && m.text("/proc/" + process + "/comm") == "irqbalance");
     if (!running) return pass("irqbalance does not run");
-    if (m.isolated().has(*core)) return pass(fmt::format("irqbalance runs, and leaves isolated cores alone ({} is one)", *core));
+    if (m.isolated().has(*core))
+        return pass(fmt::format("irqbalance runs, and does not use isolated cores (core {} is isolated)", *core));
     const auto settings = m.text("/etc/default/irqbalance").value_or("");
     const std::string key = "IRQBALANCE_BANNED_CPULIST=";
     for (const std::string_view line : split(settings, "\n")) {
@@ -97,7 +98,7 @@ Finding balancer(const Machine& m) {
         const auto banned =
             rt::CpuMask::parse(split(line.substr(key.size()), "\" ").empty() ? "" : split(line.substr(key.size()), "\" ")[0]);
         if (banned && banned->has(*core))
-            return pass(fmt::format("irqbalance is kept off core {} (/etc/default/irqbalance)", *core));
+            return pass(fmt::format("irqbalance may not use core {} (/etc/default/irqbalance)", *core));
     }
     return fail(fmt::format("irqbalance runs, and may move interrupts to core {}", *core),
                 fmt::format("echo '{}{}' >> /etc/default/irqbalance; systemctl restart irqbalance", key, *core));
@@ -109,16 +110,16 @@ Finding kernel_work(const Machine& m) {
     const auto mask = m.text(file);
     const auto has = core && mask ? in_hex_mask(*mask, *core) : std::nullopt;
     if (!has) return unknown(fmt::format("{} cannot be read", file), "mount -t sysfs sysfs /sys");
-    if (!*has) return pass(fmt::format("the kernel's unbound work stays off core {} (mask {})", *core, *mask));
+    if (!*has) return pass(fmt::format("the kernel's unbound work does not run on core {} (mask {})", *core, *mask));
     return fail(fmt::format("the kernel's unbound work may run on core {} (mask {})", *core, *mask),
                 fmt::format("echo {} > {}", without_bit(*mask, *core), file));
 }
 
 constexpr std::array all_interrupt_checks = {
-    Check{"interrupts.affinity", "devices interrupt other cores", device_affinity},
-    Check{"interrupts.new_devices", "new devices do so too", fresh},
-    Check{"interrupts.irqbalance", "nobody moves them back", balancer},
-    Check{"interrupts.kernel_work", "deferred work runs elsewhere", kernel_work},
+    Check{"interrupts.affinity", "interrupts go to other cores", device_affinity},
+    Check{"interrupts.new_devices", "those of new devices, too", fresh},
+    Check{"interrupts.irqbalance", "irqbalance avoids the frame core", balancer},
+    Check{"interrupts.kernel_work", "deferred work on other cores", kernel_work},
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace surefoot::doctor {
 
 namespace {
 
-constexpr std::string_view mount_debugfs = "mount -t debugfs none /sys/kernel/debug   (as root), then ask again";
+constexpr std::string_view mount_debugfs = "mount -t debugfs none /sys/kernel/debug   (as root), then run again";
 
 Finding dynamic_mode(std::string_view mode, std::string_view where) {
     std::string evidence = fmt::format("PREEMPT_DYNAMIC in mode '{}' ({})", mode, where);
@@ -26,7 +26,7 @@ Finding preemption(const Machine& m) {
     if (version->find("PREEMPT_RT") != std::string::npos) return pass("PREEMPT_RT (/proc/version)");
     if (version->find("PREEMPT_DYNAMIC") == std::string::npos) {
         if (version->find("PREEMPT") != std::string::npos) return pass("full preemption, built in (/proc/version)");
-        return fail("no preemption inside the kernel (/proc/version names none)", "apt install linux-image-rt-amd64");
+        return fail("no preemption inside the kernel (/proc/version)", "apt install linux-image-rt-amd64");
     }
     if (const auto modes = m.text("/sys/kernel/debug/sched/preempt")) {
         if (const auto mode = marked_word(*modes, '(', ')'); !mode.empty())
@@ -40,7 +40,7 @@ Finding preemption(const Machine& m) {
             if (m.build_option(key) == "y") return dynamic_mode(mode, fmt::format("{} of the kernel", key));
         }
     }
-    return unknown("PREEMPT_DYNAMIC, its mode is not to be seen", std::string(mount_debugfs));
+    return unknown("PREEMPT_DYNAMIC, its mode cannot be read", std::string(mount_debugfs));
 }
 
 Finding version(const Machine& m) {
@@ -48,13 +48,13 @@ Finding version(const Machine& m) {
     if (!kernel) return unknown("/proc/sys/kernel/osrelease cannot be read", "mount -t proc proc /proc");
     const std::string name = fmt::format("Linux {}.{}", kernel->major, kernel->minor);
     if (kernel->before(5, 4))
-        return fail(name + " is older than what Surefoot is tried on", "apt install linux-image-amd64 (5.4 or newer)");
+        return fail(name + " is older than every kernel that Surefoot is tested on",
+                    "apt install linux-image-amd64 (5.4 or newer)");
     const auto controllers = m.text("/sys/fs/cgroup/cgroup.controllers");
     const bool cpusets = controllers && controllers->find("cpuset") != std::string::npos;
     if (kernel->before(6, 2) && cpusets)
-        return fail(
-            name + " puts threads back on all cores whenever a cpuset above them changes (mended in 6.2)",
-            "apt install -t bookworm-backports linux-image-amd64; or use no AllowedCPUs= in any unit, and isolcpus= instead");
+        return fail(name + " moves threads back to all cores when a parent cpuset changes (fixed in 6.2)",
+                    "apt install -t bookworm-backports linux-image-amd64; or use isolcpus= instead of AllowedCPUs= in units");
     return pass(name);
 }
 
@@ -74,14 +74,15 @@ Finding throttling(const Machine& m) {
 /// From 6.12 a deadline server gives ordinary threads their share of a core that real-time threads fill.
 Finding fair_server(const Machine& m) {
     const auto kernel = m.kernel();
-    if (!kernel) return unknown("the kernel's version is not to be seen", "mount -t proc proc /proc");
-    if (kernel->before(6, 12)) return pass(fmt::format("Linux {}.{} has none (it came with 6.12)", kernel->major, kernel->minor));
+    if (!kernel) return unknown("the kernel's version cannot be read", "mount -t proc proc /proc");
+    if (kernel->before(6, 12))
+        return pass(fmt::format("Linux {}.{} has no fair server (added in 6.12)", kernel->major, kernel->minor));
     const auto core = m.frame_core();
-    if (!core) return unknown("the frame core is not known", "name it: --frame-core N");
+    if (!core) return unknown("the frame core is not known", "name the core: --frame-core N");
     const std::string folder = fmt::format("/sys/kernel/debug/sched/fair_server/cpu{}", *core);
     const auto runtime = m.number(folder + "/runtime"), period = m.number(folder + "/period");
     if (!runtime || !period || *period <= 0) return unknown(folder + " cannot be read", std::string(mount_debugfs));
-    std::string evidence = fmt::format("ordinary threads are promised {} of {} ns on core {}", *runtime, *period, *core);
+    std::string evidence = fmt::format("ordinary threads are guaranteed {} of {} ns on core {}", *runtime, *period, *core);
     if (*runtime * 10 <= *period) return pass(std::move(evidence));
     return fail(std::move(evidence), fmt::format("echo {} > {}/runtime", *period / 20, folder));
 }
@@ -104,10 +105,10 @@ std::optional<std::string> own_cgroup(const Machine& m, std::string_view control
 Finding group_scheduling(const Machine& m) {
     const auto built = m.build_option("CONFIG_RT_GROUP_SCHED");
     if (!built)
-        return unknown("the kernel's configuration is not to be had",
-                       "apt install linux-image-amd64 (it puts /boot/config-… there), or modprobe configs");
+        return unknown("the kernel's configuration cannot be read",
+                       "apt install linux-image-amd64 (which has /boot/config-…), or modprobe configs");
     if (*built != "y") return pass("CONFIG_RT_GROUP_SCHED is not set");
-    if (m.boot_word("rt_group_sched") == "0") return pass("switched off at boot (rt_group_sched=0)");
+    if (m.boot_word("rt_group_sched") == "0") return pass("disabled at boot (rt_group_sched=0)");
     if (const auto group = own_cgroup(m, "cpu")) {
         const std::string file = "/sys/fs/cgroup/cpu" + (*group == "/" ? "" : *group) + "/cpu.rt_runtime_us";
         const auto runtime = m.number(file);
@@ -118,9 +119,9 @@ Finding group_scheduling(const Machine& m) {
                     "echo 900000 > " + file + "; or boot with rt_group_sched=0");
     }
     if (own_cgroup(m, "") == "/")
-        return pass("CONFIG_RT_GROUP_SCHED is set; this process is in the root group, where all is allowed");
-    return fail("CONFIG_RT_GROUP_SCHED is set: a service's group gets no real-time budget, FIFO is refused even to root",
-                "boot with rt_group_sched=0, or take a kernel that is built without it");
+        return pass("CONFIG_RT_GROUP_SCHED is set; this process is in the root group, which has no limit");
+    return fail("CONFIG_RT_GROUP_SCHED is set: a service's group has no real-time budget, and FIFO is refused even to root",
+                "boot with rt_group_sched=0, or install a kernel without it");
 }
 
 /// A switch that should be 0.
@@ -128,7 +129,7 @@ Finding should_be_off(const Machine& m, std::string_view file, std::string_view 
     const auto value = m.number(file);
     if (!value)
         return unknown(fmt::format("{} cannot be read", file),
-                       fmt::format("nothing, if this kernel is built without it; else: sysctl -w {}=0", key));
+                       fmt::format("nothing to do if this kernel is built without it; else: sysctl -w {}=0", key));
     if (*value == 0) return pass(fmt::format("{} is 0", key));
     return fail(fmt::format("{} is {}: {}", key, *value, harm),
                 fmt::format("sysctl -w {0}=0; to keep it: echo '{0} = 0' >> /etc/sysctl.d/70-surefoot.conf", key));
@@ -136,7 +137,7 @@ Finding should_be_off(const Machine& m, std::string_view file, std::string_view 
 
 Finding timer_migration(const Machine& m) {
     return should_be_off(m, "/proc/sys/kernel/timer_migration", "kernel.timer_migration",
-                         "a sleeping thread's timer may fire on another core, which then must wake this one");
+                         "a timer may fire on another core, which must then wake this one");
 }
 
 Finding numa_balancing(const Machine& m) {
@@ -145,23 +146,23 @@ Finding numa_balancing(const Machine& m) {
             return pass("one memory node (/sys/devices/system/node/online)");
     }
     return should_be_off(m, "/proc/sys/kernel/numa_balancing", "kernel.numa_balancing",
-                         "pages are unmapped to see who uses them: faults in the frame");
+                         "the kernel unmaps pages to see who uses them, which causes page faults in the frame");
 }
 
 Finding watchdog(const Machine& m) {
     return should_be_off(m, "/proc/sys/kernel/nmi_watchdog", "kernel.nmi_watchdog",
-                         "an interrupt that nothing holds off, on every core");
+                         "every core gets interrupts that cannot be masked");
 }
 
 constexpr std::array all_kernel_checks = {
-    Check{"kernel.version", "no known fault", version},
-    Check{"kernel.preemption", "the kernel yields at once", preemption},
-    Check{"kernel.rt_throttling", "FIFO keeps 90 % of a core", throttling},
-    Check{"kernel.fair_server", "others take at most 10 %", fair_server},
-    Check{"kernel.rt_group_sched", "groups may use FIFO", group_scheduling},
-    Check{"kernel.timer_migration", "timers stay where they are", timer_migration},
-    Check{"kernel.numa_balancing", "no page scanning", numa_balancing},
-    Check{"kernel.nmi_watchdog", "no watchdog interrupts", watchdog},
+    Check{"kernel.version", "a kernel without known faults", version},
+    Check{"kernel.preemption", "full preemption", preemption},
+    Check{"kernel.rt_throttling", "FIFO may use 90 % of a core", throttling},
+    Check{"kernel.fair_server", "fair server at most 10 %", fair_server},
+    Check{"kernel.rt_group_sched", "FIFO in cgroups", group_scheduling},
+    Check{"kernel.timer_migration", "timers stay on their core", timer_migration},
+    Check{"kernel.numa_balancing", "no NUMA page scanning", numa_balancing},
+    Check{"kernel.nmi_watchdog", "no NMI watchdog", watchdog},
 };
 
 }  // namespace

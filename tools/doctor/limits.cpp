@@ -38,10 +38,10 @@ Finding priority(const Machine& m) {
     if (!limit) return no_limits();
     const int wanted = m.wanted().frame_priority;
     if (*limit < 0) return pass("RLIMIT_RTPRIO is unlimited");
-    if (*limit >= wanted) return pass(fmt::format("RLIMIT_RTPRIO is {}, {} is wanted", *limit, wanted));
+    if (*limit >= wanted) return pass(fmt::format("RLIMIT_RTPRIO is {}, {} is needed", *limit, wanted));
     if (m.has_capability(cap_sys_nice) == true)
         return pass(fmt::format("RLIMIT_RTPRIO is {}, but this process has CAP_SYS_NICE", *limit));
-    return fail(fmt::format("RLIMIT_RTPRIO is {}, {} is wanted", *limit, wanted),
+    return fail(fmt::format("RLIMIT_RTPRIO is {}, {} is needed", *limit, wanted),
                 grant(fmt::format("LimitRTPRIO={}", wanted), fmt::format("@surefoot - rtprio {}", wanted)));
 }
 
@@ -51,7 +51,7 @@ Finding time(const Machine& m) {
     if (*limit < 0) return pass("RLIMIT_RTTIME is unlimited: the service sets its own");
     std::string evidence = fmt::format("RLIMIT_RTTIME is {} us", *limit);
     if (*limit >= rttime_enough_us) return pass(std::move(evidence));
-    return fail(std::move(evidence) + ": a busy frame thread is ended by the kernel",
+    return fail(std::move(evidence) + ": the kernel ends a busy frame thread",
                 grant("LimitRTTIME=infinity", "@surefoot - rttime unlimited"));
 }
 
@@ -62,7 +62,7 @@ Finding lock(const Machine& m) {
     std::string evidence = fmt::format("RLIMIT_MEMLOCK is {} MiB", *limit >> 20);
     if (*limit >= lock_enough_bytes) return pass(std::move(evidence));
     if (m.has_capability(cap_ipc_lock) == true) return pass(std::move(evidence) + ", but this process has CAP_IPC_LOCK");
-    return fail(std::move(evidence) + ", 1024 are wanted", grant("LimitMEMLOCK=infinity", "@surefoot - memlock unlimited"));
+    return fail(std::move(evidence) + ", 1024 are needed", grant("LimitMEMLOCK=infinity", "@surefoot - memlock unlimited"));
 }
 
 std::string as_service() { return "run surefoot doctor on the machine itself, as the service's user"; }
@@ -71,24 +71,26 @@ Finding fifo(const Machine& m) {
     const auto granted = m.probed().fifo_priority;
     if (!granted) return unknown("not tried", as_service());
     const int wanted = m.wanted().frame_priority;
-    if (*granted >= wanted) return pass(fmt::format("SCHED_FIFO {} was granted to a thread made for it", wanted));
+    if (*granted >= wanted) return pass(fmt::format("SCHED_FIFO {} was granted to a test thread", wanted));
     return fail(*granted == 0 ? "SCHED_FIFO was refused"
-                              : fmt::format("SCHED_FIFO was granted up to {} only, {} is wanted", *granted, wanted),
+                              : fmt::format("SCHED_FIFO was granted only up to {}, {} is needed", *granted, wanted),
                 grant(fmt::format("LimitRTPRIO={}", wanted), fmt::format("@surefoot - rtprio {}", wanted)) +
-                    "; as root: see kernel.rt_group_sched");
+                    "; as root: see the check kernel.rt_group_sched");
 }
 
 Finding locking(const Machine& m) {
     const auto granted = m.probed().locks_memory;
     if (!granted) return unknown("not tried", as_service());
-    if (*granted) return pass("1 GiB of addresses could be locked");
-    return fail("1 GiB of addresses could not be locked", grant("LimitMEMLOCK=infinity", "@surefoot - memlock unlimited"));
+    if (*granted) return pass("1 GiB of memory can be locked");
+    return fail("1 GiB of memory cannot be locked", grant("LimitMEMLOCK=infinity", "@surefoot - memlock unlimited"));
 }
 
 constexpr std::array all_limit_checks = {
-    Check{"limits.rtprio", "real-time priority", priority}, Check{"limits.rttime", "real-time without end", time},
-    Check{"limits.memlock", "locked memory", lock},         Check{"limits.fifo_tried", "SCHED_FIFO, tried", fifo},
-    Check{"limits.lock_tried", "locking, tried", locking},
+    Check{"limits.rtprio", "limit of real-time priority", priority},
+    Check{"limits.rttime", "no limit of real-time CPU time", time},
+    Check{"limits.memlock", "limit of locked memory", lock},
+    Check{"limits.fifo_tried", "SCHED_FIFO is granted", fifo},
+    Check{"limits.lock_tried", "memory can be locked", locking},
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What the doctor looks at: files below a root directory, and what only system calls can tell. Checks read nothing else, so that
-// each runs on a made-up machine.
+// The machine that checks read: files below a root directory, and results of system calls. Checks read nothing else, so tests can
+// make up machines.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace surefoot::doctor {
 
-/// What a wake-up run found (wake_up.hpp, cyclictest.hpp); times in microseconds, how late a slot's start was.
+/// What a wake-up run found (wake_up.hpp); times in microseconds, how late a slot's start was.
 struct WakeFigures {
     std::string source;  ///< "surefoot" or "cyclictest"
     double seconds = 0;
@@ -35,11 +35,11 @@ struct RendererFound {
 struct CostTableFound {
     std::string file;
     bool there = false;
-    std::string error;    ///< it is damaged: why
-    std::string machine;  ///< that it was measured on
+    std::string error;    ///< why it cannot be read
+    std::string machine;  ///< where it was measured
 };
 
-/// What only system calls tell. Absent: not asked (another root, --quick), or not to be known.
+/// Results of system calls. Absent: not tried (another root, --quick), or unknown.
 struct Probed {
     std::optional<int> fifo_priority;  ///< highest SCHED_FIFO priority granted up to the wanted one; 0: refused
     rt::CpuMask isolated;              ///< isolated cores that a thread gets when it asks, though outside of this process's mask
@@ -110,5 +110,9 @@ private:
     std::optional<int> frame_core_;
     std::optional<std::string> build_configuration_;
 };
+
+/// What only this machine itself can tell, by trying: FIFO, locking, the renderer, the cost table, disk space; everything but the
+/// wake-up run. Leaves limits, threads and files as they were; opens GL once (a few tenths of a second).
+Probed probe_machine(const Wanted& wanted);
 
 }  // namespace surefoot::doctor

@@ -25,10 +25,10 @@ Finding available(const Machine& m) {
         if (!kb) break;
         std::string evidence = fmt::format("{} MiB available", *kb >> 10);
         if (*kb >= enough_kb) return pass(std::move(evidence));
-        return fail(std::move(evidence) + ", 1024 are wanted: everything is locked",
-                    "systemctl stop what is not needed, or add memory");
+        return fail(std::move(evidence) + ", 1024 are needed: all memory of a walk is locked",
+                    "stop services that are not needed (systemctl stop), or add memory");
     }
-    return unknown("/proc/meminfo does not say", "mount -t proc proc /proc");
+    return unknown("/proc/meminfo has no MemAvailable", "mount -t proc proc /proc");
 }
 
 Finding huge_pages(const Machine& m) {
@@ -36,10 +36,10 @@ Finding huge_pages(const Machine& m) {
     const auto modes = m.text(file);
     const std::string_view mode = modes ? marked_word(*modes, '[', ']') : std::string_view();
     if (mode.empty())
-        return unknown(fmt::format("{} cannot be read", file), "nothing, if this kernel is built without huge pages");
+        return unknown(fmt::format("{} cannot be read", file), "nothing to do if this kernel is built without huge pages");
     std::string evidence = fmt::format("transparent huge pages: {}", mode);
     if (mode != "always") return pass(std::move(evidence));
-    return fail(std::move(evidence) + ": khugepaged stops threads to join their pages",
+    return fail(std::move(evidence) + ": khugepaged stops threads while it merges their pages into huge ones",
                 fmt::format("echo madvise > {}; or boot with transparent_hugepage=madvise", file));
 }
 
@@ -48,41 +48,41 @@ Finding swap(const Machine& m) {
     if (!swaps) return unknown("/proc/swaps cannot be read", "mount -t proc proc /proc");
     const auto lines = split(*swaps, "\n");
     if (lines.empty() || !lines[0].starts_with("Filename"))
-        return unknown("/proc/swaps is not as expected", "swapon --show says it");
+        return unknown("/proc/swaps has an unknown format", "see swapon --show");
     if (lines.size() == 1) return pass("no swap");
     const auto fields = split(lines[1], " \t");
     const std::string where = fields.empty() ? "?" : std::string(fields[0]);
     const auto swappiness = m.number("/proc/sys/vm/swappiness");
     if (!swappiness)
-        return unknown(where + " is on, and vm.swappiness cannot be read", "swapoff -a, and take it out of /etc/fstab");
+        return unknown(where + " is on, and vm.swappiness cannot be read", "swapoff -a, and remove it from /etc/fstab");
     std::string evidence = fmt::format("{} is on, vm.swappiness is {}", where, *swappiness);
     if (*swappiness <= 10) return pass(std::move(evidence));
-    return fail(std::move(evidence), "swapoff -a, and take it out of /etc/fstab; or " + keep("vm.swappiness", 1));
+    return fail(std::move(evidence), "swapoff -a, and remove it from /etc/fstab; or " + keep("vm.swappiness", 1));
 }
 
 Finding compaction(const Machine& m) {
     const auto value = m.number("/proc/sys/vm/compact_unevictable_allowed");
     if (!value)
         return unknown("/proc/sys/vm/compact_unevictable_allowed cannot be read",
-                       "nothing, if this kernel is built without compaction");
-    if (*value == 0) return pass("locked pages stay where they are (vm.compact_unevictable_allowed is 0)");
-    return fail("compaction moves locked pages too: a fault in the frame (vm.compact_unevictable_allowed is 1)",
+                       "nothing to do if this kernel is built without compaction");
+    if (*value == 0) return pass("compaction does not move locked pages (vm.compact_unevictable_allowed is 0)");
+    return fail("compaction moves locked pages, which causes page faults (vm.compact_unevictable_allowed is 1)",
                 keep("vm.compact_unevictable_allowed", 0));
 }
 
 Finding merging(const Machine& m) {
     const auto value = m.number("/sys/kernel/mm/ksm/run");
-    if (!value) return unknown("/sys/kernel/mm/ksm/run cannot be read", "nothing, if this kernel is built without it");
+    if (!value) return unknown("/sys/kernel/mm/ksm/run cannot be read", "nothing to do if this kernel is built without it");
     if (*value != 1) return pass(fmt::format("pages are not merged (ksm/run is {})", *value));
-    return fail("equal pages are merged, and copied again at the next write", "echo 2 > /sys/kernel/mm/ksm/run");
+    return fail("KSM merges equal pages, and copies them again at the next write", "echo 2 > /sys/kernel/mm/ksm/run");
 }
 
 constexpr std::array all_memory_checks = {
-    Check{"memory.available", "room to lock everything", available},
-    Check{"memory.huge_pages", "no joining of pages", huge_pages},
-    Check{"memory.swap", "nothing is swapped", swap},
-    Check{"memory.compaction", "locked pages stay", compaction},
-    Check{"memory.merging", "no merging of pages", merging},
+    Check{"memory.available", "enough memory to lock", available},
+    Check{"memory.huge_pages", "no transparent huge pages", huge_pages},
+    Check{"memory.swap", "no swap", swap},
+    Check{"memory.compaction", "no compaction of locked pages", compaction},
+    Check{"memory.merging", "no merging of equal pages", merging},
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Trying, and putting back.
-#include "tools/doctor/probe.hpp"
+#include "tools/doctor/machine.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -44,7 +44,7 @@ RendererFound try_renderer() {
     options.max_items = 64;
     const auto device = gl::open_device(options);
     if (!device) {
-        found.error = device.error().place + " " + device.error().what;
+        found.error = device.error().place + ": " + device.error().what;
         found.remedy = device.error().remedy;
         return found;
     }

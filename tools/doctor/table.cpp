@@ -1,83 +1,80 @@
-// Plain text; colour only where it is asked for.
-#include "tools/doctor/table.hpp"
+// Topics, findings, remedies, and what a wake-up run measured.
+#include "tools/doctor/check.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "tools/doctor/words.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::doctor {
 
 namespace {
 
-constexpr std::size_t name_width = 17, what_width = 33, indent = 4 + name_width + what_width;
+using report::Ink;
+using report::inked;
+using report::Look;
 
-class Pen {
-public:
-    explicit Pen(const TableOptions& options) : options_(options) {}
-    [[nodiscard]] std::string paint(std::string_view code, std::string_view text) const {
-        return options_.colour ? fmt::format("\033[{}m{}\033[0m", code, text) : std::string(text);
-    }
-    [[nodiscard]] std::string bold(std::string_view text) const { return paint("1", text); }
-    [[nodiscard]] std::string dim(std::string_view text) const { return paint("2", text); }
-    [[nodiscard]] std::string mark(Status status) const {
-        switch (status) {
-            case Status::pass:
-                return paint("32", options_.utf8 ? "✓" : "+");
-            case Status::fail:
-                return paint("1;31", options_.utf8 ? "✗" : "x");
-            case Status::unknown:
-                return paint("33", "?");
-        }
-        return {};
-    }
-    [[nodiscard]] std::string arrow() const { return options_.utf8 ? "→" : "->"; }
+constexpr std::size_t name_width = 17, what_width = 37, indent = 4 + name_width + what_width;
 
-private:
-    const TableOptions& options_;
-};
-
-/// Words in lines of at most `width`; a longer word has a line of its own.
-std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
-    std::vector<std::string> lines(1);
-    for (const std::string_view word : split(text, " ")) {
-        if (!lines.back().empty() && lines.back().size() + 1 + word.size() > width) lines.emplace_back();
-        lines.back() += (lines.back().empty() ? "" : " ") + std::string(word);
+std::string mark(Status status, const Look& look) {
+    switch (status) {
+        case Status::pass:
+            return inked(look, Ink::good, look.unicode ? "✓" : "+");
+        case Status::fail:
+            return inked(look, Ink::strong_bad, look.unicode ? "✗" : "x");
+        case Status::unknown:
+            return inked(look, Ink::warn, "?");
     }
-    return lines;
+    return {};
 }
 
-std::string row(const Examined& e, const Pen& pen, std::size_t width) {
+/// With one space between words: what the kernel writes may hold more.
+std::string single_spaced(std::string_view text) { return fmt::format("{}", fmt::join(split(text, " "), " ")); }
+
+std::string row(const Examined& e, const Look& look) {
     const std::string name(e.check.name.substr(e.check.name.find('.') + 1));
-    std::string text = fmt::format("  {} {:<{}}{}", pen.mark(e.finding.status), name, name_width,
-                                   pen.dim(fmt::format("{:<{}}", e.check.what, what_width)));
-    const auto lines = wrapped(e.finding.evidence, std::max<std::size_t>(width, indent + 30) - indent);
+    std::string text = fmt::format("  {} {:<{}}{}", mark(e.finding.status, look), name, name_width,
+                                   inked(look, Ink::dim, fmt::format("{:<{}}", e.check.what, what_width)));
+    const auto lines =
+        report::wrapped(single_spaced(e.finding.evidence), std::max<std::size_t>(look.width, indent + 30) - indent);
     for (std::size_t i = 0; i < lines.size(); ++i)
-        text +=
-            (i == 0 ? "" : std::string(indent, ' ')) + (e.finding.status == Status::fail ? pen.bold(lines[i]) : lines[i]) + "\n";
+        text += (i == 0 ? "" : std::string(indent, ' ')) +
+                (e.finding.status == Status::fail ? inked(look, Ink::bold, lines[i]) : lines[i]) + "\n";
     if (e.finding.status != Status::pass && !e.finding.remedy.empty())
-        text += fmt::format("    {} {}\n", pen.paint("36", pen.arrow()), pen.paint("36", e.finding.remedy));
+        text += fmt::format("    {} {}\n", inked(look, Ink::hint, look.unicode ? "→" : "->"),
+                            inked(look, Ink::hint, e.finding.remedy));
     return text;
 }
+
+const report::Columns wake_columns({{"", 13},
+                                    {"time", -9, 0},
+                                    {"p50", -9, 0},
+                                    {"p99", -9, 0},
+                                    {"p99.9", -9, 0},
+                                    {"max", -9, 0},
+                                    {"slots", -9, 0},
+                                    {"skipped", -9, 0},
+                                    {"stolen", -9, 0}});
 
 std::string wake_row(const WakeFigures& f) {
     const std::string stolen = f.steal_ms >= 0 ? fmt::format("{:.0f} ms", f.steal_ms) : "-";
     const std::string skipped = f.source == "surefoot" ? std::to_string(f.skipped) : "-";
-    return fmt::format("  {:<11}{:>7.1f} s{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9}{:>9}{:>9}\n", f.source, f.seconds, f.p50_us,
-                       f.p99_us, f.p999_us, f.max_us, f.slots, skipped, stolen);
+    const auto us = [](double value) { return fmt::format("{:.0f}", value); };
+    return wake_columns.row({"  " + f.source, fmt::format("{:.1f} s", f.seconds), us(f.p50_us), us(f.p99_us), us(f.p999_us),
+                             us(f.max_us), std::to_string(f.slots), skipped, stolen}) +
+           "\n";
 }
 
-std::string wake_table(const Probed& probed, const Pen& pen) {
+std::string wake_table(const Probed& probed, const Look& look) {
     if (!probed.wake_up) return {};
     const WakeFigures& f = *probed.wake_up;
     std::string text =
-        fmt::format("\n{}  {}\n", pen.bold("wake-up"),
-                    pen.dim(fmt::format("every 1 ms on core {}, {}; lateness in us", f.core,
-                                        f.priority > 0 ? fmt::format("SCHED_FIFO {}", f.priority) : "ordinary scheduling")));
-    text += pen.dim(fmt::format("  {:<11}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}", "", "time", "p50", "p99", "p99.9", "max",
-                                "slots", "skipped", "stolen")) +
-            "\n";
+        fmt::format("\n{}  {}\n", inked(look, Ink::bold, "wake-up"),
+                    inked(look, Ink::dim,
+                          fmt::format("every 1 ms on core {}, {}; lateness in us", f.core,
+                                      f.priority > 0 ? fmt::format("SCHED_FIFO {}", f.priority) : "ordinary scheduling")));
+    text += inked(look, Ink::dim, wake_columns.heading()) + "\n";
     text += wake_row(f);
     if (probed.cyclictest) text += wake_row(*probed.cyclictest);
     return text;
@@ -85,23 +82,22 @@ std::string wake_table(const Probed& probed, const Pen& pen) {
 
 }  // namespace
 
-std::string table(const Machine& machine, std::span<const Examined> examined, const TableOptions& options) {
-    const Pen pen(options);
+std::string table(const Machine& machine, std::span<const Examined> examined, const Look& look) {
     std::string text, topic;
     for (const Examined& e : examined) {
         const std::string its(e.check.name.substr(0, e.check.name.find('.')));
-        if (its != topic) text += (topic.empty() ? "" : "\n") + pen.bold(its) + "\n";
+        if (its != topic) text += (topic.empty() ? "" : "\n") + inked(look, Ink::bold, its) + "\n";
         topic = its;
-        text += row(e, pen, options.width);
+        text += row(e, look);
     }
-    text += wake_table(machine.probed(), pen);
+    text += wake_table(machine.probed(), look);
     const Summary s = summarise(examined);
     const std::string counts = fmt::format("{} pass, {} fail, {} unknown", s.pass, s.fail, s.unknown);
     const std::string core = machine.frame_core() ? fmt::format("frame core {}", *machine.frame_core()) : "no frame core found";
-    text += fmt::format("\n{} ({}): {}\n", pen.bold(counts), core,
-                        s.fail > 0      ? pen.paint("1;31", "not fit as it stands")
-                        : s.unknown > 0 ? pen.paint("33", "nothing fails, but not all could be told")
-                                        : pen.paint("32", "fit"));
+    text += fmt::format("\n{} ({}): {}\n", inked(look, Ink::bold, counts), core,
+                        s.fail > 0      ? inked(look, Ink::strong_bad, "not fit")
+                        : s.unknown > 0 ? inked(look, Ink::warn, "nothing fails, but some checks are unknown")
+                                        : inked(look, Ink::good, "fit"));
     return text;
 }
 

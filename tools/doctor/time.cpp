@@ -15,9 +15,9 @@ Finding clock_source(const Machine& m) {
     const auto name = m.text(file);
     if (!name || name->empty()) return unknown(fmt::format("{} cannot be read", file), "mount -t sysfs sysfs /sys");
     for (const auto* good : {"tsc", "kvm-clock", "arch_sys_counter", "hyperv_clocksource_tsc_page"}) {
-        if (*name == good) return pass(*name + ": read without a system call");
+        if (*name == good) return pass(*name + ": it is read without a system call");
     }
-    return fail(*name + ": every reading is slow, and a system call",
+    return fail(*name + ": every reading is a slow system call",
                 fmt::format("echo tsc > {}; or boot with clocksource=tsc tsc=reliable", file));
 }
 
@@ -25,22 +25,22 @@ Finding tsc(const Machine& m) {
     const auto constant = m.processor_flag("constant_tsc"), nonstop = m.processor_flag("nonstop_tsc");
     if (!constant || !nonstop) {
         if (m.text("/sys/devices/system/clocksource/clocksource0/current_clocksource") == "arch_sys_counter")
-            return pass("the system counter of this processor keeps one rate by its architecture");
+            return pass("the system counter of this processor has a constant rate by its architecture");
         return unknown("/proc/cpuinfo lists no flags", "mount -t proc proc /proc");
     }
     if (*constant && *nonstop) return pass("constant_tsc and nonstop_tsc");
-    return fail(
-        fmt::format("the time stamp counter {}",
-                    !*constant ? "changes its rate (no constant_tsc)" : "stops in deep sleep (no nonstop_tsc)"),
-        "in a virtual machine: let the host pass invtsc through (-cpu host,+invtsc); on metal: boot with processor.max_cstate=1");
+    return fail(fmt::format("the time stamp counter {}",
+                            !*constant ? "changes its rate (no constant_tsc)" : "stops in deep sleep (no nonstop_tsc)"),
+                "in a virtual machine: pass invtsc from the host (-cpu host,+invtsc); on real hardware: boot with "
+                "processor.max_cstate=1");
 }
 
 Finding hypervisor(const Machine& m) {
     const auto guest = m.processor_flag("hypervisor");
-    if (!guest) return unknown("/proc/cpuinfo lists no flags", "systemd-detect-virt says it");
+    if (!guest) return unknown("/proc/cpuinfo lists no flags", "see systemd-detect-virt");
     if (!*guest) return pass("no hypervisor (/proc/cpuinfo)");
-    return fail("a virtual machine: the host takes cores away when it likes, and nothing in here can stop it",
-                "run it on the machine itself; or on the host pin every virtual core to a core of its own (virsh vcpupin), with "
+    return fail("this is a virtual machine: the host may take CPU time at any moment, and the guest cannot prevent it",
+                "run on real hardware; or, on the host, pin every virtual core to its own physical core (virsh vcpupin), with "
                 "nohz_full there");
 }
 
@@ -48,7 +48,7 @@ Finding hypervisor(const Machine& m) {
 Finding steal(const Machine& m) {
     const auto stat = m.text("/proc/stat");
     const auto core = m.frame_core();
-    if (!stat || !core) return unknown("/proc/stat or the frame core is not to be seen", "mount -t proc proc /proc");
+    if (!stat || !core) return unknown("/proc/stat or the frame core cannot be read", "mount -t proc proc /proc");
     const std::string label = fmt::format("cpu{}", *core);
     for (const std::string_view line : split(*stat, "\n")) {
         const auto fields = split(line, " ");
@@ -61,16 +61,16 @@ Finding steal(const Machine& m) {
         std::string evidence = fmt::format("the host took {:.3f} % of core {} since boot (/proc/stat)", 100 * share, *core);
         if (share <= 1e-4) return pass(std::move(evidence));
         return fail(std::move(evidence),
-                    "on the host: give this machine cores of its own (virsh vcpupin), and keep other load off them");
+                    "on the host: pin this machine to its own cores (virsh vcpupin), and keep other load off them");
     }
-    return unknown(label + " is not in /proc/stat, or has run for less than a second", "ask again later");
+    return unknown(label + " is not in /proc/stat, or has run for less than a second", "run again later");
 }
 
 constexpr std::array all_time_checks = {
-    Check{"time.clock_source", "the clock is quick to read", clock_source},
-    Check{"time.tsc", "it keeps one rate", tsc},
-    Check{"time.hypervisor", "no host above", hypervisor},
-    Check{"time.steal", "nobody takes the frame core", steal},
+    Check{"time.clock_source", "a fast clock source", clock_source},
+    Check{"time.tsc", "a constant, nonstop TSC", tsc},
+    Check{"time.hypervisor", "no hypervisor", hypervisor},
+    Check{"time.steal", "no stolen time on the frame core", steal},
 };
 
 }  // namespace

@@ -49,8 +49,8 @@ int place(const WakeOptions& o) {
 std::string in_words(const WakeFigures& f) {
     std::string text = fmt::format("p50 {:.0f}, p99 {:.0f}, p99.9 {:.0f}, max {:.0f} us over {} slots of 1 ms", f.p50_us,
                                    f.p99_us, f.p999_us, f.max_us, f.slots);
-    if (f.skipped > 0) text += fmt::format(", {} passed over", f.skipped);
-    if (f.steal_ms >= 0) text += fmt::format("; {:.0f} ms stolen meanwhile", f.steal_ms);
+    if (f.skipped > 0) text += fmt::format(", {} skipped", f.skipped);
+    if (f.steal_ms >= 0) text += fmt::format("; {:.0f} ms stolen during the run", f.steal_ms);
     return text;
 }
 
@@ -59,27 +59,27 @@ Finding not_run() { return unknown("not measured", "run surefoot doctor on the m
 Finding usual(const Machine& m) {
     const auto& f = m.probed().wake_up;
     if (!f || f->slots == 0) return not_run();
-    if (f->priority == 0) return fail("measured without SCHED_FIFO, which was refused: " + in_words(*f), "see limits.fifo_tried");
+    if (f->priority == 0)
+        return fail("measured without SCHED_FIFO, because it was refused: " + in_words(*f), "see the check limits.fifo_tried");
     if (f->p99_us <= p99_limit_us) return pass(in_words(*f));
-    return fail(
-        in_words(*f),
-        "mend what fails in kernel, interrupts and power above; then, as root: rtla timerlat top -a 500 names the culprit");
+    return fail(in_words(*f),
+                "fix the failed checks of kernel, interrupts and power; then, as root, rtla timerlat top -a 500 names the cause");
 }
 
 Finding longest(const Machine& m) {
     const auto& f = m.probed().wake_up;
     if (!f || f->slots == 0) return not_run();
-    std::string evidence = fmt::format("the latest of {} was {:.1f} ms late, half a frame at 60 Hz is {:.1f} ms", f->slots,
-                                       f->max_us / 1000, longest_limit_us / 1000);
+    std::string evidence = fmt::format("the latest of {} wake-ups was {:.1f} ms late; half a frame at 60 Hz is {:.1f} ms",
+                                       f->slots, f->max_us / 1000, longest_limit_us / 1000);
     if (f->max_us <= longest_limit_us) return pass(std::move(evidence));
     return fail(std::move(evidence), f->steal_ms > 0
-                                         ? "the host stole time meanwhile: see time.hypervisor and time.steal"
+                                         ? "the host stole time during the run: see the checks time.hypervisor and time.steal"
                                          : "as root: hwlatdetect --duration=60 (firmware), rtla timerlat top -a 500 (kernel)");
 }
 
 constexpr std::array all_wake_up_checks = {
-    Check{"wake_up.usual", "p99 within 1 ms", usual},
-    Check{"wake_up.longest", "no wake-up costs a frame", longest},
+    Check{"wake_up.usual", "wake-ups: p99 within 1 ms", usual},
+    Check{"wake_up.longest", "no wake-up is half a frame late", longest},
 };
 
 }  // namespace

@@ -1,10 +1,15 @@
-// The wake-up run: a bare FIFO loop on the frame core, counted by our own grid and histogram so that no late slot is lost.
+// The wake-up run: a bare FIFO loop on the frame core, counted by our own grid and histogram so that no late slot is
+// lost; and the same run by cyclictest (Debian's rt-tests), read into that histogram.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/histogram.hpp"
 #include "tools/doctor/machine.hpp"
@@ -33,5 +38,15 @@ WakeFigures figures_of(const rt::Histogram& late_ns, std::string source);
 
 /// On a thread made for it; progress and stop by `progress`. What is refused (FIFO, the core) shows in the figures.
 WakeFigures run_wake_up(const WakeOptions& options, const Progress& progress);
+
+/// Where a program is on $PATH.
+std::optional<std::string> find_program(const std::string& name);
+
+/// What `cyclictest -q -h N` of one thread prints: "latency count" lines in microseconds, then '#' lines. What lay beyond its
+/// last bin is counted at its maximum, so that no cycle is lost here too.
+Result<WakeFigures> read_cyclictest(std::string_view printed);
+
+/// Runs it as `program`; the machine is left as it is (--default-system), as it is for our own run.
+Result<WakeFigures> run_cyclictest(const std::string& program, const WakeOptions& options, const Progress& progress);
 
 }  // namespace surefoot::doctor

@@ -7,16 +7,17 @@
 #include <sys/un.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+
+#include "rt/base/text.hpp"
 
 namespace surefoot::monitor {
 
 namespace {
 
-constexpr std::string_view forms = "write unix:/run/surefoot/surefoot.sock or 127.0.0.1:9464";
+constexpr std::string_view forms = "Write unix:/run/surefoot/surefoot.sock or 127.0.0.1:9464";
 
 bool is_loopback(const std::string& host) {
     in_addr four{};
@@ -26,12 +27,12 @@ bool is_loopback(const std::string& host) {
 }
 
 Result<Address> parse_socket(const std::string& text, const std::string& path) {
-    if (path.empty()) return Error{text, "names no socket", std::string(forms)};
+    if (path.empty()) return Error{text, "The address names no socket", std::string(forms), ErrorKind::misuse};
     if (path.size() >= sizeof(sockaddr_un::sun_path)) {
-        return Error{
-            text,
-            fmt::format("is too long for a socket: {} characters, at most {}", path.size(), sizeof(sockaddr_un::sun_path) - 1),
-            "choose a shorter path"};
+        return Error{text,
+                     fmt::format("The path is too long for a socket: {} characters, at most {}", path.size(),
+                                 sizeof(sockaddr_un::sun_path) - 1),
+                     "Choose a shorter path", ErrorKind::misuse};
     }
     Address address;
     address.socket_path = path;
@@ -50,18 +51,19 @@ Result<Address> parse_address(const std::string& text) {
     if (text.starts_with(unix_prefix)) return parse_socket(text, text.substr(unix_prefix.size()));
     if (text.find('/') != std::string::npos) return parse_socket(text, text);
     const std::size_t colon = text.rfind(':');
-    if (colon == std::string::npos) return Error{text.empty() ? "address" : text, "is no address", std::string(forms)};
+    if (colon == std::string::npos)
+        return Error{text.empty() ? "address" : text, "This is not an address", std::string(forms), ErrorKind::misuse};
     Address address;
     address.host = text.substr(0, colon);
     if (address.host.size() > 2 && address.host.front() == '[' && address.host.back() == ']')
         address.host = address.host.substr(1, address.host.size() - 2);
     if (address.host == "localhost") address.host = "127.0.0.1";
-    const char* end = text.data() + text.size();
-    const auto [read_to, problem] = std::from_chars(text.data() + colon + 1, end, address.port);
-    if (problem != std::errc{} || read_to != end) return Error{text, "has no port from 0 to 65535", std::string(forms)};
+    const auto port = number_in<std::uint16_t>(std::string_view(text).substr(colon + 1));
+    if (!port) return Error{text, "The address has no port from 0 to 65535", std::string(forms), ErrorKind::misuse};
+    address.port = *port;
     if (!is_loopback(address.host)) {
-        return Error{text, "is not on loopback: whoever reaches this machine could look",
-                     "name 127.0.0.1, [::1] or a socket; to look from elsewhere, put a proxy that knows its users before it"};
+        return Error{text, "The address is not on loopback: everyone who reaches this machine could read the figures",
+                     "Name 127.0.0.1, [::1] or a socket. For access from elsewhere, use a proxy with a login", ErrorKind::misuse};
     }
     return address;
 }

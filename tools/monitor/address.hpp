@@ -1,4 +1,5 @@
 // Where a monitor is found: a Unix socket, or a port on loopback. Written unix:/PATH (or /PATH), 127.0.0.1:9464, [::1]:9464.
+// And a page asked for there.
 #pragma once
 
 #include <sys/socket.h>
@@ -36,5 +37,9 @@ struct SocketAddress {
     [[nodiscard]] int family() const { return storage.ss_family; }
 };
 SocketAddress socket_address(const Address& address);
+
+/// The body of GET `path`. It never waits longer than `timeout_ms`. Errors name the place and the remedy: nobody there, no
+/// permission, no answer in time, another program.
+Result<std::string> fetch(const Address& address, std::string_view path, std::int64_t timeout_ms = 3000);
 
 }  // namespace surefoot::monitor

@@ -1,5 +1,5 @@
 // Connect, ask, read to the end; one deadline for all of it.
-#include "tools/monitor/client.hpp"
+#include "tools/monitor/address.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
+#include "rt/base/text.hpp"
 #include "rt/clock/clock.hpp"
 
 namespace surefoot::monitor {
@@ -30,20 +30,19 @@ struct OwnSocket {
 };
 
 constexpr std::string_view start_one =
-    "start the service with `systemctl start surefootd`, or a walk with --monitor; or name its place with --socket";
+    "Start the service with `systemctl start surefootd`, start a walk with --monitor, or name its address with --socket";
 
 Error unreachable(const Address& address, int error) {
     std::string remedy(start_one);
-    if (error == EACCES || error == EPERM)
-        remedy = "you may not look there: ask to be let into the group of its folder, or use sudo";
-    return {address.text(), fmt::format("nobody serves there: {}", std::strerror(error)),
-            remedy};  // NOLINT(concurrency-mt-unsafe)
+    if (error == EACCES || error == EPERM) remedy = "This user may not read there: join the group of its folder, or use sudo";
+    return {address.text(), fmt::format("Nobody serves there: {}", std::strerror(error)), remedy,
+            ErrorKind::not_found};  // NOLINT(concurrency-mt-unsafe)
 }
 
 Error too_slow(const Address& address, std::int64_t timeout_ms) {
-    return {address.text(),
-            fmt::format("somebody listens, but does not answer within {} s", static_cast<double>(timeout_ms) * 1e-3),
-            "is the service stopped, or the machine out of CPU time? look at `systemctl status surefootd`"};
+    return {address.text(), fmt::format("The server does not answer within {} s", static_cast<double>(timeout_ms) * 1e-3),
+            "Run `systemctl status surefootd`: the service may be stopped, or the machine out of CPU time",
+            ErrorKind::unreadable};
 }
 
 /// Whether the socket is ready before the deadline.
@@ -60,23 +59,24 @@ bool ready(int fd, short what, std::int64_t deadline_ns) {
 
 /// The body, where the answer is a whole page with status 200.
 Result<std::string> body_of(const Address& address, std::string_view path, const std::string& answer) {
-    const Error strange{address.text(), "something else than a surefoot monitor answers there", "name its place with --socket"};
-    int code = 0;
+    const Error strange{address.text(), "Something other than a surefoot monitor answers there",
+                        "Name the monitor's address with --socket", ErrorKind::damaged};
     const std::size_t head_end = answer.find("\r\n\r\n");
     if (!answer.starts_with("HTTP/1.") || answer.size() < 12 || head_end == std::string::npos) return strange;
-    std::from_chars(answer.data() + 9, answer.data() + 12, code);
+    const int code = leading_number(std::string_view(answer).substr(9, 3), 0);
     if (code == 404)
-        return Error{address.text(), fmt::format("knows no page {}", path), "is it an older surefoot, or another program?"};
+        return Error{address.text(), fmt::format("The server has no page {}", path),
+                     "Check the address: an older surefoot or another program serves there", ErrorKind::not_found};
     if (code != 200)
-        return Error{address.text(), fmt::format("answers {} to {}", answer.substr(9, answer.find('\r') - 9), path), ""};
+        return Error{address.text(), fmt::format("The server answers {} to {}", answer.substr(9, answer.find('\r') - 9), path),
+                     "", ErrorKind::unreadable};
     const std::string_view head = std::string_view(answer).substr(0, head_end);
     constexpr std::string_view length_is = "Content-Length: ";
     const std::size_t at = head.find(length_is);
-    std::size_t length = 0;
     if (at == std::string_view::npos) return strange;
-    std::from_chars(head.data() + at + length_is.size(), head.data() + head.size(), length);
+    const auto length = leading_number<std::size_t>(head.substr(at + length_is.size()), 0);
     std::string body = answer.substr(head_end + 4);
-    if (body.size() != length) return Error{address.text(), "the answer was cut off", "try again"};
+    if (body.size() != length) return Error{address.text(), "The answer was cut off", "Try again", ErrorKind::unreadable};
     return body;
 }
 
@@ -112,14 +112,16 @@ Result<std::string> fetch(const Address& address, std::string_view path, std::in
         const ssize_t got = sending ? ::send(s.fd, request.data() + sent, request.size() - sent, MSG_NOSIGNAL)
                                     : ::read(s.fd, part.data(), part.size());
         if (got < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-        if (got < 0) return Error{address.text(), "the connection broke off", "try again"};
+        if (got < 0) return Error{address.text(), "The connection broke off", "Try again", ErrorKind::unreadable};
         if (sending) {
             sent += static_cast<std::size_t>(got);
             continue;
         }
         if (got == 0) return body_of(address, path, answer);
         answer.append(part.data(), static_cast<std::size_t>(got));
-        if (answer.size() > most_bytes) return Error{address.text(), "answers without end", "is that a surefoot monitor?"};
+        if (answer.size() > most_bytes)
+            return Error{address.text(), "The answer does not end", "Check that a surefoot monitor serves there",
+                         ErrorKind::out_of_limits};
     }
 }
 

@@ -119,8 +119,8 @@ Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::I
     std::error_code problem;
     fs::create_directories(half, problem);
     if (problem)
-        return Error{half.string(), "cannot be made: " + problem.message(),
-                     "see that its disk has room, and who may write there"};
+        return Error{half.string(), "The folder cannot be made: " + problem.message(),
+                     "Check the free space of its disk and who may write there", ErrorKind::unwritable};
     const auto give_up = [&](const Error& error) {
         std::error_code ignored;
         fs::remove_all(half, ignored);
@@ -129,10 +129,13 @@ Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::I
     if (auto ok = write_files(half, incident, time, missed); !ok) return give_up(ok.error());
     const std::uint64_t bytes = bytes_below(half);
     if (bytes > limits.bytes)
-        return give_up({half.string(), fmt::format("would take {} bytes, {} are allowed", bytes, limits.bytes), "allow more"});
+        return give_up({half.string(), fmt::format("The incident takes {} bytes, {} are allowed", bytes, limits.bytes),
+                        "Allow more", ErrorKind::out_of_limits});
     make_room(dir, bytes, limits);
     fs::rename(half, whole, problem);
-    if (problem) return give_up({whole.string(), "cannot be renamed: " + problem.message(), "look at the disk that it is on"});
+    if (problem)
+        return give_up(
+            {whole.string(), "The folder cannot be renamed: " + problem.message(), "Check its disk", ErrorKind::unwritable});
     return whole.string();
 }
 
@@ -145,7 +148,9 @@ Result<std::unique_ptr<IncidentWriter>> IncidentWriter::start(const std::string&
                                                               std::function<void(std::string_view)> say) {
     std::error_code problem;
     fs::create_directories(dir, problem);
-    if (problem) return Error{dir, "cannot be made: " + problem.message(), "name a folder that can be written"};
+    if (problem)
+        return Error{dir, "The folder cannot be made: " + problem.message(), "Name a folder that can be written",
+                     ErrorKind::unwritable};
     if (auto ok = probe_writable((fs::path(dir) / "incident.json").string()); !ok) return ok.error();
     for (const fs::path& half : folders_in(dir, half_prefix)) fs::remove_all(half, problem);
     std::unique_ptr<IncidentWriter> writer(new IncidentWriter(dir, box, limits, std::move(say)));
@@ -186,11 +191,11 @@ bool IncidentWriter::write(const rt::BlackBox::Incident& incident) {
     const auto folder =
         write_incident(dir_, incident, limits_, std::chrono::duration_cast<std::chrono::seconds>(now).count(), &missed);
     if (folder) {
-        if (say_) say_(fmt::format("a burst of misses from frame {} on: {}", incident.first_frame, *folder));
+        if (say_) say_(fmt::format("a burst of misses from frame {} on was recorded: {}", incident.first_frame, *folder));
         failing_ = false;
         return true;
     }
-    if (!failing_ && say_) say_("a burst of misses could not be written down: " + folder.error().text());
+    if (!failing_ && say_) say_("a burst of misses could not be recorded: " + folder.error().text());
     failing_ = true;
     return false;
 }

@@ -1,5 +1,5 @@
-// Incidents on disk: what the black box hands over, as a ledger and a trace in a folder of its own, within bounds of number and
-// bytes. Written by an ordinary thread; a full disk is said once and survived.
+// Incidents on disk: each record of the black box becomes a folder with a ledger and a trace. Their number and bytes are limited.
+// An ordinary thread writes them; a full disk is logged once and does no other harm.
 #pragma once
 
 #include <atomic>
@@ -21,25 +21,25 @@ struct IncidentLimits {
     std::uint64_t bytes = 256ULL << 20U;  ///< of all of them together; an incident that alone is larger is not kept
 };
 
-/// A missed frame as `surefoot replay` takes it, and who can write it into a file.
+/// A missed frame for `surefoot replay`, and the function that writes it into a file.
 struct MissedFrame {
     std::uint64_t frame = 0;  ///< of the walk
     std::function<Result<void>(const std::string& file)> write;
 };
 
-/// DIR/incident-20260102T030405Z-000017/{incident.json, ledger.csv, trace.json, frame.capture}: a folder is there whole or not at
-/// all. Others' files in DIR are left alone.
+/// DIR/incident-20260102T030405Z-000017/{incident.json, ledger.csv, trace.json, frame.capture}: a folder appears only when
+/// it is complete. Other files in DIR are not touched.
 class IncidentWriter {
 public:
-    /// Makes the folder where it is missing, and clears away what an earlier process left half-written. Its thread, sf-incidents,
+    /// Creates the folder if it is missing, and removes unfinished incidents of an earlier process. Its thread, sf-incidents,
     /// inherits the caller's place. say: what somebody should know, once; on that thread. `box` must outlive it.
     static Result<std::unique_ptr<IncidentWriter>> start(const std::string& dir, rt::BlackBox& box, const IncidentLimits& limits,
                                                          std::function<void(std::string_view)> say);
-    ~IncidentWriter();  ///< what waits is written first
+    ~IncidentWriter();  ///< writes waiting incidents first
     IncidentWriter(const IncidentWriter&) = delete;
     IncidentWriter& operator=(const IncidentWriter&) = delete;
 
-    /// Any thread: goes into the next incident that it belongs to; a later one takes its place.
+    /// Any thread. The frame goes into the next incident that it belongs to; a later frame replaces it.
     void offer(MissedFrame missed) EXCLUDES(missed_mutex_);
 
     [[nodiscard]] std::uint64_t written() const { return written_.load(std::memory_order_acquire); }
@@ -48,7 +48,7 @@ public:
 private:
     IncidentWriter(std::string dir, rt::BlackBox& box, const IncidentLimits& limits, std::function<void(std::string_view)> say);
     void run();
-    /// False: it could not be, and that was said.
+    /// False: it failed, and that was logged.
     bool write(const rt::BlackBox::Incident& incident) REQUIRES(writes_) EXCLUDES(missed_mutex_);
 
     std::string dir_;

@@ -18,13 +18,13 @@ namespace {
 constexpr int waiting_most = 16;  // in the system's queue: a flood waits or is turned away there, at no cost to us
 
 Error listen_error(const Address& address, int error) {
-    std::string remedy = "name another place";
-    if (error == EACCES || error == EPERM || error == EROFS) remedy = "name a folder that this user may write in";
-    if (error == ENOENT || error == ENOTDIR) remedy = "make its folder first, or name another place";
-    if (error == EADDRINUSE) remedy = "end what listens there, or name another place";
-    if (error == EADDRNOTAVAIL) remedy = "name an address of this machine's loopback, as 127.0.0.1";
-    return {address.text(), fmt::format("cannot listen there: {}", std::strerror(error)),
-            remedy};  // NOLINT(concurrency-mt-unsafe)
+    std::string remedy = "Name another address";
+    if (error == EACCES || error == EPERM || error == EROFS) remedy = "Name a folder that this user may write in";
+    if (error == ENOENT || error == ENOTDIR) remedy = "Make its folder first, or name another address";
+    if (error == EADDRINUSE) remedy = "Stop the program that listens there, or name another address";
+    if (error == EADDRNOTAVAIL) remedy = "Name an address of this machine's loopback, such as 127.0.0.1";
+    return {address.text(), fmt::format("The monitor cannot listen there: {}", std::strerror(error)), remedy,
+            ErrorKind::unwritable};  // NOLINT(concurrency-mt-unsafe)
 }
 
 /// Success: nothing stands in the way any more.
@@ -32,7 +32,8 @@ Result<void> clear_socket(const Address& address) {
     struct stat info {};
     if (::lstat(address.socket_path.c_str(), &info) != 0) return {};
     if (!S_ISSOCK(info.st_mode))
-        return Error{address.text(), "is there already, and is no socket", "remove it, or name another place"};
+        return Error{address.text(), "A file that is not a socket is there already", "Remove it, or name another address",
+                     ErrorKind::unwritable};
     const SocketAddress to = socket_address(address);
     const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (fd < 0) return listen_error(address, errno);

@@ -22,6 +22,11 @@
 #include "tools/monitor/page.hpp"
 #include "tools/monitor/server.hpp"
 
+namespace surefoot::walk {
+struct WalkRequest;
+struct WalkWatch;
+}  // namespace surefoot::walk
+
 namespace surefoot::monitor {
 
 struct MonitorOptions {
@@ -100,5 +105,8 @@ private:
     std::atomic<const Server*> serving_{nullptr};
     std::unique_ptr<Server> server_;  ///< last: its thread uses all the others
 };
+
+/// Adds the monitor to the observers of `watch`, after those it has. Monitor and request must outlive the walk.
+void watch_with(Monitor& monitor, const walk::WalkRequest& request, walk::WalkWatch& watch);
 
 }  // namespace surefoot::monitor

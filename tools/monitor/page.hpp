@@ -28,16 +28,16 @@ struct MonitoredWalk {
     rt::Granted granted;
 };
 
-/// Something that was told to the user.
+/// A message that was shown to the user.
 struct MonitoredNote {
     double age_s = 0;
     std::string text;
 };
 
-/// How the monitor itself fares.
+/// The monitor's own counters.
 struct MonitorCounts {
-    std::uint64_t scrapes = 0, refused = 0;            ///< answered with what was asked for; with an error
-    std::uint64_t dropped_slow = 0, dropped_full = 0;  ///< readers given up: too slow, or one too many
+    std::uint64_t scrapes = 0, refused = 0;            ///< answered with a page; answered with an error
+    std::uint64_t dropped_slow = 0, dropped_full = 0;  ///< readers dropped: too slow, or too many
     std::uint64_t bursts = 0, incidents_written = 0, incidents_suppressed = 0, incidents_failed = 0;
     std::uint64_t open_readers = 0;
     double monitor_cpu_s = 0;  ///< of the monitor thread, this walk's

@@ -115,7 +115,7 @@ void add_identity(Exposition& e, const MonitorPage& p) {
         e.sample(p.state == state ? 1 : 0, fmt::format("state=\"{}\"", service_state_name(state)));
     }
     e.family("surefoot_degraded", "gauge",
-             "1 where something that real time needs is refused or missing, by reason; `surefoot status` says how to grant it.");
+             "1 if something that real time needs is refused or missing, by reason. `surefoot status` shows how to grant it.");
     for (const std::string_view reason : degraded_reasons()) {
         const bool lacking = std::any_of(p.degraded.begin(), p.degraded.end(),
                                          [&](const rt::Lack& lack) { return degraded_reason(lack.kind) == reason; });
@@ -128,13 +128,12 @@ void add_slots(Exposition& e, const Figures& f) {
     e.counter("surefoot_frames_total", "Frames run. Slots are frames + skipped + lost, exactly.", f.frames);
     e.counter("surefoot_skipped_slots_total", "Slots of the grid without a frame, because an earlier frame ran over them.",
               f.skipped_slots);
-    e.counter("surefoot_lost_slots_total", "Slots whose record did not reach the monitor; nothing is known of them.",
-              f.lost_slots);
+    e.counter("surefoot_lost_slots_total", "Slots whose record did not reach the monitor.", f.lost_slots);
     e.counter("surefoot_slots_total", "Slots of the grid that have passed.", f.slots());
-    e.family("surefoot_misses_total", "counter", "Frames that ended after their deadline, by their one cause.");
+    e.family("surefoot_misses_total", "counter", "Frames that ended after their deadline, by cause.");
     for (int i = 1; i < rt::cause_count; ++i)
         e.count(f.misses[static_cast<std::size_t>(i)], fmt::format("cause=\"{}\"", rt::cause_names[static_cast<std::size_t>(i)]));
-    e.counter("surefoot_own_misses_total", "Misses that were late even with the time taken out that the host or others took.",
+    e.counter("surefoot_own_misses_total", "Misses that would be late even without the time that the host or other threads took.",
               f.own_misses);
 }
 
@@ -151,7 +150,7 @@ void add_times(Exposition& e, const Figures& f) {
         e.histogram(f.of(series), f.edges, fmt::format("phase=\"{}\"", name));
     e.family("surefoot_frame_seconds", "histogram", "From when a frame was due to its end; the deadline is one period.");
     e.histogram(f.of(Series::frame), f.edges);
-    e.family("surefoot_slack_seconds", "histogram", "Time left before the deadline, of frames in time.");
+    e.family("surefoot_slack_seconds", "histogram", "Time left before the deadline, for frames in time.");
     e.histogram(f.of(Series::slack), f.edges);
     e.family("surefoot_lateness_seconds", "histogram",
              "Of late frames: deadline to end. Of skipped slots: their deadline to the end of the next frame. Every slot is in "
@@ -180,7 +179,7 @@ void add_work(Exposition& e, const Figures& f) {
     e.counter("surefoot_slices_total", "Slices submitted.", f.slices);
     e.counter("surefoot_downgraded_slices_total", "Slices drawn by their coarser stand-in to keep the deadline.",
               f.downgraded_slices);
-    e.counter("surefoot_floor_frames_total", "Frames for which even the coarsest picture was over the budget.", f.floor_frames);
+    e.counter("surefoot_floor_frames_total", "Frames whose coarsest picture exceeded the budget.", f.floor_frames);
     e.counter("surefoot_switches_total", "Nodes whose representation changed between frames.", f.switches);
     e.counter("surefoot_triangles_total", "Triangles drawn.", f.triangles);
     e.family("surefoot_page_faults_total", "counter", "Page faults of the frame thread in its own code.");
@@ -190,12 +189,11 @@ void add_work(Exposition& e, const Figures& f) {
               f.driver_faults);
     e.counter("surefoot_driver_allocations_total", "Allocations of the frame thread inside the graphics driver.",
               f.driver_allocations);
-    e.counter("surefoot_guard_violations_total", "Allocations of the frame thread in its own code: there should be none.",
+    e.counter("surefoot_guard_violations_total", "Allocations of the frame thread in its own code. There should be none.",
               f.guard_violations);
     e.counter("surefoot_continues_total", "Times that the process was stopped from outside and continued.", f.continues);
-    e.counter("surefoot_input_reports_total", "Reports of input devices that a frame's pose holds.", f.input_reports);
-    e.counter("surefoot_stopped_frames_total", "Frames that stood still by order: emergency stop, or dead-man.",
-              f.stopped_frames);
+    e.counter("surefoot_input_reports_total", "Reports of input devices that reached a pose of a frame.", f.input_reports);
+    e.counter("surefoot_stopped_frames_total", "Frames that stood still: emergency stop or dead-man.", f.stopped_frames);
     e.counter("surefoot_stolen_seconds_total", "Frame time that the host took: wall less CPU less known waits, no switch seen.",
               static_cast<double>(f.stolen_ns) * 1e-9);
     e.counter("surefoot_preempted_seconds_total", "Frame time that other threads took.",
@@ -234,9 +232,9 @@ void add_now(Exposition& e, const MonitorPage& p) {
     e.gauge("surefoot_accuracy_least_per_radian", "Least accuracy of the last 256 frames.", any ? accuracy_least : unknown);
     e.gauge("surefoot_prepared_age_frames", "Age of the prepared set that the newest frame used; 1 is the newest possible.",
             any ? f.last.prepared_age : unknown);
-    e.gauge("surefoot_last_frame_age_seconds", "Since the newest frame that the monitor knows of ended.",
+    e.gauge("surefoot_last_frame_age_seconds", "Time since the end of the newest frame that the monitor has received.",
             p.last_frame_age_s >= 0 ? p.last_frame_age_s : unknown);
-    e.gauge("surefoot_standing_still", "1 while the walk stands still by order: emergency stop, or dead-man.",
+    e.gauge("surefoot_standing_still", "1 while the walk stands still: emergency stop or dead-man.",
             any ? (f.last.stopped ? 1.0 : 0.0) : 0.0);
     e.gauge("surefoot_emergency_stop", "1 while an emergency stop is latched.", p.input.emergency_stop ? 1 : 0);
     e.gauge("surefoot_input_devices", "Input devices that steer now.", p.input.live ? p.input.devices : std::nan(""));
@@ -259,7 +257,7 @@ void add_process(Exposition& e, const rt::ProcessFigures& p) {
 void add_monitor(Exposition& e, const MonitorCounts& c) {
     e.counter("surefoot_monitor_scrapes_total", "Pages handed out by the monitor.", c.scrapes);
     e.counter("surefoot_monitor_refused_requests_total", "Requests answered with an error.", c.refused);
-    e.family("surefoot_monitor_dropped_readers_total", "counter", "Readers given up: too slow, or one too many at once.");
+    e.family("surefoot_monitor_dropped_readers_total", "counter", "Readers dropped: too slow, or too many at once.");
     e.count(c.dropped_slow, "reason=\"slow\"");
     e.count(c.dropped_full, "reason=\"full\"");
     e.gauge("surefoot_monitor_open_readers", "Readers connected now.", static_cast<double>(c.open_readers));
@@ -285,8 +283,7 @@ std::string prometheus_text(const MonitorPage& page) {
     std::uint64_t failed_checks = 0;
     for (const RareCheck& c : page.rare_checks) failed_checks += c.count;
     e.counter("surefoot_rare_checks_failed_total",
-              "Times that something was seen that cannot happen: there should be none; `surefoot status` names the places.",
-              failed_checks);
+              "Failed checks of what cannot happen. There should be none; `surefoot status` names the places.", failed_checks);
     add_process(e, page.process);
     add_monitor(e, page.counts);
     return e.take();

@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 
+#include "rt/base/text.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/threads/placement.hpp"
 #include "tools/monitor/listen.hpp"
@@ -44,10 +45,7 @@ HostField host_of(std::string_view request) {
         if (!std::equal(name.begin(), name.end(), field.begin(), field.begin() + std::min(field.size(), name.size()), is_name))
             continue;
         if (found != HostField::absent) return HostField::twice;
-        field.remove_prefix(name.size());
-        field.remove_prefix(std::min(field.find_first_not_of(" \t"), field.size()));
-        field = field.substr(0, field.find_last_not_of(" \t") + 1);
-        found = host_is_loopback(field) ? HostField::loopback : HostField::foreign;
+        found = host_is_loopback(trimmed(field.substr(name.size()))) ? HostField::loopback : HostField::foreign;
     }
     return found;
 }
@@ -79,7 +77,9 @@ Result<std::unique_ptr<Server>> Server::listen(const Address& address, Pages pag
     server->listener_ = listener->fd;
     server->socket_inode_ = listener->socket_inode;
     server->wake_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (server->wake_ < 0) return Error{address.text(), "no descriptor is left", "raise the limit of open files (ulimit -n)"};
+    if (server->wake_ < 0)
+        return Error{address.text(), "No file descriptor is left", "Raise the limit of open files (ulimit -n)",
+                     ErrorKind::out_of_limits};
     server->thread_ = std::thread([s = server.get()] { s->run(); });
     return server;
 }

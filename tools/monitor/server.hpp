@@ -1,5 +1,5 @@
-// A small HTTP server for whoever looks at a service: one ordinary thread, pages made by the caller, everything bounded, so that
-// no reader - slow, stopped, half-open, or a hundred a second - costs the service more than a little CPU time.
+// A small HTTP server on one ordinary thread; the caller makes the pages. Everything is bounded: slow, stopped, half-open or very
+// many readers cost the service only a little CPU time.
 #pragma once
 
 #include <atomic>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/monitor/text.hpp"
+#include "tools/monitor/view.hpp"
 
 namespace surefoot::monitor {
 
@@ -24,7 +25,7 @@ constexpr TimeRow time_rows[] = {{"frame", "frame_ms", "ms"},
                                  {"  present", "present_ms", "ms"},
                                  {"prepare (CPU)", "prepare_cpu_us", "us"},
                                  {"late by", "lateness_ms", "ms"},
-                                 {"picture to picture", "shown_interval_ms", "ms"},
+                                 {"frame interval", "shown_interval_ms", "ms"},
                                  {"animation error", "animation_error_ms", "ms"},
                                  {"input age", "input_age_ms", "ms"}};
 
@@ -38,7 +39,7 @@ void add_head(const json& s, const Look& look, std::vector<std::string>& lines) 
     if (!s.contains("walk") || !s["walk"].is_object()) return;
     lines.push_back(
         fmt::format("{} along {}, by {}", text_at(s, "/walk/model"), text_at(s, "/walk/path"), text_at(s, "/walk/selector")));
-    lines.push_back(fmt::format("{:.4g} Hz ({} ms), late pictures: {}, {} on {}", number_at(s, "/walk/rate_hz"),
+    lines.push_back(fmt::format("{:.4g} Hz ({} ms), late frames: {}, {} on {}", number_at(s, "/walk/rate_hz"),
                                 short_number(number_at(s, "/walk/period_ms")), text_at(s, "/walk/late"),
                                 text_at(s, "/walk/backend"), text_at(s, "/walk/renderer")));
 }
@@ -63,49 +64,50 @@ void add_counts(const json& s, const Look& look, std::vector<std::string>& lines
                                 count(number_at(s, "/totals/own_misses"), Ink::bad)));
     if (misses > 0) lines.push_back("  by cause: " + causes_text(s["totals"]["miss_causes"]));
     if (const double lost = number_at(s, "/totals/lost"); lost > 0)
-        lines.push_back(fmt::format("  {} slots' records did not reach the monitor", grouped(lost)));
+        lines.push_back(fmt::format("  the records of {} slots did not reach the monitor", grouped(lost)));
     lines.push_back(fmt::format("{} downgraded slices, {} switches, page faults {} (driver {}), {} guard violations",
                                 grouped(number_at(s, "/totals/downgrades")), grouped(number_at(s, "/totals/switches")),
                                 grouped(number_at(s, "/totals/page_faults")), grouped(number_at(s, "/totals/driver_faults")),
                                 grouped(number_at(s, "/totals/guard_violations"))));
 }
 
-/// A fault of the program that it has outlived: to be reported.
+/// Checks that failed without ending the program: bugs to report.
 void add_rare_checks(const json& s, const Look& look, std::vector<std::string>& lines) {
     if (!s.contains("rare_checks") || !s["rare_checks"].is_array()) return;
     for (const json& c : s["rare_checks"])
         lines.push_back(inked(look, Ink::bad,
-                              fmt::format("a check failed, {} times: not so that {} ({})", grouped(number_at(c, "/count")),
+                              fmt::format("a check failed {} times: {} ({})", grouped(number_at(c, "/count")),
                                           text_at(c, "/sentence"), text_at(c, "/place"))));
 }
 
 void add_times(const json& s, std::vector<std::string>& lines) {
-    lines.push_back(fmt::format("{:<20}{:>10}{:>10}{:>10}{:>10}", "since the start", "p50", "p99", "p99.9", "max"));
+    const report::Columns columns(
+        {{"since the start", 20}, {"p50", -10, 0}, {"p99", -10, 0}, {"p99.9", -10, 0}, {"max", -10, 0}});
+    lines.push_back(columns.heading());
     for (const TimeRow& row : time_rows) {
         const auto at = [&](const char* q) {
             return short_number(number_at(s, fmt::format("/times/{}/{}", row.series, q).c_str()));
         };
         if (std::isnan(number_at(s, fmt::format("/times/{}/count", row.series).c_str()))) continue;
-        lines.push_back(
-            fmt::format("{:<20}{:>10}{:>10}{:>10}{:>10} {}", row.label, at("p50"), at("p99"), at("p999"), at("max"), row.unit));
+        lines.push_back(columns.row({row.label, at("p50"), at("p99"), at("p999"), at("max")}) + " " + row.unit);
     }
     if (const double low = number_at(s, "/times/one_percent_low_hz"); !std::isnan(low))
-        lines.push_back(fmt::format("{:<20}{:>10} Hz", "1 % low", short_number(low)));
+        lines.push_back(columns.row({"1 % low", short_number(low)}) + " Hz");
 }
 
 void add_recent(const json& s, const Look& look, std::vector<std::string>& lines) {
     if (!(number_at(s, "/recent/frames") > 0)) return;
     const double misses = number_at(s, "/recent/misses"), skipped = number_at(s, "/recent/skipped");
     lines.push_back(fmt::format(
-        "last {:.0f} s: {}, slack {} ms at the least ({} usually), budget used {:.0f} %", number_at(s, "/recent/seconds"),
+        "last {:.0f} s: {}, slack min {} ms, p50 {} ms, budget used {:.0f} %", number_at(s, "/recent/seconds"),
         misses + skipped > 0 ? inked(look, Ink::bad, fmt::format("{} missed, {} skipped", grouped(misses), grouped(skipped)))
-                             : inked(look, Ink::good, "nothing missed"),
+                             : inked(look, Ink::good, "no misses"),
         short_number(number_at(s, "/recent/slack_ms/min")), short_number(number_at(s, "/recent/slack_ms/p50")),
         100 * number_at(s, "/recent/budget_used/mean")));
     const double accuracy = number_at(s, "/recent/accuracy/mean");
     lines.push_back(std::isnan(accuracy) ? "  accuracy: exact"
-                                         : fmt::format("  accuracy {} /rad, at the least {}; {} triangles now",
-                                                       short_number(accuracy), short_number(number_at(s, "/recent/accuracy/min")),
+                                         : fmt::format("  accuracy {} /rad, min {}; {} triangles now", short_number(accuracy),
+                                                       short_number(number_at(s, "/recent/accuracy/min")),
                                                        grouped(number_at(s, "/now/triangles"))));
 }
 
@@ -113,7 +115,7 @@ void add_input(const json& s, const Look& look, std::vector<std::string>& lines)
     if (flag_at(s, "/input/emergency_stop"))
         lines.push_back(inked(look, Ink::bad, "emergency stop: the walk stands still"));
     else if (flag_at(s, "/now/standing_still"))
-        lines.push_back(inked(look, Ink::warn, "the walk stands still by order"));
+        lines.push_back(inked(look, Ink::warn, "the walk stands still: stop or dead-man"));
     if (flag_at(s, "/input/live")) lines.push_back(fmt::format("steered by {} devices", grouped(number_at(s, "/input/devices"))));
     if (!s.contains("notes") || !s["notes"].is_array()) return;
     for (const json& n : s["notes"])
@@ -127,7 +129,7 @@ void add_house(const json& s, std::vector<std::string>& lines) {
                                 grouped(number_at(s, "/process/threads")), grouped(number_at(s, "/process/descriptors")),
                                 short_number(number_at(s, "/process/host_steal_s"))));
     if (const double bursts = number_at(s, "/monitor/bursts"); bursts > 0)
-        lines.push_back(fmt::format("{} bursts of misses: {} written down, {} suppressed, {} failed", grouped(bursts),
+        lines.push_back(fmt::format("{} bursts of misses: {} recorded, {} suppressed, {} failed", grouped(bursts),
                                     grouped(number_at(s, "/monitor/incidents/written")),
                                     grouped(number_at(s, "/monitor/incidents/suppressed")),
                                     grouped(number_at(s, "/monitor/incidents/failed"))));
@@ -138,7 +140,8 @@ void add_house(const json& s, std::vector<std::string>& lines) {
 Result<json> parse_status(const Address& address, const std::string& text) {
     json status = json::parse(text, nullptr, false);
     if (status.is_object() && status.contains("totals") && status.contains("version")) return status;
-    return Error{address.text(), "something else than a surefoot monitor answers there", "name its place with --socket"};
+    return Error{address.text(), "Something other than a surefoot monitor answers there",
+                 "Name the monitor's address with --socket", ErrorKind::damaged};
 }
 
 std::vector<std::string> status_page(const json& status, const Look& look) {

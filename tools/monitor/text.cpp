@@ -1,4 +1,4 @@
-// Words, colours, bars and the frame chart.
+// Words and the frame chart.
 #include "tools/monitor/text.hpp"
 
 #include <fmt/format.h>
@@ -80,54 +80,6 @@ std::string duration(double seconds) {
 }
 
 std::string mebibytes(double bytes) { return std::isfinite(bytes) ? fmt::format("{:.0f} MiB", bytes / 1048576.0) : "-"; }
-
-std::string inked(const Look& look, Ink ink, std::string_view text) {
-    constexpr std::array<std::string_view, 6> codes = {"", "1", "2", "32", "33", "31"};
-    if (!look.colour || ink == Ink::plain) return std::string(text);
-    return fmt::format("\033[{}m{}\033[0m", codes[static_cast<std::size_t>(ink)], text);
-}
-
-std::string cut_to(std::string_view line, std::size_t width) {
-    std::string out;
-    std::size_t used = 0;
-    bool styled = false;
-    for (std::size_t i = 0; i < line.size();) {
-        if (line[i] == '\033') {
-            const std::size_t end = std::min(line.find('m', i), line.size() - 1);
-            out += line.substr(i, end - i + 1);
-            styled = line.substr(i, end - i + 1) != "\033[0m";
-            i = end + 1;
-            continue;
-        }
-        std::size_t next = i + 1;
-        while (next < line.size() && (static_cast<unsigned char>(line[next]) & 0xc0U) == 0x80U) ++next;
-        if (used == width) break;
-        out += line.substr(i, next - i);
-        ++used;
-        i = next;
-    }
-    if (styled) out += "\033[0m";
-    return out;
-}
-
-std::size_t places(std::string_view line) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (line[i] == '\033')
-            i = std::min(line.find('m', i), line.size() - 1);
-        else if ((static_cast<unsigned char>(line[i]) & 0xc0U) != 0x80U)
-            ++count;
-    }
-    return count;
-}
-
-std::string share_bar(const Look& look, double share, std::size_t width) {
-    const double cells = std::isfinite(share) ? std::clamp(share, 0.0, 1.0) * static_cast<double>(width) : 0;
-    const auto whole = static_cast<std::size_t>(std::lround(cells));
-    std::string bar;
-    for (std::size_t i = 0; i < width; ++i) bar += look.unicode ? (i < whole ? "█" : "░") : (i < whole ? "#" : "-");
-    return bar;
-}
 
 std::string causes_text(const json& causes) {
     std::string text;

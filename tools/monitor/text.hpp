@@ -1,14 +1,22 @@
-// Inside this room: numbers out of JSON, words, colours, bars, and lines that end where the screen does.
+// Inside this room: numbers out of JSON, their words, and the chart of frames.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tools/monitor/view.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::monitor {
+
+using report::cut_to;
+using report::Ink;
+using report::inked;
+using report::Look;
+using report::places;
+using report::share_bar;
 
 /// A number at a JSON pointer ("/recent/frame_ms/p50"); NaN where there is none.
 double number_at(const nlohmann::json& j, const char* pointer);
@@ -22,16 +30,6 @@ std::string short_number(double value);
 /// "0:12:34", "3 d 4:05:06"
 std::string duration(double seconds);
 std::string mebibytes(double bytes);
-
-enum class Ink { plain, bold, dim, good, warn, bad };
-std::string inked(const Look& look, Ink ink, std::string_view text);
-
-/// Cut to `width` places of the screen; escape sequences take none, and end with the line.
-std::string cut_to(std::string_view line, std::size_t width);
-/// How many places of the screen it takes.
-std::size_t places(std::string_view line);
-/// `share` 0..1 of `width` places.
-std::string share_bar(const Look& look, double share, std::size_t width);
 
 /// "raster 2, stolen 1"; empty where there are none.
 std::string causes_text(const nlohmann::json& causes);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tools/monitor/text.hpp"
+#include "tools/monitor/view.hpp"
 
 namespace surefoot::monitor {
 
@@ -105,7 +106,7 @@ void add_events(const json& s, const json& before, double between_s, const Look&
     if (flag_at(s, "/input/emergency_stop"))
         lines.push_back(inked(look, Ink::bad, "EMERGENCY STOP: the walk stands still"));
     else if (flag_at(s, "/now/standing_still"))
-        lines.push_back(inked(look, Ink::warn, "the walk stands still by order"));
+        lines.push_back(inked(look, Ink::warn, "the walk stands still: stop or dead-man"));
     const std::string note = s.contains("notes") && !s["notes"].empty() ? text_at(s["notes"].back(), "/text") : "";
     if (flag_at(s, "/input/live"))
         lines.push_back(
@@ -145,12 +146,12 @@ std::vector<ThreadLine> thread_lines(const json& s, const json& before, double b
 void add_threads(const json& s, const json& before, double between_s, const Look& look, std::vector<std::string>& lines) {
     if (lines.size() + 3 > look.height) return;
     const auto all = thread_lines(s, before, between_s);
-    lines.push_back(
-        inked(look, Ink::dim, fmt::format("{:<16} {:<12} {:>4}  {:<10} {:>6}", "thread", "policy", "prio", "cores", "CPU %")));
+    const report::Columns columns({{"thread", 16}, {"policy", 12}, {"prio", -4}, {"cores", 10, 2}, {"CPU %", -6}});
+    lines.push_back(inked(look, Ink::dim, columns.heading()));
     for (const ThreadLine& t : all) {
         if (lines.size() + 2 > look.height) break;
-        lines.push_back(fmt::format("{:<16} {:<12} {:>4}  {:<10} {:>6}", t.name, t.policy, grouped(t.priority), t.cores,
-                                    std::isnan(t.share) ? "-" : fmt::format("{:.1f}", 100 * t.share)));
+        lines.push_back(columns.row(
+            {t.name, t.policy, grouped(t.priority), t.cores, std::isnan(t.share) ? "-" : fmt::format("{:.1f}", 100 * t.share)}));
     }
 }
 
@@ -167,7 +168,7 @@ std::vector<std::string> top_page(const json& status, const json& before, double
     if (lines.size() + 4 <= look.height) lines.emplace_back();
     add_threads(status, before, between_s, look, lines);
     if (lines.size() >= look.height) lines.resize(look.height - 1);
-    lines.push_back(inked(look, Ink::dim, "q ends it"));
+    lines.push_back(inked(look, Ink::dim, "q: quit"));
     for (std::string& line : lines) line = cut_to(line, look.width);
     return lines;
 }

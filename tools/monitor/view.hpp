@@ -2,7 +2,6 @@
 // functions of /status.json.
 #pragma once
 
-#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -10,21 +9,18 @@
 
 #include "rt/base/result.hpp"
 #include "tools/monitor/address.hpp"
+#include "tools/report/terminal.hpp"
 
 namespace surefoot::monitor {
-
-struct Look {
-    bool colour = false, unicode = false;
-    std::size_t width = 80, height = 24;
-};
 
 /// /status.json of `address` as read; an Error where it is something else.
 Result<nlohmann::json> parse_status(const Address& address, const std::string& text);
 
-std::vector<std::string> status_page(const nlohmann::json& status, const Look& look);
+std::vector<std::string> status_page(const nlohmann::json& status, const report::Look& look);
 
 /// before: the status some time ago, null for none; between_s: how long ago. Rates come from the two.
-std::vector<std::string> top_page(const nlohmann::json& status, const nlohmann::json& before, double between_s, const Look& look);
+std::vector<std::string> top_page(const nlohmann::json& status, const nlohmann::json& before, double between_s,
+                                  const report::Look& look);
 std::string top_line(const nlohmann::json& status, const nlohmann::json& before, double between_s);
 
 }  // namespace surefoot::monitor

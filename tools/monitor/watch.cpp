@@ -1,11 +1,12 @@
 // The walk's words into the monitor's.
-#include "tools/monitor/watch.hpp"
+#include "tools/monitor/monitor.hpp"
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "render/capture/capture.hpp"
+#include "tools/walk/walk.hpp"
 
 namespace surefoot::monitor {
 

@@ -50,18 +50,18 @@ std::string legend(std::initializer_list<std::pair<std::string_view, std::string
 
 std::string time_section(const WalkSummary& s, const WalkFrames& walk) {
     std::string out =
-        "<h2>Time</h2>\n<p class=\"sub\">Every frame, from when it was due to when it was done. The band runs from the fastest "
+        "<h2>Time</h2>\n<p class=\"sub\">The time of every frame, from its due time to its end. The band runs from the fastest "
         "to the "
-        "slowest frame of each column, so no slow frame is hidden; numbers on top are the pictures below.</p>\n";
+        "slowest frame of each column, so that every slow frame shows. The numbers on top are the pictures below.</p>\n";
     out += fmt::format("<div class=\"card wide\">{}</div>\n", frame_time_chart(walk, s.budget_ms));
     out += "<div class=\"two\">\n";
-    out += card("How long frames took", "Counted on a logarithmic scale: a single slow frame shows.",
+    out += card("How long frames took", "Counts on a logarithmic scale, so that a single slow frame shows.",
                 frame_histogram(walk, s.budget_ms));
     out += fmt::format("<div class=\"card\"><h3>Where the time goes</h3>{}{}</div>\n",
                        legend({{"c7", "wake"}, {"c2", "select"}, {"c0", "submit"}, {"c3", "raster"}, {"c5", "present"}}),
                        phases_chart(walk));
-    out += card("Budget spent", "Time spent over time allowed: close to full is the aim.", budget_chart(walk));
-    out += card("Wake lateness", "How late the frame thread was woken, before any work.", wake_chart(walk));
+    out += card("Budget spent", "Time spent over time allowed. The aim is close to 100 %.", budget_chart(walk));
+    out += card("Wake lateness", "How late the frame thread woke up.", wake_chart(walk));
     return out + "</div>\n";
 }
 
@@ -80,9 +80,9 @@ std::string picture_section(const WalkSummary& s, const WalkFrames& walk, std::s
                 triangles_chart(walk, s.model_triangles));
     out += card("The path", shots.empty() ? "From above." : "From above; numbers are where the pictures were taken.",
                 path_map(walk, shots));
-    out += s.misses > 0
-               ? card("Misses by cause", "One cause a miss, from the evidence of that frame.", cause_chart(s))
-               : card("Switches", "Nodes drawn in another form than the frame before: few is calm.", switches_chart(walk));
+    out += s.misses > 0 ? card("Misses by cause", "One cause per miss, from the measurements of that frame.", cause_chart(s))
+                        : card("Switches", "Nodes drawn in another form than in the previous frame. Fewer is better.",
+                               switches_chart(walk));
     return out + "</div>\n" + shot_cards(s, walk.shots_s, shots);
 }
 

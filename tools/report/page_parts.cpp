@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "tools/report/charts.hpp"
-#include "tools/report/pictures.hpp"
 #include "tools/report/svg.hpp"
 #include "tools/report/verdict.hpp"
 
@@ -62,7 +61,7 @@ std::string shot_card(const ReportShot& shot, std::size_t number, double time_s,
         return jpeg_data_uri(rgba, shot.width, shot.height, picture_quality);
     };
     out += figure(uri(shot.walk), "the walk's picture", fmt::format("The walk, {}", escaped(selector)));
-    out += figure(uri(shot.full), "full detail", "Full detail, however long it takes");
+    out += figure(uri(shot.full), "full detail", "Full detail, without a deadline");
     out += figure(uri(shot.difference), "difference of the two", "Difference, four times amplified");
     if (!shot.drawn.empty())
         out += fmt::format("<figure><div class=\"map\">{}</div><figcaption>From above: {} nodes drawn</figcaption></figure>\n",
@@ -133,9 +132,9 @@ std::string tiles(const WalkSummary& s) {
 std::string shot_cards(const WalkSummary& s, std::span<const double> time_s, std::span<const ReportShot> shots) {
     if (shots.empty()) return {};
     std::string out =
-        "<h2>Along the path</h2>\n<p class=\"sub\">The same place drawn by the walk in its time and at full detail without one. "
+        "<h2>Along the path</h2>\n<p class=\"sub\">The same pose drawn by the walk, and in full detail without a deadline. "
         "From above: "
-        "which nodes stood for what was in view, fuller colour for finer detail.</p>\n"
+        "the drawn nodes; a stronger colour is finer detail.</p>\n"
         "<div class=\"legend\"><span><i class=\"c1\"></i>cluster: one shape for several objects</span><span><i "
         "class=\"c0\"></i>object</span>"
         "<span><i class=\"c2\"></i>piece of an object</span></div>\n";
@@ -152,11 +151,12 @@ std::string figures_table(const WalkSummary& s) {
            row_of("Select, µs", s.select_us, 1, 0) + row_of("Submit, ms", s.submit_ms, 1, 2) +
            row_of("Raster, ms", s.raster_ms, 1, 2) + row_of("Prepare (workers' CPU), µs", s.prepare_cpu_us, 1, 0) +
            row_of("Age of prepared arrays, frames", s.prepared_age, 1, 0) + row_of("Nodes visited to prepare", s.visits, 1, 0) +
-           row_of("Of them hidden by others", s.hidden, 1, 0) + row_of("Error of predicted cost, %", s.cost_error, 100, 1);
+           row_of("Of them occluded", s.hidden, 1, 0) + row_of("Error of predicted cost, %", s.cost_error, 100, 1);
     if (s.input.given) out += row_of("Report to submitted frame, ms", s.input.age_ms, 1, 1);
     out += "</table></div>\n";
     out += fmt::format(
-        "<p class=\"sub\">{:.2f} switches a frame · {} slices drawn coarser than chosen · the floor was bound in {} frames · cut "
+        "<p class=\"sub\">{:.2f} switches a frame · {} slices drawn coarser than chosen · the floor was reached in {} frames · "
+        "cut "
         "hash <code>{}</code></p>\n",
         s.switches_per_frame, grouped(static_cast<double>(s.downgrades)), grouped(static_cast<double>(s.floor_bound_frames)),
         escaped(s.cut_hash));
@@ -173,7 +173,7 @@ std::string machine_table(const WalkSummary& s) {
         {"Clock, late frames", fmt::format("{}, {}", s.clock, s.late_policy)},
         {"Real-time scheduling (FIFO)", yes(s.fifo)},
         {"Threads pinned to cores", yes(s.pinned)},
-        {"Core set apart from others", yes(s.isolated)},
+        {"Frame core isolated", yes(s.isolated)},
         {"Memory locked", yes(s.locked)},
         {"Threads", s.threads.empty() ? "not counted" : threads_words(s.threads)},
         {"Frame thread's own code", fmt::format("{} page faults, {} guard violations", s.page_faults, s.guard_violations)},
@@ -189,9 +189,9 @@ std::string machine_table(const WalkSummary& s) {
 std::string page_footer() {
     return "<footer><p>Beside this page: <a href=\"ledger.csv\">ledger.csv</a>, one row a frame, and <a "
            "href=\"walk.json\">walk.json</a>, "
-           "the figures above.</p><p><b>Own miss</b>: late even with the time taken out that the host stole. <b>Budget</b>: what "
-           "a frame may spend of its slot. "
-           "<b>Cluster</b>: a node standing for several objects. <b>Switch</b>: a node's representation changed between two "
+           "the figures above.</p><p><b>Own miss</b>: late even without the time that the host stole. <b>Budget</b>: the time "
+           "that a frame may spend. "
+           "<b>Cluster</b>: a node that stands for several objects. <b>Switch</b>: a node's representation changed between two "
            "frames. "
            "<b>SNR</b>: variance of the walk's picture over its mean square difference from full detail (Pasman and Jansen "
            "2002); "

@@ -1,8 +1,10 @@
-// Parts of the walk's page that are words, figures and pictures rather than charts.
+// Parts of the walk's page that are words, figures and pictures rather than charts; and a picture as a data URI.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "tools/report/report.hpp"
 
@@ -20,5 +22,9 @@ std::string shot_cards(const WalkSummary& summary, std::span<const double> time_
 std::string figures_table(const WalkSummary& summary);
 std::string machine_table(const WalkSummary& summary);
 std::string page_footer();
+
+/// A JPEG of quality 1..100 as "data:image/jpeg;base64,…"; empty where the picture is empty or its size does not fit.
+std::string jpeg_data_uri(std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height, int quality);
+std::string base64(std::span<const std::uint8_t> bytes);
 
 }  // namespace surefoot::report

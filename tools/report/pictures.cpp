@@ -1,5 +1,5 @@
 // JPEG by libjpeg, in memory: a page of pictures stays a few megabytes.
-#include "tools/report/pictures.hpp"
+#include "tools/report/page_parts.hpp"
 
 #include <csetjmp>
 #include <cstddef>

@@ -55,7 +55,7 @@ struct InputSummary {
     std::uint64_t guard_violations = 0;                                ///< of the input thread
 };
 
-/// All that `walk --json` prints (DESIGN 6), computed once from the records.
+/// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
     std::uint32_t width = 0, height = 0;

@@ -7,22 +7,23 @@
 
 #include "tools/report/report.hpp"
 #include "tools/report/svg.hpp"
-#include "tools/report/text_table.hpp"
+#include "tools/report/terminal.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace surefoot::report {
 
 namespace {
 
-void timing_rows(TextTable& table, const WalkSummary& s) {
+void timing_rows(LabelledText& table, const WalkSummary& s) {
+    const Columns columns(
+        {{"", label_columns}, {"p50", -10, 0}, {"p90", -10, 0}, {"p99", -10, 0}, {"p99.9", -10, 0}, {"max", -10, 0}});
     const auto row = [&](std::string_view label, const Quantiles& q, int decimals, std::string_view note) {
-        std::string line = fmt::format("{:<{}}", label, label_columns);
-        for (const double v : {q.p50, q.p90, q.p99, q.p999, q.max}) line += fmt::format("{:>10.{}f}", v, decimals);
-        if (!note.empty()) line += fmt::format("   {}", note);
-        table.raw(line);
+        const auto text = [&](double value) { return fmt::format("{:.{}f}", value, decimals); };
+        const std::string line =
+            columns.row({std::string(label), text(q.p50), text(q.p90), text(q.p99), text(q.p999), text(q.max)});
+        table.raw(note.empty() ? line : fmt::format("{}   {}", line, note));
     };
-    table.raw(table.coloured(
-        fmt::format("{:<{}}{:>10}{:>10}{:>10}{:>10}{:>10}", "", label_columns, "p50", "p90", "p99", "p99.9", "max"), "2"));
+    table.raw(inked(table.look(), Ink::dim, columns.heading()));
     row("frame, ms", s.frame_ms, 2, s.rate_hz > 0 ? fmt::format("deadline {:.2f}", 1000 / s.rate_hz) : "");
     row("wake, us", s.wake_us, 0, "");
     row("select, us", s.select_us, 0, "");
@@ -36,10 +37,9 @@ void timing_rows(TextTable& table, const WalkSummary& s) {
         1, "");
 }
 
-void quality_rows(TextTable& table, const WalkSummary& s) {
-    table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget by the clock on the wall",
-                                    s.budget_ms, percent(s.budget_used_mean), percent(s.budget_used_p99),
-                                    percent(s.budget_used_wall_mean)));
+void quality_rows(LabelledText& table, const WalkSummary& s) {
+    table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget in wall time", s.budget_ms,
+                                    percent(s.budget_used_mean), percent(s.budget_used_p99), percent(s.budget_used_wall_mean)));
     table.row("accuracy",
               fmt::format("mean {} /rad ({}), worst {} /rad ({})", short_number(s.accuracy_mean), accuracy_words(s.accuracy_mean),
                           short_number(s.accuracy_min), accuracy_words(s.accuracy_min)));
@@ -47,16 +47,16 @@ void quality_rows(TextTable& table, const WalkSummary& s) {
         fmt::format("mean {}, most {}", short_number(s.triangles_mean), short_number(static_cast<double>(s.triangles_max)));
     if (s.model_triangles > 0)
         triangles += fmt::format(" of the model's {}", short_number(static_cast<double>(s.model_triangles)));
-    if (s.hidden.max > 0) triangles += fmt::format("; {:.0f} nodes a frame left out behind others", s.hidden.mean);
+    if (s.hidden.max > 0) triangles += fmt::format("; {:.0f} occluded nodes a frame left out", s.hidden.mean);
     table.row("triangles", triangles);
-    table.row("stability", fmt::format("{:.2f} switches a frame, {} slices drawn coarser, floor bound {} frames",
+    table.row("stability", fmt::format("{:.2f} switches a frame, {} slices drawn coarser, floor reached in {} frames",
                                        s.switches_per_frame, s.downgrades, s.floor_bound_frames));
 }
 
-void real_time_rows(TextTable& table, const WalkSummary& s) {
+void real_time_rows(LabelledText& table, const WalkSummary& s) {
     std::string causes;
     for (const auto& [cause, count] : s.miss_causes) causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", cause, count);
-    if (!causes.empty()) table.row("misses", causes, "33");
+    if (!causes.empty()) table.row("misses", causes, Ink::warn);
     const auto mark = [](bool yes, std::string_view what) { return fmt::format("{}{}", yes ? "" : "not ", what); };
     table.row("real time", fmt::format("{}, {}, {}, {}; page faults {}, guard violations {}, stolen {:.1f} ms",
                                        mark(s.fifo, "FIFO"), mark(s.pinned, "pinned"), mark(s.isolated, "isolated"),
@@ -64,23 +64,26 @@ void real_time_rows(TextTable& table, const WalkSummary& s) {
     table.row("driver", fmt::format("{:.1f} allocations and {:.2f} page faults a frame", s.driver_allocations_per_frame,
                                     s.frames == 0 ? 0.0 : static_cast<double>(s.driver_faults) / static_cast<double>(s.frames)));
     if (!s.threads.empty()) table.row("threads", threads_words(s.threads));
-    for (const std::string& problem : s.census_problems) table.row("census", problem, "31");
-    if (!s.uncalibrated.empty()) table.row("uncalibrated", s.uncalibrated, "33");
+    for (const std::string& problem : s.census_problems) table.row("census", problem, Ink::bad);
+    if (!s.uncalibrated.empty()) table.row("uncalibrated", s.uncalibrated, Ink::warn);
     for (const rt::Lack& d : s.degraded)
-        table.row("degraded", d.remedy.empty() ? d.what : fmt::format("{}: {}", d.what, d.remedy), "33");
-    if (s.control.ran) table.row("control", control_words(s.control), rule_broken(s.control) ? "31" : "");
+        table.row("degraded", d.remedy.empty() ? d.what : fmt::format("{}: {}", d.what, d.remedy), Ink::warn);
+    if (s.control.ran) table.row("control", control_words(s.control), rule_broken(s.control) ? Ink::bad : Ink::plain);
 }
 
 }  // namespace
 
 std::string to_table(const WalkSummary& s, bool colour) {
-    TextTable table(colour);
+    LabelledText table(colour);
     const Verdict verdict = verdict_of(s);
-    table.row("walk", headline(s), verdict == Verdict::good ? "1;32" : verdict == Verdict::warn ? "1;33" : "1;31");
+    table.row("walk", headline(s),
+              verdict == Verdict::good   ? Ink::strong_good
+              : verdict == Verdict::warn ? Ink::strong_warn
+                                         : Ink::strong_bad);
     table.row("model", s.path.empty()  ? s.model
                        : s.input.given ? fmt::format("{} steered by {}, from the start of {}", s.model, s.input.source, s.path)
                                        : fmt::format("{} along {}", s.model, s.path));
-    if (s.input.given) table.row("input", input_words(s.input), s.input.stopped_frames > 0 ? "33" : "");
+    if (s.input.given) table.row("input", input_words(s.input), s.input.stopped_frames > 0 ? Ink::warn : Ink::plain);
     table.row("drawn", fmt::format("{}x{}{} at {:.4g} Hz by {} on {} ({}), late: {}, clock: {}", s.width, s.height,
                                    off_axis_words(s), s.rate_hz, s.selector, s.backend, s.renderer, s.late_policy, s.clock));
     table.raw("");

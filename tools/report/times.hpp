@@ -3,7 +3,6 @@
 
 #include <cstdint>
 
-#include "rt/frame/busy.hpp"
 #include "rt/frame/record.hpp"
 
 namespace surefoot::report {

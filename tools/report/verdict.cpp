@@ -53,7 +53,7 @@ std::string control_words(const ControlSummary& c) {
                             : fmt::format(": the walk misses more (p = {:.2g}).", v.p_value);
     if (c.other_miss_share >= 0)
         text += fmt::format(" Without real-time scheduling the bare loop missed {}{}.", percent(c.other_miss_share),
-                            v.load_counts ? ": the load counts" : "; below a fifth, so the load was too light to judge by");
+                            v.load_counts ? ": the load counts" : "; below a fifth, so the load was too light to judge");
     if (rule_broken(c)) return text + " The deadline rule is broken.";
     if (v.holds) return text + " The deadline rule holds.";
     return text + (v.enough_pairs ? " The deadline rule is not judged." : " Too few pairs to judge the deadline rule.");
@@ -74,8 +74,8 @@ std::string input_words(const InputSummary& in) {
                         in.age_ms.p99, in.age_ms.max);
     if (in.stops > 0) text += fmt::format("; {}", counted(in.stops, "emergency stop", "emergency stops"));
     if (in.stopped_frames > 0)
-        text += fmt::format("; stood still by order for {}", counted(in.stopped_frames, "frame", "frames"));
-    if (in.stop_latched) text += ", and does to the end: the stop is latched";
+        text += fmt::format("; the walk stood still for {}", counted(in.stopped_frames, "frame", "frames"));
+    if (in.stop_latched) text += ", and until the end: the stop is latched";
     return text + ".";
 }
 

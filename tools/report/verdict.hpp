@@ -1,4 +1,4 @@
-// What the figures amount to, in plain words: shared by the terminal's table and the page.
+// The verdict on the figures, in sentences: shared by the terminal's table and the page.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace surefoot::report {
 
 enum class Verdict { good, warn, bad };
 
-/// good: nothing missed; warn: misses, but within the deadline rule (DESIGN 7: own misses at most 2 per 1800 frames);
+/// good: nothing missed; warn: misses, but within the deadline rule (at most 2 own misses per 1800 frames);
 /// bad: beyond it, or nothing ran.
 Verdict verdict_of(const WalkSummary& summary);
 /// A control ran, and the walk had too many own misses, or more misses than the control.
@@ -18,9 +18,9 @@ bool rule_broken(const ControlSummary& control);
 std::string headline(const WalkSummary& summary);
 /// The control's part of the rule in words; empty where no control ran.
 std::string control_words(const ControlSummary& control);
-/// ", off axis by 0.5 halves right, 0 up,"; empty for a view that lies about where it looks.
+/// ", off axis by 0.5 halves right, 0 up,"; empty for a symmetric projection.
 std::string off_axis_words(const WalkSummary& summary);
-/// What steered, how soon it was seen, and whether it stood still by order; empty where a path was followed.
+/// The device, its latency, and its stops; empty if a path was followed.
 std::string input_words(const InputSummary& input);
 /// "sf-frame fifo 80 on 1; 2 llvmpipe- fifo 70 on 0-1".
 std::string threads_words(std::span<const rt::CensusRow> threads);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rt/base/random_point.hpp"
+#include "rt/base/random.hpp"
 
 namespace surefoot::scenes {
 namespace {

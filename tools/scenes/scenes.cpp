@@ -13,7 +13,6 @@
 #include "tools/scenes/forest.hpp"
 #include "tools/scenes/room.hpp"
 #include "tools/scenes/town.hpp"
-#include "tools/scenes/writers.hpp"
 
 namespace surefoot::scenes {
 namespace {
@@ -46,15 +45,16 @@ std::vector<std::string> scene_names() {
 
 Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed) {
     if (!(scale >= least_scale && scale <= most_scale))
-        return Error{std::string(name), fmt::format("scale {} is out of range", scale),
-                     fmt::format("choose {} to {}", least_scale, most_scale)};
+        return Error{std::string(name), fmt::format("The scale {} is out of range", scale),
+                     fmt::format("Choose {} to {}", least_scale, most_scale), ErrorKind::misuse};
     for (const Maker& maker : makers) {
         if (name != maker.name) continue;
         GeneratedScene made = maker.make(scale, seed);
         made.scene.sources.push_back(fmt::format("generated: {} at scale {}, seed {}", name, scale, seed));
         return made;
     }
-    return Error{std::string(name), "no scene of this name", "choose one of " + names_in_words(makers)};
+    return Error{std::string(name), "There is no scene of this name", "Choose one of " + names_in_words(makers),
+                 ErrorKind::not_found};
 }
 
 std::string written_endings() { return names_in_words(writers); }
@@ -62,10 +62,11 @@ std::string written_endings() { return names_in_words(writers); }
 Result<void> check_ending(const std::string& out) {
     const std::string ending = importer::ending_of(out);
     if (find_named(writers, ending) != nullptr) return {};
-    const std::string remedy = "choose one of " + written_endings();
+    const std::string remedy = "Choose one of " + written_endings();
     if (importer::format_of(out) != nullptr)
-        return Error{out, fmt::format("scenes are not written as {}, which is only read", ending), remedy};
-    return Error{out, fmt::format("cannot write a scene with the ending '{}'", ending), remedy};
+        return Error{out, fmt::format("Scenes are not written as {}: this format is only read", ending), remedy,
+                     ErrorKind::unsupported};
+    return Error{out, fmt::format("A scene with the ending '{}' cannot be written", ending), remedy, ErrorKind::unsupported};
 }
 
 Result<void> write_scene(const std::string& out, const GeneratedScene& generated) {

@@ -35,4 +35,7 @@ Result<void> check_ending(const std::string& out);
 /// By ending; and beside it `out` with its ending replaced by .path.csv.
 Result<void> write_scene(const std::string& out, const GeneratedScene& generated);
 
+/// glTF 2.0 binary: shared meshes, node tree with matrices and names, PNG pictures, vertex colours as linear 16-bit numbers.
+Result<void> write_glb(const std::string& file, const importer::Scene& scene);
+
 }  // namespace surefoot::scenes

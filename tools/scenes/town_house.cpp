@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "rt/base/hash.hpp"
-#include "rt/base/random_point.hpp"
+#include "rt/base/random.hpp"
 #include "tools/scenes/town.hpp"
 
 namespace surefoot::scenes {

@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "rt/base/random_point.hpp"
+#include "rt/base/random.hpp"
 #include "tools/scenes/town.hpp"
 
 namespace surefoot::scenes {

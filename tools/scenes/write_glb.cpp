@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "render/image/srgb.hpp"
+#include "render/image/image.hpp"
 #include "rt/base/file.hpp"
-#include "tools/scenes/writers.hpp"
+#include "tools/scenes/scenes.hpp"
 
 namespace surefoot::scenes {
 namespace {
@@ -158,7 +158,8 @@ private:
         text.resize((text.size() + 3) / 4 * 4, ' ');
         const std::uint64_t total = 12 + 8 + text.size() + 8 + binary_.size();
         if (total > std::numeric_limits<std::uint32_t>::max())
-            return Error{file, "the scene needs more than the 4 GiB that a GLB may have", "choose a smaller --scale"};
+            return Error{file, "The scene needs more than the 4 GiB that a GLB may have", "Choose a smaller --scale",
+                         ErrorKind::out_of_limits};
         std::vector<std::byte> out;
         out.reserve(total);
         const auto word = [&](std::uint64_t value) {

@@ -2,10 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "render/model/triangles.hpp"
+#include "render/model/model.hpp"
 #include "render/prepare/occlusion.hpp"
 #include "rt/base/random.hpp"
-#include "rt/base/random_point.hpp"
 #include "tools/selftest/families.hpp"
 #include "tools/selftest/shapes.hpp"
 

@@ -80,7 +80,7 @@ void attack(const Reader& reader, const Effort& effort, Outcome& out) {
     const Bytes& good = reader.fixture;
     out.at_most("bytes of the fixture", static_cast<double>(good.size()), most_fixture_bytes);
     out.exactly("the fixture itself is taken", reader.read(good).taken ? 1 : 0, 1);
-    std::uint64_t unsound = 0, cut_taken = 0, changed_taken = 0, taken = 0, resealed = 0;
+    std::uint64_t unsound = 0, cut_taken = 0, changed_taken = 0;
     const std::size_t step = effort.share < 0.02 ? 7 : 1;
     for (std::size_t length = 0; length < good.size() && !effort.stopped(); length += step) {
         const Answer answer = reader.read(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(length)));
@@ -97,8 +97,6 @@ void attack(const Reader& reader, const Effort& effort, Outcome& out) {
         if (sealed) reader.reseal(bytes);
         const Answer answer = reader.read(bytes);
         unsound += answer.sound ? 0 : 1;
-        taken += answer.taken ? 1 : 0;
-        resealed += sealed ? 1 : 0;
         changed_taken += reader.reseal && !sealed && answer.taken && bytes != good ? 1 : 0;
         if (done < 2000) out.digest_of(answer.taken ? 1 : 0);
     }

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "rt/base/hash.hpp"
-#include "rt/base/nearest.hpp"
+#include "rt/base/text.hpp"
 #include "tools/selftest/families.hpp"
 
 namespace surefoot::selftest {
@@ -117,8 +117,9 @@ Result<std::vector<const Row*>> select_rows(std::span<const std::string> ids) {
     std::vector<std::string_view> known;
     for (const Row& row : rows()) known.push_back(row.id);
     const std::string_view nearest = nearest_word(upper(id), known);
-    return Error{"row '" + id + "'", "there is none" + (nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)),
-                 "surefoot selftest --hard --list"};
+    return Error{"row '" + id + "'",
+                 "There is no such row" + (nearest.empty() ? "" : fmt::format(". Did you mean '{}'?", nearest)),
+                 "List them: surefoot selftest --hard --list", ErrorKind::not_found};
 }
 
 Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, const Effort& effort,
@@ -130,8 +131,9 @@ Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, c
         RowResult result = run_row(*row, effort);
         if (effort.stopped())
             return Error{"selftest",
-                         fmt::format("stopped by the user in row {}, after {} of {}", row->id, results.size(), selection.size()),
-                         "single rows take less: surefoot selftest --hard " + std::string(row->id)};
+                         fmt::format("The test was stopped by the user in row {}, after {} of {}", row->id, results.size(),
+                                     selection.size()),
+                         "Run a single row for less time: surefoot selftest --hard " + std::string(row->id), ErrorKind::stopped};
         each(result);
         results.push_back(std::move(result));
     }

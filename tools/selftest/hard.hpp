@@ -76,11 +76,11 @@ struct RowResult {
     double seconds = 0;
 };
 
-/// Holds where every figure does, and there is one. What a row throws is a broken row that says so.
+/// Holds if there are figures and each of them holds. A row that throws is broken, and names the exception.
 RowResult run_row(const Row& row, const Effort& effort);
 
 /// The rows named (an id, or a whole number with all its letters; upper or lower case); none named: all.
-/// Error: an id that is not there, with the nearest one.
+/// Error: an unknown id, with the nearest one.
 Result<std::vector<const Row*>> select_rows(std::span<const std::string> ids);
 
 /// One after the other; `each`: called after every one. Error: stopped by the user; which row, and how to go on.

@@ -37,12 +37,14 @@ std::unique_ptr<gl::Device> open_picture(model::Viewport viewport, const Effort&
 }
 
 bool load(gl::Device& device, const model::Model& model, Outcome& outcome) {
+    device.draws.plays();
     const auto loaded = device.load(model, effects::assemble_program);
     if (!loaded) outcome.none_of("models that the device refuses (" + loaded.error().text() + ")", 1);
     return loaded.ok();
 }
 
 gl::PixelImage draw(gl::Device& device, std::span<const gl::DrawItem> items, const Pose& pose) {
+    device.draws.plays();
     device.begin_frame(pose);
     for (const gl::DrawItem& item : items) {
         device.draw({&item, 1});

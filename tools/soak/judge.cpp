@@ -40,10 +40,10 @@ SoakCheck judge_deadlines(const SoakSummary& s) {
         check.judged = Judged::broken;
     } else if (!v.enough_pairs) {
         check.judged = Judged::not_judged;
-        check.words += "; the rule wants 90 pairs: six minutes";
+        check.words += "; the rule needs 90 pairs: six minutes";
     } else if (!v.load_counts) {
         check.judged = Judged::not_judged;
-        check.words += fmt::format("; the load was too light to judge by: under SCHED_OTHER the bare loop missed {}, not a fifth",
+        check.words += fmt::format("; the load was too light to judge: under SCHED_OTHER the bare loop missed {}, not a fifth",
                                    report::percent(c.other_miss_share));
     }
     return check;
@@ -71,10 +71,10 @@ SoakCheck judge_load(const SoakSummary& s) {
 SoakCheck judge_grid(const SoakSummary& s) {
     const bool exact = s.slots_run + s.slots_skipped == s.slots_elapsed && s.grid_drift_ns == 0;
     SoakCheck check{"grid", judged(exact && s.slots_run > 0), ""};
-    check.words = fmt::format("{} run + {} skipped = {} elapsed slots; furthest of a frame's due time from its place: {} ns",
-                              s.slots_run, s.slots_skipped, s.slots_elapsed, s.grid_drift_ns);
+    check.words = fmt::format("{} run + {} skipped = {} elapsed slots; largest deviation of a due time: {} ns", s.slots_run,
+                              s.slots_skipped, s.slots_elapsed, s.grid_drift_ns);
     if (s.records_lost > 0) {
-        check.words += fmt::format("; {} records were lost on the way", s.records_lost);
+        check.words += fmt::format("; {} records were lost", s.records_lost);
         if (exact) check.judged = Judged::not_judged;
     }
     return check;
@@ -103,7 +103,7 @@ SoakCheck judge_memory(SoakSummary& s, const std::vector<SoakSample>& samples) {
     if (window_s >= least_memory_window_s) {
         check.judged = judged(kib_h <= memory_limit_kib_h);
     } else {
-        check.words += "; a page more or less weighs too much below ten minutes";
+        check.words += "; under ten minutes a single page changes the result too much";
     }
     return check;
 }
@@ -124,7 +124,7 @@ SoakCheck judge_flat(const std::string& name, const std::vector<SoakSample>& sam
     for (const SoakSample& sample : samples) most = std::max(most, sample.*count);
     const std::uint32_t first = lowest(0), last = lowest(samples.size() - quarter);
     check.judged = judged(last <= first);
-    check.words = fmt::format("{} at first, {} at last, {} at most", first, last, most);
+    check.words = fmt::format("first {}, last {}, max {}", first, last, most);
     return check;
 }
 
@@ -172,30 +172,31 @@ SoakLoad describe_load(const LoadFigures& f, double other_miss_share) {
             load.real = per_s >= 20 && f.evidence > 0;
             break;
         case LoadKind::io:
-            load.words = fmt::format("{:.1f} MiB/s written and synced, {:.0f} MiB of it to the device as the kernel says",
+            load.words = fmt::format("{:.1f} MiB/s written and synced, {:.0f} MiB of it to the device by the kernel's counters",
                                      per_s / 1024, f.evidence / 1024);
             load.real = per_s / 1024 >= 0.5 && f.amount > 0;
             break;
         case LoadKind::forks:
-            load.words = fmt::format("{:.0f} processes a second; the kernel counted {:.0f} meanwhile", per_s, f.evidence);
+            load.words = fmt::format("{:.0f} processes a second; the kernel counted {:.0f} in that time", per_s, f.evidence);
             load.real = per_s >= 10 && f.evidence > 0;
             break;
         case LoadKind::devices:
-            load.words = fmt::format("{:.0f} HID reports a second, {} of those due", per_s,
+            load.words = fmt::format("{:.0f} HID reports a second, {} of the planned ones", per_s,
                                      report::percent(f.evidence > 0 ? f.amount / f.evidence : 0));
             load.real = f.amount > 0 && f.amount >= 0.9 * f.evidence;
             break;
         case LoadKind::reloads:
-            load.words = fmt::format("{:.0f} times the settings were read and checked anew, {} failed", f.amount, f.failures);
+            load.words = fmt::format("the settings were read and checked {:.0f} times, {} failed", f.amount, f.failures);
             load.real = f.amount > 0 && f.failures == 0;
             break;
         case LoadKind::caches:
-            load.words = fmt::format("{:.0f} times the page cache was dropped, {:.0f} MiB of it", f.amount, f.evidence / 1024);
+            load.words = fmt::format("the page cache was dropped {:.0f} times, {:.0f} MiB in all", f.amount, f.evidence / 1024);
             load.real = f.amount > 0 && f.evidence > 0;
             break;
         case LoadKind::clock:
-            load.words = fmt::format("{:.0f} steps of the time of day, {} failed; off by {:.0f} us after one was undone, at most",
-                                     f.amount, f.failures, f.evidence);
+            load.words =
+                fmt::format("{:.0f} steps of the time of day, {} failed; off by at most {:.0f} us after a step was undone",
+                            f.amount, f.failures, f.evidence);
             load.real = f.amount > 0 && f.failures == 0;
             break;
     }

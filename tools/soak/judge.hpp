@@ -22,10 +22,10 @@ SoakLoad describe_load(const LoadFigures& figures, double other_miss_share);
 
 /// Fills in warm_up_s, memory and checks. Needs all the rest.
 ///
-///   deadlines    DESIGN 7's rule: own misses at most 2 per 1800 frames, and, where a control ran, walk minus control over
-///                at least 90 pairs not above zero, the load so heavy that the bare loop under SCHED_OTHER misses a fifth
-///   load         every load that was asked for and permitted was real
-///   grid         run + skipped = elapsed, no frame's due time off its place, no record lost
+///   deadlines    own misses at most 2 per 1800 frames. With a control: over at least 90 pairs, walk minus control is not above
+///                zero. The load counts only if the bare loop under SCHED_OTHER misses a fifth of its frames
+///   load         every load that was requested and permitted was real
+///   grid         run + skipped = elapsed, every due time on the grid, no record lost
 ///   memory       slope at most 64 KiB an hour after the warm-up; judged from ten minutes on
 ///   descriptors  the lowest count of the last quarter is that of the first, after the warm-up; threads likewise
 ///   real time    FIFO, locked memory, the frame's own code without faults and allocations; not on a virtual clock

@@ -14,7 +14,7 @@
 #include "rt/base/file.hpp"
 #include "rt/threads/usage.hpp"
 #include "tools/soak/load_board.hpp"
-#include "tools/soak/proc_figure.hpp"
+#include "tools/soak/machine_facts.hpp"
 
 namespace surefoot::soak {
 

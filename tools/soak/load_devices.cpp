@@ -82,6 +82,7 @@ void run_device_storm(LoadBoard& board, const LoadSettings& settings) {
             continue;
         }
         input::Steering steering({}, {});
+        steering.steers.plays();
         const std::int64_t began_ns = clock.now_ns();
         for (auto& source : sources) source->begin(steering, began_ns);
         std::uint64_t counted = 0;

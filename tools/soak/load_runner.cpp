@@ -147,14 +147,16 @@ LoadSet proof_loads(LoadSet mix) { return has_load(mix, LoadKind::cpu) ? load_bi
 
 Result<LoadRunner> LoadRunner::start(const LoadPlan& plan, const LoadSettings& settings) {
     void* const memory = mmap(nullptr, sizeof(LoadBoard), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) return Error{"soak", std::string("no memory to share: ") + std::strerror(errno), ""};
+    if (memory == MAP_FAILED)
+        return Error{"soak", std::string("There is no shared memory for the load: ") + std::strerror(errno),
+                     "Close other programs", ErrorKind::no_memory};
     auto* const board = new (memory) LoadBoard;
     const pid_t soak = getpid();
     const pid_t child = fork();
     if (child < 0) {
         munmap(memory, sizeof(LoadBoard));
-        return Error{"soak", std::string("cannot make a process for the load: ") + std::strerror(errno),
-                     "look at the limit on processes (ulimit -u)"};
+        return Error{"soak", std::string("A process for the load cannot be started: ") + std::strerror(errno),
+                     "Check the limit of processes (ulimit -u)", ErrorKind::out_of_limits};
     }
     if (child == 0) {
         belong_to(soak, SIGTERM);

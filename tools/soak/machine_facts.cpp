@@ -6,15 +6,30 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <sstream>
 
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/threads/usage.hpp"
-#include "tools/soak/proc_figure.hpp"
 
 namespace surefoot::soak {
+
+std::uint64_t proc_figure(std::string_view text, std::string_view name) {
+    for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
+        std::string_view rest = text.substr(at + name.size());
+        const bool is_whole = (at == 0 || text[at - 1] == '\n') && rest.find_first_of(" :") == 0;
+        if (!is_whole) continue;
+        rest.remove_prefix(std::min(rest.find_first_not_of(" :\t"), rest.size()));
+        return leading_number<std::uint64_t>(rest, 0);
+    }
+    return 0;
+}
+
+std::uint64_t proc_figure_of(const std::string& file, std::string_view name) {
+    const auto text = read_text(file, 1U << 22U);
+    return text ? proc_figure(*text, name) : 0;
+}
 
 namespace {
 
@@ -46,11 +61,10 @@ void read_interrupts(const std::string& text, std::map<std::string, double>& cou
         double sum = 0;
         bool counting = true;
         while (words >> word) {
-            double value = 0;
-            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-            counting = counting && error == std::errc{} && end == word.data() + word.size();
+            const auto value = number_in<double>(word);
+            counting = counting && value;
             if (counting) {
-                sum += value;
+                sum += *value;
             } else {
                 what = numbered || what.empty() ? word : what + " " + word;
             }
@@ -66,9 +80,7 @@ void read_pressure(const std::string& text, const std::string& of, std::map<std:
     while (std::getline(lines, line)) {
         const std::size_t total = line.find("total=");
         if (total == std::string::npos) continue;
-        double value = 0;
-        std::from_chars(line.data() + total + 6, line.data() + line.size(), value);
-        pressure_us[of + " " + line.substr(0, line.find(' '))] = value;
+        pressure_us[of + " " + line.substr(0, line.find(' '))] = leading_number(std::string_view(line).substr(total + 6), 0.0);
     }
 }
 

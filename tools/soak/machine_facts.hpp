@@ -1,8 +1,10 @@
 // What the machine was, and what the kernel counted while the soak ran: kept with the figures, so that they can be judged later.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "tools/soak/summary.hpp"
 
@@ -23,5 +25,10 @@ SoakMachine machine_facts(const MachineCounters& before, const MachineCounters& 
 
 /// This process's own command line, arguments apart by spaces; quoted where they hold any.
 std::string own_command_line();
+
+/// One figure of a /proc file: "NAME value" or "NAME: value" at the beginning of a line. 0 where there is no such line.
+std::uint64_t proc_figure(std::string_view text, std::string_view name);
+/// The same, of a file; 0 where it cannot be read, too.
+std::uint64_t proc_figure_of(const std::string& file, std::string_view name);
 
 }  // namespace surefoot::soak

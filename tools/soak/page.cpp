@@ -15,7 +15,6 @@
 #include "tools/report/verdict.hpp"
 #include "tools/soak/charts.hpp"
 #include "tools/soak/summary.hpp"
-#include "tools/soak/words.hpp"
 
 namespace surefoot::soak {
 
@@ -56,7 +55,7 @@ std::string header_of(const SoakSummary& s) {
     } else {
         out += fmt::format(", while {} kinds of load took turns on {} cores.", s.loads.size(), s.machine.cores);
     }
-    if (s.stopped) out += fmt::format(" It was stopped by its user; {} were asked for.", duration_words(s.asked_s));
+    if (s.stopped) out += fmt::format(" The user stopped it; {} were requested.", duration_words(s.asked_s));
     return out + "</p>\n</header>\n";
 }
 
@@ -96,7 +95,8 @@ std::string hours_section(const SoakSummary& s) {
                   soak_accuracy_chart(s));
     out += half_card("Misses by load", "While it was on, alone or with others.", soak_load_chart(s));
     if (s.walk.misses > 0)
-        out += half_card("Misses by cause", "One cause a miss, from the evidence of that frame.", report::cause_chart(s.walk));
+        out +=
+            half_card("Misses by cause", "One cause per miss, from the measurements of that frame.", report::cause_chart(s.walk));
     return out + "</div>\n";
 }
 
@@ -158,7 +158,7 @@ constexpr std::string_view soak_footer =
 
 Result<void> probe_soak_page(const std::string& dir) {
     if (auto ok = FileSet::probe(dir, {"index.html", "soak.json"}); !ok)
-        return Error{"--report " + ok.error().place, ok.error().what, ok.error().remedy};
+        return Error{"--report " + ok.error().place, ok.error().what, ok.error().remedy, ok.error().kind};
     return {};
 }
 

@@ -47,10 +47,11 @@ Result<LoadSet> parse_mix(std::string_view text) {
         text.remove_prefix(std::min(name.size() + 1, text.size()));
         const auto known = std::find(load_names.begin(), load_names.end(), name);
         if (known == load_names.end())
-            return Error{"--mix", "there is no load '" + std::string(name) + "'", "some of " + all + ", apart by commas"};
+            return Error{"--mix", "There is no load '" + std::string(name) + "'", "Name some of " + all + ", separated by commas",
+                         ErrorKind::misuse};
         mix |= 1U << static_cast<unsigned>(known - load_names.begin());
     }
-    if (mix == 0) return Error{"--mix", "names no load", "some of " + all + ", apart by commas"};
+    if (mix == 0) return Error{"--mix", "No load is named", "Name some of " + all + ", separated by commas", ErrorKind::misuse};
     return mix;
 }
 

@@ -12,7 +12,7 @@
 
 namespace surefoot::soak {
 
-/// not_judged: what ran was too short, or too little, to tell. A verdict holds only if nothing of it is broken or not judged.
+/// not_judged: the run was too short, or there was too little data. A verdict holds only if every rule holds.
 enum class Judged : std::uint8_t { holds, broken, not_judged };
 std::string_view judged_name(Judged judged);  ///< "holds", "broken", "not judged"
 
@@ -101,6 +101,8 @@ struct SoakSummary {
     SoakMachine machine;
 };
 
+/// "45 seconds", "20 minutes", "2 hours".
+std::string duration_words(double seconds);
 /// holds: every check does; broken: one is; else not judged.
 Judged verdict_of(const SoakSummary& summary);
 /// "20 minutes under load: 36 012 frames, 2 missed, none by its own doing."

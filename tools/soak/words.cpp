@@ -6,10 +6,9 @@
 
 #include "rt/base/modes.hpp"
 #include "tools/report/svg.hpp"
-#include "tools/report/text_table.hpp"
+#include "tools/report/terminal.hpp"
 #include "tools/report/verdict.hpp"
 #include "tools/soak/summary.hpp"
-#include "tools/soak/words.hpp"
 
 namespace surefoot::soak {
 
@@ -54,18 +53,22 @@ std::string soak_headline(const SoakSummary& s) {
 
 namespace {
 
-std::string_view colour_of(Judged judged) { return judged == Judged::holds ? "32" : judged == Judged::broken ? "31" : "33"; }
+report::Ink ink_of(Judged judged) {
+    return judged == Judged::holds ? report::Ink::good : judged == Judged::broken ? report::Ink::bad : report::Ink::warn;
+}
 
 }  // namespace
 
 std::string soak_table(const SoakSummary& s, bool colour) {
-    report::TextTable table(colour);
+    report::LabelledText table(colour);
     const Judged verdict = verdict_of(s);
-    table.row("soak", soak_headline(s), fmt::format("1;{}", colour_of(verdict)));
-    if (s.stopped) table.row("", fmt::format("stopped by the user: {} were asked for", duration_words(s.asked_s)), "33");
+    table.row("soak", soak_headline(s), report::strong(ink_of(verdict)));
+    if (s.stopped)
+        table.row("", fmt::format("stopped by the user; {} were requested", duration_words(s.asked_s)), report::Ink::warn);
     for (const SoakCheck& check : s.checks)
-        table.row(check.name, fmt::format("{}: {}", judged_name(check.judged), check.words), colour_of(check.judged));
-    for (const SoakLoad& load : s.loads) table.row("load " + load.name, load.words, load.ran && !load.real ? "33" : "");
+        table.row(check.name, fmt::format("{}: {}", judged_name(check.judged), check.words), ink_of(check.judged));
+    for (const SoakLoad& load : s.loads)
+        table.row("load " + load.name, load.words, load.ran && !load.real ? report::Ink::warn : report::Ink::plain);
     std::string causes;
     for (const auto& [cause, count] : s.walk.miss_causes)
         causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", cause, count);
@@ -77,13 +80,13 @@ std::string soak_table(const SoakSummary& s, bool colour) {
                                       report::accuracy_words(s.walk.accuracy_mean), report::short_number(s.walk.accuracy_min),
                                       report::accuracy_words(s.walk.accuracy_min)));
     table.row("machine", fmt::format("{}; {:.0f} ms stolen by the host", s.machine.kernel, s.machine.steal_ms));
-    if (!s.walk.uncalibrated.empty()) table.row("uncalibrated", s.walk.uncalibrated, "33");
+    if (!s.walk.uncalibrated.empty()) table.row("uncalibrated", s.walk.uncalibrated, report::Ink::warn);
     for (const rt::Lack& d : s.walk.degraded)
-        table.row("degraded", d.remedy.empty() ? d.what : fmt::format("{}: {}", d.what, d.remedy), "33");
+        table.row("degraded", d.remedy.empty() ? d.what : fmt::format("{}: {}", d.what, d.remedy), report::Ink::warn);
     const std::string last = verdict == Judged::holds    ? "the verdict holds"
                              : verdict == Judged::broken ? "the verdict is broken"
-                                                         : "nothing is broken, but not all of it could be judged";
-    table.row("verdict", last, fmt::format("1;{}", colour_of(verdict)));
+                                                         : "no rule is broken, but some cannot be judged";
+    table.row("verdict", last, report::strong(ink_of(verdict)));
     return table.text();
 }
 

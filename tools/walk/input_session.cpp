@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "input/replay/replay_source.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::walk {
 
@@ -18,18 +19,10 @@ void say_what_is_passed_over(const input::SteeringFile& steering, const input::R
             fmt::format("{}: its {} GPIO lines are not read: a recording steers", request.steering_file, steering.lines.size()));
     }
     if (recorded.recording.other_devices > 0) {
-        notes.push_back(fmt::format("{}: {} reports of other devices are passed over: one device steers", request.input_file,
+        notes.push_back(fmt::format("{}: {} reports of other devices are ignored: only one device steers", request.input_file,
                                     recorded.recording.other_devices));
     }
     for (const std::string& left_out : recorded.mapper.notes) notes.push_back(request.input_file + ": " + left_out);
-}
-
-/// Names in recordings are bytes of unknown sort.
-std::string printable(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(),
-        [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f; }, '?');
-    return text;
 }
 
 }  // namespace
@@ -77,11 +70,13 @@ std::optional<Error> InputSession::end(const Progress& progress, std::vector<std
     if (!thread_) return {};
     thread_->stop();
     guard_violations_ = thread_->guard_violations();
+    steering_->steers.plays();  // its thread has ended
     if (live_) live_->finish(steering_->safety().latched, progress, notes);
     return thread_->misplaced();
 }
 
 report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> records) const {
+    steering_->steers.plays();  // its thread has ended
     report::InputSummary s;
     s.given = true;
     s.source = source_name_;

@@ -29,7 +29,7 @@ public:
     static Result<std::unique_ptr<InputSession>> open(const WalkRequest& request, std::int64_t period_ns,
                                                       std::vector<std::string>& notes);
 
-    /// Of the walk that this input is for; 0: no end of its own.
+    /// Length of the walk by this input; 0: the input sets none.
     [[nodiscard]] double duration_s() const { return duration_s_; }
 
     /// The walk's time begins at start_ns, at the start of `path`, which must outlive this. real_clock: starts the thread.
@@ -38,7 +38,7 @@ public:
     [[nodiscard]] PoseSource& poses() { return *poses_; }
     /// For the preparation: where buttons put the eye.
     [[nodiscard]] PlaceBuffer* places() { return &places_; }
-    /// Live: to be called every few milliseconds while it walks; says what devices do, and remembers an emergency stop.
+    /// Live: call it every few milliseconds during the walk. Reports what devices do, and stores an emergency stop.
     void attend(const Progress& progress, std::vector<std::string>& notes) {
         if (live_) live_->attend(progress, notes);
     }

@@ -14,6 +14,7 @@ InputStepper::InputStepper(input::ReportSource& source, input::Steering& steerin
 }
 
 void InputStepper::begin(std::int64_t start_ns) {
+    steering_.steers.plays();  // before the input thread is there
     tick_at_ns_ = start_ns;
     source_.begin(steering_, start_ns);
     input::NavigationSample first;
@@ -24,6 +25,7 @@ void InputStepper::begin(std::int64_t start_ns) {
 std::int64_t InputStepper::next_ns() const { return std::min(source_.next_ns(), tick_at_ns_); }
 
 void InputStepper::step(std::int64_t now_ns) {
+    steering_.steers.plays();
     const input::Lines lines = source_.drain(steering_, now_ns);
     input::NavigationSample sample = steering_.tick(lines, now_ns);
     if (keeper_ != nullptr) keeper_->set(steering_.safety().latched);

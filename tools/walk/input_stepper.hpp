@@ -30,12 +30,12 @@ struct SteeredSample {
 class InputStepper {
 public:
     /// All of them must outlive this; `steering` is placed at the visit's start.
-    /// `keeper`, where given, is told at each step whether an emergency stop is latched.
-    /// `places` is told where the eye is put when it does not walk there.
+    /// `keeper`, if given, is notified at each step whether an emergency stop is latched.
+    /// `places` is notified of jumps: poses that the eye does not walk to.
     InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit, rt::TripleBuffer<SteeredSample>& samples,
                  PlaceBuffer& places, input::StopKeeper* keeper = nullptr);
 
-    /// Publishes the start, and attaches what is there. On a neutral thread, before the first step; allocates.
+    /// Publishes the start, and attaches connected devices. On a neutral thread, before the first step; allocates.
     void begin(std::int64_t start_ns);
     /// When the next step is due at the latest.
     [[nodiscard]] std::int64_t next_ns() const;

@@ -15,8 +15,7 @@ namespace surefoot::walk {
 
 class InputThread {
 public:
-    /// Start from a neutral thread, after stepper.begin(); the thread has placed and named itself as `placement` says when this
-    /// returns.
+    /// Start from a neutral thread, after stepper.begin(). When this returns, the thread has applied `placement`.
     InputThread(InputStepper& stepper, rt::Placement placement);
     ~InputThread() { stop(); }
     InputThread(const InputThread&) = delete;

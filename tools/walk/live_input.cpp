@@ -24,8 +24,8 @@ Result<void> check_memory(const std::string& file, bool latched) {
     std::filesystem::create_directories(std::filesystem::path(file).parent_path(), problem);
     auto stored = input::store_stop(file, latched);
     if (stored) return stored;
-    return Error{stored.error().place, "the emergency stop cannot be remembered: " + stored.error().what,
-                 "name a folder that can be written with --state DIR"};
+    return Error{stored.error().place, "The emergency stop cannot be stored. " + stored.error().what,
+                 "Name a folder that can be written with --state DIR", ErrorKind::unwritable};
 }
 
 }  // namespace
@@ -41,14 +41,15 @@ Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::Steer
         if (auto ok = check_memory(file, live.stop_latched_); !ok) return ok.error();
         live.keeper_ = std::make_unique<input::StopKeeper>(file, live.stop_latched_);
         if (live.stop_latched_)
-            notes.push_back(file +
-                            ": the emergency stop of an earlier walk is still latched: press what does `stop_reset`, or start "
-                            "with --clear-stop");
+            notes.push_back(
+                file +
+                ": the emergency stop of an earlier walk is still latched. Press the control for `stop_reset`, or start "
+                "with --clear-stop");
         else if (remembered.latched)
-            notes.push_back(file + ": the emergency stop of an earlier walk is taken off, as --clear-stop asks");
+            notes.push_back(file + ": the emergency stop of an earlier walk is released by --clear-stop");
     } else if (request.clear_stop) {
-        return Error{"--clear-stop", "takes off a latched stop, and nothing here can stop",
-                     "name a stop in the --steering file, or leave it out"};
+        return Error{"--clear-stop", "This option releases a latched stop, and no control can stop this walk",
+                     "Name a stop in the --steering file, or remove --clear-stop", ErrorKind::misuse};
     }
     input::LiveOptions options;
     options.mappings = steering.devices;
@@ -66,12 +67,12 @@ void LiveInput::attend(const Progress& progress, std::vector<std::string>& notes
     if (const bool latched = keeper_->latched(); latched != stop_latched_) {
         stop_latched_ = latched;
         say(progress, notes,
-            latched ? "emergency stop: the walk stands still until what does `stop_reset` is pressed"
-                    : "emergency stop: taken off");
+            latched ? "emergency stop: the walk stands still until the control for `stop_reset` is pressed"
+                    : "emergency stop: released");
     }
     const auto written = keeper_->flush();
     const std::string why = written ? std::string() : written.error().text();
-    if (why != unwritten_ && !why.empty()) say(progress, notes, "the emergency stop's memory: " + why);
+    if (why != unwritten_ && !why.empty()) say(progress, notes, "the emergency stop cannot be stored: " + why);
     unwritten_ = why;
 }
 
@@ -79,7 +80,7 @@ void LiveInput::finish(bool latched, const Progress& progress, std::vector<std::
     if (keeper_) keeper_->set(latched);
     attend(progress, notes);
     if (live_->lost_notes() > 0)
-        say(progress, notes, fmt::format("{} more messages about devices came too fast to be shown", live_->lost_notes()));
+        say(progress, notes, fmt::format("{} more messages about devices came too fast and are not shown", live_->lost_notes()));
 }
 
 }  // namespace surefoot::walk

@@ -1,4 +1,4 @@
-// Live devices for a session: the source, the emergency stop's memory, and what both have to tell the user.
+// Live devices for a session: the source, the stored emergency stop, and the messages of both.
 #pragma once
 
 #include <memory>
@@ -15,8 +15,8 @@ namespace surefoot::walk {
 
 class LiveInput {
 public:
-    /// Looks for devices from now on, and recalls the stop where one is configured. Errors: no udev; a state folder in which
-    /// the stop cannot be remembered. `notes`: what else the user should know.
+    /// Starts to look for devices, and loads the stored stop if one is configured. Errors: no udev; a state folder in which
+    /// the stop cannot be stored. `notes`: messages for the user.
     static Result<LiveInput> open(const WalkRequest& request, const input::SteeringFile& steering,
                                   std::vector<std::string>& notes);
 
@@ -24,12 +24,12 @@ public:
     [[nodiscard]] int steering_now() const { return live_->steering_now(); }
     /// Once, for the stepper; it stays valid while the source lives.
     [[nodiscard]] std::unique_ptr<input::ReportSource> take_source() { return std::move(source_); }
-    /// Null where nothing can stop for good.
+    /// Null if no control can latch a stop.
     [[nodiscard]] input::StopKeeper* keeper() { return keeper_.get(); }
 
-    /// Every few milliseconds from a thread that may wait: writes the stop's memory, and says what there is to say.
+    /// Call every few milliseconds from a thread that may wait: stores the stop, and passes on messages.
     void attend(const Progress& progress, std::vector<std::string>& notes);
-    /// After the input thread's end: the last of it. How the stop was left.
+    /// After the input thread's end: the last messages. Returns whether the stop is latched.
     void finish(bool latched, const Progress& progress, std::vector<std::string>& notes);
 
 private:
@@ -37,8 +37,8 @@ private:
     std::unique_ptr<input::LiveSource> source_;
     input::LiveSource* live_ = nullptr;
     std::unique_ptr<input::StopKeeper> keeper_;
-    std::string unwritten_;      ///< why the stop could not be written, as it was said
-    bool stop_latched_ = false;  ///< as it was said last
+    std::string unwritten_;      ///< the last reported reason why the stop cannot be stored
+    bool stop_latched_ = false;  ///< as last reported
 };
 
 }  // namespace surefoot::walk

@@ -51,7 +51,9 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     for (std::uint32_t round = 0; round < rounds; ++round) {
         Random random(options.seed);  // the same views again
         for (std::uint32_t i = 0; i < a_round; ++i) {
-            if (progress.stopped()) return Error{"calibration", "stopped: nothing was written", "run it again"};
+            if (progress.stopped())
+                return Error{"calibration", "The calibration was stopped: nothing was written", "Run it again",
+                             ErrorKind::stopped};
             const Pose pose = random_pose(path, random);
             const double budget_us = random.range(0.1, 0.85) * options.frame_us;
             engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);

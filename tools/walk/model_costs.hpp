@@ -1,4 +1,4 @@
-// What a machine's cost table says of one model, set right: how items add up to a frame, fitted to measured frames of it.
+// Fits a machine's cost table to one model: how the costs of items add up to a frame, from measured frames.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ struct ModelFitOptions {
     gl::DeviceOptions device;
     double frame_us = 1e6 / 30;  ///< budgets are drawn from a tenth of it up to 85 %
     std::uint32_t poses = 240;
-    std::uint32_t rounds = 4;  ///< that each pose is drawn in, at least 1
+    std::uint32_t rounds = 4;  ///< how often each pose is drawn, at least 1
     std::uint64_t seed = 7;
     std::function<void()> opened;  ///< called once, when the driver's threads exist: place them as a walk does
 };

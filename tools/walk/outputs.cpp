@@ -1,5 +1,5 @@
 // A walk's outputs, checked before it begins.
-#include "tools/walk/outputs.hpp"
+#include "tools/walk/walk_results.hpp"
 
 #include <fmt/format.h>
 
@@ -49,8 +49,8 @@ Result<void> check_outputs(const WalkRequest& request) {
     const auto backend = gl::backend_named(request.backend);
     if (!backend) return backend.error();
     if (!request.snap_dir.empty() && !(*backend)->draws()) {
-        return Error{"--snap " + request.snap_dir, fmt::format("the {} backend draws no pictures", request.backend),
-                     fmt::format("leave out --snap or --backend {}", request.backend)};
+        return Error{"--snap " + request.snap_dir, fmt::format("The {} backend draws no pictures", request.backend),
+                     fmt::format("Remove --snap or --backend {}", request.backend), ErrorKind::misuse};
     }
     const std::vector<Output> outputs = outputs_of(request);
     const std::string beside = std::filesystem::path(request.model_file).replace_extension(".path.csv").string();
@@ -61,15 +61,17 @@ Result<void> check_outputs(const WalkRequest& request) {
              {request.model_file, request.path_file, request.input_file == live_input ? std::string() : request.input_file,
               request.steering_file, request.config_file, beside, costs}) {
             if (!in.empty() && same_file(out.file, in))
-                return Error{out.option + " " + out.file, "is a file that the walk reads", "name another file"};
+                return Error{out.option + " " + out.file, "The output is a file that the walk reads", "Name another file",
+                             ErrorKind::misuse};
         }
         for (std::size_t k = 0; k < i; ++k) {
             if (same_file(out.file, outputs[k].file)) {
-                return Error{out.option + " " + out.file, "is written by " + outputs[k].option + " too", "name another file"};
+                return Error{out.option + " " + out.file, "The same file is written by " + outputs[k].option, "Name another file",
+                             ErrorKind::misuse};
             }
         }
         if (auto ok = probe_writable(out.file, out.in_folder); !ok) {
-            return Error{out.option + " " + ok.error().place, ok.error().what, ok.error().remedy};
+            return Error{out.option + " " + ok.error().place, ok.error().what, ok.error().remedy, ok.error().kind};
         }
     }
     return {};

@@ -49,7 +49,8 @@ Pose random_pose(const Path& path, Random& random) {
 
 Result<ChosenPath> choose_path(const std::string& asked, const std::string& model_file, const model::Model& model,
                                double lift_m) {
-    if (!(std::abs(lift_m) <= 1e7)) return Error{"--lift", "is no height", "give metres, e.g. 1.5"};
+    if (!(std::abs(lift_m) <= 1e7))
+        return Error{"--lift", "The lift is not a height", "Give metres, for example 1.5", ErrorKind::misuse};
     ChosenPath chosen;
     std::string file = asked;
     if (file.empty()) {

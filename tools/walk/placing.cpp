@@ -26,7 +26,8 @@ Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted) 
     plan.all = rt::allowed_cpus();
     const rt::CpuMask isolated = rt::isolated_cpus(plan.all);
     plan.frame_core = rt::default_frame_core(plan.all, isolated);
-    if (plan.all.empty()) return Error{"cores", "this process may use none", "look at its affinity (taskset -p)"};
+    if (plan.all.empty())
+        return Error{"cores", "This process may use no core", "Check its affinity (taskset -p)", ErrorKind::no_real_time};
     if (const int wanted = request.frame_core; wanted >= 0)
         (plan.all.has(wanted) || isolated.has(wanted) ? plan.frame_core : plan.absent_core) = wanted;
     plan.fifo = request.fifo && fifo_granted;

@@ -1,4 +1,4 @@
-// Which thread runs where, at which priority: the declared table of the session, and putting it in force (DESIGN 7).
+// The declared table of the session's threads (core, policy, priority), and the functions that apply it.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace surefoot::walk {
 
-/// Cores and priorities of one session, worked out from the request and the machine.
+/// Cores and priorities of one session, from the request and the machine.
 struct PlacingPlan {
-    bool fifo = false;  ///< asked for and granted
+    bool fifo = false;  ///< requested and granted
     int frame_core = 0;
-    int absent_core = -1;  ///< asked for as the frame core, and not there (or not ours): another one serves; -1: none
+    int absent_core = -1;  ///< a requested frame core that does not exist or is not allowed: another one is used; -1: none
     rt::CpuMask all;       ///< of every other thread; the frame core is outside of it where the kernel isolates that one
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;
     bool input = false;                        ///< an input thread steers
@@ -26,11 +26,11 @@ struct PlacingPlan {
     int unnamed = 1;  ///< threads that carry the program's name when all of ours are in place: the main one, a driver's
 };
 
-/// The frame thread gets rt::default_frame_core() unless the request names one that is there.
+/// The frame thread gets rt::default_frame_core(), unless the request names a core that can be used.
 Result<PlacingPlan> plan_placing(const WalkRequest& request, bool fifo_granted);
 
-/// Places the driver's rasterisers below the frame thread, on all cores: pinned one a core, the one on the frame core would
-/// keep each scene's barrier waiting until the frame thread sleeps (measured: ARCHITECTURE). Call when the context exists.
+/// Places the driver's rasterisers below the frame thread, on all cores: if each were pinned to a core, the one on the frame
+/// core would delay every barrier until the frame thread sleeps. Call when the context exists.
 Result<std::vector<pid_t>> place_rasterisers(PlacingPlan& plan);
 /// Rasterisers whose CPU time counts as the frame core's, for the control.
 std::vector<pid_t> on_frame_core(const PlacingPlan& plan, const std::vector<pid_t>& rasterisers);

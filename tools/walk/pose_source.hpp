@@ -8,20 +8,20 @@
 
 namespace surefoot::walk {
 
-/// The pose of one frame, and what is in it.
+/// The pose of one frame, and the input that it contains.
 struct FramePose {
     Pose pose;
-    Pose before;                ///< a period earlier, by the motion that goes on from here: asked where no frame has seen it
-    Foresight foresight;        ///< where the eye can be in the next frames, where the source knows better than two poses do
-    bool jumped = false;        ///< put there since the last frame: what that one saw says nothing about this one's motion
-    bool stopped = false;       ///< stands still by order: emergency stop or dead-man
+    Pose before;                ///< one period earlier by the same motion; used if no frame has shown it
+    Foresight foresight;        ///< possible poses of the next frames, if the source knows more than two poses tell
+    bool jumped = false;        ///< a jump since the last frame: the last pose says nothing about this motion
+    bool stopped = false;       ///< stands still: emergency stop or dead-man
     std::int64_t stamp_ns = 0;  ///< of the newest report in it; 0: none
     std::uint64_t reports = 0;  ///< in it, since the walk began
 };
 
 /// What a source may go by.
 struct FrameTime {
-    std::uint64_t path_slot = 0;  ///< periods that the walk has been under way
+    std::uint64_t path_slot = 0;  ///< periods since the start of the walk
     std::int64_t due_ns = 0, now_ns = 0;
 };
 

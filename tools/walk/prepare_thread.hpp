@@ -1,6 +1,6 @@
-// The coordinator of preparation: on its own grid point a little after each frame's start it takes the newest pose, lets
-// the workers prepare, and publishes. The frame thread never waits for it, nor wakes it. Where an input puts the eye elsewhere
-// (a viewpoint), it is told between the frames, so that the first picture there is prepared like any other.
+// The coordinator of preparation. A little after each frame's start it takes the newest pose, lets the workers prepare, and
+// publishes. The frame thread neither waits for it nor wakes it. It is notified of jumps (to a viewpoint) between frames, so that
+// the first frame there is prepared too.
 #pragma once
 
 #include <atomic>
@@ -34,7 +34,7 @@ struct PoseSample {
     bool valid = false;
 };
 
-/// The pictures of the next frames are prepared for: this many periods ahead of the newest pose (DESIGN 1.4: 3 at most).
+/// Sets are prepared for this many periods ahead of the newest pose. A set older than 3 frames is not used.
 constexpr double horizon_periods = 3.0;
 
 /// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.

@@ -1,4 +1,4 @@
-// Real time claimed, or what it lacks.
+// Claims real time, and lists what it lacks.
 #include "tools/walk/real_time.hpp"
 
 #include <fmt/format.h>
@@ -41,31 +41,31 @@ Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock,
     const auto lack = [&](rt::LackKind kind, const std::string& what, const std::string& remedy) {
         facts.degraded.push_back({kind, what, remedy});
     };
-    rt::Capabilities wanted = c;  // whoever does not ask for FIFO does not lack it
+    rt::Capabilities wanted = c;  // a walk without FIFO does not lack it
     if (!request.fifo) wanted.fifo_priority = request.frame_priority;
     facts.degraded = rt::find_lacking(wanted, request.frame_priority);
-    if (!request.fifo) lack(switched_off, "real-time scheduling is switched off", "leave out --no-fifo");
+    if (!request.fifo) lack(switched_off, "Real-time scheduling is switched off", "Remove --no-fifo");
     if (plan->absent_core >= 0) {
         lack(placing,
-             fmt::format("frame core {} is not there, or not for this process: core {} serves", plan->absent_core,
+             fmt::format("Frame core {} does not exist, or this process may not use it: core {} is used", plan->absent_core,
                          plan->frame_core),
-             "choose one of " + plan->all.text() + " with --frame-core");
+             "Choose one of " + plan->all.text() + " with --frame-core");
     }
     facts.isolated = c.isolated.has(plan->frame_core);
     if (!facts.isolated && !c.isolated.empty()) {
-        lack(isolated_core, fmt::format("the frame core {} is not isolated", plan->frame_core),
-             fmt::format("--frame-core {}", c.isolated.cpus().back()));
+        lack(isolated_core, fmt::format("The frame core {} is not isolated", plan->frame_core),
+             fmt::format("Use --frame-core {}", c.isolated.cpus().back()));
     }
     if (auto refused = placing_refused(*plan)) lack(placing, refused->place + ": " + refused->what, refused->remedy);
     if (!rt::guard_active()) {
-        lack(sanitizer, "a sanitizer build: allocations are not guarded, memory is not locked", "use the release build");
+        lack(sanitizer, "This is a sanitizer build: allocations are not guarded, memory is not locked", "Use the release build");
         return plan;
     }
     facts.minor_fault_ns = rt::minor_fault_cost_ns();  // before locking: then nothing faults
     auto locked = rt::prepare_memory({});
     facts.locked = locked.ok();
-    // The limit itself may be among the lacks already.
-    if (!locked && c.can_lock) lack(memory_lock, locked.error().place + " " + locked.error().what, locked.error().remedy);
+    // If locking is forbidden, the list names that limit already.
+    if (!locked && c.can_lock) lack(memory_lock, locked.error().place + ": " + locked.error().what, locked.error().remedy);
     return plan;
 }
 
@@ -75,7 +75,8 @@ Result<void> require_real_time(std::span<const rt::Lack> lacks) {
     for (const rt::Lack& lack : lacks) {
         all += fmt::format("{}{}{}", all.empty() ? "" : "; ", lack.what, lack.remedy.empty() ? "" : " -> " + lack.remedy);
     }
-    return Error{"--strict", "does not start: " + all, "grant these, or leave out --strict: the figures will be marked"};
+    return Error{"--strict", "The walk does not start: " + all,
+                 "Grant these. Without --strict the walk starts and its figures are marked", ErrorKind::no_real_time};
 }
 
 }  // namespace surefoot::walk

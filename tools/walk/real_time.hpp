@@ -1,4 +1,4 @@
-// What the machine grants of real time, what it lacks, and the refusal to start without (--strict; DESIGN 7).
+// What the machine grants of real time and what it lacks. With --strict nothing starts if something lacks.
 #pragma once
 
 #include <span>

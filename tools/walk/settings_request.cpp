@@ -26,23 +26,27 @@ constexpr FileSetting files[] = {
     {"state", &config::Settings::state_dir},
 };
 
-/// Where nothing is kept, nothing can be summed up or written.
+/// An endless walk keeps no records, so it has no summary and no outputs.
 Result<void> check_endless(const WalkRequest& r) {
     if (r.control || r.frames > 0 || r.seconds > 0)
-        return Error{"a walk without end", "was given an end", "leave one of them out"};
+        return Error{"endless walk", "An endless walk cannot have --frames, --seconds or --control", "Remove them",
+                     ErrorKind::misuse};
     const bool writes = !(r.ledger_file + r.trace_file + r.report_dir + r.snap_dir + r.capture_file).empty();
     if (writes)
-        return Error{"a walk without end", "keeps no frames, so none can be written", "leave out the outputs, or give it an end"};
+        return Error{"endless walk", "An endless walk keeps no frames, so none can be written",
+                     "Remove the outputs, or set an end", ErrorKind::misuse};
     return {};
 }
 
 Result<void> check_real_time(const WalkRequest& r) {
     if (r.clock == rt::ClockKind::real) return {};
-    if (r.control) return Error{"--control", "judges real time", "leave out --clock virtual"};
-    if (r.strict) return Error{"--strict", "asks for real time", "leave out --clock virtual"};
+    if (r.control)
+        return Error{"--control", "The control needs the real clock", "Remove --control or --clock virtual", ErrorKind::misuse};
+    if (r.strict)
+        return Error{"--strict", "This option needs the real clock", "Remove --strict or --clock virtual", ErrorKind::misuse};
     if (r.input_file == live_input)
-        return Error{"--input devices", "steer in real time, which --clock virtual has not got",
-                     "leave out --clock virtual, or give a recording (`surefoot devices record`)"};
+        return Error{"--input devices", "Devices need the real clock",
+                     "Remove --clock virtual, or give a recording (`surefoot devices record`)", ErrorKind::misuse};
     return {};
 }
 
@@ -68,19 +72,22 @@ void apply_settings(const config::Configuration& configuration, WalkRequest& req
 Result<void> check_request(const WalkRequest& r) {
     if (auto ok = check_real_time(r); !ok) return ok;
     if (r.control && (r.frames > 0 || r.seconds > 0))
-        return Error{r.frames > 0 ? "--frames" : "--seconds", "is not the control's length, which --control-pairs says",
-                     "leave it out, or --control (`control` of the --config file, where it stands there)"};
+        return Error{r.frames > 0 ? "--frames" : "--seconds", "This option cannot set the control's length: --control-pairs does",
+                     "Remove it, or --control (or `control` in the --config file)", ErrorKind::misuse};
     if (r.control && !r.input_file.empty())
-        return Error{"--control", "compares blocks of the same walk, and nobody steers the same twice", "leave out --input"};
+        return Error{"--control", "The control compares blocks of one walk, and nobody steers the same way twice",
+                     "Remove --input", ErrorKind::misuse};
     const auto backend = gl::backend_named(r.backend);
     if (!backend) return backend.error();
     if (r.cost_noise > 0 && (r.clock == rt::ClockKind::real || (*backend)->draws()))
-        return Error{"--cost-noise", "is of simulated costs, and these are real", "add --clock virtual --backend null"};
+        return Error{"--cost-noise", "Only simulated costs can have noise, and these costs are real",
+                     "Add --clock virtual --backend null", ErrorKind::misuse};
     if (!r.steering_file.empty() && r.input_file.empty())
-        return Error{"--steering", "says how a device steers, and none does: the path is followed",
-                     "add --input devices, or --input REC with a recording of one"};
+        return Error{"--steering", "A steering file needs a device, and this walk follows its path",
+                     "Add --input devices, or --input REC with a recording of a device", ErrorKind::misuse};
     if (r.clear_stop && r.input_file != live_input)
-        return Error{"--clear-stop", "is for devices, and none steers", "add --input devices"};
+        return Error{"--clear-stop", "This option needs devices, and none steers this walk", "Add --input devices",
+                     ErrorKind::misuse};
     return r.endless ? check_endless(r) : Result<void>{};
 }
 

@@ -11,18 +11,18 @@ namespace surefoot::walk {
 /// The schema with the names and help of every registry that a walk chooses from.
 const config::Schema& settings_schema();
 
-/// Everything that is a setting is put into `request`; files that it names already (from a command line) stay.
+/// Copies all settings into `request`. File names that it already has (from a command line) stay.
 void apply_settings(const config::Configuration& configuration, WalkRequest& request);
 
-/// Rules across what is asked for, each of them checked here alone: what contradicts, or says nothing without something else.
-/// The places are those of a command line.
+/// The rules across options, each checked only here: contradictions, and options that need another one. The places of errors
+/// are options of the command line.
 Result<void> check_request(const WalkRequest& request);
 
-/// What walks take from the process, settled by the first: the rasteriser threads of a software driver. Call it before any
-/// other thread exists.
+/// Sets what all walks of the process share: the rasteriser threads of a software driver. Call it before any other thread
+/// exists.
 void prepare_process(const WalkRequest& first);
-/// A later walk in a process that was prepared for `first` keeps the process's number of rasterisers. Returns what is to be said
-/// of that where it asks for another, else nothing.
+/// A later walk in a process that was prepared for `first` keeps the process's number of rasterisers. Returns a
+/// message if it requests another number, else nothing.
 std::string keep_process(const WalkRequest& first, WalkRequest& request);
 
 }  // namespace surefoot::walk

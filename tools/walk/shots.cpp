@@ -81,6 +81,7 @@ Result<report::ReportShot> develop(Engine& engine, const Shot& shot) {
     for (const gl::DrawItem& item : full) out.full_triangles += engine.model().reps[item.rep].triangles;
     if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
 
+    engine.device().draws.plays();
     engine.draw_unbudgeted(shot.pose, shot.items);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
@@ -98,13 +99,18 @@ Result<report::ReportShot> develop(Engine& engine, const Shot& shot) {
 }
 
 Result<void> write_snaps(Engine& engine, const ShotStore& store, const std::string& dir, const Progress& progress) {
+    engine.device().draws.plays();
     std::error_code error;
     std::filesystem::create_directories(dir, error);
-    if (error) return Error{dir, "cannot be made: " + error.message(), "name another folder with --snap"};
+    if (error)
+        return Error{dir, "The folder cannot be made: " + error.message(), "Name another folder with --snap",
+                     ErrorKind::unwritable};
     for (std::size_t i = 0; i < store.used(); ++i) {
         if (progress.stopped()) {
-            return Error{dir, fmt::format("stopped by the user with {} of {} pictures written", i, store.used()),
-                         "the rest is lost"};
+            return Error{
+                dir,
+                fmt::format("The walk was stopped by the user with {} of {} pictures written: the rest is lost", i, store.used()),
+                "", ErrorKind::stopped};
         }
         progress.say("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const Shot& shot = store.shots()[i];

@@ -14,8 +14,8 @@ std::string state_directory(const std::string& asked);
 std::string stop_file(const std::string& state_dir);
 std::string cost_table_file(const std::string& state_dir);
 
-/// The calibrated table of this machine and renderer; without one, or with another machine's, default_costs() and
-/// `note` says so and how to calibrate. A damaged table is an Error.
+/// The calibrated table of this machine and renderer; without one, or with another machine's, default_costs(),
+/// and `note` has the reason and how to calibrate. A damaged table is an Error.
 Result<model::CostModel> load_costs(const std::string& state_dir, const std::string& machine, std::string& note);
 
 /// What a fit to a model is valid for, beside the table that it was made from.

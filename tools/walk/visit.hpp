@@ -25,7 +25,7 @@ public:
     [[nodiscard]] const Pose& start() const { return viewpoints_.front(); }
     /// After every tick of `steering`, on its thread: puts the eye elsewhere where a button asks for it, and writes what the
     /// frame thread is to see into `sample`. Edges are taken from the tick, so none is lost and none is taken twice.
-    void follow(input::NavigationSample& sample, input::Steering& steering, std::int64_t now_ns);
+    void follow(input::NavigationSample& sample, input::Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers);
 
     [[nodiscard]] bool touring() const { return touring_; }
     [[nodiscard]] bool paused() const { return paused_; }
@@ -33,9 +33,9 @@ public:
     [[nodiscard]] std::uint32_t jumps() const { return jumps_; }
 
 private:
-    void press_buttons(input::NavigationSample& sample, input::Steering& steering);
-    void put(const Pose& pose, input::NavigationSample& sample, input::Steering& steering);
-    void tour(input::NavigationSample& sample, input::Steering& steering, double dt_s);
+    void press_buttons(input::NavigationSample& sample, input::Steering& steering) REQUIRES(steering.steers);
+    void put(const Pose& pose, input::NavigationSample& sample, input::Steering& steering) REQUIRES(steering.steers);
+    void tour(input::NavigationSample& sample, input::Steering& steering, double dt_s) REQUIRES(steering.steers);
 
     const Path& path_;
     std::vector<Pose> viewpoints_;

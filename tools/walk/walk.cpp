@@ -11,8 +11,8 @@
 #include "rt/clock/clock.hpp"
 #include "rt/monitor/recorder.hpp"
 #include "tools/walk/control_proof.hpp"
-#include "tools/walk/outputs.hpp"
 #include "tools/walk/prepare_thread.hpp"
+#include "tools/walk/walk_results.hpp"
 #include "tools/walk/walk_session.hpp"
 
 namespace surefoot::walk {
@@ -181,8 +181,8 @@ void note_loss(const Session& s, WalkOutcome& outcome) {
     outcome.lost = s.lost.load();
     if (!outcome.lost) return;
     tell(s, WalkStep::device);
-    outcome.failures.push_back({"graphics context", "was lost while walking: the driver was reset, or took it away",
-                                "start again; see the kernel's log for resets of the GPU"});
+    outcome.failures.push_back(Error{"graphics context", "The context was lost while walking: the driver was reset or removed",
+                                     "Start again, and see the kernel's log for resets of the GPU", ErrorKind::no_device});
 }
 
 }  // namespace

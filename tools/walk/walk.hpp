@@ -21,20 +21,20 @@ struct Capture;
 
 namespace surefoot::walk {
 
-/// In place of a recording: the devices that are plugged in. A recording of that name is "./devices".
+/// The input that means all connected devices. A recording of that name is "./devices".
 constexpr std::string_view live_input = "devices";
 
-/// What one walk is asked for: the settings, ready to be used (files can be opened as they are named), and what no settings file
-/// says. 0 or empty means the default that is said here.
+/// The request for one walk: the settings, with file names that can be opened, and what no settings file has. 0 or empty means
+/// the default in the comment.
 struct WalkRequest : config::Settings {
     WalkRequest();             ///< the schema's defaults
     std::string config_file;   ///< where settings came from: not to be written over; may be empty
-    bool clear_stop = false;   ///< live: take off a stop that an earlier walk has left latched
+    bool clear_stop = false;   ///< live: release a stop that an earlier walk left latched
     std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
     double seconds = 0;
-    bool keep_records = true;  ///< false: records are handed to the watch only, and what is made of records is not made
-    bool endless = false;   ///< until progress.stop: records are handed to the watch and not kept, so nothing is written of them
-    double cost_noise = 0;  ///< relative, seeded (virtual clock)
+    bool keep_records = true;   ///< false: records go only to the watch, and no outputs are made of them
+    bool endless = false;       ///< until progress.stop: records go only to the watch and are not kept, so there are no outputs
+    double cost_noise = 0;      ///< relative, seeded (virtual clock)
     bool correct_costs = true;  ///< online correction of predictions; false: frozen at 1
     std::uint32_t control_pairs = 90;
     double control_block_s = 2.0;
@@ -47,14 +47,14 @@ struct WalkRequest : config::Settings {
 struct WalkOutcome {
     report::WalkSummary summary;
     std::vector<rt::FrameRecord> records;
-    std::vector<Error> failures;     ///< outputs that could not be written; the others are there
-    std::vector<std::string> notes;  ///< what else the user should know, a line each
+    std::vector<Error> failures;     ///< outputs that could not be written; the others are complete
+    std::vector<std::string> notes;  ///< messages for the user, one line each
     bool stopped = false;            ///< ended before its last frame, by progress.stop
-    bool lost = false;               ///< ended because the graphics context was lost; failures says so too
+    bool lost = false;               ///< ended because the graphics context was lost; failures has the error
     std::string report_page;         ///< the report's index.html, where asked for
 };
 
-/// Where a walk is. An Error that run_walk() returns belongs to the step that was told last.
+/// The step of a walk. An Error of run_walk() belongs to the last notified step.
 enum class WalkStep : std::uint8_t { request, input, real_time, model, device, frames, ending };
 
 /// Faults for tests: called on the frame thread as each stage of a frame begins; what it does there delays that stage.
@@ -72,15 +72,15 @@ struct WalkStart {
     int rasterisers = 0;
 };
 
-/// Who looks on while a walk runs: telemetry, the daemon, soaks. Each may be empty.
+/// Observers of a walk: telemetry, the daemon, soaks. Each may be empty.
 struct WalkWatch {
     std::function<void(WalkStep)> on_step;                  ///< on the caller's thread, as each begins
     std::function<void(const WalkStart&)> on_started;       ///< on the caller's thread, before the first slot is due (real clock)
     std::function<void(const rt::FrameRecord&)> on_record;  ///< on the monitor thread: every frame, in order
     std::function<void(const rt::Lack&)> on_degraded;       ///< on the caller's thread: found after on_started
     std::function<void(const rt::InputState&)> on_input;    ///< on the caller's thread: whenever it has changed
-    /// On the caller's thread, a tenth of a second later at most: a missed frame as `surefoot replay` takes it, the first one
-    /// since the last call. Not of frames drawn from coarse levels, nor beside capture_file, nor of the largest models.
+    /// On the caller's thread, a tenth of a second later at most: a missed frame for `surefoot replay`, the first
+    /// since the last call. Not for frames drawn from coarse levels, nor beside capture_file, nor of the largest models.
     std::function<void(const capture::Capture&)> on_missed_frame;
     FaultHook inject;
 };

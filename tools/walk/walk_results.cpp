@@ -40,7 +40,7 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
     s.uncalibrated = facts.uncalibrated;
     if (facts.dropped_records > 0) {
         s.degraded.push_back({rt::LackKind::other, fmt::format("{} frame records were dropped", facts.dropped_records),
-                              "give the monitor thread a core with time left"});
+                              "Give the monitor thread more CPU time"});
     }
     report::summarize(outcome.records, period_ns, s);
 }
@@ -49,8 +49,8 @@ namespace {
 
 Result<void> write_capture(const WalkRequest& request, const KeptFrame& kept, const Engine& engine) {
     if (!kept.kept) {
-        return Error{request.capture_file, fmt::format("frame {} was not selected in this walk", request.capture_frame),
-                     "choose a frame within the walk with --capture-frame"};
+        return Error{request.capture_file, fmt::format("Frame {} was not selected in this walk", request.capture_frame),
+                     "Choose a frame of the walk with --capture-frame", ErrorKind::misuse};
     }
     return capture::write_capture(request.capture_file, capture_of(kept, request, engine));
 }
@@ -96,9 +96,9 @@ ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std:
     const std::uint64_t wanted = page_only ? 7 : (frames - 1) / every + 1;
     const std::uint64_t fit = shots_that_fit(max_items);
     if (wanted > fit) {
-        notes.push_back(fmt::format(
-            "--snap: {} of {} pictures are kept: {} MiB of memory hold no more of this model; take fewer with --every {}", fit,
-            wanted, shot_memory_bytes >> 20U, (frames - 1) / fit + 1));
+        notes.push_back(
+            fmt::format("--snap: {} of {} pictures are kept, because no more fit in {} MiB of memory. Take fewer with --every {}",
+                        fit, wanted, shot_memory_bytes >> 20U, (frames - 1) / fit + 1));
     }
     return {every, static_cast<std::size_t>(std::min(wanted, fit)), max_items};
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/engine.hpp"
+#include "rt/base/result.hpp"
 #include "tools/walk/placing.hpp"
 #include "tools/walk/shots.hpp"
 #include "tools/walk/walk.hpp"
@@ -40,5 +41,9 @@ ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std:
 /// written. The device must be bound to the calling thread.
 void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots,
                    WalkOutcome& outcome, const Progress& progress);
+
+/// Errors: an output that cannot be written, that is an input or another output, or that the backend cannot make (pictures of
+/// the null backend). Creates and changes no file.
+Result<void> check_outputs(const WalkRequest& request);
 
 }  // namespace surefoot::walk

@@ -9,11 +9,11 @@
 #include "render/gl/backends.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
-#include "tools/walk/outputs.hpp"
 #include "tools/walk/pose_source.hpp"
 #include "tools/walk/real_time.hpp"
 #include "tools/walk/settings_request.hpp"
 #include "tools/walk/state.hpp"
+#include "tools/walk/walk_results.hpp"
 
 namespace surefoot::walk {
 
@@ -109,7 +109,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     s.facts.machine = measure::machine_identity(s.facts.renderer, r.rasterisers);
     if (s.costs.calibrated && options->device.kind != gl::BackendKind::null && s.costs.machine != s.facts.machine) {
         s.facts.uncalibrated = "the cost table was measured on \"" + s.costs.machine + "\", this is \"" + s.facts.machine +
-                               "\"; run `surefoot calibrate` here";
+                               "\". Run `surefoot calibrate` here";
         if (r.strict) {
             tell(s, WalkStep::real_time);
             return require_real_time(std::vector<rt::Lack>{{rt::LackKind::cost_table, s.facts.uncalibrated, ""}});
@@ -135,14 +135,14 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
         return Error{asked      ? "walk"
                      : recorded ? s.request.input_file
                                 : s.path.source,
-                     fmt::format("would take {:.4g} frames; at most {} are kept ({:.0f} hours at this rate)", frames, most_frames,
-                                 static_cast<double>(most_frames) * period_s / 3600.0),
-                     "give a smaller --frames or --seconds"};
+                     fmt::format("The walk takes {:.4g} frames, and at most {} are kept ({:.0f} hours at this rate)", frames,
+                                 most_frames, static_cast<double>(most_frames) * period_s / 3600.0),
+                     "Give a smaller --frames or --seconds", ErrorKind::out_of_limits};
     }
     if (!s.request.capture_file.empty() && static_cast<double>(s.request.capture_frame) >= frames) {
         return Error{fmt::format("--capture-frame {}", s.request.capture_frame),
-                     fmt::format("the walk has {:.0f} frames, from 0", frames),
-                     "choose one of them, or walk longer with --frames"};
+                     fmt::format("The walk has {:.0f} frames, counted from 0", frames),
+                     "Choose one of them, or walk longer with --frames", ErrorKind::misuse};
     }
     return static_cast<std::uint64_t>(frames);
 }

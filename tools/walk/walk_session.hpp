@@ -58,7 +58,7 @@ struct Session {
     ~Session();
 };
 
-/// Says to whoever watches which step begins.
+/// Notifies the observers which step begins.
 void tell(const Session& s, WalkStep step);
 /// Opens all that a walk needs but its threads: request, input, real time, costs, model, path, device. Fails with the first thing
 /// that is wrong, named; what was opened until then goes with the session.

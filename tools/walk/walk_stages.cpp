@@ -4,15 +4,29 @@
 #include <algorithm>
 #include <limits>
 
+#include "rt/frame/blame.hpp"
 #include "rt/threads/guard.hpp"
 
 namespace surefoot::walk {
 
 namespace {
-constexpr std::uint64_t oldest_prepared = 3;  // frames; older sets are not used (DESIGN 1.4)
-
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
 }  // namespace
+
+void KeptFrame::reserve(const Engine& engine) {
+    engine.reserve(prepared);
+    select::reserve(cut, engine.options().prepare.max_candidates);
+    memory.reserve(engine.options().prepare.max_candidates);
+}
+
+capture::Capture capture_of(const KeptFrame& kept, const WalkRequest& request, const Engine& engine) {
+    const select::SelectInput input{&engine.model(),        &kept.prepared,        &engine.costs(),  kept.budget_us,
+                                    kept.correction.factor, kept.target_error_rad, request.slice_us, kept.correction.upper};
+    capture::Capture taken =
+        capture::take(input, request.selector, static_cast<float>(request.hysteresis), kept.memory, kept.cut);
+    taken.frame = kept.frame;
+    return taken;
+}
 
 WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
                        rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
@@ -95,7 +109,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.prepared_age = static_cast<std::uint32_t>(age);
     record.correction = static_cast<float>(request_.correct_costs ? controller_.factor() : 1.0);
     record.budget_us = static_cast<float>(options_.budget_us);
-    coarse_ = age > oldest_prepared || !covers(set.region, now_.pose, set.viewport);
+    coarse_ = age > rt::oldest_prepared || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_coarse();
         return;
@@ -148,6 +162,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
         limits.now_context = &clock_;
     }
     report_ = engine_.submit(now_.pose, limits);
+    engine_.device().draws.plays();
     if (engine_.device().lost() && options_.lost != nullptr) options_.lost->store(true);
     if (virtual_clock_) {
         const double charged_us = report_.finished_us > 0 ? report_.finished_us : report_.predicted_us * request_.cost_scale;

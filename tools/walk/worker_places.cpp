@@ -40,7 +40,7 @@ std::optional<Error> WorkerPlaces::refused() const {
 std::vector<std::string> WorkerPlaces::problems() const {
     const MutexLock lock(mutex_);
     std::vector<std::string> problems = rt::census(worker_rows(plan_), at_work_);
-    for (std::string& problem : problems) problem = "in a worker's first task: " + problem;
+    for (std::string& problem : problems) problem = "first task of a worker: " + problem;
     return problems;
 }
 

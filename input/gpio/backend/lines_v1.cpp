@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
 #include <gpiod.h>
 
 #include "input/gpio/lines.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::input {
 
@@ -38,9 +38,8 @@ int flags_of(const LineRequest& request) {
 
 gpiod_line* find(gpiod_chip* chip, const std::string& line) {
     if (gpiod_line* named = gpiod_chip_find_line(chip, line.c_str())) return named;
-    unsigned offset = 0;
-    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), offset);
-    return error == std::errc{} && end == line.data() + line.size() ? gpiod_chip_get_line(chip, offset) : nullptr;
+    const auto offset = number_in<unsigned>(line);
+    return offset ? gpiod_chip_get_line(chip, *offset) : nullptr;
 }
 
 class LinesV1 final : public GpioLines {

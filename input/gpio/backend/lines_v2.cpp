@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 
 #include <gpiod.h>
 
 #include "input/gpio/lines.hpp"
+#include "rt/base/text.hpp"
 
 namespace surefoot::input {
 
@@ -132,10 +132,7 @@ private:
             return system_error(request.chip, "cannot open the chip", errno, "see 'gpiodetect'; the user needs the gpio group");
         const std::string place = fmt::format("{} line '{}'", request.chip, request.line);
         int offset = gpiod_chip_get_line_offset_from_name(at->chip.get(), request.line.c_str());
-        if (offset < 0) {
-            const auto [end, error] = std::from_chars(request.line.data(), request.line.data() + request.line.size(), offset);
-            if (error != std::errc{} || end != request.line.data() + request.line.size()) offset = -1;
-        }
+        if (offset < 0) offset = number_in<int>(request.line).value_or(-1);
         const InfoPtr info{offset < 0 ? nullptr : gpiod_chip_get_line_info(at->chip.get(), static_cast<unsigned>(offset))};
         if (!info) return Error{place, "there is no such line", "see 'gpioinfo'"};
         if (gpiod_line_info_is_used(info.get())) return busy(place, info.get());

@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <pty.h>
 #include <signal.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -87,15 +88,22 @@ int Tool::wait(int within_ms) {
     Patience patience(within_ms);
     bool open = true;
     int status = 0;
+    const int end = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
+    EXPECT_GE(end, 0);
     for (;;) {
         const pid_t done = waitpid(pid_, &status, WNOHANG);
         if (done == pid_) break;
-        if (patience.over()) return -1;
+        if (patience.over()) {
+            close(end);
+            return -1;
+        }
+        pollfd ended{end, POLLIN, 0};
         if (open)
             open = read_some(20);
         else
-            usleep(5000);
+            (void)poll(&ended, 1, 100);
     }
+    close(end);
     for (std::size_t before = out_.size() + 1; open && before != out_.size();) {
         before = out_.size();
         open = read_some(0);

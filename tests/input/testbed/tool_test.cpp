@@ -54,7 +54,7 @@ TEST(DevicesTool, SaysThatNothingIsThere) {
     EXPECT_NE(list.out().find("No HID device"), std::string::npos);
     Tool record({"record", "hidraw0", "-o", temporary("none.hid")});
     EXPECT_EQ(record.wait(), 1);
-    EXPECT_NE(record.err().find("no such device"), std::string::npos) << record.err();
+    EXPECT_NE(record.err().find("No such device"), std::string::npos) << record.err();
     EXPECT_FALSE(std::filesystem::exists(temporary("none.hid")));
     Tool wrong({"record", "hidraw0"});
     EXPECT_EQ(wrong.wait(), 2);

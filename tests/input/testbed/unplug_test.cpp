@@ -32,6 +32,7 @@ struct Walk {
     double step(std::int64_t until_ns = 0) {
         source->wait(until_ns == 0 ? test::now_ns() + 1'000'000 : until_ns);
         attendant.attend(source->take());
+        steering.steers.plays();
         sample = steering.tick({}, test::now_ns());
         return glm::length(sample.velocity_m_s);
     }
@@ -206,6 +207,7 @@ TEST(Stall, AfterAnOverflowItRestsThoughTheLastReportSaysFullDeflection) {
     const auto reports = walk.attendant.accepted_reports();
     walk.step();
     EXPECT_EQ(walk.attendant.accepted_reports() - reports, 63U) << "not drained whole";
+    walk.steering.steers.plays();
     EXPECT_EQ(walk.steering.safety().devices[0].held, Held::overflow);
     EXPECT_GE(walk.ms_to_rest(), 0);
     walk.run_ms(150);
@@ -225,6 +227,7 @@ TEST(Stall, WithoutOverflowTheNewestReportCounts) {
     ASSERT_GT(walk.speed(), 0.5);
     for (int i = 0; i < 40; ++i) ASSERT_TRUE(Testbed::send(plug, at(0, i < 39 ? -127 : 0)));
     walk.step();
+    walk.steering.steers.plays();
     EXPECT_TRUE(walk.steering.safety().devices[0].held == Held::no);
     EXPECT_EQ(walk.steering.safety().devices[0].passed.forward, 0);
 }
@@ -250,6 +253,7 @@ TEST(Flood, OneDeviceThatNeverStopsHoldsUpNobody) {
             if (e.kind == Kind::report) ++(e.device == 0 ? flooded : quiet_reports);
         }
         most = std::max(most, flooded);
+        walk.steering.steers.plays();
         walk.sample = walk.steering.tick({}, test::now_ns());
     }
     stop.store(true);
@@ -273,6 +277,7 @@ TEST(RealTime, ReadingNeitherAllocatesNorFrees) {
         const rt::OwnScope scope;
         walk.source->wait(test::now_ns() + 1'000'000);
         walk.attendant.attend(walk.source->take());
+        walk.steering.steers.plays();
         walk.sample = walk.steering.tick({}, test::now_ns());
     }
     EXPECT_GE(walk.attendant.accepted_reports(), 1500U);

@@ -271,7 +271,7 @@ action = "stop_reset"
     EXPECT_NE(said.find("still latched"), std::string::npos) << said;
     const auto [third, reset] = walk({}, [&](Tool& tool, test::Plug& plug) {
         hold(plug, 0, 100);
-        hold_until(tool, "emergency stop: taken off", plug, 32);
+        hold_until(tool, "emergency stop: released", plug, 32);
         push(tool, plug);
     });
     EXPECT_TRUE(moved()) << "reset by its control";

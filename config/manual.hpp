@@ -1,0 +1,37 @@
+// Manual pages as troff text, written from what --help and the schema already say, so that no page can differ from the program.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/settings.hpp"
+
+namespace surefoot::config {
+
+/// A name and what it means: one option, key, signal or file.
+struct ManualItem {
+    std::string term, text;
+};
+
+struct ManualSection {
+    std::string title;  ///< as it is shown: "OPTIONS"
+    std::string text;   ///< paragraphs are separated by an empty line; lines that begin with two spaces stay as they are
+    std::vector<ManualItem> items;  ///< after the text
+};
+
+struct ManualPage {
+    std::string name;  ///< as a user asks `man` for it: "surefoot-walk"
+    int section = 1;
+    std::string summary;   ///< one line after the name
+    std::string synopsis;  ///< may be empty
+    std::vector<ManualSection> sections;
+};
+
+/// The page for `man`. Text is escaped: no word of it is taken for a troff request.
+std::string troff(const ManualPage& page);
+
+/// surefoot.toml(5): every key of the schema with its meaning, limits, choices and default.
+ManualPage settings_manual(const Schema& schema);
+
+}  // namespace surefoot::config

@@ -1,0 +1,30 @@
+// What a model can count: its records, and the draw commands made from them, name each other by 32-bit numbers.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "render/model/model.hpp"
+#include "rt/base/result.hpp"
+
+namespace surefoot::model {
+
+/// How many of each a model holds, or is to hold.
+struct Counts {
+    std::uint64_t vertices = 0, indices = 0, parts = 0, placements = 0, materials = 0, representations = 0, nodes = 0;
+    std::uint64_t name_bytes = 0;
+    std::uint64_t textures = 0;
+    std::uint64_t drawn_parts = 0;  ///< summed over representations: they may share parts, and drawing ranks every one
+    Counts& operator+=(const Counts& more);
+};
+
+/// A draw command's base vertex is signed; the last number of an Index says `none`.
+constexpr Counts most_counts{std::numeric_limits<std::int32_t>::max(), none, none, none, none, none, none, none, none, none};
+
+Counts counts_of(const Model& model);
+
+/// Error "out of limits" at `place`, with the first that is too many.
+Result<void> check_limits(const Counts& counts, const std::string& place, const Counts& most = most_counts);
+
+}  // namespace surefoot::model

@@ -1,0 +1,180 @@
+#!/usr/bin/env bash
+# The documents read at the first reading: sentences are short, lines fit, and every page or file that is named is there.
+# usage: prose.sh SOURCE_DIR
+# Read are README.md, ARCHITECTURE.md, CONTRIBUTING.md and every page beside the code. Not read: CHANGELOG.md, RESULTS.md.
+#   mean sentence of a page    at most 15 words
+#   any sentence               at most 30 words
+#   a line                     at most 160 characters
+# A heading and a fenced block hold no sentences. A list item, and a cell of a table, ends a sentence. A cell of up to three
+# words is a label and does not count. Code in backticks is one word.
+set -u
+export LC_ALL=C
+
+most_mean=15 most_words=30 most_line=160
+
+# Prints problems as FILE:LINE: WHAT, then one line "page FILE MEAN LONGEST LINE" for each page, and "name FILE:LINE NAME" for
+# each file that a page names.
+read -r -d '' reader <<'AWK' || true
+function characters(text) { gsub(/[\200-\277]/, "", text); return length(text) }
+
+# Links and pictures become their text; code becomes one word.
+function plain(text,    out, inner) {
+  while (match(text, /!?\[[^]]*\]\([^)]*\)/)) {
+    inner = substr(text, RSTART, RLENGTH)
+    out = inner
+    sub(/^!?\[/, "", out); sub(/\]\([^)]*\)$/, "", out)
+    sub(/^.*\]\(/, "", inner); sub(/\)$/, "", inner); sub(/#.*$/, "", inner)
+    if (inner != "" && inner !~ /^[a-z]+:/) print "name " FILENAME ":" FNR " " inner
+    text = substr(text, 1, RSTART - 1) out substr(text, RSTART + RLENGTH)
+  }
+  while (match(text, /`[^`]+`/)) {
+    inner = substr(text, RSTART + 1, RLENGTH - 2)
+    if (inner ~ /^(rt|render|input|config|systemd|tools|tests)\/[A-Za-z0-9_.\/-]+$/ || inner ~ /^[A-Za-z0-9_.\/-]+\.md$/)
+      print "name " FILENAME ":" FNR " " inner
+    text = substr(text, 1, RSTART - 1) "code" substr(text, RSTART + RLENGTH)
+  }
+  return text
+}
+
+function end_sentence() {
+  if (words > 0) {
+    sentences++
+    all += words
+    if (words > longest) { longest = words; longest_at = began }
+    if (words > most_words) print FILENAME ":" began ": a sentence of " words " words: " start " ..."
+  }
+  words = 0
+  start = ""
+}
+
+function take(text,    list, n, i, word) {
+  n = split(text, list, /[ \t]+/)
+  for (i = 1; i <= n; i++) {
+    word = list[i]
+    if (word ~ /[A-Za-z0-9\200-\377]/) {
+      if (words == 0) began = FNR
+      words++
+      if (words <= 6) start = start (words > 1 ? " " : "") word
+    }
+    if (word ~ /[.!?]["')*_]*$/ && word !~ /^[("]*(e\.g|i\.e|cf|vs|al|Fig|fig|Sec|No)\.$/) end_sentence()
+  }
+}
+
+function take_row(text,    cells, n, i) {
+  end_sentence()
+  if (text ~ /^[ \t]*\|[-: |]+$/) return
+  gsub(/\\\|/, "/", text)
+  n = split(text, cells, /\|/)
+  for (i = 1; i <= n; i++) {
+    if (split(cells[i], unused, /[ \t]+/) > 0 && count_words(cells[i]) > 3) take(cells[i])
+    end_sentence()
+  }
+}
+
+function count_words(text,    list, n, i, count) {
+  n = split(text, list, /[ \t]+/)
+  for (i = 1; i <= n; i++) count += list[i] ~ /[A-Za-z0-9\200-\377]/ ? 1 : 0
+  return count + 0
+}
+
+FNR == 1 { fenced = 0; words = 0; sentences = 0; all = 0; longest = 0; longest_at = 1 }
+{
+  length_here = characters($0)
+  if (length_here > most_line) print FILENAME ":" FNR ": a line of " length_here " characters"
+  if ($0 ~ /^[ \t]*(```|~~~)/) { end_sentence(); fenced = !fenced; next }
+  if (fenced) next
+  if ($0 ~ /DESIGN|shared\//) print FILENAME ":" FNR ": names what is not in the repository"
+  text = plain($0)
+  if (text ~ /^[ \t]*$/ || text ~ /^#/ || text ~ /^(---|===)/ || text ~ /^[ \t]*<[^>]*>[ \t]*$/) { end_sentence(); next }
+  if (text ~ /^[ \t]*\|/) { take_row(text); next }
+  if (text ~ /^[ \t]*([-*+]|[0-9]+[.)])[ \t]/) { end_sentence(); sub(/^[ \t]*([-*+]|[0-9]+[.)])[ \t]+/, "", text) }
+  sub(/^[ \t]*>[ \t]?/, "", text)
+  take(text)
+}
+END {
+  end_sentence()
+  mean = sentences > 0 ? all / sentences : 0
+  if (mean > most_mean) printf "%s:1: %.1f words a sentence in the mean\n", FILENAME, mean
+  printf "page %s %.1f %d %d\n", FILENAME, mean, longest, longest_at
+}
+AWK
+
+# There as named, from the page's folder or from the top; a name without an ending stands for the files that begin so.
+is_there() {
+  local page=$1 name=$2
+  [[ -e "$(dirname "$page")/$name" || -e "$name" ]] || compgen -G "$name.*" >/dev/null
+}
+
+# check_pages PAGE...: prints what is wrong and a line for each page; fails where something is wrong.
+check_pages() {
+  local page line place name mean longest problems=0
+  for page in "$@"; do
+    while IFS= read -r line; do
+      case $line in
+        "page "*)
+          read -r _ _ mean longest place <<<"$line"
+          printf '%-28s mean %4s words, longest %2s at %s:%s\n' "$page" "$mean" "$longest" "$page" "$place"
+          ;;
+        "name "*)
+          place=${line#name } name=${place#* } place=${place%% *}
+          is_there "$page" "$name" && continue
+          echo "$place: names $name, which is not there"
+          problems=$((problems + 1))
+          ;;
+        *) echo "$line"; problems=$((problems + 1)) ;;
+      esac
+    done < <(awk -v most_mean=$most_mean -v most_words=$most_words -v most_line=$most_line "$reader" "$page")
+  done
+  (( problems == 0 ))
+}
+
+# The check itself: a good sample passes, and each bad one fails for its own reason.
+check_itself() {
+  local folder
+  folder=$(mktemp -d) || return 1
+  trap 'rm -rf "$folder"' RETURN
+  local good="A page says one thing. It is short (see \`code with spaces\`)."
+  local after_sign="One sentence of eighteen words that ends after a sign is told from the next one in 99 %.
+The next one, of about as many words, would make too many words of both if they were one."
+  local thirty_one="" dull="" i
+  for i in {1..31}; do thirty_one+="word "; done
+  for i in {1..18}; do dull+="word "; done
+  (
+    cd "$folder" || exit 1
+    # good: a fence, a table, a link to itself and a name that is there may hold anything
+    printf '# %s\n%s\n%s\n\n| a | %s |\n|---|---|\n| b | c |\n\n```\n%s.\n```\n- [it](good.md) `good.md`\n' \
+      "$thirty_one" "$good" "$after_sign" "$good" "$thirty_one" >good.md
+    check_pages good.md >good.log || { echo "a good page is refused:"; cat good.log; exit 1; }
+    refused() { # NAME TEXT WHAT
+      printf '%s\n' "$2" >"$1.md"
+      if check_pages "$1.md" >"$1.log"; then echo "not refused: $1"; exit 1; fi
+      grep -q "$3" "$1.log" || { echo "$1 is refused for another reason:"; cat "$1.log"; exit 1; }
+    }
+    refused long_sentence "$good $thirty_one." "a sentence of 31 words"
+    refused long_over_lines "${thirty_one:0:80}
+${thirty_one:80}." "a sentence of 31 words"
+    refused long_cell "| $thirty_one | b |" "a sentence of 31 words"
+    refused long_item "- $thirty_one" "a sentence of 31 words"
+    refused dull "$dull. $dull." "in the mean"
+    refused long_line "$(printf 'x%.0s' {1..161})" "a line of 161 characters"
+    refused dead_link "[a page](nowhere.md)" "nowhere.md, which is not there"
+    refused dead_page "See \`nowhere.md\`." "nowhere.md, which is not there"
+    refused dead_file "See \`render/nowhere/no.hpp\`." "no.hpp, which is not there"
+    refused outside "As DESIGN says." "not in the repository"
+    wide=$(printf 'µ%.0s' {1..160})
+    printf '%s\n' "$wide" >wide.md
+    check_pages wide.md >wide.log || { echo "160 wide characters are refused:"; cat wide.log; exit 1; }
+  )
+}
+
+cd "${1:?SOURCE_DIR}" || exit 1
+check_itself || exit 1
+for page in README.md ARCHITECTURE.md CONTRIBUTING.md; do
+  [[ -f "$page" ]] || { echo "$page is not there"; exit 1; }
+done
+mapfile -t pages < <(
+  printf '%s\n' README.md ARCHITECTURE.md CONTRIBUTING.md
+  find rt render input config systemd tools tests -name '*.md' ! -path tests/bench/RESULTS.md | sort
+)
+check_pages "${pages[@]}" || exit 1
+echo "${#pages[@]} pages"
