@@ -1,4 +1,4 @@
-// Manual pages as troff text, written from what --help and the schema already say, so that no page can differ from the program.
+// Manual pages as troff text, generated from --help and the schema, so that they always match the program.
 #pragma once
 
 #include <string>
@@ -28,7 +28,7 @@ struct ManualPage {
     std::vector<ManualSection> sections;
 };
 
-/// The page for `man`. Text is escaped: no word of it is taken for a troff request.
+/// The page for `man`. Text is escaped, so that nothing in it is a troff request.
 std::string troff(const ManualPage& page);
 
 /// surefoot.toml(5): every key of the schema with its meaning, limits, choices and default.

@@ -1,5 +1,5 @@
-// A manual page from a command line as CLI11 knows it: description, options with their defaults, footer. Header only, so that
-// only programs that have CLI11 need it.
+// A manual page from a CLI11 command: description, options with defaults, footer. Header only, so that only programs with CLI11
+// need CLI11.
 #pragma once
 
 #include <CLI/CLI.hpp>

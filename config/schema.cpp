@@ -38,53 +38,49 @@ constexpr Entry file_name(string_view key, string_view help, std::string S::*mem
 
 std::vector<Entry> make_entries(const Registry& selectors, const Registry& backends) {
     std::vector<Entry> entries = {
-        file_name("model",
-                  "The .walk model that is walked through. Relative names here and below: relative to this file's folder.",
-                  &S::model_file),
+        file_name("model", "The .walk model. Relative file names are relative to this file's folder.", &S::model_file),
         file_name(
             "path",
-            "Poses over time, CSV; \"\": MODEL.path.csv beside the model, else a tour. With an input: start and viewpoints.",
+            "CSV file of poses over time; \"\": MODEL.path.csv, else a tour. An input starts there and uses its viewpoints.",
             &S::path_file),
-        number("lift_m", "m", -1e7, 1e7, "Added to the path's heights (recorded drives: 1.5).", &S::lift_m),
-        file_name("input", "Who steers: \"\" nobody, the path is followed; \"devices\" what is plugged in; else a recording.",
+        number("lift_m", "m", -1e7, 1e7, "Height added to every pose of the path; 1.5 for recorded drives.", &S::lift_m),
+        file_name("input", "Source of steering: \"\" follows the path; \"devices\" uses connected devices; else a recording.",
                   &S::input_file),
-        file_name("steering", "How the input steers; \"\": the default of the device's class.", &S::steering_file),
+        file_name("steering", "File of input mappings; \"\": the default mapping of the device's class.", &S::steering_file),
         file_name("state",
                   "Folder of the cost table and of a latched emergency stop; \"\": $STATE_DIRECTORY, as systemd sets it.",
                   &S::state_dir),
         file_name("monitor",
-                  "Where surefootd serves live figures, unix:/PATH or 127.0.0.1:PORT; \"\": surefoot.sock in $RUNTIME_DIRECTORY; "
-                  "\"none\".",
+                  "Address for live figures: unix:/PATH, 127.0.0.1:PORT or \"none\"; \"\": surefoot.sock in $RUNTIME_DIRECTORY.",
                   &S::monitor),
-        file_name("incidents", "Folder where surefootd writes bursts of misses down; \"\": nowhere.", &S::incidents),
-        number("open_limit_s", "s", 1, 86400, "Longest time that opening a model may take (surefootd).", &S::open_limit_s),
-        number("rate_hz", "Hz", 1, 1000, "Frames a second that the walk keeps.", &S::rate_hz),
+        file_name("incidents", "Folder to which surefootd writes bursts of misses; \"\": none.", &S::incidents),
+        number("open_limit_s", "s", 1, 86400, "Maximum time for opening a model (surefootd).", &S::open_limit_s),
+        number("rate_hz", "Hz", 1, 1000, "Frame rate of the walk.", &S::rate_hz),
         integer("width", "px", 16, 16384, "Width of the picture.", &S::width),
         integer("height", "px", 16, 16384, "Height of the picture.", &S::height),
-        number(
-            "shift_x", "half widths", -8, 8,
-            "Off axis: the picture's middle lies so far right of where the pose looks (a screen that is not straight before the "
-            "eye).",
-            &S::shift_x),
-        number("shift_y", "half heights", -8, 8, "The same, upwards.", &S::shift_y),
+        number("shift_x", "half widths", -8, 8,
+               "Off-axis projection: offset of the image centre to the right of the view direction.", &S::shift_x),
+        number("shift_y", "half heights", -8, 8, "Off-axis projection: offset of the image centre upwards.", &S::shift_y),
         number("budget_ms", "ms", 0, 1000, "Time that a frame may spend; 0: what the rate allows.", &S::budget_ms),
         number("accuracy", "1/rad", 0, 1e6, "Stop refining at this accuracy; 0: refine as far as the budget goes.", &S::accuracy),
-        number("cost_scale", "", 0.01, 100, "Factor on the machine's cost table (to try under- and over-prediction).",
+        number("cost_scale", "", 0.01, 100, "Factor on the machine's cost table, to test under- and over-prediction.",
                &S::cost_scale),
         choice("selector", selectors.entries, "How the cut is chosen.", &S::selector),
         choice("late", rt::late_policies, "What happens to a late frame.", &S::late),
         choice("backend", backends.entries, "Where pictures are drawn.", &S::backend),
-        choice("clock", rt::clock_kinds, "Which clock the frames are counted by.", &S::clock),
+        choice("clock", rt::clock_kinds, "Clock that counts the frames.", &S::clock),
         integer("workers", "threads", 0, 256, "Threads that prepare frames; 0: chosen for the machine.", &S::workers),
         integer("rasterisers", "threads", 0, 256, "Threads of a software renderer; 0: chosen for the machine.", &S::rasterisers),
         flag("fifo", "Real-time scheduling (SCHED_FIFO) for the frame thread, rasterisers and workers.", &S::fifo),
         flag("strict", "Do not start where real-time scheduling or locked memory is refused.", &S::strict),
         flag("in_frame_check", "Between slices, draw stand-ins when the rest no longer fits the frame.", &S::in_frame_check),
-        flag("occlusion", "Leave out what other things hide from every pose that a frame may have.", &S::occlusion),
-        flag("control", "Alternate the walk with a bare loop of the same cost, to judge misses against.", &S::control),
+        flag("occlusion", "Occlusion culling: leave out objects that are hidden from every possible pose of a frame.",
+             &S::occlusion),
+        flag("control", "Alternate the walk with a bare loop of the same cost, as a control for misses.", &S::control),
         integer("frame_core", "", -1, 4095, "Core of the frame thread; -1: chosen for the machine.", &S::frame_core),
         number("slice_us", "us", 50, 100000, "Predicted length of a slice of submission.", &S::slice_us),
-        number("hysteresis", "", 1, 10, "How much better a representation must be to replace the one on screen.", &S::hysteresis),
+        number("hysteresis", "", 1, 10, "Factor by which a representation must be better to replace the one on screen.",
+               &S::hysteresis),
         {"sky", Kind::colour, {}, 0, 0, {}, "Background, as \"#rrggbb\".", &S::sky},
         integer("frame_priority", "FIFO", 1, 98, "Priority of the frame thread.", &S::frame_priority),
         integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),
@@ -109,9 +105,10 @@ std::optional<Error> renamed_error(std::span<const Renamed> table, std::string p
     for (const Renamed& one : table) {
         if (normalised(one.before) != wanted) continue;
         if (one.now.empty())
-            return Error{std::move(place), fmt::format("'{}' is no longer there", name), std::string(one.remedy)};
-        return Error{std::move(place), fmt::format("'{}' is called '{}' now", name, one.now),
-                     fmt::format("write {}; the value stays as it is", one.now)};
+            return Error{std::move(place), fmt::format("The name '{}' was removed", name), std::string(one.remedy),
+                         ErrorKind::misuse};
+        return Error{std::move(place), fmt::format("The name '{}' is now '{}'", name, one.now),
+                     fmt::format("Write {} and keep the value", one.now), ErrorKind::misuse};
     }
     return std::nullopt;
 }

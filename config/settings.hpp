@@ -1,6 +1,6 @@
-// What a user may set for a walk and for the daemon: one schema table with units, limits, defaults and help; values from
-// TOML files and the command line; and where each value came from. Knows no room's types: names and help of what may be chosen
-// are handed to the schema (walk::settings_schema).
+// Settings of a walk and of the daemon: one schema with units, limits, defaults and help. Values come from TOML files and the
+// command line, each with its origin. This room knows no other room's types: walk::settings_schema() passes names and help of
+// registry entries to the schema.
 #pragma once
 
 #include <array>
@@ -31,10 +31,10 @@ struct Settings {
     double open_limit_s = 600;       ///< the daemon's: for how long opening a model may take
     double rate_hz = 30;
     std::uint32_t width = 1280, height = 720;  ///< pixels
-    double shift_x = 0, shift_y = 0;           ///< off axis, in halves of the picture
+    double shift_x = 0, shift_y = 0;           ///< off-axis projection, in half widths and half heights of the image
     double budget_ms = 0;                      ///< 0: what the rate allows
     double accuracy = 0;                       ///< rad^-1 to stop at; 0: as far as the budget goes
-    double cost_scale = 1;                     ///< on the machine's cost table; what costs really are (virtual clock)
+    double cost_scale = 1;                     ///< factor on the machine's cost table; true costs of the virtual clock
     std::string selector, backend;             ///< names out of registries
     rt::LatePolicy late = rt::LatePolicy::lock;
     rt::ClockKind clock = rt::ClockKind::real;
@@ -66,25 +66,25 @@ struct Entry {
     std::span<const Named> absent = {};  ///< names that are known and cannot be chosen, and why
 };
 
-/// What may be chosen by name: handed over by the room that has it. `usual`: the default.
+/// A registry: names that may be chosen, passed by the room that owns them. `usual`: the default.
 struct Registry {
     std::vector<Named> entries;
     std::string_view usual;
     std::vector<Named> absent = {};
 };
 
-/// A name of older settings files or command lines. It is refused by name, with the new one or with what to do instead.
+/// A former name of a key or option. It is refused by name, with the new name or a remedy.
 struct Renamed {
     std::string_view before, now;
-    std::string_view remedy = {};  ///< where nothing has taken its place
+    std::string_view remedy = {};  ///< for a name without successor
 };
 
 /// Keys that settings files of earlier versions may hold.
 std::span<const Renamed> renamed_keys();
-/// What is said of a renamed key or option ("--rate"); nothing where it is none. '-' and '_' are the same.
+/// The error for a renamed key or option ("--rate"); nothing for other names. '-' and '_' are the same.
 std::optional<Error> renamed_error(std::span<const Renamed> table, std::string place, std::string_view name);
 
-/// Every key once, with its unit, limits, choices, default and help. Everything that people read of settings is written from it.
+/// Every key once, with unit, limits, choices, default and help. All texts about settings are generated from it.
 class Schema {
 public:
     /// Names and help, and the table of renamed keys, must outlive this.
@@ -95,7 +95,7 @@ public:
     [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
     /// Null for an unknown key. A key's '-' and '_' are the same (command lines write --rate-hz).
     [[nodiscard]] const Entry* find(std::string_view key) const;
-    /// The known key that an unknown one was probably meant to be, a renamed one's new name; empty where none is near.
+    /// The new name of a renamed key, else the nearest known key; empty if none is near.
     [[nodiscard]] std::string_view nearest(std::string_view key) const;
     [[nodiscard]] std::span<const Renamed> renamed() const { return renamed_; }
     [[nodiscard]] const Settings& defaults() const { return defaults_; }
@@ -131,15 +131,15 @@ Result<void> load_file(Configuration& configuration, const std::string& file, st
 Result<void> load_text(Configuration& configuration, std::string_view text, const std::string& name,
                        std::string_view profile = {});
 
-/// One thing that is wrong in a file. `error` says it in words; the rest is the same in parts, empty where it does not apply.
+/// A problem in a file. `error` is for people; the other members are its parts, empty if they do not apply.
 struct Problem {
     Error error;
     std::string file;
     std::int64_t line = 0;
-    std::string key, found, allowed, nearest;  ///< nearest: the known key that an unknown one was probably meant to be
+    std::string key, found, allowed, nearest;  ///< nearest: known key nearest to an unknown one
 };
-/// Everything that is wrong in a file, by line: syntax, every key of every profile, and the rules across keys, with each profile
-/// in force. Empty: load_file() and check() succeed, whatever the profile.
+/// All problems of a file, by line: syntax, keys of all profiles, and rules across keys for each profile. If empty, load_file()
+/// and check() succeed with any profile.
 std::vector<Problem> problems_in_file(const Schema& schema, const std::string& file);
 std::vector<Problem> problems_in_text(const Schema& schema, std::string_view text, const std::string& name);
 

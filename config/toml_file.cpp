@@ -52,9 +52,11 @@ void read_key(Reading& into, std::string_view key, const toml::node& node, const
         return complain(into, name, node, std::move(problem));
     }
     problem.allowed = allowed(*entry);
-    auto refused = value ? assign(into.configuration.values, *entry, *value) : fmt::format("{} is not {}", key, problem.allowed);
+    auto refused = value ? assign(into.configuration.values, *entry, *value)
+                         : fmt::format("The value of {} is not {}", key, problem.allowed);
     if (refused) {
         problem.error.what = *refused;
+        problem.error.kind = ErrorKind::misuse;
         return complain(into, name, node, std::move(problem));
     }
     into.configuration.origins[std::string(entry->key)] = {name, node.source().begin.line, false, std::string(profile)};
@@ -63,7 +65,8 @@ void read_key(Reading& into, std::string_view key, const toml::node& node, const
 void not_a_table(Reading& into, const std::string& name, const toml::node& node, std::string_view key) {
     Problem problem;
     problem.key = std::string(key);
-    problem.error = {{}, fmt::format("{} is not a table", key), "write [profile.NAME] and keys below it"};
+    problem.error = {
+        {}, fmt::format("The key {} is not a table", key), "Write [profile.NAME] and keys below it", ErrorKind::misuse};
     complain(into, name, node, std::move(problem));
 }
 
@@ -91,7 +94,9 @@ Problem no_profile(const Reading& reading, const std::string& name, std::string_
     std::string names;
     for (const std::string& profile : reading.profiles) names += (names.empty() ? "" : ", ") + profile;
     Problem problem;
-    problem.error = {name, fmt::format("has no profile '{}'", wanted), names.empty() ? "it has none" : "it has " + names};
+    problem.error = {name, fmt::format("The file has no profile '{}'", wanted),
+                     names.empty() ? fmt::format("Add a table [profile.{}]", wanted) : "Choose one of " + names,
+                     ErrorKind::not_found};
     problem.file = name;
     return problem;
 }

@@ -102,7 +102,7 @@ void put_choice(Settings& settings, const Entry& entry, const Named& chosen) {
 }  // namespace
 
 std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value) {
-    const auto refusal = [&] { return fmt::format("{} = {} is not {}", entry.key, text_of(value), allowed(entry)); };
+    const auto refusal = [&] { return fmt::format("The value {} = {} is not {}", entry.key, text_of(value), allowed(entry)); };
     if (const auto* number = std::get_if<double>(&value)) {
         const bool numeric = entry.kind == Kind::number || entry.kind == Kind::integer;
         const bool whole = entry.kind != Kind::integer || std::floor(*number) == *number;
@@ -120,7 +120,7 @@ std::optional<std::string> assign(Settings& settings, const Entry& entry, const 
         const Named* chosen = find_named(entry.choices, text);
         const std::string_view absent = absent_because(entry, text);
         if (chosen == nullptr && !absent.empty())
-            return fmt::format("{} = {} {}; {}", entry.key, text_of(value), absent, allowed(entry));
+            return fmt::format("The value {} = {} {}; choose {}", entry.key, text_of(value), absent, allowed(entry));
         if (chosen == nullptr) return refusal();
         put_choice(settings, entry, *chosen);
         return std::nullopt;
@@ -135,8 +135,9 @@ std::optional<std::string> assign(Settings& settings, const Entry& entry, const 
 Error unknown_key(const Schema& schema, std::string place, std::string_view key) {
     if (auto renamed = renamed_error(schema.renamed(), place, key)) return *renamed;
     const auto nearest = schema.nearest(key);
-    return {std::move(place), fmt::format("unknown key '{}'", key),
-            nearest.empty() ? "'surefoot config --print' lists the keys" : fmt::format("did you mean '{}'?", nearest)};
+    return {std::move(place), fmt::format("The key '{}' is unknown", key),
+            nearest.empty() ? "See `surefoot config --print` for the keys" : fmt::format("Did you mean '{}'?", nearest),
+            ErrorKind::misuse};
 }
 
 std::string Origin::text() const {
@@ -161,7 +162,7 @@ Result<void> set_value(Configuration& configuration, std::string_view key, std::
         if (text == "true" || text == "on" || text == "yes" || text == "1") value = true;
         if (text == "false" || text == "off" || text == "no" || text == "0") value = false;
     }
-    if (auto problem = assign(configuration.values, *entry, value)) return Error{"command line", *problem, {}};
+    if (auto problem = assign(configuration.values, *entry, value)) return Error{"command line", *problem, {}, ErrorKind::misuse};
     configuration.origins[std::string(entry->key)] = {{}, 0, true, {}};
     return {};
 }
@@ -174,16 +175,17 @@ Result<void> check(const Configuration& configuration) {
     };
     if (s.raster_priority >= s.frame_priority)
         return Error{place("raster_priority"),
-                     fmt::format("{} is not below frame_priority {}", s.raster_priority, s.frame_priority),
-                     "the frame thread must be able to interrupt the rasterisers"};
+                     fmt::format("The priority {} is not below frame_priority {}", s.raster_priority, s.frame_priority),
+                     "Lower it, so that the frame thread can interrupt the rasterisers", ErrorKind::misuse};
     if (s.worker_priority >= s.raster_priority)
         return Error{place("worker_priority"),
-                     fmt::format("{} is not below raster_priority {}", s.worker_priority, s.raster_priority),
-                     "load beside the rasterisers must not hold them up"};
+                     fmt::format("The priority {} is not below raster_priority {}", s.worker_priority, s.raster_priority),
+                     "Lower it, so that workers do not delay the rasterisers", ErrorKind::misuse};
     if (s.budget_ms > 0 && s.late == rt::LatePolicy::lock && s.budget_ms > 1000.0 / s.rate_hz)
         return Error{place("budget_ms"),
-                     fmt::format("{} ms is longer than a frame at {} Hz ({:.3f} ms)", s.budget_ms, s.rate_hz, 1000.0 / s.rate_hz),
-                     "lower the budget or the rate, or use late = \"float\""};
+                     fmt::format("A budget of {} ms is longer than a frame at {} Hz ({:.3f} ms)", s.budget_ms, s.rate_hz,
+                                 1000.0 / s.rate_hz),
+                     "Lower the budget or the rate, or use late = \"float\"", ErrorKind::misuse};
     return {};
 }
 

@@ -11,13 +11,13 @@ namespace surefoot::config {
 
 using Value = std::variant<double, bool, std::string>;
 
-/// What the entry allows, for people: "a number from 1 to 1000 (Hz)".
+/// The allowed values, for people: "a number from 1 to 1000 (Hz)".
 std::string allowed(const Entry& entry);
 /// A value as TOML would write it.
 std::string text_of(const Value& value);
-/// Puts the value in, or says why not and changes nothing.
+/// Sets the value. If it is refused, returns the reason and changes nothing.
 std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value);
-/// Why a name that is known cannot be chosen; empty where nothing is known of it.
+/// Why a known name cannot be chosen; empty for other names.
 std::string_view absent_because(const Entry& entry, std::string_view name);
 Error unknown_key(const Schema& schema, std::string place, std::string_view key);
 /// Lower case, with '_' for '-'.

@@ -1,6 +1,6 @@
-// The words the device layer's rooms share: what a control is, what a device has, and its newest state.
+// Types shared by the rooms of the device layer: controls, device states, motion requests, samples.
 //
-//   hid/, gpio/ ──► DeviceState ──► map/ ──► Wish ──► safety/ ──► motion/ ──► NavigationSample (latest value)
+//   hid/, gpio/ ──► DeviceState ──► map/ ──► MotionRequest ──► safety/ ──► motion/ ──► NavigationSample (latest value)
 //   (raw values)    (per device)    (actions, -1..1)  (may only     (limits, filter,
 //                                                      reduce it)    pose in double)
 #pragma once
@@ -15,11 +15,11 @@
 
 namespace surefoot::input {
 
-constexpr std::size_t max_controls = 256;  ///< of one device; what a device has beyond them is counted and ignored
+constexpr std::size_t max_controls = 256;  ///< of one device; further ones are counted and ignored
 
 enum class ControlKind : std::uint8_t { axis, hat, button };
 
-/// What the descriptor says a device is for, decided by usages (devices.md 2, rules 11 and 12).
+/// The purpose of a device, from the usages in its descriptor.
 enum class DeviceClass : std::uint8_t { navigation, trackball, buttons, reject };
 
 /// One named control, bound by usage and collection, never by index.
@@ -33,7 +33,7 @@ struct ControlInfo {
     std::string unit;                           ///< "deg", "cm", ...; may be empty
     bool relative = false;                      ///< after quirks: a displacement, not a deflection
     bool wraps = false;
-    std::uint8_t port = 0;  ///< an adapter's socket, from 0: which of its like applications, each a pad with X and Y of its own
+    std::uint8_t port = 0;  ///< socket of an adapter for several pads, from 0; each pad has X and Y of its own
 };
 
 /// Newest raw values of one device, index-parallel to its ControlInfo list. Plain data: copied through exchanges.
@@ -41,42 +41,42 @@ struct ControlInfo {
 struct DeviceState {
     std::array<std::int32_t, max_controls> value{};
     std::bitset<max_controls> has_value;
-    std::bitset<max_controls> carried_over;  ///< not in its newest report (another id's): the value is an earlier one's
+    std::bitset<max_controls> carried_over;  ///< not in the newest report, which has another id: the value is older
     std::int64_t stamp_ns = 0;               ///< CLOCK_MONOTONIC when its newest report was read; 0: none yet
     std::uint64_t reports = 0;               ///< accepted; short, long and undeclared ones are counted apart and change nothing
     bool connected = false;
 };
 
-/// What is asked of the walk, before any limit: each -1..1. Walk in the eye's frame: +forward along -Z, +side to the right.
-struct Wish {
+/// The requested motion, before any limit: each -1..1, in the eye's frame. +forward is along -Z, +side to the right.
+struct MotionRequest {
     double forward = 0, side = 0, up = 0;
     double turn = 0, look = 0;  ///< turn > 0: to the left (counter-clockwise from above); look > 0: upwards
     double speed = 0;           ///< -1..1: from the slowest to the fastest factor; 0 leaves it
     bool next_viewpoint = false, reset = false, tour = false, pause = false;  ///< edges: true in the sample they happen in
 };
 
-/// How the walk has to follow: `brake` goes to the wish at once (a device was lost), `stop` stands still in this very step.
+/// How the walk follows the request: `brake` reaches it within brake_s (a device was lost), `stop` stands still in this step.
 enum class Order : std::uint8_t { walk, brake, stop };
 
-/// What safety/ lets through to motion/.
+/// The command that safety/ passes to motion/.
 struct Command {
-    Wish wish;
+    MotionRequest request;
     Order order = Order::walk;
     std::int64_t stamp_ns = 0;  ///< of the newest report in it
 };
 
-/// How often each edge has come since the start. Newest-wins exchanges drop samples, and with them the edges in them; a
-/// reader that compares these counts with those it handled last loses none and takes none twice (counts wrap).
+/// Counts of edges since the start. Newest-wins exchanges drop samples together with their edges. A reader that compares these
+/// counts with the last ones it handled loses no edge and takes none twice. Counts wrap.
 struct PressCounts {
     std::uint32_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0;
 };
 
-/// What the frame thread reads, newest wins. Rest is all zeros with the pose held.
+/// The sample for the frame thread; newest wins. At rest all is zero and the pose is held.
 struct NavigationSample {
     Pose pose;                 ///< integrated so far, double; see geometry.hpp for the frame
     dvec3 velocity_m_s{0.0};   ///< world
     dvec3 angular_rad_s{0.0};  ///< world, axis times rate
-    double uncertainty_m = 0;  ///< of the pose one frame ahead: what prepare/ widens its region by
+    double uncertainty_m = 0;  ///< of the pose one frame ahead; prepare/ widens its region by it
     double uncertainty_rad = 0;
     std::int64_t stamp_ns = 0;   ///< of the newest report in it
     std::uint64_t sequence = 0;  ///< of samples, from 1

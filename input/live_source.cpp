@@ -16,7 +16,7 @@ constexpr std::int64_t look_for_ns = 500'000'000;  // the finder has looked ever
 Result<std::unique_ptr<LiveSource>> LiveSource::open(LiveOptions options) {
     FinderOptions finder;
     finder.wanted = wanted_by(options.mappings);
-    finder.ready = readier(options.mappings);
+    finder.attachment_factory = attachment_factory(options.mappings);
     auto live = open_live(std::move(finder), true);
     if (!live) return live.error();
     return std::make_unique<LiveSource>(std::move(options), std::move(*live));
@@ -24,23 +24,23 @@ Result<std::unique_ptr<LiveSource>> LiveSource::open(LiveOptions options) {
 
 LiveSource::LiveSource(LiveOptions options, std::unique_ptr<DeviceSource> devices)
     : options_(std::move(options)),
-      say_([this](std::string_view text) {
-          NoteLine line;
+      sink_([this](std::string_view text) {
+          MessageLine line;
           line.size = std::min(text.size(), line.text.size());
           std::copy_n(text.begin(), line.size, line.text.begin());
-          notes_.try_push(line);
+          messages_.try_push(line);
       }),
       devices_(std::move(devices)) {
     log_.reserve(options_.stamps);
-    if (devices_->trouble()) tell(say_, *devices_->trouble());
+    if (devices_->trouble()) emit(sink_, *devices_->trouble());
     if (!options_.lines.empty())
-        panel_.emplace(options_.lines, options_.mappings, options_.open_lines, options_.lines_context, say_,
+        panel_.emplace(options_.lines, options_.mappings, options_.open_lines, options_.lines_context, sink_,
                        options_.lines_opened);
 }
 
 void LiveSource::begin(Steering& steering, std::int64_t start_ns) {
     start_ns_ = start_ns;
-    attendant_.emplace(options_.mappings, steering, say_);
+    router_.emplace(options_.mappings, steering, sink_);
     if (panel_) panel_->open();
 }
 
@@ -48,9 +48,9 @@ void LiveSource::wait(rt::Clock& /*clock*/, std::int64_t until_ns) { devices_->w
 
 Lines LiveSource::drain(Steering& steering, std::int64_t now_ns) {
     for (const DeviceEvent& e : devices_->take()) {
-        const std::uint64_t before = attendant_->accepted_reports();
-        attendant_->attend(e);
-        if (attendant_->accepted_reports() != before) log_.add(e.stamp_ns);
+        const std::uint64_t before = router_->accepted_reports();
+        router_->dispatch(e);
+        if (router_->accepted_reports() != before) log_.add(e.stamp_ns);
     }
     Lines lines;
     if (panel_) {
@@ -59,30 +59,30 @@ Lines LiveSource::drain(Steering& steering, std::int64_t now_ns) {
         if (step.reported) log_.add(now_ns);
         devices_->watch_also(panel_->polled());
     }
-    steering_now_.store(attendant_->steering_now() + (panel_ && panel_->has_controls() ? 1 : 0), std::memory_order_relaxed);
-    if (!somebody_) say_if_nobody_steers(now_ns);
-    if (!waiting_said_ && now_ns >= start_ns_ + look_for_ns) {
-        waiting_said_ = true;
-        attendant_->say_waiting(
+    steering_now_.store(router_->steering_now() + (panel_ && panel_->has_controls() ? 1 : 0), std::memory_order_relaxed);
+    if (!somebody_) warn_if_nobody_steers(now_ns);
+    if (!unused_reported_ && now_ns >= start_ns_ + look_for_ns) {
+        unused_reported_ = true;
+        router_->warn_unused_mappings(
             [&](const DeviceMapping& m) { return panel_ && panel_->has_controls() && panel_->mapping() == m.name; });
     }
     return lines;
 }
 
-void LiveSource::say_if_nobody_steers(std::int64_t now_ns) {
-    if (attendant_->pluggings() > 0 || (panel_ && panel_->has_controls())) {
+void LiveSource::warn_if_nobody_steers(std::int64_t now_ns) {
+    if (router_->pluggings() > 0 || (panel_ && panel_->has_controls())) {
         somebody_ = true;
     } else if (now_ns >= start_ns_ + look_for_ns) {
         somebody_ = true;
-        tell(say_,
-             "no device is there that steers: the walk rests at its start until one is plugged in "
-             "(`surefoot devices list` says what is there, and why it does not steer)");
+        emit(sink_,
+             "No connected device steers. The walk rests at its start until one is plugged in. "
+             "See `surefoot devices list` for the reasons.");
     }
 }
 
 std::vector<rt::SteeringDevice> LiveSource::devices() const {
     std::vector<rt::SteeringDevice> list;
-    if (attendant_) list = attendant_->met();
+    if (router_) list = router_->known_devices();
     if (panel_ && panel_->has_controls())
         list.push_back({std::string(panel_name), class_name(DeviceClass::buttons), panel_->mapping()});
     return list;

@@ -1,7 +1,7 @@
-// Live devices as the source of a walk's reports: the finder beside, the attendant between, wired switches with them.
+// Live devices as a source of reports: a thread finds and opens them, the attendant maps them; wired switches included.
 //
-//   sf-devices: finds, opens, maps ─► LiveDevices ─► Attendant ─┐
-//   sf-lines: opens ─► GpioPanel ─► PanelDevice ────────────────┴► Steering           notes ─► ring ─► whoever prints
+//   sf-devices: finds, opens, maps ─► LiveDevices ─► DeviceRouter ─┐
+//   sf-lines: opens ─► GpioPanel ─► PanelDevice ───────────────────┴► Steering        messages ─► ring ─► whoever prints
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "input/devices/attendant.hpp"
+#include "input/devices/device_router.hpp"
 #include "input/gpio/panel_device.hpp"
 #include "input/map/steering_file.hpp"
 #include "input/report_source.hpp"
@@ -22,11 +22,11 @@ struct LiveOptions {
     std::vector<LineConfig> lines;        ///< must have passed check_lines
     OpenLines open_lines = input::open_lines;
     void* lines_context = nullptr;
-    Opening lines_opened = Opening::beside;
-    std::size_t stamps = std::size_t{1} << 20U;  ///< of so many reports the age is kept: 17 minutes at 1 kHz
+    Opening lines_opened = Opening::own_thread;
+    std::size_t stamps = std::size_t{1} << 20U;  ///< number of reports whose age is kept: 17 minutes at 1 kHz
 };
 
-/// For the real clock only. No device at all is no error: the walk rests until one is plugged in, and that is said once.
+/// For the real clock only. Without any device the walk rests until one is plugged in; this is noted once, and is no error.
 class LiveSource final : public ReportSource {
 public:
     /// The real devices, found from now on. Error: udev cannot be used.
@@ -38,33 +38,33 @@ public:
     void wait(rt::Clock& clock, std::int64_t until_ns) override;
     Lines drain(Steering& steering, std::int64_t now_ns) override REQUIRES(steering.steers);
     [[nodiscard]] const StampLog& log() const override { return log_; }
-    [[nodiscard]] std::uint64_t refused() const override { return attendant_ ? attendant_->refused_reports() : 0; }
+    [[nodiscard]] std::uint64_t refused() const override { return router_ ? router_->refused_reports() : 0; }
     [[nodiscard]] std::vector<rt::SteeringDevice> devices() const override;
     /// How many devices steer now, as of the last drain; any thread.
     [[nodiscard]] int steering_now() const { return steering_now_.load(std::memory_order_relaxed); }
 
-    /// What a person should know; false: nothing (more). For one thread, any but the one that drains.
-    bool next_note(NoteLine& note) { return notes_.try_pop(note); }
-    /// Notes that came too fast for that thread.
-    [[nodiscard]] std::uint64_t lost_notes() const { return notes_.dropped(); }
+    /// The next note for the user; false: none. For one thread other than the draining one.
+    bool next_message(MessageLine& note) { return messages_.try_pop(note); }
+    /// Messages that came too fast for that thread.
+    [[nodiscard]] std::uint64_t lost_messages() const { return messages_.dropped(); }
 
 private:
-    void say_if_nobody_steers(std::int64_t now_ns);
+    void warn_if_nobody_steers(std::int64_t now_ns);
 
     LiveOptions options_;
-    rt::SpscRing<NoteLine> notes_{128};
-    Say say_;
+    rt::SpscRing<MessageLine> messages_{128};
+    MessageSink sink_;
     std::unique_ptr<DeviceSource> devices_;
-    std::optional<Attendant> attendant_;
+    std::optional<DeviceRouter> router_;
     std::optional<PanelDevice> panel_;
     StampLog log_;
     std::int64_t start_ns_ = 0;
     std::atomic<int> steering_now_{0};
-    bool somebody_ = false;      ///< steers, or its absence was said
-    bool waiting_said_ = false;  ///< of mappings that fit no device
+    bool somebody_ = false;         ///< steers, or its absence was said
+    bool unused_reported_ = false;  ///< of mappings that fit no device
 };
 
-/// Whether anything in the steering file can stop the walk for good: then that is remembered across restarts.
+/// Whether the steering file has an emergency stop. If so, a latched stop is kept across restarts.
 bool has_stop(const SteeringFile& steering);
 
 }  // namespace surefoot::input

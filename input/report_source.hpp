@@ -1,4 +1,4 @@
-// Where reports come from: a recording, or live devices. The seam under the input thread; steering.hpp is what it feeds.
+// The interface of report sources: a recording, or live devices. The input thread feeds their reports to Steering.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ namespace surefoot::input {
 
 constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
 
-/// The stamp of every accepted report, in the order of reading, so that latencies can be told report by report afterwards.
-/// Reserved before the thread starts; what does not fit is counted and not kept.
+/// The stamp of every accepted report, in order of reading, for latencies by report. Memory is reserved before the thread starts;
+/// further reports are only counted.
 class StampLog {
 public:
     void reserve(std::size_t reports) { stamps_.reserve(reports); }
@@ -34,8 +34,8 @@ private:
     std::uint64_t count_ = 0;
 };
 
-/// One thread calls all of it but begin(). drain() and wait() neither allocate nor lock while no device comes or goes; a source
-/// whose devices do come and go opens and describes them on a thread of its own and hands them over complete.
+/// One thread calls all members except begin(). drain() and wait() neither allocate nor lock while no device comes or goes.
+/// A source with hot-plug opens and describes devices on its own thread, and hands them over complete.
 class ReportSource {
 public:
     virtual ~ReportSource() = default;

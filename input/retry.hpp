@@ -1,4 +1,4 @@
-// When what could not be opened is tried again: soon at first, then rarer, for ever. Pure.
+// Schedule of retries for opening a device: soon at first, then less often, for ever. Pure.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace surefoot::input {
 
-/// Waits longer after each failure, from 100 ms to 2 s: at most 20 tries in the first half minute (R8), and never given up.
+/// Waits after each failure: 100 ms, doubling to 2 s. At most 20 tries in the first 30 s; never gives up.
 struct Retry {
     std::int64_t next_ns = 0, wait_ns = 0;
     [[nodiscard]] bool due(std::int64_t now_ns) const { return now_ns >= next_ns; }
@@ -15,7 +15,7 @@ struct Retry {
         next_ns = now_ns + wait_ns;
     }
     void succeeded() { next_ns = wait_ns = 0; }
-    /// Something changed about it: one try at once; the waits go on from where they were.
+    /// The device changed: one try at once; later waits continue as before.
     void hurry(std::int64_t now_ns) { next_ns = std::min(next_ns, now_ns); }
 };
 

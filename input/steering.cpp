@@ -11,7 +11,7 @@ namespace {
 
 bool is_device(int number) { return number >= 0 && static_cast<std::size_t>(number) < max_devices; }
 
-bool free_again(const Source& source) { return !source.connected && !source.asked.has_stop && !source.asked.has_dead_man; }
+bool free_again(const Source& source) { return !source.connected && !source.output.has_stop && !source.output.has_dead_man; }
 
 }  // namespace
 
@@ -23,7 +23,7 @@ Steering::Steering(const MotionLimits& motion, const SafetyLimits& safety, bool 
 /// Where every report comes again and again, one that does not is old, whatever the device's other reports say. Of an adapter
 /// whose pads were seen to stream, the reports of one that was pulled out end while the others' go on.
 std::int64_t Steering::age_limit_ns(std::size_t device) const {
-    const bool learned = devices_[device].mapper.adapter && safety_.devices[device].habit.learned_streaming;
+    const bool learned = devices_[device].mapper.adapter && safety_.devices[device].cadence.learned_streaming;
     return learned || sources_[device].reporting == Reporting::streaming ? safety_limits_.age_limit_ns : 0;
 }
 
@@ -46,18 +46,18 @@ int Steering::attach(Mapper&& mapper, std::size_t controls, Reporting reporting,
     source.connected = true;
     source.connection = connection;
     source.reporting = reporting;
-    source.asked = ask(device.mapper, device.newest, std::max<std::int64_t>(0, safety_.last_ns));
+    source.output = evaluate(device.mapper, device.newest, std::max<std::int64_t>(0, safety_.last_ns));
     return static_cast<int>(at);
 }
 
 void Steering::detach(int device) {
     if (!is_device(device)) return;
     Source& source = sources_[static_cast<std::size_t>(device)];
-    const Asked before = source.asked;
+    const DeviceOutput before = source.output;
     source.connected = false;
-    source.asked = {};
-    source.asked.has_stop = before.has_stop;
-    source.asked.has_dead_man = before.has_dead_man;
+    source.output = {};
+    source.output.has_stop = before.has_stop;
+    source.output.has_dead_man = before.has_dead_man;
 }
 
 void Steering::ended(int device) {
@@ -66,7 +66,7 @@ void Steering::ended(int device) {
 }
 
 void Steering::report(int number, const DeviceState& state, std::int64_t now_ns) {
-    CHECK(is_device(number), "a report has a number that attach() gave");
+    CHECK(is_device(number), "A report has a number that attach() gave");
     const auto at = static_cast<std::size_t>(number);
     Source& source = sources_[at];
     if (!source.connected) return;
@@ -81,18 +81,18 @@ void Steering::report(int number, const DeviceState& state, std::int64_t now_ns)
     device.newest.carried_over = state.carried_over;
     device.newest.stamp_ns = state.stamp_ns;
     device.newest.reports = source.reports + 1;
-    const Asked asked = ask(device.mapper, device.newest, now_ns, age_limit_ns(at));
-    source.asked = device.ticked ? asked : absorbed(source.asked, asked);
+    const DeviceOutput output = evaluate(device.mapper, device.newest, now_ns, age_limit_ns(at));
+    source.output = device.ticked ? output : combined(source.output, output);
     device.ticked = false;
     ++source.reports;
     source.stamp_ns = state.stamp_ns;
     source.equal_report = source.equal_report || equal;
     source.moved = source.moved || !(equal || device.mapper.still);
-    source.seen_neutral = source.seen_neutral || asked.neutral;
+    source.seen_neutral = source.seen_neutral || output.neutral;
 }
 
 void Steering::drained(int number, std::uint32_t reports, bool lost) {
-    CHECK(is_device(number), "a drain has a number that attach() gave");
+    CHECK(is_device(number), "A drain has a number that attach() gave");
     Source& source = sources_[static_cast<std::size_t>(number)];
     source.drained = std::max(source.drained, reports);
     source.lost = source.lost || lost;
@@ -100,9 +100,9 @@ void Steering::drained(int number, std::uint32_t reports, bool lost) {
 
 NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const Ground& ground) {
     for (std::size_t i = 0; i < max_devices; ++i) {
-        // Smoothing and settling run on between reports.
+        // Smoothing and debouncing run on between reports.
         if (sources_[i].connected && devices_[i].ticked)
-            sources_[i].asked = ask(devices_[i].mapper, devices_[i].newest, now_ns, age_limit_ns(i));
+            sources_[i].output = evaluate(devices_[i].mapper, devices_[i].newest, now_ns, age_limit_ns(i));
     }
     const Command command = step(safety_, safety_limits_, sources_, lines, now_ns);
     for (std::size_t i = 0; i < max_devices; ++i) {
@@ -114,7 +114,7 @@ NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const G
 }
 
 const Mapper& Steering::mapper(int device) const {
-    CHECK(is_device(device), "a mapper is asked for by a number that attach() gave");
+    CHECK(is_device(device), "A mapper is asked for by a number that attach() gave");
     return devices_[static_cast<std::size_t>(device)].mapper;
 }
 

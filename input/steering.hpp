@@ -1,4 +1,4 @@
-// Reports in, navigation samples out: the one loop body of the input thread, made of map/, safety/ and motion/.
+// The loop body of the input thread: reports in, navigation samples out. Joins map/, safety/ and motion/.
 #pragma once
 
 #include <cstdint>
@@ -23,15 +23,15 @@ public:
 
     Steering(const MotionLimits& motion, const SafetyLimits& safety, bool stop_latched = false);
 
-    /// A device came; its number, or -1 when max_devices are there. It asks for nothing until seen neutral. A device that comes
-    /// back must get its number again (`again`) if it carries a stop or a dead-man: while it is away these hold the walk, and
-    /// its number is not given to another. `mapper` is exchanged for the one that had the number before: whoever must not free
-    /// memory keeps it.
+    /// A device came. Returns its number, or -1 if max_devices are attached. It requests nothing until it was seen neutral.
+    /// A returning device with a stop or dead-man must get its old number (`again`): while it is away these hold the walk, and no
+    /// other device gets the number. `mapper` is swapped with the number's former mapper, so that a caller that must not free
+    /// memory can keep it.
     int attach(Mapper&& mapper, std::size_t controls, Reporting reporting, int again = -1) REQUIRES(steers);
     /// Unplugged, or its reader failed.
     void detach(int device) REQUIRES(steers);
 
-    /// No report will come any more though it is not unplugged (a recording's end): from now on silence means rest.
+    /// The device sends no more reports (end of a recording): from now on silence means rest.
     void ended(int device) REQUIRES(steers);
 
     /// One accepted report. Anything but `state.connected` false counts as the device being there.

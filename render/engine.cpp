@@ -73,7 +73,7 @@ struct Engine::Impl {
     bool use_coarse GUARDED_BY(draws) = false;
     const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
     Correction correction GUARDED_BY(draws);
-    double upper_factor GUARDED_BY(draws) = 1;  ///< that the last select() spent
+    double headroom GUARDED_BY(draws) = 1;  ///< that the last select() spent
 
     void use(const select::SelectorEntry& entry);
     double now_us(const SubmitLimits& limits) const REQUIRES(draws) {
@@ -168,8 +168,8 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.prepared = &prepared;
     e.correction = correction;
     const select::SelectInput input{&e.model,          &prepared,        &e.costs,           budget_us,
-                                    correction.factor, target_error_rad, e.options.slice_us, correction.upper};
-    e.upper_factor = select::upper_factor_of(input);
+                                    correction.factor, target_error_rad, e.options.slice_us, correction.headroom};
+    e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
     return e.cut;
@@ -191,7 +191,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
     const std::size_t first = drawn.size();
     model::ItemCost cost;
     for (const select::CutItem& item : items) {
-        if (!CHECK_RARE(drawn.size() < drawn.capacity(), "twice the candidates have room for a cut and its stand-ins")) break;
+        if (!CHECK_RARE(drawn.size() < drawn.capacity(), "A cut and its stand-ins are at most twice the candidates")) break;
         if (!model::visible(frustum, model.nodes[item.node].box)) {
             ++report.culled;
             continue;
@@ -227,12 +227,12 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         rest_stand_in.submit_us -= slice.stand_in_cost.submit_us + costs.slice_us;
         rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
         if (full && options.in_frame_check) {
-            const double upper = correction.factor * upper_factor;
+            const double scale = correction.factor * headroom;
             select::CheckInput check;
             check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + in_flight_us * correction.factor;
             check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction.factor;
-            check.next_us = with(slice.cost) * upper;
-            check.next_stand_in_us = with(slice.stand_in_cost) * upper;
+            check.next_us = with(slice.cost) * scale;
+            check.next_stand_in_us = with(slice.stand_in_cost) * scale;
             check.rest_stand_in_us = with(rest_stand_in) * correction.factor;  // a sum of many: its own spread is small
             check.limit_us = limits.limit_us;
             full = select::still_fits(check);
@@ -273,7 +273,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     Impl& e = *impl_;
     e.draws.plays();
     e.device->draws.plays();
-    CHECK(e.use_coarse || e.prepared != nullptr, "what is submitted was selected before");
+    CHECK(e.use_coarse || e.prepared != nullptr, "A submitted frame was selected before");
     SubmitReport report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();

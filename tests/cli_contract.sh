@@ -185,7 +185,7 @@ expect 1 '^surefoot: --strict.*no cost table.*calibrate' walk f.walk --strict --
 # Paths that are out of all measure.
 for row in 1e300,0,0,0,0,0,0,1 1,1e300,0,0,0,0,0,1 1,nan,0,0,0,0,0,1 1,1e999,0,0,0,0,0,1 1,0,0,0,1e300,0,0,1; do
   printf '0,0,0,0,0,0,0,1\n%s\n' "$row" > huge.csv
-  expect 1 'huge.csv:2: column' walk f.walk $virtual --path huge.csv
+  expect 1 'huge.csv:2: Column' walk f.walk $virtual --path huge.csv
 done
 printf '0,0,0,0,0,0,0,1\n9e10,0,0,0,0,0,0,1\n' > long.csv
 expect 1 'long.csv.*frames.*--frames' walk f.walk $virtual --path long.csv

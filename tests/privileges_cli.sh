@@ -11,7 +11,7 @@ for tool in setpriv prlimit taskset; do command -v $tool >/dev/null || { echo "$
 chmod -R a+rX "$work"
 walk="$surefoot walk f.walk --backend null --frames 20"
 grep -q '"fifo": true' <($walk --json 2>full) || { echo "SCHED_FIFO is refused even to root here"; exit 77; }
-grep -q 'memory cannot be locked' full && { echo "memory cannot be locked even by root here"; exit 77; }
+grep -q 'Memory cannot be locked' full && { echo "memory cannot be locked even by root here"; exit 77; }
 $walk --strict >out 2>full-strict && grep -q 'isolated' full && complain "--strict starts without an isolated core"
 
 # lacks MARK WHAT COMMAND...: run by COMMAND, the walk lacks WHAT (a pattern) and says so once, its JSON has MARK, and --strict refuses it
@@ -37,11 +37,11 @@ if (( 0x$capabilities >> 24 & 1 )); then
 fi
 lacks '"fifo": false' 'SCHED_FIFO is refused' prlimit --rtprio=0:0 setpriv --bounding-set=-sys_nice,-sys_resource
 if prlimit --rtprio=50:50 true 2>/dev/null; then
-  lacks '"fifo": false' 'SCHED_FIFO is granted up to priority 50 only' prlimit --rtprio=50:50 setpriv --bounding-set=-sys_nice,-sys_resource
+  lacks '"fifo": false' 'SCHED_FIFO is granted only up to priority 50' prlimit --rtprio=50:50 setpriv --bounding-set=-sys_nice,-sys_resource
 else
   echo "RLIMIT_RTPRIO cannot be set to 50 here: that case is left out"
 fi
-lacks '"locked": false' 'memory cannot be locked beyond 2 MiB' prlimit --memlock=2097152:2097152 setpriv --bounding-set=-ipc_lock,-sys_resource
+lacks '"locked": false' 'Memory cannot be locked beyond 2 MiB' prlimit --memlock=2097152:2097152 setpriv --bounding-set=-ipc_lock,-sys_resource
 walk="$walk --frame-core 1000"
 lacks '"isolated": false' 'Frame core 1000 does not exist' env
 walk="$surefoot walk f.walk --backend null --frames 20 --frame-core 1"
@@ -52,7 +52,7 @@ walk="$surefoot walk f.walk --backend null --frames 20"
 mkdir -m 777 page
 prlimit --rtprio=0:0 --memlock=65536:65536 setpriv --reuid=65534 --regid=65534 --clear-groups \
   env XDG_STATE_HOME="$work/state" $walk --report page --json >out 2>err || complain "an ordinary user cannot walk: $(cat err)"
-for what in 'SCHED_FIFO is refused' 'memory cannot be locked'; do
+for what in 'SCHED_FIFO is refused' 'Memory cannot be locked'; do
   [ "$(grep -c "not fully real-time: $what" err)" -eq 1 ] || complain "an ordinary user is not told once: $what: $(cat err)"
   [ "$(grep -o "Not fully real-time: $what" page/index.html | wc -l)" -eq 1 ] || complain "the page is not marked: $what"
 done

@@ -21,13 +21,13 @@ std::string place_text(const PluggedDevice& p) { return p.name.empty() ? p.node 
 
 Error open_error(const PluggedDevice& p, int code, const std::string& what) {
     if (code == EACCES || code == EPERM) {
-        return {place_text(p), "may not be opened: " + what,
-                fmt::format(
-                    "install systemd/70-surefoot.rules as /etc/udev/rules.d/70-surefoot.rules, run `udevadm control --reload` "
-                    "and `udevadm trigger --subsystem-match=hidraw`, and add this user to the group surefoot-input; it is "
-                    "tried again by itself")};
+        return {place_text(p), "The device cannot be opened and is tried again: " + what,
+                "Install 70-surefoot.rules in /etc/udev/rules.d, run `udevadm control --reload` and "
+                "`udevadm trigger --subsystem-match=hidraw`, and add this user to the group surefoot-input",
+                ErrorKind::no_device};
     }
-    return {place_text(p), "cannot be opened: " + what, "it is tried again by itself; else unplug it and plug it in again"};
+    return {place_text(p), "The device cannot be opened and is tried again: " + what, "Unplug it and plug it in again",
+            ErrorKind::no_device};
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ Result<Finder> Finder::create(FinderOptions options) {
     Finder f;
     f.options_ = std::move(options);
     f.context_.reset(udev_new());
-    if (!f.context_) return Error{"udev", "its library cannot be used: no memory", "close other programs"};
+    if (!f.context_) return Error{"udev", "The library cannot be used: no memory", "Close other programs", ErrorKind::no_memory};
     auto monitor = UdevMonitor::listen(f.context_.get());
     if (monitor)
         f.monitor_ = std::move(*monitor);
@@ -65,13 +65,13 @@ std::int64_t Finder::due_ns() const {
 
 std::vector<Discovery> Finder::look(std::int64_t now_ns) {
     std::vector<Discovery> out;
-    UdevMonitor::News news;
-    if (monitor_) news = monitor_->news();
+    UdevMonitor::Changes changes;
+    if (monitor_) changes = monitor_->take_changes();
     for (auto& [place, entry] : entries_) {
-        const bool touched = std::find(news.changed.begin(), news.changed.end(), place) != news.changed.end();
-        if (entry.state == State::waiting && (touched || news.lost)) entry.retry.hurry(now_ns);
+        const bool touched = std::find(changes.changed.begin(), changes.changed.end(), place) != changes.changed.end();
+        if (entry.state == State::waiting && (touched || changes.lost)) entry.retry.hurry(now_ns);
     }
-    if (news.any || now_ns >= scan_due_ns_) scan(out, now_ns);
+    if (changes.any || now_ns >= scan_due_ns_) scan(out, now_ns);
     for (auto& [place, entry] : entries_)
         if (entry.state == State::waiting && entry.retry.due(now_ns)) try_open(out, entry, now_ns);
     return out;
@@ -93,7 +93,7 @@ void Finder::scan(std::vector<Discovery>& out, std::int64_t now_ns) {
             d.kind = Discovery::Kind::lost;
             d.device = i->second.device;
             d.plugged = i->second.plugged;
-            d.why = {place_text(*d.plugged), "was unplugged", ""};
+            d.why = {place_text(*d.plugged), "The device was unplugged", "", ErrorKind::no_device};
             out.push_back(std::move(d));
         }
         i = entries_.erase(i);
@@ -103,11 +103,11 @@ void Finder::scan(std::vector<Discovery>& out, std::int64_t now_ns) {
         std::optional<Error> trouble;
         Entry entry;
         entry.plugged = std::make_shared<const PluggedDevice>(read_node(context_.get(), n, trouble));
-        meet(out, n.place, entry, trouble);
+        classify(out, n.place, entry, trouble);
     }
 }
 
-void Finder::meet(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble) {
+void Finder::classify(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble) {
     const PluggedDevice& p = *entry.plugged;
     Discovery d;
     d.kind = Discovery::Kind::refused;
@@ -118,7 +118,8 @@ void Finder::meet(std::vector<Discovery>& out, const std::string& place, Entry& 
         out.push_back(std::move(d));
     } else if (!options_.wanted(p)) {
         d.refused = Refused::unwanted;
-        d.why = {place_text(p), p.device.reason, "name it in the steering file's [[device]] to use it all the same"};
+        d.why = {place_text(p), "The device does not steer: " + p.device.reason,
+                 "Name it in a [[device]] of the steering file to use it all the same", ErrorKind::unsupported};
         out.push_back(std::move(d));
     } else {
         entry.state = State::waiting;  // due at once
@@ -132,9 +133,9 @@ void Finder::try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t no
     if (!options_.open || d.handle.open(entry.plugged->node)) {
         d.kind = Discovery::Kind::found;
         d.device = entry.device = next_number_++;
-        if (options_.ready) d.readied = options_.ready(*entry.plugged);
+        if (options_.attachment_factory) d.attachment = options_.attachment_factory(*entry.plugged);
         entry.state = State::open;
-        entry.said.clear();
+        entry.last_reported.clear();
         out.push_back(std::move(d));
         return;
     }
@@ -144,8 +145,8 @@ void Finder::try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t no
     d.kind = Discovery::Kind::refused;
     d.refused = code == EACCES || code == EPERM ? Refused::permission : Refused::failed;
     d.why = open_error(*entry.plugged, code, d.handle.what());
-    if (entry.said == d.why.what) return;
-    entry.said = d.why.what;
+    if (entry.last_reported == d.why.what) return;
+    entry.last_reported = d.why.what;
     out.push_back(std::move(d));
 }
 

@@ -1,5 +1,5 @@
-// Finds devices that come and go, and opens those that are wanted: udev's events, a schedule for what was refused, and a look
-// around now and then in case an event was lost. Tells each thing once.
+// Finds devices that come and go, and opens wanted ones. Uses udev events, a retry schedule for refused devices, and periodic
+// scans, as an event may be lost. Reports each change once.
 #pragma once
 
 #include <cstdint>
@@ -17,42 +17,43 @@
 
 namespace surefoot::input {
 
-/// One thing that was found out.
+/// One change: a device found, lost or refused.
 struct Discovery {
     enum class Kind : std::uint8_t { found, lost, refused };
     Kind kind = Kind::found;
     int device = -1;  ///< found, lost
     std::shared_ptr<const PluggedDevice> plugged;
-    std::unique_ptr<Readied> readied;  ///< found, where the options make one
-    HidHandle handle;                  ///< found: open
+    std::unique_ptr<DeviceAttachment> attachment;  ///< found, where the options make one
+    HidHandle handle;                              ///< found: open
     Refused refused = Refused::failed;
     Error why;  ///< lost, refused
 };
 
 /// Whether a device is to be opened.
 using Wanted = std::function<bool(const PluggedDevice&)>;
-/// Those that steer without being configured: navigation and buttons.
+/// True for classes that steer without configuration: navigation and buttons.
 bool steers_by_class(const PluggedDevice& device);
 
 struct FinderOptions {
     Wanted wanted = steers_by_class;
-    std::function<std::unique_ptr<Readied>(const PluggedDevice&)> ready;  ///< called for each that is found; may be empty
-    bool open = true;  ///< false: devices are listed only; `found` then carries no open handle
+    std::function<std::unique_ptr<DeviceAttachment>(const PluggedDevice&)>
+        attachment_factory;  ///< called for each that is found; may be empty
+    bool open = true;        ///< false: devices are listed only; `found` then carries no open handle
 };
 
 class Finder {
 public:
     static Result<Finder> create(FinderOptions options);
 
-    /// What became different since the last call. Reads sysfs and opens devices: may take milliseconds.
+    /// The changes since the last call. Reads sysfs and opens devices, so it may take milliseconds.
     std::vector<Discovery> look(std::int64_t now_ns);
     /// Readable when look() may find something; -1: no monitor.
     [[nodiscard]] int fd() const { return monitor_ ? monitor_->fd() : -1; }
-    /// When look() is due whatever fd() says.
+    /// When look() is due even without an event.
     [[nodiscard]] std::int64_t due_ns() const;
-    /// Reading the device failed: it is closed already, and told as gone. Opened again, under a new number, if it is still there.
+    /// Reading the device failed; it is closed and reported as gone. It is opened again, with a new number, if still plugged in.
     void failed(int device, std::int64_t now_ns);
-    /// Why there is no monitor, if so: to be said once.
+    /// Why there is no udev monitor, if so. To be shown once.
     [[nodiscard]] const std::optional<Error>& without_monitor() const { return without_monitor_; }
 
 private:
@@ -62,11 +63,11 @@ private:
         State state = State::left_alone;
         int device = -1;
         Retry retry;
-        std::string said;
+        std::string last_reported;
     };
 
     void scan(std::vector<Discovery>& out, std::int64_t now_ns);
-    void meet(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble);
+    void classify(std::vector<Discovery>& out, const std::string& place, Entry& entry, const std::optional<Error>& trouble);
     void try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t now_ns);
 
     FinderOptions options_;

@@ -71,7 +71,7 @@ bool HidHandle::open(const std::string& node) {
     if (ioctl(probe, HIDIOCGRDESCSIZE, &size) < 0) {
         const int code = errno;
         ::close(probe);
-        return failed(code, std::string("it does not answer as hidraw does: ") + std::strerror(code));
+        return failed(code, std::string("it does not answer as a hidraw node: ") + std::strerror(code));
     }
     device_ = hid_open_path(node.c_str());
     const int code = errno;

@@ -23,9 +23,9 @@ public:
     void close();
 
     [[nodiscard]] explicit operator bool() const { return device_ != nullptr; }
-    /// For poll(); -1 where it could not be found out: then read() has to be asked now and then.
+    /// For poll(); -1 if unknown: then call read() periodically.
     [[nodiscard]] int fd() const { return fd_; }
-    /// One report into `to`: its bytes; 0: none is waiting; -1: the device is gone (or broken). Never blocks.
+    /// Reads one report into `to`. Returns its bytes; 0: none is waiting; -1: the device is gone or broken. Never blocks.
     int read(std::span<std::byte> to);
     [[nodiscard]] int code() const { return code_; }  ///< errno of the failed open
     [[nodiscard]] const std::string& what() const { return what_; }

@@ -1,4 +1,4 @@
-// What is plugged in: an entry a hidraw node, with what sysfs knows of it. Opens no device.
+// Lists hidraw nodes with their facts from sysfs. Opens no device.
 #pragma once
 
 #include <memory>
@@ -17,8 +17,8 @@ struct ListedNode {
 };
 std::vector<ListedNode> list_nodes(udev* context);
 
-/// Reads name, socket, serial, ids and the report descriptor of a node, and describes it. A descriptor that cannot be read or is
-/// malformed is `trouble`; the rest is filled in all the same.
+/// Reads name, socket, serial, ids and report descriptor of a node, and describes it. A descriptor that is unreadable or
+/// malformed sets `trouble`; the other members are filled in.
 PluggedDevice read_node(udev* context, const ListedNode& node, std::optional<Error>& trouble);
 
 }  // namespace surefoot::input

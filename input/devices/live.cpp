@@ -9,29 +9,29 @@ namespace {
 
 constexpr std::size_t largest_report = 16384 + 1;  // the kernel's HID_MAX_BUFFER_SIZE and an id
 constexpr std::size_t bytes_per_take = 1U << 20U;
-constexpr std::int64_t ask_again_ns = 2'000'000;  // where a descriptor could not be found
+constexpr std::int64_t poll_again_ns = 2'000'000;  // where a descriptor could not be found
 // Room for events and devices is set aside: sixteen devices that flood, and sixty-four that are open.
-constexpr std::size_t most_reports = 16 * max_drain, most_devices = 64, most_others = 64;
-constexpr std::size_t most_events = most_reports + 4 * most_devices;  // each of them drained, gone and come anew
+constexpr std::size_t max_reports = 16 * max_drain, max_open_devices = 64, max_others = 64;
+constexpr std::size_t max_events = max_reports + 4 * max_open_devices;  // each of them drained, gone and come anew
 
 }  // namespace
 
 LiveDevices::LiveDevices(std::unique_ptr<Discoverer> discoverer, std::optional<Error> trouble)
     : discoverer_(std::move(discoverer)),
       bytes_(bytes_per_take + largest_report),
-      unplugged_{"", "was unplugged, or cannot be read any more", ""},
+      unplugged_{"", "The device was unplugged, or cannot be read any more", "", ErrorKind::no_device},
       trouble_(std::move(trouble)) {
-    open_.reserve(most_devices);
-    told_.reserve(2 * most_devices);
-    others_.reserve(most_others);
-    watched_.reserve(1 + most_devices + most_others);
-    events_.reserve(most_events);
+    open_.reserve(max_open_devices);
+    retired_.reserve(2 * max_open_devices);
+    others_.reserve(max_others);
+    watched_.reserve(1 + max_open_devices + max_others);
+    events_.reserve(max_events);
     watch();
 }
 
 LiveDevices::~LiveDevices() {
     open_.clear();
-    told_.clear();
+    retired_.clear();
 }
 
 void LiveDevices::watch() {
@@ -46,14 +46,14 @@ void LiveDevices::watch() {
 }
 
 void LiveDevices::watch_also(std::span<const pollfd> others) {
-    others_.assign(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(std::min(others.size(), most_others)));
+    others_.assign(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(std::min(others.size(), max_others)));
     watch();
 }
 
 void LiveDevices::wait(std::int64_t until_ns) {
     const std::int64_t now = clock_.now_ns();
     until_ns = std::min(until_ns, discoverer_->due_ns());
-    if (unwatchable_ || !told_.empty()) until_ns = std::min(until_ns, now + ask_again_ns);
+    if (unwatchable_ || !retired_.empty()) until_ns = std::min(until_ns, now + poll_again_ns);
     const std::int64_t left = std::max<std::int64_t>(0, until_ns - now);
     const timespec wait{left / 1'000'000'000, left % 1'000'000'000};
     (void)ppoll(watched_.data(), watched_.size(), &wait, nullptr);
@@ -63,8 +63,8 @@ std::span<const DeviceEvent> LiveDevices::take() {
     events_.clear();
     used_ = 0;
     const std::int64_t now = clock_.now_ns();
-    for (Told& t : told_) discoverer_->give_back(std::move(t.discovery), t.failed, now);
-    told_.clear();
+    for (Retired& t : retired_) discoverer_->give_back(std::move(t.discovery), t.failed, now);
+    retired_.clear();
     for (std::size_t i = 0; i < open_.size();) {
         if (drain(*open_[i]))
             ++i;
@@ -79,7 +79,7 @@ std::span<const DeviceEvent> LiveDevices::take() {
 bool LiveDevices::drain(Discovery& device) {
     std::uint32_t reports = 0;
     int size = 0;
-    const auto full = [&] { return reports == max_drain || used_ >= bytes_per_take || events_.size() >= most_reports; };
+    const auto full = [&] { return reports == max_drain || used_ >= bytes_per_take || events_.size() >= max_reports; };
     while (!full()) {
         const auto room = std::span(bytes_).subspan(used_, largest_report);
         size = device.handle.read(room);
@@ -116,12 +116,12 @@ void LiveDevices::lost(std::size_t at, bool failed, std::int64_t now_ns) {
     e.plugged = device->plugged;
     e.why = &unplugged_;
     events_.push_back(std::move(e));
-    told_.push_back({std::move(device), failed});
+    retired_.push_back({std::move(device), failed});
 }
 
 void LiveDevices::discover(std::int64_t now_ns) {
     // What finds no room now waits with the discoverer.
-    while (told_.size() + 2 <= told_.capacity() && open_.size() < most_devices && events_.size() < most_events) {
+    while (retired_.size() + 2 <= retired_.capacity() && open_.size() < max_open_devices && events_.size() < max_events) {
         auto d = discoverer_->next(now_ns);
         if (!d) return;
         if (d->kind == Discovery::Kind::lost) {
@@ -132,7 +132,7 @@ void LiveDevices::discover(std::int64_t now_ns) {
                     events_.back().why = &d->why;
                     break;
                 }
-            told_.push_back({std::move(d), false});
+            retired_.push_back({std::move(d), false});
             continue;
         }
         DeviceEvent e;
@@ -141,25 +141,25 @@ void LiveDevices::discover(std::int64_t now_ns) {
         if (d->kind == Discovery::Kind::found) {
             e.kind = DeviceEvent::Kind::added;
             e.device = d->device;
-            e.readied = d->readied.get();
+            e.attachment = d->attachment.get();
             open_.push_back(std::move(d));
             watch();
         } else {
             e.kind = DeviceEvent::Kind::refused;
             e.refused = d->refused;
             e.why = &d->why;
-            told_.push_back({std::move(d), false});
+            retired_.push_back({std::move(d), false});
         }
         events_.push_back(std::move(e));
     }
 }
 
-Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool beside) {
+Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool threaded) {
     auto finder = Finder::create(std::move(options));
     if (!finder) return finder.error();
     std::optional<Error> trouble = finder->without_monitor();
-    if (!beside) return std::make_unique<LiveDevices>(discover_here(std::move(*finder)), std::move(trouble));
-    auto discoverer = discover_beside(std::move(*finder));
+    if (!threaded) return std::make_unique<LiveDevices>(inline_discoverer(std::move(*finder)), std::move(trouble));
+    auto discoverer = threaded_discoverer(std::move(*finder));
     if (!discoverer) return discoverer.error();
     return std::make_unique<LiveDevices>(std::move(*discoverer), std::move(trouble));
 }

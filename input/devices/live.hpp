@@ -1,4 +1,4 @@
-// Live devices as a source of events: polls what is open, and drains it whole.
+// Live devices as a source of events: polls open devices and drains them.
 #pragma once
 
 #include <poll.h>
@@ -12,13 +12,13 @@
 
 namespace surefoot::input {
 
-/// Reports that one drain of one device reads at most. Far beyond the 63 after which safety/ knows that the kernel has dropped
-/// some, so a device that floods is at rest and holds up nobody.
+/// Maximum reports that one drain reads from one device. Far above 63, from which on safety/ assumes that the kernel dropped
+/// some. So a flooding device is at rest and delays nobody.
 constexpr std::uint32_t max_drain = 256;
 
 class LiveDevices final : public DeviceSource {
 public:
-    /// trouble: what the discoverer has to do without.
+    /// trouble: a limitation of the discoverer.
     explicit LiveDevices(std::unique_ptr<Discoverer> discoverer, std::optional<Error> trouble = {});
     ~LiveDevices() override;
 
@@ -39,22 +39,22 @@ private:
     rt::RealClock clock_;
     std::unique_ptr<Discoverer> discoverer_;
     std::vector<std::unique_ptr<Discovery>> open_;
-    struct Told {
+    struct Retired {
         std::unique_ptr<Discovery> discovery;
         bool failed = false;
     };
-    std::vector<Told> told_;  ///< what the events of the last take() point into
+    std::vector<Retired> retired_;  ///< targets of pointers in the events of the last take()
     std::vector<pollfd> others_, watched_;
     std::vector<DeviceEvent> events_;
     std::vector<std::byte> bytes_;
     const Error unplugged_;
     std::optional<Error> trouble_;
     std::size_t used_ = 0;
-    bool unwatchable_ = false;  ///< a device has no descriptor that is known
+    bool unwatchable_ = false;  ///< some device has no known file descriptor
 };
 
-/// Live devices with the finder in the same thread, or in one beside it: then wait() and take() neither allocate, free nor lock,
-/// whatever comes or goes.
-Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool beside = false);
+/// Live devices with the finder in the same thread, or (`threaded`) in its own: then wait() and take() neither allocate, free nor
+/// lock, also while devices come and go.
+Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool threaded = false);
 
 }  // namespace surefoot::input

@@ -1,6 +1,6 @@
-// The door of live devices: what was plugged, refused, pulled and reported, as events in the order in which they were seen.
+// The interface of live devices: events (added, refused, removed, report) in the order in which they were seen.
 //
-//   udev monitor, schedule ─► Finder ─► (open, described) ─► LiveDevices ─► events ─► Attendant ─► Steering
+//   udev monitor, schedule ─► Finder ─► (open, described) ─► LiveDevices ─► events ─► DeviceRouter ─► Steering
 //   (hot-plug, permissions)             a handle each        (poll, drain)            (mapping)
 #pragma once
 
@@ -18,10 +18,10 @@
 
 namespace surefoot::input {
 
-/// One hidraw node as it was found; complete before anybody sees it, and never changed afterwards.
+/// One hidraw node as it was found. Complete at construction; never changed.
 struct PluggedDevice {
     std::string node;   ///< "/dev/hidraw0"
-    std::string place;  ///< sysfs path: another one at each plugging, even into the same socket under the same node
+    std::string place;  ///< sysfs path; a new one at each plugging, even for the same socket and node
     std::string name;
     std::string socket;  ///< where it is plugged in: "usb-0000:00:14.0-2/input0"; may be empty
     std::string serial;  ///< may be empty
@@ -29,11 +29,11 @@ struct PluggedDevice {
     std::vector<std::byte> descriptor;
     HidDevice device;  ///< layout, controls, class and its reason
 
-    /// The same when the same device is plugged in again: by its serial, else by its socket.
+    /// Equal if the same device is plugged in again: from its serial, else its socket.
     [[nodiscard]] std::string identity() const;
 };
 
-/// Why a device that is there is not read.
+/// Why a connected device is not read.
 enum class Refused : std::uint8_t {
     unwanted,    ///< its class does not steer and nobody asked for it; it is not even opened
     descriptor,  ///< its report descriptor cannot be read or is malformed
@@ -41,13 +41,13 @@ enum class Refused : std::uint8_t {
     failed,      ///< anything else; tried again likewise
 };
 
-/// What the user of a source makes of a device before its reader sees it: made and unmade where devices are opened, so that the
-/// reader needs no memory when one comes or goes.
-struct Readied {
-    Readied() = default;
-    Readied(const Readied&) = delete;
-    Readied& operator=(const Readied&) = delete;
-    virtual ~Readied() = default;
+/// User data of a device, made and destroyed on the thread that opens devices, so that the reader does not allocate when one
+/// comes or goes.
+struct DeviceAttachment {
+    DeviceAttachment() = default;
+    DeviceAttachment(const DeviceAttachment&) = delete;
+    DeviceAttachment& operator=(const DeviceAttachment&) = delete;
+    virtual ~DeviceAttachment() = default;
 };
 
 struct DeviceEvent {
@@ -61,7 +61,7 @@ struct DeviceEvent {
     Refused refused = Refused::failed;
     const Error* why = nullptr;                    ///< refused, removed; valid until the next take()
     std::shared_ptr<const PluggedDevice> plugged;  ///< added, removed, refused
-    Readied* readied = nullptr;                    ///< added: what was made of it, if so; valid until the take() after `removed`
+    DeviceAttachment* attachment = nullptr;        ///< added: its user data, or null; valid until the take() after `removed`
 };
 
 /// One thread.
@@ -70,11 +70,11 @@ public:
     virtual ~DeviceSource() = default;
     /// Sleeps until something has happened or may have, or until `until_ns` (CLOCK_MONOTONIC), or until a signal comes.
     virtual void wait(std::int64_t until_ns) = 0;
-    /// What has happened: never blocks. For each device that had reports: all of them, then `drained`. Valid until the next call.
+    /// The new events; never blocks. For each device with reports: all of them, then `drained`. Valid until the next call.
     virtual std::span<const DeviceEvent> take() = 0;
-    /// Descriptors of others that end wait() too, instead of those that were given before.
+    /// Further descriptors that end wait(); replaces those of the last call.
     virtual void watch_also(std::span<const pollfd> /*others*/) {}
-    /// What it has to do without, from its start on; to be said once.
+    /// A limitation since the start; to be shown once.
     [[nodiscard]] virtual const std::optional<Error>& trouble() const {
         static const std::optional<Error> none;
         return none;

@@ -16,30 +16,32 @@ Result<UdevMonitor> UdevMonitor::listen(udev* context) {
     m.monitor_.reset(udev_monitor_new_from_netlink(context, "udev"));
     if (!m.monitor_ || udev_monitor_filter_add_match_subsystem_devtype(m.monitor_.get(), "hidraw", nullptr) < 0 ||
         udev_monitor_enable_receiving(m.monitor_.get()) < 0) {
-        return Error{"udev", std::string("its events cannot be received: ") + std::strerror(errno),
-                     "devices are looked for four times a second instead; allow netlink sockets (AF_NETLINK) to this service"};
+        return Error{
+            "udev",
+            std::string("Events cannot be received; devices are looked for four times a second instead: ") + std::strerror(errno),
+            "Allow netlink sockets (AF_NETLINK) to this service", ErrorKind::no_device};
     }
     return m;
 }
 
 int UdevMonitor::fd() const { return udev_monitor_get_fd(monitor_.get()); }
 
-UdevMonitor::News UdevMonitor::news() {
-    News news;
+UdevMonitor::Changes UdevMonitor::take_changes() {
+    Changes changes;
     for (;;) {
         errno = 0;
         udev_device* device = udev_monitor_receive_device(monitor_.get());
         if (device == nullptr) {
             if (errno == ENOBUFS) {
-                news.any = news.lost = true;
+                changes.any = changes.lost = true;
                 continue;
             }
-            return news;
+            return changes;
         }
-        news.any = true;
+        changes.any = true;
         const char* action = udev_device_get_action(device);
         const char* path = udev_device_get_syspath(device);
-        if (path != nullptr && action != nullptr && std::strcmp(action, "remove") != 0) news.changed.emplace_back(path);
+        if (path != nullptr && action != nullptr && std::strcmp(action, "remove") != 0) changes.changed.emplace_back(path);
         udev_device_unref(device);
     }
 }

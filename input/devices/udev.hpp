@@ -20,17 +20,17 @@ using UdevContext = std::unique_ptr<udev, UdevDeleter>;
 
 class UdevMonitor {
 public:
-    /// Listens from now on. Errors: no netlink socket (a container may forbid it): then devices have to be looked for.
+    /// Listens from now on. Error: no netlink socket, as in some containers; then devices must be found by scanning.
     static Result<UdevMonitor> listen(udev* context);
 
     [[nodiscard]] int fd() const;
     /// What came since the last call, without blocking.
-    struct News {
+    struct Changes {
         bool any = false;
         bool lost = false;                 ///< more came than the socket holds: anything may have changed
         std::vector<std::string> changed;  ///< sysfs paths that were added or changed
     };
-    News news();
+    Changes take_changes();
 
 private:
     std::unique_ptr<udev_monitor, UdevDeleter> monitor_;

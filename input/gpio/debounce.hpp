@@ -1,7 +1,7 @@
-// One contact: asserted at its first edge, released once it has kept still, with lost edges found and counted. Pure.
+// Debounce of one contact: asserted at its first edge, released after it was stable; lost edges are found and counted. Pure.
 //
-// Never the other way round: a switch that is asserted late is a walk that stops late. Kernel debounce runs in jiffies and stamps
-// after its settle time (devices.md F7), so it is not used.
+// Assertion is never delayed, because a stop asserted late is a walk that stops late. The kernel's debounce is not used: it runs
+// in jiffies, and stamps an edge after its debounce time.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,23 @@ namespace surefoot::input {
 struct Contact {
     bool level = false;              ///< newest raw level, true: asserted
     bool asserted = false;           ///< debounced
-    std::int64_t released_ns = -1;   ///< since when the raw level of an asserted contact has been released; -1: it is not
+    std::int64_t released_ns = -1;   ///< when the raw level of an asserted contact was released; -1: it is not
     std::uint32_t presses = 0;       ///< counts asserting edges after debounce
-    std::uint32_t raw_releases = 0;  ///< counts releasing edges, undebounced: what a dead-man stops by
+    std::uint32_t raw_releases = 0;  ///< counts releasing edges without debounce; a dead-man stops at these
     std::uint64_t lost_edges = 0;    ///< found by reading the level again
 };
 
-/// The release settles; call at every tick.
-inline void settle(Contact& c, std::int64_t settle_ns, std::int64_t now_ns) {
-    if (c.asserted && c.released_ns >= 0 && now_ns - c.released_ns >= settle_ns) {
+/// Ends the debounce of a release; call at every tick.
+inline void release_when_due(Contact& c, std::int64_t debounce_ns, std::int64_t now_ns) {
+    if (c.asserted && c.released_ns >= 0 && now_ns - c.released_ns >= debounce_ns) {
         c.asserted = false;
         c.released_ns = -1;
     }
 }
 
-/// An edge to `level` at `stamp_ns`. An edge to the level that it already has means that the one between was lost.
-inline void edge(Contact& c, bool level, std::int64_t stamp_ns, std::int64_t settle_ns) {
-    settle(c, settle_ns, stamp_ns);
+/// An edge to `level` at `stamp_ns`. If the contact already has this level, the edge in between was lost.
+inline void edge(Contact& c, bool level, std::int64_t stamp_ns, std::int64_t debounce_ns) {
+    release_when_due(c, debounce_ns, stamp_ns);
     if (level == c.level) {
         ++c.lost_edges;
         // The lost one went the other way; a stop that was asserted for a moment was asserted.
@@ -47,14 +47,14 @@ inline void edge(Contact& c, bool level, std::int64_t stamp_ns, std::int64_t set
     }
 }
 
-/// The level as read again after a burst of edges: repairs what the kernel's full queue has dropped (devices.md F6).
-inline void reread(Contact& c, bool level, std::int64_t now_ns, std::int64_t settle_ns) {
+/// The level, read again after a burst of edges. Repairs edges that the kernel's full queue has dropped.
+inline void reread(Contact& c, bool level, std::int64_t now_ns, std::int64_t debounce_ns) {
     if (level != c.level) {
         ++c.lost_edges;
         c.level = !level;  // as before the lost edge
-        edge(c, level, now_ns, settle_ns);
+        edge(c, level, now_ns, debounce_ns);
     }
-    settle(c, settle_ns, now_ns);
+    release_when_due(c, debounce_ns, now_ns);
 }
 
 }  // namespace surefoot::input

@@ -57,9 +57,9 @@ private:
     bool given_ = false;  ///< the reader has them
 };
 
-class OpensHere final : public LineOpener {
+class InlineLineOpener final : public LineOpener {
 public:
-    explicit OpensHere(LinesToOpen lines) : tries_(std::move(lines)) {}
+    explicit InlineLineOpener(LinesToOpen lines) : tries_(std::move(lines)) {}
     void wait_for_first() override {}
     std::unique_ptr<OpenedLines> next(std::int64_t now_ns) override { return tries_.due(now_ns) ? tries_.make(now_ns) : nullptr; }
     void give_back(std::unique_ptr<OpenedLines> opened, std::int64_t now_ns) override {
@@ -70,12 +70,12 @@ private:
     LineTries tries_;
 };
 
-class OpensBeside final : public LineOpener {
+class ThreadedLineOpener final : public LineOpener {
 public:
-    explicit OpensBeside(LinesToOpen lines) : tries_(std::move(lines)), thread_([this] { run(); }) {}
-    OpensBeside(const OpensBeside&) = delete;
-    OpensBeside& operator=(const OpensBeside&) = delete;
-    ~OpensBeside() override {
+    explicit ThreadedLineOpener(LinesToOpen lines) : tries_(std::move(lines)), thread_([this] { run(); }) {}
+    ThreadedLineOpener(const ThreadedLineOpener&) = delete;
+    ThreadedLineOpener& operator=(const ThreadedLineOpener&) = delete;
+    ~ThreadedLineOpener() override {
         stopping_.store(true);
         bell_.release();
         thread_.join();
@@ -91,45 +91,45 @@ public:
     }
     /// There is always room: no more are under way than the ring to the reader holds.
     void give_back(std::unique_ptr<OpenedLines> opened, std::int64_t /*now_ns*/) override {
-        if (CHECK_RARE(!returned_.full(), "no more lines are under way than fit the ring") && returned_.try_push(opened.get()))
+        if (CHECK_RARE(!returned_.full(), "No more lines are under way than the ring holds") && returned_.try_push(opened.get()))
             (void)opened.release();
         bell_.release();
     }
 
 private:
-    static constexpr std::size_t under_way_most = 8;
+    static constexpr std::size_t max_under_way = 8;
 
     void run() {
         opens_.plays();
         (void)rt::place_thread(0, {.policy = rt::Policy::other, .priority = 0, .cpus = {}, .name = lines_thread_name});
-        std::string said;
+        std::string last_reason;
         for (bool first = true; first || !stopping_.load(); first = false) {
             const std::int64_t now_ns = clock_.now_ns();
             for (OpenedLines* o = nullptr; returned_.try_pop(o); --under_way_)
                 tries_.unmake(std::unique_ptr<OpenedLines>(o), now_ns);
-            if (under_way_ < under_way_most && tries_.due(now_ns)) hand_over(tries_.make(now_ns), said);
+            if (under_way_ < max_under_way && tries_.due(now_ns)) hand_over(tries_.make(now_ns), last_reason);
             if (first) first_.count_down();
             sleep();
         }
     }
     /// Each reason once, until another one or the lines come.
-    void hand_over(std::unique_ptr<OpenedLines> made, std::string& said) REQUIRES(opens_) {
+    void hand_over(std::unique_ptr<OpenedLines> made, std::string& last_reason) REQUIRES(opens_) {
         const std::string reason = made->error.text();
-        if (!made->lines && reason == said) return;
-        said = reason;
+        if (!made->lines && reason == last_reason) return;
+        last_reason = reason;
         if (!found_.try_push(made.get())) return tries_.unmake(std::move(made), clock_.now_ns());
         (void)made.release();
         ++under_way_;
     }
     void sleep() REQUIRES(opens_) {
-        if (tries_.given() || under_way_ == under_way_most) return bell_.acquire();
+        if (tries_.given() || under_way_ == max_under_way) return bell_.acquire();
         (void)bell_.try_acquire_for(std::chrono::nanoseconds(std::max<std::int64_t>(0, tries_.next_ns() - clock_.now_ns())));
     }
 
     [[no_unique_address]] ThreadRole opens_;  ///< the thread below
     LineTries tries_ GUARDED_BY(opens_);
     rt::RealClock clock_;
-    rt::SpscRing<OpenedLines*> found_{under_way_most}, returned_{under_way_most};
+    rt::SpscRing<OpenedLines*> found_{max_under_way}, returned_{max_under_way};
     std::size_t under_way_ GUARDED_BY(opens_) = 0;  ///< with the reader, or on their way there or back
     std::counting_semaphore<> bell_{0};
     std::latch first_{1};
@@ -140,8 +140,8 @@ private:
 }  // namespace
 
 std::unique_ptr<LineOpener> make_line_opener(LinesToOpen lines, Opening where) {
-    if (where == Opening::here || lines.requests.empty()) return std::make_unique<OpensHere>(std::move(lines));
-    return std::make_unique<OpensBeside>(std::move(lines));
+    if (where == Opening::same_thread || lines.requests.empty()) return std::make_unique<InlineLineOpener>(std::move(lines));
+    return std::make_unique<ThreadedLineOpener>(std::move(lines));
 }
 
 }  // namespace surefoot::input

@@ -1,4 +1,4 @@
-// Opening a panel's lines, and closing them: in the reader's own thread (tools), or in one beside it that hands them over open.
+// Opens and closes the lines of a panel: in the reader's thread (tools), or in its own thread that hands over open lines.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@
 
 namespace surefoot::input {
 
-constexpr std::size_t max_lines = 64;  // what one request may hold in the kernel
+constexpr std::size_t max_lines = 64;  // the kernel's limit of one request
 
-/// What became of a try. Made and unmade by the opener, so that the reader needs no memory when a chip comes or goes.
+/// Result of a try. Made and destroyed by the opener, so that the reader does not allocate when a chip comes or goes.
 struct OpenedLines {
     std::unique_ptr<GpioLines> lines;      ///< null: they could not be opened
     std::array<bool, max_lines> levels{};  ///< as they were then
-    Error error;                           ///< why they could not be opened; later, why they can no longer be read
+    Error error;                           ///< why they could not be opened, or can no longer be read
 };
 
-/// What is to be opened, and by what: open_lines, or a fake.
+/// The lines to open, and the function that opens them: open_lines, or a fake.
 struct LinesToOpen {
     std::vector<LineRequest> requests;
     OpenLines open = open_lines;
@@ -28,7 +28,7 @@ struct LinesToOpen {
     std::string consumer;
 };
 
-/// One thread calls all of it. What could not be opened is tried again, see Retry.
+/// One thread calls all members. Failed tries are repeated, see Retry.
 class LineOpener {
 public:
     virtual ~LineOpener() = default;
@@ -36,16 +36,16 @@ public:
     virtual void wait_for_first() = 0;
     /// The lines, or a new reason why not; null: nothing new. Lines stay with the reader until it gives them back.
     virtual std::unique_ptr<OpenedLines> next(std::int64_t now_ns) = 0;
-    /// Whatever next() gave, when the reader is done with it: lines that can no longer be read are opened anew.
+    /// Returns a result of next() that the reader no longer needs. Lines that can no longer be read are opened again.
     virtual void give_back(std::unique_ptr<OpenedLines> opened, std::int64_t now_ns) = 0;
 };
 
 /// Where lines are opened.
-enum class Opening : std::uint8_t { here, beside };
+enum class Opening : std::uint8_t { same_thread, own_thread };
 
 constexpr const char* lines_thread_name = "sf-lines";
-/// here: whenever next() is called and it is time. beside: in a thread of its own named lines_thread_name, at SCHED_OTHER; the
-/// calls then neither allocate, free nor lock.
+/// here: inside next(), when a try is due. beside: in its own thread named lines_thread_name, at SCHED_OTHER; then the calls
+/// neither allocate, free nor lock.
 std::unique_ptr<LineOpener> make_line_opener(LinesToOpen lines, Opening where);
 
 }  // namespace surefoot::input

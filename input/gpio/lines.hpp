@@ -49,8 +49,8 @@ public:
 using OpenLines = Result<std::unique_ptr<GpioLines>> (*)(std::span<const LineRequest> requests, std::string_view consumer,
                                                          void* context);
 
-/// Lines of one chip go into one request, so that an encoder's two are read at one moment. Errors name the line and chip, and
-/// for a busy line who uses it. `context` is not used.
+/// Lines of one chip are one request, so that both lines of an encoder are read at the same moment. Errors name line and chip,
+/// and for a busy line its user. `context` is not used.
 Result<std::unique_ptr<GpioLines>> open_lines(std::span<const LineRequest> requests, std::string_view consumer, void* context);
 /// "libgpiod 1.6.3", or why there is none.
 std::string gpio_back_end();

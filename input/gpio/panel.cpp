@@ -34,20 +34,23 @@ ControlInfo control_of(const LineConfig& line) {
 
 Result<void> check_lines(std::span<const LineConfig> lines) {
     const auto refuse = [](const LineConfig& line, std::string what, std::string remedy) {
-        return Error{fmt::format("gpio line '{}'", line.name), std::move(what), std::move(remedy)};
+        return Error{fmt::format("gpio line '{}'", line.name), std::move(what), std::move(remedy), ErrorKind::misuse};
     };
-    if (lines.size() > max_lines) return Error{"gpio", fmt::format("{} lines", lines.size()), "at most 64 are allowed"};
+    if (lines.size() > max_lines)
+        return Error{"gpio", fmt::format("The file declares {} lines; at most 64 are allowed", lines.size()), "Remove some",
+                     ErrorKind::out_of_limits};
     for (const LineConfig& line : lines) {
         if (line.name.empty() || line.request.chip.empty() || line.request.line.empty())
-            return refuse(line, "has no name, chip or line", "give all three");
+            return refuse(line, "The line has no name, chip or offset", "Give all three");
         const auto count = [&](auto&& fits) { return std::count_if(lines.begin(), lines.end(), fits); };
         const auto same_name = count([&](const LineConfig& other) { return other.name == line.name; });
         const auto same_place = count([&](const LineConfig& other) {
             return other.request.chip == line.request.chip && other.request.line == line.request.line;
         });
-        if (same_place != 1) return refuse(line, "uses a line that another one uses", "a line has one role");
+        if (same_place != 1) return refuse(line, "Another entry uses the same line", "Give each line one role");
         if (!is_encoder(line.role)) {
-            if (same_name != 1) return refuse(line, "is there twice", "only an encoder's two lines share a name");
+            if (same_name != 1)
+                return refuse(line, "The name is used twice", "Choose another name: only an encoder's two lines share one");
             continue;
         }
         const LineRole other_role = line.role == LineRole::encoder_a ? LineRole::encoder_b : LineRole::encoder_a;
@@ -55,8 +58,8 @@ Result<void> check_lines(std::span<const LineConfig> lines) {
             return other.name == line.name && other.role == other_role && other.request.chip == line.request.chip;
         });
         if (same_name != 2 || partners != 1)
-            return refuse(line, "is not one of a pair",
-                          "an encoder has one encoder_a and one encoder_b of the same name and chip");
+            return refuse(line, "The encoder line has no partner",
+                          "Give an encoder one encoder_a and one encoder_b of the same name and chip");
     }
     return {};
 }
@@ -81,7 +84,7 @@ GpioPanel::GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* cont
             }
         controls_.push_back(control_of(config));
     }
-    CHECK(configs_.size() <= max_lines, "the lines were checked: at most 64");
+    CHECK(configs_.size() <= max_lines, "At most 64 lines pass the check");
     opener_ = make_line_opener(std::move(to_open), where);
 }
 
@@ -100,7 +103,7 @@ void GpioPanel::take_opened(std::int64_t now_ns) {
             opened_ = std::move(made);
             return start();
         }
-        problem_ = noted(made->error);
+        problem_ = format_message(made->error);
         was_closed_ = true;
         opener_->give_back(std::move(made), now_ns);
     }
@@ -125,9 +128,9 @@ void GpioPanel::start() {
     }
 }
 
-/// With the reason that ask_library() has left.
+/// With the reason that call_library() has left.
 void GpioPanel::close(std::int64_t now_ns) {
-    problem_ = noted(opened_->error);
+    problem_ = format_message(opened_->error);
     opener_->give_back(std::move(opened_), now_ns);
     was_closed_ = true;
     state_.connected = false;
@@ -141,7 +144,7 @@ void GpioPanel::close(std::int64_t now_ns) {
 
 /// Only this is the library's. False, and the reason kept: the chip is gone.
 template <class Read>
-bool GpioPanel::ask_library(const Read& read) {
+bool GpioPanel::call_library(const Read& read) {
     const rt::DriverScope library;
     const auto done = read(*opened_->lines);
     if (!done) opened_->error = done.error();
@@ -152,7 +155,7 @@ bool GpioPanel::drain(std::int64_t now_ns) {
     std::array<LineEdge, edges_at_once> edges;
     for (int i = 0; i < drains_a_service; ++i) {
         std::size_t count = 0;
-        const bool there = ask_library([&](GpioLines& lines) {
+        const bool there = call_library([&](GpioLines& lines) {
             auto got = lines.read(edges);
             count = got ? std::min(*got, edges.size()) : 0;
             return got;
@@ -164,13 +167,13 @@ bool GpioPanel::drain(std::int64_t now_ns) {
         for (std::size_t k = 0; k < count; ++k) take(edges[k]);
         if (count < edges.size()) break;
     }
-    if (!ask_library([&](GpioLines& lines) { return lines.levels({levels_.data(), configs_.size()}); })) {
+    if (!call_library([&](GpioLines& lines) { return lines.levels({levels_.data(), configs_.size()}); })) {
         close(now_ns);
         return false;
     }
     for (std::size_t i = 0; i < configs_.size(); ++i) {
         const bool before = state_of_[i].contact.level;
-        reread(state_of_[i].contact, asserted_by(i, levels_[i]), now_ns, configs_[i].settle_ns);
+        reread(state_of_[i].contact, asserted_by(i, levels_[i]), now_ns, configs_[i].debounce_ns);
         if (is_encoder(configs_[i].role) && before != state_of_[i].contact.level) turn(i);
     }
     return true;
@@ -189,7 +192,7 @@ void GpioPanel::take(const LineEdge& got) {
             line.contact.lost_edges += lost - (asserted == line.contact.level ? 1 : 0);  // that one is counted below
         }
     }
-    edge(line.contact, asserted, got.stamp_ns, configs_[got.line].settle_ns);
+    edge(line.contact, asserted, got.stamp_ns, configs_[got.line].debounce_ns);
     if (is_encoder(configs_[got.line].role)) turn(got.line);
 }
 

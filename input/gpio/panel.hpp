@@ -1,5 +1,5 @@
-// Wired controls as the rest of input/ sees them: emergency stop, dead-man, buttons and encoders, from lines that may break,
-// bounce, lose edges or vanish.
+// The panel of wired controls: emergency stop, dead-man, buttons and encoders, on lines that may break, bounce, lose edges or
+// vanish.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 #include "input/gpio/line_opener.hpp"
 #include "input/gpio/lines.hpp"
 #include "input/gpio/quadrature.hpp"
-#include "input/notes.hpp"
+#include "input/messages.hpp"
 #include "input/safety/safety.hpp"
 
 namespace surefoot::input {
@@ -26,29 +26,29 @@ struct LineConfig {
     std::string name;  ///< of the control; an encoder's two lines have the same
     LineRole role = LineRole::button;
     LineRequest request;
-    bool normally_closed = false;  ///< asserted while the contact is open, so that a broken wire asserts. Always so for stops
-    std::int64_t settle_ns = 10'000'000;  ///< of the release; also of stops and resets, never of a dead-man
+    bool normally_closed = false;  ///< asserted while the contact is open, so a broken wire asserts; always true for stops
+    std::int64_t debounce_ns = 10'000'000;  ///< debounce of the release; also for stops and resets, never for a dead-man
 };
 
-/// Names are unique but for encoders, encoders have two lines of one chip, at most 64 lines. Error: the line's name and what.
+/// Checks: names are unique except for encoders; an encoder has two lines of one chip; at most 64 lines. Errors name the line.
 Result<void> check_lines(std::span<const LineConfig> lines);
 
-/// Reads the lines; one thread. What the GPIO library needs to read them, or to say that it cannot, is counted as the driver's;
-/// nothing else allocates, where the lines are opened beside.
+/// Reads the lines; one thread. Allocations of the GPIO library count as the driver's. Nothing else allocates if the lines are
+/// opened beside.
 class GpioPanel {
 public:
     /// `lines` must have passed check_lines. `opener` and `context`: open_lines, or a fake.
-    GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* context, Opening where = Opening::here);
+    GpioPanel(std::vector<LineConfig> lines, OpenLines opener, void* context, Opening where = Opening::same_thread);
 
     /// Returns when the lines have been tried once.
     void wait_for_first_try() { opener_->wait_for_first(); }
-    /// Call when a polled descriptor is readable and at every tick: takes lines that were opened, drains, reads levels again,
-    /// settles.
+    /// Call it when a polled descriptor is readable, and at every tick. Takes opened lines, drains edges, reads levels again, and
+    /// debounces.
     void service(std::int64_t now_ns);
 
-    /// For safety/; its "since the last step" parts begin anew. While the chip is gone: stop asserted, dead-man not held. Closed
-    /// until now counts as gone: the first call tells of a stop, which latches; a caller that starts anew takes it and lets it
-    /// go.
+    /// The state for safety/; resets its "since the last step" members. While the chip is missing: stop asserted, dead-man not
+    /// held. Before the first opening the chip counts as missing, so the first call reports a stop, which would latch. A caller
+    /// that starts must call it once and ignore the result.
     Lines take_lines();
     /// Buttons ("name") and encoders ("name", relative: steps since the last report) for map/, index-parallel to state().
     [[nodiscard]] const std::vector<ControlInfo>& controls() const { return controls_; }
@@ -77,7 +77,7 @@ private:
     void start();
     void close(std::int64_t now_ns);
     template <class Read>
-    bool ask_library(const Read& read);
+    bool call_library(const Read& read);
     bool drain(std::int64_t now_ns);
     void take(const LineEdge& edge);
     void turn(std::size_t line);
@@ -87,7 +87,7 @@ private:
     std::vector<LineConfig> configs_;
     std::unique_ptr<LineOpener> opener_;
     std::unique_ptr<OpenedLines> opened_;  ///< null, or with lines
-    NoteLine problem_;
+    MessageLine problem_;
     std::vector<Line> state_of_;
     std::vector<Encoder> encoders_;
     std::vector<ControlInfo> controls_;

@@ -44,24 +44,25 @@ DeviceMapping panel_mapping(std::span<const DeviceMapping> mappings, std::span<c
 }
 
 PanelDevice::PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context,
-                         Say say, Opening where)
-    : panel_(std::move(lines), opener, context, where), say_(std::move(say)) {
+                         MessageSink sink, Opening where)
+    : panel_(std::move(lines), opener, context, where), sink_(std::move(sink)) {
     const DeviceMapping mapping = panel_mapping(mappings, panel_.controls());
     mapping_ = mapping.name;
     mapper_ = compile_what_fits(mapping, panel_.controls());
-    for (const std::string& note : mapper_.notes) tell(say_, "{}: {}", panel_name, note);
+    for (const std::string& note : mapper_.notes) emit(sink_, "{}: {}", panel_name, note);
     spare_ = mapper_;
 }
 
 /// A stop that is asserted because the chip is missing must be explained: nobody has pressed anything.
 void PanelDevice::service(std::int64_t now_ns) {
     panel_.service(now_ns);
-    if (panel_.problem() == said_.view()) return;
-    said_ = noted("{}", panel_.problem());
-    if (said_.size == 0)
-        tell(say_, "{}: its lines are there", panel_name);
+    if (panel_.problem() == last_problem_.view()) return;
+    last_problem_ = format_message("{}", panel_.problem());
+    if (last_problem_.size == 0)
+        emit(sink_, "{}: The lines are open", panel_name);
     else
-        tell(say_, "{}: {}; tried again by itself, a stop among its lines is asserted until then", panel_name, said_.view());
+        emit(sink_, "{}: {} The lines are tried again. A stop among them is asserted until then.", panel_name,
+             last_problem_.view());
 }
 
 void PanelDevice::open() {
@@ -73,7 +74,7 @@ void PanelDevice::open() {
 /// The steering gives the mapper back that the number had before: the first time an empty one, later the panel's other one.
 void PanelDevice::attach(Steering& steering) {
     number_ = steering.attach(std::move(mapper_), panel_.controls().size(), Reporting::on_change, known_);
-    if (number_ < 0) return tell(say_, "{}: {} devices steer already; unplug one", panel_name, max_devices);
+    if (number_ < 0) return emit(sink_, "{}: {} devices steer already. Unplug one.", panel_name, max_devices);
     if (!attached_once_) std::swap(mapper_, spare_);
     attached_once_ = true;
     known_ = number_;

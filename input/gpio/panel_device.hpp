@@ -1,5 +1,4 @@
-// The panel at work in a walk: its switches as Lines, its buttons and encoders as a device of the steering, its troubles said
-// once.
+// The panel in a walk: its switches as Lines, its buttons and encoders as a device of the steering. Notes each problem once.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +8,25 @@
 
 #include "input/gpio/panel.hpp"
 #include "input/map/mapping.hpp"
-#include "input/notes.hpp"
+#include "input/messages.hpp"
 #include "input/steering.hpp"
 
 namespace surefoot::input {
 
-/// What the steering file calls the panel: `[[device]] product_name = "gpio panel"` is its mapping.
+/// Name of the panel in the steering file: its mapping is `[[device]] product_name = "gpio panel"`.
 constexpr std::string_view panel_name = "gpio panel";
 
-/// The first mapping that names the panel; else each button and encoder does the action that it is named after; where none is
-/// named so, the default of a box of buttons.
+/// The first mapping that names the panel. Else each button and encoder does the action with its name. If none has such a name:
+/// the default of a button box.
 DeviceMapping panel_mapping(std::span<const DeviceMapping> mappings, std::span<const ControlInfo> controls);
 
-/// The input thread's. step() neither allocates nor locks, whether the chip is there, missing, lost or found again, where its
-/// lines are opened beside; what the GPIO library needs to read them is counted as the driver's. A chip that is missing is tried
-/// again after 0.1 to 2 s.
+/// Belongs to the input thread. If the lines are opened beside, step() neither allocates nor locks, also while the chip comes and
+/// goes. Allocations of the GPIO library count as the driver's. A missing chip is tried again after 0.1 to 2 s.
 class PanelDevice {
 public:
-    /// `lines` must have passed check_lines. `say` is told of each new trouble, and when it is over.
-    PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context, Say say,
-                Opening where);
+    /// `lines` must have passed check_lines. `sink` gets a note for each new problem, and when it is over.
+    PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context,
+                MessageSink sink, Opening where);
 
     /// The first try, before the input thread starts.
     void open();
@@ -37,7 +35,7 @@ public:
         Lines lines;
         bool reported = false;  ///< a button or encoder moved
     };
-    /// Takes lines that were opened, reads all, reports to `steering`, attaches and detaches there as the chip comes and goes.
+    /// Takes opened lines, reads them, and reports to `steering`. Attaches and detaches there as the chip comes and goes.
     Step step(Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers);
 
     [[nodiscard]] std::span<const pollfd> polled() const { return panel_.polled(); }
@@ -49,10 +47,10 @@ private:
     void attach(Steering& steering) REQUIRES(steering.steers);
 
     GpioPanel panel_;
-    Say say_;
+    MessageSink sink_;
     std::string mapping_;
-    NoteLine said_;
-    Mapper mapper_, spare_;  ///< one of them is in the steering once it was attached
+    MessageLine last_problem_;
+    Mapper mapper_, spare_;  ///< after the first attach, the steering holds one of them
     bool attached_once_ = false;
     int number_ = -1, known_ = -1;  ///< Steering's, now and ever
     std::uint64_t opens_ = 0, reports_ = 0;

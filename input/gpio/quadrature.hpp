@@ -1,4 +1,4 @@
-// A rotary encoder's two lines to steps, four a cycle. What cannot be a step is counted, never guessed. Pure.
+// Decodes the two lines of a rotary encoder to steps, four a cycle. Counts illegal transitions and never guesses. Pure.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace surefoot::input {
 
-/// Gray code 00 01 11 10 counts up (B leads A). A bouncing contact goes to and fro between neighbours and so cancels out.
+/// Gray code 00 01 11 10 counts up (B leads A). Bounce alternates between two neighbours, so it cancels out.
 struct Quadrature {
     std::uint8_t state = 0;  ///< A * 2 + B
     bool known = false;      ///< the first levels only set the state

@@ -1,4 +1,4 @@
-// What a device is for, from its application collections and usable elements alone (devices.md 2, rules 11 and 12).
+// The purpose of a device, from its application collections and usable elements alone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,12 +16,12 @@ struct Count {
     void add(ControlKind kind) { ++(kind == ControlKind::axis ? axes : kind == ControlKind::hat ? hats : buttons); }
     [[nodiscard]] std::string text() const {
         std::string t;
-        const auto say = [&](std::uint32_t n, const char* one, const char* many) {
+        const auto append_count = [&](std::uint32_t n, const char* one, const char* many) {
             if (n > 0) t += fmt::format("{}{} {}", t.empty() ? "" : ", ", n, n == 1 ? one : many);
         };
-        say(axes, "axis", "axes");
-        say(hats, "hat", "hats");
-        say(buttons, "button", "buttons");
+        append_count(axes, "axis", "axes");
+        append_count(hats, "hat", "hats");
+        append_count(buttons, "button", "buttons");
         return t;
     }
 };
@@ -39,11 +39,11 @@ std::string name_of(const Layout& layout, Application wanted) {
 const char* why_rejected(Application a) {
     switch (a) {
         case Application::mouse:
-            return "a mouse or pointer belongs to the desktop; it steers only when the configuration asks for it";
+            return "a mouse or pointer belongs to the desktop";
         case Application::keyboard:
-            return "a keyboard types; it steers only when the configuration asks for it";
+            return "a keyboard is for typing";
         case Application::digitizer:
-            return "a tablet, touch pad or touch screen reports where it is touched, not a deflection";
+            return "a tablet, touch pad or touch screen reports a position, not a deflection";
         case Application::consumer:
             return "media keys and remote controls have nothing to steer with";
         case Application::system:
@@ -51,15 +51,15 @@ const char* why_rejected(Application a) {
         case Application::telephony:
             return "a headset or telephone has nothing to steer with";
         case Application::sensor:
-            return "a sensor measures; nobody holds it to steer";
+            return "a sensor is no hand control";
         case Application::head_tracker:
             return "a head-mounted device or tracker is not a hand control";
         case Application::power:
             return "a battery or power supply has nothing to steer with";
         case Application::vendor:
-            return "only its maker knows what its bytes mean";
+            return "its reports are vendor-defined";
         default:
-            return "no joystick, game pad, multi-axis controller or simulation control is among its collections";
+            return "its collections hold no joystick, game pad, multi-axis controller or simulation control";
     }
 }
 
@@ -98,17 +98,17 @@ std::uint32_t nameless_buttons(const Layout& layout, const std::vector<Element>&
 }  // namespace
 
 std::uint32_t application_usage(const Layout& layout, std::uint32_t collection) {
-    std::uint32_t outermost = 0, telling = 0, any = 0;
+    std::uint32_t outermost = 0, significant = 0, any = 0;
     for (; collection != no_collection; collection = layout.collections[collection].parent) {
         const Collection& c = layout.collections[collection];
         any = c.usage;
         if (c.type != collection_type::application) continue;
         outermost = c.usage;
         const Application a = application_of(c.usage);
-        if (a != Application::none && a != Application::other && a != Application::vendor) telling = c.usage;
+        if (a != Application::none && a != Application::other && a != Application::vendor) significant = c.usage;
     }
     // Some makers put a joystick into a physical collection and forget the application; the kernel takes those as well.
-    return telling != 0 ? telling : outermost != 0 ? outermost : any;
+    return significant != 0 ? significant : outermost != 0 ? outermost : any;
 }
 
 bool pointer_with_constant_buttons(const Layout& layout) {
@@ -136,13 +136,12 @@ Verdict classify(const Layout& layout, const std::vector<Element>& elements, boo
                 fmt::format("a {} without a usable axis: {}", name_of(layout, Application::steering), steering.text())};
     }
     if (Count box{.buttons = nameless_buttons(layout, elements)}; box.buttons > 0)
-        return {DeviceClass::buttons, fmt::format("a box that names no application, with {}", box.text())};
+        return {DeviceClass::buttons, fmt::format("a button box that names no application, with {}", box.text())};
     if (!any_input(layout)) return {DeviceClass::reject, "it declares no input that has a usage"};
     if (declared) {
-        return {
-            DeviceClass::reject,
-            fmt::format("a {} of which no input is usable: constant, without range, without size, or without a usage that steers",
-                        name_of(layout, Application::steering))};
+        return {DeviceClass::reject,
+                fmt::format("a {} without a usable input: each is constant, has no range or size, or no steering usage",
+                            name_of(layout, Application::steering))};
     }
     return {DeviceClass::reject, why_rejected(main_application(layout))};
 }

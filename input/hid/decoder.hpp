@@ -1,10 +1,11 @@
 // Reports to values: bits extracted as Linux extracts them, into a DeviceState, without allocating.
 //
-// What it does as the kernel (hid-core, hid-input): sign extension only where the logical minimum is below zero;
-// values outside the logical range are clamped, or no value at all where the field has a null state; arrays are lists of
-// what is pressed, absence is release, a roll-over code leaves the array's last state. What it does otherwise, on purpose:
-//   - short, long and undeclared reports change nothing and are counted (the kernel cuts long ones; short ones it drops too,
-//     but for older kernels, which fill them with zeros: full deflection on an unsigned axis);
+// Same as the kernel (hid-core, hid-input): sign extension only if the logical minimum is below zero. Values outside the logical
+// range are clamped; if the field has a null state, they are no value. Arrays list pressed buttons; a missing one is released; a
+// roll-over code keeps the array's last state. Different on purpose:
+//   - short, long and undeclared reports change nothing and are counted. The kernel cuts long ones. It drops short ones, but
+//   older
+//     kernels fill them with zeros, which is full deflection on an unsigned axis;
 //   - a null state of an axis or button is "no value", where evdev keeps the last one;
 //   - a hat is 0..7 and centred for *any* value outside its range (the kernel's division rounds some to north).
 #pragma once

@@ -56,13 +56,13 @@ private:
     [[nodiscard]] static Refusal refuse(const Item& item, std::string what, std::string remedy = device_is_broken) {
         return {item.offset, std::move(what), std::move(remedy)};
     }
-    void note(std::uint32_t offset, std::string what) {
+    void add_note(std::uint32_t offset, std::string what) {
         ++layout_.note_count;
         if (layout_.notes.size() < max_notes) layout_.notes.push_back({offset, std::move(what)});
     }
     [[nodiscard]] std::uint32_t innermost() const { return open_.empty() ? no_collection : open_.back(); }
 
-    static constexpr const char* device_is_broken = "no operating system reads this device; ask its maker for new firmware";
+    static constexpr const char* device_is_broken = "Ask its maker for new firmware: no operating system reads this device";
 
     std::span<const std::byte> bytes_;
     Layout& layout_;
@@ -74,19 +74,19 @@ private:
 };
 
 std::optional<Refusal> DescriptorParser::run() {
-    if (bytes_.empty()) return Refusal{0, "the descriptor is empty", "read it again from the device's report_descriptor"};
+    if (bytes_.empty()) return Refusal{0, "The descriptor is empty", "Read it again from the device's report_descriptor"};
     if (bytes_.size() > max_descriptor_bytes) {
         return Refusal{max_descriptor_bytes,
-                       fmt::format("the descriptor has {} bytes; at most {} are read", bytes_.size(), max_descriptor_bytes),
-                       "is this a report descriptor?"};
+                       fmt::format("The descriptor has {} bytes; at most {} are read", bytes_.size(), max_descriptor_bytes),
+                       "Check that this is a report descriptor"};
     }
     std::uint32_t at = 0;
     while (at < bytes_.size()) {
         const Item item = fetch_item(bytes_, at);
-        if (item.long_form) return refuse(item, "a long item; none is defined");
+        if (item.long_form) return refuse(item, "A long item stands here; HID defines none");
         if (item.cut_off) {
-            return refuse(item, fmt::format("an item of {} bytes is cut off: {} are left", item.size + 1, bytes_.size() - at),
-                          "the descriptor is incomplete; read it again");
+            return refuse(item, fmt::format("An item of {} bytes is cut off: {} are left", item.size + 1, bytes_.size() - at),
+                          "Read the descriptor again: it is incomplete");
         }
         Outcome wrong;
         switch (item.type) {
@@ -100,7 +100,7 @@ std::optional<Refusal> DescriptorParser::run() {
                 wrong = local_item(item);
                 break;
             case ItemType::reserved:
-                note(item.offset, "an item of a reserved type is passed over");
+                add_note(item.offset, "An item of a reserved type is ignored");
                 break;
         }
         if (wrong) return wrong;
@@ -112,12 +112,12 @@ std::optional<Refusal> DescriptorParser::run() {
 DescriptorParser::Outcome DescriptorParser::at_end() const {
     if (!open_.empty()) {
         return Refusal{layout_.collections[open_.back()].offset,
-                       fmt::format("a collection opened here is not closed by the descriptor's end, byte {}", bytes_.size()),
+                       fmt::format("The collection opened here is not closed by the descriptor's end, byte {}", bytes_.size()),
                        device_is_broken};
     }
     if (locals_.delimited) {
         return Refusal{locals_.delimiter_offset,
-                       fmt::format("a delimiter opened here is not closed by the descriptor's end, byte {}", bytes_.size()),
+                       fmt::format("The delimiter opened here is not closed by the descriptor's end, byte {}", bytes_.size()),
                        device_is_broken};
     }
     return std::nullopt;
@@ -155,14 +155,14 @@ DescriptorParser::Outcome DescriptorParser::main_item(const Item& item) {
             break;
         case tag::end_collection:
             if (open_.empty())
-                wrong = refuse(item, "a collection is closed that was never opened");
+                wrong = refuse(item, "A collection is closed that was never opened");
             else
                 open_.pop_back();
             break;
         default:
-            note(item.offset, fmt::format("an unknown main item (tag {}) is passed over", item.tag));
+            add_note(item.offset, fmt::format("An unknown main item (tag {}) is ignored", item.tag));
     }
-    if (locals_.delimited) note(item.offset, "a main item stands inside an open delimiter; the delimiter ends with it");
+    if (locals_.delimited) add_note(item.offset, "A main item stands inside an open delimiter and ends it");
     if (!kept) layout_.runs.resize(locals_.first_run);
     locals_ = {};
     locals_.first_run = static_cast<std::uint32_t>(layout_.runs.size());
@@ -179,7 +179,7 @@ DescriptorParser::Outcome DescriptorParser::open_collection(const Item& item) {
     open_.push_back(static_cast<std::uint32_t>(layout_.collections.size()));
     layout_.collections.push_back(c);
     // Depth is not refused: parents are indexes in a flat array, so depth costs nothing, and the kernel has no limit.
-    if (open_.size() == 65) note(item.offset, "collections more than 64 deep; accepted: depth costs nothing here");
+    if (open_.size() == 65) add_note(item.offset, "Collections are nested more than 64 deep");
     return std::nullopt;
 }
 
@@ -199,19 +199,19 @@ DescriptorParser::Outcome DescriptorParser::add_field(const Item& item, ReportKi
                                  ? g.logical_max < g.logical_min
                                  : static_cast<std::uint32_t>(g.logical_max) < static_cast<std::uint32_t>(g.logical_min);
     if (empty_range) {
-        return refuse(item, fmt::format("the logical range is upside down: {} to {}", g.logical_min, g.logical_max));
+        return refuse(item, fmt::format("The logical range is reversed: {} to {}", g.logical_min, g.logical_max));
     }
     Report& report = report_of(kind);
     const std::uint32_t bit_offset = report.bits;
     report.bits += g.size * g.count;  // at most 256 * 12288: no overflow
     if (report.bits > max_report_bits) {
         return refuse(
-            item, fmt::format("report {} grows to {} bits; at most {} are possible", g.report_id, report.bits, max_report_bits));
+            item, fmt::format("Report {} grows to {} bits; at most {} are possible", g.report_id, report.bits, max_report_bits));
     }
     if (locals_.usages == 0) return std::nullopt;  // padding
     if (report.fields == max_fields_per_report) {
-        note(item.offset, fmt::format("report {} has more than {} fields; this one and those behind it only take their bits",
-                                      g.report_id, max_fields_per_report));
+        add_note(item.offset, fmt::format("Report {} has more than {} fields; this field and later ones give no control",
+                                          g.report_id, max_fields_per_report));
         return std::nullopt;
     }
     ++report.fields;
@@ -233,13 +233,12 @@ DescriptorParser::Outcome DescriptorParser::add_field(const Item& item, ReportKi
     f.run_count = static_cast<std::uint32_t>(layout_.runs.size()) - locals_.first_run;
     f.usages = std::max(locals_.usages, g.count);
     f.collection = innermost();
-    if (f.collection == no_collection)
-        note(item.offset, "a field outside every collection; it is laid out, but gives no control");
-    if (g.size == 0 || g.count == 0) note(item.offset, "a field without bits; it is laid out, but gives no control");
-    if (g.size > 32) note(item.offset, fmt::format("elements of {} bits; more than 32 give no control", g.size));
+    if (f.collection == no_collection) add_note(item.offset, "A field outside every collection gives no control");
+    if (g.size == 0 || g.count == 0) add_note(item.offset, "A field without bits gives no control");
+    if (g.size > 32) add_note(item.offset, fmt::format("Elements of {} bits give no control; at most 32 are read", g.size));
     if (g.logical_min >= 0 && g.logical_max < 0 && !f.constant()) {
-        note(item.offset, fmt::format("a range up to {}; above 2147483647 only buttons give a control",
-                                      static_cast<std::uint32_t>(g.logical_max)));
+        add_note(item.offset, fmt::format("A range reaches {}; above 2147483647 only buttons give a control",
+                                          static_cast<std::uint32_t>(g.logical_max)));
     }
     layout_.fields.push_back(f);
     return std::nullopt;
@@ -275,37 +274,37 @@ DescriptorParser::Outcome DescriptorParser::global_item(const Item& item) {
             break;
         case tag::report_size:
             if (u > max_report_size)
-                return refuse(item, fmt::format("elements of {} bits; at most {} are possible", u, max_report_size));
+                return refuse(item, fmt::format("An element has {} bits; at most {} are possible", u, max_report_size));
             g.size = u;
             break;
         case tag::report_count:
             if (u > max_usages)
-                return refuse(item, fmt::format("{} elements in a field; at most {} are possible", u, max_usages));
+                return refuse(item, fmt::format("A field has {} elements; at most {} are possible", u, max_usages));
             g.count = u;
             break;
         case tag::report_id:
-            if (u == 0 || u > 255) return refuse(item, fmt::format("report id {}; ids are 1 to 255", u));
+            if (u == 0 || u > 255) return refuse(item, fmt::format("The report id is {}; ids are 1 to 255", u));
             g.report_id = u;
             break;
         case tag::push:
             if (pushed_.size() == max_push_depth)
-                return refuse(item, fmt::format("more than {} PUSH items are open", max_push_depth));
+                return refuse(item, fmt::format("More than {} PUSH items are open", max_push_depth));
             pushed_.push_back(g);
             break;
         case tag::pop:
-            if (pushed_.empty()) return refuse(item, "a POP without a PUSH");
+            if (pushed_.empty()) return refuse(item, "A POP has no PUSH before it");
             g = pushed_.back();
             pushed_.pop_back();
             break;
         default:
-            return refuse(item, fmt::format("an unknown global item (tag {})", item.tag));
+            return refuse(item, fmt::format("A global item is unknown (tag {})", item.tag));
     }
     return std::nullopt;
 }
 
 DescriptorParser::Outcome DescriptorParser::add_usages(const Item& item, std::uint32_t first, std::uint32_t count) {
     if (count == 0) return std::nullopt;
-    if (locals_.usages + count > max_usages) return refuse(item, fmt::format("more than {} usages for one field", max_usages));
+    if (locals_.usages + count > max_usages) return refuse(item, fmt::format("A field has more than {} usages", max_usages));
     locals_.usages += count;
     layout_.runs.push_back({first, count, static_cast<std::uint16_t>(globals_.usage_page), item.size > 2});
     return std::nullopt;
@@ -317,11 +316,11 @@ DescriptorParser::Outcome DescriptorParser::usage_range(const Item& item) {
     std::uint32_t maximum = item.unsigned_value();
     if (maximum - minimum + locals_.usages >= max_usages) {
         maximum = max_usages - locals_.usages + minimum - 1;
-        if (maximum == 0) return refuse(item, fmt::format("more than {} usages for one field", max_usages));
+        if (maximum == 0) return refuse(item, fmt::format("A field has more than {} usages", max_usages));
         if (maximum != 0xffffffffU)
-            note(item.offset, fmt::format("a range of usages is cut: a field holds at most {}", max_usages));
+            add_note(item.offset, fmt::format("A range of usages is cut: a field holds at most {}", max_usages));
     }
-    if (maximum == 0xffffffffU) return refuse(item, "a range of usages without an end");
+    if (maximum == 0xffffffffU) return refuse(item, "A range of usages has no end");
     return maximum < minimum ? std::nullopt : add_usages(item, minimum, maximum - minimum + 1);
 }
 
@@ -329,12 +328,12 @@ DescriptorParser::Outcome DescriptorParser::local_item(const Item& item) {
     const std::uint32_t u = item.unsigned_value();
     if (item.tag == tag::delimiter) {
         if (u != 0) {
-            if (locals_.delimited) return refuse(item, "a delimiter inside a delimiter");
+            if (locals_.delimited) return refuse(item, "A delimiter stands inside a delimiter");
             locals_.delimited = true;
             locals_.delimiter_offset = item.offset;
             ++locals_.alternatives;
         } else {
-            if (!locals_.delimited) return refuse(item, "a delimiter is closed that was never opened");
+            if (!locals_.delimited) return refuse(item, "A delimiter is closed that was never opened");
             locals_.delimited = false;
         }
         return std::nullopt;
@@ -365,7 +364,8 @@ std::optional<Refusal> parse_descriptor(std::span<const std::byte> bytes, Layout
 Result<Layout> read_descriptor(std::span<const std::byte> bytes, const std::string& place) {
     Layout layout;
     if (auto refusal = parse_descriptor(bytes, layout)) {
-        return Error{fmt::format("{}: byte {}", place, refusal->offset), std::move(refusal->what), std::move(refusal->remedy)};
+        return Error{fmt::format("{}: byte {}", place, refusal->offset), std::move(refusal->what), std::move(refusal->remedy),
+                     ErrorKind::damaged};
     }
     return layout;
 }

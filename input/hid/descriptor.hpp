@@ -1,9 +1,9 @@
 // A HID report descriptor as flat arrays: collections, reports and fields with exact bit offsets, as Linux lays them out.
 //
 // Source: "Device Class Definition for Human Interface Devices" 1.11, sections 5 and 6.2.2, with the choices and limits
-// of Linux's hid-core where the text leaves room, because the kernel decides what reaches hidraw. Whatever the kernel
-// accepts is accepted here with the same layout; whether it may *steer* is decided later (classify.hpp). The oddities
-// that were accepted are listed in `notes`, each with its byte and its reason.
+// of Linux's hid-core where the text is open, because the kernel decides what reaches hidraw. Every descriptor that the kernel
+// accepts is accepted here with the same layout. classify.hpp decides whether it may *steer*. Accepted oddities are listed in
+// `notes`, each with its byte and its reason.
 #pragma once
 
 #include <array>
@@ -61,7 +61,7 @@ struct UsageRun {
     [[nodiscard]] std::uint32_t at(std::uint32_t k) const { return extended ? first + k : full_usage(page, first + k); }
 };
 
-/// One main item with at least one usage. What has none is padding: it takes its bits and leaves no field.
+/// One main item with at least one usage. An item without usages is padding: it consumes bits and makes no field.
 struct Field {
     ReportKind kind = ReportKind::input;
     std::uint8_t report_id = 0;    ///< 0: its reports carry no id
@@ -92,7 +92,7 @@ struct Report {
 };
 
 /// Accepted, but worth saying.
-struct Note {
+struct DescriptorNote {
     std::uint32_t offset = 0;  ///< byte in the descriptor
     std::string what;
 };
@@ -103,8 +103,8 @@ struct Layout {
     std::vector<UsageRun> runs;
     std::vector<Field> fields;
     std::vector<Report> reports;
-    std::array<bool, 3> numbered{};  ///< by ReportKind: every report of that kind begins with its id
-    std::vector<Note> notes;         ///< the first max_notes
+    std::array<bool, 3> numbered{};     ///< by ReportKind: every report of that kind begins with its id
+    std::vector<DescriptorNote> notes;  ///< the first max_notes
     std::uint32_t note_count = 0;
 
     /// The k-th usage of a field, k < field.usages; the last one repeats.

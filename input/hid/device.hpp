@@ -11,7 +11,7 @@
 
 namespace surefoot::input {
 
-/// Elements looked at for controls; no real device comes near, and a hostile one costs no more time than this.
+/// Limit of elements searched for controls. Far above real devices; bounds the time for hostile ones.
 constexpr std::uint32_t max_elements = 8192;
 constexpr std::size_t max_ports = 8;  ///< of an adapter; pads in further sockets are not mapped by default
 

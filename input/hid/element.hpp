@@ -24,7 +24,7 @@ std::vector<Element> find_elements(const Layout& layout);
 /// outermost collection of any type, else 0 (HID 1.11, 6.2.2.6).
 std::uint32_t application_usage(const Layout& layout, std::uint32_t collection);
 
-/// What the elements say the device is.
+/// Class of a device, with the reason.
 struct Verdict {
     DeviceClass device_class = DeviceClass::reject;
     std::string reason;

@@ -1,4 +1,4 @@
-// What descriptors get wrong or cannot say, as a table of facts about devices; each row has a test.
+// Quirks: a table of devices whose descriptors are wrong or incomplete. Each row has a test.
 #pragma once
 
 #include <cstdint>

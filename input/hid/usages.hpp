@@ -15,7 +15,7 @@ constexpr std::uint32_t generic_desktop = 0x01, simulation = 0x02, vr = 0x03, ga
                         telephony = 0x0b, consumer = 0x0c, digitizer = 0x0d, sensor = 0x20, vendor_first = 0xff00;
 }
 
-/// What an application collection says its device is.
+/// Kind of device that an application collection declares.
 enum class Application : std::uint8_t {
     none,
     steering,
@@ -33,7 +33,7 @@ enum class Application : std::uint8_t {
 };
 Application application_of(std::uint32_t usage);
 
-/// What a data element with this usage can be; nothing for usages that do not steer (vendor bytes, batteries, motion
+/// Kind of control for a data element with this usage; nothing for usages that do not steer (vendor bytes, batteries, motion
 /// sensors, page 0). `range` is logical maximum minus minimum.
 std::optional<ControlKind> role_of(std::uint32_t usage, std::int64_t range);
 /// The same for a usage of an array: a button or nothing.

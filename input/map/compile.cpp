@@ -28,8 +28,11 @@ Error not_found(const ControlRef& ref, std::span<const ControlInfo> controls, Co
     const auto nearest = nearest_word(ref.name, names);
     constexpr std::array<std::string_view, 3> kinds = {"axis", "hat", "button"};
     const auto word = kinds[static_cast<std::size_t>(kind)];
-    return {ref.text(), fmt::format("the device has no such {}", word),
-            nearest.empty() ? fmt::format("it has {}", all.empty() ? "none" : all) : fmt::format("did you mean '{}'?", nearest)};
+    return {ref.text(), fmt::format("The device has no such {}", word),
+            !nearest.empty() ? fmt::format("Did you mean '{}'?", nearest)
+            : all.empty()    ? fmt::format("Bind no {}: the device has none", word)
+                             : fmt::format("Use one of {}", all),
+            ErrorKind::not_found};
 }
 
 class Compiler {
@@ -63,14 +66,16 @@ public:
             const auto at = find(from.controls[i], ControlKind::axis);
             if (!at) return;
             if (controls_[*at].relative) {
-                errors_.push_back({from.controls[i].text(), "is a displacement, not a deflection: it has no stick",
-                                   "bind it as [[device.axis]]"});
+                errors_.push_back({from.controls[i].text(),
+                                   "The control is a displacement, not a deflection: it cannot be part of a stick",
+                                   "Bind it as [[device.axis]]", ErrorKind::misuse});
                 return;
             }
             set(b, i, *at, from.actions[i], from.invert[i] ? -from.scale : from.scale, Rest::centre);
         }
         if (b.control[0] == b.control[1]) {
-            errors_.push_back({from.controls[0].text(), "is named twice for one stick", "a stick has two axes"});
+            errors_.push_back(
+                {from.controls[0].text(), "The control is named twice for one stick", "Name two axes", ErrorKind::misuse});
             return;
         }
         shape(b, from.shape);
@@ -93,7 +98,7 @@ public:
         b.source = Binding::Source::button;
         set(b, 0, *at, from.action, from.scale, Rest::centre);
         b.smoothing_s = from.smoothing_s;
-        b.settle_ns = static_cast<std::int64_t>(std::llround(from.settle_s * 1e9));
+        b.debounce_ns = static_cast<std::int64_t>(std::llround(from.debounce_s * 1e9));
         b.normally_closed = from.normally_closed;
         push(b);
     }
@@ -108,9 +113,9 @@ private:
             const ControlInfo& control = controls_[i];
             if (!fits(ref, control, kind)) continue;
             if (kind == ControlKind::axis && !control.relative && control.logical_min >= control.logical_max) {
-                errors_.push_back({ref.text(),
-                                   fmt::format("has the empty range {}..{}", control.logical_min, control.logical_max),
-                                   "its descriptor is wrong; bind another control"});
+                errors_.push_back(
+                    {ref.text(), fmt::format("The control has the empty range {}..{}", control.logical_min, control.logical_max),
+                     "Bind another control: the descriptor is wrong", ErrorKind::damaged});
                 return std::nullopt;
             }
             return static_cast<std::uint16_t>(i);

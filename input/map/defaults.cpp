@@ -305,7 +305,7 @@ private:
             ButtonMapping m;
             m.control = {c.name, c.usage_page, c.usage, c.collection};
             m.action = actions[next++];
-            m.settle_s = 0.005;
+            m.debounce_s = 0.005;
             mapping_.buttons.push_back(m);
         }
     }

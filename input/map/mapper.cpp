@@ -1,4 +1,4 @@
-// What a device asks for, from its newest raw values.
+// What a device requests, from its newest raw values.
 #include "input/map/mapper.hpp"
 
 #include <algorithm>
@@ -25,11 +25,11 @@ void smooth(Binding& b, double dt_s) {
     if (b.answer == dvec2(0.0) && glm::length(b.smoothed) < smooth_rest) b.smoothed = dvec2(0.0);
 }
 
-void ask_axes(Binding& b, const DeviceState& state, std::int64_t now_ns, std::int64_t oldest_ns) {
+void evaluate_axes(Binding& b, const DeviceState& state, std::int64_t now_ns, std::int64_t oldest_ns) {
     const std::size_t count = b.source == From::stick ? 2 : 1;
     dvec2 deflection{0.0};
     for (std::size_t i = 0; i < count; ++i) {
-        const bool stale = b.told_ns[i] >= 0 && b.told_ns[i] < oldest_ns;
+        const bool stale = b.reported_ns[i] >= 0 && b.reported_ns[i] < oldest_ns;
         if (stale || !state.has_value[b.control[i]]) {  // nothing known, or nothing meant: rest
             b.answer = b.held = dvec2(0.0);
             return;
@@ -50,7 +50,7 @@ void ask_axes(Binding& b, const DeviceState& state, std::int64_t now_ns, std::in
 }
 
 /// Displacements become a pace: a leaky sum over a short window, so that a still device rests by itself.
-void ask_relative(Binding& b, const DeviceState& state, bool fresh, double dt_s) {
+void evaluate_relative(Binding& b, const DeviceState& state, bool fresh, double dt_s) {
     b.armed = true;
     b.travelled *= std::exp(-dt_s / pace_window_s);
     // Only once: reports of another id leave it standing.
@@ -63,22 +63,22 @@ void ask_relative(Binding& b, const DeviceState& state, bool fresh, double dt_s)
 }
 
 /// A report has carried it: what another id's reports leave without a value is not at rest but unknown.
-bool was_told(const Binding& b) { return b.told_ns[0] >= 0; }
+bool was_reported(const Binding& b) { return b.reported_ns[0] >= 0; }
 
-void ask_hat(Binding& b, const DeviceState& state) {
+void evaluate_hat(Binding& b, const DeviceState& state) {
     constexpr double s = 0.70710678118654752;  // diagonals are no faster
     constexpr std::array<std::array<double, 2>, 8> directions = {
         {{0, 1}, {s, s}, {1, 0}, {s, -s}, {0, -1}, {-s, -s}, {-1, 0}, {-s, s}}};
     const std::int32_t value = state.value[b.control[0]];
     b.answer = dvec2(0.0);
     const bool centre = !state.has_value[b.control[0]] || value < 0 || value > 7;
-    if (centre) b.armed = b.armed || was_told(b);
+    if (centre) b.armed = b.armed || was_reported(b);
     if (centre || !b.armed) return;
     const auto& direction = directions[static_cast<std::size_t>(value)];
     b.answer = {direction[0], direction[1]};
 }
 
-/// True in the call in which the button goes down. Down at once, up once the contact stayed open for the settle time.
+/// True in the call in which the button goes down. Down at once, up once the contact stayed open for the debounce time.
 bool press(Binding& b, const DeviceState& state, std::int64_t now_ns) {
     const bool known = state.has_value[b.control[0]];
     const bool contact = known && state.value[b.control[0]] != 0;
@@ -89,59 +89,59 @@ bool press(Binding& b, const DeviceState& state, std::int64_t now_ns) {
         b.open_since_ns = -1;
     } else if (b.pressed) {
         if (b.open_since_ns < 0) b.open_since_ns = now_ns;
-        if (now_ns - b.open_since_ns >= b.settle_ns) b.pressed = false;
+        if (now_ns - b.open_since_ns >= b.debounce_ns) b.pressed = false;
     }
-    if (!asserted && was_told(b)) b.armed = true;
+    if (!asserted && was_reported(b)) b.armed = true;
     return b.pressed && !before && b.armed;
 }
 
-double* member(Wish& wish, Action action) {
+double* member(MotionRequest& request, Action action) {
     switch (action) {
         case Action::forward:
-            return &wish.forward;
+            return &request.forward;
         case Action::side:
-            return &wish.side;
+            return &request.side;
         case Action::up:
-            return &wish.up;
+            return &request.up;
         case Action::turn:
-            return &wish.turn;
+            return &request.turn;
         case Action::look:
-            return &wish.look;
+            return &request.look;
         case Action::speed:
-            return &wish.speed;
+            return &request.speed;
         default:
             return nullptr;
     }
 }
 
-void do_button(Binding& b, Asked& asked, const DeviceState& state, std::int64_t now_ns) {
+void evaluate_button(Binding& b, DeviceOutput& output, const DeviceState& state, std::int64_t now_ns) {
     const bool edge = press(b, state, now_ns);
     const bool held = b.pressed && b.armed;  // held when it came: not meant for us
     b.answer = dvec2(held && has_size(b.action[0]) ? 1.0 : 0.0, 0.0);
     switch (b.action[0]) {
         case Action::next_viewpoint:
-            asked.wish.next_viewpoint |= edge;
+            output.request.next_viewpoint |= edge;
             break;
         case Action::reset:
-            asked.wish.reset |= edge;
+            output.request.reset |= edge;
             break;
         case Action::tour:
-            asked.wish.tour |= edge;
+            output.request.tour |= edge;
             break;
         case Action::pause:
-            asked.wish.pause |= edge;
+            output.request.pause |= edge;
             break;
         case Action::dead_man:
-            asked.has_dead_man = true;
+            output.has_dead_man = true;
             // Raw: its release is never delayed (safety/ debounces the press).
-            asked.dead_man |= held && b.open_since_ns < 0;
+            output.dead_man |= held && b.open_since_ns < 0;
             break;
         case Action::stop:
-            asked.has_stop = true;
-            asked.stop |= b.pressed;
+            output.has_stop = true;
+            output.stop |= b.pressed;
             break;
         case Action::stop_reset:
-            asked.stop_reset |= held;
+            output.stop_reset |= held;
             break;
         default:
             break;
@@ -150,13 +150,13 @@ void do_button(Binding& b, Asked& asked, const DeviceState& state, std::int64_t 
 
 }  // namespace
 
-/// Notes when a report carried the binding's controls.
-void note_told(Binding& b, const DeviceState& state, std::int64_t now_ns) {
+/// Records when a report carried the binding's controls.
+void mark_reported(Binding& b, const DeviceState& state, std::int64_t now_ns) {
     for (std::size_t i = 0; i < 2; ++i)
-        if (!state.carried_over[b.control[i]]) b.told_ns[i] = now_ns;
+        if (!state.carried_over[b.control[i]]) b.reported_ns[i] = now_ns;
 }
 
-/// What ask() finds out about all bindings together for Mapper::still.
+/// What evaluate() finds out about all bindings together for Mapper::still.
 struct Stillness {
     static constexpr double fine_counts = 512;  ///< of half the travel: ten bits
     bool deflected = false, moved = false, fine = true;
@@ -170,8 +170,8 @@ struct Stillness {
     }
 };
 
-Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns, std::int64_t age_limit_ns) {
-    Asked asked;
+DeviceOutput evaluate(Mapper& mapper, const DeviceState& state, std::int64_t now_ns, std::int64_t age_limit_ns) {
+    DeviceOutput output;
     const std::int64_t passed = mapper.last_ns < 0 ? 0 : std::max<std::int64_t>(0, now_ns - mapper.last_ns);
     const double dt_s = static_cast<double>(passed) * 1e-9;
     const bool fresh = state.reports != mapper.last_reports;
@@ -183,36 +183,36 @@ Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns, std::in
     Stillness stillness;
     for (Binding& b : mapper.bindings) {
         const bool pressed = b.pressed;
-        if (fresh) note_told(b, state, now_ns);
+        if (fresh) mark_reported(b, state, now_ns);
         switch (b.source) {
             case From::axis:
             case From::stick:
-                ask_axes(b, state, now_ns, oldest_ns);
+                evaluate_axes(b, state, now_ns, oldest_ns);
                 break;
             case From::relative:
-                ask_relative(b, state, fresh, dt_s);
+                evaluate_relative(b, state, fresh, dt_s);
                 break;
             case From::hat:
-                ask_hat(b, state);
+                evaluate_hat(b, state);
                 break;
             case From::button:
-                do_button(b, asked, state, now_ns);
+                evaluate_button(b, output, state, now_ns);
                 break;
         }
         smooth(b, dt_s);
         stillness.look(b, pressed);
         for (std::size_t i = 0; i < 2; ++i) {
             const double size = b.smoothed[static_cast<int>(i)];
-            if (double* sum = member(asked.wish, b.action[i])) *sum += b.gain[i] * size;
+            if (double* sum = member(output.request, b.action[i])) *sum += b.gain[i] * size;
             const bool waits = !b.armed && !b.own_interlock;
             const bool deflected = b.source == From::button ? b.pressed : b.answer[static_cast<int>(i)] != 0 || waits;
             const bool seen = b.armed || state.has_value[b.control[i]];
-            if (moves(b.action[i]) && seen && deflected) asked.neutral = false;
+            if (moves(b.action[i]) && seen && deflected) output.neutral = false;
         }
     }
     mapper.still = stillness.deflected && stillness.fine && !stillness.moved;
-    bound(asked.wish);
-    return asked;
+    bound(output.request);
+    return output;
 }
 
 void forget(Mapper& mapper) {
@@ -220,7 +220,7 @@ void forget(Mapper& mapper) {
         b.held = b.answer = b.smoothed = dvec2(0.0);
         b.travelled = 0;
         b.armed = b.pressed = false;
-        b.told_ns = {-1, -1};
+        b.reported_ns = {-1, -1};
         b.open_since_ns = -1;
     }
     mapper.still = false;

@@ -1,4 +1,4 @@
-// A mapping made fast for one device: raw values in, what is asked out. After compile() nothing allocates.
+// A mapping compiled for one device: raw values in, requested motion out. After compile() nothing allocates.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace surefoot::input {
 
-/// What one device asks for at one moment.
-struct Asked {
-    Wish wish;            ///< translation and rotation each at most of length 1; edges only in the call in which they came
-    bool neutral = true;  ///< every control that moves is in its dead zone (those not yet seen do not count)
+/// The output of one device at one moment.
+struct DeviceOutput {
+    MotionRequest request;  ///< translation and rotation each at most of length 1; edges only in the call in which they came
+    bool neutral = true;    ///< every control that moves is in its dead zone (those not yet seen do not count)
     bool has_stop = false, stop = false;  ///< bound at all; asserted now
     bool stop_reset = false;              ///< held now
     bool has_dead_man = false, dead_man = false;
 };
 
-/// One control or pair of controls with its state. Public so that tools can show it; use compile() and ask().
+/// One control or pair of controls with its state. Public so that tools can show it; use compile() and evaluate().
 struct Binding {
     enum class Source : std::uint8_t { axis, stick, relative, hat, button };
     Source source = Source::axis;
@@ -30,7 +30,7 @@ struct Binding {
     Response response;
     double smoothing_s = 0;
     double counts_per_s = 1000;
-    std::int64_t settle_ns = 0;
+    std::int64_t debounce_ns = 0;
     bool normally_closed = false;
 
     std::array<RestFinder, 2> rest;
@@ -39,11 +39,11 @@ struct Binding {
     dvec2 answer{0.0};     ///< response before smoothing
     dvec2 smoothed{0.0};   ///< what goes out
     double travelled = 0;  ///< relative: leaky sum, in seconds of full response
-    std::array<std::int64_t, 2> told_ns{-1, -1};  ///< when a report last carried the control
-    /// A control that rests at an end, or of an adapter for several pads: it holds itself back until seen at rest, not its
-    /// whole device.
+    std::array<std::int64_t, 2> reported_ns{-1, -1};  ///< when a report last carried the control
+    /// For a control that rests at an end, or belongs to an adapter for several pads: it alone waits until it was seen at rest,
+    /// not its whole device.
     bool own_interlock = false;
-    bool armed = false;  ///< seen at rest since the device came: until then it asks for nothing
+    bool armed = false;  ///< seen at rest since the device came; until then it requests nothing
     bool pressed = false;
     std::int64_t open_since_ns = -1;  ///< of a pressed button whose contact has opened
 };
@@ -51,26 +51,26 @@ struct Binding {
 struct Mapper {
     std::vector<Binding> bindings;
     bool adapter = false;            ///< of one for several pads: each reports in its own way and time
-    std::vector<std::string> notes;  ///< controls that the mapping names and that cannot be bound, for the log
+    std::vector<std::string> notes;  ///< named controls that cannot be bound, for the log
     std::int64_t last_ns = -1;
     std::uint64_t last_reports = 0;
-    std::int64_t last_report_ns = -1;  ///< when ask() saw the newest one
-    /// In the last ask(): something is deflected, nothing was moved beyond its play, and what is deflected is fine enough for a
-    /// hand's or a converter's noise to show in it.
+    std::int64_t last_report_ns = -1;  ///< when evaluate() saw the newest one
+    /// In the last evaluate(): something is deflected, nothing moved beyond its hysteresis band, and the deflected control is
+    /// fine enough to show noise.
     bool still = false;
 };
 
-/// Binds by name or by usage and collection. A control that the device has not got is an error with the nearest name.
+/// Binds by name, or by usage and collection. A missing control is an error with the nearest name.
 Result<Mapper> compile(const DeviceMapping& mapping, std::span<const ControlInfo> controls);
-/// The same, leaving out what cannot be bound, with a note for each: a half-fitting mapping steers with what fits.
+/// The same, but leaves out controls that cannot be bound, with a note for each.
 Mapper compile_what_fits(const DeviceMapping& mapping, std::span<const ControlInfo> controls);
 
-/// Call after each accepted report, and at least once a tick (smoothing runs on). `now_ns` does not go back; where it does, time
-/// stands still. A control without a value (never seen, or a null state) is at rest; one out of its range is clamped.
-/// age_limit_ns, where not 0: a deflection is at rest while reports come that have not carried it for longer.
-Asked ask(Mapper& mapper, const DeviceState& state, std::int64_t now_ns, std::int64_t age_limit_ns = 0);
+/// Call it after each accepted report, and at least once a tick, because smoothing continues. If `now_ns` goes back, time stands
+/// still. A control without a value (never seen, or a null state) is at rest; a value out of range is clamped.
+/// age_limit_ns, if not 0: a control goes to rest if reports have not carried it for longer than this.
+DeviceOutput evaluate(Mapper& mapper, const DeviceState& state, std::int64_t now_ns, std::int64_t age_limit_ns = 0);
 
-/// The device was lost or comes anew: everything at rest and unarmed; the found rests are kept.
+/// The device was lost or comes again: all controls are at rest and unarmed. Learned rests are kept.
 void forget(Mapper& mapper);
 
 /// Longest lag that the mapping itself adds, seconds: its largest smoothing time constant. Play adds an error of at most its

@@ -1,4 +1,4 @@
-// What a user says about a device: which control asks for what, and how it feels. Plain data; TOML reads and writes it.
+// The user's mapping of a device: which control does what, and its response. Plain data, read from and written to TOML.
 #pragma once
 
 #include <array>
@@ -21,11 +21,11 @@ enum class Action : std::uint8_t {
     up,
     turn,
     look,
-    speed,  // the six that have a size, as in Wish
+    speed,  // the six that have a size, as in MotionRequest
     next_viewpoint,
     reset,
     tour,
-    pause,       // edges, as in Wish
+    pause,       // edges, as in MotionRequest
     dead_man,    // walks only while held
     stop,        // emergency stop: latched
     stop_reset,  // takes the latch off once the stop is no longer asserted
@@ -36,11 +36,11 @@ constexpr std::size_t action_count = 14;
 std::span<const std::string_view> action_names();
 std::string_view name_of(Action action);
 [[nodiscard]] constexpr bool has_size(Action a) { return a >= Action::forward && a <= Action::speed; }
-/// Moves the walker: what the neutral interlock watches. Speed does not: a throttle stays where it is put.
+/// Whether the action moves the walker; the neutral interlock watches these. Speed does not: a throttle keeps its place.
 [[nodiscard]] constexpr bool moves(Action a) { return a >= Action::forward && a <= Action::look; }
 
-/// A control by its name ("x"), or by usage ("0x01:0x30": page and usage) where no name is given; `collection`, where not empty,
-/// must be a part of the control's collection path.
+/// A control, by its name ("x"), else by usage page and usage ("0x01:0x30"). If not empty, `collection` must be a part of the
+/// control's collection path.
 struct ControlRef {
     std::string name;
     std::uint16_t usage_page = 0, usage = 0;
@@ -80,9 +80,9 @@ struct HatMapping {
 struct ButtonMapping {
     ControlRef control;
     Action action = Action::none;
-    double scale = 1;              ///< of actions that have a size: what the held button asks for; -1..1
+    double scale = 1;              ///< request of the held button, -1..1; for actions that have a size
     double smoothing_s = 0;        ///< of those: time constant
-    double settle_s = 0;           ///< a release counts once it lasted so long (contact bounce); a press counts at once
+    double debounce_s = 0;         ///< a release counts once it lasted so long (contact bounce); a press counts at once
     bool normally_closed = false;  ///< asserted while the contact is open or its state unknown: for stops
 };
 
@@ -93,10 +93,10 @@ enum class Reporting : std::uint8_t {
     on_change,  ///< sends changes only: silence means "as before"
 };
 
-/// Everything that is given must fit; an empty one fits every device.
+/// Every given member must match; an empty matcher fits every device.
 struct DeviceMatch {
     std::optional<std::uint16_t> vendor, product;
-    std::string product_name;  ///< a part of it, letters of either case
+    std::string product_name;  ///< a part of the name, upper or lower case
     std::optional<DeviceClass> device_class;
 };
 
@@ -110,7 +110,7 @@ struct DeviceMapping {
     std::vector<ButtonMapping> buttons;
 };
 
-/// What is known of a device when a mapping is looked for.
+/// Facts about a device, for finding its mapping.
 struct DeviceIdentity {
     std::uint16_t vendor = 0, product = 0;
     std::string product_name;
@@ -121,10 +121,10 @@ struct DeviceIdentity {
 /// The first that fits; null for none.
 const DeviceMapping* find_mapping(std::span<const DeviceMapping> mappings, const DeviceIdentity& identity);
 
-/// A mapping for a device that nobody configured, from its class, collections and usages: gamepads, joysticks with or without
+/// The mapping of an unconfigured device, from its class, collections and usages. Known: gamepads, joysticks with or without
 /// twist and throttle, six-axis controllers, pedals, button boxes. Trackballs, mice, keyboards and rejected devices get an empty
-/// one: they steer only when the configuration asks. An adapter's sockets are each mapped as a device of their own would be.
-/// `name` says which rule was used.
+/// mapping: they steer only if configured. Each socket of an adapter is mapped as a device of its own. `name` tells the rule
+/// used.
 DeviceMapping default_mapping(std::span<const ControlInfo> controls, DeviceClass device_class);
 
 }  // namespace surefoot::input

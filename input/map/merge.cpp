@@ -1,4 +1,4 @@
-// Bounded sums of wishes.
+// Bounded sums of motion requests.
 #include "input/map/merge.hpp"
 
 #include <algorithm>
@@ -6,9 +6,9 @@
 
 namespace surefoot::input {
 
-bool bound(Wish& wish) {
+bool bound(MotionRequest& request) {
     bool finite = true;
-    for (double* part : {&wish.forward, &wish.side, &wish.up, &wish.turn, &wish.look, &wish.speed}) {
+    for (double* part : {&request.forward, &request.side, &request.up, &request.turn, &request.look, &request.speed}) {
         if (std::isfinite(*part)) {
             *part = std::clamp(*part, -64.0, 64.0);  // no overflow in the squares below
             continue;
@@ -16,34 +16,34 @@ bool bound(Wish& wish) {
         *part = 0;
         finite = false;
     }
-    const double walk = std::sqrt(wish.forward * wish.forward + wish.side * wish.side + wish.up * wish.up);
+    const double walk = std::sqrt(request.forward * request.forward + request.side * request.side + request.up * request.up);
     if (walk > 1) {
-        wish.forward /= walk;
-        wish.side /= walk;
-        wish.up /= walk;
+        request.forward /= walk;
+        request.side /= walk;
+        request.up /= walk;
     }
-    const double turning = std::sqrt(wish.turn * wish.turn + wish.look * wish.look);
+    const double turning = std::sqrt(request.turn * request.turn + request.look * request.look);
     if (turning > 1) {
-        wish.turn /= turning;
-        wish.look /= turning;
+        request.turn /= turning;
+        request.look /= turning;
     }
-    wish.speed = std::clamp(wish.speed, -1.0, 1.0);
+    request.speed = std::clamp(request.speed, -1.0, 1.0);
     return finite;
 }
 
-Wish merge(std::span<const Wish> wishes) {
-    Wish sum;
-    for (const Wish& wish : wishes) {
-        sum.forward += wish.forward;
-        sum.side += wish.side;
-        sum.up += wish.up;
-        sum.turn += wish.turn;
-        sum.look += wish.look;
-        sum.speed += wish.speed;
-        sum.next_viewpoint |= wish.next_viewpoint;
-        sum.reset |= wish.reset;
-        sum.tour |= wish.tour;
-        sum.pause |= wish.pause;
+MotionRequest merge(std::span<const MotionRequest> requests) {
+    MotionRequest sum;
+    for (const MotionRequest& request : requests) {
+        sum.forward += request.forward;
+        sum.side += request.side;
+        sum.up += request.up;
+        sum.turn += request.turn;
+        sum.look += request.look;
+        sum.speed += request.speed;
+        sum.next_viewpoint |= request.next_viewpoint;
+        sum.reset |= request.reset;
+        sum.tour |= request.tour;
+        sum.pause |= request.pause;
     }
     bound(sum);
     return sum;

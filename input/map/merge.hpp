@@ -1,4 +1,4 @@
-// Several wishes made one, never asking for more than one full deflection.
+// Merges the requests of several devices into one, at most one full deflection.
 #pragma once
 
 #include <span>
@@ -7,11 +7,11 @@
 
 namespace surefoot::input {
 
-/// The walk (forward, side, up) and the turning (turn, look) each shortened to length 1, speed clamped, what is not finite
-/// made 0. True: it was finite.
-bool bound(Wish& wish);
+/// Shortens the walk (forward, side, up) and the turning (turn, look) to length 1 each, clamps speed, sets non-finite values to
+/// 0. True: all were finite.
+bool bound(MotionRequest& request);
 
-/// The sum, bounded; edges of any. Sums cancel: two hands that pull apart stand still, which a "strongest wins" would not do.
-Wish merge(std::span<const Wish> wishes);
+/// The bounded sum, with the edges of both. Opposite requests cancel out; with "strongest wins" they would not.
+MotionRequest merge(std::span<const MotionRequest> requests);
 
 }  // namespace surefoot::input

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double tremor_counts = 2.25;    // a hand's and an ADC's two counts, and rounding
 constexpr double widest_play = 1.0 / 12;  // of the travel: a coarse control keeps most of its steps
-constexpr double least_span = 0.05;       // from dead zone to full: keeps the curve's slope finite
+constexpr double min_span = 0.05;         // from dead zone to full: keeps the curve's slope finite
 constexpr double rest_window = 0.07;      // of the travel: a rest further off is a hand on the stick
 constexpr std::int64_t still_ns = 500'000'000;
 
@@ -28,11 +28,11 @@ Response response_for(const Shape& shape, double half_travel_counts) {
     const double counts = std::min(tremor_counts / std::max(half_travel_counts, 0.5), widest_play);
     response.play = std::max(shape.hysteresis, counts);
     // What the counts add to the play, and the rounding of a coarse control, must not take from the room for a centre's drift.
-    const double rounding = std::min(0.5 / std::max(half_travel_counts, 0.5), least_span);
+    const double rounding = std::min(0.5 / std::max(half_travel_counts, 0.5), min_span);
     response.dead = std::max(shape.dead_zone, shape.hysteresis) + (response.play - shape.hysteresis) + rounding;
-    response.full = std::max(std::min(shape.saturation, 1.0) - response.play, response.dead + least_span);
+    response.full = std::max(std::min(shape.saturation, 1.0) - response.play, response.dead + min_span);
     response.full = std::min(response.full, 1.0 - response.play);
-    response.dead = std::min(response.dead, response.full - least_span / 2);
+    response.dead = std::min(response.dead, response.full - min_span / 2);
     response.curve = shape.curve;
     response.strength = shape.strength;
     return response;

@@ -1,11 +1,11 @@
-// From a deflection to a response: play against tremor, dead zones, curves. Pure functions; all values are fractions of the
-// travel from rest to an end, so -1..1 (0..1 where rest is at an end).
+// From deflection to response: hysteresis against tremor, dead zones, curves. Pure functions. All values are fractions of the
+// travel from rest to an end: -1..1, or 0..1 if rest is at an end.
 //
 //   raw ─► normalised by the rest ─► play (hysteresis) ─► dead zone, saturation ─► curve ─► -1..1
 //
-// Hysteresis is play (backlash), as in a worn gear: the held value follows the deflection only where they are more than the
-// band apart. So noise within the band moves nothing, anywhere in the travel, and the response stays continuous; two thresholds
-// at the dead zone's edge would step there.
+// Hysteresis is play (backlash), as in a worn gear: the held value follows the deflection only when they differ by more than the
+// band. So noise within the band moves nothing, anywhere in the travel. The response stays continuous; two thresholds at the edge
+// of the dead zone would step there.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ enum class Curve : std::uint8_t {
     smooth,  ///< t^2 (3 - 2 t): gentle at both ends
 };
 
-/// What a user may set for one axis or stick.
+/// Settings of the user for one axis or stick.
 struct Shape {
     double dead_zone =
         0.1;  ///< 0..0.9; wider than a centre that is off by 3 % of the whole range (6 % of the travel) plus the play
@@ -42,8 +42,8 @@ struct Response {
     double strength = 0;
 };
 
-/// `half_travel_counts`: counts from rest to the nearer end, >= 0.5. The play is at least 2.25 counts (tremor of two counts plus
-/// rounding) as far as the control is fine enough for that: at most a twelfth of the travel.
+/// `half_travel_counts`: counts from rest to the nearer end, >= 0.5. The play is at least 2.25 counts: tremor of two counts plus
+/// rounding. It is at most a twelfth of the travel, so less for coarse controls.
 Response response_for(const Shape& shape, double half_travel_counts);
 
 /// t in 0..1 to 0..1; monotone, 0 at 0, 1 at 1.
@@ -53,15 +53,14 @@ double respond(const Response& response, double deflection);
 /// The same by length, for a stick pair: the direction is kept, so every direction responds alike. Length <= 1.
 dvec2 respond(const Response& response, const dvec2& deflection);
 
-/// The held value after the deflection moved.
+/// The new held value after a change of the deflection.
 double with_play(double held, double deflection, double half_width);
 dvec2 with_play(const dvec2& held, const dvec2& deflection, double half_width);
 
 enum class Rest : std::uint8_t { centre, min, max };  ///< where the control stands when nobody touches it
 
-/// Learns where a control really rests: the middle of values that kept still for half a second while the control was inside
-/// its dead zone, and within 7 % of the travel from where it should be. Learning only inside the dead zone means that a change
-/// of the rest never shows in the response.
+/// Learns where a control really rests: the middle of values that were stable for half a second, inside the dead zone and within
+/// 7 % of the travel from the nominal rest. Since it learns only inside the dead zone, a new rest never shows in the response.
 class RestFinder {
 public:
     RestFinder() = default;

@@ -1,4 +1,4 @@
-// The file in which a user says how the walk is steered: [motion], [safety], [[device]] and [[gpio]]; read and written.
+// The steering file, read and written: [motion], [safety], [[device]] and [[gpio]].
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ struct SteeringFile {
     std::vector<LineConfig> lines;
 };
 
-/// Errors name FILE:LINE, the key, what is allowed and the nearest known name; unknown keys are errors. Controls are checked
-/// when a device comes (compile()), since only then they are known.
+/// Errors name FILE:LINE, the key, the allowed values and the nearest known name. Unknown keys are errors. Controls are checked
+/// when a device comes (compile()), because only then they are known.
 Result<SteeringFile> read_steering(const std::string& file);
 Result<SteeringFile> parse_steering(std::string_view text, const std::string& name);
 

@@ -42,7 +42,7 @@ std::optional<std::uint16_t> hex(std::string_view text) {
 
 /// "x", or "0x01:0x30".
 void control_of(TableReader& table, std::string_view key, const std::string& text, ControlRef& control) {
-    if (text.empty()) return table.refuse(key, "is missing", "name the control, as 'surefoot devices' lists it");
+    if (text.empty()) return table.refuse(key, "is missing", "Name the control as `surefoot devices` lists it");
     const auto colon = text.find(':');
     const auto page = hex(text.substr(0, colon)), usage = colon == std::string::npos ? std::nullopt : hex(text.substr(colon + 1));
     if (page && usage) {
@@ -73,14 +73,14 @@ void read_shape(TableReader& table, Shape& shape) {
         table.refuse(table.has("dead_zone") ? "dead_zone" : "hysteresis",
                      fmt::format("= {} makes the dead zone {} narrower than the hysteresis {}",
                                  table.has("dead_zone") ? shape.dead_zone : shape.hysteresis, shape.dead_zone, shape.hysteresis),
-                     "the control would not come to rest; widen dead_zone or lower hysteresis");
+                     "Widen dead_zone or lower hysteresis, so that the control comes to rest");
     if (shape.saturation <= shape.dead_zone + shape.hysteresis + 0.05)
         table.refuse(table.has("saturation") ? "saturation" : "dead_zone", "leaves nothing between dead zone and saturation",
-                     "saturation must be above dead_zone + hysteresis + 0.05");
+                     "Write a saturation above dead_zone + hysteresis + 0.05");
 }
 
 void need_action(TableReader& table, std::string_view key) {
-    if (!table.has(key)) table.refuse(key, "is missing", "say what the control does");
+    if (!table.has(key)) table.refuse(key, "is missing", "Say what the control does");
 }
 
 Result<void> read_axis(TableReader& table, std::vector<AxisMapping>& into) {
@@ -90,7 +90,7 @@ Result<void> read_axis(TableReader& table, std::vector<AxisMapping>& into) {
     choose(table, "action", action_names(), m.action);
     if (m.action != Action::none && !has_size(m.action))
         table.refuse("action", fmt::format("= {} is no action for an axis", name_of(m.action)),
-                     "an axis does forward, side, up, turn, look or speed");
+                     "Use forward, side, up, turn, look or speed");
     read_shape(table, m.shape);
     choose(table, "rest", words::rests, m.rest);
     table.flag("invert", m.invert);
@@ -107,8 +107,8 @@ void two_actions(TableReader& table, std::array<Action, 2>& actions) {
     for (std::size_t i = 0; i < 2; ++i) {
         actions[i] = static_cast<Action>(index[i]);
         if (actions[i] != Action::none && !has_size(actions[i]))
-            table.refuse("actions", fmt::format("with {} is none for a stick or hat", name_of(actions[i])),
-                         "these do forward, side, up, turn, look, speed or none");
+            table.refuse("actions", fmt::format("names {}, which is no action for a stick or hat", name_of(actions[i])),
+                         "Use forward, side, up, turn, look, speed or none");
     }
 }
 
@@ -151,7 +151,7 @@ Result<void> read_button(TableReader& table, std::vector<ButtonMapping>& into) {
     choose(table, "action", action_names(), m.action);
     table.number("scale", -1, 1, "", m.scale);
     time_ms(table, "smoothing_ms", 1000, m.smoothing_s);
-    time_ms(table, "settle_ms", 1000, m.settle_s);
+    time_ms(table, "settle_ms", 1000, m.debounce_s);
     table.flag("normally_closed", m.normally_closed);
     into.push_back(m);
     return table.finish();
@@ -216,7 +216,7 @@ Result<void> read_line(TableReader& table, std::vector<LineConfig>& into) {
     LineConfig line;
     for (const auto& [key, text] :
          {std::pair{"name", &line.name}, std::pair{"chip", &line.request.chip}, std::pair{"line", &line.request.line}}) {
-        if (!table.has(key)) table.refuse(key, "is missing", "a line has a name, a chip and a line (its name, or its offset)");
+        if (!table.has(key)) table.refuse(key, "is missing", "Give a line its name, its chip and its line (a name or an offset)");
         table.text(key, *text);
     }
     choose(table, "role", words::roles, line.role);
@@ -224,9 +224,10 @@ Result<void> read_line(TableReader& table, std::vector<LineConfig>& into) {
     table.flag("active_low", line.request.active_low);
     table.flag("normally_closed", line.normally_closed);
     if (line.role == LineRole::stop && table.has("normally_closed") && !line.normally_closed)
-        table.refuse("normally_closed", "= false is not allowed for a stop", "wire it normally closed: a broken wire must stop");
+        table.refuse("normally_closed", "= false is not allowed for a stop",
+                     "Wire the stop normally closed: a broken wire must stop the walk");
     if (line.role == LineRole::stop) line.normally_closed = true;
-    time(table, "settle_ms", 1000, "ms", 1e6, line.settle_ns);
+    time(table, "settle_ms", 1000, "ms", 1e6, line.debounce_ns);
     into.push_back(line);
     return table.finish();
 }

@@ -113,7 +113,7 @@ void write_device(Writer& w, const DeviceMapping& m) {
         w.text("action", name_of(b.action));
         w.number("scale", b.scale, 1);
         w.number("smoothing_ms", b.smoothing_s * 1e3, 0);
-        w.number("settle_ms", b.settle_s * 1e3, 0);
+        w.number("settle_ms", b.debounce_s * 1e3, 0);
         w.flag("normally_closed", b.normally_closed);
     }
 }
@@ -162,7 +162,7 @@ std::string steering_text(const SteeringFile& steering) {
         w.word("bias", words::biases, line.request.bias, Bias::as_is);
         w.flag("active_low", line.request.active_low);
         w.flag("normally_closed", line.normally_closed && line.role != LineRole::stop);
-        w.time("settle_ms", line.settle_ns, LineConfig{}.settle_ns, 1e6);
+        w.time("settle_ms", line.debounce_ns, LineConfig{}.debounce_ns, 1e6);
     }
     return w.take();
 }

@@ -75,9 +75,9 @@ void Teach::see(Device& d, std::size_t i, const DeviceState& state, std::int64_t
         const auto at = pressed ? static_cast<std::size_t>(state.value[i]) : 0;
         const std::int8_t now[2] = {pressed ? right[at] : std::int8_t{0}, pressed ? up[at] : std::int8_t{0}};
         c.value = pressed ? 1 : 0;
-        if (phase_ == Phase::settle && pressed) still_since_ns_ = now_ns;
+        if (phase_ == Phase::rest && pressed) still_since_ns_ = now_ns;
         // Straight directions only: a diagonal says nothing of which one was meant.
-        if (phase_ == Phase::ask && pressed && (now[0] == 0) != (now[1] == 0)) {
+        if (phase_ == Phase::question && pressed && (now[0] == 0) != (now[1] == 0)) {
             c.hat[0] = now[0];
             c.hat[1] = now[1];
             c.moved = 1;
@@ -88,16 +88,16 @@ void Teach::see(Device& d, std::size_t i, const DeviceState& state, std::int64_t
     const auto value = static_cast<double>(state.value[i]);
     if (info.relative) {
         c.value += value;
-        if (phase_ == Phase::settle && value != 0) still_since_ns_ = now_ns;
+        if (phase_ == Phase::rest && value != 0) still_since_ns_ = now_ns;
     } else {
         c.value = value;
         if (!c.known) {
             c.known = true;
-            c.rest = phase_ == Phase::settle && info.kind == ControlKind::axis ? value : likely_rest(info, value);
+            c.rest = phase_ == Phase::rest && info.kind == ControlKind::axis ? value : likely_rest(info, value);
             c.low = c.high = value;
         }
     }
-    if (phase_ == Phase::settle && !info.relative) {
+    if (phase_ == Phase::rest && !info.relative) {
         c.low = std::min(c.low, value);
         c.high = std::max(c.high, value);
         if (c.high - c.low > limits_.tremor * range_of(info) || (info.kind == ControlKind::button && value != c.rest)) {
@@ -105,14 +105,14 @@ void Teach::see(Device& d, std::size_t i, const DeviceState& state, std::int64_t
             still_since_ns_ = now_ns;
         }
     }
-    if (phase_ == Phase::ask) {
+    if (phase_ == Phase::question) {
         const double moved = deflection(info, c, limits_);
         if (std::abs(moved) > std::abs(c.moved)) c.moved = moved;
     }
 }
 
-void Teach::settle(std::int64_t now_ns) {
-    if (now_ns - still_since_ns_ < limits_.still_ns && now_ns - since_ns_ < limits_.settle_at_most_ns) return;
+void Teach::wait_for_rest(std::int64_t now_ns) {
+    if (now_ns - still_since_ns_ < limits_.still_ns && now_ns - since_ns_ < limits_.max_rest_wait_ns) return;
     begin_question(now_ns);
 }
 
@@ -127,7 +127,7 @@ void Teach::begin_question(std::int64_t now_ns) {
             c.moved = 0;
             c.hat[0] = c.hat[1] = 0;
         }
-    phase_ = Phase::ask;
+    phase_ = Phase::question;
     since_ns_ = now_ns;
     moved_since_ns_ = -1;
 }
@@ -147,7 +147,7 @@ bool Teach::eligible(const Device& d, std::size_t i) const {
 }
 
 std::optional<Teach::Leader> Teach::leader() const {
-    if (phase_ != Phase::ask) return std::nullopt;
+    if (phase_ != Phase::question) return std::nullopt;
     std::optional<Leader> best;
     // A trigger is an axis and often a button as well: the axis is the better answer.
     const auto rank = [&](const Leader& l) {
@@ -169,7 +169,7 @@ std::optional<Teach::Leader> Teach::leader() const {
 void Teach::tick(std::int64_t now_ns) {
     if (phase_ == Phase::done) return;
     if (since_ns_ < 0) since_ns_ = still_since_ns_ = now_ns;
-    if (phase_ == Phase::settle) return settle(now_ns);
+    if (phase_ == Phase::rest) return wait_for_rest(now_ns);
     const auto best = leader();
     if (best && std::abs(best->moved) >= limits_.moved) {
         if (moved_since_ns_ < 0) moved_since_ns_ = now_ns;
@@ -179,7 +179,7 @@ void Teach::tick(std::int64_t now_ns) {
         const bool back = !info.relative &&
                           (info.kind == ControlKind::hat ? c.value == 0 : std::abs(deflection(info, c, limits_)) < back_below);
         if (back || now_ns - moved_since_ns_ >= limits_.stays_ns) return answer(*best, now_ns);
-    } else if (now_ns - since_ns_ >= limits_.ask_ns) {
+    } else if (now_ns - since_ns_ >= limits_.answer_limit_ns) {
         next(now_ns);
     }
 }
@@ -205,20 +205,20 @@ void Teach::answer(const Leader& l, std::int64_t now_ns) {
 
 void Teach::next(std::int64_t now_ns) {
     if (!steps_.empty()) steps_.pop_front();
-    phase_ = steps_.empty() ? Phase::done : Phase::settle;
+    phase_ = steps_.empty() ? Phase::done : Phase::rest;
     since_ns_ = still_since_ns_ = now_ns;
     for (Device& d : devices_)
         for (Control& c : d.controls) c.low = c.high = c.value;
 }
 
 void Teach::skip(std::int64_t now_ns) {
-    if (phase_ == Phase::settle) begin_question(now_ns);
-    if (phase_ == Phase::ask) next(now_ns);
+    if (phase_ == Phase::rest) begin_question(now_ns);
+    if (phase_ == Phase::question) next(now_ns);
 }
 
 double Teach::seconds_left(std::int64_t now_ns) const {
-    if (phase_ != Phase::ask) return static_cast<double>(limits_.ask_ns) * 1e-9;
-    return static_cast<double>(std::max<std::int64_t>(0, limits_.ask_ns - (now_ns - since_ns_))) * 1e-9;
+    if (phase_ != Phase::question) return static_cast<double>(limits_.answer_limit_ns) * 1e-9;
+    return static_cast<double>(std::max<std::int64_t>(0, limits_.answer_limit_ns - (now_ns - since_ns_))) * 1e-9;
 }
 
 std::string Teach::question() const {
@@ -226,17 +226,18 @@ std::string Teach::question() const {
     const bool other_way = steps_.front().sign < 0;
     switch (steps_.front().action) {
         case Action::forward:
-            return other_way ? "Move what walks backward" : "Move what walks forward, as far as it goes";
+            return other_way ? "Move the control that walks backward" : "Move the control that walks forward, as far as it goes";
         case Action::side:
-            return other_way ? "Move what walks to the left" : "Move what walks to the right";
+            return other_way ? "Move the control that walks to the left" : "Move the control that walks to the right";
         case Action::up:
-            return other_way ? "Move what sinks" : "Move what rises";
+            return other_way ? "Move the control that sinks" : "Move the control that rises";
         case Action::turn:
-            return other_way ? "Move what turns to the right" : "Move what turns to the left";
+            return other_way ? "Move the control that turns to the right" : "Move the control that turns to the left";
         case Action::look:
-            return other_way ? "Move what looks down" : "Move what looks up";
+            return other_way ? "Move the control that looks down" : "Move the control that looks up";
         case Action::speed:
-            return other_way ? "Move what makes it slower" : "Move what makes it faster (a lever: to its fast end)";
+            return other_way ? "Move the control that makes it slower"
+                             : "Move the control that makes it faster (a lever: to its fast end)";
         case Action::next_viewpoint:
             return "Press the button for the next viewpoint";
         case Action::reset:

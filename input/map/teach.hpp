@@ -1,8 +1,7 @@
-// Learning a mapping by showing: asks for one movement after the other, and recognises which control moved furthest from its
-// rest.
+// Learns a mapping by demonstration: asks for one movement after the other, and recognises the control that moved furthest.
 //
-//   settle (everything keeps still) ─► ask ─► one control moved far ─► it is back, or stays ─► learned ─► settle for the next
-//                                      └─► skipped, or time is up ─────────────────────────────────────┘
+//   rest (everything keeps still) ─► question ─► one control moved far ─► it is back, or stays ─► learned ─► rest before the next
+//                                         └─► skipped, or time is up ─────────────────────────────────────┘
 //
 // A state machine without clock, device or terminal: reports, key strokes and times are given to it.
 #pragma once
@@ -19,13 +18,13 @@
 namespace surefoot::input {
 
 struct TeachLimits {
-    std::int64_t still_ns = 300'000'000;             ///< so long everything must keep still before the next question
-    std::int64_t settle_at_most_ns = 3'000'000'000;  ///< then what trembles on is taken as it is
-    std::int64_t stays_ns = 700'000'000;             ///< a lever that does not come back is taken after so long
-    std::int64_t ask_ns = 15'000'000'000;            ///< an unanswered question is skipped after so long
-    double tremor = 0.04;                            ///< of the range: what still counts as keeping still
-    double moved = 0.5;                              ///< of the travel: what counts as meant
-    double relative_counts = 300;                    ///< of balls and wheels: so many counts are a full movement
+    std::int64_t still_ns = 300'000'000;            ///< so long everything must keep still before the next question
+    std::int64_t max_rest_wait_ns = 3'000'000'000;  ///< then what trembles on is taken as it is
+    std::int64_t stays_ns = 700'000'000;            ///< a lever that does not come back is taken after so long
+    std::int64_t answer_limit_ns = 15'000'000'000;  ///< an unanswered question is skipped after so long
+    double tremor = 0.04;                           ///< of the range: what still counts as keeping still
+    double moved = 0.5;                             ///< of the travel: what counts as meant
+    double relative_counts = 300;                   ///< of balls and wheels: so many counts are a full movement
 };
 
 /// One answer: this control, moved so, is that action.
@@ -41,7 +40,7 @@ struct Learned {
 
 class Teach {
 public:
-    enum class Phase : std::uint8_t { settle, ask, done };
+    enum class Phase : std::uint8_t { rest, question, done };
 
     explicit Teach(const TeachLimits& limits = {});
 
@@ -56,7 +55,7 @@ public:
     void finish() { phase_ = Phase::done; }
 
     [[nodiscard]] Phase phase() const { return phase_; }
-    /// What to say to the user now: "Move what shall walk forward", ...
+    /// The prompt for the user: "Move the control that walks forward", ...
     [[nodiscard]] std::string question() const;
     [[nodiscard]] Action action() const { return steps_.empty() ? Action::none : steps_.front().action; }
     [[nodiscard]] double seconds_left(std::int64_t now_ns) const;
@@ -81,7 +80,7 @@ private:
     struct Control {
         bool known = false;          ///< has a rest
         double rest = 0, value = 0;  ///< counts; relative: the sum since the question
-        double low = 0, high = 0;    ///< while settling
+        double low = 0, high = 0;    ///< while resting
         double moved = 0;            ///< furthest, signed, of the travel
         std::int8_t hat[2] = {0, 0};
     };
@@ -95,7 +94,7 @@ private:
     [[nodiscard]] static double deflection(const ControlInfo& info, const Control& control, const TeachLimits& limits);
     [[nodiscard]] bool eligible(const Device& device, std::size_t control) const;
     [[nodiscard]] bool used(int device, std::size_t control, std::uint8_t hat_axis) const;
-    void settle(std::int64_t now_ns);
+    void wait_for_rest(std::int64_t now_ns);
     void begin_question(std::int64_t now_ns);
     void answer(const Leader& leader, std::int64_t now_ns);
     void next(std::int64_t now_ns);
@@ -104,7 +103,7 @@ private:
     std::vector<Device> devices_;
     std::deque<Step> steps_;
     std::vector<Learned> learned_;
-    Phase phase_ = Phase::settle;
+    Phase phase_ = Phase::rest;
     std::int64_t since_ns_ = -1, still_since_ns_ = -1, moved_since_ns_ = -1;
 };
 

@@ -71,7 +71,7 @@ void add_button(DeviceMapping& m, const ControlInfo& info, const Learned& l) {
     ButtonMapping b;
     b.control = ref_of(info);
     b.action = l.action;
-    b.settle_s = 0.005;
+    b.debounce_s = 0.005;
     if (has_size(l.action)) {
         b.scale = 0.5 * l.sign;
         b.smoothing_s = 0.1;

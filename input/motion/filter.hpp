@@ -1,6 +1,6 @@
-// The One-Euro filter: steady when the hand is slow, quick when it is quick, with a lag that is stated and bounded.
-// Source: Casiez, Roussel, Vogel: "1 EUR Filter: a simple speed-based low-pass filter for noisy input", CHI 2012; here with the
-// exact discrete low pass (1 - exp(-2 pi fc dt)), so that the response does not depend on the rate of the steps.
+// The One-Euro filter: smooth for slow hands, fast for fast hands, with a bounded lag.
+// Source: Casiez, Roussel & Vogel 2012, "1 EUR Filter: a simple speed-based low-pass filter for noisy input". Here with the exact
+// discrete low pass 1 - exp(-2 pi fc dt), so that the response does not depend on the step rate.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct FilterSettings {
 };
 
 inline double lag_of_cutoff_s(double cutoff_hz) { return 1 / (2 * std::numbers::pi * cutoff_hz); }
-/// Time by which a slow ramp is followed late, and the bound for every other input; seconds.
+/// Lag behind a slow ramp, and an upper bound of the lag for every input; seconds.
 inline double worst_lag_s(const FilterSettings& settings) { return lag_of_cutoff_s(settings.min_cutoff_hz); }
 
 /// V: dvec2 or dvec3; one cutoff for all its parts, so that directions are kept.
@@ -41,7 +41,7 @@ struct OneEuro {
         value = last = to;
         rate = V(0.0);
     }
-    /// What it adds now, seconds; never above worst_lag_s.
+    /// Current lag, seconds; never above worst_lag_s.
     [[nodiscard]] double lag_s(const FilterSettings& settings) const {
         return lag_of_cutoff_s(std::max(cutoff_hz, settings.min_cutoff_hz));
     }

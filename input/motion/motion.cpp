@@ -48,16 +48,16 @@ dvec3 allowed(MotionState& state, const Ground& ground, const dvec3& wanted) {
     return towards(state.position, answer, glm::length(wanted - state.position) + ground.stair_m);
 }
 
-void count(PressCounts& presses, const Wish& wish) {
-    presses.next_viewpoint += wish.next_viewpoint ? 1 : 0;
-    presses.reset += wish.reset ? 1 : 0;
-    presses.tour += wish.tour ? 1 : 0;
-    presses.pause += wish.pause ? 1 : 0;
+void count(PressCounts& presses, const MotionRequest& request) {
+    presses.next_viewpoint += request.next_viewpoint ? 1 : 0;
+    presses.reset += request.reset ? 1 : 0;
+    presses.tour += request.tour ? 1 : 0;
+    presses.pause += request.pause ? 1 : 0;
 }
 
-void follow(MotionState& state, const MotionLimits& limits, const Wish& wish, Order order, double dt_s) {
-    const dvec3 walk{wish.side, wish.up, -wish.forward};
-    const dvec2 turning{wish.turn, wish.look};
+void follow(MotionState& state, const MotionLimits& limits, const MotionRequest& request, Order order, double dt_s) {
+    const dvec3 walk{request.side, request.up, -request.forward};
+    const dvec2 turning{request.turn, request.look};
     if (order == Order::walk) {
         state.walk.step(limits.filter, walk, dt_s);
         state.turning.step(limits.filter, turning, dt_s);
@@ -70,7 +70,7 @@ void follow(MotionState& state, const MotionLimits& limits, const Wish& wish, Or
     const bool brake = order == Order::brake;
     const double accel = brake ? std::max(limits.accel_m_s2, limits.max_m_s / limits.brake_s) : limits.accel_m_s2;
     const double accel_turning = brake ? std::max(limits.accel_rad_s2, swing_rad_s / limits.brake_s) : limits.accel_rad_s2;
-    state.velocity = towards(state.velocity, wanted_velocity(state.walk.value, wish.speed, limits), accel * dt_s);
+    state.velocity = towards(state.velocity, wanted_velocity(state.walk.value, request.speed, limits), accel * dt_s);
     const dvec2 rates = state.turning.value * dvec2(limits.turn_rad_s, limits.look_rad_s);
     state.rates = towards(state.rates, rates, accel_turning * dt_s);
 }
@@ -140,8 +140,8 @@ Pose pose_of(const MotionState& state) {
 
 NavigationSample step(MotionState& state, const MotionLimits& limits, const Command& command, std::int64_t now_ns,
                       const Ground& ground) {
-    Wish wish = command.wish;
-    if (!bound(wish)) ++state.refused;
+    MotionRequest request = command.request;
+    if (!bound(request)) ++state.refused;
     if (state.last_ns >= 0 && now_ns < state.last_ns) ++state.clock_back;
     const std::int64_t passed = state.last_ns < 0 ? 0 : std::max<std::int64_t>(0, now_ns - state.last_ns);
     const double dt_s = std::min(static_cast<double>(passed) * 1e-9, longest_step_s);
@@ -154,10 +154,10 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     } else if (dt_s > 0) {
         const dvec3 velocity = state.velocity;
         const dvec2 rates = state.rates;
-        follow(state, limits, wish, command.order, dt_s);
+        follow(state, limits, request, command.order, dt_s);
         integrate(state, limits, 0.5 * (velocity + state.velocity), 0.5 * (rates + state.rates), dt_s, ground);
     }
-    count(state.presses, wish);
+    count(state.presses, request);
 
     NavigationSample sample;
     sample.pose = pose_of(state);
@@ -165,10 +165,10 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     sample.angular_rad_s = dvec3(0, state.rates.x, 0) + about_y(state.yaw.value) * dvec3(state.rates.y, 0, 0);
     sample.stamp_ns = command.stamp_ns;
     sample.sequence = ++state.sequence;
-    sample.next_viewpoint = wish.next_viewpoint;
-    sample.reset = wish.reset;
-    sample.tour = wish.tour;
-    sample.pause = wish.pause;
+    sample.next_viewpoint = request.next_viewpoint;
+    sample.reset = request.reset;
+    sample.tour = request.tour;
+    sample.pause = request.pause;
     sample.stopped = command.order == Order::stop;
     sample.presses = state.presses;
     const Prediction ahead = predict(sample, limits, limits.frame_s, ground.query != nullptr ? ground.stair_m : 0);

@@ -1,4 +1,4 @@
-// From what is asked to where the eye is: filter, limits of speed and acceleration, pose integrated in double, prediction.
+// From commands to poses: filter, limits of speed and acceleration, integration in double, prediction.
 //
 //   Command ─► One-Euro filter ─► speed limit ─► acceleration limit ─► [may I go there?] ─► pose
 //
@@ -12,9 +12,9 @@
 
 namespace surefoot::input {
 
-/// Where a step may end, given where it wants to: walls, floors, stairs. `context` is the caller's; must not throw or allocate.
-/// Answers may lie nearer, or aside, or higher by a stair; one that moves the eye further than it wanted to, plus stair_m, is
-/// shortened to that, and one that is not finite holds it where it is.
+/// Collision with walls, floors and stairs: returns where a step may end. `context` belongs to the caller. Must not throw or
+/// allocate. The answer may be nearer, aside, or higher by a stair. It is shortened to the wanted length plus stair_m. A
+/// non-finite answer holds the eye where it is.
 struct Ground {
     using Query = dvec3 (*)(const void* context, const dvec3& from, const dvec3& wanted) noexcept;
     Query query = nullptr;
@@ -30,15 +30,15 @@ struct MotionLimits {
     double turn_rad_s = 1.2, look_rad_s = 0.9;
     double accel_rad_s2 = 8;
     double max_pitch_rad = 1.48;
-    double brake_s = 0.03;      ///< Order::brake reaches its wish within this, from any speed
+    double brake_s = 0.03;      ///< Order::brake reaches its request within this, from any speed
     bool level = false;         ///< true: forward is level however the eye looks; false: along the eye's -Z
     double frame_s = 1.0 / 30;  ///< how far ahead a sample's uncertainty is stated
     FilterSettings filter;
 };
-/// Longest time that is integrated in one step: after a stall the walk goes on from where it was, without a leap.
+/// Maximum time integrated in one step: after a stall the walk continues without a leap.
 constexpr double longest_step_s = 0.05;
 
-/// Angles are kept apart and summed with compensation (Kahan), so that neither horizon nor heading drift in hours.
+/// An angle summed with compensation (Kahan 1965), so that horizon and heading do not drift in hours.
 struct Angle {
     double value = 0, carry = 0;  ///< the true sum is value - carry
     void add(double increment);
@@ -58,11 +58,11 @@ struct MotionState {
     std::int64_t last_ns = -1;
     std::uint64_t sequence = 0;
     PressCounts presses;
-    std::uint64_t refused = 0;     ///< commands or answers of the ground that were not finite: taken as rest
-    std::uint64_t clock_back = 0;  ///< steps whose time lay before the last one's: time stood still
+    std::uint64_t refused = 0;     ///< non-finite commands or ground answers; taken as rest
+    std::uint64_t clock_back = 0;  ///< steps with a time before the last one; time stood still
 };
 
-/// Puts the eye somewhere, at rest. What is not finite is refused and leaves the state as it was (false).
+/// Moves the eye to a pose, at rest. False: the pose is not finite, and nothing changed.
 bool place(MotionState& state, const Pose& pose);
 [[nodiscard]] Pose pose_of(const MotionState& state);
 
@@ -77,10 +77,10 @@ struct Prediction {
 /// The sample's pose, that much later at the same rates; earlier where negative.
 Pose carried(const NavigationSample& sample, double by_s);
 
-/// The pose `lead_s` after the sample if the hand stays as it is, and how far from it any pose can be that the limits allow by
-/// then: stopped at any moment, by order or by a wall, and driven off again in any direction. Holds for every hand and order but
-/// `brake` towards a moving wish. `stair_m`: the Ground's. The bound: |v(s) - v0| <= |v0| + A s, integrated over the lead t, with
-/// A = a + |v0| (|w0| + alpha t / 2) since the walker's frame turns.
+/// The pose `lead_s` after the sample if the hand stays as it is, and a bound on its distance to any pose that the limits allow
+/// then. The bound covers a stop at any moment, by order or by a wall, and a new start in any direction. It holds for every input
+/// and order, except `brake` towards a moving request. `stair_m`: that of the Ground. The bound: |v(s) - v0| <= |v0| + A s,
+/// integrated over the lead t, with A = a + |v0| (|w0| + alpha t / 2), as the walker's frame turns.
 Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double stair_m = 0);
 
 }  // namespace surefoot::input

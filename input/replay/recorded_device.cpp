@@ -14,8 +14,8 @@ namespace {
 Result<void> check_times(const RecordedDevice& d) {
     const double span_s = d.duration_s();
     if (span_s <= max_recording_s) return {};
-    return Error{d.file, fmt::format("its reports span {:.4g} s", span_s),
-                 fmt::format("at most {:.0f} s can be walked; cut it, or mend its times", max_recording_s)};
+    return Error{d.file, fmt::format("The reports span {:.4g} s; at most {:.0f} s can be walked", span_s, max_recording_s),
+                 "Cut the recording, or correct its times", ErrorKind::out_of_limits};
 }
 
 /// A walk in which nothing ever moved has no reason that anyone could see.
@@ -30,11 +30,11 @@ Result<void> check_reports(const RecordedDevice& d) {
         decoder.numbered() && first.size > 0 ? std::to_integer<unsigned>(d.recording.report(0).front()) : 0U);
     const std::uint32_t expected = decoder.expected_bytes(id);
     return Error{fmt::format("{}: line {}", d.file, first.line),
-                 expected > 0 ? fmt::format("none of the {} reports fits the descriptor: {} bytes where it declares {}",
+                 expected > 0 ? fmt::format("None of the {} reports fits the descriptor: {} bytes where it declares {}",
                                             d.recording.reports.size(), first.size, expected)
-                              : fmt::format("none of the {} reports fits the descriptor: it declares no input report {}",
+                              : fmt::format("None of the {} reports fits the descriptor: it declares no input report {}",
                                             d.recording.reports.size(), id),
-                 "are descriptor and reports of the same device? record them together"};
+                 "Record the descriptor and the reports of one device together", ErrorKind::damaged};
 }
 
 /// The first fitting mapping of the file, else the default of the class.
@@ -44,7 +44,7 @@ Result<void> choose_mapping(RecordedDevice& d, const SteeringFile& steering, con
         auto mapper = compile(*chosen, d.device.controls);
         if (!mapper) {
             const Error& e = mapper.error();
-            return Error{fmt::format("{}: device '{}': {}", steering_name, chosen->name, e.place), e.what, e.remedy};
+            return Error{fmt::format("{}: device '{}': {}", steering_name, chosen->name, e.place), e.what, e.remedy, e.kind};
         }
         d.mapper = std::move(*mapper);
         d.mapping = chosen->name;
@@ -74,21 +74,24 @@ Result<RecordedDevice> open_recorded(const std::string& file, const SteeringFile
     d.file = file;
     d.recording = std::move(*recording);
     if (d.recording.descriptor.empty()) {
-        return Error{file, "has no R: line, which gives the report descriptor",
-                     "give a recording in hid-recorder's text format, whole from its first line"};
+        return Error{file, "The recording has no R: line, which gives the report descriptor",
+                     "Give a recording in hid-recorder's text format, whole from its first line", ErrorKind::damaged};
     }
     if (d.recording.reports.empty())
-        return Error{file, "holds no reports (E: lines)", "record it again while the device is moved"};
+        return Error{file, "The recording holds no reports (E: lines)", "Record again while the device is moved",
+                     ErrorKind::damaged};
     if (auto ok = check_times(d); !ok) return ok.error();
     Layout layout;
     if (const auto refusal = parse_descriptor(d.recording.descriptor, layout))
-        return Error{fmt::format("{}: R: byte {}", file, refusal->offset), refusal->what, refusal->remedy};
+        return Error{fmt::format("{}: R: byte {}", file, refusal->offset), refusal->what, refusal->remedy, ErrorKind::damaged};
     d.device = describe_device(std::move(layout), {d.recording.vendor, d.recording.product, d.recording.name});
     if (auto ok = choose_mapping(d, steering, steering_name); !ok) return ok.error();
     if (d.mapper.bindings.empty()) {
-        return Error{file,
-                     fmt::format("its device does not steer: class {}, {}", class_name(d.device.device_class), d.device.reason),
-                     "name its controls in a [[device]] of --steering FILE.toml, or record a joystick, gamepad or 3D mouse"};
+        return Error{
+            file,
+            fmt::format("The recorded device does not steer: class {}, {}", class_name(d.device.device_class), d.device.reason),
+            "Name its controls in a [[device]] of --steering FILE.toml, or record a joystick, gamepad or 3D mouse",
+            ErrorKind::unsupported};
     }
     if (auto ok = check_reports(d); !ok) return ok.error();
     return d;

@@ -1,4 +1,4 @@
-// A recording made ready to steer: its device described and classed, its mapping chosen and bound. All refusals come from here.
+// A recording made ready to steer: device described and classified, mapping chosen and bound. All its errors come from here.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace surefoot::input {
 
-/// What a recording may span: as long as a walk.
+/// Maximum length of a recording: that of a walk.
 constexpr double max_recording_s = 1e6;
 
 struct RecordedDevice {
@@ -25,9 +25,9 @@ struct RecordedDevice {
     [[nodiscard]] double duration_s() const;
 };
 
-/// Reads `file` and takes the first mapping of `steering` that fits, or the default of the device's class. Errors name the file
-/// and the line or byte: not a recording, no descriptor, no reports, cut off, refused descriptor, a class that does not steer,
-/// reports that do not fit the descriptor, a mapping whose controls the device has not got (then `steering_name` is the place).
+/// Reads `file` and takes the first matching mapping of `steering`, or the default of the device's class. Errors name the file
+/// and the line or byte. Errors: not a recording, cut off, no descriptor, a refused descriptor, no reports, reports that do not
+/// fit it, a class that does not steer. If the device lacks a control of the mapping, the place is `steering_name`.
 Result<RecordedDevice> open_recorded(const std::string& file, const SteeringFile& steering, const std::string& steering_name);
 
 }  // namespace surefoot::input

@@ -78,7 +78,7 @@ public:
 
 private:
     [[nodiscard]] Error error(std::string what, std::string remedy) const {
-        return {fmt::format("{}: line {}", place_, line_), std::move(what), std::move(remedy)};
+        return {fmt::format("{}: line {}", place_, line_), std::move(what), std::move(remedy), ErrorKind::damaged};
     }
 
     Result<void> read_line(std::string_view line) {
@@ -86,7 +86,7 @@ private:
         const auto head = words.next();
         if (head.empty() || head.front() == '#') return {};
         if (head.size() != 2 || head[1] != ':' || head[0] < 'A' || head[0] > 'Z') {
-            return error("this is no line of a recording", "lines begin with R:, N:, P:, I:, E:, D: or #");
+            return error("The line is not part of a recording", "Begin lines with R:, N:, P:, I:, E:, D: or #");
         }
         if (head[0] == 'D') return read_device(words);
         if (device_ != chosen_) {
@@ -113,7 +113,7 @@ private:
 
     Result<void> read_device(Words& words) {
         const auto n = number_in<std::uint32_t>(words.next(), 10);
-        if (!n) return error("a device line needs a number", "D: 0");
+        if (!n) return error("A device line needs a number", "Write it as D: 0");
         device_ = *n;
         if (!chosen_named_) chosen_ = *n;
         chosen_named_ = true;
@@ -124,7 +124,7 @@ private:
         const auto bus = number_in<std::uint16_t>(words.next(), 16), vendor = number_in<std::uint16_t>(words.next(), 16),
                    product = number_in<std::uint16_t>(words.next(), 16);
         if (!bus || !vendor || !product)
-            return error("an id line needs bus, vendor and product in hexadecimal", "I: 3 046d c626");
+            return error("An id line needs bus, vendor and product in hexadecimal", "Write it as I: 3 046d c626");
         recording_.bus = *bus;
         recording_.vendor = *vendor;
         recording_.product = *product;
@@ -135,33 +135,38 @@ private:
     Result<void> read_bytes(Words& words, std::vector<std::byte>& to) {
         const auto length = number_in<std::size_t>(words.next(), 10);
         if (!length || *length > max_recorded_report_bytes) {
-            return error(fmt::format("a length of 0 to {} bytes must stand before the bytes", max_recorded_report_bytes),
-                         "E: 000000.000000 2 01 ff");
+            return error(fmt::format("A length of 0 to {} bytes must stand before the bytes", max_recorded_report_bytes),
+                         "Write a report as E: 000000.000000 2 01 ff");
         }
         for (std::size_t i = 0; i < *length; ++i) {
             const auto word = words.next();
             if (word.empty())
-                return error(fmt::format("{} bytes are announced, {} are there", *length, i), "is the file cut off?");
+                return error(fmt::format("The line announces {} bytes and has {}", *length, i),
+                             "Check whether the file is cut off");
             const auto value = word.size() <= 2 ? number_in<std::uint8_t>(word, 16) : std::nullopt;
-            if (!value) return error(fmt::format("'{}' is no byte in hexadecimal", word.substr(0, 16)), "bytes are 00 to ff");
+            if (!value)
+                return error(fmt::format("The word '{}' is no byte in hexadecimal", word.substr(0, 16)),
+                             "Write bytes as 00 to ff");
             to.push_back(static_cast<std::byte>(*value));
         }
         if (const auto rest = words.rest(); !rest.empty() && rest.front() != '#') {
-            return error(fmt::format("{} bytes are announced, but more follow", *length), "does the length fit the bytes?");
+            return error(fmt::format("The line announces {} bytes, but more follow", *length), "Correct the length");
         }
         return {};
     }
 
     Result<void> read_descriptor_line(Words& words) {
         if (!recording_.descriptor.empty())
-            return error("a second descriptor for the same device", "put D: 1 before another device's lines");
+            return error("The device has a second descriptor", "Put D: 1 before the lines of another device");
         return read_bytes(words, recording_.descriptor);
     }
 
     Result<void> read_report(Words& words) {
         const auto word = words.next();
         const auto time = time_of(word);
-        if (!time) return error(fmt::format("'{}' is no time in seconds", word.substr(0, 32)), "E: 000012.345678 2 01 ff");
+        if (!time)
+            return error(fmt::format("The word '{}' is no time in seconds", word.substr(0, 32)),
+                         "Write a report as E: 000012.345678 2 01 ff");
         RecordedReport report{*time, recording_.bytes.size(), 0, line_};
         if (auto read = read_bytes(words, recording_.bytes); !read) return read;
         report.size = recording_.bytes.size() - report.first;

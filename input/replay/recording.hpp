@@ -43,7 +43,7 @@ struct Recording {
     void add(std::int64_t time_us, std::span<const std::byte> report);
 };
 
-/// `text` of a recording; errors name "`place`: line N". Reads the device that the first D: line names, or the only one.
+/// Parses the `text` of a recording. Errors name "`place`: line N". Reads the device of the first D: line, or the only one.
 Result<Recording> parse_recording(std::string_view text, const std::string& place);
 Result<Recording> read_recording(const std::string& file);
 

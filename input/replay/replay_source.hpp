@@ -7,8 +7,8 @@
 
 namespace surefoot::input {
 
-/// Reports are stamped with the time at which they were due, as the kernel would have: what the reader is late shows in their
-/// age. Times that go back count as the time before. When all reports were read, silence means rest, whatever the device.
+/// Reports are stamped with their due time, as the kernel would do, so a late reader shows in their age. A time that goes back
+/// counts as the time before. After the last report, silence means rest for every device.
 class ReplaySource final : public ReportSource {
 public:
     explicit ReplaySource(RecordedDevice recorded);

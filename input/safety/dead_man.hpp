@@ -1,5 +1,5 @@
-// The dead-man switch: walks only while held. Let go: stops at once. Pressed: counts after 20 ms. Held long without a walk: asks
-// to be pressed anew, so that a weight laid on it is not a hand.
+// The dead-man switch: the walk moves only while it is held. Release stops at once; a press counts after 20 ms. If it is held
+// long without motion, it must be pressed again: a weight on the switch is not a hand.
 #pragma once
 
 #include <cstdint>

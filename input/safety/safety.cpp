@@ -13,15 +13,15 @@ namespace {
 constexpr double longest_slew_s = 0.05;               // after a stall the slew does not leap
 constexpr std::int64_t brake_window_ns = 50'000'000;  // for so long after a loss the motion brakes
 
-bool asks(const Wish& w) { return w.forward != 0 || w.side != 0 || w.up != 0 || w.turn != 0 || w.look != 0; }
+bool requests_motion(const MotionRequest& w) { return w.forward != 0 || w.side != 0 || w.up != 0 || w.turn != 0 || w.look != 0; }
 
-Wish without_edges(Wish wish) {
-    wish.next_viewpoint = wish.reset = wish.tour = wish.pause = false;
-    return wish;
+MotionRequest without_edges(MotionRequest request) {
+    request.next_viewpoint = request.reset = request.tour = request.pause = false;
+    return request;
 }
 
 /// Both vectors move along the straight way, so what is bounded stays bounded.
-void slew(Wish& at, const Wish& to, double most) {
+void slew(MotionRequest& at, const MotionRequest& to, double most) {
     const auto part = [&](dvec3 from, const dvec3& target) {
         const dvec3 way = target - from;
         const double length = glm::length(way);
@@ -35,8 +35,8 @@ void slew(Wish& at, const Wish& to, double most) {
 }
 
 /// Why the device is held at rest now.
-Held judge(SafetyState& state, SafetyState::Device& device, const SafetyLimits& limits, const Source& source,
-           std::int64_t now_ns) {
+Held hold_reason(SafetyState& state, SafetyState::Device& device, const SafetyLimits& limits, const Source& source,
+                 std::int64_t now_ns) {
     const bool replugged = source.connected && (!device.connected || source.connection != device.connection);
     if (replugged) {
         const bool had_stop = device.had_stop;
@@ -55,12 +55,12 @@ Held judge(SafetyState& state, SafetyState::Device& device, const SafetyLimits& 
     } else if (fresh) {
         device.overflow = false;
     }
-    const News news{fresh, source.equal_report, !source.moved, !source.asked.neutral, source.stamp_ns};
-    const bool quiet = silent(device.habit, source.reporting, news, now_ns, limits.age_limit_ns);
-    if (!device.overflow && source.reports > 0 && (source.seen_neutral || source.asked.neutral)) device.interlocked = false;
+    const ReportActivity activity{fresh, source.equal_report, !source.moved, !source.output.neutral, source.stamp_ns};
+    const bool quiet = timed_out(device.cadence, source.reporting, activity, now_ns, limits.age_limit_ns);
+    if (!device.overflow && source.reports > 0 && (source.seen_neutral || source.output.neutral)) device.interlocked = false;
     if (device.overflow) return Held::overflow;
     if (device.interlocked) return Held::not_neutral;
-    return quiet ? Held::silent : Held::no;
+    return quiet ? Held::timed_out : Held::no;
 }
 
 /// Latched at the first sign; taken off by a reset pressed anew while nothing is asserted.
@@ -69,10 +69,10 @@ void emergency_stop(SafetyState& state, std::span<const Source> sources, const L
     state.asserted = lines.stop;
     for (std::size_t i = 0; i < sources.size(); ++i) {
         auto& device = state.devices[i];
-        device.had_stop = device.had_stop || sources[i].asked.has_stop;
+        device.had_stop = device.had_stop || sources[i].output.has_stop;
         // A pulled cable is a broken wire.
-        state.asserted |= device.had_stop && (!sources[i].connected || sources[i].asked.stop);
-        reset |= sources[i].connected && sources[i].asked.stop_reset;
+        state.asserted |= device.had_stop && (!sources[i].connected || sources[i].output.stop);
+        reset |= sources[i].connected && sources[i].output.stop_reset;
     }
     if (state.asserted) {
         if (!state.latched) ++state.stops;
@@ -87,12 +87,12 @@ void emergency_stop(SafetyState& state, std::span<const Source> sources, const L
 
 }  // namespace
 
-Asked absorbed(const Asked& older, const Asked& newer) {
-    Asked both = newer;
-    both.wish.next_viewpoint |= older.wish.next_viewpoint;
-    both.wish.reset |= older.wish.reset;
-    both.wish.tour |= older.wish.tour;
-    both.wish.pause |= older.wish.pause;
+DeviceOutput combined(const DeviceOutput& older, const DeviceOutput& newer) {
+    DeviceOutput both = newer;
+    both.request.next_viewpoint |= older.request.next_viewpoint;
+    both.request.reset |= older.request.reset;
+    both.request.tour |= older.request.tour;
+    both.request.pause |= older.request.pause;
     both.has_stop |= older.has_stop;
     both.stop |= older.stop;
     both.has_dead_man |= older.has_dead_man;
@@ -107,7 +107,7 @@ Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Sou
     const double dt_s = std::min(static_cast<double>(passed) * 1e-9, longest_slew_s);
     const std::int64_t now = state.last_ns = std::max(state.last_ns, now_ns);
 
-    std::array<Wish, max_devices> passing{};
+    std::array<MotionRequest, max_devices> passing{};
     bool has_dead_man = lines.has_dead_man, dead_man = !lines.has_dead_man || lines.dead_man, walking = false;
     emergency_stop(state, sources, lines);
     for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -115,22 +115,22 @@ Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Sou
         const Source& source = sources[i];
         const bool contributed = device.contributed;
         const Held before = device.held;
-        device.held = judge(state, device, limits, source, now);
-        if (device.held == Held::no) passing[i] = source.asked.wish;
-        device.contributed = asks(passing[i]);
+        device.held = hold_reason(state, device, limits, source, now);
+        if (device.held == Held::no) passing[i] = source.output.request;
+        device.contributed = requests_motion(passing[i]);
         if (device.held != Held::no && (contributed || before == Held::no)) state.brake_until_ns = now + brake_window_ns;
-        if (device.held == Held::silent && before != Held::silent) ++state.silences;
+        if (device.held == Held::timed_out && before != Held::timed_out) ++state.timeouts;
         if (device.held == Held::disconnected && before != Held::disconnected) ++state.losses;
         device.passed = passing[i];
         if (source.connected) state.stamp_ns = std::max(state.stamp_ns, source.stamp_ns);
         // A switch in a device that is gone is not held.
-        if (source.asked.has_dead_man) {
+        if (source.output.has_dead_man) {
             has_dead_man = true;
-            dead_man = dead_man && source.connected && source.asked.dead_man;
+            dead_man = dead_man && source.connected && source.output.dead_man;
         }
         walking = walking || device.contributed;
     }
-    Wish wanted = merge(std::span(passing).first(sources.size()));
+    MotionRequest wanted = merge(std::span(passing).first(sources.size()));
     const bool held = step(state.dead_man, limits.dead_man, has_dead_man && dead_man, walking, now);
     state.wants_press = state.dead_man.tired;
 
@@ -138,14 +138,14 @@ Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Sou
     command.stamp_ns = state.stamp_ns;
     if (state.latched || (has_dead_man && !held)) {
         // Only pause may still be asked for: nothing else should move the picture.
-        command.wish.pause = wanted.pause;
+        command.request.pause = wanted.pause;
         command.order = Order::stop;
         state.slewed = {};
         return command;
     }
     const bool brake = now < state.brake_until_ns;
     slew(state.slewed, wanted, (brake ? std::max(limits.slew_per_s, 1 / limits.brake_s) : limits.slew_per_s) * dt_s);
-    command.wish = state.slewed;
+    command.request = state.slewed;
     command.order = brake ? Order::brake : Order::walk;
     state.slewed = without_edges(state.slewed);
     return command;

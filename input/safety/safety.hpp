@@ -1,7 +1,7 @@
-// What may be walked: lets each device's wish through, holds it back, or stops everything. It may only reduce.
+// Safety: passes each device's request, holds it at rest, or stops everything. It may only reduce motion.
 //
-//   Asked of each device ─► at rest if gone, silent, overflowed, or not yet seen neutral ─► bounded sum ─► slew ─► Command
-//   lines (GPIO), buttons ─► emergency stop (latched), dead-man ──────────────────────────────────────────► Order::stop
+//   DeviceOutput ─► at rest if gone, timed out, overflowed, or not yet seen neutral ─► bounded sum ─► slew ─► Command
+//   lines (GPIO), buttons ─► emergency stop (latched), dead-man ─────────────────────────────────────► Order::stop
 //
 // A state machine with a pure step function: time and inputs are given, nothing allocates, locks or reads a clock.
 #pragma once
@@ -13,7 +13,7 @@
 #include "input/controls.hpp"
 #include "input/map/mapper.hpp"
 #include "input/safety/dead_man.hpp"
-#include "input/safety/habit.hpp"
+#include "input/safety/report_cadence.hpp"
 
 namespace surefoot::input {
 
@@ -21,11 +21,11 @@ constexpr std::size_t max_devices = 16;
 
 struct SafetyLimits {
     std::int64_t age_limit_ns = 100'000'000;  ///< no deflection of a streaming device is believed for longer
-    /// So many reports in one drain: the kernel's ring was full and has dropped the newest ones. hidraw's 64 slots hold 63
-    /// (one stays free to tell full from empty), so 63 is the least count after which nothing is known.
+    /// This many reports in one drain mean overflow: the kernel's ring was full and dropped the newest. hidraw's ring of 64 slots
+    /// holds 63, so from 63 on reports may be missing.
     std::uint32_t full_drain = 63;
-    double slew_per_s = 8;  ///< of a wish, full deflections a second
-    double brake_s = 0.03;  ///< a lost device's full deflection is gone after this; within R6's 50 ms with a tick to spare
+    double slew_per_s = 8;  ///< of a request, full deflections a second
+    double brake_s = 0.03;  ///< time to rest after a device is lost; with one tick this stays below 50 ms
     DeadManSettings dead_man;
 };
 
@@ -35,13 +35,13 @@ struct Source {
     std::uint32_t connection = 0;  ///< counts its connections: a replug between two steps is still seen
     std::uint64_t reports = 0;     ///< accepted since it was connected
     std::uint32_t drained = 0;     ///< most reports that one drain of this step read (every drain reads until nothing is left)
-    bool equal_report = false;     ///< one of them was equal to its forerunner
-    bool moved = false;            ///< one of them moved something, or nothing can be told from its noise (Mapper::still)
+    bool equal_report = false;     ///< one of them was equal to the one before
+    bool moved = false;            ///< one of them moved a control, or its noise cannot show (Mapper::still)
     bool lost = false;             ///< its reader knows that reports were lost (a ring of our own overflowed)
     bool seen_neutral = false;     ///< in some report of this step
     std::int64_t stamp_ns = 0;     ///< of the newest report
     Reporting reporting = Reporting::learn;
-    Asked asked;  ///< newest; its edges and stops of any report since the last step, dead_man of all
+    DeviceOutput output;  ///< newest; its edges and stops of any report since the last step, dead_man of all
 };
 
 /// Switches that are wired, not plugged: from gpio/. Lost chips and broken wires come as asserted and not pressed.
@@ -52,19 +52,19 @@ struct Lines {
     bool dead_man = false;  ///< held, without a break since the last step
 };
 
-enum class Held : std::uint8_t { no, disconnected, not_neutral, silent, overflow };  ///< why a device is held at rest
+enum class Held : std::uint8_t { no, disconnected, not_neutral, timed_out, overflow };  ///< why a device is held at rest
 
 struct SafetyState {
     struct Device {
         std::uint32_t connection = 0;
         bool connected = false, interlocked = true, overflow = false, had_stop = false, contributed = false;
         std::uint64_t reports = 0;
-        Habit habit;
+        ReportCadence cadence;
         Held held = Held::disconnected;
-        Wish passed;  ///< what it contributed to the last step
+        MotionRequest passed;  ///< its contribution to the last step
     };
     std::array<Device, max_devices> devices{};
-    Wish slewed;
+    MotionRequest slewed;
     DeadMan dead_man;
     bool latched = false;      ///< emergency stop; load it from the stop memory at the start
     bool asserted = false;     ///< now
@@ -72,14 +72,14 @@ struct SafetyState {
     bool wants_press = false;  ///< the dead-man asks to be pressed anew
     std::int64_t last_ns = -1, brake_until_ns = -1;
     std::int64_t stamp_ns = 0;
-    std::uint64_t overflows = 0, silences = 0, losses = 0, stops = 0;  ///< counted events
+    std::uint64_t overflows = 0, timeouts = 0, losses = 0, stops = 0;  ///< counted events
 };
 
 /// One step. At most max_devices sources; a source keeps its index. `now_ns` not before the last step's (then time stands still).
 Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Source> sources, const Lines& lines,
              std::int64_t now_ns);
 
-/// Two calls of ask() within one step made one: the newest wish, edges of both, stop if either, dead-man if both.
-Asked absorbed(const Asked& older, const Asked& newer);
+/// Two calls of evaluate() within one step made one: the newest request, edges of both, stop if either, dead-man if both.
+DeviceOutput combined(const DeviceOutput& older, const DeviceOutput& newer);
 
 }  // namespace surefoot::input

@@ -18,10 +18,10 @@ RememberedStop load_stop(const std::string& file) {
     const auto status = std::filesystem::symlink_status(file, problem);
     if (status.type() == std::filesystem::file_type::not_found) return {};
     const auto text = read_text(file, 4096);
-    if (!text) return {true, text.error().text() + "; taken as latched"};
+    if (!text) return {true, text.error().text() + " The stop counts as latched."};
     if (*text == clear_text) return {};
     if (*text == latched_text) return {true, {}};
-    return {true, file + ": says neither latched nor clear; taken as latched"};
+    return {true, file + ": The file says neither latched nor clear. The stop counts as latched."};
 }
 
 Result<void> store_stop(const std::string& file, bool latched) { return write_text(file, latched ? latched_text : clear_text); }

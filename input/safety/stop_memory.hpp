@@ -1,4 +1,4 @@
-// The emergency stop's memory across restarts: one small file, replaced whole. Never call it from the input or frame thread.
+// Keeps a latched emergency stop across restarts, in one small file. Never call it from the input or frame thread.
 #pragma once
 
 #include <atomic>
@@ -10,10 +10,10 @@ namespace surefoot::input {
 
 struct RememberedStop {
     bool latched = false;
-    std::string note;  ///< why it is latched though no one remembered it so; empty otherwise
+    std::string note;  ///< why it counts as latched without a stored stop; else empty
 };
 
-/// No file: never stopped, so not latched. A file that cannot be read, or says anything but the two known words: latched.
+/// No file: not latched. A file that cannot be read, or has other content than the two known texts: latched.
 RememberedStop load_stop(const std::string& file);
 /// Synced and renamed before it returns. Error: the file's, with the remedy.
 Result<void> store_stop(const std::string& file, bool latched);

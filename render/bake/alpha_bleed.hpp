@@ -1,5 +1,5 @@
-// Alpha bleeding: the colour of texels that are never shown. Filters and mip levels mix it into what is drawn beside them, and
-// many pictures have anything there: white, black, magenta.
+// Alpha bleeding: gives never-shown texels the colour of shown ones. Filters and mip levels mix hidden texels into their
+// neighbours, and many images hold white, black or magenta there.
 #pragma once
 
 #include <array>
@@ -11,20 +11,20 @@
 
 namespace surefoot::bake {
 
-/// Which alphas there are in a picture.
+/// [a]: whether some texel of the image has alpha a.
 using Alphas = std::array<bool, 256>;
 Alphas alphas_of(const image::Image& image);
 
-/// The largest alpha in the picture with which the material shows nothing: below a mask's cutoff, or 0 of what fades. None where
-/// every texel is shown: of an opaque material, and of one without a picture.
+/// The largest alpha in the image that the material does not show: below the cutoff of a mask, or 0 where it blends. None if
+/// every texel is shown: an opaque material, or no image.
 std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const Alphas& there);
 inline std::optional<std::uint8_t> hidden_alpha(const importer::Material& material, const image::Image& image) {
     return hidden_alpha(material, alphas_of(image));
 }
 
-/// Gives texels with alpha at most `hidden` the colour of the nearest that has more (steps along rows and columns; on over the
-/// borders, unless `clamp`). Alphas stay, and so does all of a picture in which nothing has more. RGBA8, width * height texels,
-/// at most 16384 a side.
+/// Gives each texel with alpha <= `hidden` the colour of the nearest texel with a larger alpha. Distance: steps along rows and
+/// columns, wrapping over the borders unless `clamp`. Alphas do not change. An image without shown texels does not change.
+/// RGBA8, width * height texels, at most 16384 a side.
 void bleed_colours(std::span<std::uint8_t> rgba, std::uint32_t width, std::uint32_t height, bool clamp, std::uint8_t hidden);
 
 }  // namespace surefoot::bake

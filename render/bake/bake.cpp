@@ -25,7 +25,9 @@ namespace {
 
 std::string place_of(const importer::Scene& scene) { return scene.sources.empty() ? "bake" : scene.sources.front(); }
 
-Error stopped_by_user(const importer::Scene& scene) { return {place_of(scene), "stopped by the user", "nothing was written"}; }
+Error stopped_by_user(const importer::Scene& scene) {
+    return {place_of(scene), "The user stopped the bake; nothing was written", "", ErrorKind::stopped};
+}
 
 /// body(0) to body(count - 1) on all threads of the arena.
 template <class Body>
@@ -38,7 +40,7 @@ void for_all(std::size_t count, const Body& body) {
     loop.joined();
 }
 
-/// Progress from many threads, told about ten times a second; and the wish to stop.
+/// Progress from many threads, told about ten times a second; and the request to stop.
 class Stage {
 public:
     Stage(const Progress& progress, std::string_view name, std::size_t total) : progress_(progress), name_(name), total_(total) {}
@@ -47,9 +49,9 @@ public:
         const std::size_t done = done_.fetch_add(1) + 1;
         const auto now = std::chrono::steady_clock::now();
         if (mutex_.try_lock()) {
-            if (now - said_ > std::chrono::milliseconds(100) || done == total_) {
-                said_ = now;
-                progress_.say(name_, static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total_)));
+            if (now - last_update_ > std::chrono::milliseconds(100) || done == total_) {
+                last_update_ = now;
+                progress_.update(name_, static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total_)));
             }
             mutex_.unlock();
         }
@@ -62,10 +64,10 @@ private:
     std::size_t total_;
     std::atomic<std::size_t> done_{0};
     Mutex mutex_;
-    std::chrono::steady_clock::time_point said_ GUARDED_BY(mutex_){};
+    std::chrono::steady_clock::time_point last_update_ GUARDED_BY(mutex_){};
 };
 
-struct Bakery {
+struct BakeContext {
     const importer::Scene& scene;
     const BakeOptions& options;
     const Progress& progress;
@@ -111,7 +113,7 @@ ChainOptions chain_options(const BakeOptions& options, model::Index proxy) {
 }
 
 /// The 1/16-frame rule: as many triangles as fit, seen near and over a quarter of the picture.
-std::uint32_t most_triangles(const BakeOptions& options) {
+std::uint32_t max_triangles(const BakeOptions& options) {
     const model::CostModel fallback = model::default_costs();
     const model::CostModel& costs = options.costs != nullptr && !options.costs->grids.empty() ? *options.costs : fallback;
     const double limit_us = options.frame_us / 16.0;
@@ -125,7 +127,7 @@ std::uint32_t most_triangles(const BakeOptions& options) {
     return most;
 }
 
-ProxyInput Bakery::proxy_input() const {
+ProxyInput BakeContext::proxy_input() const {
     ProxyInput input;
     input.objects = objects;
     input.forms = forms;
@@ -139,7 +141,7 @@ ProxyInput Bakery::proxy_input() const {
     return input;
 }
 
-void Bakery::place_objects() {
+void BakeContext::place_objects() {
     for (const importer::Node& node : scene.nodes) {
         if (node.mesh == importer::none) continue;
         PlacedObject object;
@@ -152,7 +154,7 @@ void Bakery::place_objects() {
     }
 }
 
-bool Bakery::make_forms() {
+bool BakeContext::make_forms() {
     std::vector<std::vector<MeshForm>> by_mesh(scene.meshes.size());
     std::vector<double> stretch(scene.meshes.size(), 0.0);
     Box world;
@@ -170,7 +172,7 @@ bool Bakery::make_forms() {
     }
     const dvec3 extent = world.max - world.min;
     const double longest_m = std::max({extent.x, extent.y, extent.z}) / 8.0;
-    const std::uint32_t most = most_triangles(options);
+    const std::uint32_t most = max_triangles(options);
     Stage stage(progress, "levels of detail", scene.meshes.size());
     std::atomic<bool> go{true};
     ChainOptions chain = chain_options(options, proxy_or_none);
@@ -184,7 +186,7 @@ bool Bakery::make_forms() {
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
         CutLimits limits;
-        limits.most_triangles = most;
+        limits.max_triangles = most;
         limits.longest_m = longest_m / stretch[m];
         by_mesh[m] = bake::make_forms(mesh_geometry(scene.meshes[m], model), limits, chain);
         if (!stage.step()) go = false;
@@ -194,7 +196,7 @@ bool Bakery::make_forms() {
 }
 
 /// Forms get their places in one list; an object of several forms becomes as many pieces.
-void Bakery::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
+void BakeContext::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
     std::vector<std::uint32_t> first(by_mesh.size()), count(by_mesh.size());
     for (std::size_t m = 0; m < by_mesh.size(); ++m) {
         first[m] = static_cast<std::uint32_t>(forms.size());
@@ -214,7 +216,7 @@ void Bakery::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
     objects = std::move(placed);
 }
 
-bool Bakery::make_clusters() {
+bool BakeContext::make_clusters() {
     std::vector<Box> boxes;
     for (const PlacedObject& object : objects) boxes.push_back(object.box);
     tree = grow_clusters(boxes, 8);
@@ -248,7 +250,7 @@ bool Bakery::make_clusters() {
     return go;
 }
 
-bool Bakery::make_object_boxes() {
+bool BakeContext::make_object_boxes() {
     object_boxes.resize(objects.size());
     const ProxyInput input = proxy_input();
     Stage stage(progress, "boxes", objects.size());
@@ -263,7 +265,7 @@ bool Bakery::make_object_boxes() {
     return go;
 }
 
-model::Index Bakery::add_name(const std::string& name) {
+model::Index BakeContext::add_name(const std::string& name) {
     if (name.empty()) return 0;
     const auto at = static_cast<model::Index>(model.names.size());
     model.names += name;
@@ -277,7 +279,7 @@ std::uint32_t faces_of(const BoxForm& box) {
     return faces;
 }
 
-void Bakery::emit_object(model::Index index, std::uint32_t which, const std::vector<EmittedChain>& chains) {
+void BakeContext::emit_object(model::Index index, std::uint32_t which, const std::vector<EmittedChain>& chains) {
     const PlacedObject& object = objects[which];
     const MeshForm& form = forms[object.mesh];
     model::Node& node = model.nodes[index];
@@ -299,7 +301,8 @@ void Bakery::emit_object(model::Index index, std::uint32_t which, const std::vec
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
 }
 
-void Bakery::emit_cluster(model::Index index, std::uint32_t which, std::vector<std::pair<model::Index, std::uint32_t>>& open) {
+void BakeContext::emit_cluster(model::Index index, std::uint32_t which,
+                               std::vector<std::pair<model::Index, std::uint32_t>>& open) {
     const ClusterTree::Cluster& cluster = tree.clusters[which];
     const ClusterForm& form = clusters[which];
     model.nodes[index].box = cluster.box;
@@ -319,7 +322,7 @@ void Bakery::emit_cluster(model::Index index, std::uint32_t which, std::vector<s
     }
 }
 
-void Bakery::emit() {
+void BakeContext::emit() {
     model.names.assign(1, '\0');
     std::vector<EmittedChain> chains(forms.size());
     std::vector<std::uint64_t> material_triangles(scene.materials.size(), 0);
@@ -359,33 +362,34 @@ void Bakery::emit() {
 }  // namespace
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
-    Bakery bakery{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}};
-    bakery.cut_out = cut_out_materials(scene);
-    bakery.proxy = add_materials(scene, bakery.model);
-    mark_vertex_colours(scene, bakery.model);
+    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}};
+    context.cut_out = cut_out_materials(scene);
+    context.proxy = add_materials(scene, context.model);
+    mark_vertex_colours(scene, context.model);
     bool coloured = false;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        coloured |= (bakery.model.materials[m].effects & (model::effect_texture | model::effect_vertex_colour)) != 0;
+        coloured |= (context.model.materials[m].effects & (model::effect_texture | model::effect_vertex_colour)) != 0;
     }
-    bakery.proxy_or_none = coloured ? bakery.proxy : model::none;
-    bakery.place_objects();
+    context.proxy_or_none = coloured ? context.proxy : model::none;
+    context.place_objects();
     bool done = true;
     const int workers =
         options.workers > 0 ? options.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     tbb::task_arena arena(workers);
     arena.execute([&] {
-        done = bakery.make_forms();
-        if (done && !bakery.objects.empty()) done = bakery.make_clusters() && bakery.make_object_boxes();
+        done = context.make_forms();
+        if (done && !context.objects.empty()) done = context.make_clusters() && context.make_object_boxes();
     });
     if (!done) return stopped_by_user(scene);
-    if (bakery.objects.empty()) {
-        return Error{place_of(scene), "there is nothing to draw in it", "check that its nodes have meshes with triangles"};
+    if (context.objects.empty()) {
+        return Error{place_of(scene), "The scene holds nothing to draw", "Check that its nodes have meshes with triangles",
+                     ErrorKind::damaged};
     }
-    if (auto ok = check_limits(counts_of(bakery.proxy_input(), bakery.object_boxes), place_of(scene), options.most); !ok)
+    if (auto ok = check_limits(counts_of(context.proxy_input(), context.object_boxes), place_of(scene), options.most); !ok)
         return ok.error();
-    progress.say("write", 0.0);
-    arena.execute([&] { bakery.emit(); });
-    model::Model& model = bakery.model;
+    progress.update("write", 0.0);
+    arena.execute([&] { context.emit(); });
+    model::Model& model = context.model;
     model.provenance.sources = scene.sources;
     model.provenance.warnings = scene.warnings;
     model.provenance.quality = options.quality == Quality::full ? "full" : "draft";

@@ -50,8 +50,8 @@ MipLevel level_for(const model::Model& model, const model::Texture& texture, con
 }
 
 /// Barycentric places on an even grid of a triangle.
-template <class Visit>
-void each_sample(const Visit& visit) {
+template <class Visitor>
+void each_sample(const Visitor& visit) {
     for (int i = 0; i < steps; ++i) {
         for (int j = 0; i + j < steps; ++j)
             visit(std::array<float, 3>{(static_cast<float>(i) + 1.0F / 3) / steps, (static_cast<float>(j) + 1.0F / 3) / steps,

@@ -1,4 +1,4 @@
-// Boxes with pictures of the actual objects on their faces: six orthographic captures (Maciel 3.4.2, 3.6).
+// Box impostors: six orthographic captures of the actual objects, one a face (Maciel 1994, 3.4.2 and 3.6).
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@ namespace surefoot::bake {
 struct ColouredTriangle {
     std::array<vec3, 3> corners;  ///< relative to the box's centre
     std::array<std::array<std::uint8_t, 4>, 3> colours;
-    float shown = 1;  ///< share of it; less of what a mask cuts out, of which as many texels are painted, scattered
+    float shown = 1;  ///< share that passes the alpha test; that share of its texels is painted, scattered
 };
 
-/// One face: what an eye far out along the axis sees, row 0 at the low end of the second in-plane axis.
+/// One face, as an orthographic camera on its axis sees it. Row 0 lies at the low end of the second in-plane axis.
 struct FaceCapture {
     std::vector<std::uint8_t> rgba;      ///< pixels x pixels; alpha 0 where nothing is
-    std::array<std::uint8_t, 4> mean{};  ///< of what is covered
+    std::array<std::uint8_t, 4> mean{};  ///< of the covered texels
     float depth_m = 0;                   ///< the deepest captured point behind the face
     float covered = 0;                   ///< share of the face
 };

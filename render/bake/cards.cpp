@@ -78,11 +78,11 @@ double area_of(const Geometry& g, const std::vector<std::uint32_t>& indices) {
     return area;
 }
 
-void spread(const Geometry& g, Cards& cards, std::size_t most_triangles) {
+void spread(const Geometry& g, Cards& cards, std::size_t max_triangles) {
     struct Place {
         vec3 middle;
-        float thrift;  ///< less for a larger one
-        float away;    ///< from those that are kept
+        float size_factor;  ///< less for a larger one
+        float away;         ///< from those that are kept
     };
     std::vector<Place> places;
     places.reserve(cards.size());
@@ -104,14 +104,14 @@ void spread(const Geometry& g, Cards& cards, std::size_t most_triangles) {
         if (places[i].away > places[next].away) next = i;
     }
     std::size_t ordered = 0;
-    for (std::size_t kept = 0; kept < cards.size() && ordered < most_triangles; ++kept) {
+    for (std::size_t kept = 0; kept < cards.size() && ordered < max_triangles; ++kept) {
         std::swap(cards[kept], cards[next]);
         std::swap(places[kept], places[next]);
         ordered += cards[kept].size() / 3;
         next = kept + 1;
         for (std::size_t i = kept + 1; i < cards.size(); ++i) {
             Place& place = places[i];
-            const float from = glm::length(place.middle - places[kept].middle) * place.thrift;
+            const float from = glm::length(place.middle - places[kept].middle) * place.size_factor;
             place.away = kept == 0 ? from : std::min(place.away, from);
             if (place.away > places[next].away) next = i;
         }

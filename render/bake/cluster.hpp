@@ -19,8 +19,9 @@ struct ClusterTree {
     std::uint32_t root = 0;  ///< entity
 };
 
-/// Cells double from the smallest object's size to the whole; in each, what fits (loosely: centre inside, size at most the
-/// cell's) and is not alone becomes a cluster. No cluster has more than `most` children: crowds are cut at medians first.
+/// Cell sizes double from the smallest object's size to the whole scene. Entities that fit into one cell become a cluster; one
+/// alone does not. An entity fits if its centre is inside and its size is at most the cell's. No cluster has more than `most`
+/// children: larger groups are first split at medians.
 ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t most);
 
 }  // namespace surefoot::bake

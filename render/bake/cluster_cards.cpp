@@ -38,7 +38,7 @@ struct Thinning {
         limits.relative = wanted.slack;
         for (const GeometryPart& part : parts) {
             cards.push_back({part.material, cards_of(g, part), area_of(g, part.indices)});
-            spread(g, cards.back().cards, wanted.most);
+            spread(g, cards.back().cards, wanted.max_triangles);
             triangles += part.indices.size() / 3;
         }
         source.add(g.vertices, parts);
@@ -138,8 +138,8 @@ std::vector<GeometryPart> take_cards(Geometry& g, const std::vector<bool>& cut_o
 
 LodChain with_cards(LodChain chain, const Geometry& g, const std::vector<GeometryPart>& cards, const CardLimits& limits) {
     const Thinning from(g, cards, limits);
-    std::vector<double> budgets{static_cast<double>(std::min<std::size_t>(limits.most, from.triangles))};
-    while (budgets.back() >= 2.0 * limits.least) budgets.push_back(budgets.back() / 2);
+    std::vector<double> budgets{static_cast<double>(std::min<std::size_t>(limits.max_triangles, from.triangles))};
+    while (budgets.back() >= 2.0 * limits.min_triangles) budgets.push_back(budgets.back() / 2);
     std::vector<Level> solid = std::move(chain.levels);
     chain.levels.clear();
     chain.full.centre = g.centre;

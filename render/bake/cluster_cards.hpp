@@ -1,5 +1,5 @@
-// Cards in clusters: crowns of many trees, a meadow's grass. A grid would close them to dark solids; a few of them, larger, keep
-// their look (cards.hpp).
+// Alpha-tested cards in clusters: crowns of many trees, the grass of a meadow. Vertex clustering would close them to dark
+// solids; fewer, larger cards keep their look (cards.hpp).
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,20 @@
 
 namespace surefoot::bake {
 
-/// Takes out of the geometry the parts of materials that are cut out (by material). Where these are too few to be thinned out, or
-/// one of them is most of it or of more triangles than `largest_triangles`, they stay, in baked colours and the proxy's material.
+/// Moves the parts of alpha-tested materials out of the geometry. `cut_out`: by material. If there are too few
+/// cards, or one is most of them or has more than `largest_triangles`, they stay, with baked colours and the proxy's material.
 std::vector<GeometryPart> take_cards(Geometry& g, const std::vector<bool>& cut_out, model::Index proxy_material,
                                      std::uint32_t largest_triangles);
 
 struct CardLimits {
-    std::uint32_t most = 1000;  ///< triangles of cards in the finest level
-    std::uint32_t least = 16;   ///< and in the coarsest
-    float slack = 0.25F;        ///< how far, relative, the bound may lie over what is proven
+    std::uint32_t max_triangles = 1000;  ///< triangles of cards in the finest level
+    std::uint32_t min_triangles = 16;    ///< and in the coarsest
+    float slack = 0.25F;                 ///< relative gap allowed between upper and lower bound
 };
 
-/// Levels of cards, each about half of the next finer one, with what is solid beside them as coarse as their error allows.
-/// `chain`: of what is left of g, in its frame; it may be without levels. Errors are bounded against all of g and the cards.
+/// Levels of cards, each with about half the triangles of the next finer one. The solid rest of a level is as coarse as the
+/// cards' error allows. `chain`: levels of g without the cards, in g's frame; may be empty. Errors are bounded against g and
+/// cards.
 LodChain with_cards(LodChain chain, const Geometry& g, const std::vector<GeometryPart>& cards, const CardLimits& limits);
 
 }  // namespace surefoot::bake

@@ -30,7 +30,7 @@ double turn_of(const Geometry& g, std::uint32_t v, const dvec3& facing) {
 
 }  // namespace
 
-Places::Places(const Geometry& g) {
+CoincidentVertices::CoincidentVertices(const Geometry& g) {
     std::vector<std::uint32_t> part(g.vertices.size());
     for (std::uint32_t p = 0; p < g.parts.size(); ++p)
         for (const std::uint32_t v : g.parts[p].indices) part[v] = p;
@@ -45,13 +45,13 @@ Places::Places(const Geometry& g) {
     const auto together = [&](std::uint32_t a, std::uint32_t b) {
         return part[a] == part[b] && position_of(g.vertices[a]) == position_of(g.vertices[b]);
     };
-    bent_.resize(order_.size());
+    custom_normal_.resize(order_.size());
     for (const GeometryPart& p : g.parts) {
         for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
             const dvec3 facing = facing_of(g, p, i);
             if (facing == dvec3(0.0)) continue;
             for (std::size_t k = 0; k < 3; ++k)
-                if (std::abs(turn_of(g, p.indices[i + k], facing)) < across) bent_[p.indices[i + k]] = true;
+                if (std::abs(turn_of(g, p.indices[i + k], facing)) < across) custom_normal_[p.indices[i + k]] = true;
         }
     }
     for (std::uint32_t begin = 0, end = 1; begin < order_.size(); begin = end++) {
@@ -60,17 +60,17 @@ Places::Places(const Geometry& g) {
     }
 }
 
-void mend_corners(Geometry& g, const Places& places, GeometryPart& part) {
+void repair_corners(Geometry& g, const CoincidentVertices& coincident, GeometryPart& part) {
     std::map<std::pair<std::uint32_t, std::array<std::int8_t, 3>>, std::uint32_t> turned;
     for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
         const dvec3 facing = facing_of(g, part, i);
         if (facing == dvec3(0.0)) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             std::uint32_t& index = part.indices[i + k];
-            if (std::abs(turn_of(g, index, facing)) >= across || places.bent(index)) continue;
+            if (std::abs(turn_of(g, index, facing)) >= across || coincident.custom_normal(index)) continue;
             // Of two that fit as well, front and back of a sheet, the front.
             const auto fit = [&](std::uint32_t v) { return std::pair(std::abs(turn_of(g, v, facing)), turn_of(g, v, facing)); };
-            for (const std::uint32_t other : places.with(index))
+            for (const std::uint32_t other : coincident.with(index))
                 if (fit(other) > fit(index)) index = other;
             if (std::abs(turn_of(g, index, facing)) >= across) continue;
             std::array<std::int8_t, 3> normal{};

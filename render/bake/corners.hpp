@@ -1,4 +1,4 @@
-// Corners of coarse levels: which of the vertices that lie in one place they go to, once the simplifier has taken any.
+// After simplification, reassigns each corner to the best-matching of the coincident vertices.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace surefoot::bake {
 
-/// The vertices of the full detail that lie in one place, and differ in normal, picture or colour.
-class Places {
+/// Coincident vertices of the full detail: same position and material, different normal, uv or colour.
+class CoincidentVertices {
 public:
-    explicit Places(const Geometry& g);
-    /// Its normal stands across one of its own triangles: bent on purpose, as leaves' are, or smooth over an edge.
-    [[nodiscard]] bool bent(std::uint32_t vertex) const { return bent_[vertex]; }
-    /// All of its material in the place of `vertex`, which is one of the full detail.
+    explicit CoincidentVertices(const Geometry& g);
+    /// Custom normal: it differs by more than 60 degrees from that of one of its own triangles, as on leaves or smoothed edges.
+    [[nodiscard]] bool custom_normal(std::uint32_t vertex) const { return custom_normal_[vertex]; }
+    /// All vertices of its material at the position of `vertex`, a vertex of the full detail.
     [[nodiscard]] std::span<const std::uint32_t> with(std::uint32_t vertex) const {
         return std::span(order_).subspan(range_[vertex].first, range_[vertex].second - range_[vertex].first);
     }
@@ -24,12 +24,12 @@ public:
 private:
     std::vector<std::uint32_t> order_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> range_;
-    std::vector<bool> bent_;
+    std::vector<bool> custom_normal_;
 };
 
-/// Corners whose normal stands across their triangle go to the vertex in their place that fits it best: the simplifier keeps any
-/// of them, and a door with colour and light of its edge is dark. Where none fits, they get the triangle's normal. What is bent
-/// stays so.
-void mend_corners(Geometry& g, const Places& places, GeometryPart& part);
+/// A corner whose normal differs by more than 60 degrees from its triangle's moves to the coincident vertex that fits best.
+/// If none fits, it gets the triangle's normal. The simplifier keeps any of the coincident vertices: a door could get the dark
+/// colour of its edge. Custom normals do not change.
+void repair_corners(Geometry& g, const CoincidentVertices& coincident, GeometryPart& part);
 
 }  // namespace surefoot::bake

@@ -10,7 +10,7 @@
 
 namespace surefoot::bake {
 
-/// Where a chain's levels lie in the model: parts a level, shared by every placement of it.
+/// Where the levels of a chain lie in the model: a range of parts each, shared by all placements.
 struct EmittedChain {
     struct Level {
         model::Index first_part = 0;
@@ -25,10 +25,10 @@ struct EmittedChain {
 
 EmittedChain emit_chain(const LodChain& chain, model::Model& model);
 
-/// Adds one representation a level, placed by `world` (mesh frame to world): errors grow by its stretch.
+/// Adds one representation a level, placed by `world` (mesh frame to world). Errors are multiplied by its largest stretch.
 void emit_representations(const EmittedChain& emitted, const dmat4& world, model::Model& model);
 
-/// A box with captured faces, for a node with box `box`; null if no face holds anything. In the world frame.
+/// A box impostor in the world frame, for a node with box `box`.
 struct BoxForm {
     std::array<FaceCapture, 6> faces;
     Box box;
@@ -36,7 +36,7 @@ struct BoxForm {
     bool textured = false;
     std::uint32_t pixels = 0;
 };
-/// Adds the box's representation; proxy: the material for plain boxes.
+/// Adds the representation of the box. proxy: the material of plain boxes.
 void emit_box(const BoxForm& form, model::Index proxy, model::Model& model);
 
 }  // namespace surefoot::bake

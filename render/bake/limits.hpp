@@ -1,4 +1,4 @@
-// What a model is to count (render/model/limits.hpp), known before it is emitted: what 32-bit numbers cannot name is refused.
+// The size of a model before it is emitted, to be checked against the limits of render/model/limits.hpp.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@ namespace surefoot::bake {
 using model::check_limits;
 using model::Counts;
 
-/// What emitting all of it adds up to, every box with all its faces: no less than what the model will hold.
+/// Upper bounds of what the model will hold: all levels emitted, and every box with all its faces.
 Counts counts_of(const ProxyInput& input, std::span<const BoxForm> object_boxes);
 
 }  // namespace surefoot::bake

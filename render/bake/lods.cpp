@@ -258,7 +258,7 @@ struct Reference {
 
 /// A plate simplifies without error, and would then be a plate without its picture at any distance.
 bool may_lose_pictures(const Level& level, const ChainOptions& options, double diagonal_m) {
-    if (static_cast<double>(level.error_m) >= least_proxy_error * diagonal_m) return true;
+    if (static_cast<double>(level.error_m) >= min_proxy_error * diagonal_m) return true;
     return std::none_of(level.parts.begin(), level.parts.end(), [&](const GeometryPart& part) {
         return part.material < options.pictures.size() && options.pictures[part.material] != Picture::none;
     });
@@ -288,7 +288,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     laid_on.resize(std::max(laid_on.size(), options.cut_out.size()), Picture::none);
     for (const auto& [material, cards] : thinned.cards) laid_on[material] = Picture::none;
     const PictureReference pictures(full, laid_on);
-    const Places places(full);
+    const CoincidentVertices coincident(full);
     const std::size_t own_vertices = full.vertices.size();
     std::map<model::Index, double> card_area_m2;
     for (const GeometryPart& part : full.parts)
@@ -317,7 +317,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         for (GeometryPart& part : next.parts) {
             const auto cards = thinned.cards.find(part.material);
             if (cards == thinned.cards.end()) {
-                mend_corners(full, places, part);
+                repair_corners(full, coincident, part);
                 continue;
             }
             enlarge_cards(full, part, cards->second, card_area_m2[part.material]);
@@ -328,7 +328,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         });
         next.error_m = reference.bound(full, next);
         if (pictured) {
-            const auto without = static_cast<float>((torn ? least_proxy_error : squeezed_picture_error) * box.diagonal());
+            const auto without = static_cast<float>((torn ? min_proxy_error : squeezed_picture_error) * box.diagonal());
             const bool may_colour = options.proxy_material != model::none;
             const float shift_m = torn && may_colour ? without : pictures.shift_m(next);
             squeezed = squeezed || shift_m > std::max(without, next.error_m);
@@ -355,7 +355,7 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
         Level round = box_level(full, box, options.proxy_material);
         round.error_m = std::max(bound(round), std::nextafter(levels.back().error_m, 1e30F));
         if (options.proxy_material != model::none)
-            round.error_m = std::max(round.error_m, static_cast<float>(least_proxy_error * box.diagonal()));
+            round.error_m = std::max(round.error_m, static_cast<float>(min_proxy_error * box.diagonal()));
         levels.push_back(std::move(round));
     }
     for (std::size_t i = 1; i < levels.size(); ++i) {  // never the full detail

@@ -1,6 +1,6 @@
-// Mip levels of masks: a mean of alphas is no mean of what a mask shows. Thin leaves and wires fall below the cutoff and vanish
-// with distance, dense ones grow together. After Castaño, "Computing Alpha Mipmaps" (2010), with coverage counted between texels
-// too.
+// Mip levels of alpha-tested textures. Averaged alphas do not keep the share that passes the test: thin leaves and wires vanish
+// with distance, dense ones grow together. Source: Castaño 2010, "Computing Alpha Mipmaps"; here coverage is also counted
+// between texels.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct MaskLevel {
     bool clamp = false;
 };
 
-/// Share of the picture, 0..1, where alpha (0..255) is at least `cutoff`, drawn large with bilinear filtering.
+/// Share of the image, 0..1, where the bilinearly filtered alpha (0..255) is at least `cutoff`.
 double mask_coverage(const MaskLevel& level, float cutoff);
 
-/// Scales the alphas, so that the share is as near to `coverage` as one factor can bring it; returns how far off that is. Nothing
-/// where it is 0 or 1.
+/// Multiplies all alphas by one factor, so that the share is as near to `coverage` as possible. Returns the remaining difference.
+/// Does nothing where the share is 0 or 1.
 double keep_coverage(const MaskLevel& level, float cutoff, double coverage);
 
 }  // namespace surefoot::bake

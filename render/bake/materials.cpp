@@ -42,12 +42,12 @@ std::vector<std::uint8_t> halve(std::span<const std::uint8_t> rgba, std::uint32_
 
 /// A level may show so much more or less than the picture, as a share of what is shown or of what is not, whichever is less:
 /// where a texel is wider than a mask's parts lie apart, it shows all or nothing, and the level before is better.
-constexpr double most_coverage_off = 0.5;
+constexpr double max_coverage_off = 0.5;
 
 }  // namespace
 
 model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba, std::uint32_t width, std::uint32_t height,
-                         bool clamp, std::uint32_t most_levels, float cutoff) {
+                         bool clamp, std::uint32_t max_levels, float cutoff) {
     model::Texture texture;
     texture.width = width;
     texture.height = height;
@@ -60,14 +60,14 @@ model::Index add_texture(model::Model& model, std::span<const std::uint8_t> rgba
         const auto* bytes = reinterpret_cast<const std::byte*>(shown.data());
         model.texels.insert(model.texels.end(), bytes, bytes + shown.size());
         ++texture.levels;
-        if ((w == 1 && h == 1) || texture.levels == most_levels) break;
+        if ((w == 1 && h == 1) || texture.levels == max_levels) break;
         // The next one from alphas as they were: factors must not pile up.
         level = halve(level, w, h);
         w = std::max(1U, w / 2);
         h = std::max(1U, h / 2);
         shown = level;
         if (cutoff > 0 &&
-            keep_coverage({shown, w, h, clamp}, cutoff, coverage) > most_coverage_off * std::min(coverage, 1 - coverage))
+            keep_coverage({shown, w, h, clamp}, cutoff, coverage) > max_coverage_off * std::min(coverage, 1 - coverage))
             break;
     }
     model.textures.push_back(texture);
@@ -112,7 +112,7 @@ model::Index add_shown(const importer::Scene& scene, const Shown& shown, float c
 }
 
 /// Textures that one image becomes at most.
-constexpr std::uint32_t most_ways = 4;
+constexpr std::uint32_t max_ways = 4;
 
 /// Of each material. An image that many share is looked at once.
 std::vector<std::optional<std::uint8_t>> hidden_alphas(const importer::Scene& scene) {
@@ -146,7 +146,7 @@ std::vector<model::Index> add_images(const importer::Scene& scene, model::Model&
     const std::vector<std::optional<std::uint8_t>> hidden = hidden_alphas(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         Shown shown = shown_by(scene.materials[i], hidden[i]);
-        if (shown.image != importer::none && !textures.contains(shown) && ++ways[shown.image] > most_ways)
+        if (shown.image != importer::none && !textures.contains(shown) && ++ways[shown.image] > max_ways)
             shown = nearest_way(textures, shown);
         wanted.push_back(shown);
         textures.try_emplace(shown, ShownTexture{cutoff_of(scene.materials[i], shown), model::none});

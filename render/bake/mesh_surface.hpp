@@ -1,4 +1,4 @@
-// Positions and indices of some parts, as distances between meshes want them.
+// Positions and indices of parts, in the layout of measure::MeshView.
 #pragma once
 
 #include <cstdint>

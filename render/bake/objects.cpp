@@ -95,10 +95,10 @@ bool is_cut(std::span<const Loose> triangles, const Geometry& whole, bool few, c
         area += dvec3(t.area);
     }
     size = box.max - box.min;
-    if (triangles.size() > std::max(limits.most_triangles, 32U)) return true;
+    if (triangles.size() > std::max(limits.max_triangles, 32U)) return true;
     if (std::max({size.x, size.y, size.z}) <= limits.longest_m) return false;
-    return triangles.size() >= 2 * limits.least_triangles ||
-           (few && triangles.size() >= 2 * limits.least_hidden && hides_itself(size, area));
+    return triangles.size() >= 2 * limits.min_triangles ||
+           (few && triangles.size() >= 2 * limits.min_hidden && hides_itself(size, area));
 }
 
 Geometry gather(const Geometry& whole, std::span<const Loose> triangles) {
@@ -148,7 +148,7 @@ std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
             triangles.push_back(t);
         }
     }
-    const bool few = triangles.size() < limits.most_hidden;
+    const bool few = triangles.size() < limits.max_hidden;
     std::vector<Geometry> pieces;
     dvec3 size;
     if (is_cut(triangles, whole, few, limits, size)) cut_range(whole, triangles, few, limits, pieces);

@@ -1,4 +1,4 @@
-// Conceptual objects with their geometry: meshes turned into geometry once, large ones cut into pieces, chains for all.
+// Objects with their geometry: converts each mesh once, cuts large meshes into pieces, makes a chain for each.
 #pragma once
 
 #include <cstdint>
@@ -23,27 +23,28 @@ struct PlacedObject {
     std::string name;
     float importance = 1;
     Box box;                   ///< world
-    std::uint32_t object = 0;  ///< the conceptual object it is, or is a piece of
+    std::uint32_t object = 0;  ///< number of the object; pieces of one object share it
     bool piece = false;
 };
 
 struct CutLimits {
-    std::uint32_t most_triangles = 8192;  ///< of a piece: the 1/16-frame rule
-    double longest_m = 1e30;              ///< of a piece, mesh frame: no piece is drawn whole for one corner in view
-    std::uint32_t least_triangles = 512;  ///< no piece is cut for its length alone below twice that: a draw costs as much as 50
-    /// What is made of few triangles and is several layers deep (the walls of a storey) is cut for its length down to this: drawn
-    /// whole, most of its pixels are behind its own front, and a layer costs more than the draws.
-    std::uint32_t least_hidden = 32;
-    std::uint32_t most_hidden = 4096;  ///< few
+    std::uint32_t max_triangles = 8192;  ///< of a piece; keeps its cost below 1/16 of a frame
+    double longest_m = 1e30;             ///< of a piece, mesh frame; limits what is drawn for one corner in view
+    std::uint32_t min_triangles =
+        512;  ///< geometry below twice this is not cut for length alone: a draw costs as much as 50 triangles
+    /// Replaces min_triangles for few triangles in several layers (the walls of a storey). Drawn whole, most of its pixels
+    /// lie behind its own front, and an extra layer costs more than extra draws.
+    std::uint32_t min_hidden = 32;
+    std::uint32_t max_hidden = 4096;  ///< triangles that count as few
 };
 
-/// Largest factor by which `linear` stretches a length: what errors grow by. An upper bound, within 1e-8.
+/// Largest factor by which `linear` stretches a length; errors grow by it. An upper bound, within 1e-8.
 double largest_stretch(const dmat3& linear);
 
 Geometry mesh_geometry(const importer::Mesh& mesh, const model::Model& model);
-/// Cut at medians of the triangles' centres until every piece is within the limits; none where the whole is.
+/// Pieces within the limits, cut at medians of the triangle centres. Empty if the whole is within the limits.
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
-/// One form, or several where the geometry is beyond the limits; pieces keep the borders that they share.
+/// One form, or one a piece if the geometry exceeds the limits. Pieces keep their common borders.
 std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options);
 
 }  // namespace surefoot::bake

@@ -1,4 +1,4 @@
-// How far the pictures on a level lie from where they belong: a plate may be exact in form with its picture moved or squeezed.
+// Texture error of a level: how far its texture is shifted along the surface. Exact geometry may still have a squeezed texture.
 #pragma once
 
 #include <memory>
@@ -8,18 +8,18 @@
 
 namespace surefoot::bake {
 
-/// The full detail of one geometry, against which its levels' pictures are held.
+/// The full detail of one geometry, with which its levels' textures are compared.
 class PictureReference {
 public:
-    /// `pictures`: by material. The geometry must outlive this; its vertices may grow, those that its parts use stay.
+    /// `pictures`: by material. The geometry must outlive this. Its vertex array may grow; used vertices must not change.
     PictureReference(const Geometry& full, const std::vector<Picture>& pictures);
     ~PictureReference();
     PictureReference(const PictureReference&) = delete;
     PictureReference& operator=(const PictureReference&) = delete;
 
-    /// Metres along the surface, at the 90 % quantile of the level's area in parts that carry a picture; 0 without such parts.
-    /// Sampled: no bound. Against the nearest place of the full detail in the same material; whole repeats of a picture that
-    /// repeats count as none. The quantile leaves out seams, where the nearest place is at times the other side's.
+    /// Metres along the surface, at the 90 % quantile of the level's textured area; 0 without textured parts. Sampled: no bound.
+    /// Compares each sample with the nearest point of the full detail in the same material. Whole repeats of a repeating texture
+    /// do not count. The quantile excludes seams, where the nearest point may be on the other side.
     [[nodiscard]] float shift_m(const Level& level) const;
 
 private:

@@ -55,9 +55,9 @@ void add_face(Squares& to, const BoxForm& form, std::size_t face, const vec3& ha
     }
 }
 
-/// How far a box with captured faces is from what it shows. Upper bound: the parallax of a picture (the deepest captured point
-/// behind its face), the two-sided distance between the opaque texels and the surface, whichever is more, and a texel. `shown`
-/// is about the box's centre.
+/// The geometric error of a box impostor: how far its captured faces lie from the surface. Upper bound: the larger of parallax
+/// and distance, plus one texel. Parallax: the deepest captured point behind its face. Distance: two-sided, between opaque texels
+/// and surface. `shown` is relative to the box's centre. `slack`: as in ChainOptions.
 float box_error(const BoxForm& form, const Geometry& shown, const vec3& half, float slack) {
     Squares box;
     float depth = 0;
@@ -175,7 +175,7 @@ Merged merge_objects(const ProxyInput& input, const Box& box, std::span<const st
         for (std::size_t i = 0; i < members.size(); ++i) {
             triangles += level_for(input.forms[input.objects[members[i]].mesh].chain, allowed_m / stretch[i]).triangles;
         }
-        if (triangles <= input.most_input || allowed_m > box.diagonal()) break;
+        if (triangles <= input.max_input || allowed_m > box.diagonal()) break;
     }
     Merged merged;
     merged.geometry.centre = box.centre();
@@ -202,7 +202,7 @@ Merged merge_children(const ProxyInput& input, const ClusterTree::Cluster& clust
         const LodChain& chain = chain_of(input, e);
         const Level* finest = &chain.levels.front();
         for (const Level& level : chain.levels) {
-            if (level.triangles <= input.most_input / cluster.children.size()) finest = &level;
+            if (level.triangles <= input.max_input / cluster.children.size()) finest = &level;
         }
         append(merged, chain, *finest, world, owner++, input);
     }
@@ -225,24 +225,25 @@ BoxForm make_box(const Merged& merged, const Box& box, std::uint32_t pixels, con
 LodChain cluster_chain(Merged& merged, const ProxyInput& input, const ClusteringLimits& limits) {
     Geometry& g = merged.geometry;
     const auto all = static_cast<double>(g.triangles());
-    const std::vector<GeometryPart> cards = take_cards(g, input.cut_out, input.proxy_material, std::max(limits.most / 8, 2U));
+    const std::vector<GeometryPart> cards =
+        take_cards(g, input.cut_out, input.proxy_material, std::max(limits.max_triangles / 8, 2U));
     if (cards.empty()) return cluster_vertices(g, merged.owners, input.two_sided, limits);
     const double share = static_cast<double>(g.triangles()) / all;
     const auto solid_of = [&](std::uint32_t triangles) { return static_cast<std::uint32_t>(share * triangles); };
     ClusteringLimits solid = limits;
-    solid.most = std::max(solid_of(limits.most), 12U);
-    solid.least = std::max(solid_of(limits.least), 12U);
+    solid.max_triangles = std::max(solid_of(limits.max_triangles), 12U);
+    solid.min_triangles = std::max(solid_of(limits.min_triangles), 12U);
     LodChain chain;
     if (g.triangles() > 0) chain = cluster_vertices(g, merged.owners, input.two_sided, solid);
     const std::uint32_t taken = chain.levels.empty() ? 0 : chain.levels.back().triangles;
     CardLimits card;
-    card.most = std::max(limits.most - std::min(limits.most, taken), 4U);
-    card.least = std::max(limits.least - solid_of(limits.least), 4U);
+    card.max_triangles = std::max(limits.max_triangles - std::min(limits.max_triangles, taken), 4U);
+    card.min_triangles = std::max(limits.min_triangles - solid_of(limits.min_triangles), 4U);
     card.slack = limits.slack;
     chain = with_cards(std::move(chain), g, cards, card);
     g.parts.insert(g.parts.end(), cards.begin(), cards.end());
     // What is solid and every material's cards have a least number of triangles each; together these may be too many.
-    while (chain.levels.size() > 1 && chain.levels.back().triangles > limits.most) chain.levels.pop_back();
+    while (chain.levels.size() > 1 && chain.levels.back().triangles > limits.max_triangles) chain.levels.pop_back();
     return chain;
 }
 
@@ -252,18 +253,18 @@ ClusterForm make_cluster(const ProxyInput& input, const ClusterTree::Cluster& cl
     std::uint32_t children_coarsest = 0;
     for (const std::uint32_t e : cluster.children) children_coarsest += chain_of(input, e).levels.front().triangles;
     Merged merged =
-        16 * members.size() > input.most_input ? merge_children(input, cluster) : merge_objects(input, cluster.box, members);
+        16 * members.size() > input.max_input ? merge_children(input, cluster) : merge_objects(input, cluster.box, members);
     ClusteringLimits limits;
-    limits.most = std::clamp(children_coarsest * 7 / 10, 12U, 2000U);
-    limits.least = std::clamp(static_cast<std::uint32_t>(4 * members.size()), 32U, 128U);
+    limits.max_triangles = std::clamp(children_coarsest * 7 / 10, 12U, 2000U);
+    limits.min_triangles = std::clamp(static_cast<std::uint32_t>(4 * members.size()), 32U, 128U);
     limits.slack = input.slack;
     ClusterForm out;
     out.chain = cluster_chain(merged, input, limits);
-    float least_m = input.proxy_material == model::none ? 0.0F : static_cast<float>(least_proxy_error * cluster.box.diagonal());
+    float min_m = input.proxy_material == model::none ? 0.0F : static_cast<float>(min_proxy_error * cluster.box.diagonal());
     for (std::size_t i = out.chain.levels.size(); i-- > 0;) {  // fine to coarse: errors keep rising
         Level& level = out.chain.levels[i];
-        level.error_m = std::max(level.error_m + merged.error_m, least_m);
-        least_m = std::nextafter(level.error_m, std::numeric_limits<float>::infinity());
+        level.error_m = std::max(level.error_m + merged.error_m, min_m);
+        min_m = std::nextafter(level.error_m, std::numeric_limits<float>::infinity());
     }
     out.box = make_box(merged, cluster.box, members.size() > 64 ? 32 : 24, input);
     out.has_box = out.box.error_m > out.chain.levels.front().error_m && out.chain.levels.front().triangles > 12;

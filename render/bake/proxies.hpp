@@ -1,4 +1,4 @@
-// A cluster's mesh, valid from everywhere: merged from the actual objects and simplified hard.
+// Cluster meshes, valid from everywhere: the objects of a cluster, merged and strongly simplified.
 #pragma once
 
 #include <cstdint>
@@ -20,20 +20,21 @@ struct ClusterForm {
 struct ProxyInput {
     std::span<const PlacedObject> objects;
     std::span<const MeshForm> forms;
-    std::span<const ClusterForm> clusters;  ///< those below are made
-    const model::Model* model = nullptr;    ///< its materials and textures are made
+    std::span<const ClusterForm> clusters;  ///< those below this one must be complete
+    const model::Model* model = nullptr;    ///< with complete materials and textures
     model::Index proxy_material = 0;
     std::vector<bool> two_sided;  ///< by material
-    std::vector<bool> cut_out;    ///< by material: cards (cards.hpp), kept in it
+    std::vector<bool> cut_out;    ///< by material: alpha-tested cards, which keep their material (cards.hpp)
     bool textured_boxes = false;
-    float slack = 0.25F;               ///< of bounds
-    std::uint32_t most_input = 24000;  ///< triangles merged: objects come as coarse as that needs, their errors added
+    float slack = 0.25F;  ///< relative gap allowed between upper and lower bound
+    std::uint32_t max_input =
+        24000;  ///< maximum triangles merged; objects enter at coarser levels to fit, and their errors are added
 
     [[nodiscard]] bool is_cut_out(model::Index material) const { return material < cut_out.size() && cut_out[material]; }
 };
 
-/// `members`: the objects below the cluster; where they are too many to merge, its children (entities) stand for them.
-/// The finest level has fewer triangles than the children's coarsest together (Maciel 3.1: a parent costs less).
+/// `members`: the objects below the cluster. If they are too many to merge, its children (entities) are merged instead.
+/// The finest level has fewer triangles than the children's coarsest together, so a parent costs less (Maciel 1994, 3.1).
 ClusterForm make_cluster(const ProxyInput& input, const ClusterTree::Cluster& cluster, std::span<const std::uint32_t> members);
 
 /// A box for one object, from a level of its chain.

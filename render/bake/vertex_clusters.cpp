@@ -22,13 +22,13 @@ std::vector<GridMesh> choose_grids(const ClusterSource& source, const Clustering
     for (const std::uint32_t steps : grids) {
         GridMesh mesh = grid_mesh(source, steps);
         const std::size_t count = mesh.triangles();
-        if (count > limits.most && !tried.empty()) break;
+        if (count > limits.max_triangles && !tried.empty()) break;
         tried.push_back(std::move(mesh));
         if (count >= source.triangles.size()) break;  // finer grids only copy the source
     }
     std::vector<GridMesh> chosen;
     for (; !tried.empty(); tried.pop_back()) {
-        if (!chosen.empty() && chosen.back().triangles() <= limits.least) break;
+        if (!chosen.empty() && chosen.back().triangles() <= limits.min_triangles) break;
         if (!chosen.empty() && 2 * tried.back().triangles() > chosen.back().triangles()) continue;
         chosen.push_back(std::move(tried.back()));
     }

@@ -1,4 +1,4 @@
-// One grid of cells over a geometry, and the mesh that its cells make (vertex_clusters.hpp).
+// One grid of cells over a geometry, and the clustered mesh that it yields (vertex_clusters.hpp).
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct SourceTriangle {
     vec3 normal{0};  ///< unit, by winding
 };
 
-/// What the grid works on; made once, used at every resolution.
+/// Input of the clustering; made once, used at every resolution.
 struct ClusterSource {
     const Geometry* geometry = nullptr;
     std::span<const std::uint32_t> owners;
@@ -29,7 +29,7 @@ struct ClusterSource {
 };
 ClusterSource make_source(const Geometry& g, std::span<const std::uint32_t> owners, const std::vector<bool>& two_sided);
 
-/// A mesh with a bound for every triangle of it and of the source, by construction: nothing moved farther.
+/// A clustered mesh, with an error bound for each of its triangles and each source triangle. The bounds are vertex movements.
 struct GridMesh {
     std::vector<model::Vertex> vertices;
     std::vector<std::array<std::uint8_t, 4>> baked;

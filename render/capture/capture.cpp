@@ -19,7 +19,7 @@ Capture take(const select::SelectInput& input, std::string_view selector, float 
     c.target_error_rad = input.target_error_rad;
     c.slice_us = input.slice_us;
     c.combine = input.costs->combine;
-    c.upper_factor = static_cast<float>(select::upper_factor_of(input));
+    c.headroom = static_cast<float>(select::headroom_of(input));
     c.slice_end_us = input.costs->slice_us;
     c.hysteresis = hysteresis;
     c.node_count = static_cast<std::uint32_t>(input.model->nodes.size());
@@ -34,7 +34,8 @@ Result<select::Cut> replay(const Capture& capture, std::string_view selector_nam
     const std::string_view name = selector_name.empty() ? std::string_view(capture.selector) : selector_name;
     const select::Selector* selector = select::find_selector(name);
     if (selector == nullptr) {
-        return Error{"selector '" + std::string(name) + "'", "there is no such selector", "use one that this version knows"};
+        return Error{"selector '" + std::string(name) + "'", "There is no such selector", "Name one that this version knows",
+                     ErrorKind::misuse};
     }
     const auto candidates = static_cast<std::uint32_t>(std::max(capture.prepared.candidates.size(), capture.memory.size()));
     model::Model nodes_only;  // selection asks the model for nothing but its size
@@ -46,7 +47,7 @@ Result<select::Cut> replay(const Capture& capture, std::string_view selector_nam
     state.touched = capture.memory;
     model::CostModel costs;
     costs.combine = capture.combine;
-    costs.upper_factor = capture.upper_factor;
+    costs.headroom = capture.headroom;
     costs.slice_us = capture.slice_end_us;
     select::SelectInput input{&nodes_only,        &capture.prepared,        &costs,          capture.budget_us,
                               capture.correction, capture.target_error_rad, capture.slice_us};
@@ -63,14 +64,15 @@ Result<void> verify(const Capture& capture) {
     for (std::size_t i = 0; i < n; ++i) {
         const select::CutItem &a = capture.items[i], &b = cut->items[i];
         if (a.node != b.node || a.rep != b.rep) {
-            return Error{fmt::format("item {}", i),
-                         fmt::format("captured node {} by form {}, replayed node {} by form {}", a.node, a.rep, b.node, b.rep),
-                         "the selectors of the two versions differ"};
+            return Error{
+                fmt::format("item {}", i),
+                fmt::format("The capture shows node {} by form {}, the replay node {} by form {}", a.node, a.rep, b.node, b.rep),
+                "Replay with the version that captured it: the selectors differ", ErrorKind::failed};
         }
     }
     if (cut->hash != capture.hash || cut->items.size() != capture.items.size()) {
-        return Error{"cut", fmt::format("captured {} items, replayed {}", capture.items.size(), cut->items.size()),
-                     "the selectors of the two versions differ"};
+        return Error{"cut", fmt::format("The capture holds {} items, the replay {}", capture.items.size(), cut->items.size()),
+                     "Replay with the version that captured it: the selectors differ", ErrorKind::failed};
     }
     return {};
 }

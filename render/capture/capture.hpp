@@ -1,5 +1,5 @@
-// One frame's decision in a file: prepared arrays, what the selector was asked and remembered, and the cut it made. Read back,
-// the selection is repeated off line, without model or device, and must give the same cut.
+// One frame's selection in a file: prepared arrays, input and state of the selector, and the resulting cut. The selection can be
+// repeated from it without model or device, and must give the same cut.
 #pragma once
 
 #include <cstdint>
@@ -15,35 +15,35 @@
 namespace surefoot::capture {
 
 struct Capture {
-    std::uint64_t frame = 0;  ///< of the walk; prepared.frame is the one whose pose the arrays were begun for
+    std::uint64_t frame = 0;  ///< of the walk; prepared.frame is the frame whose pose started the preparation
     prepare::PreparedFrame prepared;
     std::string selector;
     double budget_us = 0, correction = 1, target_error_rad = 0, slice_us = 1000;
     model::FrameCombine combine;
-    float upper_factor = 1, slice_end_us = 0;  ///< of the cost model: all of it that selection uses
+    float headroom = 1, slice_end_us = 0;  ///< of the cost model; selection uses no more of it
     float hysteresis = 1;
     std::uint32_t node_count = 0;        ///< of the model
-    std::vector<select::Shown> memory;   ///< what the selector remembered, before the selection
+    std::vector<select::Shown> memory;   ///< state of the selector before the selection
     std::vector<select::CutItem> items;  ///< the cut
     std::uint64_t hash = 0;              ///< of the cut
     float predicted_us = 0;
 };
 
-/// Puts a frame together; `memory`: SelectState::before, after `cut` was made. Allocates: not for the frame thread.
+/// Makes a capture. `memory`: SelectState::before, after `cut` was made. Allocates, so not for the frame thread.
 Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<select::Shown> memory,
              const select::Cut& cut);
 
 /// Little-endian; magic, version, sizes and a checksum, then one zstd frame. Replaces the file only when complete.
 Result<void> write_capture(const std::string& file, const Capture& capture);
 
-/// Refuses what is truncated, changed in any byte, or inconsistent in any index.
+/// Refuses files that are truncated, changed in any byte, or inconsistent in any index.
 Result<Capture> read_capture(const std::string& file);
 Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::string& place);
 
 /// Repeats the selection, by the captured selector or by another one.
 Result<select::Cut> replay(const Capture& capture, std::string_view selector = {});
 
-/// replay() by the captured selector, and an error that names the first difference if the cut is another.
+/// replay() by the captured selector. If the cut differs, the error names the first difference.
 Result<void> verify(const Capture& capture);
 
 }  // namespace surefoot::capture

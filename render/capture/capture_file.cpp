@@ -21,10 +21,10 @@ using model::none;
 
 constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
 constexpr std::uint32_t version = 3;
-constexpr std::uint64_t most_bytes = 1ULL << 31U;  // unpacked
-constexpr std::uint32_t most_nodes = 1U << 26U;    // replay makes room for them
+constexpr std::uint64_t max_bytes = 1ULL << 31U;  // unpacked
+constexpr std::uint32_t max_nodes = 1U << 26U;    // replay makes room for them
 constexpr std::size_t header_bytes = 40;
-constexpr const char* remedy = "capture the frame again";
+constexpr const char* remedy = "Capture the frame again";
 
 // One list of fields for both directions: what is written is what is read.
 template <class Io, class Frame>
@@ -37,7 +37,7 @@ void each_field(Io& io, Frame& f) {
 template <class Io, class C>
 void each_setting(Io& io, C& c) {
     io(c.frame, c.budget_us, c.correction, c.target_error_rad, c.slice_us, c.combine.fixed_us, c.combine.submit_weight,
-       c.combine.raster_weight, c.combine.max_weight, c.upper_factor, c.slice_end_us, c.hysteresis, c.node_count, c.hash,
+       c.combine.raster_weight, c.combine.max_weight, c.headroom, c.slice_end_us, c.hysteresis, c.node_count, c.hash,
        c.predicted_us);
 }
 template <class Io, class C>
@@ -136,7 +136,7 @@ const char* wrong_in(const prepare::Candidate& c, std::size_t at, std::size_t& n
     if (c.choice_count == 0 || c.first_choice > f.choices.size() || c.choice_count > f.choices.size() - c.first_choice) {
         return "choices out of range";
     }
-    if (at == 0 ? c.parent != none : c.parent >= at) return "parent is not before it";
+    if (at == 0 ? c.parent != none : c.parent >= at) return "parent is not before the child";
     if (c.child_count == 0) return c.first_child == none && !c.floor_open ? nullptr : "a leaf with children";
     // Breadth-first: children follow those of the candidate before, so no candidate has two parents and none is left out.
     if (c.first_child != next_child || c.child_count > f.candidates.size() - next_child) return "children out of order";
@@ -148,24 +148,24 @@ const char* wrong_in(const prepare::Candidate& c, std::size_t at, std::size_t& n
 }
 
 Result<void> check(const Capture& c, const std::string& place) {
-    const auto bad = [&](std::string_view what) { return Error{place, std::string(what), remedy}; };
-    if (c.node_count == 0 || c.node_count > most_nodes) return bad("number of nodes out of range");
-    if (!(c.hysteresis >= 1.0F && c.hysteresis <= 16.0F)) return bad("hysteresis out of range");
+    const auto bad = [&](std::string_view what) { return Error{place, std::string(what), remedy, ErrorKind::damaged}; };
+    if (c.node_count == 0 || c.node_count > max_nodes) return bad("The number of nodes is out of range");
+    if (!(c.hysteresis >= 1.0F && c.hysteresis <= 16.0F)) return bad("The hysteresis is out of range");
     const auto& f = c.prepared;
     std::size_t next_child = 1;
     for (std::size_t i = 0; i < f.candidates.size(); ++i) {
-        if (next_child <= i) return bad(fmt::format("candidates[{}] has no parent", i));
+        if (next_child <= i) return bad(fmt::format("Candidate {} has no parent", i));
         if (const char* what = wrong_in(f.candidates[i], i, next_child, c))
-            return bad(fmt::format("candidates[{}]: {}", i, what));
+            return bad(fmt::format("Candidate {} is damaged: {}", i, what));
     }
     for (std::size_t i = 0; i < f.choices.size(); ++i) {
-        if (!finite(f.choices[i].cost)) return bad(fmt::format("choices[{}]: cost is not finite", i));
+        if (!finite(f.choices[i].cost)) return bad(fmt::format("The cost of choice {} is not finite", i));
     }
     for (const select::Shown& m : c.memory) {
-        if (m.node >= c.node_count) return bad("a remembered node is out of range");
+        if (m.node >= c.node_count) return bad("A remembered node is out of range");
     }
     for (const select::CutItem& item : c.items) {
-        if (item.candidate >= f.candidates.size() || item.choice >= f.choices.size()) return bad("the cut is out of range");
+        if (item.candidate >= f.candidates.size() || item.choice >= f.choices.size()) return bad("The cut is out of range");
     }
     return {};
 }
@@ -177,7 +177,9 @@ Result<void> write_capture(const std::string& file, const Capture& capture) {
     whole(body, capture);
     std::vector<std::byte> packed(ZSTD_compressBound(body.out.size()));
     const std::size_t size = ZSTD_compress(packed.data(), packed.size(), body.out.data(), body.out.size(), 3);
-    if (ZSTD_isError(size) != 0) return Error{file, ZSTD_getErrorName(size), "free some memory"};
+    if (ZSTD_isError(size) != 0)
+        return Error{file, std::string("The frame cannot be compressed: ") + ZSTD_getErrorName(size), "Free some memory",
+                     ErrorKind::no_memory};
     packed.resize(size);
     Writer out;
     out(magic, version, static_cast<std::uint64_t>(body.out.size()), static_cast<std::uint64_t>(size), hash_bytes(packed));
@@ -188,29 +190,33 @@ Result<void> write_capture(const std::string& file, const Capture& capture) {
 
 Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::string& place) {
     ByteReader header(bytes);
-    if (header.read<std::uint32_t>() != magic) return Error{place, "is no captured frame", "name a file that a capture wrote"};
-    if (header.read<std::uint32_t>() != version) return Error{place, "is of another version", remedy};
+    if (header.read<std::uint32_t>() != magic)
+        return Error{place, "The file is no captured frame", "Name a file that a capture wrote", ErrorKind::damaged};
+    if (header.read<std::uint32_t>() != version)
+        return Error{place, "The file is of another version", remedy, ErrorKind::unsupported};
     const auto unpacked = header.read<std::uint64_t>(), packed = header.read<std::uint64_t>(), sum = header.read<std::uint64_t>();
     const auto header_sum = header.read<std::uint64_t>();
     if (header.failed() || hash_bytes(bytes.first(header_bytes - 8)) != header_sum)
-        return Error{place, "header is damaged", remedy};
-    if (header.left() != packed) return Error{place, "is truncated, or has bytes after its end", remedy};
+        return Error{place, "The header is damaged", remedy, ErrorKind::damaged};
+    if (header.left() != packed)
+        return Error{place, "The file is truncated, or has bytes after its end", remedy, ErrorKind::damaged};
     const auto payload = header.bytes(packed);
-    if (hash_bytes(payload) != sum) return Error{place, "checksum does not match", remedy};
-    if (unpacked > most_bytes) return Error{place, "is too large", remedy};
+    if (hash_bytes(payload) != sum) return Error{place, "The checksum does not match", remedy, ErrorKind::damaged};
+    if (unpacked > max_bytes) return Error{place, "The frame is too large", remedy, ErrorKind::out_of_limits};
     std::vector<std::byte> body(unpacked);
     const std::size_t got = ZSTD_decompress(body.data(), body.size(), payload.data(), payload.size());
-    if (ZSTD_isError(got) != 0 || got != unpacked) return Error{place, "does not unpack", remedy};
+    if (ZSTD_isError(got) != 0 || got != unpacked) return Error{place, "The frame does not unpack", remedy, ErrorKind::damaged};
     Capture capture;
     Reader reader(body);
     whole(reader, capture);
-    if (reader.in.failed() || reader.in.left() != 0) return Error{place, "lists do not add up to its size", remedy};
+    if (reader.in.failed() || reader.in.left() != 0)
+        return Error{place, "The lists do not add up to the size", remedy, ErrorKind::damaged};
     if (auto sound = check(capture, place); !sound) return sound.error();
     return capture;
 }
 
 Result<Capture> read_capture(const std::string& file) {
-    auto bytes = read_file(file, most_bytes);
+    auto bytes = read_file(file, max_bytes);
     if (!bytes) return bytes.error();
     return parse_capture(*bytes, file);
 }

@@ -37,7 +37,7 @@ DrawPart make_part(const model::Model& model, const model::Part& part, const std
 DrawTables make_tables(const model::Model& model) {
     DrawTables tables;
     tables.textures = lay_out_textures(model);
-    tables.ties = tie_ranks(model);
+    tables.depth_bias = depth_bias_ranks(model);
     for (const model::Part& part : model.parts) tables.masks.push_back(model.materials[part.material].effects);
     std::sort(tables.masks.begin(), tables.masks.end());
     tables.masks.erase(std::unique(tables.masks.begin(), tables.masks.end()), tables.masks.end());

@@ -1,12 +1,12 @@
-// The model as drawing needs it: flat tables of parts, representations and placements, built once at load.
+// Flat tables of parts, representations and placements for drawing, built once at load.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "render/draw/coincidence.hpp"
 #include "render/draw/texture_arrays.hpp"
-#include "render/draw/ties.hpp"
 #include "render/model/model.hpp"
 
 namespace surefoot::draw {
@@ -26,7 +26,7 @@ struct DrawPart {
 
 struct DrawRep {
     std::uint32_t placement, first_part, part_count, triangles;
-    std::uint32_t node;  ///< whose it is
+    std::uint32_t node;  ///< the node that it belongs to
 };
 
 struct Placed {
@@ -37,18 +37,18 @@ struct Placed {
 
 struct DrawTables {
     TextureLayout textures;
-    std::vector<model::EffectMask> masks;  ///< state classes that the model's parts call for, ascending
+    std::vector<model::EffectMask> masks;  ///< state classes of the model's parts, ascending
     std::vector<DrawPart> parts;
     std::vector<DrawRep> reps;
     std::vector<Placed> placements;
-    TieRanks ties;
+    DepthBiasRanks depth_bias;
     std::vector<vec4> centres;  ///< of a node's box, relative to `middle`; for sorting only
     dvec3 middle{0.0};
 };
 
 DrawTables make_tables(const model::Model& model);
 
-/// The eye-relative rows of a placement: the origin is made relative in double, since floats lose millimetres far from it.
+/// The eye-relative rows of a placement. The origin is made relative in double: floats lose millimetres far from 0.
 void eye_relative_rows(const Placed& placed, const dvec3& eye, std::array<float, 12>& rows);
 
 inline Culling culling(const DrawPart& part, const Placed& placed) {

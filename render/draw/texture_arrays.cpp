@@ -7,11 +7,11 @@ namespace surefoot::draw {
 
 namespace {
 
-constexpr std::size_t most_layers = 256;
+constexpr std::size_t max_layers = 256;
 
 bool fits(const TextureArray& array, const model::Texture& texture, std::uint32_t levels) {
     return array.width == texture.width && array.height == texture.height && array.levels == levels &&
-           array.clamp == texture.clamp && array.layers.size() < most_layers;
+           array.clamp == texture.clamp && array.layers.size() < max_layers;
 }
 
 }  // namespace

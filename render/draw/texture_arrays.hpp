@@ -1,5 +1,5 @@
-// Images of one form (size, levels, wrap) are layers of one array texture: changing between them is data of the draw, not
-// state. A change of texture costs a software driver about 8 us; a layer costs nothing.
+// Textures of equal size, levels and wrap become layers of one array texture. A layer is data of the draw and costs nothing; a
+// change of texture costs a software driver about 8 us.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct TextureArray {
     bool clamp = false;
     std::vector<std::uint32_t> layers;  ///< indices in Model::textures
 };
-/// Where a texture of the model lies.
+/// Array and layer of a texture of the model.
 struct TextureSlot {
     std::uint32_t array = 0, layer = 0;
 };

@@ -6,8 +6,8 @@ namespace surefoot::effects {
 constexpr EffectModule alpha_mask{
     .bit = model::effect_alpha_mask,
     .name = "alpha_mask",
-    .help = "holes where alpha is below the material's cutoff",
-    .asked_by = "a material whose alpha mode is mask",
+    .help = "alpha test: holes where alpha is below the material's cutoff",
+    .requested_by = "a material whose alpha mode is mask",
     .vertex_declarations = "in float alpha_cutoff;\nflat out float v_alpha_cutoff;\n",
     .vertex_code = "    v_alpha_cutoff = alpha_cutoff;\n",
     .fragment_declarations = "flat in float v_alpha_cutoff;\n",

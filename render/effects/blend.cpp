@@ -6,8 +6,8 @@ namespace surefoot::effects {
 constexpr EffectModule blend{
     .bit = model::effect_blend,
     .name = "blend",
-    .help = "see-through surfaces, drawn last, back to front",
-    .asked_by = "a material whose alpha mode is blend",
+    .help = "transparent surfaces, drawn last, back to front",
+    .requested_by = "a material whose alpha mode is blend",
     .vertex_declarations = "",
     .vertex_code = "",
     .fragment_declarations = "",

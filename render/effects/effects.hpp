@@ -1,4 +1,4 @@
-// The effects of a scene: found at bake with the reason, compiled and bound only if found. One file an effect.
+// The effects: found at bake with a reason, compiled and bound only if found. One file an effect.
 #pragma once
 
 #include <span>
@@ -12,16 +12,16 @@
 
 namespace surefoot::effects {
 
-/// One effect: what asks for it and its share of the program. GLSL pieces go into the named slots of the bare program.
+/// One effect: what asks for it, and its GLSL pieces for the named slots of the bare program.
 struct EffectModule {
     model::Effect bit;
     std::string_view name, help;                            ///< help: one line for people
-    std::string_view asked_by;                              ///< what in a scene asks for it
+    std::string_view requested_by;                          ///< what in a scene asks for it
     std::string_view vertex_declarations, vertex_code;      ///< may read `world_rows`, write `v_colour`
     std::string_view fragment_declarations, fragment_code;  ///< may change `colour`, discard
 };
 
-/// In bit order: adding one is its bit, a file of this folder, and its line in modules.hpp and assemble.cpp.
+/// In bit order. To add one: its bit, a file in this folder, and its line in modules.hpp and assemble.cpp.
 std::span<const EffectModule> all_effects();
 /// "texture sun", or "bare".
 std::string effects_text(model::EffectMask mask, std::string_view between = " ");

@@ -9,7 +9,7 @@ constexpr EffectModule sun{
     .bit = model::effect_sun,
     .name = "sun",
     .help = "sun and sky light at the vertices",
-    .asked_by = "a mesh with normals and a lit material",
+    .requested_by = "a mesh with normals and a lit material",
     .vertex_declarations = "in vec3 normal;\nin float two_sided;\nuniform vec3 sun_direction;\n",
     .vertex_code =
         "    vec3 cofactor_x = cross(world_rows[1].xyz, world_rows[2].xyz);\n"

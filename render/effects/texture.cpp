@@ -8,7 +8,7 @@ constexpr EffectModule texture{
     .bit = model::effect_texture,
     .name = "texture",
     .help = "base colour from an image, mipmapped",
-    .asked_by = "a material with a texture",
+    .requested_by = "a material with a texture",
     .vertex_declarations = "in vec2 uv;\nin float texture_layer;\nout vec2 v_uv;\nflat out float v_layer;\n",
     .vertex_code = "    v_uv = uv;\n    v_layer = texture_layer;\n",
     .fragment_declarations = "in vec2 v_uv;\nflat in float v_layer;\nuniform sampler2DArray base_colour;\n",

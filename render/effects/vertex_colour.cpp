@@ -7,7 +7,7 @@ constexpr EffectModule vertex_colour{
     .bit = model::effect_vertex_colour,
     .name = "vertex_colour",
     .help = "a colour at each vertex",
-    .asked_by = "a mesh whose vertices carry colours",
+    .requested_by = "a mesh whose vertices carry colours",
     .vertex_declarations = "in vec4 vertex_colour;\n",
     .vertex_code = "    v_colour *= vertex_colour;\n",
     .fragment_declarations = "",

@@ -25,22 +25,23 @@ Result<Api> load_api(const std::function<void*(const char*)>& find, const std::s
     if (api.name == nullptr && missing == nullptr) missing = "gl" #name;
     SUREFOOT_GL_FUNCTIONS(SUREFOOT_GL_LOAD)
 #undef SUREFOOT_GL_LOAD
-    const std::string remedy = "use a driver with OpenGL 4.5 core (Mesa 22 or newer), or --backend osmesa";
-    if (api.GetIntegerv == nullptr || api.GetStringi == nullptr) return Error{place, "OpenGL could not be loaded", remedy};
+    const std::string remedy = "Use a driver with OpenGL 4.5 core (Mesa 22 or newer), or --backend osmesa";
+    if (api.GetIntegerv == nullptr || api.GetStringi == nullptr)
+        return Error{place, "OpenGL cannot be loaded", remedy, ErrorKind::no_device};
     GLint major = 0;
     GLint minor = 0;
     api.GetIntegerv(GL_MAJOR_VERSION, &major);
     api.GetIntegerv(GL_MINOR_VERSION, &minor);
     api.version = 10 * major + minor;
     const std::string have = "OpenGL " + std::to_string(major) + "." + std::to_string(minor);
-    if (api.version < 43) return Error{place, have + " is older than 4.3", remedy};
+    if (api.version < 43) return Error{place, have + " is older than 4.3", remedy, ErrorKind::unsupported};
     if (api.version < 45 && !api.has_extension("GL_ARB_clip_control")) {
-        return Error{place, have + " has no glClipControl: depth would lose its precision", remedy};
+        return Error{place, have + " has no glClipControl, so depth would lose its precision", remedy, ErrorKind::unsupported};
     }
     if (api.version < 44 && !api.has_extension("GL_ARB_buffer_storage")) {
-        return Error{place, have + " has no glBufferStorage", remedy};
+        return Error{place, have + " has no glBufferStorage", remedy, ErrorKind::unsupported};
     }
-    if (missing != nullptr) return Error{place, have + " has no " + missing, remedy};
+    if (missing != nullptr) return Error{place, have + " has no " + missing, remedy, ErrorKind::unsupported};
     return api;
 }
 
@@ -48,7 +49,8 @@ Result<Library> Library::open(const char* name, const char* package) {
     void* handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) {
         const char* why = dlerror();
-        return Error{name, why != nullptr ? why : "cannot be opened", std::string("install the Debian package ") + package};
+        return Error{name, std::string("The library cannot be opened") + (why != nullptr ? std::string(": ") + why : ""),
+                     std::string("Install the Debian package ") + package, ErrorKind::not_found};
     }
     return Library(handle);
 }

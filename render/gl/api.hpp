@@ -1,5 +1,5 @@
-// The OpenGL functions that this room calls, loaded by name: one table a context, no link to libGL; and shared libraries opened
-// at run time: what is absent is an error that names the package to install.
+// OpenGL functions loaded by name, one table a context, without linking libGL. Shared libraries opened at run time: a missing one
+// is an error that names the Debian package.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -100,10 +100,10 @@ struct Api {
 };
 
 /// Loads the table with a context current, and checks version (4.3 at least), clip control and buffer storage.
-/// `find` is the context's GetProcAddress; glvnd answers any name, so presence is read from version and extensions.
+/// `find`: the context's GetProcAddress. glvnd returns a pointer for any name, so version and extensions decide.
 Result<Api> load_api(const std::function<void*(const char*)>& find, const std::string& place);
 
-/// Closed never: drivers leave threads and exit handlers behind that live in their code.
+/// Never closed: threads and exit handlers of drivers run in its code.
 class Library {
 public:
     /// name: soname; package: Debian package that brings it.

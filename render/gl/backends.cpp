@@ -13,13 +13,13 @@ namespace {
 using Options = const DeviceOptions&;
 
 constexpr std::array all_backends = {
-    Backend{usual_backend, "EGL without a surface, on the driver that it finds first", BackendKind::egl,
+    Backend{usual_backend, "EGL without a surface, on the default driver", BackendKind::egl,
             [](Options) { return open_egl_surfaceless(); }},
-    Backend{"device", "EGL on the first device that it lists: a GPU without a display", BackendKind::device,
+    Backend{"device", "EGL on its first device, for a GPU without a display", BackendKind::device,
             [](Options) { return open_egl_device(); }},
-    Backend{"window", "a window of the X server at $DISPLAY, the walk to be seen", BackendKind::window,
+    Backend{"window", "a window on the X server at $DISPLAY", BackendKind::window,
             [](Options options) { return open_window(options.viewport, options.window_title); }},
-    Backend{"osmesa", "Mesa in memory: software, and no driver at all", BackendKind::osmesa,
+    Backend{"osmesa", "Mesa software rendering in memory, without a driver", BackendKind::osmesa,
             [](Options) { return open_osmesa(); }},
     Backend{"null", "draws nothing and charges the predicted cost", BackendKind::null, nullptr},
 };
@@ -42,8 +42,9 @@ const Backend& backend_of(BackendKind kind) {
 Result<const Backend*> backend_named(std::string_view name) {
     if (const Backend* backend = find_named(all_backends, name)) return backend;
     const Named* known = find_named(absent, name);
-    return Error{"backend '" + std::string(name) + "'", std::string(known != nullptr ? known->help : "there is no such backend"),
-                 "one of: " + names_in_words(all_backends)};
+    return Error{"backend '" + std::string(name) + "'",
+                 known != nullptr ? "The backend " + std::string(known->help) : "There is no such backend",
+                 "Use one of: " + names_in_words(all_backends), known != nullptr ? ErrorKind::unsupported : ErrorKind::misuse};
 }
 
 std::string drawing_backends() {

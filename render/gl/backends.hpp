@@ -1,4 +1,4 @@
-// The backends by name. Adding one is a file of this folder, its BackendKind, and an entry in backends.cpp; schema, help and
+// The registry of backends. To add one: a file in this folder, its BackendKind, and an entry in backends.cpp. Schema, help and
 // settings page follow.
 #pragma once
 
@@ -25,7 +25,7 @@ struct Backend {
 constexpr std::string_view usual_backend = "egl";
 
 std::span<const Backend> backends();
-/// Names that are no backend of this version, and why.
+/// Known names without a backend in this version, and why.
 std::span<const Named> absent_backends();
 const Backend& backend_of(BackendKind kind);
 /// An unknown name is an Error that lists the known ones.

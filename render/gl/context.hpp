@@ -20,8 +20,8 @@ public:
     /// True where the default framebuffer is a window: the frame is blitted there, then present() swaps.
     [[nodiscard]] virtual bool has_window() const { return false; }
     virtual void present() {}
-    /// Whether the driver says when it was reset, through glGetGraphicsResetStatus.
-    [[nodiscard]] virtual bool tells_resets() const { return false; }
+    /// Whether the driver reports resets, through glGetGraphicsResetStatus.
+    [[nodiscard]] virtual bool reports_resets() const { return false; }
 };
 
 Result<std::unique_ptr<Context>> open_egl_surfaceless();

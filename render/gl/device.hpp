@@ -1,4 +1,4 @@
-// The door to drawing: a device opens a context (or none), takes a model, and draws items slice by slice.
+// The drawing device: opens a context (or none), loads a model, and draws items slice by slice.
 // The frame thread owns it after bind(); only this room includes GL. `null` records and charges the virtual cost clock.
 #pragma once
 
@@ -26,14 +26,14 @@ struct DrawItem {
     model::Index rep = 0;
 };
 
-/// GLSL of one state class; made by render/effects, so that gl knows no effect.
+/// GLSL of one state class. render/effects makes it, so that this room knows no effect.
 struct ProgramSource {
     std::string vertex, fragment;
     std::string name{};  ///< of the state class, for people: "texture sun"
 };
 using ProgramFactory = std::function<ProgramSource(model::EffectMask)>;
 
-/// The null device charges each item by `costs` times `scale`; the same numbers at any speed and worker count.
+/// The null device charges each item `costs` x `scale`: equal numbers at any speed and worker count.
 struct NullOptions {
     const model::CostModel* costs = nullptr;
     double cost_scale = 1;
@@ -61,7 +61,7 @@ struct PixelImage {
     std::vector<std::uint8_t> rgba;  ///< row 0 on top
 };
 
-/// One context and one target. open() and load() may be slow and allocate; the rest is the frame's.
+/// One context and one render target. open() and load() may be slow and allocate; the other calls are for the frame.
 class Device {
 public:
     /// The thread that has the context: the one that opened the device, until another calls bind().
@@ -70,8 +70,8 @@ public:
     virtual ~Device() = default;
     [[nodiscard]] virtual std::string renderer() const = 0;  ///< GL_RENDERER, or "null"
     [[nodiscard]] virtual bool software() const = 0;
-    /// Uploads geometry and textures, compiles the programs of the scene's state classes (and only those), warms each up. The
-    /// model stays as it is until the last draw, or the next load; but for its texels, which are not looked at again.
+    /// Uploads geometry and textures; compiles and warms up the programs of the scene's state classes, and no others. The model
+    /// must not change until the last draw or the next load. Its texels may go: they are not read again.
     virtual Result<void> load(const model::Model& model, const ProgramFactory& programs) REQUIRES(draws) = 0;
     [[nodiscard]] virtual std::vector<std::string> program_listing() const = 0;  ///< "mask: effects", for tests and `effects`
     [[nodiscard]] virtual std::string program_text(model::EffectMask mask) const = 0;
@@ -82,7 +82,7 @@ public:
 
     // ---- the frame; no own allocation, no throw ----
     virtual void begin_frame(const Pose& pose) REQUIRES(draws) = 0;
-    /// State-sorted and multi-drawn within the call. Items with blend are kept and drawn back to front by end_items().
+    /// Draws items sorted by state, as multi-draws. Blended items wait for end_items().
     virtual void draw(std::span<const DrawItem> items) REQUIRES(draws) = 0;
     /// Ends a slice: flush and fence. Returns its number, from 1.
     virtual std::uint32_t end_slice() REQUIRES(draws) = 0;
@@ -90,17 +90,17 @@ public:
     virtual void wait_slices(std::uint32_t in_flight) REQUIRES(draws) = 0;
     /// Draws the kept blended items, back to front, as the last slice.
     virtual void end_items() REQUIRES(draws) = 0;
-    /// Waits for everything; presents where there is something to present to.
+    /// Waits for all slices; presents if there is a window.
     virtual void finish_frame() REQUIRES(draws) = 0;
     [[nodiscard]] virtual FrameStats stats() const REQUIRES(draws) = 0;
-    /// The context is gone (the GPU was reset, taken away, or does not finish), and nothing drawn since was seen. Calls are
-    /// harmless from then on, and draw nothing.
+    /// The context is lost: the GPU was reset or removed, or does not finish. Later frames were not shown. All calls are safe
+    /// then, and draw nothing.
     [[nodiscard]] virtual bool lost() const REQUIRES(draws) { return false; }
-    /// Of the current frame; slow.
+    /// Pixels of the current frame; slow.
     virtual Result<PixelImage> read_pixels() REQUIRES(draws) = 0;
 
-    /// A GL_TIME_ELAPSED query around what is drawn in between; slow (waits). False, and nothing to end, where there is none.
-    /// Software GL lies here: see measure::TimerQueryCheck.
+    /// A GL_TIME_ELAPSED query around the draws in between; slow (waits). False: no timer queries, and nothing to end.
+    /// Software GL reports wrong times: see measure::TimerQueryCheck.
     virtual bool begin_timer() REQUIRES(draws) { return false; }
     virtual double end_timer_ms() REQUIRES(draws) { return 0; }
 
@@ -108,8 +108,8 @@ public:
     [[nodiscard]] virtual double charged_us() const REQUIRES(draws) { return 0; }
 };
 
-/// Settles how many threads software GL draws with, for the whole process; 0: the measured default. Call it before any other
-/// thread exists: drivers take the number from the environment (LP_NUM_THREADS), which may not change while threads read it.
+/// Sets how many threads software GL draws with, for the whole process; 0: the measured default. Call it before any other thread
+/// exists: drivers read the number from the environment (LP_NUM_THREADS), which must not change while threads read it.
 void prepare_process(int rasterisers);
 
 /// Opens the library at run time (dlopen); an absent one is an Error with the Debian package to install.
@@ -121,7 +121,7 @@ Result<std::unique_ptr<Device>> open_null_device(const DeviceOptions& options, c
 /// The number of software rasterisers that options.rasterisers stands for: 0 is the measured default.
 int effective_rasterisers(int rasterisers);
 
-/// What the driver's own threads are called, by name prefix in /proc/self/task (for the census).
+/// Name prefixes of the driver's threads in /proc/self/task, for the census.
 std::vector<std::string> driver_thread_prefixes();
 
 }  // namespace surefoot::gl

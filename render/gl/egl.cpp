@@ -49,7 +49,8 @@ Result<Egl> load_egl() {
             reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.GetProcAddress("eglGetPlatformDisplayEXT"));
     }
     if (!found || egl.GetPlatformDisplay == nullptr) {
-        return Error{"libEGL.so.1", "lacks functions of EGL 1.5", "install a current libegl1 (Mesa 22 or newer)"};
+        return Error{"libEGL.so.1", "The library lacks functions of EGL 1.5", "Install a current libegl1 (Mesa 22 or newer)",
+                     ErrorKind::unsupported};
     }
     return egl;
 }
@@ -81,23 +82,24 @@ void EglContext::destroy() {
     surface_ = EGL_NO_SURFACE;
 }
 
-void EglContext::create_of_version(EGLConfig config, EGLint minor, bool tells_resets) {
+void EglContext::create_of_version(EGLConfig config, EGLint minor, bool reports_resets) {
     const std::array<EGLint, 9> wanted{EGL_CONTEXT_MAJOR_VERSION,
                                        4,
                                        EGL_CONTEXT_MINOR_VERSION,
                                        minor,
                                        EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                       tells_resets ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
-                                       tells_resets ? EGL_LOSE_CONTEXT_ON_RESET : EGL_NONE,
+                                       reports_resets ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+                                       reports_resets ? EGL_LOSE_CONTEXT_ON_RESET : EGL_NONE,
                                        EGL_NONE};
     context_ = egl_.CreateContext(display_, config, EGL_NO_CONTEXT, wanted.data());
-    tells_resets_ = tells_resets && context_ != EGL_NO_CONTEXT;
+    reports_resets_ = reports_resets && context_ != EGL_NO_CONTEXT;
 }
 
 Result<void> EglContext::create(EGLConfig config) {
     if (egl_.BindAPI(EGL_OPENGL_API) != EGL_TRUE) {
-        return Error{name_, "has no desktop OpenGL", "install libgl1-mesa-dri, or use --backend osmesa"};
+        return Error{name_, "The driver has no desktop OpenGL", "Install libgl1-mesa-dri, or use --backend osmesa",
+                     ErrorKind::unsupported};
     }
     for (const EGLint minor : {5, 4, 3}) {
         create_of_version(config, minor, true);  // software GL refuses: it cannot be reset
@@ -105,10 +107,12 @@ Result<void> EglContext::create(EGLConfig config) {
         if (context_ != EGL_NO_CONTEXT) break;
     }
     if (context_ == EGL_NO_CONTEXT) {
-        return Error{name_, "no OpenGL 4.3 core context: " + egl_.error_text(), "install libgl1-mesa-dri (22 or newer)"};
+        return Error{name_, "The driver makes no OpenGL 4.3 core context: " + egl_.error_text(),
+                     "Install libgl1-mesa-dri (22 or newer)", ErrorKind::unsupported};
     }
     if (!make_current()) {
-        return Error{name_, "the context cannot be made current: " + egl_.error_text(), "see `surefoot doctor`"};
+        return Error{name_, "The context cannot be made current: " + egl_.error_text(), "See `surefoot doctor`",
+                     ErrorKind::no_device};
     }
     return {};
 }
@@ -121,19 +125,19 @@ namespace {
 
 /// Initialises the display and makes a surfaceless context on it.
 Result<std::unique_ptr<Context>> surfaceless_on(const Egl& egl, EGLDisplay display, bool counted, const std::string& name) {
-    const std::string remedy = "install libgl1-mesa-dri, or use --backend osmesa";
+    const std::string remedy = "Install libgl1-mesa-dri, or use --backend osmesa";
     if (display == EGL_NO_DISPLAY || egl.Initialize(display, nullptr, nullptr) != EGL_TRUE) {
-        return Error{name, "cannot be initialised: " + egl.error_text(), remedy};
+        return Error{name, "The display cannot be initialised: " + egl.error_text(), remedy, ErrorKind::no_device};
     }
     auto context = std::make_unique<EglContext>(egl, display, counted, name);
     if (!lists_word(egl.QueryString(display, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
-        return Error{name, "has no surfaceless contexts", remedy};
+        return Error{name, "The driver has no surfaceless contexts", remedy, ErrorKind::unsupported};
     }
     const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (egl.ChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count == 0) {
-        return Error{name, "offers no configuration for desktop OpenGL", remedy};
+        return Error{name, "The driver offers no configuration for desktop OpenGL", remedy, ErrorKind::unsupported};
     }
     if (auto made = context->create(config); !made) return made.error();
     return std::unique_ptr<Context>(std::move(context));
@@ -146,7 +150,8 @@ Result<std::unique_ptr<Context>> open_egl_surfaceless() {
     if (!egl) return egl.error();
     const std::string name = "EGL surfaceless";
     if (!egl->client_has("EGL_MESA_platform_surfaceless")) {
-        return Error{name, "this EGL has no surfaceless platform", "install libegl-mesa0, or use --backend device or osmesa"};
+        return Error{name, "This EGL has no surfaceless platform", "Install libegl-mesa0, or use --backend device or osmesa",
+                     ErrorKind::unsupported};
     }
     const DisplayAttributes attributes = display_attributes(*egl);
     EGLDisplay display = egl->GetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, attributes.list);
@@ -161,12 +166,14 @@ Result<std::unique_ptr<Context>> open_egl_device() {
     if (egl->client_has("EGL_EXT_platform_device")) {
         query = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(egl->GetProcAddress("eglQueryDevicesEXT"));
     }
-    if (query == nullptr) return Error{name, "this EGL cannot list devices", "use --backend egl or osmesa"};
+    if (query == nullptr)
+        return Error{name, "This EGL cannot list devices", "Use --backend egl or osmesa", ErrorKind::unsupported};
     std::array<EGLDeviceEXT, 32> devices{};
     EGLint count = 0;
     query(static_cast<EGLint>(devices.size()), devices.data(), &count);
     const DisplayAttributes attributes = display_attributes(*egl);
-    Error last{name, "there is no device", "give the user access to /dev/dri (group render), or use --backend egl"};
+    Error last{name, "There is no device", "Give the user access to /dev/dri (group render), or use --backend egl",
+               ErrorKind::no_device};
     for (EGLint i = 0; i < count; ++i) {
         EGLDisplay display =
             egl->GetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], attributes.list);

@@ -1,4 +1,4 @@
-// EGL loaded at run time, and what its three backends (surfaceless, device, window) share.
+// EGL loaded at run time, and code shared by its three backends (surfaceless, device, window).
 #pragma once
 
 #define EGL_NO_X11
@@ -42,8 +42,8 @@ Result<Egl> load_egl();
 /// Space-separated list holds the word.
 bool lists_word(const char* list, std::string_view word);
 
-/// Attribute list for GetPlatformDisplay: counts eglInitialize and eglTerminate where the library can, so that two devices
-/// of one process may share a display. `counted` says whether it can: else the display is never terminated.
+/// Attributes for GetPlatformDisplay: reference counting of eglInitialize and eglTerminate, if the library has it. Two devices of
+/// one process may share a display. `counted`: the library counts; else the display is never terminated.
 struct DisplayAttributes {
     EGLint list[3] = {EGL_NONE, EGL_NONE, EGL_NONE};
     bool counted = false;
@@ -64,11 +64,11 @@ public:
     void release() override;
     [[nodiscard]] void* find(const char* function) const override;
     [[nodiscard]] std::string name() const override { return name_; }
-    [[nodiscard]] bool tells_resets() const override { return tells_resets_; }
+    [[nodiscard]] bool reports_resets() const override { return reports_resets_; }
     [[nodiscard]] EGLDisplay display() const { return display_; }
 
 protected:
-    /// Destroys context and surface; unbinds only if this context is the calling thread's: another device's may be.
+    /// Destroys context and surface. Unbinds only its own context: another device's may be current on this thread.
     void destroy();
 
     Egl egl_;
@@ -77,8 +77,8 @@ protected:
     EGLSurface surface_ = EGL_NO_SURFACE;
 
 private:
-    void create_of_version(EGLConfig config, EGLint minor, bool tells_resets);
-    bool counted_, tells_resets_ = false;
+    void create_of_version(EGLConfig config, EGLint minor, bool reports_resets);
+    bool counted_, reports_resets_ = false;
     std::string name_;
 };
 

@@ -9,10 +9,10 @@ namespace surefoot::gl {
 
 namespace {
 
-constexpr std::uint32_t most_slices = 1024;  // fences kept a frame; beyond it the oldest is waited for first
+constexpr std::uint32_t max_slices = 1024;  // fences kept a frame; beyond it the oldest is waited for first
 // A driver that has not finished a slice after ten waits of a second hangs.
 constexpr GLuint64 wait_ns = 1'000'000'000;
-constexpr int most_waits = 10;
+constexpr int max_waits = 10;
 
 bool is_software(std::string_view renderer) {
     for (const std::string_view name : {"llvmpipe", "softpipe", "swrast", "Software"}) {
@@ -23,7 +23,7 @@ bool is_software(std::string_view renderer) {
 
 /// False: the fence cannot be waited for, or the GPU has not reached it within the bound.
 bool reached(const Api& gl, GLsync fence) {
-    for (int i = 0; i < most_waits; ++i) {
+    for (int i = 0; i < max_waits; ++i) {
         const GLenum result = gl.ClientWaitSync(fence, 0, wait_ns);
         if (result != GL_TIMEOUT_EXPIRED) return result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED;
     }
@@ -59,11 +59,11 @@ Result<void> GlDevice::set_up() {
     frame_ = *frame;
     pending_.resize(frame_.instances.size());
     blended_.resize(frame_.instances.size());
-    fences_.resize(most_slices, nullptr);
+    fences_.resize(max_slices, nullptr);
     gl_.GenQueries(1, &timer_);
-    if (context_->tells_resets() && gl_.version >= 45)
+    if (context_->reports_resets() && gl_.version >= 45)
         reset_status_ = reinterpret_cast<PFNGLGETGRAPHICSRESETSTATUSPROC>(context_->find("glGetGraphicsResetStatus"));
-    return check_errors(gl_, context_->name(), "see `surefoot doctor`");
+    return check_errors(gl_, context_->name(), "See `surefoot doctor`");
 }
 
 Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
@@ -74,8 +74,10 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     resources_ = std::move(*resources);
     sun_direction_ = vec3(glm::normalize(model.sun_direction));
     warm_up();
-    if (lost_) return Error{"warming up " + renderer_, "the driver does not finish", "restart it, or use another --backend"};
-    return check_errors(gl_, "warming up " + renderer_, "report this together with the driver's version");
+    if (lost_)
+        return Error{"warming up " + renderer_, "The driver does not finish", "Restart the driver, or use another --backend",
+                     ErrorKind::no_device};
+    return check_errors(gl_, "warming up " + renderer_, "Report this together with the driver's version");
 }
 
 /// Every combination of program, texture and culling in the model is drawn once: drivers compile on first use, and the frame
@@ -130,8 +132,8 @@ std::string GlDevice::program_text(model::EffectMask mask) const {
 }
 
 std::uint32_t GlDevice::end_slice() {
-    if (slices_ - slices_done_ >= most_slices) wait_slices(most_slices - 1);
-    fences_[slices_ % most_slices] = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    if (slices_ - slices_done_ >= max_slices) wait_slices(max_slices - 1);
+    fences_[slices_ % max_slices] = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl_.Flush();
     return ++slices_;
 }
@@ -140,7 +142,7 @@ std::uint32_t GlDevice::end_slice() {
 
 void GlDevice::wait_slices(std::uint32_t in_flight) {
     while (slices_ - slices_done_ > in_flight) {
-        GLsync& fence = fences_[slices_done_ % most_slices];
+        GLsync& fence = fences_[slices_done_ % max_slices];
         lost_ = lost_ || !reached(gl_, fence);
         gl_.DeleteSync(fence);
         fence = nullptr;
@@ -162,7 +164,7 @@ void GlDevice::finish_frame() {
 }
 
 Result<PixelImage> GlDevice::read_pixels() {
-    if (lost_) return Error{"reading the picture", "the device is lost", "open it again"};
+    if (lost_) return Error{"reading the picture", "The device is lost", "Open the device again", ErrorKind::no_device};
     PixelImage image;
     image.width = options_.viewport.width;
     image.height = options_.viewport.height;
@@ -172,7 +174,7 @@ Result<PixelImage> GlDevice::read_pixels() {
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl_.ReadPixels(0, 0, static_cast<GLsizei>(image.width), static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE,
                    upside_down.data());
-    if (auto fine = check_errors(gl_, "reading the picture", "see `surefoot doctor`"); !fine) return fine.error();
+    if (auto fine = check_errors(gl_, "reading the picture", "See `surefoot doctor`"); !fine) return fine.error();
     image.rgba.resize(upside_down.size());
     for (std::uint32_t y = 0; y < image.height; ++y) {
         std::copy_n(upside_down.data() + row * (image.height - 1 - y), row, image.rgba.data() + row * y);

@@ -88,7 +88,7 @@ private:
     std::vector<GLsync> fences_ GUARDED_BY(draws);  ///< of this frame's slices; waited ones are null
     std::uint32_t slices_ GUARDED_BY(draws) = 0, slices_done_ GUARDED_BY(draws) = 0;
     GLuint timer_ GUARDED_BY(draws) = 0;
-    PFNGLGETGRAPHICSRESETSTATUSPROC reset_status_ = nullptr;  ///< null: the driver tells no resets
+    PFNGLGETGRAPHICSRESETSTATUSPROC reset_status_ = nullptr;  ///< null: the driver reports no resets
     bool lost_ GUARDED_BY(draws) = false;
 };
 

@@ -22,7 +22,7 @@ std::uint64_t state_key(std::uint32_t program, draw::Culling culling, std::uint3
 /// Scales a part about the eye by its rank among what lies in exactly one place: it stays where it is on the screen, and of two
 /// such things the same one shows, whatever the order in which a cut or a slice draws them. One step is what depth tells apart
 /// over large triangles. What is in nobody's place is not moved: planes a millimetre apart at a kilometre keep their order.
-void settle_ties(std::uint8_t rank, std::array<float, 12>& rows) {
+void apply_depth_bias(std::uint8_t rank, std::array<float, 12>& rows) {
     if (rank == 0) return;
     const float away = 1.0F + static_cast<float>(rank) * 0x1p-20F;
     for (float& value : rows) value *= away;
@@ -144,7 +144,8 @@ void GlDevice::write_instance(const Pending& pending, std::uint32_t at) {
     Instance instance;
     draw::eye_relative_rows(placed, pose_.position, instance.rows);
     const draw::DrawRep& rep = tables_.reps[pending.rep];
-    settle_ties(tables_.ties.ranks[tables_.ties.first_of_rep[pending.rep] + pending.part - rep.first_part], instance.rows);
+    apply_depth_bias(tables_.depth_bias.ranks[tables_.depth_bias.first_of_rep[pending.rep] + pending.part - rep.first_part],
+                     instance.rows);
     instance.colour = part.colour;
     instance.alpha_cutoff = part.alpha_cutoff;
     instance.two_sided = part.two_sided ? 1.0F : 0.0F;

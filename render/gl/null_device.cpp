@@ -44,7 +44,8 @@ public:
     void finish_frame() override REQUIRES(draws) {}
     [[nodiscard]] FrameStats stats() const override REQUIRES(draws) { return stats_; }
     Result<PixelImage> read_pixels() override REQUIRES(draws) {
-        return Error{"backend 'null'", "draws nothing, so there is no picture", "use --backend egl for pictures"};
+        return Error{"backend 'null'", "The backend draws nothing, so there is no picture", "Use --backend egl for pictures",
+                     ErrorKind::unsupported};
     }
     [[nodiscard]] double charged_us() const override REQUIRES(draws) { return before_us_ + frame_us_; }
 
@@ -71,7 +72,8 @@ private:
 };
 
 Result<void> NullDevice::load(const model::Model& model, const ProgramFactory& programs) {
-    if (costs_.grids.empty()) return Error{"cost table", "holds no state class", "run `surefoot calibrate`"};
+    if (costs_.grids.empty())
+        return Error{"cost table", "The table holds no state class", "Run `surefoot calibrate`", ErrorKind::damaged};
     programs_.clear();
     for (const model::EffectMask mask : draw::make_tables(model).masks) programs_.push_back({mask, programs(mask)});
     model_ = &model;

@@ -34,18 +34,19 @@ int effective_rasterisers(int rasterisers) { return rasterisers > 0 ? rasteriser
 Result<std::unique_ptr<Context>> open_context(const DeviceOptions& options) {
     if (threads_are_watched && options.kind != BackendKind::null) {
         return Error{"libEGL, libOSMesa",
-                     "are not opened where the thread sanitizer watches: the driver's threads are not built with it",
-                     "use a build without it, or walk with --backend null"};
+                     "GL libraries cannot be opened under the thread sanitizer: the driver's threads are not built with it",
+                     "Use a build without it, or walk with --backend null", ErrorKind::unsupported};
     }
     const Backend& backend = backend_of(options.kind);
     if (backend.draws()) return backend.open(options);
-    return Error{"backend '" + std::string(backend.name) + "'", "has no GL context", "use one of: " + drawing_backends()};
+    return Error{"backend '" + std::string(backend.name) + "'", "The backend has no GL context",
+                 "Use one of: " + drawing_backends(), ErrorKind::unsupported};
 }
 
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
     if (options.kind == BackendKind::null) return open_null_device(options, options.null);
     if (options.viewport.width == 0 || options.viewport.height == 0) {
-        return Error{"viewport", "has no pixels", "give a --size of at least 1x1"};
+        return Error{"viewport", "The viewport has no pixels", "Give a --size of at least 1x1", ErrorKind::misuse};
     }
     auto context = open_context(options);
     if (!context) return context.error();

@@ -64,7 +64,8 @@ Result<std::unique_ptr<Context>> OsMesa::open() {
         !library->get(context->destroy_, "OSMesaDestroyContext") || !library->get(context->make_current_, "OSMesaMakeCurrent") ||
         !library->get(context->current_, "OSMesaGetCurrentContext") ||
         !library->get(context->get_proc_, "OSMesaGetProcAddress")) {
-        return Error{"OSMesa", "the library is too old to make core contexts", "install libosmesa6 of Mesa 22 or newer"};
+        return Error{"OSMesa", "The library is too old to make core contexts", "Install libosmesa6 of Mesa 22 or newer",
+                     ErrorKind::unsupported};
     }
     for (const int minor : {5, 4, 3}) {
         const std::array<int, 11> wanted{osmesa_format,
@@ -82,7 +83,8 @@ Result<std::unique_ptr<Context>> OsMesa::open() {
         if (context->context_ != nullptr) break;
     }
     if (context->context_ == nullptr || !context->make_current()) {
-        return Error{"OSMesa", "no OpenGL 4.3 core context", "install libosmesa6 of Mesa 22 or newer"};
+        return Error{"OSMesa", "The library makes no OpenGL 4.3 core context", "Install libosmesa6 of Mesa 22 or newer",
+                     ErrorKind::unsupported};
     }
     return std::unique_ptr<Context>(std::move(context));
 }

@@ -61,7 +61,8 @@ Result<void> compile(const Api& gl, const Shader& shader, const std::string& tex
     GLsizei length = 0;
     gl.GetShaderInfoLog(shader.id(), static_cast<GLsizei>(log.size()), &length, log.data());
     log.resize(static_cast<std::size_t>(length));
-    return Error{place, "does not compile: " + log, "report this together with the driver's version"};
+    return Error{place, "The shader does not compile: " + log, "Report this together with the driver's version",
+                 ErrorKind::unsupported};
 }
 
 void make_vertex_array(const Api& gl, Program& program, const GeometryBuffers& buffers) {
@@ -108,7 +109,8 @@ Result<Program> make_program(const Api& gl, model::EffectMask mask, const Progra
         gl.GetProgramInfoLog(program.id, static_cast<GLsizei>(log.size()), &length, log.data());
         log.resize(static_cast<std::size_t>(length));
         gl.DeleteProgram(program.id);
-        return Error{place, "does not link: " + log, "report this together with the driver's version"};
+        return Error{place, "The program does not link: " + log, "Report this together with the driver's version",
+                     ErrorKind::unsupported};
     }
     program.view_projection = gl.GetUniformLocation(program.id, "view_projection");
     program.sun_direction = gl.GetUniformLocation(program.id, "sun_direction");

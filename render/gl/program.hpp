@@ -11,7 +11,7 @@
 
 namespace surefoot::gl {
 
-/// What one draw needs besides vertices, fetched once an instance. std430-like, 64 bytes.
+/// Data of one draw, fetched once an instance. std430-like, 64 bytes.
 struct Instance {
     std::array<float, 12> rows;          ///< three rows of the eye-relative model matrix
     std::array<std::uint8_t, 4> colour;  ///< material colour

@@ -12,13 +12,15 @@ namespace surefoot::gl {
 
 namespace {
 
-/// soft: nearest mip level instead of trilinear, which software pays for a pixel.
+/// Uploads an array of textures of equal size, levels and wrap.
+/// soft: nearest mip level instead of trilinear, which costs software GL time for every pixel.
 Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw::TextureArray& array, bool soft) {
     GLint largest = 0;
     gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     if (std::max(array.width, array.height) > static_cast<std::uint32_t>(largest)) {
         return Error{"texture of " + std::to_string(array.width) + " x " + std::to_string(array.height),
-                     "is larger than the device takes", "scale the image down to " + std::to_string(largest)};
+                     "The texture is larger than the device's limit", "Scale the image down to " + std::to_string(largest),
+                     ErrorKind::out_of_limits};
     }
     GLuint id = 0;
     gl.GenTextures(1, &id);
@@ -86,7 +88,8 @@ Result<std::span<T>> make_mapped(const Api& gl, GLenum target, GLuint& buffer, s
     gl.BindBuffer(target, buffer);
     gl.BufferStorage(target, bytes, nullptr, mapped_bits);
     void* memory = gl.MapBufferRange(target, 0, bytes, mapped_bits);
-    if (memory == nullptr) return Error{"frame buffers", "cannot be mapped", "lower max_items, or free memory"};
+    if (memory == nullptr)
+        return Error{"frame buffers", "The buffers cannot be mapped", "Lower max_items, or free memory", ErrorKind::no_memory};
     std::fill_n(static_cast<std::byte*>(memory), static_cast<std::size_t>(bytes), std::byte{0});  // touch every page now
     return std::span<T>(static_cast<T*>(memory), count);
 }
@@ -108,8 +111,8 @@ Result<void> check_errors(const Api& gl, const std::string& place, const std::st
     if (error == GL_NO_ERROR) return {};
     while (gl.GetError() != GL_NO_ERROR) {
     }
-    const std::string what = error == GL_OUT_OF_MEMORY ? "out of memory" : "GL error " + std::to_string(error);
-    return Error{place, what, remedy};
+    if (error == GL_OUT_OF_MEMORY) return Error{place, "The device is out of memory", remedy, ErrorKind::no_memory};
+    return Error{place, "The driver reports GL error " + std::to_string(error), remedy, ErrorKind::no_device};
 }
 
 Result<Target> make_target(const Api& gl, model::Viewport viewport) {
@@ -129,7 +132,8 @@ Result<Target> make_target(const Api& gl, model::Viewport viewport) {
     gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth);
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         return Error{"frame of " + std::to_string(viewport.width) + " x " + std::to_string(viewport.height),
-                     "the device cannot draw into it (RGBA8 with 32-bit float depth)", "ask for a smaller --size"};
+                     "The device cannot draw into this frame (RGBA8 with 32-bit float depth)", "Give a smaller --size",
+                     ErrorKind::unsupported};
     }
     return made.keep();
 }
@@ -154,14 +158,14 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
     gl.BindVertexArray(0);  // the index buffer's binding belongs to the vertex array
     resources.vertices = make_static(gl, GL_ARRAY_BUFFER, model.vertices.data(), model.vertices.size() * sizeof(model::Vertex));
     resources.indices = make_static(gl, GL_ARRAY_BUFFER, model.indices.data(), model.indices.size() * sizeof(std::uint32_t));
-    const std::string remedy = "the model's geometry does not fit the device: bake a smaller part of it";
+    const std::string remedy = "Bake a smaller part: the model's geometry does not fit the device";
     if (auto fine = check_errors(gl, "uploading geometry", remedy); !fine) return fine.error();
     for (const draw::TextureArray& array : layout.arrays) {
         auto texture = upload_array(gl, model, array, soft);
         if (!texture) return texture.error();
         resources.textures.push_back(*texture);
     }
-    const std::string smaller = "the model's textures do not fit the device: scale them down";
+    const std::string smaller = "Scale the textures down: they do not fit the device";
     if (auto fine = check_errors(gl, "uploading textures", smaller); !fine) return fine.error();
     const GeometryBuffers buffers{resources.vertices, resources.indices, frame.instance_buffer, frame.command_buffer};
     for (const model::EffectMask mask : masks) {

@@ -1,5 +1,5 @@
-// What a loaded model holds on the device: buffers, textures, programs; and the frame's target. Made at load, freed together.
-// Each function makes all of it or nothing: what was made before a step failed is freed again.
+// GL objects of a loaded model: buffers, textures, programs; and the frame's target. Made at load, freed together.
+// Each function makes all of it or nothing: if a step fails, what the earlier steps made is freed.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct Target {
 };
 Result<Target> make_target(const Api& gl, model::Viewport viewport);
 
-/// Instance and command buffers, mapped for the device's life: the frame writes them without a call.
+/// Instance and command buffers, mapped for the device's life, so that the frame writes them without a GL call.
 struct FrameBuffers {
     GLuint instance_buffer = 0, command_buffer = 0;
     std::span<Instance> instances;
@@ -41,7 +41,7 @@ struct Resources {
     std::vector<GLuint> textures;   ///< in the order of TextureLayout::arrays
     std::vector<Program> programs;  ///< in the order of DrawTables::masks
 };
-/// soft: nearest mip level instead of trilinear, which software pays for a pixel.
+/// soft: nearest mip level instead of trilinear, which costs software GL time for every pixel.
 Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
                                  const draw::TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
                                  bool soft);

@@ -45,7 +45,9 @@ Result<X11> load_x11() {
         library->get(x.StoreName, "XStoreName") && library->get(x.MapWindow, "XMapWindow") && library->get(x.Sync, "XSync") &&
         library->get(x.Pending, "XPending") && library->get(x.NextEvent, "XNextEvent") &&
         library->get(x.InternAtom, "XInternAtom") && library->get(x.SetWMProtocols, "XSetWMProtocols");
-    if (!found) return Error{"libX11.so.6", "lacks functions", "reinstall the Debian package libx11-6"};
+    if (!found)
+        return Error{"libX11.so.6", "The library lacks functions", "Reinstall the Debian package libx11-6",
+                     ErrorKind::unsupported};
     return x;
 }
 
@@ -63,10 +65,11 @@ public:
     Result<void> open(model::Viewport viewport, const std::string& title) {
         const char* where = std::getenv("DISPLAY");
         const std::string remedy =
-            "run inside an X session, start one with `Xvfb :99 &` and set DISPLAY=:99, or use --backend egl";
-        if (where == nullptr || *where == 0) return Error{"window", "DISPLAY is not set", remedy};
+            "Run inside an X session, start one with `Xvfb :99 &` and set DISPLAY=:99, or use --backend egl";
+        if (where == nullptr || *where == 0) return Error{"window", "DISPLAY is not set", remedy, ErrorKind::no_device};
         display_ = x_.OpenDisplay(where);
-        if (display_ == nullptr) return Error{"window", std::string("no X server answers at DISPLAY ") + where, remedy};
+        if (display_ == nullptr)
+            return Error{"window", std::string("No X server answers at DISPLAY ") + where, remedy, ErrorKind::no_device};
         window_ = x_.CreateSimpleWindow(display_, x_.DefaultRootWindow(display_), 0, 0, viewport.width, viewport.height, 0, 0, 0);
         // Closing is the program's to decide: without this the window manager would cut the connection, and Xlib exit().
         XId closing = x_.InternAtom(display_, "WM_DELETE_WINDOW", 0);
@@ -104,11 +107,13 @@ public:
     Result<void> create_with_surface() {
         EGLConfig config = nullptr;
         if (!matching_config(config)) {
-            return Error{name(), "no EGL configuration fits the screen's visual", "use a 24-bit screen, or --backend egl"};
+            return Error{name(), "No EGL configuration fits the screen's visual", "Use a 24-bit screen, or --backend egl",
+                         ErrorKind::unsupported};
         }
         egl_.BindAPI(EGL_OPENGL_API);
         surface_ = egl_.CreateWindowSurface(display_, config, window_->id(), nullptr);
-        if (surface_ == EGL_NO_SURFACE) return Error{name(), "no surface: " + egl_.error_text(), "use --backend egl"};
+        if (surface_ == EGL_NO_SURFACE)
+            return Error{name(), "No surface can be made: " + egl_.error_text(), "Use --backend egl", ErrorKind::no_device};
         if (auto made = create(config); !made) return made.error();
         egl_.SwapInterval(display_, 0);  // the frame grid decides when, not the driver
         return {};
@@ -148,7 +153,7 @@ Result<std::unique_ptr<Context>> open_window(model::Viewport viewport, const std
     EGLDisplay display = egl->GetPlatformDisplay(EGL_PLATFORM_X11_KHR, window->display(), nullptr);
     if (display == EGL_NO_DISPLAY || egl->Initialize(display, nullptr, nullptr) != EGL_TRUE) {
         return Error{"X11 window", "EGL cannot use this X server: " + egl->error_text(),
-                     "install libegl-mesa0, or use --backend egl"};
+                     "Install libegl-mesa0, or use --backend egl", ErrorKind::no_device};
     }
     auto context = std::make_unique<WindowContext>(*egl, display, std::move(window));
     if (auto made = context->create_with_surface(); !made) return made.error();

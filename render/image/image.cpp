@@ -19,23 +19,23 @@ namespace {
 
 constexpr std::uint32_t largest_side = 16384;
 /// No deflate stream unpacks to more than this many times its size: a smaller file cannot hold the picture it promises.
-constexpr std::uint64_t most_unpacked = 1040;
+constexpr std::uint64_t max_unpacked = 1040;
 /// Nor does a JPEG of 1 bit for 8 x 8 texels of brightness hold more than these texels a byte. (Arithmetic coding could, of
 /// one colour throughout.)
-constexpr std::uint64_t most_jpeg_texels_a_byte = 8 * 64;
+constexpr std::uint64_t max_jpeg_texels_a_byte = 8 * 64;
 /// Of a progressive JPEG: each goes over the whole picture, and a file of some kilobytes could ask for thousands.
-constexpr int most_jpeg_scans = 200;
+constexpr int max_jpeg_scans = 200;
 
 Error bad_image(const std::string& place, std::string what) {
-    return Error{place, std::move(what), "re-export the picture as PNG or JPEG"};
+    return Error{place, std::move(what), "Export the picture again as PNG or JPEG", ErrorKind::damaged};
 }
 
 /// Before any allocation. `packed` is how many bytes hold it.
 Result<void> check_size(const std::string& place, std::uint64_t width, std::uint64_t height) {
-    if (width == 0 || height == 0) return bad_image(place, "picture of no size");
+    if (width == 0 || height == 0) return bad_image(place, "The picture has no pixels");
     if (width > largest_side || height > largest_side) {
-        return Error{place, fmt::format("picture of {} x {} texels is larger than {}", width, height, largest_side),
-                     "scale it down"};
+        return Error{place, fmt::format("The picture of {} x {} texels is larger than {}", width, height, largest_side),
+                     "Scale it down", ErrorKind::out_of_limits};
     }
     return {};
 }
@@ -44,15 +44,15 @@ Result<Image> decode_png(std::span<const std::byte> bytes, const std::string& pl
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
     if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0)
-        return bad_image(place, fmt::format("bad PNG: {}", png.message));
+        return bad_image(place, fmt::format("The PNG is damaged: {}", png.message));
     if (auto fits = check_size(place, png.width, png.height); !fits) {
         png_image_free(&png);
         return fits.error();
     }
-    const std::uint64_t least_unpacked = std::uint64_t{png.width} * png.height / 8;  // 1 bit a texel at least
-    if (least_unpacked > most_unpacked * bytes.size()) {
+    const std::uint64_t min_unpacked = std::uint64_t{png.width} * png.height / 8;  // 1 bit a texel at least
+    if (min_unpacked > max_unpacked * bytes.size()) {
         png_image_free(&png);
-        return bad_image(place, "PNG is truncated");
+        return bad_image(place, "The PNG is truncated");
     }
     Image image;
     image.width = png.width;
@@ -60,7 +60,7 @@ Result<Image> decode_png(std::span<const std::byte> bytes, const std::string& pl
     png.format = PNG_FORMAT_RGBA;
     image.rgba.resize(PNG_IMAGE_SIZE(png));
     if (png_image_finish_read(&png, nullptr, image.rgba.data(), 0, nullptr) == 0) {
-        return bad_image(place, fmt::format("bad or truncated PNG: {}", png.message));
+        return bad_image(place, fmt::format("The PNG is damaged or truncated: {}", png.message));
     }
     return image;
 }
@@ -90,8 +90,8 @@ void jpeg_message(j_common_ptr state, int level) {
 
 void jpeg_scanned(j_common_ptr state) {
     auto* errors = reinterpret_cast<JpegErrors*>(state->err);
-    if (reinterpret_cast<j_decompress_ptr>(state)->input_scan_number <= most_jpeg_scans) return;
-    *fmt::format_to_n(errors->message.begin(), errors->message.size() - 1, "more than {} scans", most_jpeg_scans).out = '\0';
+    if (reinterpret_cast<j_decompress_ptr>(state)->input_scan_number <= max_jpeg_scans) return;
+    *fmt::format_to_n(errors->message.begin(), errors->message.size() - 1, "more than {} scans", max_jpeg_scans).out = '\0';
     std::longjmp(errors->jump, 1);
 }
 
@@ -141,9 +141,9 @@ Result<Image> decode_jpeg(std::span<const std::byte> bytes, const std::string& p
             jpeg_destroy_decompress(&jpeg);
             return fits.error();
         }
-        if (std::uint64_t{jpeg.image_width} * jpeg.image_height > most_jpeg_texels_a_byte * bytes.size()) {
+        if (std::uint64_t{jpeg.image_width} * jpeg.image_height > max_jpeg_texels_a_byte * bytes.size()) {
             jpeg_destroy_decompress(&jpeg);
-            return bad_image(place, "JPEG is truncated");
+            return bad_image(place, "The JPEG is truncated");
         }
         image.width = jpeg.image_width;
         image.height = jpeg.image_height;
@@ -152,8 +152,8 @@ Result<Image> decode_jpeg(std::span<const std::byte> bytes, const std::string& p
     }
     const bool inks = jpeg.out_color_space == JCS_CMYK;
     jpeg_destroy_decompress(&jpeg);
-    if (!good) return bad_image(place, fmt::format("bad JPEG: {}", errors.message.data()));
-    if (errors.truncated) return bad_image(place, "JPEG is truncated");
+    if (!good) return bad_image(place, fmt::format("The JPEG is damaged: {}", errors.message.data()));
+    if (errors.truncated) return bad_image(place, "The JPEG is truncated");
     if (inks) inks_to_rgba(image.rgba);
     return image;
 }
@@ -170,10 +170,10 @@ bool starts_with(std::span<const std::byte> bytes, std::initializer_list<unsigne
 }  // namespace
 
 Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& place) {
-    if (bytes.empty()) return bad_image(place, "picture is empty");
+    if (bytes.empty()) return bad_image(place, "The picture is empty");
     if (starts_with(bytes, {0x89, 'P', 'N', 'G'})) return decode_png(bytes, place);
     if (starts_with(bytes, {0xff, 0xd8})) return decode_jpeg(bytes, place);
-    return bad_image(place, "picture is neither PNG nor JPEG");
+    return bad_image(place, "The picture is neither PNG nor JPEG");
 }
 
 std::vector<std::uint8_t> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba) {
@@ -203,8 +203,9 @@ std::vector<std::uint8_t> encode_png(std::uint32_t width, std::uint32_t height, 
 Result<void> write_png(const std::string& file, std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba) {
     const std::vector<std::uint8_t> png = encode_png(width, height, rgba);
     if (png.empty())
-        return Error{file, fmt::format("cannot encode {} bytes as a picture of {} x {} RGBA texels", rgba.size(), width, height),
-                     ""};
+        return Error{
+            file, fmt::format("The {} bytes cannot be encoded as a picture of {} x {} RGBA texels", rgba.size(), width, height),
+            "", ErrorKind::failed};
     return write_file(file, std::as_bytes(std::span(png)));
 }
 

@@ -1,5 +1,5 @@
-// Pictures in memory and in files: PNG and JPEG to RGBA8, RGBA8 to PNG; and between linear light (glTF factors and vertex
-// colours) and the sRGB encoding that a Scene holds.
+// Images in memory and in files: PNG and JPEG to RGBA8, RGBA8 to PNG. Also converts between linear light (glTF factors and
+// vertex colours) and the sRGB encoding of a Scene.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct Image {
 
 /// PNG or JPEG by signature. Refuses dimensions over 16384 before allocating.
 Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& place);
-/// 8-bit RGB (where all is opaque) or RGBA PNG of width * height * 4 bytes; used by snapshots and scene generators.
+/// Encodes width * height RGBA8 texels as PNG; as RGB if all are opaque. For snapshots and scene generators.
 Result<void> write_png(const std::string& file, std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba);
 std::vector<std::uint8_t> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba);
 

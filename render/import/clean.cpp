@@ -1,4 +1,4 @@
-// Mends one primitive: drops what cannot be drawn, with counts, and makes the normals that are missing.
+// Repairs one primitive: drops what cannot be drawn, with counts, and makes the normals that are missing.
 #include <algorithm>
 #include <cmath>
 
@@ -37,7 +37,7 @@ bool has_area(const Primitive& p, const std::uint32_t* t) {
 }
 
 /// Keeps the triangles that can be drawn, in place and in order.
-void keep_good_triangles(Primitive& p, Mended& dropped) {
+void keep_good_triangles(Primitive& p, Repairs& dropped) {
     const std::size_t vertices = p.positions.size();
     std::vector<Verdict> verdicts(vertices);
     for (std::size_t i = 0; i < vertices; ++i) verdicts[i] = judge(p.positions[i]);
@@ -136,7 +136,7 @@ bool drop_unless_parallel(std::vector<T>& values, std::size_t count) {
     return true;
 }
 
-std::uint64_t mend_uvs(Primitive& p) {
+std::uint64_t repair_uvs(Primitive& p) {
     std::uint64_t mended = 0;
     for (vec2& uv : p.uvs) {
         if (std::isfinite(uv.x) && std::isfinite(uv.y)) continue;
@@ -148,42 +148,42 @@ std::uint64_t mend_uvs(Primitive& p) {
 
 }  // namespace
 
-void mend(Primitive& primitive, Mended& counts) {
+void repair(Primitive& primitive, Repairs& counts) {
     const std::size_t vertices = primitive.positions.size();
     counts.arrays += drop_unless_parallel(primitive.normals, vertices) ? 1 : 0;
     counts.arrays += drop_unless_parallel(primitive.uvs, vertices) ? 1 : 0;
     counts.arrays += drop_unless_parallel(primitive.colours, vertices) ? 1 : 0;
     keep_good_triangles(primitive, counts);
     drop_unused_vertices(primitive);
-    counts.uvs += mend_uvs(primitive);
+    counts.uvs += repair_uvs(primitive);
     counts.normals += make_normals(primitive);
 }
 
-void say(const Mended& counts, const std::string& mesh_name, std::vector<std::string>& warnings,
-         std::vector<std::string>& lacks) {
+void report_repairs(const Repairs& counts, const std::string& mesh_name, std::vector<std::string>& warnings,
+                    std::vector<std::string>& lacks) {
     const auto line = [&](std::uint64_t count, const char* what) {
-        if (count > 0) warnings.push_back(fmt::format("mesh '{}': {} {}", mesh_name, count, what));
+        if (count > 0) warnings.push_back(fmt::format("Mesh '{}': {} {}", mesh_name, count, what));
     };
     const auto broken = [&](std::uint64_t count, const char* what) {
         line(count, what);
         if (count > 0) lacks.push_back(warnings.back());
     };
-    line(counts.arrays, "arrays of normals, coordinates or colours dropped: not as long as the positions");
-    line(counts.partial, "incomplete last triangles dropped");
-    broken(counts.out_of_range, "triangles dropped: index out of range");
-    broken(counts.non_finite, "triangles dropped: position not finite");
-    broken(counts.enormous, "triangles dropped: coordinate beyond 1e12 m");
-    line(counts.repeated, "triangles dropped: repeated index");
-    line(counts.zero_area, "triangles dropped: zero area");
-    broken(counts.uvs, "texture coordinates not finite: set to 0");
-    line(counts.normals, "normals of no length or not finite: made from the triangles");
+    line(counts.arrays, "arrays of normals, coordinates or colours are dropped: not as long as the positions");
+    line(counts.partial, "incomplete last triangles are dropped");
+    broken(counts.out_of_range, "triangles are dropped: index out of range");
+    broken(counts.non_finite, "triangles are dropped: position not finite");
+    broken(counts.enormous, "triangles are dropped: coordinate beyond 1e12 m");
+    line(counts.repeated, "triangles are dropped: repeated index");
+    line(counts.zero_area, "triangles are dropped: zero area");
+    broken(counts.uvs, "texture coordinates are not finite and set to 0");
+    line(counts.normals, "normals have no length or are not finite; they are made from the triangles");
 }
 
 void clean(Primitive& primitive, const std::string& mesh_name, std::vector<std::string>& warnings) {
-    Mended counts;
-    mend(primitive, counts);
+    Repairs counts;
+    repair(primitive, counts);
     std::vector<std::string> lacks;
-    say(counts, mesh_name, warnings, lacks);
+    report_repairs(counts, mesh_name, warnings, lacks);
 }
 
 }  // namespace surefoot::importer

@@ -1,5 +1,4 @@
-// Finds the vertex that a face's corner (position, texture coordinate, normal) already has: open addressing, no allocation a
-// look-up.
+// Finds the vertex of a face's corner (position, texture coordinate, normal). Open addressing; a look-up does not allocate.
 #pragma once
 
 #include <cstdint>

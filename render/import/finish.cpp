@@ -45,7 +45,7 @@ std::string why_not_drawable(const dmat4& world) {
     const double size = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
     if (!(std::abs(glm::determinant(linear)) > 1e-12 * size)) return "transform is singular (a scale of 0)";
     for (int c = 0; c < 3; ++c) {
-        if (glm::length(linear[c]) < smallest_m) return "transform shrinks it more than a thousand million times";
+        if (glm::length(linear[c]) < smallest_m) return "transform shrinks it more than 1e9 times";
     }
     return {};
 }
@@ -65,14 +65,14 @@ std::string why_not_drawable(const Box& box, const dmat4& world) {
 void clean_meshes(Scene& scene, const Progress& progress) {
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         Mesh& mesh = scene.meshes[i];
-        Mended counts;
+        Repairs counts;
         for (Primitive& primitive : mesh.primitives) {
-            mend(primitive, counts);
+            repair(primitive, counts);
             if (primitive.material >= scene.materials.size()) primitive.material = 0;
         }
-        say(counts, mesh.name, scene.warnings, mesh.lacks);
+        report_repairs(counts, mesh.name, scene.warnings, mesh.lacks);
         std::erase_if(mesh.primitives, [](const Primitive& p) { return p.indices.empty(); });
-        progress.say("clean", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
+        progress.update("clean", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
     }
 }
 
@@ -109,7 +109,7 @@ Result<void> finish(Scene& scene, const std::string& file, const Progress& progr
         if (scene.meshes[node.mesh].primitives.empty()) {
             node.mesh = none;
         } else if (const std::string why = why_not_drawable(boxes[node.mesh], node.world); !why.empty()) {
-            scene.warnings.push_back(fmt::format("node '{}' dropped: its {}", node.name, why));
+            scene.warnings.push_back(fmt::format("Node '{}' is dropped: its {}", node.name, why));
             if (!is_finite(node.world)) scene.damage.push_back({file, scene.warnings.back()});
             node.mesh = none;
         }
@@ -119,8 +119,10 @@ Result<void> finish(Scene& scene, const std::string& file, const Progress& progr
     std::string why;
     for (std::size_t i = 0; i < std::min<std::size_t>(scene.warnings.size(), 3); ++i)
         why += (i == 0 ? ": " : "; ") + scene.warnings[i];
-    return Error{file, "nothing drawable in it" + why, "export the model with its triangles"};
+    return Error{file, "The file holds nothing drawable" + why, "Export the model with its triangles", ErrorKind::damaged};
 }
+
+std::string in_short(const Error& error) { return error.place.empty() ? error.what : error.place + ": " + error.what; }
 
 std::string place_beside(const std::string& file, const std::string& name) {
     std::string portable = name;
@@ -138,7 +140,7 @@ Picture load_texture(Scene& scene, const std::string& file, const std::string& n
 
 Picture add_picture(Scene& scene, const std::string& name, Result<image::Image> image) {
     if (!image) {
-        scene.warnings.push_back(fmt::format("texture '{}' left white: {}", name, image.error().text()));
+        scene.warnings.push_back(fmt::format("Texture '{}' is left white: {}", name, in_short(image.error())));
         return {none, scene.warnings.back()};
     }
     image->name = name;

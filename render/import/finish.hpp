@@ -1,4 +1,4 @@
-// What every importer ends with: meshes cleaned, empty ones gone, at least one material, something drawable.
+// The last step of every importer: cleans meshes, drops empty ones, adds a material if there is none.
 #pragma once
 
 #include <cstdint>
@@ -9,41 +9,45 @@
 
 namespace surefoot::importer {
 
-/// Cleans each primitive, drops empty primitives, takes meshes without triangles and transforms that cannot be drawn off
-/// their nodes, gives a white material where there is none. Errors: nothing drawable left (says the first reason).
+/// Cleans each primitive and drops empty ones. Removes meshes from nodes if they have no triangles or an unusable transform.
+/// Adds a white material if there is none. Error: nothing drawable is left; it names the first reasons.
 Result<void> finish(Scene& scene, const std::string& file, const Progress& progress);
 
-/// A picture of a scene, or why there is none.
+/// "place: What happened", for a warning that ends there.
+std::string in_short(const Error& error);
+
+/// An image of a scene, or why there is none.
 struct Picture {
     Index image = none;
     std::string lack;
 };
-/// For a material that asks for it: the image, or the lack noted.
+/// The image for a material. If there is none, the reason is added to the material's lacks.
 inline Index picture_for(Material& material, const Picture& picture) {
     if (!picture.lack.empty()) material.lacks.push_back(picture.lack);
     return picture.image;
 }
 
-/// Where `name`, as it stands in `file`, lies: beside it, with either system's slashes.
+/// The path of `name`, as written in `file`: beside that file. Accepts both kinds of slashes.
 std::string place_beside(const std::string& file, const std::string& name);
 
-/// Loads a texture by name beside `file`. Missing or undecodable: a warning, and white.
+/// Loads a texture by name beside `file`. Missing or damaged: a warning, and white.
 Picture load_texture(Scene& scene, const std::string& file, const std::string& name);
 
-/// The same of one that is decoded already, or could not be.
+/// The same for an image that is already decoded, or could not be.
 Picture add_picture(Scene& scene, const std::string& name, Result<image::Image> image);
 
-/// How many of what; sums over the primitives of a mesh.
-struct Mended {
+/// Counts of repairs; sums over the primitives of a mesh. A mesh of many primitives gets one warning of each kind.
+struct Repairs {
     std::uint64_t arrays = 0;  ///< dropped: their length is not that of the positions
     std::uint64_t partial = 0, out_of_range = 0, non_finite = 0, enormous = 0;  ///< triangles
     std::uint64_t repeated = 0, zero_area = 0;                                  ///< triangles
-    std::uint64_t uvs = 0, normals = 0;                                         ///< mended
+    std::uint64_t uvs = 0, normals = 0;                                         ///< repaired
 };
 
 /// Cleans the primitive and adds to the counts.
-void mend(Primitive& primitive, Mended& counts);
-/// One line for each kind that is not zero; what is broken, not only useless, is what the mesh lacks, too.
-void say(const Mended& counts, const std::string& mesh_name, std::vector<std::string>& warnings, std::vector<std::string>& lacks);
+void repair(Primitive& primitive, Repairs& counts);
+/// Adds one warning for each count above zero. Those of broken (not only useless) data are added to `lacks` too.
+void report_repairs(const Repairs& counts, const std::string& mesh_name, std::vector<std::string>& warnings,
+                    std::vector<std::string>& lacks);
 
 }  // namespace surefoot::importer

@@ -1,5 +1,4 @@
-// The formats that are read, by the endings of their files. Adding one is its reader, and an entry in formats.cpp; help texts
-// and remedies follow.
+// The registry of formats, by file ending. To add one: its reader, and an entry in formats.cpp. Help texts and remedies follow.
 #pragma once
 
 #include <span>
@@ -16,7 +15,7 @@ struct Format {
     Result<Scene> (*read)(const std::string& file, const Progress& progress) = nullptr;
 };
 
-constexpr std::string_view glb_ending = ".glb", ostf_ending = ".ostf";  ///< of the two that are written too
+constexpr std::string_view glb_ending = ".glb", ostf_ending = ".ostf";  ///< of the two formats that are also written
 
 std::span<const Format> formats();
 /// A file name's ending in lower case, with its point; empty where it has none.

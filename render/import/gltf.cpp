@@ -34,8 +34,9 @@ Result<std::vector<Vector>> read_vectors(const tinygltf::Model& model, int acces
     auto floats = read_floats(model, accessor, place);
     if (!floats) return floats.error();
     if (floats->components != components)
-        return Error{place, fmt::format("accessor {}: {} components where {} belong", accessor, floats->components, components),
-                     export_again};
+        return Error{place,
+                     fmt::format("Accessor {} has {} components where {} belong", accessor, floats->components, components),
+                     export_again, ErrorKind::damaged};
     std::vector<Vector> out(floats->count());
     static_assert(sizeof(Vector) % sizeof(float) == 0);
     std::copy(floats->values.begin(), floats->values.end(), out.empty() ? nullptr : &out[0][0]);
@@ -47,7 +48,8 @@ Result<std::vector<std::array<std::uint8_t, 4>>> read_colours(const tinygltf::Mo
     auto floats = read_floats(model, accessor, place);
     if (!floats) return floats.error();
     if (floats->components < 3)
-        return Error{place, fmt::format("accessor {}: colours of {} components", accessor, floats->components), export_again};
+        return Error{place, fmt::format("Accessor {} has colours of {} components", accessor, floats->components), export_again,
+                     ErrorKind::damaged};
     std::vector<std::array<std::uint8_t, 4>> out(floats->count());
     for (std::size_t i = 0; i < out.size(); ++i) {
         const float* c = floats->values.data() + i * floats->components;
@@ -77,13 +79,13 @@ void lack(const Context& context, Mesh& mesh, std::string what) {
 /// The attributes beside positions: one that cannot be read is left out, and the mesh lacks it; the triangles stay.
 void read_attributes(const Context& context, const tinygltf::Primitive& from, const std::string& place, Mesh& mesh,
                      Primitive& to) {
-    const auto left_out = [&](const char* what, const Error& why) { lack(context, mesh, what + why.text()); };
+    const auto left_out = [&](const char* what, const Error& why) { lack(context, mesh, what + in_short(why)); };
     if (const int at = attribute(from, "NORMAL"); at >= 0) {
         auto normals = read_vectors<vec3>(context.model, at, 3, place);
         if (normals)
             to.normals = std::move(*normals);
         else
-            left_out("normals left out: ", normals.error());
+            left_out("Normals are left out: ", normals.error());
     }
     const TextureUse& use = context.uses[to.material];
     if (const int at = attribute(from, fmt::format("TEXCOORD_{}", use.set)); at >= 0) {
@@ -91,7 +93,7 @@ void read_attributes(const Context& context, const tinygltf::Primitive& from, co
         if (uvs)
             to.uvs = std::move(*uvs);
         else
-            left_out("texture coordinates left out: ", uvs.error());
+            left_out("Texture coordinates are left out: ", uvs.error());
         if (!use.identity()) std::transform(to.uvs.begin(), to.uvs.end(), to.uvs.begin(), [&](vec2 uv) { return use.apply(uv); });
     }
     if (const int at = attribute(from, "COLOR_0"); at >= 0) {
@@ -99,7 +101,7 @@ void read_attributes(const Context& context, const tinygltf::Primitive& from, co
         if (colours)
             to.colours = std::move(*colours);
         else
-            left_out("colours left out: ", colours.error());
+            left_out("Colours are left out: ", colours.error());
     }
 }
 
@@ -109,9 +111,9 @@ Result<Primitive> read_primitive(const Context& context, const tinygltf::Primiti
     const auto plain = static_cast<Index>(context.scene.materials.size() - 1);
     to.material = from.material >= 0 && static_cast<Index>(from.material) < plain ? static_cast<Index>(from.material) : plain;
     if (from.material >= 0 && static_cast<Index>(from.material) >= plain)
-        lack(context, mesh, fmt::format("{}: material {} does not exist: left white", place, from.material));
+        lack(context, mesh, fmt::format("{}: Material {} does not exist; the primitive is left white", place, from.material));
     const int positions_at = attribute(from, "POSITION");
-    if (positions_at < 0) return Error{place, "has no positions", export_again};
+    if (positions_at < 0) return Error{place, "The primitive has no positions", export_again, ErrorKind::damaged};
     auto positions = read_vectors<vec3>(model, positions_at, 3, place);
     if (!positions) return positions.error();
     to.positions = std::move(*positions);
@@ -143,13 +145,14 @@ void read_mesh(const Context& context, const tinygltf::Mesh& from, Mesh& to) {
         if (read) {
             to.primitives.push_back(std::move(*read));
         } else {
-            lack(context, to, "primitive dropped: " + read.error().text());
+            lack(context, to, "A primitive is dropped: " + in_short(read.error()));
         }
     }
     if (not_triangles > 0)
-        warnings.push_back(fmt::format("mesh '{}': {} primitives of points or lines dropped", to.name, not_triangles));
+        warnings.push_back(fmt::format("Mesh '{}': {} primitives of points or lines are dropped", to.name, not_triangles));
     if (morphed > 0)
-        warnings.push_back(fmt::format("mesh '{}': {} primitives taken in their rest shape (morph targets)", to.name, morphed));
+        warnings.push_back(
+            fmt::format("Mesh '{}': {} primitives are taken in their rest shape (morph targets)", to.name, morphed));
 }
 
 }  // namespace
@@ -162,10 +165,10 @@ Result<Scene> import_gltf(const std::string& file, const Progress& progress) {
     const Context context{*model, file, uses, scene};
     scene.meshes.resize(model->meshes.size());
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-        if (progress.stopped()) return Error{file, "import stopped", ""};
+        if (progress.stopped()) return Error{file, "The import was stopped", "", ErrorKind::stopped};
         scene.meshes[i].name = model->meshes[i].name.empty() ? fmt::format("mesh {}", i) : model->meshes[i].name;
         read_mesh(context, model->meshes[i], scene.meshes[i]);
-        progress.say("import", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
+        progress.update("import", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
     }
     if (auto placed = read_nodes(*model, file, scene); !placed) return placed.error();
     model->buffers.clear();

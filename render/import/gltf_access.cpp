@@ -10,10 +10,10 @@ namespace surefoot::importer {
 namespace {
 
 /// An accessor without a view is all zeros and has no bytes to bound its count: more than this is a mistake.
-constexpr std::uint64_t most_implicit_elements = 1U << 24U;
+constexpr std::uint64_t max_implicit_elements = 1U << 24U;
 
 Error bad_accessor(const std::string& place, int accessor, std::string what) {
-    return Error{place, fmt::format("accessor {}: {}", accessor, what), "export the model again"};
+    return Error{place, fmt::format("Accessor {} {}", accessor, what), export_again, ErrorKind::damaged};
 }
 
 std::size_t component_bytes(int type) {
@@ -95,21 +95,22 @@ struct Bytes {
 Result<Bytes> locate(const tinygltf::Model& model, int view_index, std::uint64_t offset, std::uint64_t count,
                      std::uint64_t element, bool may_stride, const std::string& place, int accessor) {
     if (view_index < 0 || static_cast<std::size_t>(view_index) >= model.bufferViews.size())
-        return bad_accessor(place, accessor, "no such buffer view");
+        return bad_accessor(place, accessor, "names a buffer view that does not exist");
     const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(view_index)];
     if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size())
-        return bad_accessor(place, accessor, "no such buffer");
+        return bad_accessor(place, accessor, "names a buffer that does not exist");
     const std::vector<unsigned char>& buffer = model.buffers[static_cast<std::size_t>(view.buffer)].data;
     if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) {
-        return bad_accessor(place, accessor,
-                            fmt::format("buffer view {} reaches beyond its buffer of {} bytes", view_index, buffer.size()));
+        return bad_accessor(
+            place, accessor,
+            fmt::format("uses buffer view {}, which reaches beyond its buffer of {} bytes", view_index, buffer.size()));
     }
     const std::uint64_t stride = may_stride && view.byteStride != 0 ? view.byteStride : element;
     if (stride < element)
-        return bad_accessor(place, accessor, fmt::format("stride of {} bytes for elements of {}", stride, element));
+        return bad_accessor(place, accessor, fmt::format("has a stride of {} bytes for elements of {}", stride, element));
     const bool starts_inside = offset <= view.byteLength && element <= view.byteLength - offset;
     if (count > 0 && (!starts_inside || count - 1 > (view.byteLength - offset - element) / stride)) {
-        return bad_accessor(place, accessor, fmt::format("{} elements reach beyond buffer view {}", count, view_index));
+        return bad_accessor(place, accessor, fmt::format("has {} elements that reach beyond buffer view {}", count, view_index));
     }
     return Bytes{buffer.data() + view.byteOffset + offset, stride};
 }
@@ -127,10 +128,10 @@ Result<Located> locate_accessor(const tinygltf::Model& model, int index, const s
     found.accessor = &model.accessors[static_cast<std::size_t>(index)];
     found.components = components_of(found.accessor->type);
     found.component_size = component_bytes(found.accessor->componentType);
-    if (found.components == 0 || found.component_size == 0) return bad_accessor(place, index, "unsupported type");
+    if (found.components == 0 || found.component_size == 0) return bad_accessor(place, index, "has an unsupported type");
     if (found.accessor->bufferView < 0) {
-        if (found.accessor->count > most_implicit_elements)
-            return bad_accessor(place, index, fmt::format("{} elements without data", found.accessor->count));
+        if (found.accessor->count > max_implicit_elements)
+            return bad_accessor(place, index, fmt::format("has {} elements without data", found.accessor->count));
         return found;
     }
     auto bytes = locate(model, found.accessor->bufferView, found.accessor->byteOffset, found.accessor->count,
@@ -148,13 +149,13 @@ Result<void> apply_sparse(const tinygltf::Model& model, const Located& found, in
     if (!sparse.isSparse) return {};
     if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > found.accessor->count || sparse.indices.byteOffset < 0 ||
         sparse.values.byteOffset < 0) {
-        return bad_accessor(place, index, "sparse count or offset out of range");
+        return bad_accessor(place, index, "has a sparse count or offset out of range");
     }
     const auto count = static_cast<std::uint64_t>(sparse.count);
     const int type = sparse.indices.componentType;
     if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
         type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-        return bad_accessor(place, index, "sparse indices are not unsigned integers");
+        return bad_accessor(place, index, "has sparse indices that are not unsigned integers");
     }
     auto where = locate(model, sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
                         component_bytes(type), false, place, index);
@@ -166,7 +167,7 @@ Result<void> apply_sparse(const tinygltf::Model& model, const Located& found, in
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint32_t at = as_index(where->data + i * where->stride, type);
         if (at >= found.accessor->count)
-            return bad_accessor(place, index, fmt::format("sparse index {} of {} elements", at, found.accessor->count));
+            return bad_accessor(place, index, fmt::format("has the sparse index {} of {} elements", at, found.accessor->count));
         put(at, values->data + i * values->stride);
     }
     return {};
@@ -199,7 +200,7 @@ Result<std::vector<std::uint32_t>> read_indices(const tinygltf::Model& model, in
     const int type = found->accessor->componentType;
     const bool is_unsigned = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                              type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    if (found->components != 1 || !is_unsigned) return bad_accessor(place, accessor, "indices are not unsigned scalars");
+    if (found->components != 1 || !is_unsigned) return bad_accessor(place, accessor, "has indices that are not unsigned scalars");
     std::vector<std::uint32_t> out(found->accessor->count, 0);
     const auto put = [&](std::size_t element, const unsigned char* bytes) { out[element] = as_index(bytes, type); };
     if (found->bytes.data != nullptr) {

@@ -41,21 +41,27 @@ Result<Text> split_glb(std::span<const std::byte> bytes, const std::string& file
     const auto length = reader.read<std::uint32_t>();
     const auto json_bytes = reader.read<std::uint32_t>();
     const auto json_kind = reader.read<std::uint32_t>();
-    if (reader.failed() || magic != glb_magic) return Error{file, "GLB header is truncated", export_again};
-    if (version != 2) return Error{file, fmt::format("GLB version {}: only 2 is read", version), "convert it to glTF 2.0"};
-    if (length > bytes.size()) return Error{file, fmt::format("truncated: {} bytes of {}", bytes.size(), length), export_again};
+    if (reader.failed() || magic != glb_magic)
+        return Error{file, "The GLB header is truncated", export_again, ErrorKind::damaged};
+    if (version != 2)
+        return Error{file, fmt::format("The GLB has version {}; only 2 is read", version), "Convert it to glTF 2.0",
+                     ErrorKind::unsupported};
+    if (length > bytes.size())
+        return Error{file, fmt::format("The file is truncated: {} bytes of {}", bytes.size(), length), export_again,
+                     ErrorKind::damaged};
     Text text;
     text.binary = true;
     text.json = reader.bytes(json_bytes);
     if (reader.failed() || json_kind != json_chunk || reader.at() > length)
-        return Error{file, "first GLB chunk is not whole JSON", export_again};
+        return Error{file, "The first GLB chunk is not whole JSON", export_again, ErrorKind::damaged};
     if (reader.at() == length) return text;
     text.bin_bytes = reader.read<std::uint32_t>();
     const auto bin_kind = reader.read<std::uint32_t>();
     if (reader.failed() || reader.at() + text.bin_bytes > length) {
-        return Error{file, fmt::format("truncated: GLB chunk at byte {} reaches beyond the end", 20 + json_bytes), export_again};
+        return Error{file, fmt::format("The file is truncated: the GLB chunk at byte {} reaches beyond the end", 20 + json_bytes),
+                     export_again, ErrorKind::damaged};
     }
-    if (bin_kind != bin_chunk) return Error{file, "second GLB chunk is not binary data", export_again};
+    if (bin_kind != bin_chunk) return Error{file, "The second GLB chunk is not binary data", export_again, ErrorKind::damaged};
     return text;
 }
 
@@ -97,11 +103,11 @@ Result<void> check_extensions(const json& root, const std::string& file, std::ve
         if (!entry.is_string()) continue;
         const auto& name = entry.get_ref<const std::string&>();
         if (name.find("draco") != std::string::npos || name.find("meshopt") != std::string::npos) {
-            return Error{file, fmt::format("is compressed with {}", name),
-                         "decompress it (gltf-transform copy, or gltfpack -noq)"};
+            return Error{file, fmt::format("The file is compressed with {}", name),
+                         "Decompress it (gltf-transform copy, or gltfpack -noq)", ErrorKind::unsupported};
         }
         if (std::find(known.begin(), known.end(), name) == known.end())
-            warnings.push_back(fmt::format("extension {} is required but ignored", name));
+            warnings.push_back(fmt::format("Extension {} is required but ignored", name));
     }
     return {};
 }
@@ -120,7 +126,7 @@ Result<void> check_image_views(const json& root, const std::string& file) {
         const std::uint64_t offset = buffer < buffers.size() ? number_in(views[view], "byteOffset", 0) : 0;
         const std::uint64_t length = buffer < buffers.size() ? number_in(views[view], "byteLength", absent) : absent;
         if (offset >= size || length > size - offset)
-            return Error{file, fmt::format("image {}: its bytes lie outside their buffer", at), export_again};
+            return Error{file, fmt::format("Image {} lies outside its buffer", at), export_again, ErrorKind::damaged};
     }
     return {};
 }
@@ -198,8 +204,11 @@ Result<tinygltf::Model> run_tinygltf(std::span<const std::byte> bytes, bool bina
                                                         reinterpret_cast<const unsigned char*>(bytes.data()), size, files.folder)
                           : reader.LoadASCIIFromString(&model, &errors, &notes, reinterpret_cast<const char*>(bytes.data()), size,
                                                        files.folder);
-    if (!good) return Error{file, errors.empty() ? "not a glTF file" : one_line(errors), export_again};
-    if (!errors.empty()) warnings.push_back("dropped by the glTF reader: " + one_line(errors));
+    if (!good)
+        return Error{file,
+                     errors.empty() ? "The file is not a glTF file" : "The glTF reader refuses the file: " + one_line(errors),
+                     export_again, ErrorKind::damaged};
+    if (!errors.empty()) warnings.push_back("The glTF reader dropped something: " + one_line(errors));
     return model;
 }
 
@@ -207,7 +216,7 @@ Result<tinygltf::Model> load_checked(const std::string& file, std::vector<std::s
     auto bytes = read_file(file);
     if (!bytes) return bytes.error();
     if (bytes->size() >= std::numeric_limits<std::uint32_t>::max())
-        return Error{file, "larger than 4 GiB, the most that glTF can be", "split the model"};
+        return Error{file, "The file is larger than 4 GiB, the limit of glTF", "Split the model", ErrorKind::out_of_limits};
     Text text{*bytes, 0, is_glb(*bytes)};
     if (text.binary) {
         auto split = split_glb(*bytes, file);
@@ -215,10 +224,12 @@ Result<tinygltf::Model> load_checked(const std::string& file, std::vector<std::s
         text = *split;
     }
     if (depth_of(text.json) > deepest_json)
-        return Error{file, fmt::format("JSON nested deeper than {}", deepest_json), export_again};
+        return Error{file, fmt::format("The JSON is nested deeper than {}", deepest_json), export_again,
+                     ErrorKind::out_of_limits};
     const auto* first = reinterpret_cast<const char*>(text.json.data());
     const json root = json::parse(first, first + text.json.size());
-    if (!root.is_object()) return Error{file, "not a glTF file: its JSON is no object", export_again};
+    if (!root.is_object())
+        return Error{file, "The file is not a glTF file: its JSON is no object", export_again, ErrorKind::damaged};
     if (auto readable = check_extensions(root, file, warnings); !readable) return readable.error();
     if (auto inside = check_image_views(root, file); !inside) return inside.error();
     Files files = external_files(root, file);
@@ -245,9 +256,9 @@ Result<tinygltf::Model> load_gltf(const std::string& file, std::vector<std::stri
     try {
         return load_checked(file, warnings);
     } catch (const json::exception& trouble) {
-        return Error{file, fmt::format("JSON is truncated or wrong: {}", trouble.what()), export_again};
+        return Error{file, fmt::format("The JSON is truncated or wrong: {}", trouble.what()), export_again, ErrorKind::damaged};
     } catch (const std::exception& trouble) {
-        return Error{file, fmt::format("glTF reader: {}", trouble.what()), export_again};
+        return Error{file, fmt::format("The glTF reader failed: {}", trouble.what()), export_again, ErrorKind::damaged};
     }
 }
 

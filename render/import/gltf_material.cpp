@@ -83,7 +83,7 @@ public:
 
 private:
     Index missing(Material& material, const std::string& why) {
-        scene_.warnings.push_back(fmt::format("material '{}' left white: {}", material.name, why));
+        scene_.warnings.push_back(fmt::format("Material '{}' is left white: {}", material.name, why));
         material.lacks.push_back(scene_.warnings.back());
         return none;
     }
@@ -92,7 +92,7 @@ private:
         for (const auto& [extension, kind] :
              {std::pair{"KHR_texture_basisu", "KTX2"}, {"EXT_texture_webp", "WebP"}, {"MSFT_texture_dds", "DDS"}}) {
             if (wanted.extensions.contains(extension))
-                return fmt::format("has only a {} picture, which is not read: convert it to PNG or JPEG", kind);
+                return fmt::format("has only a {} picture, which is not read; convert it to PNG or JPEG", kind);
         }
         return "has no picture that can be read";
     }
@@ -161,7 +161,7 @@ std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::
         material.unlit = from.extensions.contains("KHR_materials_unlit");
         scene.materials.push_back(std::move(material));
         uses.push_back(use_of(reference));
-        progress.say("textures", static_cast<double>(i + 1) / static_cast<double>(model.materials.size()));
+        progress.update("textures", static_cast<double>(i + 1) / static_cast<double>(model.materials.size()));
     }
     scene.materials.push_back(Material{.name = "default"});
     uses.emplace_back();

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "render/import/finish.hpp"
 #include "render/import/gltf_parts.hpp"
 
 namespace surefoot::importer {
@@ -51,7 +52,8 @@ Result<std::vector<dmat4>> instances_of(const tinygltf::Model& model, const tiny
         if (!attributes.IsObject() || !attributes.Has(name)) return FloatArray{};
         auto floats = read_floats(model, attributes.Get(name).GetNumberAsInt(), place);
         if (floats && floats->components != components)
-            return Error{place, fmt::format("instance {} has {} components", name, floats->components), "export the model again"};
+            return Error{place, fmt::format("The instance attribute {} has {} components", name, floats->components),
+                         export_again, ErrorKind::damaged};
         return floats;
     };
     auto t = read("TRANSLATION", 3), r = read("ROTATION", 4), s = read("SCALE", 3);
@@ -109,14 +111,15 @@ private:
     Result<void> enter(int node, Index parent) {
         if (node < 0 || static_cast<std::size_t>(node) >= model_.nodes.size()) {
             scene_.damaged(
-                fmt::format("child {} of '{}' does not exist", node, parent == none ? "the scene" : scene_.nodes[parent].name));
+                fmt::format("Child {} of '{}' does not exist", node, parent == none ? "the scene" : scene_.nodes[parent].name));
             return {};
         }
         State& state = state_[static_cast<std::size_t>(node)];
         if (state == State::open)
-            return Error{file_, fmt::format("node '{}' is its own ancestor", name_of(node)), "break the cycle in the node graph"};
+            return Error{file_, fmt::format("Node '{}' is its own ancestor", name_of(node)), "Break the cycle in the node graph",
+                         ErrorKind::damaged};
         if (state == State::done) {
-            scene_.warnings.push_back(fmt::format("node '{}' has more than one parent: only the first is kept", name_of(node)));
+            scene_.warnings.push_back(fmt::format("Node '{}' has more than one parent; only the first is kept", name_of(node)));
             return {};
         }
         state = State::open;
@@ -133,8 +136,8 @@ private:
         to.importance = importance_of(from);
         if (from.mesh >= 0 && static_cast<std::size_t>(from.mesh) < scene_.meshes.size()) to.mesh = static_cast<Index>(from.mesh);
         if (from.mesh >= 0 && to.mesh == none)
-            scene_.damaged(fmt::format("node '{}': mesh {} does not exist", to.name, from.mesh));
-        if (from.skin >= 0) scene_.warnings.push_back(fmt::format("node '{}': taken in its rest pose (skin)", to.name));
+            scene_.damaged(fmt::format("Node '{}' names mesh {}, which does not exist", to.name, from.mesh));
+        if (from.skin >= 0) scene_.warnings.push_back(fmt::format("Node '{}' is taken in its rest pose (skin)", to.name));
         const auto index = static_cast<Index>(scene_.nodes.size());
         const auto instancing = from.extensions.find("EXT_mesh_gpu_instancing");
         scene_.nodes.push_back(std::move(to));
@@ -145,7 +148,7 @@ private:
     void add_instances(Index node, const tinygltf::Value& extension) {
         auto matrices = instances_of(model_, extension, file_ + ": node '" + scene_.nodes[node].name + "'");
         if (!matrices) {
-            scene_.damaged("instances dropped: " + matrices.error().text());
+            scene_.damaged("Instances are dropped: " + in_short(matrices.error()));
             return;
         }
         const Node parent = scene_.nodes[node];
@@ -184,8 +187,9 @@ std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
     const int wanted = model.defaultScene;
     const bool exists = wanted >= 0 && static_cast<std::size_t>(wanted) < model.scenes.size();
     if (wanted >= 0 && !exists)
-        scene.warnings.push_back(fmt::format("default scene {} does not exist: the first is taken", wanted));
-    if (model.scenes.size() > 1) scene.warnings.push_back(fmt::format("{} scenes: only one is taken", model.scenes.size()));
+        scene.warnings.push_back(fmt::format("Default scene {} does not exist; the first is taken", wanted));
+    if (model.scenes.size() > 1)
+        scene.warnings.push_back(fmt::format("The file has {} scenes; only one is taken", model.scenes.size()));
     return model.scenes[exists ? static_cast<std::size_t>(wanted) : 0].nodes;
 }
 
@@ -193,7 +197,7 @@ std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
 
 Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, Scene& scene) {
     if (model.nodes.empty() && !scene.meshes.empty()) {
-        scene.warnings.emplace_back("no nodes: each mesh is placed once, at the origin");
+        scene.warnings.emplace_back("The file has no nodes; each mesh is placed once, at the origin");
         for (std::size_t i = 0; i < scene.meshes.size(); ++i)
             scene.nodes.push_back(Node{scene.meshes[i].name, none, static_cast<Index>(i), dmat4(1.0), 1.0F});
         return {};

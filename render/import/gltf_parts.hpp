@@ -14,11 +14,11 @@ namespace surefoot::importer {
 // ---- bytes to structures: the checks that tinygltf 2.7 does not make, then tinygltf ----
 
 /// The remedy for a file that is damaged.
-inline constexpr const char* export_again = "export the model again";
+inline constexpr const char* export_again = "Export the model again";
 
-/// Buffers are loaded and at least as long as their byteLength says; nothing else in the model may be trusted: accessors,
-/// views (but those of images), indices of every kind are checked where they are used.
-/// Images: `image` holds the encoded bytes of a data URI; else `bufferView` or `uri` says where they are.
+/// Buffers are loaded and at least as long as their byteLength. Nothing else in the model may be trusted, except views of images:
+/// accessors, views and indices are checked where they are used.
+/// Images: `image` holds the encoded bytes of a data URI; else `bufferView` or `uri` locates them.
 Result<tinygltf::Model> load_gltf(const std::string& file, std::vector<std::string>& warnings);
 
 /// %20 and the like, as URIs write them.
@@ -38,9 +38,9 @@ Result<FloatArray> read_floats(const tinygltf::Model& model, int accessor, const
 /// Scalar unsigned integers.
 Result<std::vector<std::uint32_t>> read_indices(const tinygltf::Model& model, int accessor, const std::string& place);
 
-// ---- materials, textures and pictures to a Scene's ----
+// ---- materials, textures and images to those of a Scene ----
 
-/// What a primitive needs to know of its material's texture: which coordinates, and how they are moved.
+/// The texture coordinates that a material uses, and their transform.
 struct TextureUse {
     int set = 0;               ///< TEXCOORD_<set>
     vec2 offset{0}, scale{1};  ///< KHR_texture_transform
@@ -56,8 +56,7 @@ std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::
 
 // ---- the node graph to a Scene's nodes: world matrices in double, instances, cycles refused ----
 
-/// The default scene (else the first, else every root). Errors: a cycle, by node name. Warnings: what is taken otherwise than
-/// written.
+/// Reads the default scene, else the first, else every root. Error: a cycle, by node name. Warnings: deviations from the file.
 Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, Scene& scene);
 
 }  // namespace surefoot::importer

@@ -35,7 +35,7 @@ struct Group {
 
 struct Skipped {
     std::uint64_t count = 0, first_line = 0;
-    void note(std::uint64_t line) {
+    void add(std::uint64_t line) {
         if (count++ == 0) first_line = line;
     }
 };
@@ -50,14 +50,14 @@ public:
         if (auto parsed = parse(*text); !parsed) return parsed.error();
         text = std::string();
         make_meshes();
-        say_skipped();
+        warn_skipped();
         if (auto usable = finish(scene_, file_, progress_); !usable) return usable.error();
         return std::move(scene_);
     }
 
 private:
     Error wrong(std::uint64_t line, std::string what) const {
-        return {fmt::format("{}:{}", file_, line), std::move(what), "export the model again"};
+        return {fmt::format("{}:{}", file_, line), std::move(what), "Export the model again", ErrorKind::damaged};
     }
 
     Result<void> parse(const std::string& text) {
@@ -66,8 +66,8 @@ private:
             if (cursor.at_line_end()) continue;
             if (auto read = statement(cursor); !read) return read;
             if (++statements % 65536 != 0) continue;
-            if (progress_.stopped()) return Error{file_, "import stopped", ""};
-            progress_.say("import", 1.0 - static_cast<double>(cursor.rest().size()) / static_cast<double>(text.size()));
+            if (progress_.stopped()) return Error{file_, "The import was stopped", "", ErrorKind::stopped};
+            progress_.update("import", 1.0 - static_cast<double>(cursor.rest().size()) / static_cast<double>(text.size()));
         }
         return {};
     }
@@ -92,9 +92,9 @@ private:
         } else if (key == "mtllib") {
             library(std::string(cursor.line_text()));
         } else if (key == "p" || key == "l") {
-            points_and_lines_.note(line);
+            points_and_lines_.add(line);
         } else if (key != "s" && key != "vp") {
-            unknown_.note(line);
+            unknown_.add(line);
         }
         return {};
     }
@@ -103,10 +103,10 @@ private:
         std::array<double, 8> n{};
         std::size_t count = 0;
         while (count < n.size() && !cursor.at_line_end()) {
-            if (!cursor.number(n[count])) return wrong(line, fmt::format("'{}' is not a number", cursor.word()));
+            if (!cursor.number(n[count])) return wrong(line, fmt::format("The word '{}' is not a number", cursor.word()));
             ++count;
         }
-        if (count < 3) return wrong(line, fmt::format("position of {} numbers", count));
+        if (count < 3) return wrong(line, fmt::format("A position has only {} numbers", count));
         positions_.emplace_back(n[0], n[1], n[2]);
         // v x y z [w] [r g b]: six or seven numbers end with a colour.
         if (count >= 6) {
@@ -121,7 +121,7 @@ private:
     Result<void> vector(TextCursor& cursor, std::uint64_t line, std::vector<vec3>& to) const {
         vec3 v(0);
         for (int i = 0; i < 3; ++i) {
-            if (!cursor.number(v[i])) return wrong(line, "normal without three numbers");
+            if (!cursor.number(v[i])) return wrong(line, "A normal has fewer than three numbers");
         }
         to.push_back(v);
         return {};
@@ -129,7 +129,7 @@ private:
 
     Result<void> coordinate(TextCursor& cursor, std::uint64_t line) {
         vec2 uv(0);
-        if (!cursor.number(uv.x)) return wrong(line, "texture coordinate without a number");
+        if (!cursor.number(uv.x)) return wrong(line, "A texture coordinate has no number");
         (void)cursor.number(uv.y);
         uvs_.emplace_back(uv.x, 1.0F - uv.y);  // OBJ counts from the picture's lower edge
         return {};
@@ -152,7 +152,7 @@ private:
             bool wrong = false;
             if (cursor.integer(index)) wrong = (corner.uv = resolve(index, uvs_.size())) == none;
             if (cursor.take('/') && cursor.integer(index)) wrong |= (corner.normal = resolve(index, normals_.size())) == none;
-            if (wrong) bad_corners_.note(line);
+            if (wrong) bad_corners_.add(line);
         }
         return corner.position != none;
     }
@@ -162,15 +162,15 @@ private:
         while (!cursor.at_line_end()) {
             Corner c{};
             if (!corner(cursor, line, c)) {
-                bad_faces_.note(line);
-                lost_.note(line);
+                bad_faces_.add(line);
+                lost_.add(line);
                 return {};
             }
-            if (!cursor.at_word_end()) return wrong(line, "a face's corner is none of v, v/vt, v//vn, v/vt/vn");
+            if (!cursor.at_word_end()) return wrong(line, "A corner of a face is none of v, v/vt, v//vn, v/vt/vn");
             polygon_.push_back(c);
         }
         if (polygon_.size() < 3) {
-            bad_faces_.note(line);
+            bad_faces_.add(line);
             return {};
         }
         add_polygon(line);
@@ -185,7 +185,7 @@ private:
         } else {
             outline_.clear();
             for (const Corner& c : polygon_) outline_.push_back(positions_[c.position]);
-            if (!triangulate(outline_, triples_)) crossing_.note(line);
+            if (!triangulate(outline_, triples_)) crossing_.add(line);
         }
         for (const std::uint32_t i : triples_) {
             const auto next = static_cast<std::uint32_t>(part.vertices.size());
@@ -289,21 +289,21 @@ private:
         return found->second;
     }
 
-    void say_skipped() {
+    void warn_skipped() {
         const auto text = [](const Skipped& skipped, const char* what) {
             return fmt::format("{} {} (first in line {})", skipped.count, what, skipped.first_line);
         };
-        const auto say = [&](const Skipped& skipped, const char* what) {
+        const auto warn = [&](const Skipped& skipped, const char* what) {
             if (skipped.count > 0) scene_.warnings.push_back(text(skipped, what));
         };
-        say(bad_faces_, "faces dropped: index out of range, or fewer than three corners");
+        warn(bad_faces_, "faces are dropped: index out of range, or fewer than three corners");
         // Loose edges are useless, not broken.
-        if (lost_.count > 0) scene_.damage.push_back({file_, text(lost_, "faces dropped: index out of range")});
+        if (lost_.count > 0) scene_.damage.push_back({file_, text(lost_, "faces are dropped: index out of range")});
         if (bad_corners_.count > 0)
-            scene_.damaged(text(bad_corners_, "faces name a texture coordinate or normal that is not there"));
-        say(crossing_, "polygons that cross themselves: triangles may overlap");
-        say(points_and_lines_, "points or lines dropped");
-        say(unknown_, "statements not understood");
+            scene_.damaged(text(bad_corners_, "faces name a texture coordinate or normal that does not exist"));
+        warn(crossing_, "polygons cross themselves, so triangles may overlap");
+        warn(points_and_lines_, "points or lines are dropped");
+        warn(unknown_, "statements are not understood");
     }
 
     const std::string& file_;

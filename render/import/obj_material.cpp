@@ -68,7 +68,7 @@ void merge_opacity(Reading& reading, Material& material, const std::string& name
     const image::Image* colours = material.image == none ? nullptr : &reading.scene.images[material.image];
     if (colours != nullptr && (colours->width != merged.width || colours->height != merged.height)) {
         reading.scene.warnings.push_back(
-            fmt::format("material '{}': map_d '{}' left out, its size is not that of map_Kd", material.name, name));
+            fmt::format("Material '{}': map_d '{}' is left out, because its size is not that of map_Kd", material.name, name));
         return;
     }
     for (std::size_t i = 0; i < merged.rgba.size(); i += 4) {
@@ -134,7 +134,7 @@ std::string read_mtl(const std::string& obj_file, const std::string& library, Sc
     const auto plain = require_plain(place);
     auto text = plain ? read_text(place) : plain.error();
     if (!text) {
-        scene.warnings.push_back(fmt::format("materials left white: {}", text.error().text()));
+        scene.warnings.push_back(fmt::format("Materials are left white: {}", in_short(text.error())));
         return scene.warnings.back();
     }
     Reading reading{obj_file, place, scene, {}, none, {}};

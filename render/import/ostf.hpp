@@ -39,8 +39,7 @@ Result<OstfIndex> index_ostf(const std::string& file, const Progress& progress);
 Result<std::vector<OstfVertex>> read_ostf_leaf(const OstfIndex& index, Index object);
 /// The whole file as a scene (leaf by leaf).
 Result<Scene> import_ostf(const std::string& file, const Progress& progress);
-/// Written leaf by leaf; textures are named, not embedded: written as PNG beside the file. Replaces the old file only when
-/// complete.
+/// Writes leaf by leaf. Textures become PNG files beside the file. Replaces the old file only when complete.
 Result<void> write_ostf(const std::string& file, const Scene& scene, const Progress& progress);
 
 }  // namespace surefoot::importer

@@ -118,7 +118,7 @@ private:
 
 Result<std::vector<OstfVertex>> read_ostf_leaf(const OstfIndex& index, Index object) {
     if (object >= index.objects.size() || index.objects[object].triangles == 0)
-        return Error{index.file, fmt::format("object {} is no leaf", object), ""};
+        return Error{index.file, fmt::format("Object {} is no leaf", object), "", ErrorKind::failed};
     const OstfObject& leaf = index.objects[object];
     NumberStream numbers(index.file, leaf.offset);
     std::vector<OstfVertex> vertices;
@@ -129,7 +129,8 @@ Result<std::vector<OstfVertex>> read_ostf_leaf(const OstfIndex& index, Index obj
                           &v.colour.y, &v.colour.z, &v.uv.x, &v.uv.y}) {
             if (!numbers.next(*to)) {
                 return Error{fmt::format("{}: '{}' from line {}", index.file, leaf.name, leaf.line),
-                             fmt::format("vertex {} of {} is not whole", i, leaf.triangles * 3), "export the model again"};
+                             fmt::format("Vertex {} of {} is incomplete", i, leaf.triangles * 3), "Export the model again",
+                             ErrorKind::damaged};
             }
         }
         vertices.push_back(v);
@@ -144,7 +145,7 @@ Result<Scene> import_ostf(const std::string& file, const Progress& progress) {
     Materials materials(file, scene);
     for (std::size_t i = 0; i < index->objects.size(); ++i) {
         const OstfObject& object = index->objects[i];
-        if (progress.stopped()) return Error{file, "import stopped", ""};
+        if (progress.stopped()) return Error{file, "The import was stopped", "", ErrorKind::stopped};
         Node node;
         node.name = object.name;
         node.parent = object.parent;
@@ -158,7 +159,7 @@ Result<Scene> import_ostf(const std::string& file, const Progress& progress) {
             scene.meshes.back().primitives.push_back(std::move(primitive));
         }
         scene.nodes.push_back(std::move(node));
-        progress.say("import", static_cast<double>(i + 1) / static_cast<double>(index->objects.size()));
+        progress.update("import", static_cast<double>(i + 1) / static_cast<double>(index->objects.size()));
     }
     if (auto usable = finish(scene, file, progress); !usable) return usable.error();
     return scene;

@@ -123,7 +123,8 @@ public:
     Indexer(const std::string& file, const Progress& progress) : lines_(file), progress_(progress) { index_.file = file; }
 
     Result<OstfIndex> run() {
-        if (!lines_.opened()) return Error{index_.file, "cannot be opened", "check the name and its permissions"};
+        if (!lines_.opened())
+            return Error{index_.file, "The file cannot be opened", "Check the name and its permissions", ErrorKind::unreadable};
         std::error_code code;
         total_ = std::filesystem::file_size(index_.file, code);
         std::string_view text;
@@ -132,42 +133,46 @@ public:
             have_line_ = false;
             if (auto read = tag(text); !read) return read.error();
         }
-        if (lines_.too_long()) return wrong("line longer than 64 KiB: not an OSTF file");
-        if (!open_.empty()) return wrong(fmt::format("truncated: '{}' has no END_TAG", index_.objects[open_.back()].name));
-        if (index_.objects.empty()) return wrong("holds no object: no START_TAG");
+        if (lines_.too_long()) return wrong("A line is longer than 64 KiB; this is not an OSTF file");
+        if (!open_.empty())
+            return wrong(fmt::format("The file is truncated: '{}' has no END_TAG", index_.objects[open_.back()].name));
+        if (index_.objects.empty()) return wrong("The file holds no object: there is no START_TAG");
         return std::move(index_);
     }
 
 private:
     Error wrong(std::string what) const {
-        return {fmt::format("{}:{}", index_.file, lines_.line()), std::move(what), "export the model again"};
+        return {fmt::format("{}:{}", index_.file, lines_.line()), std::move(what), "Export the model again", ErrorKind::damaged};
     }
 
     Result<void> tag(std::string_view text) {
         if (text == "START_TAG") return object();
-        if (text != "END_TAG") return wrong(fmt::format("'{}' where START_TAG or END_TAG belongs", text.substr(0, 40)));
-        if (open_.empty()) return wrong("END_TAG without START_TAG");
+        if (text != "END_TAG")
+            return wrong(fmt::format("The line '{}' stands where START_TAG or END_TAG belongs", text.substr(0, 40)));
+        if (open_.empty()) return wrong("An END_TAG has no START_TAG");
         open_.pop_back();
         return {};
     }
 
     Result<void> object() {
-        if (open_.size() >= deepest) return wrong(fmt::format("objects nested deeper than {}", deepest));
+        if (open_.size() >= deepest) return wrong(fmt::format("Objects are nested deeper than {}", deepest));
         if (!open_.empty() && index_.objects[open_.back()].triangles > 0)
-            return wrong(fmt::format("'{}' holds triangles and objects", index_.objects[open_.back()].name));
-        if (index_.objects.size() >= none) return wrong("too many objects");
+            return wrong(fmt::format("Object '{}' holds triangles and objects", index_.objects[open_.back()].name));
+        if (index_.objects.size() >= none) return wrong("The file holds too many objects");
         OstfObject object;
         object.line = lines_.line();
         object.parent = open_.empty() ? none : open_.back();
         std::string_view text;
-        if (!lines_.next(text)) return wrong("truncated after START_TAG");
+        if (!lines_.next(text)) return wrong("The file is truncated after START_TAG");
         object.name = text;
-        if (!lines_.next(text)) return wrong(fmt::format("truncated in '{}'", object.name));
+        if (!lines_.next(text)) return wrong(fmt::format("The file is truncated in '{}'", object.name));
         const auto triangles = surefoot::number_in<decltype(object.triangles)>(text);
-        if (!triangles) return wrong(fmt::format("'{}' is not the number of triangles of '{}'", text.substr(0, 40), object.name));
+        if (!triangles)
+            return wrong(fmt::format("The text '{}' is not the number of triangles of '{}'", text.substr(0, 40), object.name));
         object.triangles = *triangles;
         if (object.triangles > total_ / (lines_a_triangle * 4))
-            return wrong(fmt::format("'{}' says {} triangles: more than the file can hold", object.name, object.triangles));
+            return wrong(
+                fmt::format("Object '{}' announces {} triangles, more than the file can hold", object.name, object.triangles));
         open_.push_back(static_cast<Index>(index_.objects.size()));
         index_.objects.push_back(std::move(object));
         return index_.objects.back().triangles > 0 ? leaf(index_.objects.back()) : container();
@@ -183,24 +188,26 @@ private:
 
     Result<void> leaf(OstfObject& object) {
         std::string_view text;
-        if (!lines_.next(text)) return wrong(fmt::format("truncated in '{}'", object.name));
+        if (!lines_.next(text)) return wrong(fmt::format("The file is truncated in '{}'", object.name));
         std::uint64_t skip = object.triangles * lines_a_triangle;
         if (is_normal_line(text)) {
             object.offset = lines_.offset();
             --skip;
         } else if (text == "START_TAG" || text == "END_TAG") {
-            return wrong(fmt::format("'{}' ends before its {} triangles", object.name, object.triangles));
+            return wrong(fmt::format("Object '{}' ends before its {} triangles", object.name, object.triangles));
         } else {
             object.texture = text;
             object.offset = lines_.consumed();
         }
         for (std::uint64_t i = 0; i < skip; ++i) {
             if (!lines_.next(text))
-                return wrong(fmt::format("truncated in '{}': {} lines of triangles missing", object.name, skip - i));
-            if (!starts_number(text)) return wrong(fmt::format("'{}' in the triangles of '{}'", text.substr(0, 40), object.name));
+                return wrong(
+                    fmt::format("The file is truncated in '{}': {} lines of triangles are missing", object.name, skip - i));
+            if (!starts_number(text))
+                return wrong(fmt::format("The line '{}' stands among the triangles of '{}'", text.substr(0, 40), object.name));
             if ((i & 0xffffU) != 0) continue;
-            if (progress_.stopped()) return Error{index_.file, "import stopped", ""};
-            progress_.say("index", static_cast<double>(lines_.consumed()) / static_cast<double>(total_));
+            if (progress_.stopped()) return Error{index_.file, "The import was stopped", "", ErrorKind::stopped};
+            progress_.update("index", static_cast<double>(lines_.consumed()) / static_cast<double>(total_));
         }
         return {};
     }

@@ -63,7 +63,7 @@ private:
             if (top.next == children_[top.node].size()) {
                 text_ += "END_TAG\n";
                 stack.pop_back();
-                progress_.say("write", static_cast<double>(++written_) / static_cast<double>(scene_.nodes.size()));
+                progress_.update("write", static_cast<double>(++written_) / static_cast<double>(scene_.nodes.size()));
             } else if (auto done = enter(children_[top.node][top.next++]); !done) {
                 return done;
             }
@@ -143,7 +143,7 @@ private:
                 vertex(p, p.indices[i + k], world, normals);
             }
             if (text_.size() < flush_bytes) continue;
-            if (progress_.stopped()) return Error{file_, "writing stopped", ""};
+            if (progress_.stopped()) return Error{file_, "The writing was stopped", "", ErrorKind::stopped};
             if (auto done = out_.write(text_); !done) return done;
             text_.clear();
         }

@@ -1,4 +1,4 @@
-// Simple polygons to triangles: a fan where convex, ear clipping with exact orientation tests where not (DESIGN 8).
+// Triangulates simple polygons: a fan if convex, else ear clipping with exact orientation tests.
 #include "render/import/polygon.hpp"
 
 #include <array>
@@ -9,7 +9,7 @@ namespace surefoot::importer {
 namespace {
 
 /// Ear clipping takes time quadratic in the corners; larger polygons are rare and mostly wrong.
-constexpr std::size_t most_corners = 5000;
+constexpr std::size_t max_corners = 5000;
 
 /// Exact sum of doubles as a non-overlapping expansion, smallest first (Shewchuk, grow-expansion).
 struct Expansion {
@@ -125,7 +125,7 @@ bool triangulate(std::span<const dvec3> corners, std::vector<std::uint32_t>& out
     if (corners.size() < 3) return true;
     std::vector<std::uint32_t> ring(corners.size());
     std::iota(ring.begin(), ring.end(), 0U);
-    if (corners.size() == 3 || corners.size() > most_corners) {
+    if (corners.size() == 3 || corners.size() > max_corners) {
         fan(ring, out);
         return corners.size() == 3;
     }

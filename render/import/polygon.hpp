@@ -1,4 +1,4 @@
-// Simple polygons to triangles: a fan where convex, ear clipping with exact orientation tests where not (DESIGN 8).
+// Triangulates simple polygons: a fan if convex, else ear clipping with exact orientation tests.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace surefoot::importer {
 /// > 0: counter-clockwise. Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic (1997), without the middle stages.
 int orientation(const dvec2& a, const dvec2& b, const dvec2& c);
 
-/// Triples of corner numbers appended to `out`, (n - 2) triangles for n corners, wound as the polygon is.
-/// False: the polygon crosses or touches itself (or is larger than can be clipped): then what is left is a fan.
+/// Appends triples of corner numbers to `out`: n - 2 triangles for n corners, with the polygon's winding.
+/// False: the polygon crosses or touches itself, or is too large for clipping. The rest is then a fan.
 bool triangulate(std::span<const dvec3> corners, std::vector<std::uint32_t>& out);
 
 }  // namespace surefoot::importer

@@ -18,10 +18,12 @@ namespace fs = std::filesystem;
 Result<void> check_file(const std::string& file) {
     std::error_code code;
     const fs::file_status status = fs::status(file, code);
-    if (!fs::exists(status)) return Error{file, "no such file", "check the name"};
-    if (fs::is_directory(status)) return Error{file, "is a directory", "name the model file in it"};
-    if (!fs::is_regular_file(status)) return Error{file, "is not a regular file", "name a model file"};
-    if (fs::file_size(file, code) == 0) return Error{file, "is empty", "export the model again"};
+    if (!fs::exists(status)) return Error{file, "There is no such file", "Check the name", ErrorKind::not_found};
+    if (fs::is_directory(status))
+        return Error{file, "The name is a folder, not a file", "Name the model file in it", ErrorKind::unreadable};
+    if (!fs::is_regular_file(status))
+        return Error{file, "The name is not a plain file", "Name a model file", ErrorKind::unreadable};
+    if (fs::file_size(file, code) == 0) return Error{file, "The file is empty", "Export the model again", ErrorKind::damaged};
     return {};
 }
 
@@ -29,8 +31,8 @@ Result<Scene> import_one(const std::string& file, const Progress& progress) {
     if (auto usable = check_file(file); !usable) return usable.error();
     if (const Format* format = format_of(file)) return format->read(file, progress);
     const std::string ending = ending_of(file);
-    return Error{file, ending.empty() ? "has no ending" : fmt::format("unknown ending '{}'", ending),
-                 fmt::format("convert it to one of {}", endings_in_words())};
+    return Error{file, ending.empty() ? "The file name has no ending" : fmt::format("The ending '{}' is unknown", ending),
+                 fmt::format("Convert it to one of {}", endings_in_words()), ErrorKind::unsupported};
 }
 
 void shift(Index& index, std::size_t by) {
@@ -78,7 +80,9 @@ std::uint64_t Scene::triangles() const {
 }
 
 Result<Scene> import_files(const std::vector<std::string>& files, const Progress& progress) {
-    if (files.empty()) return Error{"import", "no file given", fmt::format("name at least one model ({})", endings_in_words())};
+    if (files.empty())
+        return Error{"import", "No file is given", fmt::format("Name at least one model ({})", endings_in_words()),
+                     ErrorKind::misuse};
     Scene scene;
     for (const std::string& file : files) {
         try {
@@ -86,10 +90,11 @@ Result<Scene> import_files(const std::vector<std::string>& files, const Progress
             if (!one) return one.error();
             append(scene, std::move(one).value());
         } catch (const std::bad_alloc&) {
-            return Error{file, "needs more memory than this machine gives",
-                         fmt::format("split the model, or import it as {}", ostf_ending)};
+            return Error{file, "The model needs more memory than this machine gives",
+                         fmt::format("Split the model, or import it as {}", ostf_ending), ErrorKind::no_memory};
         } catch (const std::exception& trouble) {
-            return Error{file, fmt::format("cannot be read: {}", trouble.what()), "export the model again"};
+            return Error{file, fmt::format("The file cannot be read: {}", trouble.what()), "Export the model again",
+                         ErrorKind::damaged};
         }
     }
     return scene;

@@ -1,4 +1,4 @@
-// What importers make: meshes, materials, images, and a tree of named, placed nodes; and what they had to mend.
+// The result of an importer: meshes, materials, images, a tree of named and placed nodes, warnings and damage.
 #pragma once
 
 #include <array>
@@ -25,11 +25,11 @@ struct Material {
     model::AlphaMode alpha = model::AlphaMode::opaque;
     bool two_sided = false;
     bool unlit = false;
-    std::vector<std::string> lacks = {};  ///< what the file asks for and has not got: pictures, the material itself
+    std::vector<std::string> lacks = {};  ///< missing things that the file asks for: images, the material itself
 };
 
-/// Triangles of one material. Optional arrays are empty or as long as positions. Colours are sRGB-encoded, as a Material's
-/// and an Image's are (glTF's linear ones are encoded on import); v = 0 of a uv is the picture's top row.
+/// Triangles of one material. Optional arrays are empty or as long as positions. Colours are sRGB-encoded, as in Material and
+/// Image; linear colours of glTF are encoded on import. v = 0 of a uv is the top row of the image.
 struct Primitive {
     std::vector<vec3> positions;  ///< finite, metres in the mesh's frame
     std::vector<vec3> normals;    ///< unit
@@ -42,7 +42,7 @@ struct Primitive {
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
-    std::vector<std::string> lacks = {};  ///< what of it is broken or left out
+    std::vector<std::string> lacks = {};  ///< its broken or missing data
 };
 
 /// parent < own index (parents come first), none for roots.
@@ -54,7 +54,7 @@ struct Node {
     float importance = 1.0F;
 };
 
-/// Something drawn that a file asks for and has not got.
+/// A missing or broken thing that the scene draws.
 struct Damage {
     std::string file, what;
 };
@@ -65,21 +65,21 @@ struct Scene {
     std::vector<Material> materials;  ///< at least one
     std::vector<image::Image> images;
     std::vector<std::string> sources;
-    std::vector<std::string> warnings;              ///< what was repaired or dropped, one line each with counts
-    std::vector<Damage> damage;                     ///< those of them that a person should mend: of things that are drawn
-    void damaged(std::string line);                 ///< a warning, and damage whatever is drawn
+    std::vector<std::string> warnings;              ///< repaired or dropped data, one line each with counts
+    std::vector<Damage> damage;                     ///< warnings about drawn things, which a person should repair
+    void damaged(std::string line);                 ///< adds a warning, and damage in any case
     [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
 };
 
 /// By ending (formats.hpp). Several files become one scene.
-/// Errors: missing, empty or truncated file, unknown ending, nothing drawable in it. Missing textures: damage, and white.
+/// Errors: missing, empty or truncated file; unknown ending; nothing drawable. Missing textures are damage, and white.
 Result<Scene> import_files(const std::vector<std::string>& files, const Progress& progress);
 
 Result<Scene> import_gltf(const std::string& file, const Progress& progress);
 Result<Scene> import_obj(const std::string& file, const Progress& progress);
 
-/// Drops what is not finite, out of range, repeated or of zero area, and says so in `warnings`; renormalises normals, and
-/// makes those that are missing (the triangles' mean by area). Vertices that no triangle uses go. Every importer ends with it.
+/// Drops triangles that are not finite, out of range, repeated or of zero area; adds a line to `warnings` for each kind.
+/// Normalises normals, and makes missing ones (area-weighted mean of the triangles). Drops unused vertices.
 void clean(Primitive& primitive, const std::string& mesh_name, std::vector<std::string>& warnings);
 
 }  // namespace surefoot::importer

@@ -1,5 +1,5 @@
-// Calibration: measures cells in interleaved order, then whole frames, and fits how items add up. Source: Maciel 3.3.1 (the
-// measured table), DESIGN 5 (sums instead of the larger).
+// Calibration: measures cells in interleaved order, then whole frames, and fits how items add up. Source: Maciel 1994, 3.3.1, for
+// the measured table; here sums replace the larger of two costs.
 #include "render/measure/calibrate.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr double slice_target_us = 1000;  // the engine's
 
 double now_s() { return 1e-9 * static_cast<double>(rt::monotonic_ns()); }
 
-const Error stopped{"calibration", "was stopped", "run it again: nothing was written"};
+const Error stopped{"calibration", "The calibration was stopped; nothing was written", "Run it again", ErrorKind::stopped};
 
 /// A random order of n things.
 std::vector<std::size_t> shuffled(std::size_t n, Random& random) {
@@ -116,7 +116,7 @@ Result<void> Run::cells(Calibration& out) {
             if (progress_.stopped()) return stopped;
             const auto& items = scene_.cells[c].items;
             timings[c].push_back(timed(Pose{}, items, std::max<std::size_t>(1, (items.size() + 2) / 3)));
-            progress_.say("items", (round + static_cast<double>(done++) / static_cast<double>(n)) / repeats());
+            progress_.update("items", (round + static_cast<double>(done++) / static_cast<double>(n)) / repeats());
         }
     }
     for (std::size_t c = 0; c < n; ++c) {
@@ -156,7 +156,7 @@ FrameSample Run::predict(const TownView& view, const model::ItemCosts& costs) co
 /// Random views of the town, drawn in rounds: every other one teaches the weights, the rest judge them.
 Result<void> Run::frames(Calibration& out) {
     const int wanted = options_.quick ? 80 : 240, rounds = options_.quick ? 3 : 5;
-    const model::ItemCosts item_costs(scene_.model, out.costs, scene_.surfaces);
+    const model::ItemCosts item_costs(scene_.model, out.costs, scene_.estimator);
     std::vector<TownView> views;
     std::vector<FrameSample> samples;
     std::vector<std::size_t> slice_items;
@@ -176,15 +176,15 @@ Result<void> Run::frames(Calibration& out) {
             if (progress_.stopped()) return stopped;
             samples[v].actual_us = timed(views[v].pose, views[v].items, slice_items[v]).wall_us;
             drawn[v].push_back(samples[v]);
-            progress_.say("frames", (round + static_cast<double>(v) / static_cast<double>(views.size())) / rounds);
+            progress_.update("frames", (round + static_cast<double>(v) / static_cast<double>(views.size())) / rounds);
         }
     }
-    const Settled settled = settle(drawn);
+    const FrameTimes frame_times = robust_frame_times(drawn);
     std::vector<FrameSample> taught, held_out;
-    for (std::size_t v = 0; v < views.size(); ++v) (v % 2 == 0 ? taught : held_out).push_back(settled.frames[v]);
+    for (std::size_t v = 0; v < views.size(); ++v) (v % 2 == 0 ? taught : held_out).push_back(frame_times.frames[v]);
     out.costs.combine =
         fit_combine(taught, {static_cast<float>(empty_.wall_us), 0.5F, 0.5F, 0.5F});  // half way from sum to larger
-    out.costs.upper_factor = static_cast<float>(std::max(1.0, ratio(held_out, out.costs.combine, 0.9)));
+    out.costs.headroom = static_cast<float>(std::max(1.0, ratio(held_out, out.costs.combine, 0.9)));
     out.frame_error_p50 = relative_error(held_out, out.costs.combine, 0.5);
     out.frame_error_p90 = relative_error(held_out, out.costs.combine, 0.9);
     out.frame_error_p99 = relative_error(held_out, out.costs.combine, 0.99);
@@ -195,10 +195,10 @@ Result<void> Run::frames(Calibration& out) {
 
 Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& progress) {
     if (options.device.kind == gl::BackendKind::null) {
-        return Error{"calibration", "the null backend draws nothing", "use one of: " + gl::drawing_backends()};
+        return Error{"calibration", "The null backend draws nothing", "Use one of: " + gl::drawing_backends(), ErrorKind::misuse};
     }
     const double start_s = now_s();
-    progress.say("opening", 0);
+    progress.update("opening", 0);
     auto device = gl::open_device(options.device);
     if (!device) return device.error();
     (*device)->draws.plays();
@@ -213,9 +213,10 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     if (auto done = run.cells(out); !done) return done.error();
     if (auto done = run.frames(out); !done) return done.error();
     if ((*device)->lost())
-        return Error{"calibration", "the device was lost: its times are none", "restart the driver, and try again"};
+        return Error{"calibration", "The device was lost, so its times mean nothing", "Restart the driver, and try again",
+                     ErrorKind::no_device};
     out.seconds = now_s() - start_s;
-    progress.say("done", 1);
+    progress.update("done", 1);
     return out;
 }
 

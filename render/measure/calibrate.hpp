@@ -1,4 +1,4 @@
-// Measures this machine's cost table and how items add up to a frame, and whether a timer query is honest.
+// Calibration: measures this machine's cost table, how items add up to a frame, and whether timer queries are reliable.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace surefoot::measure {
 
 struct TimerQueryCheck {
     bool available = false, honest = false;
-    double query_ms = 0, wall_ms = 0;  ///< the same work by query and by fence and wall time
+    double query_ms = 0, wall_ms = 0;  ///< the same work, by timer query and by fence and wall time
 };
 
 struct CalibrationPoint {
@@ -29,7 +29,8 @@ struct Calibration {
     model::CostModel costs;
     TimerQueryCheck timer;
     std::vector<CalibrationPoint> points;
-    double frame_error_p50 = 0, frame_error_p90 = 0, frame_error_p99 = 0;  ///< of held-out whole frames
+    double frame_error_p50 = 0, frame_error_p90 = 0,
+           frame_error_p99 = 0;  ///< relative error of predicted whole frames that the fit did not see
     double seconds = 0;
 };
 
@@ -37,20 +38,20 @@ struct CalibrateOptions {
     gl::DeviceOptions device;
     bool quick = false;  ///< fewer classes and repeats: under 20 s; else under 2 min
     std::uint64_t seed = 1;
-    /// Called once, on the calling thread, when the driver's threads exist: the place to give them the priorities and cores
-    /// that a walk gives them. May be empty.
+    /// Called once, on the calling thread, when the driver's threads exist. Place them here as a walk does: priorities and
+    /// cores. May be empty.
     std::function<void()> opened;
 };
 
 Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& progress);
 
-/// The table as a file: TOML text with a checksum in its first line. read refuses a file of which a byte was changed, and the
-/// table of another machine than `machine` (empty: any machine's), by name.
-/// The same for equal tables: which table a fit to a model was made from.
+/// Equal for equal tables. Tells from which table a fit to a model was made.
 std::uint64_t hash_of(const model::CostModel& costs);
+/// The table as a file: TOML text with a checksum in its first line.
+/// read_costs refuses a file that was changed, and a table measured on another machine than `machine` (empty: any).
 Result<void> write_costs(const std::string& file, const model::CostModel& costs);
 Result<model::CostModel> read_costs(const std::string& file, const std::string& machine);
-/// CPU model, core count, GL renderer, rasterisers (0: as many as the device takes): what a table is valid for.
+/// The machine that a table is valid for: CPU model, core count, GL renderer, rasterisers (0: the device's default).
 std::string machine_identity(const std::string& gl_renderer, int rasterisers);
 
 }  // namespace surefoot::measure

@@ -17,10 +17,10 @@ namespace surefoot::measure {
 namespace {
 
 constexpr std::string_view hash_key = "hash = \"";
-constexpr std::uint32_t most_steps = 32;
+constexpr std::uint32_t max_steps = 32;
 constexpr int format_version = 1;
 constexpr int estimate = 2;  // what is counted: 1 by boxes and whole representations, at a median; 2 as model::ItemCosts does
-const char* const remedy = "run `surefoot calibrate` on this machine";
+const char* const remedy = "Run `surefoot calibrate` on this machine";
 
 std::string hash_text(std::string_view body) {
     return fmt::format("{:016x}", hash_bytes(std::as_bytes(std::span<const char>(body))));
@@ -52,7 +52,7 @@ std::string body_of(const model::CostModel& costs) {
         "# frame_us = fixed_us + submit_weight * S + raster_weight * R + max_weight * max(S, R)\n[combine]\n"
         "fixed_us = {:.9g}\nsubmit_weight = {:.9g}\nraster_weight = {:.9g}\nmax_weight = {:.9g}\n",
         format_version, estimate, quoted(costs.machine), costs.calibrated, costs.timer_query_honest,
-        static_cast<double>(costs.upper_factor), static_cast<double>(costs.slice_us), static_cast<double>(c.fixed_us),
+        static_cast<double>(costs.headroom), static_cast<double>(costs.slice_us), static_cast<double>(c.fixed_us),
         static_cast<double>(c.submit_weight), static_cast<double>(c.raster_weight), static_cast<double>(c.max_weight));
     for (const model::CostGrid& grid : costs.grids) {
         text += fmt::format(
@@ -93,7 +93,9 @@ void needed_numbers(TableReader& table, std::string_view key, model::CostGrid& g
 
 Result<model::CostModel> costs_of(const toml::table& table, const std::string& file) {
     model::CostModel costs;
-    const auto refuse = [&](const std::string& key) { return Error{file, "'" + key + "' is missing or out of range", remedy}; };
+    const auto refuse = [&](const std::string& key) {
+        return Error{file, "The key '" + key + "' is missing or out of range", remedy, ErrorKind::damaged};
+    };
     TableReader top(table, file, {});
     if (needed_count(top, "version", 1000) != format_version) return refuse("version");
     costs.machine = table["machine"].value_or(std::string());
@@ -101,7 +103,7 @@ Result<model::CostModel> costs_of(const toml::table& table, const std::string& f
     if (table["estimate"].value_or(1) != estimate) costs.machine += ", by another version of the estimate";
     costs.calibrated = table["calibrated"].value_or(false);
     costs.timer_query_honest = table["timer_query_honest"].value_or(false);
-    costs.upper_factor = needed_number(top, "upper_factor", 0.1, 100);
+    costs.headroom = needed_number(top, "upper_factor", 0.1, 100);
     costs.slice_us = needed_number(top, "slice_us", 0, 1e6);
     if (!top.wrong_key().empty()) return refuse(top.wrong_key());
     const toml::table* combine = table["combine"].as_table();
@@ -119,8 +121,8 @@ Result<model::CostModel> costs_of(const toml::table& table, const std::string& f
         TableReader values(*entry.as_table(), file, "class");
         model::CostGrid grid;
         grid.effects = needed_count(values, "effects", 0x7fffffffU);
-        grid.triangle_steps = needed_count(values, "triangle_steps", most_steps);
-        grid.pixel_steps = needed_count(values, "pixel_steps", most_steps);
+        grid.triangle_steps = needed_count(values, "triangle_steps", max_steps);
+        grid.pixel_steps = needed_count(values, "pixel_steps", max_steps);
         if (grid.triangle_steps == 0 || grid.pixel_steps == 0) values.refuse("triangle_steps", "is 0", remedy);
         grid.cells.resize(static_cast<std::size_t>(grid.triangle_steps) * grid.pixel_steps);
         needed_numbers(values, "submit_us", grid, &model::ItemCost::submit_us);
@@ -144,11 +146,12 @@ Result<model::CostModel> read_costs(const std::string& file, const std::string& 
     auto text = read_text(file, 1U << 24U);
     if (!text) return text.error();
     const std::size_t line = text->find('\n');
-    if (!text->starts_with(hash_key) || line == std::string::npos) return Error{file, "is not a cost table", remedy};
+    if (!text->starts_with(hash_key) || line == std::string::npos)
+        return Error{file, "The file is not a cost table", remedy, ErrorKind::damaged};
     const std::string_view body = std::string_view(*text).substr(line + 1);
     const std::string_view first = std::string_view(*text).substr(0, line);
     if (first != fmt::format("{}{}\"", hash_key, hash_text(body))) {
-        return Error{file, "was changed since it was measured: its checksum does not fit", remedy};
+        return Error{file, "The file was changed since it was measured: its checksum does not match", remedy, ErrorKind::damaged};
     }
     model::CostModel costs;
     try {
@@ -156,10 +159,11 @@ Result<model::CostModel> read_costs(const std::string& file, const std::string& 
         if (!read) return read.error();
         costs = std::move(*read);
     } catch (const toml::parse_error& error) {
-        return Error{file, fmt::format("is not TOML: {}", error.description()), remedy};
+        return Error{file, fmt::format("The file is not valid TOML: {}", error.description()), remedy, ErrorKind::damaged};
     }
     if (!machine.empty() && costs.machine != machine) {
-        return Error{file, fmt::format("was measured on another machine: '{}', this is '{}'", costs.machine, machine), remedy};
+        return Error{file, fmt::format("The file was measured on another machine: '{}', this is '{}'", costs.machine, machine),
+                     remedy, ErrorKind::misuse};
     }
     return costs;
 }

@@ -138,8 +138,8 @@ double value_in(const Level& level, std::size_t kind, double pixels) {
 
 }  // namespace
 
-Settled settle(std::span<const std::vector<FrameSample>> rounds) {
-    Settled settled;
+FrameTimes robust_frame_times(std::span<const std::vector<FrameSample>> rounds) {
+    FrameTimes frame_times;
     std::vector<double> longer;
     for (const std::vector<FrameSample>& of_frame : rounds) {
         const FrameSample& last = of_frame.back();
@@ -147,14 +147,14 @@ Settled settle(std::span<const std::vector<FrameSample>> rounds) {
         for (const FrameSample& s : of_frame)
             if (s.submit_us == last.submit_us && s.raster_us == last.raster_us) times.push_back(s.actual_us);
         const double least = *std::min_element(times.begin(), times.end());
-        settled.frames.push_back({last.submit_us, last.raster_us, least});
+        frame_times.frames.push_back({last.submit_us, last.raster_us, least});
         if (times.size() < 2) continue;
-        ++settled.repeated;
+        ++frame_times.repeated;
         longer.push_back(median_of(std::move(times)) / std::max(1.0, least));
     }
-    if (!longer.empty()) settled.slowdown = std::max(1.0, quantile_of(std::move(longer), 0.5));
-    for (FrameSample& frame : settled.frames) frame.actual_us *= settled.slowdown;
-    return settled;
+    if (!longer.empty()) frame_times.slowdown = std::max(1.0, quantile_of(std::move(longer), 0.5));
+    for (FrameSample& frame : frame_times.frames) frame.actual_us *= frame_times.slowdown;
+    return frame_times;
 }
 
 model::CostGrid fill_grid(model::EffectMask effects, std::span<const CalibrationPoint> points) {

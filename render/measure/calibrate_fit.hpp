@@ -1,4 +1,4 @@
-// From measured points to a cost table, and from measured frames to how items add up.
+// Fits: measured points to a cost table; measured frames to the weights by which items add up.
 #pragma once
 
 #include <span>
@@ -9,18 +9,18 @@
 
 namespace surefoot::measure {
 
-/// The grid of one state class from its points (a full lattice of triangles x pixels, any spacing): linear in triangles and
-/// pixels between points, by the outermost slope beyond them, never falling with either.
+/// The cost grid of one state class. points: a full lattice of triangles x pixels, any spacing.
+/// Linear between points, continued by the outermost slope beyond them, and monotone in triangles and pixels.
 model::CostGrid fill_grid(model::EffectMask effects, std::span<const CalibrationPoint> points);
 
-/// Sums of one measured frame and what it took.
+/// One measured frame: predicted sums and measured time.
 struct FrameSample {
     double submit_us = 0, raster_us = 0;  ///< predicted sums over items, slices included
     double actual_us = 0;
 };
 
-/// Weights >= 0 of fixed, S, R and max(S, R) with the least relative error; outliers count less (Huber). Where the samples
-/// cannot tell weights apart (rasterising dominates all of them), those nearest to `prior` are taken.
+/// Weights >= 0 of fixed, S, R and max(S, R) with the least relative error. Outliers count less (Huber 1964). If the samples
+/// cannot tell weights apart, as when rasterising dominates all of them, the weights nearest to `prior` are taken.
 model::FrameCombine fit_combine(std::span<const FrameSample> samples, const model::FrameCombine& prior);
 
 /// |actual - predicted| / actual at a quantile, 0..1.
@@ -28,16 +28,16 @@ double relative_error(std::span<const FrameSample> samples, const model::FrameCo
 /// actual / predicted at a quantile.
 double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile);
 
-/// Frames, from several measurements of each.
-struct Settled {
-    std::vector<FrameSample> frames;  ///< as last drawn; actual_us: its least, times `slowdown`
-    double slowdown = 1;              ///< by how much longer a frame's median is than its least, median over the frames
-    std::size_t repeated = 0;         ///< frames that were drawn alike at least twice
+/// One time for each frame, from several measurements of it.
+struct FrameTimes {
+    std::vector<FrameSample> frames;  ///< sums as last drawn; actual_us: minimum of the rounds, times `slowdown`
+    double slowdown = 1;              ///< median over the frames of (median / minimum of the rounds)
+    std::size_t repeated = 0;         ///< frames with at least two rounds of equal sums
 };
-/// A machine's speed moves by up to two within milliseconds where it shares cores with others: frames measured at different
-/// moments compare only by what each takes undisturbed. rounds: [frame][round], none empty, and far apart in time, so that one
-/// moment does not fall on all of a frame's. What was shown before the first frame of all differs between rounds and may still
-/// show in the next few: only rounds with the sums of the last one count.
-Settled settle(std::span<const std::vector<FrameSample>> rounds);
+/// Robust frame times: the minimum of several rounds, scaled by the typical median / minimum ratio. On shared hosts the speed
+/// varies by a factor of two within milliseconds, so single measurements do not compare.
+/// rounds: [frame][round], none empty. The rounds of a frame must lie far apart in time, so that one disturbance does not hit
+/// all. Only rounds with the same sums as the last one count: hysteresis of the first frames may differ between rounds.
+FrameTimes robust_frame_times(std::span<const std::vector<FrameSample>> rounds);
 
 }  // namespace surefoot::measure

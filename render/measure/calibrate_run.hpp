@@ -1,4 +1,4 @@
-// Timing one frame in its places: the frame thread, the rasterisers, and by the clock on the wall.
+// Times one frame: CPU time of the frame thread, CPU time of the rasterisers, wall time.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace surefoot::measure {
 
-/// us. submit: CPU time of the calling thread; raster: CPU time of the busiest of the driver's rasterisers, or, where the
-/// driver has none (a GPU), what was waited for after the last call.
+/// us. submit: CPU time of the calling thread. raster: CPU time of the driver's busiest rasteriser; on a GPU, the wait after
+/// the last call.
 struct FrameTiming {
     double submit_us = 0, raster_us = 0, wall_us = 0;
 };
@@ -31,9 +31,9 @@ private:
 FrameTiming run_frame(gl::Device& device, RasteriserClocks& rasterisers, const Pose& pose, std::span<const gl::DrawItem> items,
                       std::size_t slice_items) REQUIRES(device.draws);
 
-/// The same work by timer query and by the wall. Draws `items` as one slice.
+/// Measures the same work by timer query and by wall time. Draws `items` as one slice.
 TimerQueryCheck check_timer(gl::Device& device, const Pose& pose, std::span<const gl::DrawItem> items) REQUIRES(device.draws);
-/// Honest: within 20 % of the wall.
+/// Honest: the query is within 20 % of wall time.
 TimerQueryCheck judge_timer(bool available, double query_ms, double wall_ms);
 
 }  // namespace surefoot::measure

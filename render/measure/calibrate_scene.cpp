@@ -24,7 +24,7 @@ constexpr std::array<double, 6> pixel_levels{16, 128, 1024, 8192, 65536, 262144}
 constexpr int copies_of_small = 8;           // of each mesh: equal neighbours would merge into one instanced draw
 constexpr std::uint32_t texture_count = 16;  // equal images, but each a state of its own, as in real scenes
 constexpr double cell_us = 2500;             // aim for this long a measurement
-constexpr std::size_t most_items = 300;      // in a cell
+constexpr std::size_t max_items = 300;       // in a cell
 
 /// A mesh in the model, to be referenced by parts of any class.
 struct Mesh {
@@ -238,7 +238,7 @@ CalibrationCell make_cell(Builder& builder, const std::vector<Mesh>& meshes, std
     const model::ItemCost cost =
         guess.item(static_cast<float>(meshes[0].triangles), static_cast<float>(pixels), guess.grid_for(effects));
     const double each_us = static_cast<double>(cost.submit_us + cost.raster_us);
-    const auto count = static_cast<std::size_t>(std::clamp(cell_us / each_us, 1.0, static_cast<double>(most_items)));
+    const auto count = static_cast<std::size_t>(std::clamp(cell_us / each_us, 1.0, static_cast<double>(max_items)));
     CalibrationCell cell;
     cell.effects = effects;
     for (std::size_t i = 0; i < count; ++i) {
@@ -263,7 +263,7 @@ void count_pixels(CalibrationScene& scene, model::Viewport viewport) {
     for (CalibrationCell& cell : scene.cells) {
         for (const gl::DrawItem& item : cell.items) {
             cell.pixels +=
-                static_cast<double>(scene.surfaces.pixels(model, item.rep, model.nodes[item.node].box, dvec3(0.0), scale));
+                static_cast<double>(scene.estimator.pixels(model, item.rep, model.nodes[item.node].box, dvec3(0.0), scale));
         }
         cell.pixels /= static_cast<double>(cell.items.size());
     }
@@ -335,7 +335,7 @@ CalibrationScene make_calibration_scene(model::Viewport viewport, bool quick, st
     }
     make_town(builder, meshes, materials, scene);
     scene.model = std::move(builder.model());
-    scene.surfaces = model::Surfaces(scene.model);
+    scene.estimator = model::PixelEstimator(scene.model);
     count_pixels(scene, viewport);
     return scene;
 }

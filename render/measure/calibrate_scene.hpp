@@ -7,7 +7,7 @@
 
 #include "render/gl/device.hpp"
 #include "render/model/model.hpp"
-#include "render/model/surfaces.hpp"
+#include "render/model/pixel_estimator.hpp"
 #include "render/model/view.hpp"
 #include "rt/base/random.hpp"
 
@@ -16,10 +16,10 @@ namespace surefoot::measure {
 /// The state classes that are measured, the bare one first.
 std::span<const model::EffectMask> calibration_classes(bool quick);
 
-/// Items of one (class, triangles, pixels) cell, in front of Pose{}.
+/// Items of one (class, triangles, pixels) cell, placed in front of Pose{}.
 struct CalibrationCell {
     model::EffectMask effects = 0;
-    double triangles = 0, pixels = 0;  ///< of one item, as the shared estimate counts them
+    double triangles = 0, pixels = 0;  ///< of one item, by the estimate of model/item_costs
     std::vector<gl::DrawItem> items;
 };
 
@@ -33,7 +33,7 @@ struct TownObject {
 
 struct CalibrationScene {
     model::Model model;
-    model::Surfaces surfaces;  ///< of the model
+    model::PixelEstimator estimator;  ///< of the model
     std::vector<CalibrationCell> cells;
     std::vector<TownObject> town;  ///< in blocks: neighbours in the list are neighbours in space
     Box town_box;
@@ -41,7 +41,7 @@ struct CalibrationScene {
 
 CalibrationScene make_calibration_scene(model::Viewport viewport, bool quick, std::uint64_t seed);
 
-/// A random view of the town: what of it is seen, at what level, in drawing order.
+/// A random view of the town: the visible items with a level each, in drawing order.
 struct TownView {
     Pose pose;
     std::vector<gl::DrawItem> items;

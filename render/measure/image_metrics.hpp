@@ -1,4 +1,4 @@
-// How far a picture is from the full-detail one: SNR as Pasman & Jansen define it, with its zero cases defined; SSIM.
+// Image quality against full detail: SNR (Pasman & Jansen 2002) with its zero cases defined, and SSIM.
 #pragma once
 
 #include <cstdint>

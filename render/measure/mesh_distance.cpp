@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "render/measure/cover.hpp"
+#include "render/measure/triangle_coverage.hpp"
 #include "rt/base/random.hpp"
 
 namespace surefoot::measure {
@@ -13,7 +13,7 @@ namespace surefoot::measure {
 namespace {
 
 constexpr std::uint32_t no_triangle = 0xffffffffU;
-constexpr std::size_t most_covering = 80;  ///< more triangles than this near a piece: cut it first
+constexpr std::size_t max_covering = 80;  ///< more triangles than this near a piece: cut it first
 
 /// A corner of a (part of a) triangle, with the nearest triangle of the other mesh once that was asked for.
 struct Corner {
@@ -43,7 +43,7 @@ public:
         margin_ = 1e-6 * to.diagonal();
         queries_left_ = limits.max_queries != 0 ? limits.max_queries : 20000 + from.triangles() / 4;
         if (initial.empty()) {
-            ask_all_corners();
+            query_all_corners();
         } else {
             for (std::uint32_t t = 0; t < from.triangles(); ++t) queue_.push_back({initial[t], t});
             unknown_ = from.triangles();
@@ -59,12 +59,12 @@ public:
             if (worst.piece < unknown_) {
                 look_at(worst);
             } else if (!pieces_[worst.piece - unknown_].covered) {
-                cover(worst);
+                coverage(worst);
             } else {
                 cut(worst.piece);
             }
         }
-        float upper = std::max(settled_, reached_);
+        float upper = std::max(resolved_, reached_);
         if (!queue_.empty()) upper = std::max(upper, queue_.front().upper);
         return {reached_, upper};
     }
@@ -77,7 +77,7 @@ private:
         lower_ = std::max(lower_, distance);
     }
 
-    const TriangleTree::Hit& ask(std::uint32_t vertex) {
+    const TriangleTree::Hit& query(std::uint32_t vertex) {
         TriangleTree::Hit& hit = hits_[vertex];
         if (hit.triangle == no_triangle) {
             hit = to_.nearest(from_.positions[vertex], last_hit_);
@@ -92,15 +92,15 @@ private:
         Piece piece;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t vertex = from_.indices[3 * t + k];
-            piece.corners[k] = {from_.positions[vertex], ask(vertex)};
+            piece.corners[k] = {from_.positions[vertex], query(vertex)};
         }
         return piece;
     }
 
     // All corners first: the largest corner distance then rules most triangles out before any is kept.
-    void ask_all_corners() {
+    void query_all_corners() {
         queries_left_ += from_.indices.size();
-        for (const std::uint32_t vertex : from_.indices) ask(vertex);
+        for (const std::uint32_t vertex : from_.indices) query(vertex);
         for (std::uint32_t t = 0; t < from_.triangles(); ++t) {
             Piece piece = triangle(t);
             piece.upper = std::numeric_limits<float>::infinity();
@@ -137,7 +137,7 @@ private:
 
     void keep(const Piece& piece, bool heap) {
         if (piece.upper <= enough()) {
-            settled_ = std::max(settled_, piece.upper);
+            resolved_ = std::max(resolved_, piece.upper);
             return;
         }
         queue_.push_back({piece.upper, static_cast<std::uint32_t>(unknown_ + pieces_.size())});
@@ -152,8 +152,8 @@ private:
         keep(piece, true);
     }
 
-    // Several triangles together: settles the piece, or finds a point of it that none of them is near.
-    void cover(const Entry& entry) {
+    // Several triangles together: rules the piece out, or finds a point of it that none of them is near.
+    void coverage(const Entry& entry) {
         Piece& piece = pieces_[entry.piece - unknown_];
         piece.covered = true;
         const auto& c = piece.corners;
@@ -162,25 +162,25 @@ private:
         const vec3 low = glm::min(glm::min(c[0].position, c[1].position), c[2].position) - reach;
         const vec3 high = glm::max(glm::max(c[0].position, c[1].position), c[2].position) + reach;
         std::size_t near = 0;
-        to_.each_in(low, high, [&](const vec3&, const vec3&, const vec3&) { return ++near <= most_covering; });
-        if (near > most_covering) {
+        to_.each_in(low, high, [&](const vec3&, const vec3&, const vec3&) { return ++near <= max_covering; });
+        if (near > max_covering) {
             cut(entry.piece);
             return;
         }
-        Cover cover(c[0].position, c[1].position, c[2].position, margin_);
+        TriangleCoverage coverage(c[0].position, c[1].position, c[2].position, margin_);
         to_.each_in(low, high, [&](const vec3& p, const vec3& q, const vec3& r) {
-            return cover.subtract(p, q, r, within) && !cover.done();
+            return coverage.subtract(p, q, r, within) && !coverage.done();
         });
         queries_left_ -= queries_left_ > 0 ? 1 : 0;
-        if (cover.done()) {
-            settled_ = std::max(settled_, static_cast<float>(cover.reach() + margin_));
+        if (coverage.done()) {
+            resolved_ = std::max(resolved_, static_cast<float>(coverage.reach() + margin_));
             return;
         }
-        const TriangleTree::Hit hit = to_.nearest(cover.uncovered(), piece.witness);
+        const TriangleTree::Hit hit = to_.nearest(coverage.uncovered(), piece.witness);
         found(hit.distance);
         try_witness(piece, hit.triangle);
         if (piece.upper <= enough()) {
-            settled_ = std::max(settled_, piece.upper);
+            resolved_ = std::max(resolved_, piece.upper);
             return;
         }
         queue_.push_back({piece.upper, entry.piece});
@@ -213,10 +213,10 @@ private:
     const MeshView& from_;
     const TriangleTree& to_;
     DistanceLimits limits_;
-    float lower_;        ///< known_lower included
-    float reached_ = 0;  ///< by a point of this mesh
-    float settled_ = 0;  ///< largest bound of what was ruled out
-    double margin_ = 0;  ///< slivers narrower than this are not looked at; added to what they bound
+    float lower_;         ///< known_lower included
+    float reached_ = 0;   ///< by a point of this mesh
+    float resolved_ = 0;  ///< largest bound of what was ruled out
+    double margin_ = 0;   ///< slivers narrower than this are not looked at; added to what they bound
     std::size_t queries_left_ = 0;
     std::size_t unknown_ = 0;  ///< queue numbers below it are triangles not looked at yet
     std::uint32_t last_hit_ = no_triangle;

@@ -1,10 +1,10 @@
-// Distance between triangle meshes: bounds that hold for every point of a surface, and a sampled figure to judge them by.
+// Distance between triangle meshes: bounds that hold for every point, and a sampled distance to test the bounds.
 //
-// A simplifier's own error is no bound (DESIGN 5), so bake asks here. The directed distance of A to B is the largest distance
-// of a point of A to the surface B; the two-sided one is the larger of both directions (Hausdorff).
-// Method: branch and bound over the triangles of A. The distance to one triangle of B is convex, so over a triangle of A it is
-// largest at a corner. Where no single triangle of B is near all of a triangle of A, several may cover it (cover.hpp); else it is
-// cut at its longest edge.
+// A simplifier's own error number is no bound, so the bake measures here. The directed distance from A to B is the largest
+// distance of a point of A to the surface B. The two-sided distance is the larger of both directions (Hausdorff).
+// Method: branch and bound over the triangles of A. The distance to one triangle of B is convex, so its maximum over a triangle
+// of A is at a corner. If no single triangle of B is near enough, several may cover the triangle of A (triangle_coverage.hpp). If
+// they do not, it is split at its longest edge.
 #pragma once
 
 #include <cstdint>
@@ -32,16 +32,16 @@ public:
         float distance = std::numeric_limits<float>::infinity();
         std::uint32_t triangle = 0xffffffffU;  ///< number in the tree's own order; for distance_to()
     };
-    /// Nearest triangle to p. `hint`: any triangle of this tree that is likely near (its distance starts the search).
+    /// Nearest triangle to p. `hint`: a triangle of this tree that is probably near; its distance starts the search.
     [[nodiscard]] Hit nearest(const vec3& p, std::uint32_t hint = 0xffffffffU) const;
-    /// Never below the true distance but for rounding: it is the distance to a point of the triangle.
+    /// Distance from p to a point of the triangle, so never below the true distance, except for rounding.
     [[nodiscard]] float distance_to(std::uint32_t triangle, const vec3& p) const;
     [[nodiscard]] float diagonal() const { return diagonal_; }
-    /// The mesh's number of a triangle of the tree: its indices start at three times that.
+    /// Number in the mesh of a triangle of the tree. Its indices start at three times this number.
     [[nodiscard]] std::uint32_t in_mesh(std::uint32_t triangle) const { return in_mesh_[triangle]; }
-    /// Calls visit(a, b, c) for every triangle whose leaf's box reaches into [low, high], until it says false.
-    template <class Visit>
-    void each_in(const vec3& low, const vec3& high, const Visit& visit) const {
+    /// Calls visit(a, b, c) for each triangle in leaves whose box overlaps [low, high], until visit returns false.
+    template <class Visitor>
+    void each_in(const vec3& low, const vec3& high, const Visitor& visit) const {
         each_from(0, low, high, visit);
     }
 
@@ -54,8 +54,8 @@ private:
     struct Corners {
         vec3 a, b, c;
     };
-    template <class Visit>
-    bool each_from(std::uint32_t index, const vec3& low, const vec3& high, const Visit& visit) const {
+    template <class Visitor>
+    bool each_from(std::uint32_t index, const vec3& low, const vec3& high, const Visitor& visit) const {
         const Node& node = nodes_[index];
         if (glm::any(glm::greaterThan(node.min, high)) || glm::any(glm::lessThan(node.max, low))) return true;
         if (node.count == 0) return each_from(index + 1, low, high, visit) && each_from(node.first, low, high, visit);
@@ -77,23 +77,23 @@ struct DistanceBounds {
     float upper = 0;
 };
 
-/// When to stop narrowing: upper <= max(lower * (1 + relative), absolute), or the queries are spent (the bound stays a bound).
+/// The search stops at upper <= max(lower * (1 + relative), absolute), or after max_queries. Bounds hold in both cases.
 struct DistanceLimits {
     float relative = 0.1F;
     float absolute = 0;
-    float known_lower = 0;        ///< nothing below this needs narrowing: the other direction is known to reach it
+    float known_lower = 0;        ///< a distance already proven, as by the other direction; smaller ones are not refined
     std::size_t max_queries = 0;  ///< 0: 20 000 and a quarter of the triangles
 };
 
 /// Largest distance of a point of `from` to the surface `to`.
-/// initial_upper: empty, or a bound a triangle of `from` already known to hold (by construction): only the worst are looked at.
+/// initial_upper: empty, or a valid bound for each triangle of `from`; then only the worst triangles are searched.
 DistanceBounds directed_distance(const MeshView& from, const TriangleTree& to, const DistanceLimits& limits,
                                  std::span<const float> initial_upper = {});
 
 /// The larger of both directions.
 DistanceBounds two_sided_distance(const MeshView& a, const MeshView& b, const DistanceLimits& limits);
 
-/// Distances of `count` points spread evenly over the area of `from` to the surface `to`; seeded. A lower bound of the largest.
+/// Distances of `count` points, spread evenly over the area of `from`, to the surface `to`. Seeded. `largest` is a lower bound.
 struct SampledDistance {
     float largest = 0, median = 0, mean = 0;
 };

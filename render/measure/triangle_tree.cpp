@@ -113,15 +113,15 @@ TriangleTree::Hit TriangleTree::nearest(const vec3& p, std::uint32_t hint) const
     Hit best;
     if (hint < corners_.size()) best = {distance_to(hint, p), hint};
     float best2 = best.distance * best.distance;
-    struct Visit {
+    struct StackEntry {
         std::uint32_t node;
         float distance2;
     };
-    std::array<Visit, 64> stack;  // median splits halve: depth <= 32 and one waiting sibling a level
+    std::array<StackEntry, 64> stack;  // median splits halve: depth <= 32 and one waiting sibling a level
     std::size_t top = 0;
     stack[top++] = {0, box_distance2(p, nodes_[0].min, nodes_[0].max)};
     while (top > 0) {
-        const Visit visit = stack[--top];
+        const StackEntry visit = stack[--top];
         if (visit.distance2 >= best2) continue;
         const Node& node = nodes_[visit.node];
         if (node.count > 0) {
@@ -134,7 +134,7 @@ TriangleTree::Hit TriangleTree::nearest(const vec3& p, std::uint32_t hint) const
             }
             continue;
         }
-        Visit left{visit.node + 1, 0}, right{node.first, 0};
+        StackEntry left{visit.node + 1, 0}, right{node.first, 0};
         left.distance2 = box_distance2(p, nodes_[left.node].min, nodes_[left.node].max);
         right.distance2 = box_distance2(p, nodes_[right.node].min, nodes_[right.node].max);
         if (left.distance2 > right.distance2) std::swap(left, right);

@@ -1,5 +1,6 @@
-// What drawing costs on one machine: tables over (log2 triangles, log2 pixels, state class), and how items add up to a frame.
-// Plain data and evaluation; render/measure fills it in. Source: Maciel 3.3.1 (a measured table instead of max(G, R)).
+// The cost model of one machine: tables over (log2 triangles, log2 pixels, state class), and weights for whole frames.
+// Plain data and its evaluation; render/measure fills it in. Source: Maciel 1994, 3.3.1; here a measured table replaces max(G,
+// R).
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 
 namespace surefoot::model {
 
-/// Predicted time of one item, in its two places: the frame thread (submit: calls, vertices, binning) and the rasterisers.
+/// Predicted time of one item. submit: on the frame thread (calls, vertices, binning). raster: on the rasterisers.
 struct ItemCost {
     float submit_us = 0;
     float raster_us = 0;
@@ -22,8 +23,8 @@ struct ItemCost {
     }
 };
 
-/// One state class: knots at triangles 2^0..2^(nt-1) and pixels 2^0..2^(np-1), linear in the argument between knots
-/// (exact where cost is linear, and no logarithm in the frame).
+/// One state class: knots at triangles 2^0..2^(nt-1) and pixels 2^0..2^(np-1). Linear in the argument between knots: exact for
+/// linear costs, and without logarithms in the frame.
 struct CostGrid {
     EffectMask effects = 0;
     std::uint32_t triangle_steps = 0, pixel_steps = 0;  ///< nt, np
@@ -43,22 +44,21 @@ struct FrameCombine {
 };
 
 struct CostModel {
-    std::vector<CostGrid>
-        grids;  ///< at least one; class looked up by exact mask, else the grid with the most bits in common above it
+    std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
     FrameCombine combine;
-    float upper_factor = 1.25F;  ///< p90 of actual / predicted whole-frame cost at calibration: what the budget spends
-    float slice_us = 30;         ///< cost of ending a slice (flush and fence)
-    std::string machine;         ///< CPU and renderer, rasteriser count: a table of another machine is refused
+    float headroom = 1.25F;  ///< headroom: p90 of actual / predicted whole-frame cost at calibration
+    float slice_us = 30;     ///< cost of ending a slice (flush and fence)
+    std::string machine;     ///< CPU, renderer, rasteriser count; a table of another machine is refused
     bool timer_query_honest = false;
     bool calibrated = false;  ///< false: built-in defaults
 
-    /// Interpolated; arguments below 1 count as 1, beyond the grid are extrapolated linearly in the argument. Never negative, NaN
-    /// in: the largest cell.
+    /// Interpolated. Arguments below 1 count as 1; beyond the grid the cost is extrapolated linearly. Never negative. A NaN
+    /// argument gives the largest cell.
     [[nodiscard]] ItemCost item(float triangles, float pixels, const CostGrid& grid) const;
     [[nodiscard]] const CostGrid& grid_for(EffectMask effects) const;
 };
 
-/// Conservative figures for a machine that was not calibrated (llvmpipe on two cores).
+/// Conservative costs for an uncalibrated machine (llvmpipe on two cores).
 CostModel default_costs();
 
 }  // namespace surefoot::model

@@ -1,4 +1,4 @@
-// The effects that a scene may call for, as bits, and what was found in a scene: the state class of a draw is a set of them.
+// The effects as bits, and the findings of the bake. The state class of a draw is its set of effects.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The root of models made by hand: over objects that are all its children, and showing the first one's representation.
+// The root of hand-made models: all objects are its children, and it shows the representation of the first.
 #pragma once
 
 #include "render/model/model.hpp"

@@ -11,10 +11,10 @@
 
 namespace surefoot::model {
 
-ItemCosts::ItemCosts(const Model& model, const CostModel& costs) : ItemCosts(model, costs, Surfaces(model)) {}
+ItemCosts::ItemCosts(const Model& model, const CostModel& costs) : ItemCosts(model, costs, PixelEstimator(model)) {}
 
-ItemCosts::ItemCosts(const Model& model, const CostModel& costs, Surfaces surfaces)
-    : model_(model), costs_(costs), surfaces_(std::move(surfaces)) {
+ItemCosts::ItemCosts(const Model& model, const CostModel& costs, PixelEstimator estimator)
+    : model_(model), costs_(costs), estimator_(std::move(estimator)) {
     const auto grid_of = [&](EffectMask effects) {
         return static_cast<std::uint32_t>(&costs.grid_for(effects) - costs.grids.data());
     };
@@ -64,18 +64,18 @@ ItemCosts::Classes ItemCosts::gather(const Representation& rep, std::vector<Clas
 ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const {
     const Representation& rep = model_.reps[r];
     const auto classes = std::span(classes_).subspan(classes_of_[r].first, classes_of_[r].count);
-    std::array<float, Surfaces::most_parts> of_part;  // NOLINT: filled as far as it is read
+    std::array<float, PixelEstimator::max_parts> of_part;  // NOLINT: filled as far as it is read
     ItemCost sum;
     const auto add = [&](const Class& c, float pixels) { sum += costs_.item(c.triangles, pixels, costs_.grids[c.grid]); };
-    if (surfaces_.part_pixels(model_, r, node_box, eye, scale, of_part)) {
+    if (estimator_.part_pixels(model_, r, node_box, eye, scale, of_part)) {
         for (const Class& c : classes) {
             float pixels = 0;
             for (std::uint32_t p = 0; p < rep.part_count; ++p)
                 if (grid_of_part_[rep.first_part + p] == c.grid) pixels += of_part[p];
-            add(c, std::min(pixels, most_pixels));
+            add(c, std::min(pixels, max_pixels));
         }
     } else {
-        const float pixels = surfaces_.pixels(model_, r, node_box, eye, scale);
+        const float pixels = estimator_.pixels(model_, r, node_box, eye, scale);
         for (const Class& c : classes) add(c, pixels * c.share);
     }
     return sum;

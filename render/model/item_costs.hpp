@@ -1,5 +1,5 @@
-// What drawing a representation is predicted to cost, seen from a pose: the one estimate that prepare, the null device, the
-// calibration and the coarse levels share, so that what is predicted, charged and measured is the same quantity.
+// Predicted cost of a representation seen from a pose. Preparation, the null device, calibration and the coarse levels share
+// this one estimate, so that they predict, charge and measure the same quantity.
 #pragma once
 
 #include <cstdint>
@@ -7,23 +7,22 @@
 
 #include "render/model/cost.hpp"
 #include "render/model/model.hpp"
-#include "render/model/surfaces.hpp"
+#include "render/model/pixel_estimator.hpp"
 
 namespace surefoot::model {
 
-/// A cost table applied to a model. Each state class of a representation's parts counts with its own cell of the table: a wall
-/// with one masked poster on it costs what walls cost, and a poster.
+/// A cost table applied to a model. Each state class among the parts of a representation has its own cell of the table: a wall
+/// with one alpha-tested poster costs as much as a wall and a poster.
 class ItemCosts {
 public:
-    /// Allocates, and passes over every triangle; `model` and `costs` outlive it, and change neither their arrays nor their
-    /// grids.
+    /// Allocates, and passes over every triangle. `model` and `costs` must outlive it; their arrays and grids must not change.
     ItemCosts(const Model& model, const CostModel& costs);
-    ItemCosts(const Model& model, const CostModel& costs, Surfaces surfaces);
+    ItemCosts(const Model& model, const CostModel& costs, PixelEstimator estimator);
     ItemCosts(Model&&, const CostModel&) = delete;
     ItemCosts(const Model&, CostModel&&) = delete;
 
-    /// Of the representation `r` of a node with box `node_box` seen from `eye`. Finite and >= 0. 0.1 us; nearby 1 to 4 us,
-    /// and where each triangle is looked at (Surfaces::part_pixels) up to 25.
+    /// Cost of the representation `r` of a node with box `node_box`, seen from `eye`. Finite and >= 0.
+    /// Takes 0.1 us; nearby 1 to 4 us; up to 25 us where each triangle is tested (PixelEstimator::part_pixels).
     [[nodiscard]] ItemCost of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const;
 
 private:
@@ -31,7 +30,7 @@ private:
     struct Class {
         std::uint32_t grid = 0;  ///< in CostModel::grids
         float triangles = 0;
-        float share = 0;  ///< of the area of its parts, as they are stored
+        float share = 0;  ///< of the stored area of all parts
     };
     /// Some of classes_.
     struct Classes {
@@ -41,10 +40,10 @@ private:
 
     const Model& model_;
     const CostModel& costs_;
-    Surfaces surfaces_;
+    PixelEstimator estimator_;
     std::vector<std::uint32_t> grid_of_part_;
     std::vector<Class> classes_;
-    std::vector<Classes> classes_of_;  ///< [representation]; those that share their parts share these
+    std::vector<Classes> classes_of_;  ///< [representation]; representations with the same parts share an entry
 };
 
 }  // namespace surefoot::model

@@ -52,9 +52,9 @@ Result<void> check_limits(const Counts& counts, const std::string& place, const 
     for (const Limited& one : all) {
         if (counts.*one.count <= most.*one.count) continue;
         return Error{place,
-                     fmt::format("out of limits: {} {} with all levels of detail; a model holds at most {}", counts.*one.count,
+                     fmt::format("The model is out of limits: {} {} with all levels of detail, at most {}", counts.*one.count,
                                  one.what, most.*one.count),
-                     "bake it in several parts, or with fewer triangles"};
+                     "Bake it in several parts, or with fewer triangles", ErrorKind::out_of_limits};
     }
     return {};
 }

@@ -1,4 +1,4 @@
-// What a model can count: its records, and the draw commands made from them, name each other by 32-bit numbers.
+// The size limits of a model: records and draw commands refer to each other by 32-bit numbers.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,11 @@ struct Counts {
 };
 
 /// A draw command's base vertex is signed; the last number of an Index says `none`.
-constexpr Counts most_counts{std::numeric_limits<std::int32_t>::max(), none, none, none, none, none, none, none, none, none};
+constexpr Counts max_counts{std::numeric_limits<std::int32_t>::max(), none, none, none, none, none, none, none, none, none};
 
 Counts counts_of(const Model& model);
 
-/// Error "out of limits" at `place`, with the first that is too many.
-Result<void> check_limits(const Counts& counts, const std::string& place, const Counts& most = most_counts);
+/// Error "out of limits" at `place`, for the first count that is too large.
+Result<void> check_limits(const Counts& counts, const std::string& place, const Counts& most = max_counts);
 
 }  // namespace surefoot::model

@@ -1,4 +1,4 @@
-// The baked model: flat arrays of nodes, representations, parts, geometry, materials. What a .walk file holds.
+// The baked model, as a .walk file holds it: flat arrays of nodes, representations, parts, geometry, materials.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace surefoot::model {
 using Index = std::uint32_t;
 constexpr Index none = 0xffffffffU;
 
-/// 32 bytes, one layout for all meshes: a program reads only the attributes that its effects need.
+/// One layout of 32 bytes for all meshes. A program reads only the attributes that its effects need.
 struct Vertex {
     float position[3];        ///< in the geometry's own frame, metres before its Placement
     std::int8_t normal[4];    ///< unit normal * 127; w unused
@@ -42,7 +42,7 @@ struct Material {
     float alpha_cutoff = 0.5F;  ///< used when alpha == mask
     AlphaMode alpha = AlphaMode::opaque;
     bool two_sided = false;
-    EffectMask effects = 0;  ///< what drawing with it calls for (sun, vertex colour included)
+    EffectMask effects = 0;  ///< effects that drawing with it needs, sun and vertex colour included
 };
 
 /// RGBA8, sRGB-encoded; all mip levels, largest first, level i of max(1, w >> i) x max(1, h >> i), tightly packed.
@@ -61,10 +61,10 @@ struct Part {
 
 enum class RepKind : std::uint8_t { mesh, colour_box, textured_box };
 
-/// One drawable form of a node (DESIGN 4, 5).
+/// One drawable form of a node.
 struct Representation {
     RepKind kind = RepKind::mesh;
-    bool everywhere = true;    ///< valid with the eye anywhere, inside included; boxes are not
+    bool everywhere = true;    ///< valid for the eye anywhere, inside included; false for boxes
     float error_m = 0;         ///< upper bound of the two-sided distance to the node's full detail, world metres
     float min_distance_m = 0;  ///< valid only when the eye is at least this far from the node's box (0: everywhere)
     Index placement = 0;
@@ -72,8 +72,8 @@ struct Representation {
     std::uint32_t part_count = 0;
     std::uint32_t triangles = 0;
     EffectMask effects = 0;  ///< union over its parts
-    /// Rasterised area in m^2 seen along +-x, +-y, +-z (world axes), hidden layers included: sum over triangles of
-    /// area * |n_axis|, halved where back faces are culled. Pixels ~ area / distance^2 (overdraw is in it).
+    /// Rasterised area in m^2 seen along the world axes x, y, z, overdraw included. Sum over triangles of area * |n_axis|, halved
+    /// where back faces are culled. Pixels ~ area / distance^2.
     std::array<float, 3> area_m2{};
 };
 
@@ -94,11 +94,11 @@ struct Node {
     std::uint64_t triangles = 0;  ///< full detail below
 };
 
-/// What was imported, repaired, dropped; how it was baked. Shown by `inspect`.
+/// Sources, warnings and quality of the bake. Shown by `inspect`.
 struct Provenance {
     std::vector<std::string> sources;
     std::string quality;                ///< draft | full
-    std::vector<std::string> warnings;  ///< one line each, e.g. "dropped 12 triangles of zero area in mesh 'lamp'"
+    std::vector<std::string> warnings;  ///< one line each: "Mesh 'lamp': 12 triangles are dropped: zero area"
 };
 
 struct Model {
@@ -110,7 +110,7 @@ struct Model {
     std::vector<Texture> textures;
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
-    std::vector<std::byte, PageMemory<std::byte>> texels;  ///< empty in an Engine: its device has them
+    std::vector<std::byte, PageMemory<std::byte>> texels;  ///< empty in an Engine: the device holds them
     std::string names;                                     ///< zero-terminated strings, offset 0 is ""
     std::vector<EffectFinding> effects;                    ///< one an effect, bit order
     std::uint32_t object_count = 0;
@@ -122,12 +122,12 @@ struct Model {
     [[nodiscard]] std::uint64_t triangles() const { return nodes.empty() ? 0 : nodes[0].triangles; }
 };
 
-/// Checks every index, range, order and number that the renderer relies on; the error names array and element.
-/// Run on every model that comes from a file: a reader never trusts one.
+/// Checks every index, range, order and number on which the renderer relies. Errors name array and element.
+/// Run on every model that comes from a file.
 Result<void> validate(const Model& model);
 
-/// use(const Material&, const vec3& a, const vec3& b, const vec3& c) for every triangle of a part, corners as they are stored:
-/// in the part's own coordinates (Representation::placement brings them into the world).
+/// Calls use(const Material&, const vec3& a, const vec3& b, const vec3& c) for every triangle of a part. Corners are in the
+/// part's coordinates; Representation::placement maps them to the world.
 template <class Use>
 void for_triangles(const Model& model, Index of_part, Use use) {
     const Part& part = model.parts[of_part];
@@ -145,11 +145,11 @@ void for_triangles(const Model& model, const Representation& rep, Use use) {
     for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) for_triangles(model, p, use);
 }
 
-/// The forms in which a node may be drawn, by name, in RepKind's order.
+/// The forms in which a node may be drawn: a name and help for each RepKind, in its order.
 inline constexpr std::array forms = {
-    Named{"mesh", "triangles of its own, coarse to fine"},
-    Named{"colour_box", "its box in a mean colour a side"},
-    Named{"textured_box", "its box with pictures of it on the sides"},
+    Named{"mesh", "triangles, coarse to fine"},
+    Named{"colour_box", "a box with one mean colour a side"},
+    Named{"textured_box", "a box with captured images on its sides"},
 };
 
 constexpr const Named& form_of(RepKind kind) { return forms[static_cast<std::size_t>(kind)]; }

@@ -134,7 +134,7 @@ float rasterised_pixels(const Representation& rep, const Box& node_box, const dv
         const float rectangle = (across.high - across.low) * (up_down.high - up_down.low);
         pixels = f * f * rectangle * mean_crossings(centre - half, centre + half, area, across, up_down, scale);
     }
-    return pixels > 0 ? std::min(pixels, most_pixels) : (pixels <= 0 ? 0.0F : most_pixels);
+    return pixels > 0 ? std::min(pixels, max_pixels) : (pixels <= 0 ? 0.0F : max_pixels);
 }
 
 std::array<float, 3> rasterised_area(const Model& model, const Representation& rep) {

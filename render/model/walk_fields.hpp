@@ -115,7 +115,7 @@ template <class Archive, class TextT>
 requires std::is_same_v<std::remove_const_t<TextT>, std::string>
 void fields(Archive& a, TextT& text) { a(text); }
 
-/// What is no array: counts, sun, provenance. Between them eight bytes that nobody reads: once the time that the bake took.
+/// All that is not an array: counts, sun, provenance. Eight spare bytes among them once held the time of the bake.
 template <class Archive, class ModelT>
 void rest(Archive& a, ModelT& m) {
     a(m.object_count);

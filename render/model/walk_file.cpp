@@ -154,8 +154,8 @@ struct Reading {
     std::array<std::optional<std::span<const std::byte>>, section_count> sections;  ///< those that the file has
     std::uint64_t model_hash = fnv_start;
 
-    [[nodiscard]] Error error(std::string_view where, std::string what) const {
-        return {fmt::format("{}: {}", file, where), std::move(what), "copy the file again, or bake the model again"};
+    [[nodiscard]] Error error(std::string_view where, std::string what, ErrorKind kind = ErrorKind::damaged) const {
+        return {fmt::format("{}: {}", file, where), std::move(what), "Copy the file again, or bake the model again", kind};
     }
 };
 
@@ -171,47 +171,49 @@ Result<void> open_sections(Reading& in, std::span<const std::byte> table, std::s
         std::uint32_t id = 0;
         std::uint64_t size = 0, hash = 0;
         entries(id), entries(size), entries(hash);
-        if (size > rest.size()) return in.error(name_of_section(id), "section does not fit the file");
+        if (size > rest.size()) return in.error(name_of_section(id), "The section does not fit the file");
         const auto section = rest.first(size);
         rest = rest.subspan(size);
-        if (hash_bytes(section) != hash) return in.error(name_of_section(id), "checksum does not match: the file is damaged");
+        if (hash_bytes(section) != hash) return in.error(name_of_section(id), "The checksum does not match: the file is damaged");
         if (id >= section_count) continue;
-        if (in.sections[id]) return in.error(name_of_section(id), "section is there twice");
+        if (in.sections[id]) return in.error(name_of_section(id), "The section is there twice");
         in.sections[id] = section;
         hashes[id] = hash;
     }
-    if (!rest.empty()) return in.error("section table", "bytes that belong to no section");
+    if (!rest.empty()) return in.error("section table", "Some bytes belong to no section");
     for (std::uint32_t id = 0; id < section_count; ++id) {
-        if (required(id) && !in.sections[id]) return in.error(section_names[id], "section is missing");
+        if (required(id) && !in.sections[id]) return in.error(section_names[id], "The section is missing");
         if (id != rest_section) in.model_hash = fnv1a(in.model_hash, hashes[id]);
     }
     return {};
 }
 
 Result<void> open_header(Reading& in) {
-    if (in.bytes.size() < header_bytes) return in.error("header", "the file is shorter than a header");
+    if (in.bytes.size() < header_bytes) return in.error("header", "The file is shorter than a header");
     walk::TakeArchive take{ByteReader(in.bytes.first(header_bytes))};
     std::array<char, 8> found{};
     for (char& c : found) take(c);
-    if (found != magic) return Error{in.file, "not a .walk model", "bake one: surefoot bake IN... -o MODEL.walk"};
+    if (found != magic)
+        return Error{in.file, "The file is not a .walk model", "Bake one: surefoot bake IN... -o MODEL.walk", ErrorKind::damaged};
     std::uint32_t file_version = 0, sections = 0;
     std::uint64_t file_size = 0, pages_size = 0, table_hash = 0, spare = 0, header_hash = 0;
     take(file_version), take(sections), take(file_size), take(pages_size), take(table_hash), take(spare), take(header_hash);
     if (file_version != version) {
-        return in.error("header", fmt::format("version {} of the format; this program reads version {}", file_version, version));
+        return in.error("header", fmt::format("The format has version {}; this program reads version {}", file_version, version),
+                        ErrorKind::unsupported);
     }
     if (header_hash != hash_bytes(in.bytes.first(header_bytes - 8)))
-        return in.error("header", "checksum does not match: the file is damaged");
+        return in.error("header", "The checksum does not match: the file is damaged");
     if (file_size != in.bytes.size()) {
-        return in.error("header",
-                        fmt::format("{} bytes expected, {} found: the file is truncated or grown", file_size, in.bytes.size()));
+        return in.error("header", fmt::format("The header announces {} bytes, and the file has {}: it is truncated or grown",
+                                              file_size, in.bytes.size()));
     }
     const std::uint64_t table_size = sections * entry_bytes, room = in.bytes.size() - header_bytes;
     if (spare != 0 || room < table_size || pages_size > room - table_size) {
-        return in.error("header", "sizes do not fit the file");
+        return in.error("header", "The sizes do not fit the file");
     }
     const auto table = in.bytes.last(table_size);
-    if (hash_bytes(table) != table_hash) return in.error("section table", "checksum does not match: the file is damaged");
+    if (hash_bytes(table) != table_hash) return in.error("section table", "The checksum does not match: the file is damaged");
     in.pages = in.bytes.subspan(header_bytes, pages_size);
     return open_sections(in, table, in.bytes.subspan(header_bytes + pages_size, room - table_size - pages_size));
 }
@@ -249,7 +251,8 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
             walk::rest(take, m);
             break;
     }
-    if (take.failed() || take.reader.left() != 0) return in.error(section_names[section], "its records do not fill it exactly");
+    if (take.failed() || take.reader.left() != 0)
+        return in.error(section_names[section], "The records do not fill the section exactly");
     return {};
 }
 
@@ -259,7 +262,8 @@ Result<void> unpack_page(const Reading& in, std::span<const std::byte> stored, s
         return {};
     }
     const std::size_t size = ZSTD_decompress(out.data(), out.size(), stored.data(), stored.size());
-    if (ZSTD_isError(size) != 0U || size != out.size()) return in.error(fmt::format("page {}", number), "does not unpack");
+    if (ZSTD_isError(size) != 0U || size != out.size())
+        return in.error(fmt::format("page {}", number), "The page does not unpack");
     return {};
 }
 
@@ -268,7 +272,7 @@ Result<void> check_pages(const Reading& in, const PayloadSizes& sizes, const std
     std::uint64_t count = 0;
     for (const std::uint64_t bytes : sizes.all()) count += pages_of(bytes);
     if (count != pages.size() || sizes.vertices % sizeof(Vertex) != 0 || sizes.indices % sizeof(std::uint32_t) != 0) {
-        return in.error("pages", "directory and payload sizes disagree");
+        return in.error("pages", "The sizes in the directory and of the pages disagree");
     }
     std::size_t number = 0;
     auto rest = in.pages;
@@ -278,14 +282,14 @@ Result<void> check_pages(const Reading& in, const PayloadSizes& sizes, const std
             const std::uint64_t unpacked = std::min(page_bytes, bytes - at);
             const std::string where = fmt::format("page {}", number);
             if (page.stored == 0 || page.stored > unpacked || page.stored > rest.size() || unpacked > page.stored * max_ratio) {
-                return in.error(where, "size out of bounds");
+                return in.error(where, "The size is out of bounds");
             }
             if (hash_bytes(rest.first(page.stored)) != page.hash)
-                return in.error(where, "checksum does not match: the file is damaged");
+                return in.error(where, "The checksum does not match: the file is damaged");
             rest = rest.subspan(page.stored);
         }
     }
-    if (!rest.empty()) return in.error("pages", "bytes that belong to no page");
+    if (!rest.empty()) return in.error("pages", "Some bytes belong to no page");
     return {};
 }
 
@@ -360,7 +364,8 @@ Result<Model> read_walk(const std::string& file, WalkFileInfo* info) {
         if (auto unpacked = unpack(in, out, pages, number, at); !unpacked) return unpacked.error();
     }
     if (auto valid = validate(model); !valid) {
-        return Error{fmt::format("{}: {}", file, valid.error().place), valid.error().what, valid.error().remedy};
+        return Error{fmt::format("{}: {}", file, valid.error().place), valid.error().what, valid.error().remedy,
+                     valid.error().kind};
     }
     if (info != nullptr) *info = {bytes->size(), sizes.sum(), static_cast<std::uint32_t>(pages.size()), in.model_hash};
     return model;

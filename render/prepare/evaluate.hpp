@@ -1,4 +1,4 @@
-// One visible node seen from a region: its legal choices with cost and error, its pixels, its weight in the benefit.
+// Evaluates one visible node for a region of eyes: legal choices with cost and error, pixels, and weight in the benefit.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,14 @@
 
 namespace surefoot::prepare {
 
-/// What a frame's evaluation needs of region, viewport and options; made once a frame.
+/// Region, viewport and options in the form that the evaluation needs; made once a frame.
 struct RegionView {
     dvec3 eye{0.0};
     double radius_m = 0;
-    model::ViewScale scale;  ///< at the centre's orientation: pixels are counted once, whichever way the eye turns
-    model::ViewScale wide;   ///< widened by the region's angle: for size and focus, so that the rim is not forgotten
+    model::ViewScale scale;  ///< at the centre's orientation; used for pixels
+    model::ViewScale wide;   ///< widened by the region's angle, so that the rim counts; used for size and focus
     float pixel_angle_rad = 1e-3F;
-    float target_error_rad = 0;  ///< finer forms than this are left out
+    float target_error_rad = 0;  ///< representations with a smaller error are not offered
     bool full_depth = false;
     float focus_strength = 0.5F;
     float speed_mps = 0, turn_rps = 0;
@@ -27,51 +27,51 @@ struct RegionView {
 
 /// Metres between the node's box and the nearest eye of the region; 0 inside.
 float nearest_distance(const RegionView& view, const Box& box);
-/// What errors are divided by.
+/// Distance by which errors are divided, m: at least the near plane.
 float error_distance(float nearest_m);
 
-/// Whether the representation may be drawn with every eye of the region.
+/// Whether the representation may be drawn for every eye of the region.
 bool legal(const model::Representation& rep, float nearest_m);
 /// Error in metres of the finest legal representation.
 float finest_error(const model::Model& model, const model::Node& node, float nearest_m);
 
-/// Size x importance x focus x motion, each 0..1, and where it is seen from: what is common to the benefits of a node's
-/// choices. Sources: Funkhouser's factors as Maciel 3.3.2 lists them; the accuracy factor is accuracy_gain().
+/// The part of the benefit that all choices of a node share: size x importance x focus x motion, each 0..1.
+/// Source: factors of Funkhouser & Séquin 1993, as in Maciel 1994, 3.3.2. The accuracy factor is accuracy_gain().
 struct Weight {
     float weight = 0;
-    float size = 0;        ///< square root of the share of the view; importance in it
+    float size = 0;        ///< square root of the share of the view, times importance
     float distance_m = 1;  ///< error_distance()
 };
 
-/// The accuracy factor of the benefit, 0..1: the mean of e / (e + 8) and e / (e + 256) with e the error in pixels. Below a
-/// pixel there is little to win (a twentieth at one pixel); and what is off by hundreds of pixels (ground that is not there)
-/// still goes before what is off by dozens (a coarse tree).
+/// The accuracy factor of the benefit, 0..1: the mean of e / (e + 8) and e / (e + 256), with e the error in pixels.
+/// Errors below a pixel win little: a twentieth at one pixel. An error of hundreds of pixels (missing ground) still ranks above
+/// one of dozens (a coarse tree).
 inline float accuracy_gain(float error_rad, float pixel_angle_rad) {
     const float error_px = error_rad / pixel_angle_rad;
     return 0.5F * (error_px / (error_px + 8.0F) + error_px / (error_px + 256.0F));
 }
 
-/// 0..1: a form that is no picture at all, where it fills the view. An error of about its distance and more is a shape that one
-/// looks through, or that hangs before the eye: neither motion nor focus makes it less wrong. size: square root of its share of
-/// the view.
-inline float wrongness(float size, float error_rad) {
+/// 0..1: penalty of an unusable representation that fills the view. With an error of about its distance or more, the eye sees
+/// through the shape, or the shape hangs before the eye. Motion and focus do not reduce this penalty.
+/// size: square root of its share of the view.
+inline float unusable_penalty(float size, float error_rad) {
     constexpr float begins_rad = 0.75F, full_rad = 2.0F, small = 0.2F;  // small: 1/25 of the view
     return std::clamp((error_rad - begins_rad) / (full_rad - begins_rad), 0.0F, 1.0F) * std::min(1.0F, size / small);
 }
 
-/// The benefit, 0..1, of leaving a form: half of it weighs what is seen, the other half is for what is no picture, so that
-/// nothing finer elsewhere goes before that.
+/// The benefit, 0..1, of replacing a representation by a finer one. One half is the weighted accuracy. The other half is the
+/// penalty of unusable representations, so that these are replaced before anything else is refined.
 inline float benefit_of(float weight, float gain, float wrong) { return 0.5F * weight * gain + 0.5F * wrong; }
 
-/// One number to compare costs by, before the frame's sums are known.
+/// One number by which costs are compared before the frame's sums are known, us.
 inline float cost_metric(const model::FrameCombine& combine, const model::ItemCost& cost) {
     return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
 }
 
-/// 0..1: what leaving a form costs counts against it. A half at 2 ms, the sixteenth of a 30 Hz frame that one item may cost at
-/// most: of two forms that are equally wrong the cheaper one goes first, so that one dear step, which ends the search where it
-/// does not fit, does not keep back dozens of cheap ones.
-inline float thrift(float step_us) {
+/// Factor 0..1 by which an expensive step loses benefit: a half at 2 ms, which is 1/16 of a 30 Hz frame, the limit of an item.
+/// Of two equally wrong representations the cheaper step goes first. Otherwise one expensive step that does not fit would end
+/// the search before dozens of cheap ones.
+inline float cost_penalty(float step_us) {
     constexpr float half_us = 2000.0F;
     return half_us / (half_us + std::max(step_us, 0.0F));
 }
@@ -80,8 +80,8 @@ class Evaluator {
 public:
     Evaluator(const model::Model& model, const model::CostModel& costs);
 
-    /// Fills `candidate.pixels` and the choices, `rep_count` of the node at most; returns how many. candidate.node is given.
-    /// Choices have benefit = weight x accuracy, not yet thrift, nor monotone down the tree.
+    /// Fills `candidate.pixels` and the choices, at most `rep_count` of the node; returns their number. Requires candidate.node.
+    /// The choices have benefit = weight x accuracy. Cost is not in it yet, and it is not yet monotone down the tree.
     std::uint32_t evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices, Weight& weight) const;
 
     [[nodiscard]] const model::ItemCosts& item_costs() const { return item_costs_; }

@@ -24,10 +24,10 @@ bool larger(const Found& a, const Found& b) { return a.area_m2 != b.area_m2 ? a.
 /// Keeps the largest in a heap whose top is the least of them.
 class Largest {
 public:
-    explicit Largest(std::size_t most) : most_(most) { heap_.reserve(most); }
+    explicit Largest(std::size_t most) : max_(most) { heap_.reserve(most); }
     void offer(const Found& found) {
-        if (heap_.size() == most_) {
-            if (most_ == 0 || !larger(found, heap_.front())) return;
+        if (heap_.size() == max_) {
+            if (max_ == 0 || !larger(found, heap_.front())) return;
             std::pop_heap(heap_.begin(), heap_.end(), larger);
             heap_.back() = found;
         } else {
@@ -41,7 +41,7 @@ public:
     }
 
 private:
-    std::size_t most_;
+    std::size_t max_;
     std::vector<Found> heap_;
 };
 

@@ -8,14 +8,14 @@ namespace surefoot::prepare {
 
 namespace {
 
-constexpr float behind_m = 0.01F;           ///< what is drawn lies farther in front of the eye; here depths are cut off
-constexpr float least_solid_angle = 6e-4F;  ///< about a pixel: less fills none
-constexpr double margin_rad = 0.15;         ///< beside the view, for what is seen past its edge from beside the middle
+constexpr float behind_m = 0.01F;         ///< what is drawn lies farther in front of the eye; here depths are cut off
+constexpr float min_solid_angle = 6e-4F;  ///< about a pixel: less fills none
+constexpr double margin_rad = 0.15;       ///< beside the view, for what is seen past its edge from beside the middle
 constexpr double widest_half_rad = 80.0 / 180.0 * 3.14159265358979323846;
 constexpr float depth_slack = 1e-4F;  ///< of a depth: rounding, and the 3e-5 by which draw/ties moves what shares a place
 constexpr float rounding = 1e-6F;     ///< of lengths in float
 constexpr float deep_ratio = 1.25F;   ///< of depths in a box: beyond it, its parts are looked at
-constexpr int most_parts = 40;
+constexpr int max_parts = 40;
 constexpr double far_m = 1e6;  ///< for the frustum's second test only: it has no far plane
 constexpr std::uint32_t no_triangle = 0xffffffffU;
 
@@ -36,9 +36,9 @@ Occlusion::Occlusion(const Occluders& occluders) : occluders_(occluders) {
     for (auto* plane : {&depth_, &covered_, &crossed_, &eroded_, &length_}) plane->resize(pixel_count);
     tiles_.resize(pixel_count / (tile * tile));
     facing_.reserve(occluders.triangles.size());
-    drawn_.reserve(most_drawn);
-    order_.reserve(most_drawn);
-    surface_nearest_.resize(most_drawn);
+    drawn_.reserve(max_drawn);
+    order_.reserve(max_drawn);
+    surface_nearest_.resize(max_drawn);
     first_at_edge_.resize(occluders.edge_count, no_triangle);
     edge_sides_.resize(occluders.edge_count);
 }
@@ -100,15 +100,15 @@ void Occlusion::choose() {
         const dvec3 d = o.centre - eye_;
         const double square = glm::dot(d, d);
         const auto solid_angle = static_cast<float>(o.area_m2 * std::abs(away) / (square * std::sqrt(square)));
-        if (!(solid_angle > least_solid_angle) || beside(to_view(o.centre), o.radius_m)) continue;
+        if (!(solid_angle > min_solid_angle) || beside(to_view(o.centre), o.radius_m)) continue;
         facing_.push_back({solid_angle, i, from_behind});
     }
     const auto more = [](const Facing& a, const Facing& b) {
         return a.solid_angle != b.solid_angle ? a.solid_angle > b.solid_angle : a.triangle < b.triangle;
     };
-    if (facing_.size() > most_drawn) {
-        std::nth_element(facing_.begin(), facing_.begin() + most_drawn, facing_.end(), more);
-        facing_.resize(most_drawn);
+    if (facing_.size() > max_drawn) {
+        std::nth_element(facing_.begin(), facing_.begin() + max_drawn, facing_.end(), more);
+        facing_.resize(max_drawn);
         std::sort(facing_.begin(), facing_.end(), [](const Facing& a, const Facing& b) { return a.triangle < b.triangle; });
     }
     for (const Facing& facing : facing_) place(facing);
@@ -248,7 +248,7 @@ void Occlusion::draw(const Region& region, model::Viewport viewport) {
     choose();
     join();
     work_ = 0;
-    for (std::size_t at = 0; at < order_.size() && work_ < most_work;) {  // the nearest surfaces hide most
+    for (std::size_t at = 0; at < order_.size() && work_ < max_work;) {  // the nearest surfaces hide most
         std::size_t end = at;
         while (end < order_.size() && drawn_[order_[end]].surface == drawn_[order_[at]].surface) ++end;
         draw_surface(std::span(order_).subspan(at, end - at));
@@ -269,7 +269,7 @@ bool Occlusion::hides(const Box& box) const {
         const Box part = stack[--top];
         const Hidden found = look(part);
         if (found == Hidden::yes) continue;
-        if (found == Hidden::no || tests == most_parts || top + 2 > stack.size()) return false;
+        if (found == Hidden::no || tests == max_parts || top + 2 > stack.size()) return false;
         // Across the axis that adds most to its depth.
         const dvec3 size = (part.max - part.min) * (glm::abs(forward_) + 0.1);
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.z >= size.y ? 2 : 1;

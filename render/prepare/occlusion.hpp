@@ -1,10 +1,11 @@
-// Occlusion for a region of eyes: what is hidden from every one of them by what is in front of it.
+// Occlusion culling for a region of eyes: finds boxes that are hidden from every eye of the region.
 //
-// Occluders are drawn from the region's middle into a small buffer of depths. An eye that moves by r sees past an edge at
-// distance d by at most asin(r / d): that far around every edge at which a joined surface ends, the surface does not count.
-// What is left hides from all eyes at once what is behind it from the middle: while the eye moves, the point in which the line
-// of sight crosses the surface moves too, at most that far, and it can only vanish over such an edge. Shrinking occluders is
-// Wonka, Wimmer & Schmalstieg 2000; a joined surface shrinks at its border alone. All rounding is towards "not hidden".
+// Occluders are drawn from the centre of the region into a small depth buffer. An eye that moves by r sees past an edge at
+// distance d by at most the angle asin(r / d). So every joined surface is eroded by this angle along its border.
+// The rest hides from all eyes what it hides from the centre. Proof: while the eye moves, the point where a line of sight crosses
+// the surface moves by at most that angle. It can leave the surface only over the border.
+// Source: Wonka, Wimmer & Schmalstieg 2000 shrink each occluder; here a joined surface shrinks at its border only.
+// All rounding is towards "not hidden".
 #pragma once
 
 #include <array>
@@ -20,39 +21,39 @@ namespace surefoot::prepare {
 
 class Occlusion {
 public:
-    /// `occluders` outlives this. All memory is taken here.
+    /// `occluders` must outlive this. Allocates all memory here.
     explicit Occlusion(const Occluders& occluders);
     Occlusion(const Occlusion&) = delete;
     Occlusion& operator=(const Occlusion&) = delete;
 
-    /// Draws the occluders that matter most to the region, at most 320, the nearest surfaces first; nothing where its view is
-    /// wider than 160 degrees. 0.3 to 0.6 ms, at most about 2. Bit-equal for equal input.
+    /// Draws the at most 320 occluders of the largest solid angle, nearest surfaces first. Draws none if the view is wider than
+    /// 160 degrees. 0.3 to 0.6 ms, at most about 2 ms. Equal input gives bit-equal results.
     void draw(const Region& region, model::Viewport viewport);
 
-    /// False: something in the box may be seen from somewhere in the region. True: nothing. 0.1 to 1 us. Any thread.
+    /// True: no point of the box is visible from the region. False: a point may be visible. 0.1 to 1 us. Any thread.
     [[nodiscard]] bool hides(const Box& box) const;
-    [[nodiscard]] bool empty() const { return empty_; }  ///< nothing hides
+    [[nodiscard]] bool empty() const { return empty_; }  ///< no occluder is drawn
 
 private:
     static constexpr int columns = 128, rows = 72, tile = 8;
-    static constexpr std::size_t most_drawn = 320;
-    static constexpr std::size_t most_work = 3'000'000;  ///< pixels of triangles and borders: about 2 ms
-    static constexpr float edge_slack = 0.01F;           ///< of a pixel, for rounding
-    static constexpr float beyond = 1e9F;                ///< any tangent, any 1/z
+    static constexpr std::size_t max_drawn = 320;
+    static constexpr std::size_t max_work = 3'000'000;  ///< limit on pixels of triangles and borders: about 2 ms
+    static constexpr float edge_slack = 0.01F;          ///< of a pixel, for rounding
+    static constexpr float beyond = 1e9F;               ///< any tangent, any 1/z
 
     struct Facing {
         float solid_angle;
         std::uint32_t triangle;
         bool from_behind;
     };
-    /// One in view, in the middle's frame: x right, y up, z forward, m.
+    /// An occluder in view, in the frame of the region's centre: x right, y up, z forward, m.
     struct Drawn {
         std::array<vec3, 3> at;               ///< seen counter-clockwise
-        std::array<std::uint32_t, 3> corner;  ///< whose numbers tell the direction of an edge
+        std::array<std::uint32_t, 3> corner;  ///< corner numbers; their order gives the direction of an edge
         std::array<std::uint32_t, 3> edge;
         vec3 inverse_depth;               ///< 1/z = dot(this, (x/z, y/z, 1))
         float nearest = 0, farthest = 0;  ///< 1/z of its corners
-        std::uint32_t surface = 0;        ///< union-find over what is joined
+        std::uint32_t surface = 0;        ///< union-find over joined triangles
     };
     struct Rect {
         int x0 = columns, x1 = -1, y0 = rows, y1 = -1;  ///< inclusive
@@ -60,12 +61,12 @@ private:
         void grow(const Rect& r);
     };
 
-    /// An angle of 0 to pi by its sine and cosine: no function of the library for each of thousands of pieces of border.
+    /// An angle of 0 to pi, as sine and cosine. Avoids library functions for thousands of border pieces.
     struct Turn {
         float sine = 0, cosine = 1;
         static Turn of_sine(float sine);                  ///< below a right angle
         static Turn of_tangent(float tangent);            ///< >= 0
-        [[nodiscard]] Turn plus(const Turn& more) const;  ///< pi where that is more
+        [[nodiscard]] Turn plus(const Turn& more) const;  ///< at most pi
     };
     struct Tangents;
     enum class Hidden : std::uint8_t { yes, no, in_parts };
@@ -94,15 +95,15 @@ private:
     float half_column_ = 0, half_row_ = 0;      ///< half a pixel, as tangents
     float pixel_rad_ = 0;                       ///< half a pixel's diagonal
     Turn pixel_turn_, corner_turn_;
-    float clamp_from_m_ = 0;  ///< what is at least this far may reach out of the buffer
+    float clamp_from_m_ = 0;  ///< boxes at least this far may extend beyond the buffer
     bool empty_ = true;
     std::size_t work_ = 0;
 
-    std::vector<float> depth_;    ///< 1/z of the farthest point that hides in a pixel; 0: none. The larger, the nearer
-    std::vector<float> tiles_;    ///< the least of tile x tile pixels
-    std::vector<float> covered_;  ///< of one surface: by triangles that fill the pixel
-    std::vector<float> crossed_;  ///< by triangles that fill a part of it
-    std::vector<float> eroded_;   ///< >= 0: near one of its borders
+    std::vector<float> depth_;    ///< 1/z of the farthest occluder point in a pixel; 0: none. Larger is nearer
+    std::vector<float> tiles_;    ///< minimum of tile x tile pixels
+    std::vector<float> covered_;  ///< of one surface: 1/z of triangles that fill the pixel
+    std::vector<float> crossed_;  ///< 1/z of triangles that fill a part of the pixel
+    std::vector<float> eroded_;   ///< > 0: near the border of the surface
     std::vector<float> length_;   ///< of (x/z, y/z, 1) in a pixel's middle
     std::vector<Facing> facing_;
     std::vector<Drawn> drawn_;

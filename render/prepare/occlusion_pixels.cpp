@@ -35,8 +35,8 @@ struct Columns {
 };
 
 // By value, so that the compiler sees no branch in loops over pixels.
-float least_of(float a, float b) { return a < b ? a : b; }
-float most_of(float a, float b) { return a > b ? a : b; }
+float min_of(float a, float b) { return a < b ? a : b; }
+float max_of(float a, float b) { return a > b ? a : b; }
 
 }  // namespace
 
@@ -85,8 +85,8 @@ void Occlusion::end_surface(const Rect& rect) {
         const float* __restrict eroded = &eroded_[row];
         float* __restrict depth = &depth_[row];
         for (int x = rect.x0; x <= rect.x1; ++x) {
-            const float partly = crossed[x] < beyond ? crossed[x] : 0.0F, found = most_of(covered[x], partly);
-            depth[x] = most_of(depth[x], eroded[x] < 0.0F ? found : 0.0F);
+            const float partly = crossed[x] < beyond ? crossed[x] : 0.0F, found = max_of(covered[x], partly);
+            depth[x] = max_of(depth[x], eroded[x] < 0.0F ? found : 0.0F);
         }
     }
     for (int ty = rect.y0 / tile; ty <= rect.y1 / tile; ++ty) {
@@ -130,11 +130,11 @@ void Occlusion::fill(const Drawn& triangle, const Rect& rect) {
         work_ += static_cast<std::size_t>(std::max(0, in.last - in.first + 1));
         for (int x = in.first; x <= in.last; ++x) {
             const float tx = static_cast<float>(2 * x + 1) * half_column - wide;
-            const float inside = least_of(least_of(across[0] * tx + e0, across[1] * tx + e1), across[2] * tx + e2);
-            const float depth = most_of(farthest, w.x * tx + w0);
+            const float inside = min_of(min_of(across[0] * tx + e0, across[1] * tx + e1), across[2] * tx + e2);
+            const float depth = max_of(farthest, w.x * tx + w0);
             const float filled = inside >= full ? depth : 0.0F, touched = inside > -full ? depth : beyond;
-            covered[x] = most_of(covered[x], filled);
-            crossed[x] = least_of(crossed[x], inside >= full ? beyond : touched);
+            covered[x] = max_of(covered[x], filled);
+            crossed[x] = min_of(crossed[x], inside >= full ? beyond : touched);
         }
     }
 }
@@ -218,9 +218,9 @@ void Occlusion::erode_piece(const vec3& from, const vec3& to, float sine, const 
             const float tx = static_cast<float>(2 * x + 1) * half_column - wide;
             const float l = s * length[x];
             const float aside = l - std::abs(pole_x * tx + p);
-            const float ends = least_of(onward_x * tx + f, back_x * tx + g) + l;
+            const float ends = min_of(onward_x * tx + f, back_x * tx + g) + l;
             const float near = middle_x * tx + m - ahead * length[x];
-            eroded[x] = most_of(eroded[x], least_of(least_of(aside, ends), near));
+            eroded[x] = max_of(eroded[x], min_of(min_of(aside, ends), near));
         }
     }
 }

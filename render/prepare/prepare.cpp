@@ -12,8 +12,8 @@
 
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/occlusion.hpp"
-#include "render/prepare/passes.hpp"
 #include "render/prepare/prepared.hpp"
+#include "render/prepare/tree_passes.hpp"
 #include "render/prepare/workers.hpp"
 #include "rt/base/check.hpp"
 #include "rt/base/fork_join.hpp"
@@ -24,7 +24,7 @@ namespace surefoot::prepare {
 namespace {
 
 /// A node that the frustum did not cull and nothing hides. Children are contiguous visits.
-struct Visit {
+struct NodeVisit {
     Index node = 0;
     Index parent = none;
     Index first_child = 0;
@@ -37,7 +37,7 @@ struct Visit {
 };
 
 constexpr std::uint32_t parents_a_chunk = 64, visits_a_chunk = 512;
-constexpr std::uint32_t least_slots = 1U << 15U;  // children looked at before they are closed up: bounds the room for them
+constexpr std::uint32_t min_slots = 1U << 15U;  // children looked at before they are closed up: bounds the room for them
 
 double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
 
@@ -66,9 +66,9 @@ struct Preparer::Impl {
     Occlusion occlusion;
     Workers workers;
 
-    std::vector<Visit> visits;
-    std::vector<Visit> slots;  ///< children of a block of parents, before they are closed up
-    std::vector<Index> block;  ///< the block's parents that are opened
+    std::vector<NodeVisit> visits;
+    std::vector<NodeVisit> slots;  ///< children of a block of parents, before they are closed up
+    std::vector<Index> block;      ///< the block's parents that are opened
     std::vector<std::uint32_t> slot_first, slot_count, slot_hidden;
     std::vector<Index> candidate_of;  ///< a visit
     std::vector<std::uint32_t> chunk_choice, chunk_candidate, chunk_count;
@@ -81,8 +81,8 @@ struct Preparer::Impl {
     template <class Body>
     void for_chunks(std::uint32_t count, const Body& body);
     RegionView view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps) const;
-    Visit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
-    void look_at_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
+    NodeVisit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
+    void visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
     void expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end, PreparedFrame& out);
     void close_up_block(PreparedFrame& out);
     void drop_false_positives(PreparedFrame& out);
@@ -99,15 +99,15 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
       occlusion(occluders),
       workers(o.workers, o.worker_hooks) {
     options.max_candidates = std::max(1U, options.max_candidates);
-    std::uint32_t most_children = 0, most_reps = 1;
+    std::uint32_t max_children = 0, max_reps = 1;
     for (const model::Node& node : m.nodes) {
-        most_children = std::max(most_children, node.child_count);
-        most_reps = std::max(most_reps, node.rep_count);
+        max_children = std::max(max_children, node.child_count);
+        max_reps = std::max(max_reps, node.rep_count);
     }
-    options.max_choices = std::max(options.max_choices, most_reps);
+    options.max_choices = std::max(options.max_choices, max_reps);
     const std::size_t most = std::min<std::size_t>(options.max_candidates, std::max<std::size_t>(m.nodes.size(), 1));
     visits.reserve(most);
-    slots.resize(std::max<std::size_t>(std::min<std::size_t>(least_slots, m.nodes.size()), most_children));
+    slots.resize(std::max<std::size_t>(std::min<std::size_t>(min_slots, m.nodes.size()), max_children));
     block.reserve(slots.size());
     slot_first.resize(slots.size());
     slot_count.resize(slots.size());
@@ -161,9 +161,9 @@ RegionView Preparer::Impl::view_of(const Region& region, model::Viewport viewpor
     return view;
 }
 
-Visit Preparer::Impl::visit_of(const RegionView& view, Index index, Index parent, PlaneMask mask) const {
+NodeVisit Preparer::Impl::visit_of(const RegionView& view, Index index, Index parent, PlaneMask mask) const {
     const model::Node& node = model.nodes[index];
-    Visit visit;
+    NodeVisit visit;
     visit.node = index;
     visit.parent = parent;
     visit.rep_count = node.rep_count;
@@ -174,12 +174,12 @@ Visit Preparer::Impl::visit_of(const RegionView& view, Index index, Index parent
     return visit;
 }
 
-void Preparer::Impl::look_at_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j) {
-    const Visit& parent = visits[block[j]];
+void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j) {
+    const NodeVisit& parent = visits[block[j]];
     const model::Node& node = model.nodes[parent.node];
     std::uint32_t at = slot_first[j], hidden = 0;
     for (Index child = node.first_child; child < node.first_child + node.child_count; ++child) {
-        const PlaneMask mask = narrow(frustum, model.nodes[child].box, parent.mask);
+        const PlaneMask mask = cull_planes(frustum, model.nodes[child].box, parent.mask);
         if (mask == culled) continue;
         if (occlusion.hides(model.nodes[child].box))
             ++hidden;
@@ -193,7 +193,7 @@ void Preparer::Impl::look_at_children(const RegionView& view, const model::Frust
 // Children of the block are appended in order; a parent whose children no longer fit keeps its own choices.
 void Preparer::Impl::close_up_block(PreparedFrame& out) {
     for (std::uint32_t j = 0; j < block.size(); ++j) {
-        Visit& parent = visits[block[j]];
+        NodeVisit& parent = visits[block[j]];
         out.hidden += slot_hidden[j];
         std::uint32_t reps = 0;
         for (std::uint32_t k = 0; k < slot_count[j]; ++k) reps += slots[slot_first[j] + k].rep_count;
@@ -223,12 +223,12 @@ void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& 
             used += children;
             block.push_back(at);
         }
-        CHECK(!block.empty() || at == end, "a block holds at least the children of one node");
+        CHECK(!block.empty() || at == end, "A block holds at least the children of one node");
         out.visits += used;
         const auto parents = static_cast<std::uint32_t>(block.size());
         for_chunks((parents + parents_a_chunk - 1) / parents_a_chunk, [&](std::uint32_t chunk) {
             const std::uint32_t last = std::min(parents, (chunk + 1) * parents_a_chunk);
-            for (std::uint32_t j = chunk * parents_a_chunk; j < last; ++j) look_at_children(view, frustum, j);
+            for (std::uint32_t j = chunk * parents_a_chunk; j < last; ++j) visit_children(view, frustum, j);
         });
         close_up_block(out);
     }
@@ -237,12 +237,12 @@ void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& 
 // Upwards: an opened node is visible if one of its children is (Maciel 3.5.3). Then places for the live ones.
 void Preparer::Impl::drop_false_positives(PreparedFrame& out) {
     for (std::size_t i = visits.size(); i-- > 0;) {
-        Visit& visit = visits[i];
+        NodeVisit& visit = visits[i];
         if (!visit.open) continue;
         visit.live = false;
         for (std::uint32_t k = 0; k < visit.child_count && !visit.live; ++k) visit.live = visits[visit.first_child + k].live;
     }
-    CHECK(visits.size() <= candidate_of.size(), "no more nodes are visited than there is room for");
+    CHECK(visits.size() <= candidate_of.size(), "No more nodes are visited than were reserved");
     Index candidate = 0;
     std::uint32_t choice = 0;
     for (std::size_t i = 0; i < visits.size(); ++i) {
@@ -267,7 +267,7 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
         std::uint32_t choice = chunk_choice[chunk];
         const std::uint32_t last = std::min(count, (chunk + 1) * visits_a_chunk);
         for (std::uint32_t i = chunk * visits_a_chunk; i < last; ++i) {
-            const Visit& visit = visits[i];
+            const NodeVisit& visit = visits[i];
             if (!visit.live) continue;
             Candidate candidate;
             candidate.node = visit.node;
@@ -340,7 +340,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
 
     const model::Frustum frustum =
         model::make_frustum(pose, viewport, model::far_corners_m(root.box), view.radius_m, out.region.angle_rad);
-    const PlaneMask mask = narrow(frustum, root.box, all_planes);
+    const PlaneMask mask = cull_planes(frustum, root.box, all_planes);
     s.occlusion.draw(out.region, viewport);
     out.visits = 1;
     s.choice_bound = root.rep_count;
@@ -352,8 +352,8 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     }
     s.drop_false_positives(out);
     s.evaluate_all(view, out);
-    gather_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
-    hold_down(out);
+    propagate_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
+    enforce_monotone_benefit(out);
     s.adapt(out);
     out.cpu_us = 1e-3 * static_cast<double>(rt::own_cpu_ns() - cpu_start + s.worker_cpu_ns.load());
     out.wall_us = 1e-3 * static_cast<double>(rt::monotonic_ns() - wall_start);

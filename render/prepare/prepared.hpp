@@ -17,22 +17,22 @@ namespace surefoot::prepare {
 using model::Index;
 using model::none;
 
-/// A representation that is legal in the whole region, with its predictions. Of a candidate's choices, coarse to fine: cost
-/// rises and error falls strictly; the first is the cheapest legal one.
+/// A representation that is legal in the whole region, with its predictions. The choices of a candidate go from coarse to fine:
+/// cost rises and error falls, both strictly. The first is the cheapest legal one.
 struct Choice {
     Index rep = 0;
     model::ItemCost cost;  ///< us, at the region's most expensive eye position
     float error_rad = 0;   ///< largest angular error over the region: error_m / max(distance, near)
-    /// 0..1, of leaving this choice for the next finer one (or for the children): the node's own, held down to what its
-    /// ancestors and coarser choices have, so monotone down the tree. What best-first searches by.
+    /// 0..1, of replacing this choice by the next finer one, or by the children. From the node alone; limited to the benefits of
+    /// coarser choices and ancestors, so monotone down the tree. The key of best-first search.
     float benefit = 0;
-    /// 0..1, the same from what is visible below: seen from the nearest visible descendant, and at least the greatest of
-    /// them; monotone down the tree. What two-stage best-first searches by (Maciel 3.5.3, figures 3.17 and 3.18).
+    /// 0..1, the same from the visible subtree: seen from its nearest visible descendant, and at least the maximum below.
+    /// Monotone down the tree. The key of two-stage search (Maciel 1994, 3.5.3, figures 3.17 and 3.18).
     float subtree_benefit = 0;
     std::uint32_t triangles = 0;
 };
 
-/// A visible node. Visible children are contiguous candidates, in node order, after their parent; 0 is the root.
+/// A visible node. Its visible children are contiguous candidates after it, in node order. Candidate 0 is the root.
 struct Candidate {
     Index node = 0;
     Index parent = none;
@@ -41,9 +41,9 @@ struct Candidate {
     Index first_choice = 0;
     std::uint32_t choice_count = 0;  ///< >= 1
     model::ItemCost children_cost;   ///< sum of the visible children's first choices
-    model::ItemCost floor_cost;      ///< of the cheapest legal cut of what is visible below
+    model::ItemCost floor_cost;      ///< of the cheapest legal cut of the visible subtree
     float pixels = 0;                ///< projected box area in the view, clipped to it
-    bool floor_open = false;         ///< the cheapest cut below goes through the children
+    bool floor_open = false;         ///< the cheapest cut of the subtree uses the children
 };
 
 /// Poses that the eye may have when the set is used.
@@ -54,24 +54,24 @@ struct Region {
 };
 
 struct PreparedFrame {
-    std::uint64_t frame = 0;  ///< the frame whose pose was newest when this was begun
+    std::uint64_t frame = 0;  ///< the frame whose pose was newest when preparation began
     Region region;
     model::Viewport viewport;
     std::vector<Candidate> candidates;  ///< reserved at start; never grows after; empty: nothing is visible
     std::vector<Choice> choices;
-    model::ItemCost full_cost;   ///< of every visible leaf's finest choice: full detail of what nothing hides
-    std::uint32_t visits = 0;    ///< nodes looked at, invisible ones included
-    std::uint32_t hidden = 0;    ///< of them, in the view but behind others; nodes below them were not looked at
-    bool truncated = false;      ///< capacity reached: deeper detail left out, still a complete legal tree
-    float target_error_rad = 0;  ///< nodes below it were not opened and their finer forms left out
+    model::ItemCost full_cost;   ///< of the finest choice of every visible leaf
+    std::uint32_t visits = 0;    ///< nodes tested, invisible ones included
+    std::uint32_t hidden = 0;    ///< of these, nodes in the view that others hide; their subtrees were not tested
+    bool truncated = false;      ///< capacity reached: deeper detail is missing, but the tree is complete and legal
+    float target_error_rad = 0;  ///< nodes with a smaller error were not opened, and finer choices not offered
     double cpu_us = 0;           ///< all workers together
     double wall_us = 0;
 };
 
-/// Called on worker threads, not on the one that calls run(); several at a time.
+/// Called on worker threads, several at a time; never on the thread that calls run().
 struct WorkerHooks {
-    std::function<void(int number)> on_start;  ///< as a worker starts, before its first task; numbers from 1
-    std::function<void()> on_first_task;       ///< then, once, within its first task
+    std::function<void(int number)> on_start;  ///< when a worker starts, before its first task; numbered from 1
+    std::function<void()> on_first_task;       ///< once, within its first task
     [[nodiscard]] bool any() const { return on_start || on_first_task; }
 };
 
@@ -80,18 +80,18 @@ struct PrepareOptions {
     double target_error_rad = 0;  ///< do not open nodes whose error is below this (0: an eighth of a pixel)
     std::uint32_t max_candidates = 1U << 18U;
     std::uint32_t max_choices = 1U << 20U;
-    double focus_strength = 0.5;  ///< 0: periphery counts as the centre
-    int workers = 1;              ///< the caller of run() among them
-    WorkerHooks worker_hooks;     ///< where given, the workers start with the Preparer; else as they are first wanted
-    bool occlusion = true;        ///< leave out what is hidden from the whole region
-    bool full_depth = false;      ///< go down to the leaves, whatever their error (reference pictures, `flat`)
-    /// Where a frame looked at more nodes than this, the next ones raise the error below which nodes are not opened, by a
-    /// tenth a frame or more, and lower it again when there is room: bounds the CPU time on any model (a visit takes about
-    /// 0.2 us, and 0.1 more where something may hide it, so that this is 4 to 6 ms). 0: no limit.
+    double focus_strength = 0.5;  ///< 0: the periphery counts as much as the centre
+    int workers = 1;              ///< with the caller of run()
+    WorkerHooks worker_hooks;     ///< if set, workers start with the Preparer, else at first use
+    bool occlusion = true;        ///< occlusion culling for the whole region
+    bool full_depth = false;      ///< open all nodes down to the leaves (reference images, `flat`)
+    /// Bounds the CPU time on any model: 4 to 6 ms, as a visit takes about 0.2 us, and 0.1 us more with occlusion. After a frame
+    /// with more visits, the next frames raise target_error_rad by at least a tenth each. They lower it when there is room.
+    /// 0: no limit.
     std::uint32_t max_visits = 18000;
 };
 
-/// Prepares frames with a oneTBB arena of its own. Level by level, so the arrays are bit-equal at any worker count.
+/// Prepares frames in its own oneTBB arena, level by level. The arrays are bit-equal at any worker count.
 class Preparer {
 public:
     Preparer(const model::Model& model, const model::CostModel& costs, const PrepareOptions& options);
@@ -101,13 +101,12 @@ public:
 
     /// Reserves the arrays of a frame so that run() does not allocate.
     void reserve(PreparedFrame& frame) const;
-    /// Fills `out` for `region`. Numbers of the region that are not finite are replaced (position by the model's centre).
-    /// Depends on the frames before only where one of them exceeded max_visits. speed: eye speed in m/s and turn rate rad/s for
-    /// the motion term of the benefit.
+    /// Fills `out` for `region`. Non-finite numbers of the region are replaced; a position becomes the model's centre.
+    /// Independent of earlier frames, unless one exceeded max_visits. speed_mps, turn_rps: of the eye, for the motion factor.
     void run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
              PreparedFrame& out);
 
-    /// What the choices' costs are predicted by.
+    /// Predicts the costs of the choices.
     [[nodiscard]] const model::ItemCosts& item_costs() const;
 
 private:

@@ -52,16 +52,16 @@ std::uint64_t next_id() {
 }  // namespace
 
 Workers::Observer::Observer(tbb::task_arena& arena, const WorkerHooks& hooks, int most)
-    : task_scheduler_observer(arena), hooks_(hooks), most_(most), id_(next_id()) {
+    : task_scheduler_observer(arena), hooks_(hooks), max_(most), id_(next_id()) {
     observe(true);
 }
 
 void Workers::Observer::on_scheduler_entry(bool is_worker) {
-    thread_local std::uint64_t told_to = 0;
-    if (!is_worker || told_to == id_) return;
-    told_to = id_;
+    thread_local std::uint64_t registered_with = 0;
+    if (!is_worker || registered_with == id_) return;
+    registered_with = id_;
     const int number = ++started_;
-    (void)CHECK_RARE(number <= most_, "an arena has no more workers than were asked for");
+    (void)CHECK_RARE(number <= max_, "An arena has no more workers than requested");
     if (hooks_.on_start) hooks_.on_start(number);
 }
 

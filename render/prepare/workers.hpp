@@ -1,4 +1,4 @@
-// The workers of preparation: a oneTBB arena of a known size, whose threads all start at once and are told of before they work.
+// The workers of preparation: a oneTBB arena of fixed size. With hooks, all threads start at once and are announced first.
 #pragma once
 
 #include <atomic>
@@ -15,13 +15,13 @@ namespace surefoot::prepare {
 
 class Workers {
 public:
-    /// `count` with the caller; 1: no threads. With hooks all of them start here; without, as they are first wanted.
+    /// `count`: workers with the caller; 1: no threads. With hooks all threads start here, else at first use.
     Workers(int count, WorkerHooks hooks);
     ~Workers();
     Workers(const Workers&) = delete;
     Workers& operator=(const Workers&) = delete;
 
-    /// Null: one worker, the caller.
+    /// Null if the caller is the only worker.
     [[nodiscard]] tbb::task_arena* arena() { return arena_ ? &*arena_ : nullptr; }
 
 private:
@@ -35,15 +35,15 @@ private:
 
     private:
         const WorkerHooks& hooks_;
-        const int most_;
+        const int max_;
         const std::uint64_t id_;
         std::atomic<int> started_{0};
     };
     void start_all(int workers);
 
     WorkerHooks hooks_;
-    tbb::task_scheduler_handle handle_;                   ///< with hooks: by it the threads end with this
-    std::optional<tbb::global_control> more_than_cores_;  ///< else the library caps its threads, and says so on stderr
+    tbb::task_scheduler_handle handle_;                   ///< with hooks: ends the threads with this object
+    std::optional<tbb::global_control> more_than_cores_;  ///< raises oneTBB's own cap on threads, which it reports on stderr
     std::optional<tbb::task_arena> arena_;
     std::optional<Observer> observer_;
 };

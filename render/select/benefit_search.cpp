@@ -1,13 +1,13 @@
-// Best-first and two-stage best-first (Maciel 3.5), mended: each step priced as what it changes, in the order of its benefit.
+// Best-first and two-stage best-first (Maciel 3.5), corrected: each step priced as what it changes, in the order of its benefit.
 // Benefits fall monotonely down the tree, so that this order needs no queue: the steps' costs are summed by benefit, the sums say
 // at which benefit the budget ends, and only the steps of that one bucket are tried in turn (by candidate, then by form), to the
-// first that does not fit. What the first walk sees of a candidate is noted, so that the second reads little more than that. A
+// first that does not fit. What the first walk sees of a candidate is kept, so that the second reads little more than that. A
 // bucket is 1/128 octave wide: what lies closer counts as equal.
 #include <algorithm>
 
-#include "render/select/cover.hpp"
+#include "render/select/bucket_queue.hpp"
+#include "render/select/cut_builder.hpp"
 #include "render/select/entries.hpp"
-#include "render/select/queue.hpp"
 #include "render/select/scratch.hpp"
 #include "render/select/steps.hpp"
 
@@ -47,21 +47,21 @@ struct Edge {
 /// One selection: three walks over the candidates, which stand parents before children.
 class ThresholdSearch {
 public:
-    ThresholdSearch(const SelectInput& input, SelectState& state, Cover& cover, const Budget& budget, bool subtree)
-        : cover_(cover),
+    ThresholdSearch(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget, bool subtree)
+        : builder_(builder),
           budget_(budget),
           steps_(input, state, subtree),
           sums_(state.scratch().step_sums),
-          notes_(cover.scratch()),
+          scan_state_(builder.scratch()),
           share_(fresh_share(state)),
-          put_off_(state.scratch().links) {}
+          deferred_(state.scratch().links) {}
 
     /// Returns the number of steps taken.
     std::uint32_t run() {
         sum_up();
         const Edge both = common_edge();
         take_common(both);
-        if (put_off_count_ > 0 && !closed_) take_put_off(refined_edge(both));
+        if (deferred_count_ > 0 && !closed_) take_put_off(refined_edge(both));
         return taken_;
     }
 
@@ -79,8 +79,8 @@ private:
     /// returns false. True: all steps were used, the opening one included.
     template <class Use>
     bool for_steps(Index c, const Use& use) const {
-        const prepare::Candidate& candidate = cover_.candidate(c);
-        const auto choices = cover_.choices(c);
+        const prepare::Candidate& candidate = builder_.candidate(c);
+        const auto choices = builder_.choices(c);
         for (std::uint32_t k = 0; k < candidate.choice_count; ++k) {
             const bool last = k + 1 == candidate.choice_count;
             if ((last && candidate.child_count == 0) || !steps_.wanted(choices[k]) || !use(k, last)) return false;
@@ -89,14 +89,14 @@ private:
     }
 
     void sum_up() {
-        for (Index c = 0; c < cover_.size(); ++c) {
-            if (cover_.chosen(c) == SelectState::opened) continue;  // above the floor
-            const prepare::Candidate& candidate = cover_.candidate(c);
-            const auto choices = cover_.choices(c);
+        for (Index c = 0; c < builder_.size(); ++c) {
+            if (builder_.chosen(c) == SelectState::opened) continue;  // above the floor
+            const prepare::Candidate& candidate = builder_.candidate(c);
+            const auto choices = builder_.choices(c);
             const Index shown = steps_.shown(candidate.node);
-            const std::uint32_t note = Steps::was_refined(shown, choices[0]) ? refined_before : 0;
-            if (steps_.has_target() && cover_.chosen(c) == none && (notes_[candidate.parent] & opens_below) == 0) {
-                notes_[c] = note;
+            const std::uint32_t flags = Steps::was_refined(shown, choices[0]) ? refined_before : 0;
+            if (steps_.has_target() && builder_.chosen(c) == none && (scan_state_[candidate.parent] & opens_below) == 0) {
+                scan_state_[c] = flags;
                 continue;
             }
             std::uint32_t last = 0;
@@ -106,13 +106,13 @@ private:
                 sums_.add(step.bucket, step.refined, choices[k].cost, opens ? candidate.children_cost : choices[k + 1].cost);
                 return true;
             });
-            notes_[c] = note | last | (passed ? opens_below : 0);
+            scan_state_[c] = flags | last | (passed ? opens_below : 0);
         }
     }
 
     /// The first bucket whose steps do not all fit.
     [[nodiscard]] Edge common_edge() const {
-        Edge edge{0, cover_.floor_sum()};
+        Edge edge{0, builder_.floor_sum()};
         for (; edge.bucket < buckets; ++edge.bucket) {
             const Sum fresh = sums_.fresh(edge.bucket);
             const Sum next = edge.before + fresh + sums_.refined(edge.bucket);
@@ -135,15 +135,15 @@ private:
     void take_common(const Edge& edge) {
         sum_ = edge.before;
         bool fresh_closed = edge.bucket == buckets;
-        for (Index c = 0; c < cover_.size(); ++c) {
-            if (cover_.chosen(c) == SelectState::opened) continue;
-            if (cover_.chosen(c) == none) {  // below what is taken; what it was refined to may still come in
-                if ((notes_[c] & refined_before) != 0) put_off_[put_off_count_++] = c;
+        for (Index c = 0; c < builder_.size(); ++c) {
+            if (builder_.chosen(c) == SelectState::opened) continue;
+            if (builder_.chosen(c) == none) {  // below what is taken; what it was refined to may still come in
+                if ((scan_state_[c] & refined_before) != 0) deferred_[deferred_count_++] = c;
                 continue;
             }
             if (take_all(c, edge)) continue;
-            const auto choices = cover_.choices(c);
-            const Index shown = steps_.shown(cover_.candidate(c).node);
+            const auto choices = builder_.choices(c);
+            const Index shown = steps_.shown(builder_.candidate(c).node);
             for_steps(c, [&](std::uint32_t k, bool opens) {
                 const Step step = step_of(choices[k], shown);
                 bool take = step.bucket < edge.bucket;
@@ -152,7 +152,7 @@ private:
                     if (!take) (step.refined ? closed_ : fresh_closed) = true;
                 }
                 if (take) return do_step(c, k, opens);
-                if (step.refined && step.bucket > edge.bucket) put_off_[put_off_count_++] = c;
+                if (step.refined && step.bucket > edge.bucket) deferred_[deferred_count_++] = c;
                 return false;
             });
         }
@@ -161,24 +161,24 @@ private:
     /// Where a candidate's last step lies below the edge, so do all: taken without a look at each.
     bool take_all(Index c, const Edge& edge) {
         if (steps_.has_target()) return false;
-        const prepare::Candidate& candidate = cover_.candidate(c);
+        const prepare::Candidate& candidate = builder_.candidate(c);
         const bool opens = candidate.child_count > 0;
         const std::uint32_t steps = candidate.choice_count - (opens ? 0U : 1U);
         if (steps == 0) return true;
-        if ((notes_[c] & last_bucket) >= edge.bucket) return false;
+        if ((scan_state_[c] & last_bucket) >= edge.bucket) return false;
         taken_ += steps - 1;
         return do_step(c, steps - 1, opens);
     }
 
     void take_put_off(const Edge& edge) {
         sum_ = edge.before;
-        for (std::uint32_t i = 0; i < put_off_count_; ++i) {
-            const Index c = put_off_[i];
-            if (cover_.chosen(c) == none) continue;  // its parent was not opened
-            const auto choices = cover_.choices(c);
-            const Index shown = steps_.shown(cover_.candidate(c).node);
+        for (std::uint32_t i = 0; i < deferred_count_; ++i) {
+            const Index c = deferred_[i];
+            if (builder_.chosen(c) == none) continue;  // its parent was not opened
+            const auto choices = builder_.choices(c);
+            const Index shown = steps_.shown(builder_.candidate(c).node);
             for_steps(c, [&](std::uint32_t k, bool opens) {
-                if (k < cover_.chosen(c)) return true;  // taken already
+                if (k < builder_.chosen(c)) return true;  // taken already
                 const Step step = step_of(choices[k], shown);
                 bool take = step.refined && step.bucket < edge.bucket;
                 if (step.refined && step.bucket == edge.bucket && !closed_) {
@@ -191,8 +191,8 @@ private:
     }
 
     bool try_step(Index c, std::uint32_t k, bool opens, double share) {
-        const auto choices = cover_.choices(c);
-        const Sum next = sum_.changed(choices[k].cost, opens ? cover_.candidate(c).children_cost : choices[k + 1].cost);
+        const auto choices = builder_.choices(c);
+        const Sum next = sum_.changed(choices[k].cost, opens ? builder_.candidate(c).children_cost : choices[k + 1].cost);
         if (!budget_.fits(next, share)) return false;
         sum_ = next;
         return true;
@@ -200,12 +200,12 @@ private:
     bool do_step(Index c, std::uint32_t k, bool opens) {
         ++taken_;
         if (!opens) {
-            cover_.choose(c, k + 1);
+            builder_.choose(c, k + 1);
             return true;
         }
-        const prepare::Candidate& candidate = cover_.candidate(c);
-        cover_.open(c);
-        for (Index child = 0; child < candidate.child_count; ++child) cover_.choose(candidate.first_child + child, 0);
+        const prepare::Candidate& candidate = builder_.candidate(c);
+        builder_.open(c);
+        for (Index child = 0; child < candidate.child_count; ++child) builder_.choose(candidate.first_child + child, 0);
         return true;
     }
 
@@ -214,14 +214,14 @@ private:
     static constexpr std::uint32_t opens_below = 1U << 16U;     ///< no target error keeps it shut
     static constexpr std::uint32_t refined_before = 1U << 17U;  ///< from its first form on, in the last frame
 
-    Cover& cover_;
+    CutBuilder& builder_;
     const Budget& budget_;
     Steps steps_;
     StepSums sums_;
-    std::span<std::uint32_t> notes_;
+    std::span<std::uint32_t> scan_state_;
     double share_;
-    std::span<std::uint32_t> put_off_;  ///< candidates that were shown finer than the common edge allows, ascending
-    std::uint32_t put_off_count_ = 0;
+    std::span<std::uint32_t> deferred_;  ///< candidates that were shown finer than the common edge allows, ascending
+    std::uint32_t deferred_count_ = 0;
     Sum sum_;
     bool closed_ = false;
     std::uint32_t taken_ = 0;
@@ -235,11 +235,11 @@ public:
         clear(cut);
         if (!has_room(input, state, cut)) return;
         const Budget budget(input);
-        Cover cover(input, state);
-        cover.take_floor();
-        if (full_detail_fits(input, state, budget) || cover.finest_is_cheapest(budget))
-            return cover.finish(budget, cover.take_finest(), cut);
-        cover.finish(budget, ThresholdSearch(input, state, cover, budget, subtree_).run(), cut);
+        CutBuilder builder(input, state);
+        builder.take_floor();
+        if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
+            return builder.finish(budget, builder.take_finest(), cut);
+        builder.finish(budget, ThresholdSearch(input, state, builder, budget, subtree_).run(), cut);
     }
 
 private:
@@ -257,9 +257,9 @@ const Selector& make_two_stage() {
 
 }  // namespace
 
-const SelectorEntry best_first_entry{"best-first", "the greatest benefit of its own next, within the budget", GoesBy::budget,
+const SelectorEntry best_first_entry{"best-first", "the node of the greatest own benefit next, within the budget", GoesBy::budget,
                                      true, make_best_first};
-const SelectorEntry two_stage_entry{usual_selector, "the greatest benefit below it next, within the budget", GoesBy::budget, true,
-                                    make_two_stage};
+const SelectorEntry two_stage_entry{usual_selector, "the node of the greatest benefit in its subtree next, within the budget",
+                                    GoesBy::budget, true, make_two_stage};
 
 }  // namespace surefoot::select

@@ -8,7 +8,7 @@
 
 namespace surefoot::select {
 
-/// Sums over items in double: upgrades add and take away thousands of times a frame.
+/// Sums over items. In double, because thousands of upgrades a frame add and subtract.
 struct Sum {
     double submit_us = 0, raster_us = 0;
     void add(const model::ItemCost& cost) {
@@ -21,14 +21,14 @@ struct Sum {
     }
 };
 
-/// Whole-frame prediction: FrameCombine over the sums, what ending the slices costs, times correction and upper quantile.
+/// Whole-frame prediction: (FrameCombine of the sums + cost of ending slices) x correction x headroom.
 class Budget {
 public:
     explicit Budget(const SelectInput& input) {
         const model::CostModel& costs = *input.costs;
         combine_ = costs.combine;
         const double correction = input.correction > 0.0 && std::isfinite(input.correction) ? input.correction : 1.0;
-        factor_ = correction * upper_factor_of(input);
+        factor_ = correction * headroom_of(input);
         // 1 + items / slice_us is never less than the number of slices that plan_slices makes.
         const double slice_end_us = static_cast<double>(costs.combine.submit_weight) * static_cast<double>(costs.slice_us);
         fixed_us_ = static_cast<double>(combine_.fixed_us) + slice_end_us;
@@ -41,8 +41,7 @@ public:
                static_cast<double>(combine_.max_weight) * std::max(sum.submit_us, sum.raster_us);
     }
     [[nodiscard]] double predicted_us(const Sum& sum) const { return (fixed_us_ + items_us(sum) * per_item_us_) * factor_; }
-    /// Within `share` of the budget. The margin of a millionth covers rounding: the cut's own sum, taken afresh and in float,
-    /// is still within it.
+    /// Within `share` of the budget. The margin of 1e-6 covers rounding: the final sum of the cut, computed in float, fits too.
     [[nodiscard]] bool fits(const Sum& sum, double share = 1.0) const { return fits_us(predicted_us(sum), share); }
     [[nodiscard]] bool fits_us(double predicted_us, double share = 1.0) const {
         return predicted_us * (1.0 + 1e-6) <= budget_us_ * share;

@@ -1,4 +1,4 @@
-// Inside the select room: every selector's entry, for the registry.
+// The registry entries of all selectors; used in this room only.
 #pragma once
 
 #include "render/select/registry.hpp"

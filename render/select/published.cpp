@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "render/model/view.hpp"
-#include "render/select/cover.hpp"
+#include "render/select/bucket_queue.hpp"
+#include "render/select/cut_builder.hpp"
 #include "render/select/entries.hpp"
-#include "render/select/queue.hpp"
 #include "render/select/scratch.hpp"
 
 namespace surefoot::select {
@@ -13,105 +13,106 @@ namespace surefoot::select {
 namespace {
 
 /// "Compute its LOD" (figure 3.15) before the search: an object's form is fixed by its distance alone; a cluster has one form.
-std::uint32_t fixed_form(const Cover& cover, Index c, float threshold_rad) {
-    if (cover.candidate(c).child_count > 0) return 0;
-    const auto choices = cover.choices(c);
+std::uint32_t fixed_form(const CutBuilder& builder, Index c, float threshold_rad) {
+    if (builder.candidate(c).child_count > 0) return 0;
+    const auto choices = builder.choices(c);
     std::uint32_t k = 0;
     while (k + 1 < choices.size() && choices[k].error_rad > threshold_rad) ++k;
     return k;
 }
 
-enum class Order { depth, own, subtree };
+enum class Priority { depth, own, subtree };
 
 class Published final : public Selector {
 public:
-    explicit Published(Order order) : order_(order) {}
+    explicit Published(Priority priority) : priority_(priority) {}
 
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         clear(cut);
         if (!has_room(input, state, cut)) return;
         const Budget budget(input);
-        Cover cover(input, state);
+        CutBuilder builder(input, state);
         const double half_pixel = 0.5 * model::pixel_angle(input.prepared->region.centre, input.prepared->viewport);
         const auto threshold = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : half_pixel);
-        cover.take_root(fixed_form(cover, 0, threshold));
+        builder.take_root(fixed_form(builder, 0, threshold));
         Sum total;
-        total.add(cover.current(0).cost);
+        total.add(builder.current(0).cost);
         std::uint32_t refinements = 0;
         if (!budget.fits(total)) {
-            cover.take_floor();  // not in the source: a root beyond the budget leaves it nothing to say
-            if (cover.finest_is_cheapest(budget)) refinements = cover.take_finest();
-        } else if (order_ == Order::depth) {
-            refinements = depth_first(cover, budget, threshold, total);
+            builder.take_floor();  // not in the source: a root beyond the budget leaves it nothing to say
+            if (builder.finest_is_cheapest(budget)) refinements = builder.take_finest();
+        } else if (priority_ == Priority::depth) {
+            refinements = depth_first(builder, budget, threshold, total);
         } else {
-            refinements = best_first(cover, state, budget, threshold, total);
+            refinements = best_first(builder, state, budget, threshold, total);
         }
-        cover.finish(budget, refinements, cut);
+        builder.finish(budget, refinements, cut);
     }
 
 private:
     /// Total with the forms of the children added (the parent's stays).
-    static Sum with_children(const Cover& cover, Index c, float threshold, Sum total) {
-        const prepare::Candidate& candidate = cover.candidate(c);
+    static Sum with_children(const CutBuilder& builder, Index c, float threshold, Sum total) {
+        const prepare::Candidate& candidate = builder.candidate(c);
         for (Index child = candidate.first_child; child < candidate.first_child + candidate.child_count; ++child) {
-            total.add(cover.choices(child)[fixed_form(cover, child, threshold)].cost);
+            total.add(builder.choices(child)[fixed_form(builder, child, threshold)].cost);
         }
         return total;
     }
-    static void open(Cover& cover, Index c, float threshold) {
-        const prepare::Candidate& candidate = cover.candidate(c);
-        cover.open(c);
+    static void open(CutBuilder& builder, Index c, float threshold) {
+        const prepare::Candidate& candidate = builder.candidate(c);
+        builder.open(c);
         for (Index child = candidate.first_child; child < candidate.first_child + candidate.child_count; ++child) {
-            cover.choose(child, fixed_form(cover, child, threshold));
+            builder.choose(child, fixed_form(builder, child, threshold));
         }
     }
     // Figure 3.14. The children in their stored order, as printed.
-    static std::uint32_t depth_first(Cover& cover, const Budget& budget, float threshold, Sum total) {
-        const auto stack = cover.scratch();
+    static std::uint32_t depth_first(CutBuilder& builder, const Budget& budget, float threshold, Sum total) {
+        const auto stack = builder.scratch();
         std::size_t top = 0;
         std::uint32_t refinements = 0;
         stack[top++] = 0;
         while (top > 0) {
             const Index c = stack[--top];
-            const prepare::Candidate& candidate = cover.candidate(c);
+            const prepare::Candidate& candidate = builder.candidate(c);
             if (candidate.child_count == 0) continue;
-            const Sum next = with_children(cover, c, threshold, total);
+            const Sum next = with_children(builder, c, threshold, total);
             if (!budget.fits(next)) continue;
             total = next;
-            open(cover, c, threshold);
+            open(builder, c, threshold);
             ++refinements;
             for (Index k = candidate.child_count; k-- > 0;) stack[top++] = candidate.first_child + k;
         }
         return refinements;
     }
     // Figures 3.15 and 3.19: the same loop, by the cluster's own benefit or by the greatest below it.
-    std::uint32_t best_first(Cover& cover, SelectState& state, const Budget& budget, float threshold, Sum total) const {
+    std::uint32_t best_first(CutBuilder& builder, SelectState& state, const Budget& budget, float threshold, Sum total) const {
         BucketQueue queue(state.scratch().queue_heads, state.scratch().links);
         const auto push = [&](Index c) {
-            const prepare::Choice& now = cover.current(c);
-            if (cover.candidate(c).child_count > 0) queue.push(order_ == Order::subtree ? now.subtree_benefit : now.benefit, c);
+            const prepare::Choice& now = builder.current(c);
+            if (builder.candidate(c).child_count > 0)
+                queue.push(priority_ == Priority::subtree ? now.subtree_benefit : now.benefit, c);
         };
         std::uint32_t refinements = 0;
         push(0);
         while (!queue.empty() && budget.fits(total)) {
             const Index c = queue.pop();
-            const prepare::Candidate& candidate = cover.candidate(c);
-            const Sum next = with_children(cover, c, threshold, total);
+            const prepare::Candidate& candidate = builder.candidate(c);
+            const Sum next = with_children(builder, c, threshold, total);
             if (!budget.fits(next)) continue;
             total = next;
-            open(cover, c, threshold);
+            open(builder, c, threshold);
             ++refinements;
             for (Index k = 0; k < candidate.child_count; ++k) push(candidate.first_child + k);
         }
         return refinements;
     }
 
-    Order order_;
+    Priority priority_;
 };
 
-template <Order order>
+template <Priority priority>
 const Selector& make_published() {
-    static const Published selector(order);
+    static const Published selector(priority);
     return selector;
 }
 
@@ -119,10 +120,10 @@ const Selector& make_published() {
 
 // As printed in Maciel 1994, figures 3.14, 3.15 and 3.19.
 const SelectorEntry depth_first_1994_entry{"depth-first-1994", "depth-first with the published accounting (Maciel 1994)",
-                                           GoesBy::budget, false, make_published<Order::depth>};
+                                           GoesBy::budget, false, make_published<Priority::depth>};
 const SelectorEntry best_first_1994_entry{"best-first-1994", "best-first with the published accounting", GoesBy::budget, false,
-                                          make_published<Order::own>};
+                                          make_published<Priority::own>};
 const SelectorEntry two_stage_1994_entry{"two-stage-1994", "two-stage with the published accounting", GoesBy::budget, false,
-                                         make_published<Order::subtree>};
+                                         make_published<Priority::subtree>};
 
 }  // namespace surefoot::select

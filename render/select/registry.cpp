@@ -16,7 +16,8 @@ std::span<const SelectorEntry> selectors() {
 
 Result<const SelectorEntry*> selector_named(std::string_view name) {
     if (const SelectorEntry* entry = find_named(selectors(), name)) return entry;
-    return Error{"selector '" + std::string(name) + "'", "there is no such selector", "one of: " + names_in_words(selectors())};
+    return Error{"selector '" + std::string(name) + "'", "There is no such selector",
+                 "Use one of: " + names_in_words(selectors()), ErrorKind::misuse};
 }
 
 const Selector* find_selector(std::string_view name) {

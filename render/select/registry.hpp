@@ -1,5 +1,5 @@
-// The selectors by name: what may be asked of each, and how it is made. Adding one is a file of this folder, and its entry in
-// entries.hpp and registry.cpp; schema, help and settings page follow.
+// The registry of selectors: name, help, and how each is made. To add one: a file in this folder, and its entry in entries.hpp
+// and registry.cpp. Schema, help and settings page follow.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace surefoot::select {
 
-/// What a selector goes by: full detail always, an angular threshold, or the frame's budget.
+/// What limits the detail of a selector: nothing, an angular threshold, or the frame's budget.
 enum class GoesBy : std::uint8_t { nothing, threshold, budget };
 
 struct SelectorEntry {
     std::string_view name, help;
     GoesBy goes_by = GoesBy::budget;
-    bool compared = true;  ///< by `surefoot accuracy` where nobody says which
+    bool compared = true;  ///< by `surefoot accuracy`, if no selector is named
     const Selector& (*make)() = nullptr;
 };
 

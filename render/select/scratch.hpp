@@ -1,4 +1,4 @@
-// Room for the searches and the slice plan: what carries nothing from one frame to the next. Sized once, inside this room only.
+// Scratch memory of the searches and the slice plan. Holds no state between frames. Sized once; used in this room only.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 namespace surefoot::select {
 
 struct SelectState::Scratch {
-    std::vector<std::uint32_t> chosen;       ///< a candidate: Cover's choices
-    std::vector<std::uint32_t> list;         ///< a candidate: Cover's walk, then the search's stack or notes
-    std::vector<std::uint32_t> links;        ///< a candidate: the queue's links, or steps put off
+    std::vector<std::uint32_t> chosen;       ///< by candidate: Cover's choices
+    std::vector<std::uint32_t> list;         ///< by candidate: Cover's walk, then the search's stack or notes
+    std::vector<std::uint32_t> links;        ///< by candidate: the queue's links, or deferred steps
     std::vector<std::uint32_t> queue_heads;  ///< the queue's buckets
-    std::vector<double> step_sums;           ///< two costs a bucket, new and shown before
+    std::vector<double> step_sums;           ///< two costs a bucket: of new steps, and of those shown before
 };
 
 struct SlicePlan::Scratch {
-    std::vector<float> below_us;       ///< a candidate: predicted time of what lies below it in the cut; -1: nothing does
-    std::vector<std::uint32_t> item;   ///< a candidate: its place in the cut's items, or none
+    std::vector<float> below_us;       ///< by candidate: predicted time of the cut's items below it; -1: none
+    std::vector<std::uint32_t> item;   ///< by candidate: its index in the cut's items, or none
     std::vector<std::uint32_t> units;  ///< subtrees that fit a slice
     std::vector<std::uint32_t> stack;
 };

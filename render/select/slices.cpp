@@ -13,7 +13,7 @@ namespace surefoot::select {
 
 namespace {
 
-constexpr std::size_t most_slices = 4096;
+constexpr std::size_t max_slices = 4096;
 
 /// Predicted time as a linear measure, so that parts add up to the whole: the larger sum carries the max term.
 struct Measure {
@@ -124,7 +124,7 @@ SlicePlan::SlicePlan(SlicePlan&&) noexcept = default;
 SlicePlan& SlicePlan::operator=(SlicePlan&&) noexcept = default;
 
 void SlicePlan::reserve(std::uint32_t max_candidates) {
-    slices.reserve(std::min<std::size_t>(max_candidates, most_slices));
+    slices.reserve(std::min<std::size_t>(max_candidates, max_slices));
     order.reserve(max_candidates);
     stand_ins.reserve(max_candidates);
     scratch_->below_us.resize(max_candidates);
@@ -137,7 +137,7 @@ void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, Slic
     plan.stand_ins.clear();
     if (cut.items.empty()) return;
     SlicePlan::Scratch& room = plan.scratch();
-    if (!CHECK_RARE(cut.items.back().candidate < room.item.size(), "a cut is of no more candidates than were reserved")) return;
+    if (!CHECK_RARE(cut.items.back().candidate < room.item.size(), "A cut has no more candidates than were reserved")) return;
     const Measure measure = measure_of(input.costs->combine, cut.sum);
     const float target_us = slice_us > 0.0 ? static_cast<float>(slice_us) : 1000.0F;
     const CutTree tree(*input.prepared, cut, measure, room);
@@ -157,7 +157,7 @@ void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, Slic
         const bool full = measure.of(slice.cost) >= target_us && plan.slices.size() + 1 < plan.slices.capacity();
         if (full || i + 1 == units.size()) close();
     }
-    (void)CHECK_RARE(plan.order.size() == cut.items.size(), "the slices hold every item of the cut once");
+    (void)CHECK_RARE(plan.order.size() == cut.items.size(), "The slices hold every item of the cut once");
 }
 
 bool still_fits(const CheckInput& input) {

@@ -1,5 +1,5 @@
-// What "cannot happen", said where the code relies on it, in every build: CHECK ends the program with a message, CHECK_RARE
-// counts and goes on. Neither allocates nor locks; where all is well each is one comparison.
+// Checks of what "cannot happen", in every build. CHECK ends the program with a message; CHECK_RARE counts and continues.
+// Neither allocates or locks; a check that holds costs one comparison.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 
 namespace surefoot {
 
-/// Where a check stands and what it says.
+/// The place of a check, and its sentence.
 struct CheckSite {
     const char* file;
     int line;
@@ -17,10 +17,10 @@ struct CheckSite {
     const char* sentence;
 };
 
-/// "rt/clock/grid.cpp:31: CHECK(period > 0): a grid has a period", on stderr; then abort().
+/// "rt/clock/grid.cpp:31: CHECK(period > 0): The period of a grid is above zero", on stderr; then abort().
 [[noreturn]] void check_failed(const CheckSite& site) noexcept;
 
-/// One CHECK_RARE; joins the list of those that were seen at its first count, and stays there.
+/// One CHECK_RARE. At its first count it joins the list of failed checks for good.
 class RareSite {
 public:
     constexpr explicit RareSite(const CheckSite& site) : site_(site) {}
@@ -36,24 +36,24 @@ private:
     RareSite* next_ = nullptr;
 };
 
-/// What was seen of one place that "cannot happen".
+/// A CHECK_RARE that failed.
 struct RareCheck {
     std::string place;  ///< "render/engine.cpp:171"
     std::string sentence;
     std::uint64_t count = 0;
 };
-/// Of this process, sorted by place; empty: nothing that cannot happen has happened. Any thread; allocates.
+/// All failed CHECK_RAREs of this process, sorted by place; usually empty. Any thread; allocates.
 std::vector<RareCheck> rare_checks();
-/// All of them together. Any thread.
+/// The sum of their counts. Any thread.
 std::uint64_t rare_check_count() noexcept;
 
 }  // namespace surefoot
 
-/// `sentence`: a literal that says what must hold.
+/// `sentence`: a literal, a whole sentence that says what must hold.
 #define CHECK(condition, sentence) \
     ((condition) ? static_cast<void>(0) : ::surefoot::check_failed({__FILE__, __LINE__, #condition, sentence}))
 
-/// An expression: whether it holds. The caller goes on in both cases, so it must be safe in both.
+/// An expression: whether the condition holds. The caller continues in both cases and must be safe in both.
 #define CHECK_RARE(condition, sentence)                                                              \
     ((condition) ? true : ([]() noexcept {                                                           \
         static constinit ::surefoot::RareSite rare_site{{__FILE__, __LINE__, #condition, sentence}}; \

@@ -20,36 +20,39 @@ namespace {
 std::string remedy_for(int error) {
     switch (error) {
         case ENOENT:
-            return "check the path";
+            return "Check the path";
         case EACCES:
         case EPERM:
-            return "check who may read and write there";
+            return "Check who may read and write there";
         case EROFS:
-            return "the file system is mounted read-only: choose another place";
+            return "Choose another place: this file system is mounted read-only";
         case ENOSPC:
         case EDQUOT:
-            return "free some space or choose another disk";
+            return "Free some space, or choose another disk";
         case ENOTDIR:
-            return "a part of the path is a file, not a folder";
+            return "Check the path: a part of it is a file, not a folder";
         case EFBIG:
-            return "a file may not grow so large here: raise the limit (ulimit -f) or choose another disk";
+            return "Raise the limit of file sizes (ulimit -f), or choose another disk";
         case EMFILE:
         case ENFILE:
-            return "raise the limit of open files (ulimit -n)";
+            return "Raise the limit of open files (ulimit -n)";
         case ENAMETOOLONG:
         case ELOOP:
-            return "choose a shorter, plainer name";
+            return "Choose a shorter, plainer name";
         default:
-            return "look at the disk that it is on";
+            return "Check the disk";
     }
 }
 
-Error system_error(const std::string& place, std::string_view doing, int error) {
-    return {place, fmt::format("{}: {}", doing, std::strerror(error)), remedy_for(error)};  // NOLINT(concurrency-mt-unsafe)
+/// "The file cannot be opened: No such file or directory".
+Error system_error(const std::string& place, std::string_view what, int error, ErrorKind kind) {
+    if (kind == ErrorKind::unreadable && (error == ENOENT || error == ENOTDIR)) kind = ErrorKind::not_found;
+    return {place, fmt::format("{}: {}", what, std::strerror(error)), remedy_for(error), kind};  // NOLINT(concurrency-mt-unsafe)
 }
 
 Error too_large(const std::string& path, std::uint64_t limit) {
-    return {path, fmt::format("larger than the limit of {} bytes", limit), "is this the right file?"};
+    return {path, fmt::format("The file is larger than the limit of {} bytes", limit), "Check that this is the right file",
+            ErrorKind::out_of_limits};
 }
 
 /// Closes on every way out.
@@ -72,7 +75,8 @@ std::string folder_of(const std::string& path) {
 Result<void> sync_folder(const std::string& folder, const std::string& path) {
     const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     // Some file systems refuse to sync a folder (EINVAL); the file itself is complete either way.
-    if (opened.fd >= 0 && ::fsync(opened.fd) != 0 && errno != EINVAL) return system_error(path, "cannot sync its folder", errno);
+    if (opened.fd >= 0 && ::fsync(opened.fd) != 0 && errno != EINVAL)
+        return system_error(path, "The folder cannot be synced", errno, ErrorKind::unwritable);
     return {};
 }
 
@@ -82,13 +86,14 @@ Result<Bytes> read_all(const std::string& path, std::uint64_t max_bytes) {
     struct stat info {};
     // Opening a pipe that nobody writes to would wait for ever, and no signal would end it. A shell's <(...) has its writer.
     if (::stat(path.c_str(), &info) == 0 && S_ISFIFO(info.st_mode) && !path.starts_with("/dev/") && !path.starts_with("/proc/")) {
-        return Error{path, "is a named pipe, not a file", "name a file"};
+        return Error{path, "The name is a named pipe, not a file", "Name a file", ErrorKind::unreadable};
     }
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    if (file.fd < 0) return system_error(path, "cannot open", errno);
-    if (::fstat(file.fd, &info) != 0) return system_error(path, "cannot examine", errno);
-    if (S_ISDIR(info.st_mode)) return Error{path, "is a folder, not a file", "name a file"};
-    if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) return Error{path, "is a device, not a file", "name a file"};
+    if (file.fd < 0) return system_error(path, "The file cannot be opened", errno, ErrorKind::unreadable);
+    if (::fstat(file.fd, &info) != 0) return system_error(path, "The file cannot be examined", errno, ErrorKind::unreadable);
+    if (S_ISDIR(info.st_mode)) return Error{path, "The name is a folder, not a file", "Name a file", ErrorKind::unreadable};
+    if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode))
+        return Error{path, "The name is a device, not a file", "Name a file", ErrorKind::unreadable};
     const auto hint = static_cast<std::uint64_t>(std::max<off_t>(info.st_size, 0));
     if (hint > max_bytes) return too_large(path, max_bytes);
     Bytes bytes;
@@ -100,7 +105,7 @@ Result<Bytes> read_all(const std::string& path, std::uint64_t max_bytes) {
         auto* into = fits ? reinterpret_cast<std::byte*>(bytes.data()) + filled : beyond.data();
         const ssize_t got = ::read(file.fd, into, fits ? bytes.size() - filled : beyond.size());
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return system_error(path, "cannot read", errno);
+        if (got < 0) return system_error(path, "The file cannot be read", errno, ErrorKind::unreadable);
         if (got == 0) break;
         if (!fits) {
             if (filled + static_cast<std::size_t>(got) > max_bytes) return too_large(path, max_bytes);
@@ -124,11 +129,11 @@ Result<std::string> read_text(const std::string& path, std::uint64_t max_bytes) 
 Result<void> require_plain(const std::string& path) {
     struct stat info {};
     if (::stat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode) || S_ISDIR(info.st_mode)) return {};
-    return Error{path, "is not a plain file", "name a plain file"};
+    return Error{path, "The name is not a plain file", "Name a plain file", ErrorKind::unreadable};
 }
 
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
-    if (path.empty()) return Error{"output", "the file name is empty", "name a file"};
+    if (path.empty()) return Error{"output", "The file name is empty", "Name a file", ErrorKind::misuse};
     AtomicFile file;
     std::error_code ignored;
     // Through a link, the file that it names is replaced, not the link.
@@ -137,9 +142,12 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
 
     struct stat old {};
     const bool exists = ::stat(file.path_.c_str(), &old) == 0;
-    if (exists && S_ISDIR(old.st_mode)) return Error{path, "is a folder, not a file", "name a file in it"};
-    if (exists && !S_ISREG(old.st_mode)) return Error{path, "is not a plain file", "name a plain file"};
-    if (exists && ::access(file.path_.c_str(), W_OK) != 0) return system_error(path, "cannot replace", errno);
+    if (exists && S_ISDIR(old.st_mode))
+        return Error{path, "The name is a folder, not a file", "Name a file in it", ErrorKind::unwritable};
+    if (exists && !S_ISREG(old.st_mode))
+        return Error{path, "The name is not a plain file", "Name a plain file", ErrorKind::unwritable};
+    if (exists && ::access(file.path_.c_str(), W_OK) != 0)
+        return system_error(path, "The file cannot be replaced", errno, ErrorKind::unwritable);
 
     for (int attempt = 0; attempt < 100; ++attempt) {
         file.temporary_ = fmt::format("{}.{}-{}.tmp", file.path_, ::getpid(), attempt);
@@ -149,7 +157,8 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
     if (file.fd_ < 0) {
         const int error = errno;
         file.temporary_.clear();
-        return system_error(path, fmt::format("cannot write in {}", folder_of(file.path_)), error);
+        return system_error(path, fmt::format("No file can be written in {}", folder_of(file.path_)), error,
+                            ErrorKind::unwritable);
     }
     if (exists) (void)::fchmod(file.fd_, old.st_mode & 07777);
     return file;
@@ -180,12 +189,12 @@ void AtomicFile::discard() noexcept {
 }
 
 Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
-    if (fd_ < 0) return Error{path_, "written to after it was closed", {}};
+    if (fd_ < 0) return Error{path_, "The file was written to after it was closed", {}, ErrorKind::unwritable};
     std::size_t done = 0;
     while (done < bytes.size()) {
         const ssize_t put = ::write(fd_, bytes.data() + done, bytes.size() - done);
         if (put < 0 && errno == EINTR) continue;
-        if (put < 0) return system_error(path_, "cannot write", errno);
+        if (put < 0) return system_error(path_, "The file cannot be written", errno, ErrorKind::unwritable);
         done += static_cast<std::size_t>(put);
     }
     return {};
@@ -194,30 +203,30 @@ Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
 Result<void> AtomicFile::write(std::string_view text) { return write(std::as_bytes(std::span(text.data(), text.size()))); }
 
 Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
-    if (fd_ < 0) return Error{path_, "written to after it was closed", {}};
+    if (fd_ < 0) return Error{path_, "The file was written to after it was closed", {}, ErrorKind::unwritable};
     std::size_t done = 0;
     while (done < bytes.size()) {
         const ssize_t put = ::pwrite(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
         if (put < 0 && errno == EINTR) continue;
-        if (put < 0) return system_error(path_, "cannot write", errno);
+        if (put < 0) return system_error(path_, "The file cannot be written", errno, ErrorKind::unwritable);
         done += static_cast<std::size_t>(put);
     }
     return {};
 }
 
 Result<void> AtomicFile::sync() {
-    if (fd_ < 0) return Error{path_, "committed after it was closed", {}};
-    if (::fsync(fd_) != 0) return system_error(path_, "cannot finish writing", errno);
+    if (fd_ < 0) return Error{path_, "The file was committed after it was closed", {}, ErrorKind::unwritable};
+    if (::fsync(fd_) != 0) return system_error(path_, "The file cannot be completed", errno, ErrorKind::unwritable);
     return {};
 }
 
 Result<void> AtomicFile::take_place() {
-    if (fd_ < 0) return Error{path_, "committed after it was closed", {}};
+    if (fd_ < 0) return Error{path_, "The file was committed after it was closed", {}, ErrorKind::unwritable};
     int error = ::close(std::exchange(fd_, -1)) != 0 ? errno : 0;
     if (error == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) error = errno;
     if (error != 0) {
         discard();
-        return system_error(path_, "cannot finish writing", error);
+        return system_error(path_, "The file cannot be completed", error, ErrorKind::unwritable);
     }
     temporary_.clear();
     return {};
@@ -231,7 +240,7 @@ Result<void> AtomicFile::commit() {
 }
 
 Result<void> probe_writable(const std::string& path, bool make_folders) {
-    if (path.empty()) return Error{"output", "the file name is empty", "name a file"};
+    if (path.empty()) return Error{"output", "The file name is empty", "Name a file", ErrorKind::misuse};
     std::filesystem::path folder = folder_of(path);
     std::error_code ignored;
     bool missing = false;
@@ -242,17 +251,21 @@ Result<void> probe_writable(const std::string& path, bool make_folders) {
         folder = above;
     }
     if (make_folders && !std::filesystem::is_directory(folder, ignored)) {
-        return Error{path, folder.string() + " is a file, not a folder", "name another folder"};
+        return Error{path, "The path " + folder.string() + " is a file, not a folder", "Name another folder",
+                     ErrorKind::unwritable};
     }
     const std::string tried = missing ? (folder / "surefoot-probe").string() : path;
-    if (auto file = AtomicFile::create(tried); !file) return Error{path, file.error().what, file.error().remedy};
+    if (auto file = AtomicFile::create(tried); !file)
+        return Error{path, file.error().what, file.error().remedy, file.error().kind};
     return {};
 }
 
 Result<FileSet> FileSet::create(const std::string& folder) {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
-    if (failed) return Error{folder, "cannot make the folder: " + failed.message(), "choose a folder that you may write in"};
+    if (failed)
+        return Error{folder, "The folder cannot be created: " + failed.message(), "Choose a folder that you may write in",
+                     ErrorKind::unwritable};
     FileSet set;
     set.folder_ = folder;
     return set;

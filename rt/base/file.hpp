@@ -17,8 +17,8 @@ namespace surefoot {
 Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t max_bytes = 1ULL << 34U);
 Result<std::string> read_text(const std::string& path, std::uint64_t max_bytes = 1ULL << 30U);
 
-/// Whether `path` may be read where its name comes out of a file, which may be anybody's: a pipe, /dev/stdin among them, would be
-/// waited for without end. What is not there passes: reading it says so.
+/// Refuses a `path` that is not a plain file. For names that come out of a file, which may be untrusted: reading a pipe or
+/// /dev/stdin would wait for ever. A missing file passes; reading it gives the error.
 Result<void> require_plain(const std::string& path);
 
 /// A file written under a temporary name beside its place; commit() syncs and renames it over the old one.
@@ -48,14 +48,12 @@ private:
     int fd_ = -1;
 };
 
-/// Whether an AtomicFile could be made at `path` now: tries, and leaves nothing behind. With make_folders, missing folders count
-/// as made if the nearest one above them may be written in. To be asked before long work, so that it is not lost for a wrong
-/// name.
+/// Whether an AtomicFile could be made at `path` now. Tries it, and leaves nothing behind. Call it before long work, so that the
+/// result is not lost for a wrong name. make_folders: missing folders are accepted if the nearest one above is writable.
 Result<void> probe_writable(const std::string& path, bool make_folders = false);
 
-/// Files of one folder that belong together; the folder is made where it is missing. All are written and synced before the first
-/// takes its place, so that a full disk leaves the old ones as they were, all of them. (A power cut between two renames may mix
-/// them.)
+/// Files of one folder that belong together. A missing folder is created. All files are written and synced before the first is
+/// renamed, so that a full disk leaves all old files unchanged. (A power cut between two renames may mix old and new.)
 class FileSet {
 public:
     static Result<FileSet> create(const std::string& folder);

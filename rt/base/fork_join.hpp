@@ -1,5 +1,5 @@
-// Says to the thread sanitizer what it cannot see: oneTBB is not built with it, so it knows neither that a task begins after what
-// was written before the loop, nor that the loop ends after its tasks. In other builds all of it is nothing.
+// Tells the thread sanitizer the order of a parallel loop: tasks start after the code before it, and end before the code after
+// it. It cannot see that, because oneTBB is not built with it. Empty in other builds.
 #pragma once
 
 #ifdef SUREFOOT_WATCHES_THREADS

@@ -1,4 +1,4 @@
-// Vectors, boxes and poses: double in the world, float only relative to the eye (DESIGN 1.7).
+// Vectors, boxes and poses: double in the world, float only relative to the eye.
 // Right-handed, +Y up, metres; a camera looks along its local -Z.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What the entries of every registry have: a name and one line of help. Found by name, listed for people, and handed to rooms
-// that know no other room's types.
+// The common part of all registry entries: a name and one line of help. Can be found by name, listed for people, and passed to
+// rooms that do not know the entry's type.
 #pragma once
 
 #include <iterator>
@@ -21,7 +21,7 @@ auto find_named(const Entries& entries, std::string_view name) -> decltype(std::
     return nullptr;
 }
 
-/// Names and help alone, of entries that outlive them.
+/// Names and help only. The entries must outlive the result.
 template <class Entries>
 std::vector<Named> named(const Entries& entries) {
     std::vector<Named> out;

@@ -1,5 +1,5 @@
-// Memory for arrays of hundreds of MiB with a life of their own: whole pages from the system, back to it when they are freed. The
-// heap of a process that keeps its memory (locked, never trimmed) would keep them to its end.
+// An allocator of whole pages from the system, for arrays of hundreds of MiB. Freed pages go back to the system at once; the heap
+// of a locked, never trimmed process would keep them for ever.
 #pragma once
 
 #include <sys/mman.h>
@@ -9,7 +9,7 @@
 
 namespace surefoot {
 
-/// For std::vector. The pages are the system's own: no allocator setting and no lock keeps them once they are freed.
+/// For std::vector. Freed pages are unmapped, whatever the heap's settings and locks.
 template <class T>
 struct PageMemory {
     using value_type = T;

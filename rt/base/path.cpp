@@ -59,25 +59,27 @@ struct RowProblem {
 };
 std::variant<PathSample, RowProblem> read_row(const std::vector<std::string_view>& fields, bool last_is_fov) {
     if (fields.size() != pose_columns && fields.size() != pose_columns + 1)
-        return RowProblem{fmt::format("has {} columns instead of {} or {}", fields.size(), pose_columns, pose_columns + 1)};
+        return RowProblem{
+            fmt::format("The row has {} columns instead of {} or {}", fields.size(), pose_columns, pose_columns + 1)};
     std::array<double, pose_columns + 1> v{};
     for (std::size_t i = 0; i < fields.size(); ++i) {
         if (i == pose_columns && !last_is_fov) break;
         const auto value = saturated_number(fields[i]);
-        if (!value) return RowProblem{fmt::format("column {}: '{}' is not a number", i + 1, fields[i])};
-        if (!std::isfinite(*value)) return RowProblem{fmt::format("column {}: '{}' is not finite", i + 1, fields[i])};
+        if (!value) return RowProblem{fmt::format("Column {} holds '{}', which is not a number", i + 1, fields[i])};
+        if (!std::isfinite(*value)) return RowProblem{fmt::format("Column {} holds '{}', which is not finite", i + 1, fields[i])};
         if (std::abs(*value) > limit_of(i))
-            return RowProblem{fmt::format("column {}: {} is beyond {}", i + 1, fields[i], limit_of(i))};
+            return RowProblem{fmt::format("Column {} holds {}, which is beyond {}", i + 1, fields[i], limit_of(i))};
         v[i] = *value;
     }
     PathSample sample;
     sample.time_s = v[0];
     sample.pose.position = {v[1], v[2], v[3]};
     const double length = std::sqrt(v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7]);
-    if (!(length > 1e-9) || !std::isfinite(length)) return RowProblem{"the quaternion qx,qy,qz,qw has no length"};
+    if (!(length > 1e-9) || !std::isfinite(length)) return RowProblem{"The quaternion qx,qy,qz,qw has no length"};
     sample.pose.orientation = dquat(v[7] / length, v[4] / length, v[5] / length, v[6] / length);
     if (last_is_fov && fields.size() == pose_columns + 1) {
-        if (v[8] < 1.0 || v[8] > 179.0) return RowProblem{fmt::format("fov_y_deg is {}, not within 1 to 179", v[8])};
+        if (v[8] < 1.0 || v[8] > 179.0)
+            return RowProblem{fmt::format("The field of view fov_y_deg is {}, not within 1 to 179", v[8])};
         sample.pose.fov_y_rad = v[8] * radians_per_degree;
     }
     return sample;
@@ -108,16 +110,17 @@ Result<Path> read_path(const std::string& file) {
             continue;
         }
         const auto place = fmt::format("{}:{}", file, line_number);
-        const auto remedy = fmt::format("expected {}", columns);
+        const auto remedy = fmt::format("Write rows of {}", columns);
         auto row = read_row(fields, last_is_fov);
-        if (const auto* problem = std::get_if<RowProblem>(&row)) return Error{place, problem->what, remedy};
+        if (const auto* problem = std::get_if<RowProblem>(&row)) return Error{place, problem->what, remedy, ErrorKind::damaged};
         const auto& sample = std::get<PathSample>(row);
         if (!path.samples.empty() && !(sample.time_s > path.samples.back().time_s))
-            return Error{place, fmt::format("time {} does not come after {}", sample.time_s, path.samples.back().time_s),
-                         "rows must be in order of time"};
+            return Error{place, fmt::format("Time {} does not come after {}", sample.time_s, path.samples.back().time_s),
+                         "Put the rows in order of time", ErrorKind::damaged};
         path.samples.push_back(sample);
     }
-    if (path.samples.empty()) return Error{file, "holds no poses", fmt::format("expected rows of {}", columns)};
+    if (path.samples.empty())
+        return Error{file, "The file holds no poses", fmt::format("Write rows of {}", columns), ErrorKind::damaged};
     return path;
 }
 

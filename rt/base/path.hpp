@@ -1,4 +1,4 @@
-// Recorded paths: poses over time, read from and written to CSV (DESIGN 6), sampled in between.
+// Recorded paths: poses over time, read from and written to CSV, interpolated in between.
 #pragma once
 
 #include <string>
@@ -20,13 +20,12 @@ struct Path {
     [[nodiscard]] double duration_s() const { return samples.empty() ? 0.0 : samples.back().time_s - samples.front().time_s; }
 };
 
-/// Of a path's rows: times in seconds (Unix time fits), coordinates in metres (the Earth fits), quaternion parts.
+/// Limits of a row, either side of 0: time in seconds (Unix time fits), coordinates in metres (the Earth fits), quaternion parts.
 constexpr double path_time_limit_s = 1e11, path_coordinate_limit_m = 1e9, path_quaternion_limit = 1e6;
 
-/// CSV `time_s,x,y,z,qx,qy,qz,qw,fov_y_deg`; '#' comments; a header row is allowed. A last column that is missing, or
-/// that is not named fov_y_deg in a comment or header (recorded drives: speed), means 60 degrees.
-/// Bad rows (not numbers, not finite, beyond the limits below, zero quaternion, time not increasing) are an error with their
-/// line number.
+/// CSV `time_s,x,y,z,qx,qy,qz,qw,fov_y_deg`; '#' starts a comment; a header row is allowed. The last column is optional. It
+/// counts only if a comment or header names it fov_y_deg (in recorded drives it is the speed); else the field of view is 60
+/// degrees. Errors, with line number: not a number, not finite, beyond a limit, zero quaternion, time not increasing.
 Result<Path> read_path(const std::string& file);
 Result<void> write_path(const std::string& file, const Path& path);
 

@@ -43,7 +43,8 @@ private:
     std::array<std::uint64_t, 4> state_{};
 };
 
-/// Uniform in [low, high), component by component, z first; one that has no room to vary draws nothing.
+/// A random point of a box. Draws its components in a fixed order; the order of call arguments depends on the compiler.
+/// Uniform in [low, high), component by component, z first. A component with low >= high is low and draws no number.
 inline dvec3 any_in(Random& random, const dvec3& low, const dvec3& high) {
     dvec3 point = low;
     for (int axis = 2; axis >= 0; --axis)

@@ -1,4 +1,4 @@
-// Errors as values: every error names the place, what is wrong there, and the remedy.
+// Errors as values: every error names the place, the problem, and the remedy.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace surefoot {
 
-/// What sort of failure an error is. Programs decide by this, and labels of metrics are made of it; never by words of a sentence.
+/// The kind of a failure. Programs and labels of metrics use it, and never the words of a sentence.
 enum class ErrorKind : std::uint8_t {
     failed,         ///< no kind of its own
     misuse,         ///< an option, argument or setting that cannot be taken

@@ -11,16 +11,16 @@ namespace surefoot {
 
 namespace {
 
-constexpr std::size_t most_points = 512;
+constexpr std::size_t max_points = 512;
 
 std::vector<TrendPoint> grouped_points(std::span<const TrendPoint> points) {
-    if (points.size() <= most_points) return {points.begin(), points.end()};
+    if (points.size() <= max_points) return {points.begin(), points.end()};
     const auto [first, last] = std::ranges::minmax(points, {}, &TrendPoint::time_s);
-    const double group_s = (last.time_s - first.time_s) / static_cast<double>(most_points);
-    std::vector<std::vector<TrendPoint>> groups(most_points);
+    const double group_s = (last.time_s - first.time_s) / static_cast<double>(max_points);
+    std::vector<std::vector<TrendPoint>> groups(max_points);
     for (const TrendPoint& p : points) {
         const double at = group_s > 0 ? (p.time_s - first.time_s) / group_s : 0;
-        groups[std::min(most_points - 1, static_cast<std::size_t>(at))].push_back(p);
+        groups[std::min(max_points - 1, static_cast<std::size_t>(at))].push_back(p);
     }
     std::vector<TrendPoint> kept;
     for (const auto& group : groups) {

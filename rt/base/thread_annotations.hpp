@@ -1,4 +1,4 @@
-// Who may touch what, as the compiler checks it: clang's -Wthread-safety reads these, other compilers see nothing.
+// Annotations for clang's -Wthread-safety, which checks who may access what. Empty for other compilers.
 #pragma once
 
 #ifdef __clang__
@@ -21,11 +21,11 @@
 
 namespace surefoot {
 
-/// A part that one thread plays, such as a ring's producer: what only that thread may touch is GUARDED_BY its role. Nothing at
-/// run time; empty, so it takes no room as a [[no_unique_address]] member.
+/// The role of one thread, such as the producer of a ring. Data that only this thread may access is GUARDED_BY the role.
+/// No effect at run time; takes no room as a [[no_unique_address]] member.
 class CAPABILITY("thread role") ThreadRole {
 public:
-    /// The calling thread plays the part from here to the end of the function: a claim that callers answer for.
+    /// Asserts that the calling thread has the role, to the end of the function. The caller is responsible for that.
     void plays() const ASSERT_CAPABILITY(this) {}
 };
 

@@ -1,5 +1,5 @@
-// TOML tables read key by key, every error with file, line, key, what is allowed and the nearest known name. All of it stands in
-// this header: only who includes it needs toml++.
+// Reads TOML tables key by key. Errors name file, line, key, the allowed values and the nearest known name. All code is in this
+// header, so that only its users need toml++.
 #pragma once
 
 #include <fmt/format.h>
@@ -28,16 +28,17 @@ inline std::string toml_place(std::string_view file, const toml::source_region& 
     return fmt::format("{}:{}", file, source.begin.line);
 }
 
-/// What toml::parse() threw.
+/// The error for an exception of toml::parse().
 inline Error toml_syntax_error(std::string_view file, const toml::parse_error& error) {
-    return {toml_place(file, error.source()), std::string(error.description()), "see https://toml.io for the syntax"};
+    return {toml_place(file, error.source()), fmt::format("The file is not valid TOML: {}", error.description()),
+            "See https://toml.io for the syntax", ErrorKind::damaged};
 }
 
-/// Ask for every key that may be there, then finish(), which refuses what else is in the table. After the first error every
-/// further call does nothing; values that are not in the table keep what they were.
+/// Read every allowed key, then call finish(), which refuses all other keys. After the first error all calls do nothing. Values
+/// that are not in the table do not change.
 class TableReader {
 public:
-    /// `path` is how the table is called: "device.axis".
+    /// `path`: the name of the table, such as "device.axis".
     TableReader(const toml::table& table, std::string file, std::string path)
         : table_(table), file_(std::move(file)), path_(std::move(path)) {}
 
@@ -58,10 +59,10 @@ public:
     void tables(std::string_view key, const std::function<Result<void>(TableReader&)>& read);
 
     [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
-    /// An error of this table: `what` is wrong with the key (with the table where the key is not there).
+    /// An error about a key: "The key PATH.KEY `what`". Its place is the key's line, or the table's if the key is missing.
     void refuse(std::string_view key, std::string what, std::string remedy);
     [[nodiscard]] Result<void> finish();
-    /// The first key that was refused: "path.key"; empty where none was.
+    /// The key of the first error so far: "path.key"; empty if there is none.
     [[nodiscard]] const std::string& wrong_key() const { return wrong_key_; }
 
 private:
@@ -115,7 +116,8 @@ inline void TableReader::wrong(std::string_view key, const toml::node& node, con
     if (error_) return;
     wrong_key_ = full(key);
     error_ = Error{toml_place(file_, node.source()),
-                   fmt::format("{} = {} is not {}", full(key), toml_detail::shown(node), allowed), std::move(remedy)};
+                   fmt::format("The value {} = {} is not {}", full(key), toml_detail::shown(node), allowed), std::move(remedy),
+                   ErrorKind::misuse};
 }
 
 inline void TableReader::refuse(std::string_view key, std::string what, std::string remedy) {
@@ -123,7 +125,8 @@ inline void TableReader::refuse(std::string_view key, std::string what, std::str
     const toml::node* at = table_.get(key);
     const auto line = at != nullptr ? at->source().begin.line : table_.source().begin.line;
     wrong_key_ = full(key);
-    error_ = Error{fmt::format("{}:{}", file_, line), fmt::format("{} {}", full(key), what), std::move(remedy)};
+    error_ = Error{fmt::format("{}:{}", file_, line), fmt::format("The key {} {}", full(key), what), std::move(remedy),
+                   ErrorKind::misuse};
 }
 
 inline void TableReader::number(std::string_view key, double min, double max, std::string_view unit, double& value) {
@@ -170,7 +173,7 @@ inline std::optional<std::size_t> TableReader::word_of(std::string_view key, con
     const auto found = text ? std::find(words.begin(), words.end(), *text) : words.end();
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
     const auto nearest = text ? nearest_word(*text, words) : std::string_view{};
-    wrong(key, node, "one of " + toml_detail::listed(words), nearest.empty() ? "" : fmt::format("did you mean \"{}\"?", nearest));
+    wrong(key, node, "one of " + toml_detail::listed(words), nearest.empty() ? "" : fmt::format("Did you mean \"{}\"?", nearest));
     return std::nullopt;
 }
 
@@ -242,9 +245,9 @@ inline void TableReader::tables(std::string_view key, const std::function<Result
     const toml::node* at = node(key);
     if (at == nullptr) return;
     const toml::array* array = at->as_array();
-    if (array == nullptr) return wrong(key, *at, "a list of tables", fmt::format("write [[{}]]", full(key)));
+    if (array == nullptr) return wrong(key, *at, "a list of tables", fmt::format("Write [[{}]]", full(key)));
     for (const toml::node& element : *array) {
-        if (!element.is_table()) return wrong(key, element, "a table", fmt::format("write [[{}]]", full(key)));
+        if (!element.is_table()) return wrong(key, element, "a table", fmt::format("Write [[{}]]", full(key)));
         TableReader inner(*element.as_table(), file_, full(key));
         if (const auto done = read(inner); !done) {
             wrong_key_ = inner.wrong_key_;
@@ -259,8 +262,9 @@ inline Result<void> TableReader::finish() {
     for (const auto& [key, node] : table_) {
         if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
         const auto nearest = nearest_word(key.str(), known_);
-        return Error{toml_place(file_, key.source()), fmt::format("unknown key '{}'", full(key.str())),
-                     nearest.empty() ? "allowed are " + toml_detail::listed(known_) : fmt::format("did you mean '{}'?", nearest)};
+        return Error{toml_place(file_, key.source()), fmt::format("The key '{}' is unknown", full(key.str())),
+                     nearest.empty() ? "Use one of " + toml_detail::listed(known_) : fmt::format("Did you mean '{}'?", nearest),
+                     ErrorKind::misuse};
     }
     return {};
 }

@@ -1,4 +1,4 @@
-// Time as the frame loop sees it, injected: the machine's monotonic clock, or a virtual one that only moves when told.
+// The injected clock of the frame loop: the machine's monotonic clock, or a virtual one that only its owner moves.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ public:
     [[nodiscard]] virtual std::int64_t now_ns() const = 0;
     /// Returns at or after `time_ns`, at once if it has passed.
     virtual void sleep_until_ns(std::int64_t time_ns) = 0;
-    /// What the calling thread has used so far.
+    /// Resources used by the calling thread so far.
     [[nodiscard]] virtual ThreadUsage usage() const = 0;
     /// Spends CPU time of the calling thread (the control's bare work).
     virtual void burn_ns(std::int64_t cpu_ns) = 0;
@@ -29,10 +29,10 @@ public:
     void burn_ns(std::int64_t cpu_ns) override;
 };
 
-/// CLOCK_MONOTONIC, for who needs no injected clock.
+/// CLOCK_MONOTONIC, for code without an injected clock.
 std::int64_t monotonic_ns();
 
-/// Moves only when told: tests and the virtual cost clock. For one thread.
+/// A clock that only its owner moves, for tests and virtual costs. For one thread.
 class VirtualClock final : public Clock {
 public:
     explicit VirtualClock(std::int64_t start_ns = 0) : now_ns_(start_ns) {}
@@ -46,7 +46,7 @@ public:
     void advance(std::int64_t ns);
     /// Time passes without CPU time: the host took the core.
     void steal(std::int64_t ns);
-    /// Time passes without CPU time, and an involuntary switch says who did it.
+    /// Time passes without CPU time, and with an involuntary switch: another thread took the core.
     void preempt(std::int64_t ns);
     /// Time passes without CPU time, by the thread's own wish (a fence).
     void wait(std::int64_t ns);

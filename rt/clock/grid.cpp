@@ -12,12 +12,13 @@ namespace surefoot::rt {
 
 Result<std::int64_t> period_of_rate_ns(double rate_hz) {
     if (!(rate_hz >= 0.1 && rate_hz <= 1000.0))
-        return Error{"frame rate", fmt::format("{} Hz is not within 0.1 to 1000", rate_hz), "for example 30, 59.94 or 60"};
+        return Error{"frame rate", fmt::format("The rate of {} Hz is not within 0.1 to 1000", rate_hz),
+                     "Choose a rate such as 30, 59.94 or 60", ErrorKind::misuse};
     return static_cast<std::int64_t>(std::llround(1e9 / rate_hz));
 }
 
 NextSlot next_slot(const Grid& grid, LatePolicy late, std::uint64_t slot, std::int64_t finished_ns) {
-    CHECK(grid.period_ns > 0, "a grid has a period");
+    CHECK(grid.period_ns > 0, "The period of a grid is above zero");
     const std::int64_t deadline = grid.deadline_ns(slot);
     NextSlot next;
     if (finished_ns <= deadline) {

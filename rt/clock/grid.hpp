@@ -1,4 +1,4 @@
-// The frame grid: which slot a frame belongs to, when it is due, which comes next. Pure functions of injected time.
+// The frame grid: the slot of a frame, its due time, and the next slot. Pure functions of injected time.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +19,20 @@ struct Grid {
     [[nodiscard]] constexpr std::int64_t deadline_ns(std::uint64_t slot) const { return due_ns(slot) + period_ns; }
 };
 
-/// The period of a rate, which may be fractional (59.94), rounded to whole nanoseconds. Error: not within 0.1 to 1000 Hz.
+/// The period of a rate, in whole nanoseconds. The rate may be fractional (59.94). Error: not within 0.1 to 1000 Hz.
 Result<std::int64_t> period_of_rate_ns(double rate_hz);
 
-/// What follows a frame.
+/// The slot after a frame.
 struct NextSlot {
     std::uint64_t slot = 0;     ///< the next frame's
     std::uint32_t skipped = 0;  ///< slots between the two
     bool missed = false;        ///< finished after its deadline (exactly on it is in time)
-    std::int64_t shown_ns = 0;  ///< when the picture appears
+    std::int64_t shown_ns = 0;  ///< when the frame appears
     std::int64_t start_ns = 0;  ///< earliest start of the next frame: its due time, or (floating, late) the finish
 };
 
 /// The slot after the frame of `slot`, finished at finished_ns. A stall of any length (a stopped process, a stolen core)
-/// is one call: the late frame counts as run, every slot that it ran over as skipped.
+/// is one call. The late frame counts as run, and every slot that it ran over as skipped.
 /// After any sequence of frames from slot s: run + skipped = next.slot - s, exactly.
 NextSlot next_slot(const Grid& grid, LatePolicy late, std::uint64_t slot, std::int64_t finished_ns);
 

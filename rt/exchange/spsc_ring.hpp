@@ -1,4 +1,4 @@
-// A bounded ring from one producer to one consumer, wait-free on both sides; what does not fit is dropped and counted.
+// A bounded ring from one producer to one consumer, wait-free on both sides. Drops and counts values that do not fit.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ public:
     /// At least `capacity` places, rounded up to a power of two.
     explicit SpscRing(std::size_t capacity)
         : places_(std::bit_ceil(capacity < 2 ? std::size_t{2} : capacity)), mask_(places_.size() - 1) {
-        CHECK(std::has_single_bit(places_.size()), "a ring has a power of two of places");
+        CHECK(std::has_single_bit(places_.size()), "The number of places in a ring is a power of two");
     }
     SpscRing(const SpscRing&) = delete;
     SpscRing& operator=(const SpscRing&) = delete;
@@ -65,10 +65,10 @@ private:
     [[no_unique_address]] ThreadRole producer_, consumer_;
     std::vector<T> places_;
     std::size_t mask_;
-    alignas(64) std::atomic<std::uint64_t> tail_{0};  ///< written by the producer, beside what is its own
+    alignas(64) std::atomic<std::uint64_t> tail_{0};  ///< written by the producer; on its cache line
     std::uint64_t head_seen_ GUARDED_BY(producer_) = 0;
     std::atomic<std::uint64_t> dropped_{0};
-    alignas(64) std::atomic<std::uint64_t> head_{0};  ///< written by the consumer, beside what is its own
+    alignas(64) std::atomic<std::uint64_t> head_{0};  ///< written by the consumer; on its cache line
     std::uint64_t tail_seen_ GUARDED_BY(consumer_) = 0;
 };
 

@@ -10,8 +10,8 @@
 
 namespace surefoot::rt {
 
-/// Three slots: the writer fills one, the reader holds one, the third changes hands. T's memory is reserved beforehand through
-/// slot(); nothing is copied or allocated afterwards. One writer thread and one reader thread.
+/// Three slots: the writer fills one, the reader holds one, the third is exchanged. Reserve T's memory through slot() before use;
+/// later nothing is copied or allocated. One writer thread and one reader thread.
 template <class T>
 class TripleBuffer {
 public:
@@ -23,7 +23,7 @@ public:
     /// Before the threads start: slot 0, 1, 2, to reserve memory in each.
     T& slot(std::size_t i) { return slots_[i].value; }
 
-    /// Writer: the slot to fill. It holds what was written there some publications ago.
+    /// Writer: the slot to fill. It holds the value of an earlier publication.
     T& back() {
         writer_.plays();
         return slots_[back_].value;
@@ -33,7 +33,7 @@ public:
         writer_.plays();
         const std::uint8_t before = middle_.exchange(static_cast<std::uint8_t>(back_ | fresh), std::memory_order_acq_rel);
         back_ = before & index_mask;
-        CHECK(back_ < slots_.size(), "the slot that came back is one of three");
+        CHECK(back_ < slots_.size(), "The slot that came back is one of three");
     }
 
     /// Reader: takes the newest published value, if there is one since the last call.
@@ -42,10 +42,10 @@ public:
         if ((middle_.load(std::memory_order_relaxed) & fresh) == 0) return false;
         const std::uint8_t before = middle_.exchange(front_, std::memory_order_acq_rel);
         front_ = before & index_mask;
-        CHECK(front_ < slots_.size(), "the slot that was handed over is one of three");
+        CHECK(front_ < slots_.size(), "The slot that was handed over is one of three");
         return true;
     }
-    /// Reader: what the last refresh() took (the initial value before the first). The reader may change it.
+    /// Reader: the value of the last refresh(), or the initial value. The reader may change it.
     T& front() {
         reader_.plays();
         return slots_[front_].value;

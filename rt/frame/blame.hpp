@@ -1,4 +1,4 @@
-// The one cause of a missed frame, from the evidence in its record: a pure function (DESIGN 7).
+// The one cause of a missed frame, from the evidence in its record. A pure function.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace surefoot::rt {
 
-constexpr std::uint32_t oldest_prepared = 3;  ///< frames: an older prepared set is not used
+constexpr std::uint32_t oldest_prepared = 3;  ///< frames; older sets are not used
 
-/// What each phase may take, as shares of the period, and what counts as evidence.
+/// Limits of the phases, as shares of the period, and thresholds of the evidence.
 struct BlameLimits {
     std::int64_t period_ns = 33'333'333;
     double wake_share = 0.03;
@@ -19,16 +19,16 @@ struct BlameLimits {
     double raster_share = 0.40;
     double present_share = 0.05;
     std::uint32_t oldest_prepared = rt::oldest_prepared;
-    std::int64_t minor_fault_ns = 1000;  ///< of one, at most (0.25 us native to 2 us in a guest); see minor_fault_cost_ns()
-    bool fifo = true;  ///< the frame thread has SCHED_FIFO: a late wake-up is the platform's doing, not that of our scheduling
+    std::int64_t minor_fault_ns = 1000;  ///< maximum cost of one: 0.25 us native to 2 us in a guest; see minor_fault_cost_ns()
+    bool fifo = true;                    ///< the frame thread has SCHED_FIFO, so the platform causes late wake-ups
 };
 
-/// none if the frame was in time. Otherwise: the cause without which the frame would have been in time; several would do:
-/// the most specific evidence first (stopped, page_fault, preempted or stolen, woken_late), then the phase furthest over its
-/// share; none would do alone: what took the most over its share.
+/// none if the frame was in time. Otherwise the cause without which the frame would have been in time.
+/// If several causes qualify: the most specific evidence (stopped, page_fault, preempted or stolen, woken_late), then the phase
+/// furthest over its share. If no single cause qualifies: the largest excess over a share.
 Cause blame(const FrameRecord& record, const BlameLimits& limits);
 
-/// Late even with the time taken out that the host stole: in the frame (stolen_ns), and before it (late wake-up under FIFO).
+/// Whether the frame is late even without stolen time: stolen_ns, and a late wake-up under FIFO.
 bool is_own_miss(const FrameRecord& record, const BlameLimits& limits);
 
 }  // namespace surefoot::rt

@@ -1,4 +1,4 @@
-// The control (DESIGN 7): a bare loop in alternate blocks, ABBA, and the deadline rule that judges a walk against it.
+// The control: a bare loop in alternate blocks (ABBA), and the deadline rule that judges a walk against it.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ struct ControlSchedule {
 /// block_s is rounded to whole slots, at least one.
 ControlSchedule control_schedule(std::int64_t period_ns, double block_s, std::uint32_t pairs);
 
-/// What the bare loop burns: the mean CPU time that the walk's frames took on the frame core so far. The mean, not a replay:
-/// a walk frame that overran by its own fault must not make the control late too.
+/// CPU time that the bare loop burns: the mean of the walk's frames on the frame core so far. The mean, not a replay: a walk
+/// frame that overran by its own fault must not make the control late too.
 struct BurnMeter {
     std::int64_t sum_ns = 0;
     std::int64_t frames = 0;
@@ -38,9 +38,9 @@ struct BlockTally {
     std::uint32_t block = 0;
     bool walk = false;
     std::uint32_t frames = 0, misses = 0, own_misses = 0, skipped = 0;
-    double steal_ms = 0;  ///< filled by who reads /proc/stat
+    double steal_ms = 0;  ///< filled by the reader of /proc/stat
 };
-/// Counts record by record, for walks that keep none.
+/// Counts record by record, for walks that do not keep their records.
 class BlockTallies {
 public:
     /// In order of time.

@@ -9,7 +9,7 @@ namespace surefoot::rt {
 void CostController::update(double predicted_us, double actual_us) {
     const double ratio = actual_us / predicted_us;
     if (!(predicted_us > 0) || !(actual_us > 0) || !std::isfinite(ratio) || !(ratio > 0)) return;
-    update_upper(ratio / factor_);
+    update_headroom(ratio / factor_);
     ratios_[next_] = std::clamp(ratio, lowest, highest);
     next_ = (next_ + 1) % window;
     count_ = std::min(count_ + 1, window);
@@ -20,18 +20,20 @@ void CostController::update(double predicted_us, double actual_us) {
     factor_ = std::clamp(std::clamp(sorted[window / 2], factor_ / slew, factor_ * slew), lowest, highest);
 }
 
-void CostController::update_upper(double error) {
+void CostController::update_headroom(double error) {
     errors_[errors_next_] = std::min(error, highest);
-    errors_next_ = (errors_next_ + 1) % upper_window;
-    errors_count_ = std::min(errors_count_ + 1, upper_window);
+    errors_next_ = (errors_next_ + 1) % headroom_window;
+    errors_count_ = std::min(errors_count_ + 1, headroom_window);
     // Before the window is full, what is missing counts as the worst: the table's factor is spent until there is a record.
-    std::array<double, upper_window> sorted = errors_;
+    std::array<double, headroom_window> sorted = errors_;
     std::fill(sorted.begin() + static_cast<std::ptrdiff_t>(errors_count_), sorted.end(), highest);
-    constexpr std::size_t rank = upper_window * 9 / 10;
+    constexpr std::size_t rank = headroom_window * 9 / 10;
     std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
-    upper_ = sorted[rank];
+    headroom_ = sorted[rank];
 }
 
-double CostController::upper(double of_table) const { return std::min(std::max(upper_, least_upper), std::max(of_table, 1.0)); }
+double CostController::headroom(double of_table) const {
+    return std::min(std::max(headroom_, min_headroom), std::max(of_table, 1.0));
+}
 
 }  // namespace surefoot::rt

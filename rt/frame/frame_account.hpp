@@ -1,5 +1,5 @@
-// One frame's bookkeeping around the loop: usage before and after each tier, and what follows from it; how long a
-// frame had to wait for the rasterisers is learned.
+// Bookkeeping of one frame: resource usage before and after each tier, and the record fields derived from it. Learns how long a
+// frame must wait for the driver's rasterisers, to tell this wait from stolen time.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace surefoot::rt {
 
-/// The wait for n rasterisers lies between the busiest one's CPU time and the sum of all. Where in between is learned: the
-/// 12th of the last 15 ratios of wait to sum, so that up to 3 disturbed frames in 15 teach nothing, and so that an ordinary
-/// frame that waits a little longer is not taken for a theft.
+/// The wait for n rasterisers lies between the CPU time of the busiest and the sum of all. Its ratio to the sum is learned: the
+/// 12th smallest of the last 15 ratios. So up to 3 disturbed frames in 15 have no effect, and a frame that waits a little longer
+/// than usual does not count as stolen.
 class WaitEstimate {
 public:
-    /// Of the wait seen (wall minus CPU in the driver's phases, ns), how much is accounted for by the rasterisers' work.
-    /// Nothing known about rasterisers (sum 0): all of it if the thread slept of its own will at all, else none.
+    /// The part of the observed wait (wall minus CPU in the driver's phases, ns) that the rasterisers' work explains.
+    /// If nothing is known about rasterisers (sum 0): all if the thread slept voluntarily, else none.
     std::int64_t known_ns(std::int64_t wait_ns, ThreadClocks::Spent rasterisers, bool slept) const;
     /// Learns from this frame.
     void update(std::int64_t wait_ns, ThreadClocks::Spent rasterisers);
@@ -46,7 +46,7 @@ public:
     void close(FrameRecord& record);
     /// Last: allocations since the last frame, those of the accounting stage included.
     void before_push(FrameRecord& record);
-    /// What the frame took of the frame core: the control burns as much.
+    /// CPU time of the frame on the frame core; the control burns as much.
     [[nodiscard]] std::int64_t core_cpu_ns() const { return core_cpu_ns_; }
 
 private:

@@ -96,7 +96,7 @@ FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, Fr
         hand_over(options, record, records);
 
         const NextSlot next = next_slot(grid, options.late, s.slot, record.presented_ns);
-        CHECK(next.slot > s.slot, "slots go forward");
+        CHECK(next.slot > s.slot, "The next slot comes after this one");
         s.slot = next.slot;
         s.skipped_before = next.skipped;
         s.ready_ns = next.start_ns;

@@ -1,4 +1,4 @@
-// The frame loop: wake on the grid, run the stages that are handed in, account, next slot. Short enough to audit in one look.
+// The frame loop: wakes on the grid, runs the stages, accounts, goes to the next slot. Short enough to audit at one look.
 #pragma once
 
 #include <atomic>
@@ -15,8 +15,8 @@
 
 namespace surefoot::rt {
 
-/// What a frame does; called in this order, on the frame thread, with the record's slot, frame, due_ns, deadline_ns, woken_ns
-/// and skipped_before filled in. Own code in them may not allocate, lock or fault.
+/// The stages of a frame, called in this order on the frame thread. The record has slot, frame, due_ns, deadline_ns, woken_ns and
+/// skipped_before. Own code in them must not allocate, lock or fault.
 class FrameStages {
 public:
     virtual ~FrameStages() = default;
@@ -26,7 +26,7 @@ public:
     virtual void select(FrameRecord& record) = 0;
     /// Hands the slices to the driver (driver tier of memory). submitted_ns is taken when it returns, unless it set it.
     virtual void submit(FrameRecord& record) = 0;
-    /// Waits for the last fence and presents (driver tier). presented_ns is taken when it returns, and rastered_ns too unless
+    /// Waits for the last fence and presents (driver tier). When it returns, presented_ns is taken; rastered_ns too, unless
     /// submit() or finish() set it.
     virtual void finish(FrameRecord& record) = 0;
     /// After the frame's end, with usage, missed, own_miss and cause filled in: corrects costs, fills the rest of the record.
@@ -39,12 +39,12 @@ struct FrameLoopOptions {
     std::uint64_t frames = 0;  ///< frames to run; 0: until stopped (or the control schedule ends)
     LatePolicy late = LatePolicy::lock;
     const ControlSchedule* control = nullptr;   ///< not null: ends after its last block
-    const std::atomic<bool>* stop = nullptr;    ///< looked at once a frame
-    const std::atomic<bool>* failed = nullptr;  ///< the same: set where the stages cannot go on
-    /// Times that the process was continued after a stop, counted by a SIGCONT handler (see count_continues()); may be null.
+    const std::atomic<bool>* stop = nullptr;    ///< read once a frame
+    const std::atomic<bool>* failed = nullptr;  ///< the same; set when the stages cannot continue
+    /// How often the process was continued after a stop; counted by a SIGCONT handler, see count_continues(). May be null.
     const std::atomic<std::uint32_t>* continued = nullptr;
     std::span<const pid_t> rasterisers;          ///< the driver's threads, for raster_cpu_ns and known waits
-    std::span<const pid_t> rasterisers_on_core;  ///< those of them on the frame core: the control burns their time too
+    std::span<const pid_t> rasterisers_on_core;  ///< rasterisers on the frame core; the control burns their time too
     BlameLimits limits;                          ///< period_ns is taken from above
     bool wait_for_ring = false;                  ///< virtual clock only: yields to the recorder instead of dropping records
 };
@@ -53,11 +53,11 @@ struct FrameLoopResult {
     std::uint64_t run = 0;      ///< frames, bare ones of the control included
     std::uint64_t skipped = 0;  ///< slots
     std::uint64_t elapsed = 0;  ///< slots; always run + skipped
-    std::int64_t burn_ns = 0;   ///< what the control's bare frames burned at the end: mean CPU time of the walk's on this core
+    std::int64_t burn_ns = 0;   ///< CPU time of the last bare frames: the mean of the walk's frames on this core
 };
 
-/// Runs on the calling thread, which the caller has placed. Records go to `records`, in order; what does not fit is dropped and
-/// counted there. Allocates nothing.
+/// Runs on the calling thread, which the caller has placed. Pushes records to `records`, in order; the ring drops and counts
+/// those that do not fit. Allocates nothing.
 FrameLoopResult run_frame_loop(const FrameLoopOptions& options, Clock& clock, FrameStages& stages,
                                SpscRing<FrameRecord>& records);
 

@@ -1,4 +1,4 @@
-// What is kept of every frame: times, predictions, counts, and the one cause of a miss. Plain data through the ring.
+// The record of a frame: times, predictions, counts, and the cause of a miss. Plain data for the ring.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace surefoot::rt {
 
-/// One cause a miss (DESIGN 7). none: on time.
+/// The cause of a miss, one a frame. none: on time.
 enum class Cause : std::uint8_t {
     none,
     woken_late,
@@ -63,7 +63,7 @@ struct FrameRecord {
     float accuracy = 0;  ///< rad^-1
     float benefit = 0;   ///< mean over items
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
-    bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man): no cause of a miss
+    bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;
     std::uint32_t block = 0;              ///< control blocks: number of the 2 s block
     std::array<double, 3> eye{};          ///< metres
@@ -72,9 +72,8 @@ struct FrameRecord {
 
 inline std::string_view cause_of(const FrameRecord& f) { return cause_names[static_cast<std::size_t>(f.cause)]; }
 
-/// What a frame took of its grid, for the live figures and for the summary alike. CPU time: the frame thread's, and the
-/// rasterisers' as spread over their threads. Where a clock is not known (a GPU, the virtual clock), the wall time of that part
-/// less what was stolen.
+/// CPU time used by the frame, ns: that of the frame thread, plus that of the rasterisers divided by their number. If a CPU clock
+/// is unknown (GPU, virtual clock): the wall time of that part minus stolen time.
 inline double busy_ns(const FrameRecord& f, std::uint32_t rasterisers) {
     const double stolen = static_cast<double>(f.stolen_ns);
     const double raster_wall = std::max(0.0, static_cast<double>(f.rastered_ns - f.submitted_ns) - stolen);

@@ -1,11 +1,11 @@
-// What is known of a running walk beside its figures: plain structs that the session fills, and reports and monitor show.
+// Facts about a running walk: plain structs that the session fills, and that reports and monitor show.
 #pragma once
 
 #include <string>
 
 namespace surefoot::rt {
 
-/// What steers now.
+/// The current source of steering.
 struct InputState {
     bool live = false;            ///< devices steer; else a path or a recording
     int devices = 0;              ///< that steer
@@ -18,7 +18,7 @@ struct SteeringDevice {
     std::string name, device_class, mapping;
 };
 
-/// What the machine has granted to a walk.
+/// Real-time resources granted to a walk.
 struct Granted {
     bool fifo = false, locked = false, isolated = false;
     int frame_core = -1;

@@ -1,4 +1,4 @@
-// A lossless histogram of nanoseconds: bins of 1/32 of their value over all 64 bits, so nothing is ever clipped.
+// A histogram of nanoseconds over all 64 bits, with bins of 1/32 of their value. Never clips.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@ public:
 
     Histogram() = default;
     Histogram(const Histogram&) = default;
-    /// Only the bins from the smallest value's to the largest's are copied: figures are published four times a second.
+    /// Copies only the used range of bins: figures are published four times a second.
     Histogram& operator=(const Histogram& other);
     ~Histogram() = default;
 
     void add(std::int64_t value_ns, std::uint64_t times = 1);
-    /// first, first + step, ... (`times` values, step > 0): the same as adding each, in at most one step a bin.
-    /// Beyond the end of time: at its end.
+    /// Adds first, first + step, ... (`times` values, step > 0), in at most one operation a bin. Values beyond the largest 64-bit
+    /// number count as that number.
     void add_progression(std::int64_t first_ns, std::int64_t step_ns, std::uint64_t times);
     void merge(const Histogram& other);
 
@@ -33,7 +33,7 @@ public:
     [[nodiscard]] double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
     /// The smallest value v such that at least q of all values are <= v, to within its bin; exact at q = 1. q is clamped to 0..1.
     [[nodiscard]] std::int64_t quantile(double q) const;
-    /// How many values are surely <= value (whole bins only): cumulative counts for Prometheus.
+    /// Number of values in bins that lie wholly at or below value_ns; for cumulative counts.
     [[nodiscard]] std::uint64_t count_at_most(std::int64_t value_ns) const;
 
     [[nodiscard]] std::uint64_t bin_count(std::size_t bin) const { return counts_[bin]; }

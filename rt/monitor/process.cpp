@@ -15,7 +15,7 @@ namespace surefoot::rt {
 
 namespace {
 
-constexpr std::uint64_t proc_file_most = 1U << 20U;
+constexpr std::uint64_t max_proc_file = 1U << 20U;
 
 /// The number after "name:" in /proc/self/status; -1 where there is none.
 std::int64_t status_number(std::string_view status, std::string_view name) {
@@ -66,13 +66,13 @@ std::int64_t entries_in(const std::string& folder) {
 ProcessFigures read_process(const std::string& root) {
     ProcessFigures p;
     const std::string self = root + "/proc/self";
-    if (const auto status = read_text(self + "/status", proc_file_most)) {
+    if (const auto status = read_text(self + "/status", max_proc_file)) {
         p.rss_bytes = kibibytes(*status, "VmRSS");
         p.virtual_bytes = kibibytes(*status, "VmSize");
         p.locked_bytes = kibibytes(*status, "VmLck");
         p.threads = status_number(*status, "Threads");
     }
-    if (const auto stat = read_text(self + "/stat", proc_file_most)) {
+    if (const auto stat = read_text(self + "/stat", max_proc_file)) {
         const double ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
         const std::int64_t user = stat_field(*stat, 14), system = stat_field(*stat, 15), started = stat_field(*stat, 22);
         if (user >= 0 && system >= 0) p.cpu_s = static_cast<double>(user + system) / ticks;
@@ -82,7 +82,7 @@ ProcessFigures read_process(const std::string& root) {
     if (const std::int64_t open = entries_in(self + "/fd"); open > 0) p.descriptors = open - (root.empty() ? 1 : 0);
     rlimit limit{};
     if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-        p.descriptors_most = static_cast<std::int64_t>(limit.rlim_cur);
+        p.max_descriptors = static_cast<std::int64_t>(limit.rlim_cur);
     if (const auto steal = read_steal(root)) p.steal_s = steal->total_ms * 1e-3;
     return p;
 }

@@ -1,4 +1,4 @@
-// What this process takes of its machine: memory, descriptors, threads, CPU time. Read from /proc by a thread that may wait.
+// Resource usage of this process: memory, descriptors, threads, CPU time. Read from /proc, by a thread that may wait.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace surefoot::rt {
 /// A number that cannot be read is -1.
 struct ProcessFigures {
     std::int64_t rss_bytes = -1, virtual_bytes = -1, locked_bytes = -1;
-    std::int64_t descriptors = -1, descriptors_most = -1;
+    std::int64_t descriptors = -1, max_descriptors = -1;
     std::int64_t threads = -1;
     double cpu_s = -1;      ///< user and system, all threads, ended ones included
     double started_s = -1;  ///< since boot
@@ -26,7 +26,7 @@ struct BusyThread {
     ThreadInfo info;
     std::int64_t cpu_ns = 0;
 };
-/// Of this process, by rising tid.
+/// Threads of this process, by ascending tid.
 std::vector<BusyThread> read_busy_threads();
 
 }  // namespace surefoot::rt

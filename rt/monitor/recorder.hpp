@@ -1,4 +1,4 @@
-// The monitor thread: empties the ring of frame records into memory reserved in advance, beside the frame thread.
+// The monitor thread: empties the ring of frame records into reserved memory.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 namespace surefoot::rt {
 
 struct RecorderOptions {
-    std::size_t reserve_records = 36000;  ///< more are kept too, at the price of growing
+    std::size_t reserve_records = 36000;  ///< more are kept too, but memory grows then
     bool keep = true;                     ///< false: records only go to on_record (a walk without end)
     std::int64_t poll_ns = 100'000'000;   ///< how often the ring is emptied: a wake-up costs 15 to 60 us of CPU, a record 1
     std::string thread_name = "sf-monitor";

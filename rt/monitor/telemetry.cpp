@@ -16,7 +16,7 @@ constexpr std::int64_t us = 1000, ms = 1'000'000;
 constexpr std::array<std::int64_t, 19> round_edges_ns = {
     10 * us, 20 * us, 50 * us,  100 * us, 200 * us, 500 * us,  1 * ms,    2 * ms,    5 * ms,     10 * ms,
     20 * ms, 50 * ms, 100 * ms, 200 * ms, 500 * ms, 1000 * ms, 2000 * ms, 5000 * ms, 10'000 * ms};
-static_assert(round_edges_ns.size() + 8 == Edges::most);
+static_assert(round_edges_ns.size() + 8 == Edges::max_edges);
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void Distribution::add(const Edges& edges, std::int64_t value_ns) {
     fine.add(value_ns);
     const auto all = edges.ns();
     const auto edge = std::lower_bound(all.begin(), all.end(), value_ns);
-    ++up_to[edge == all.end() ? Edges::most : static_cast<std::size_t>(edge - all.begin())];
+    ++up_to[edge == all.end() ? Edges::max_edges : static_cast<std::size_t>(edge - all.begin())];
 }
 
 void Distribution::add_progression(const Edges& edges, std::int64_t first_ns, std::int64_t step_ns, std::uint64_t times) {
@@ -46,7 +46,7 @@ void Distribution::add_progression(const Edges& edges, std::int64_t first_ns, st
         up_to[i] += below - placed;
         placed = below;
     }
-    up_to[Edges::most] += times - placed;
+    up_to[Edges::max_edges] += times - placed;
 }
 
 std::uint64_t Figures::all_misses() const { return std::accumulate(misses.begin(), misses.end(), std::uint64_t{0}); }
@@ -71,7 +71,7 @@ void Telemetry::add(const FrameRecord& record) {
     // The first slot of a walk may be any; after it, what is neither run nor skipped was lost on the way here.
     const std::uint64_t expected = next_slot_ + record.skipped_before;
     const std::uint64_t lost = any_ && record.slot > expected ? record.slot - expected : 0;
-    (void)CHECK_RARE(!any_ || record.slot >= expected, "records come in the order of their slots");
+    (void)CHECK_RARE(!any_ || record.slot >= expected, "Records come in the order of their slots");
     any_ = true;
     next_slot_ = record.slot + 1;
     figures_.lost_slots += lost;
@@ -108,7 +108,7 @@ void Telemetry::count(const FrameRecord& f) {
     ++s.frames;
     s.skipped_slots += f.skipped_before;
     if (f.missed) {
-        CHECK(static_cast<std::size_t>(f.cause) < s.misses.size(), "a miss has one of the causes");
+        CHECK(static_cast<std::size_t>(f.cause) < s.misses.size(), "Every miss has one of the known causes");
         ++s.misses[static_cast<std::size_t>(f.cause)];
     }
     s.own_misses += f.own_miss ? 1 : 0;
@@ -167,7 +167,7 @@ void Telemetry::add_shown(const FrameRecord& f) {
 
 void Telemetry::add_recent(const FrameRecord& f) {
     const auto us_of = [](std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); };
-    RecentFrame& r = figures_.recent[figures_.recent_count++ % Figures::recent_most];
+    RecentFrame& r = figures_.recent[figures_.recent_count++ % Figures::max_recent];
     r.frame_us = us_of(f.presented_ns - f.due_ns);
     r.wake_us = us_of(f.woken_ns - f.due_ns);
     r.slack_us = us_of(f.deadline_ns - f.presented_ns);

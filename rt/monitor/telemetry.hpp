@@ -1,5 +1,5 @@
-// Live figures of a walk: every record's times and counts, added up on the monitor thread, and whole copies of them for one
-// reader. Neither waits for the other, and the frame thread knows of neither.
+// Live figures of a walk: the monitor thread sums times and counts of all records, and publishes copies for one reader. Neither
+// waits for the other. The frame thread is not involved.
 #pragma once
 
 #include <array>
@@ -14,30 +14,30 @@
 
 namespace surefoot::rt {
 
-/// Upper edges of exact cumulative counts, rising, without doubles: round times from 10 us to 10 s and
-/// T/4, T/2, 3T/4, 7T/8, 15T/16, T, 5T/4, 2T: fine where a frame is about to be late.
+/// Upper edges of exact cumulative counts, ascending and distinct: round times from 10 us to 10 s, and T/4, T/2, 3T/4, 7T/8,
+/// 15T/16, T, 5T/4, 2T, which are dense near the deadline.
 class Edges {
 public:
-    static constexpr std::size_t most = 27;
+    static constexpr std::size_t max_edges = 27;
     Edges() : Edges(16'666'667) {}
     explicit Edges(std::int64_t period_ns);
     [[nodiscard]] std::span<const std::int64_t> ns() const { return {edges_ns_.data(), count_}; }
 
 private:
-    std::array<std::int64_t, most> edges_ns_{};
+    std::array<std::int64_t, max_edges> edges_ns_{};
     std::size_t count_ = 0;
 };
 
-/// Nanoseconds >= 0, or whatever comes (Histogram has a bin for all): lossless, and exact at the edges.
+/// Distribution of nanoseconds, any value: without loss in the histogram, and exact at the edges.
 struct Distribution {
     Histogram fine;
-    std::array<std::uint64_t, Edges::most + 1> up_to{};  ///< [i]: above edge i-1, at most edge i; the last: above all edges
+    std::array<std::uint64_t, Edges::max_edges + 1> up_to{};  ///< [i]: above edge i-1, at most edge i; the last: above all edges
 
     void add(const Edges& edges, std::int64_t value_ns);
     void add_progression(const Edges& edges, std::int64_t first_ns, std::int64_t step_ns, std::uint64_t times);
 };
 
-/// What is kept as a distribution. Every slot is in exactly one of slack and lateness:
+/// The measured distributions. Every slot is in exactly one of slack and lateness:
 /// slack.count + lateness.count = frames + skipped slots.
 enum class Series : std::uint8_t {
     wake,             ///< due -> woken
@@ -49,7 +49,7 @@ enum class Series : std::uint8_t {
     frame,            ///< due -> presented
     slack,            ///< of frames in time: presented -> deadline
     lateness,         ///< of late frames: deadline -> presented; of a skipped slot: its deadline -> the next frame presented
-    shown_interval,   ///< from one picture shown to the next
+    shown_interval,   ///< from one shown frame to the next
     animation_error,  ///< |shown interval - interval of the times that the poses are of|
     input_age         ///< of a frame with new reports: stamp of the newest -> submitted
 };
@@ -73,28 +73,28 @@ struct TelemetrySetup {
 
 /// Everything that a reader may want, in one plain block (about 220 KiB). The control's bare frames count in bare_frames only.
 struct Figures {
-    static constexpr std::size_t recent_most = 1024;
+    static constexpr std::size_t max_recent = 1024;
 
     TelemetrySetup setup;
     Edges edges;
     std::array<Distribution, series_count> series;
     std::array<std::uint64_t, cause_count> misses{};  ///< by cause; [none] stays 0
     std::uint64_t frames = 0, skipped_slots = 0, bare_frames = 0;
-    std::uint64_t lost_slots = 0;  ///< whose records did not fit into the ring: of them nothing is known
+    std::uint64_t lost_slots = 0;  ///< records that did not fit into the ring; nothing is known of these slots
     std::uint64_t own_misses = 0, downgraded_slices = 0, slices = 0, switches = 0, triangles = 0;
     std::uint64_t minor_faults = 0, major_faults = 0, driver_faults = 0, driver_allocations = 0, guard_violations = 0;
     std::uint64_t input_reports = 0, stopped_frames = 0, floor_frames = 0, continues = 0;
     std::int64_t stolen_ns = 0, preempted_ns = 0, frame_cpu_ns = 0, raster_cpu_ns = 0;
     double prepare_cpu_us = 0;
     FrameRecord last;  ///< newest frame of the walk; meaningless while frames is 0
-    std::array<RecentFrame, recent_most> recent{};
-    std::uint64_t recent_count = 0;  ///< ever; the i-th is recent[i % recent_most]
+    std::array<RecentFrame, max_recent> recent{};
+    std::uint64_t recent_count = 0;  ///< ever; the i-th is recent[i % max_recent]
 
     [[nodiscard]] const Distribution& of(Series s) const { return series[static_cast<std::size_t>(s)]; }
     [[nodiscard]] std::uint64_t all_misses() const;
     /// slots = frames + skipped_slots + lost_slots
     [[nodiscard]] std::uint64_t slots() const { return frames + skipped_slots + lost_slots; }
-    /// 1 / p99 of shown_interval; 0 before the second picture.
+    /// 1 / p99 of shown_interval; 0 before the second frame.
     [[nodiscard]] double one_percent_low_hz() const;
 };
 
@@ -106,7 +106,7 @@ public:
     Telemetry() = default;
     /// A walk begins. Counts go on from the last one; with another period, whose edges are others, they start from zero.
     void begin(const TelemetrySetup& setup);
-    /// In order. Publishes by itself every publish_ns of the records' own time.
+    /// Call in order. Publishes every publish_ns of the records' time.
     void add(const FrameRecord& record);
     void publish();
     [[nodiscard]] const Figures& figures() const { return figures_; }

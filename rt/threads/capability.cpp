@@ -59,8 +59,8 @@ std::int64_t soft_limit(__rlimit_resource_t resource) {
 
 std::string fifo_remedy(int wanted) {
     return fmt::format(
-        "grant CAP_SYS_NICE, or RLIMIT_RTPRIO of at least {} (LimitRTPRIO={} in the unit; "
-        "'rtprio' in /etc/security/limits.d); as root already: the cgroup's cpu.rt_runtime_us must not be 0",
+        "Grant CAP_SYS_NICE, or RLIMIT_RTPRIO of at least {} (LimitRTPRIO={} in the unit). "
+        "As root, check that the cgroup's cpu.rt_runtime_us is not 0",
         wanted, wanted);
 }
 
@@ -115,26 +115,27 @@ std::vector<Lack> find_lacking(const Capabilities& c, int wanted_priority) {
     } else if (c.fifo_priority < wanted_priority) {
         lacking.push_back(
             {LackKind::fifo,
-             fmt::format("SCHED_FIFO is granted up to priority {} only, {} is wanted", c.fifo_priority, wanted_priority),
+             fmt::format("SCHED_FIFO is granted only up to priority {}; {} is wanted", c.fifo_priority, wanted_priority),
              fifo_remedy(wanted_priority)});
     }
     if (!c.can_lock) {
-        lacking.push_back({LackKind::memory_lock, fmt::format("memory cannot be locked beyond {} MiB", c.memlock_bytes >> 20),
-                           "grant CAP_IPC_LOCK, or RLIMIT_MEMLOCK unlimited (LimitMEMLOCK=infinity in the unit)"});
+        lacking.push_back({LackKind::memory_lock, fmt::format("Memory cannot be locked beyond {} MiB", c.memlock_bytes >> 20),
+                           "Grant CAP_IPC_LOCK, or RLIMIT_MEMLOCK unlimited (LimitMEMLOCK=infinity in the unit)"});
     }
     if (c.isolated.empty()) {
         lacking.push_back(
-            {LackKind::isolated_core, "no isolated core among " + c.allowed.text(),
+            {LackKind::isolated_core, "No core is isolated among " + c.allowed.text(),
              c.allowed.count() < 2
-                 ? "give this process a second core, and isolate one of them"
-                 : fmt::format("boot with isolcpus=managed_irq,domain,{0} nohz_full={0}, or make a cpuset partition",
+                 ? "Give this process a second core, and isolate one of them"
+                 : fmt::format("Boot with isolcpus=managed_irq,domain,{0} nohz_full={0}, or make a cpuset partition",
                                c.allowed.cpus().back())});
     }
-    // All FIFO work together leaves 10 % of each core (DESIGN 1.4): throttling at 95 % never bites, below 90 % it does.
+    // All FIFO work together leaves 10 % of each core (the rule of the session): throttling at 95 % never bites, below 90 % it
+    // does.
     if (c.rt_runtime_us >= 0 && c.rt_runtime_us * 10 < c.rt_period_us * 9) {
         lacking.push_back({LackKind::throttled,
-                           fmt::format("real-time threads are throttled to {} of {} us", c.rt_runtime_us, c.rt_period_us),
-                           "sysctl kernel.sched_rt_runtime_us=950000"});
+                           fmt::format("Real-time threads are throttled to {} of {} us", c.rt_runtime_us, c.rt_period_us),
+                           "Run `sysctl kernel.sched_rt_runtime_us=950000`"});
     }
     return lacking;
 }

@@ -1,4 +1,4 @@
-// What this machine grants to real-time work, what it lacks, and how to grant it (never silently not real-time, DESIGN 7).
+// What this machine grants to real-time work, what it lacks, and how to grant it. Every lack is reported.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace surefoot::rt {
 
-/// What a lack is about.
+/// Kinds of lacks.
 enum class LackKind : std::uint8_t {
     fifo,
     memory_lock,
@@ -24,7 +24,7 @@ enum class LackKind : std::uint8_t {
     other
 };
 
-/// One thing that real time wants and does not have: what, in words, and how to grant it.
+/// A missing real-time resource: a sentence for people, and how to grant it.
 struct Lack {
     LackKind kind = LackKind::other;
     std::string what;
@@ -45,19 +45,19 @@ struct Capabilities {
     std::vector<Lack> lacking;  ///< from the above; empty: nothing is missing
 };
 
-/// Of the kernel's list of isolated cores those in `allowed`, and those that a thread of this process gets when it asks: tried,
-/// on one made for it.
+/// Isolated cores, by the kernel's list, that this process may use: those in `allowed`, and those that a helper thread gets when
+/// it asks.
 CpuMask isolated_cpus(const CpuMask& allowed, const std::string& root = "");
-/// Pure: where the frame thread goes unless a core is named: the last of isolated_cpus(), else the last allowed; -1: none is.
+/// Pure: the default core of the frame thread: the last of isolated_cpus(), else the last allowed one; -1 if there is none.
 int default_frame_core(const CpuMask& allowed, const CpuMask& isolated);
 
-/// Tries FIFO on a thread made for it, and reads limits, /proc and /sys. wanted_priority: what the frame thread asks for.
+/// Tries FIFO on a helper thread, and reads limits, /proc and /sys. wanted_priority: that of the frame thread.
 /// root: where /proc and /sys lie, for tests.
 Capabilities probe_capabilities(int wanted_priority, const std::string& root = "");
-/// Pure: what is missing, given the rest.
+/// Pure: the lacks, from the other members.
 std::vector<Lack> find_lacking(const Capabilities& c, int wanted_priority);
 
-/// Limits as they were, to go back to.
+/// Former limits, for restore_limits().
 struct SavedLimits {
     std::uint64_t rtprio_soft = 0, rtprio_hard = 0, rttime_soft = 0, rttime_hard = 0, memlock_soft = 0, memlock_hard = 0;
 };

@@ -33,15 +33,15 @@ std::string described(Policy policy, int priority) {
 }
 
 void check_thread(const DeclaredThread& row, const ThreadInfo& thread, std::vector<std::string>& problems) {
-    const std::string who = fmt::format("thread '{}' ({})", thread.name, thread.tid);
+    const std::string who = fmt::format("Thread '{}' ({})", thread.name, thread.tid);
     if (thread.policy != row.policy) {
-        problems.push_back(fmt::format("{}: {} instead of {}", who, described(thread.policy, thread.priority),
+        problems.push_back(fmt::format("{} runs as {} instead of {}", who, described(thread.policy, thread.priority),
                                        described(row.policy, row.priority)));
     } else if (thread.priority != row.priority) {
-        problems.push_back(fmt::format("{}: priority {} instead of {}", who, thread.priority, row.priority));
+        problems.push_back(fmt::format("{} has priority {} instead of {}", who, thread.priority, row.priority));
     }
     if (!row.cpus.empty() && !(thread.cpus == row.cpus))
-        problems.push_back(fmt::format("{}: on cores {} instead of {}", who, thread.cpus.text(), row.cpus.text()));
+        problems.push_back(fmt::format("{} runs on cores {} instead of {}", who, thread.cpus.text(), row.cpus.text()));
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ std::vector<std::string> census(std::span<const DeclaredThread> declared, std::s
     for (const ThreadInfo& thread : found) {
         const int row = row_of(declared, thread);
         if (row < 0) {
-            problems.push_back(fmt::format("thread '{}' ({}): not declared; it runs as {} on cores {}", thread.name, thread.tid,
+            problems.push_back(fmt::format("Thread '{}' ({}) is not declared; it runs as {} on cores {}", thread.name, thread.tid,
                                            described(thread.policy, thread.priority), thread.cpus.text()));
             continue;
         }
@@ -62,9 +62,10 @@ std::vector<std::string> census(std::span<const DeclaredThread> declared, std::s
     for (std::size_t i = 0; i < declared.size(); ++i) {
         const DeclaredThread& row = declared[i];
         if (counts[i] < row.min_count)
-            problems.push_back(fmt::format("thread '{}': missing ({} of at least {})", row.name, counts[i], row.min_count));
+            problems.push_back(fmt::format("Thread '{}' is missing: {} of at least {}", row.name, counts[i], row.min_count));
         if (counts[i] > row.max_count)
-            problems.push_back(fmt::format("thread '{}': too many ({}, at most {})", row.name, counts[i], row.max_count));
+            problems.push_back(
+                fmt::format("Thread '{}' is there too often: {} of at most {}", row.name, counts[i], row.max_count));
     }
     return problems;
 }

@@ -1,4 +1,4 @@
-// The thread census: a declared table of threads compared with what is there; every difference named (DESIGN 7).
+// The thread census: compares the threads of the process with a declared table, and names every difference.
 #pragma once
 
 #include <cstdint>

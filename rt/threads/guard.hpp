@@ -1,6 +1,6 @@
-// Two tiers of memory (DESIGN 7): the frame thread's own code may not allocate; driver calls may, and are counted apart.
-// malloc, calloc, realloc, free and the aligned forms are interposed wherever this room is linked; outside the scopes that
-// costs one thread-local comparison. Under sanitizers, which interpose themselves, nothing is counted: guard_active() says so.
+// Two tiers of memory: the frame thread's own code must not allocate; driver calls may, and are counted apart.
+// malloc, calloc, realloc, free and the aligned forms are interposed in every program that links this room. Outside the scopes
+// this costs one thread-local comparison. Sanitizers interpose themselves: then nothing is counted, see guard_active().
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace surefoot::rt {
 
-/// Of the calling thread since it started. Every allocation and every free is one.
+/// Counters of the calling thread since it started. Every allocation and every free counts.
 struct GuardCounters {
     std::uint64_t own_violations = 0;      ///< allocations and frees inside an OwnScope
     std::uint64_t driver_allocations = 0;  ///< inside a DriverScope

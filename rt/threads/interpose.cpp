@@ -26,29 +26,29 @@ bool interposer_linked() noexcept { return true; }
 
 namespace {
 
-inline void note_violation(GuardState& state, std::size_t bytes, const void* caller) noexcept {
+inline void record_violation(GuardState& state, std::size_t bytes, const void* caller) noexcept {
     ++state.counters.own_violations;
     state.counters.last_bytes = bytes;
     state.counters.last_caller = caller;
 }
 
-inline void note_allocation(std::size_t bytes, const void* caller) noexcept {
+inline void record_allocation(std::size_t bytes, const void* caller) noexcept {
     GuardState& state = guard_state;
     if (state.tier == Tier::none) [[likely]]
         return;
     if (state.tier == Tier::own) {
-        note_violation(state, bytes, caller);
+        record_violation(state, bytes, caller);
     } else {
         ++state.counters.driver_allocations;
     }
 }
 
-inline void note_free(const void* caller) noexcept {
+inline void record_free(const void* caller) noexcept {
     GuardState& state = guard_state;
     if (state.tier == Tier::none) [[likely]]
         return;
     if (state.tier == Tier::own) {
-        note_violation(state, 0, caller);
+        record_violation(state, 0, caller);
     } else {
         ++state.counters.driver_frees;
     }
@@ -58,43 +58,43 @@ inline void note_free(const void* caller) noexcept {
 
 }  // namespace surefoot::rt::detail
 
-using surefoot::rt::detail::note_allocation;
-using surefoot::rt::detail::note_free;
+using surefoot::rt::detail::record_allocation;
+using surefoot::rt::detail::record_free;
 
 extern "C" {
 
 __attribute__((visibility("default"))) void* malloc(std::size_t bytes) noexcept {
-    note_allocation(bytes, __builtin_return_address(0));
+    record_allocation(bytes, __builtin_return_address(0));
     return __libc_malloc(bytes);
 }
 
 __attribute__((visibility("default"))) void* calloc(std::size_t count, std::size_t bytes) noexcept {
-    note_allocation(count * bytes, __builtin_return_address(0));
+    record_allocation(count * bytes, __builtin_return_address(0));
     return __libc_calloc(count, bytes);
 }
 
 __attribute__((visibility("default"))) void* realloc(void* memory, std::size_t bytes) noexcept {
-    note_allocation(bytes, __builtin_return_address(0));
+    record_allocation(bytes, __builtin_return_address(0));
     return __libc_realloc(memory, bytes);
 }
 
 __attribute__((visibility("default"))) void free(void* memory) noexcept {
-    if (memory != nullptr) note_free(__builtin_return_address(0));
+    if (memory != nullptr) record_free(__builtin_return_address(0));
     __libc_free(memory);
 }
 
 __attribute__((visibility("default"))) void* memalign(std::size_t alignment, std::size_t bytes) noexcept {
-    note_allocation(bytes, __builtin_return_address(0));
+    record_allocation(bytes, __builtin_return_address(0));
     return __libc_memalign(alignment, bytes);
 }
 
 __attribute__((visibility("default"))) void* aligned_alloc(std::size_t alignment, std::size_t bytes) noexcept {
-    note_allocation(bytes, __builtin_return_address(0));
+    record_allocation(bytes, __builtin_return_address(0));
     return __libc_memalign(alignment, bytes);
 }
 
 __attribute__((visibility("default"))) int posix_memalign(void** memory, std::size_t alignment, std::size_t bytes) noexcept {
-    note_allocation(bytes, __builtin_return_address(0));
+    record_allocation(bytes, __builtin_return_address(0));
     if (alignment % sizeof(void*) != 0 || alignment == 0 || (alignment & (alignment - 1)) != 0) return EINVAL;
     const int before = errno;  // posix_memalign leaves errno alone
     void* const got = __libc_memalign(alignment, bytes);

@@ -22,7 +22,7 @@ namespace surefoot::rt {
 
 namespace {
 
-constexpr const char* lock_remedy = "grant CAP_IPC_LOCK, or RLIMIT_MEMLOCK unlimited (LimitMEMLOCK=infinity in the unit)";
+constexpr const char* lock_remedy = "Grant CAP_IPC_LOCK, or RLIMIT_MEMLOCK unlimited (LimitMEMLOCK=infinity in the unit)";
 
 /// The number of kB behind `key` in /proc/self/status, in bytes; 0 when it is not there.
 std::uint64_t status_bytes(std::string_view key) {
@@ -44,13 +44,14 @@ Result<void> lock_all(std::uint64_t growth_bytes) {
     }
     const std::uint64_t mapped = status_bytes("VmSize:");
     if (limit.rlim_cur < mapped + growth_bytes && !lock_unlimited())
-        return Error{"memory",
-                     fmt::format("cannot be locked: the limit is {} MiB, {} MiB are wanted", limit.rlim_cur >> 20U,
+        return Error{"mlockall",
+                     fmt::format("Memory cannot be locked: the limit is {} MiB, {} MiB are wanted", limit.rlim_cur >> 20U,
                                  (mapped + growth_bytes) >> 20U),
-                     lock_remedy};
+                     lock_remedy, ErrorKind::no_real_time};
     if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
-        return Error{"memory", fmt::format("cannot be locked: {}", std::strerror(errno)),
-                     lock_remedy};  // NOLINT(concurrency-mt-unsafe)
+        return Error{"mlockall",
+                     fmt::format("Memory cannot be locked: {}", std::strerror(errno)),  // NOLINT(concurrency-mt-unsafe)
+                     lock_remedy, ErrorKind::no_real_time};
     return {};
 }
 
@@ -111,9 +112,9 @@ __attribute__((noinline)) void prefault_stack(std::size_t bytes) {
 
 std::int64_t minor_fault_cost_ns() {
     constexpr std::size_t pages = 1024, page = 4096;
-    constexpr std::int64_t least_ns = 500, most_ns = 5000;
+    constexpr std::int64_t min_ns = 500, max_ns = 5000;
     void* const mapped = mmap(nullptr, pages * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (mapped == MAP_FAILED) return most_ns;
+    if (mapped == MAP_FAILED) return max_ns;
     madvise(mapped, pages * page, MADV_NOHUGEPAGE);
     auto* const memory = static_cast<volatile unsigned char*>(mapped);
     const ThreadUsage before = read_own_usage();
@@ -121,7 +122,7 @@ std::int64_t minor_fault_cost_ns() {
     const ThreadUsage spent = read_own_usage() - before;
     munmap(mapped, pages * page);
     const auto faults = static_cast<std::int64_t>(spent.minor_faults);
-    return std::clamp(faults > 0 ? 2 * spent.cpu_ns / faults : least_ns, least_ns, most_ns);
+    return std::clamp(faults > 0 ? 2 * spent.cpu_ns / faults : min_ns, min_ns, max_ns);
 }
 
 bool lock_unlimited() {

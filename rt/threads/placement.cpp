@@ -58,8 +58,8 @@ Policy policy_of(int number) {
 
 std::string place_of(pid_t tid) { return fmt::format("thread {}", tid); }
 
-Error refused(pid_t tid, const std::string& what, int error, const std::string& remedy) {
-    return {place_of(tid), fmt::format("{}: {}", what, std::strerror(error)), remedy};  // NOLINT(concurrency-mt-unsafe)
+Error refused(pid_t tid, const std::string& what, int error, const std::string& remedy, ErrorKind kind) {
+    return {place_of(tid), fmt::format("{}: {}", what, std::strerror(error)), remedy, kind};  // NOLINT(concurrency-mt-unsafe)
 }
 
 std::string comm_file(pid_t tid) { return fmt::format("/proc/self/task/{}/comm", tid); }
@@ -71,14 +71,14 @@ Result<void> name_thread(pid_t tid, const std::string& name) {
     const bool written = file >= 0 && ::write(file, kept.data(), kept.size()) == static_cast<ssize_t>(kept.size());
     const int error = errno;
     if (file >= 0) ::close(file);
-    if (!written) return refused(tid, fmt::format("cannot be named '{}'", kept), error, {});
+    if (!written) return refused(tid, fmt::format("The thread cannot be named '{}'", kept), error, {}, ErrorKind::failed);
     return {};
 }
 
 Result<void> set_cores(pid_t tid, const CpuMask& cpus) {
     if (sched_setaffinity(tid, sizeof(cpu_set_t), &cpus.native()) == 0) return {};
-    return refused(tid, fmt::format("cannot run on cores {}", cpus.text()), errno,
-                   fmt::format("choose among the cores of this process: {}", allowed_cpus().text()));
+    return refused(tid, fmt::format("The thread cannot run on cores {}", cpus.text()), errno,
+                   fmt::format("Choose among the cores of this process: {}", allowed_cpus().text()), ErrorKind::no_real_time);
 }
 
 Result<void> set_policy(pid_t tid, Policy policy, int priority, bool reset_on_fork) {
@@ -88,8 +88,9 @@ Result<void> set_policy(pid_t tid, Policy policy, int priority, bool reset_on_fo
     // Without privilege the flag cannot be taken away again, but the rest can change.
     if (!reset_on_fork && errno == EPERM && sched_setscheduler(tid, native(policy) | SCHED_RESET_ON_FORK, &parameters) == 0)
         return {};
-    return refused(tid, fmt::format("refused {} priority {}", policy_name(policy), priority), errno,
-                   fmt::format("grant CAP_SYS_NICE, or RLIMIT_RTPRIO of at least {} (LimitRTPRIO= in the unit)", priority));
+    return refused(tid, fmt::format("{} priority {} is refused", policy_name(policy), priority), errno,
+                   fmt::format("Grant CAP_SYS_NICE, or RLIMIT_RTPRIO of at least {} (LimitRTPRIO= in the unit)", priority),
+                   ErrorKind::no_real_time);
 }
 
 }  // namespace
@@ -123,7 +124,8 @@ Result<CpuMask> CpuMask::parse(std::string_view text) {
         int last = first;
         if (read.ec == std::errc{} && read.ptr != end && *read.ptr == '-') read = std::from_chars(read.ptr + 1, end, last);
         if (read.ec != std::errc{} || read.ptr != end || first < 0 || last < first || last >= CPU_SETSIZE)
-            return Error{"list of cores", fmt::format("'{}' is not understood", part), "for example 0-2,5"};
+            return Error{"list of cores", fmt::format("The part '{}' is not understood", part), "Write a list such as 0-2,5",
+                         ErrorKind::misuse};
         for (int cpu = first; cpu <= last; ++cpu) mask.add(cpu);
         text.remove_prefix(std::min(part.size() + 1, text.size()));
     }
@@ -167,7 +169,7 @@ Result<void> place_thread(pid_t tid, const Placement& placement) {
         (!real_time && placement.priority != 0))
         return Error{place_of(tid),
                      fmt::format("{} priority {} does not exist", policy_name(placement.policy), placement.priority),
-                     "1 to 99 for SCHED_FIFO and SCHED_RR, else 0"};
+                     "Use 1 to 99 for SCHED_FIFO and SCHED_RR, else 0", ErrorKind::misuse};
     if (!placement.cpus.empty()) {
         if (auto set = set_cores(tid, placement.cpus); !set) return set;
     }
@@ -188,7 +190,7 @@ Result<ThreadInfo> read_thread(pid_t tid) {
     cpu_set_t set;
     CPU_ZERO(&set);
     if (policy < 0 || sched_getparam(tid, &parameters) != 0 || sched_getaffinity(tid, sizeof(set), &set) != 0)
-        return refused(tid, "cannot be examined", errno, {});
+        return refused(tid, "The thread cannot be examined", errno, {}, ErrorKind::failed);
     info.policy = policy_of(policy & ~SCHED_RESET_ON_FORK);
     info.reset_on_fork = (policy & SCHED_RESET_ON_FORK) != 0;
     info.priority = parameters.sched_priority;
@@ -201,7 +203,10 @@ Result<std::vector<ThreadInfo>> read_threads() {
         void operator()(DIR* dir) const { ::closedir(dir); }
     };
     const std::unique_ptr<DIR, Close> tasks(::opendir("/proc/self/task"));
-    if (!tasks) return Error{"/proc/self/task", std::strerror(errno), "is /proc mounted?"};  // NOLINT(concurrency-mt-unsafe)
+    if (!tasks)
+        return Error{"/proc/self/task",
+                     fmt::format("The folder cannot be read: {}", std::strerror(errno)),  // NOLINT(concurrency-mt-unsafe)
+                     "Check that /proc is mounted", ErrorKind::unreadable};
     std::vector<ThreadInfo> threads;
     while (const dirent* entry = ::readdir(tasks.get())) {  // NOLINT(concurrency-mt-unsafe): this stream is ours alone
         const std::string_view name = entry->d_name;

@@ -1,4 +1,4 @@
-// Where threads run: policy, priority, cores, name; for the calling thread or any other of this process; and back again.
+// Placement of threads of this process: policy, priority, cores, name; and restoring it.
 #pragma once
 
 #include <sched.h>
@@ -44,7 +44,7 @@ private:
     cpu_set_t set_;
 };
 
-/// The CPUs that this process may use (of its main thread's affinity).
+/// The CPUs that this process may use, by the affinity of its main thread.
 CpuMask allowed_cpus();
 
 struct Placement {
@@ -55,7 +55,7 @@ struct Placement {
     bool reset_on_fork = true;      ///< threads made by this one start at SCHED_OTHER (they still inherit its cores)
 };
 
-/// tid 0: the calling thread. Cores first, then policy, then name; Errors name the refused part and how to grant it.
+/// tid 0: the calling thread. Sets cores, then policy, then name. Errors name the refused part and how to grant it.
 Result<void> place_thread(pid_t tid, const Placement& placement);
 pid_t own_tid();
 

@@ -20,7 +20,7 @@ namespace {
 
 // A signal handler reaches nothing else.
 std::atomic<pid_t> runaway_tid{0};
-std::atomic<bool> runaway_claimed{false}, runaway_told{false}, runaway_demoted{false};
+std::atomic<bool> runaway_claimed{false}, runaway_reported{false}, runaway_demoted{false};
 std::array<char, 16> runaway_name{};
 
 /// On the thread that ran too long, as the kernel delivers it there; system calls only.
@@ -36,7 +36,7 @@ void on_runaway(int) {
             runaway_tid.store(static_cast<pid_t>(syscall(SYS_gettid)));
         }
         runaway_demoted.store(demoted);
-        runaway_told.store(true, std::memory_order_release);
+        runaway_reported.store(true, std::memory_order_release);
     }
     errno = before;
 }
@@ -55,12 +55,13 @@ Result<void> guard_runaways(std::int64_t limit_us) {
     getrlimit(RLIMIT_RTTIME, &limit);
     limit.rlim_cur = std::min<rlim_t>(static_cast<rlim_t>(limit_us), limit.rlim_max);
     if (setrlimit(RLIMIT_RTTIME, &limit) == 0) return {};
-    return Error{"RLIMIT_RTTIME", std::string("cannot be set: ") + std::strerror(errno),  // NOLINT(concurrency-mt-unsafe)
-                 "a real-time thread that never sleeps would not be stopped"};
+    return Error{"runaway guard",
+                 std::string("RLIMIT_RTTIME cannot be set: ") + std::strerror(errno),  // NOLINT(concurrency-mt-unsafe)
+                 "Allow this limit: without it, a real-time thread that never sleeps is not stopped", ErrorKind::no_real_time};
 }
 
 std::optional<Runaway> runaway_seen() {
-    if (!runaway_told.load(std::memory_order_acquire)) return std::nullopt;
+    if (!runaway_reported.load(std::memory_order_acquire)) return std::nullopt;
     return Runaway{runaway_tid.load(), runaway_name.data(), runaway_demoted.load()};
 }
 

@@ -1,5 +1,5 @@
-// A real-time thread that never sleeps starves everything below it: the kernel counts its time (RLIMIT_RTTIME), SIGXCPU reaches
-// it there, and it loses its real-time priority before anything else is decided.
+// Guard against real-time threads that never sleep and starve all others. The kernel counts their time (RLIMIT_RTTIME) and sends
+// SIGXCPU; the handler takes the thread's real-time priority at once.
 #pragma once
 
 #include <sys/types.h>
@@ -12,20 +12,19 @@
 
 namespace surefoot::rt {
 
-/// How long a real-time thread may run without sleeping where the frames have this period: above what a frame may take, below a
-/// second.
+/// Maximum time of a real-time thread without sleep, for this frame period: longer than a frame, shorter than a second.
 std::int64_t runaway_limit_us(std::int64_t period_ns);
 
-/// Process-wide: from now on a real-time thread that runs `limit_us` without sleeping is put under SCHED_OTHER, and
-/// runaway_seen() names it. The kernel counts in ticks (1 to 10 ms). Error: the limit cannot be set.
+/// Process-wide: from now on, a real-time thread that runs `limit_us` without sleep gets SCHED_OTHER, and runaway_seen() names
+/// it. The kernel counts in ticks of 1 to 10 ms. Error: the limit cannot be set.
 Result<void> guard_runaways(std::int64_t limit_us);
 
 struct Runaway {
-    pid_t tid = 0;  ///< 0: it could not be told which; nothing was demoted
+    pid_t tid = 0;  ///< 0: unknown, and no thread was demoted
     std::string name;
     bool demoted = false;
 };
-/// The first one, once it has happened.
+/// The first such thread, if any.
 std::optional<Runaway> runaway_seen();
 
 }  // namespace surefoot::rt

@@ -99,7 +99,7 @@ Result<Steal> read_steal(const std::string& root) {
         if (steal.cpu_ms.size() <= cpu) steal.cpu_ms.resize(cpu + 1, 0.0);
         steal.cpu_ms[cpu] = ms;
     }
-    if (!found) return Error{place, "has no line of CPU times", "is /proc mounted?"};
+    if (!found) return Error{place, "The file has no line of CPU times", "Check that /proc is mounted", ErrorKind::damaged};
     return steal;
 }
 

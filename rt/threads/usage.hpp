@@ -1,4 +1,4 @@
-// What threads use: CPU time, faults, context switches; and what the host takes (steal). Plain numbers and differences.
+// Resource usage of threads: CPU time, faults, context switches; and steal time of the host. Plain numbers.
 #pragma once
 
 #include <sys/types.h>
@@ -13,7 +13,7 @@
 
 namespace surefoot::rt {
 
-/// Of one thread since it started (or a difference of two readings).
+/// Usage of one thread since it started, or the difference of two readings.
 struct ThreadUsage {
     std::int64_t cpu_ns = 0;
     std::uint64_t minor_faults = 0, major_faults = 0;

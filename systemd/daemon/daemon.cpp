@@ -19,7 +19,7 @@
 #include "systemd/daemon/misses.hpp"
 #include "systemd/daemon/monitoring.hpp"
 #include "systemd/daemon/service.hpp"
-#include "systemd/daemon/standing.hpp"
+#include "systemd/daemon/service_state.hpp"
 #include "tools/monitor/monitor.hpp"
 #include "tools/walk/state.hpp"
 
@@ -34,43 +34,43 @@ struct Ending {
     ExitCode code = exit_failure;
 };
 
-void say_lack(Log& log, Standing& standing, const rt::Lack& lack) {
-    if (!standing.lacks(lack)) return;
-    log.say(Priority::warning, event::degraded,
-            fmt::format("not fully real-time: {}{}", lack.what, lack.remedy.empty() ? "" : " (" + lack.remedy + ")"),
-            {{"SUREFOOT_LACK", lack.what}, {"SUREFOOT_REMEDY", lack.remedy}});
+void log_lack(Log& log, ServiceState& state, const rt::Lack& lack) {
+    if (!state.lacks(lack)) return;
+    log.write(Priority::warning, event::degraded,
+              fmt::format("not fully real-time: {}{}", lack.what, lack.remedy.empty() ? "" : " (" + lack.remedy + ")"),
+              {{"SUREFOOT_LACK", lack.what}, {"SUREFOOT_REMEDY", lack.remedy}});
 }
 
-void say_burst(Log& log, const std::optional<Burst>& burst) {
+void log_burst(Log& log, const std::optional<Burst>& burst) {
     if (!burst) return;
-    log.say(Priority::warning, event::misses, burst->text(),
-            {{"SUREFOOT_MISSES", std::to_string(burst->misses)},
-             {"SUREFOOT_OWN_MISSES", std::to_string(burst->own_misses)},
-             {"SUREFOOT_SKIPPED_SLOTS", std::to_string(burst->skipped)},
-             {"SUREFOOT_FIRST_SLOT", std::to_string(burst->first_slot)},
-             {"SUREFOOT_CAUSE", std::string(rt::cause_names[static_cast<std::size_t>(burst->main_cause())])},
-             {"SUREFOOT_WORST_LATE_US", std::to_string(burst->worst_late_ns / 1000)}});
+    log.write(Priority::warning, event::misses, burst->text(),
+              {{"SUREFOOT_MISSES", std::to_string(burst->misses)},
+               {"SUREFOOT_OWN_MISSES", std::to_string(burst->own_misses)},
+               {"SUREFOOT_SKIPPED_SLOTS", std::to_string(burst->skipped)},
+               {"SUREFOOT_FIRST_SLOT", std::to_string(burst->first_slot)},
+               {"SUREFOOT_CAUSE", std::string(rt::cause_names[static_cast<std::size_t>(burst->main_cause())])},
+               {"SUREFOOT_WORST_LATE_US", std::to_string(burst->worst_late_ns / 1000)}});
 }
 
-walk::WalkWatch watch_of(Log& log, Standing& standing, Bursts& bursts, const walk::FaultHook& inject) {
-    walk::WalkWatch watch;
-    watch.on_step = [&](walk::WalkStep step) { standing.step.store(step); };
-    watch.on_started = [&](const walk::WalkStart& start) {
-        for (const rt::Lack& lack : start.degraded) say_lack(log, standing, lack);
-        if (!start.uncalibrated.empty() && standing.uncalibrated(start.uncalibrated))
-            log.say(Priority::warning, event::uncalibrated, start.uncalibrated);
+walk::WalkObserver observer_of(Log& log, ServiceState& state, Bursts& bursts, const walk::FaultHook& inject) {
+    walk::WalkObserver observer;
+    observer.on_step = [&](walk::WalkStep step) { state.step.store(step); };
+    observer.on_started = [&](const walk::WalkStart& start) {
+        for (const rt::Lack& lack : start.degraded) log_lack(log, state, lack);
+        if (!start.uncalibrated.empty() && state.uncalibrated(start.uncalibrated))
+            log.write(Priority::warning, event::uncalibrated, start.uncalibrated);
         // After the session has raised its limits.
         if (auto ok = rt::guard_runaways(rt::runaway_limit_us(start.period_ns)); !ok)
-            say_lack(log, standing, {rt::LackKind::other, ok.error().place + ": " + ok.error().what, ok.error().remedy});
-        standing.walking(start.period_ns);
+            log_lack(log, state, {rt::LackKind::other, ok.error().place + ": " + ok.error().what, ok.error().remedy});
+        state.walking(start.period_ns);
     };
-    watch.on_record = [&](const rt::FrameRecord& record) {
-        standing.count(record);
-        say_burst(log, bursts.add(record));
+    observer.on_record = [&](const rt::FrameRecord& record) {
+        state.count(record);
+        log_burst(log, bursts.add(record));
     };
-    watch.on_degraded = [&](const rt::Lack& lack) { say_lack(log, standing, lack); };
-    watch.inject = inject;
-    return watch;
+    observer.on_degraded = [&](const rt::Lack& lack) { log_lack(log, state, lack); };
+    observer.inject = inject;
+    return observer;
 }
 
 /// Checks before the first frame that an emergency stop can be stored. Otherwise the next start would forget it.
@@ -85,10 +85,10 @@ Result<void> check_state(const walk::WalkRequest& request) {
 
 /// `first`: what the process was prepared for.
 Ending walk(const config::Configuration& configuration, const walk::WalkRequest& first, const Options& options, Log& log,
-            Standing& standing, monitor::Monitor* monitor, const walk::FaultHook& inject) {
+            ServiceState& state, monitor::Monitor* monitor, const walk::FaultHook& inject) {
     walk::WalkRequest request = request_of(configuration, options.config_file);
     if (const std::string kept = walk::keep_process(first, request); !kept.empty())
-        log.say(Priority::warning, event::reloading, kept, {{"SUREFOOT_CONFIG", options.config_file}});
+        log.write(Priority::warning, event::reloading, kept, {{"SUREFOOT_CONFIG", options.config_file}});
     if (auto ok = check_state(request); !ok) {
         const Error& e = ok.error();
         return {true,
@@ -96,61 +96,61 @@ Ending walk(const config::Configuration& configuration, const walk::WalkRequest&
                 exit_cannot_write};
     }
     Progress progress;
-    progress.stop = &standing.stop_walk;
-    progress.note = [&](std::string_view text) {
-        log.say(Priority::notice, event::input, text);
+    progress.stop = &state.stop_walk;
+    progress.notify = [&](std::string_view text) {
+        log.write(Priority::notice, event::input, text);
         if (monitor != nullptr) monitor->add_note(text);
     };
     Bursts bursts;
-    walk::WalkWatch watch = watch_of(log, standing, bursts, inject);
+    walk::WalkObserver observer = observer_of(log, state, bursts, inject);
     if (monitor != nullptr) {
-        monitor->set_state(monitor::ServiceState::starting);
-        monitor::watch_with(*monitor, request, watch);
+        monitor->set_state(monitor::ServicePhase::starting);
+        monitor::attach_monitor(*monitor, request, observer);
     }
-    auto outcome = walk::run_walk(request, progress, watch);
-    say_burst(log, bursts.finish());
-    if (!outcome) return {true, outcome.error(), exit_code_of(standing.step.load())};
-    for (const std::string& note : outcome->notes) log.say(Priority::notice, event::input, note);
+    auto outcome = walk::run_walk(request, progress, observer);
+    log_burst(log, bursts.finish());
+    if (!outcome) return {true, outcome.error(), exit_code_of(state.step.load())};
+    for (const std::string& note : outcome->notes) log.write(Priority::notice, event::input, note);
     for (const Error& failure : outcome->failures) {
         if (outcome->lost) return {true, failure, exit_unavailable};
-        log.say(Priority::error, event::fault, failure.text());
+        log.write(Priority::error, event::fault, failure.text());
     }
     return {};
 }
 
 /// Walks until the end. If a configuration never shows a frame, the last one that did is used again.
-ExitCode walk_on(config::Configuration current, const Options& options, Log& log, Standing& standing, monitor::Monitor* monitor,
+ExitCode walk_on(config::Configuration current, const Options& options, Log& log, ServiceState& state, monitor::Monitor* monitor,
                  const walk::FaultHook& inject) {
     const walk::WalkRequest first = request_of(current, options.config_file);
     std::optional<config::Configuration> good;
     while (true) {
         // This order loses no signal: a request that arrives in between is seen below, or ends the walk at its start.
-        standing.open(current.values);
-        standing.stop_walk.store(false);
-        if (standing.leaving.load()) return exit_success;
-        if (auto next = standing.take_next()) {
+        state.open(current.values);
+        state.stop_walk.store(false);
+        if (state.leaving.load()) return exit_success;
+        if (auto next = state.take_next()) {
             current = std::move(*next);
-            standing.open(current.values);
+            state.open(current.values);
         }
-        const Ending ending = walk(current, first, options, log, standing, monitor, inject);
+        const Ending ending = walk(current, first, options, log, state, monitor, inject);
         rt::release_memory();  // the next walk claims its own
-        if (standing.leaving.load()) return exit_success;
-        if (standing.walk_frames() > 0) good = current;
+        if (state.leaving.load()) return exit_success;
+        if (state.walk_frames() > 0) good = current;
         if (!ending.failed) {
-            if (standing.stop_walk.load()) continue;  // a reload
-            log.say(Priority::error, event::fault, "the walk ended by itself");
+            if (state.stop_walk.load()) continue;  // a reload
+            log.write(Priority::error, event::fault, "the walk ended by itself");
             return exit_failure;
         }
-        const bool newer = standing.stop_walk.load();  // a reload came while this one failed
-        if (standing.walk_frames() == 0 && (good || newer)) {
+        const bool newer = state.stop_walk.load();  // a reload came while this one failed
+        if (state.walk_frames() == 0 && (good || newer)) {
             const std::string why = ending.error.text();
-            log.say(Priority::error, event::refused, "the new configuration cannot start a walk, another one is used: " + why);
+            log.write(Priority::error, event::refused, "the new configuration cannot start a walk, another one is used: " + why);
             if (newer) continue;
-            standing.refuse(why);
+            state.refuse(why);
             current = *std::exchange(good, std::nullopt);
             continue;
         }
-        log.say(Priority::error, event::fault, ending.error.text(), {{"SUREFOOT_EXIT_CODE", std::to_string(ending.code)}});
+        log.write(Priority::error, event::fault, ending.error.text(), {{"SUREFOOT_EXIT_CODE", std::to_string(ending.code)}});
         return ending.code;
     }
 }
@@ -177,18 +177,18 @@ int run(const Options& options, const walk::FaultHook& inject) {
     // Until the first walk sets its own limit: without the handler SIGXCPU would end the process without a word.
     (void)rt::guard_runaways(rt::runaway_limit_us(1'000'000'000));
     Loaded loaded = load(options);
-    for (const Error& problem : loaded.problems) log.say(Priority::error, event::refused, problem.text());
+    for (const Error& problem : loaded.problems) log.write(Priority::error, event::refused, problem.text());
     if (!loaded.problems.empty()) return loaded.misuse ? exit_usage : exit_config;
     walk::prepare_process(request_of(loaded.configuration, options.config_file));  // no other thread is there yet
     Notifier notifier(environment("NOTIFY_SOCKET"));
-    Standing standing;
-    standing.open(loaded.configuration.values);
-    log.say(Priority::info, event::starting,
-            fmt::format("{}: {}, {}", options.config_file, loaded.configuration.values.model_file,
-                        in_short(loaded.configuration.values)));
+    ServiceState state;
+    state.open(loaded.configuration.values);
+    log.write(Priority::info, event::starting,
+              fmt::format("{}: {}, {}", options.config_file, loaded.configuration.values.model_file,
+                          in_short(loaded.configuration.values)));
     const std::unique_ptr<monitor::Monitor> monitor = open_monitor(loaded.configuration, log);
-    const Service service(options, log, standing, notifier, watchdog_timeout_ns());
-    return walk_on(std::move(loaded.configuration), options, log, standing, monitor.get(), inject);
+    const Service service(options, log, state, notifier, watchdog_timeout_ns());
+    return walk_on(std::move(loaded.configuration), options, log, state, monitor.get(), inject);
 }
 
 int run_main(int argc, char** argv, const walk::FaultHook& inject) {

@@ -77,10 +77,10 @@ Log::~Log() {
     if (socket_ >= 0) ::close(socket_);
 }
 
-void Log::say(Priority priority, const Event& event, std::string_view text, std::initializer_list<Field> fields) {
+void Log::write(Priority priority, const Event& event, std::string_view text, std::initializer_list<Field> fields) {
     const MutexLock lock(one_at_a_time_);
     text = text.substr(0, longest_text);
-    const std::uint64_t lost = dropped_.load() - dropped_told_;
+    const std::uint64_t lost = dropped_.load() - dropped_reported_;
     bool taken = false;
     if (socket_ >= 0) {
         taken = to_journal(journal_message(priority, event, text, fields, lost));
@@ -92,7 +92,7 @@ void Log::say(Priority priority, const Event& event, std::string_view text, std:
         taken = to_stream(line + "\n");
     }
     if (taken)
-        dropped_told_ += lost;
+        dropped_reported_ += lost;
     else
         ++dropped_;
 }

@@ -59,7 +59,7 @@ public:
     Log(const Log&) = delete;
     Log& operator=(const Log&) = delete;
 
-    void say(Priority priority, const Event& event, std::string_view text, std::initializer_list<Field> fields = {});
+    void write(Priority priority, const Event& event, std::string_view text, std::initializer_list<Field> fields = {});
     [[nodiscard]] std::uint64_t dropped() const { return dropped_.load(); }
 
 private:
@@ -69,7 +69,7 @@ private:
     int socket_ = -1;
     Mutex one_at_a_time_;  // lines stay whole, and the count of dropped ones is told once
     std::atomic<std::uint64_t> dropped_{0};
-    std::uint64_t dropped_told_ GUARDED_BY(one_at_a_time_) = 0;
+    std::uint64_t dropped_reported_ GUARDED_BY(one_at_a_time_) = 0;
 };
 
 /// Pure: a message in journald's native format; values with line breaks go with their length, as it wants them.

@@ -11,14 +11,14 @@ namespace surefoot::daemon {
 std::optional<Burst> Bursts::add(const rt::FrameRecord& record) {
     const bool bad = record.missed || record.skipped_before > 0;
     const bool open = open_.misses + open_.skipped > 0;
-    std::optional<Burst> told;
+    std::optional<Burst> closed;
     if (open && record.due_ns - open_.last_ns >= quiet_ns) {
-        told = std::exchange(open_, {});
+        closed = std::exchange(open_, {});
     } else if (open && record.due_ns - open_.began_ns >= longest_ns) {
         open_.goes_on = true;
-        told = std::exchange(open_, {});
+        closed = std::exchange(open_, {});
     }
-    if (!bad) return told;
+    if (!bad) return closed;
     if (open_.misses + open_.skipped == 0) {
         open_.began_ns = record.due_ns;
         open_.first_slot = record.slot;
@@ -26,12 +26,12 @@ std::optional<Burst> Bursts::add(const rt::FrameRecord& record) {
     open_.last_ns = std::max(record.due_ns, record.presented_ns);
     open_.last_slot = record.slot;
     open_.skipped += record.skipped_before;
-    if (!record.missed) return told;
+    if (!record.missed) return closed;
     ++open_.misses;
     open_.own_misses += record.own_miss ? 1 : 0;
     ++open_.causes[static_cast<std::size_t>(record.cause)];
     open_.worst_late_ns = std::max(open_.worst_late_ns, record.presented_ns - record.deadline_ns);
-    return told;
+    return closed;
 }
 
 std::optional<Burst> Bursts::finish() {

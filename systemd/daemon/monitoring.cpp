@@ -18,11 +18,11 @@ std::unique_ptr<monitor::Monitor> open_monitor(const config::Configuration& conf
     options.address = monitor_address(configuration.values, std::getenv("RUNTIME_DIRECTORY") != nullptr);
     options.incidents_dir = config::file_setting(configuration, "incidents", {});
     options.version = SUREFOOT_VERSION;
-    options.say = [&log](std::string_view text) { log.say(Priority::notice, event::misses, text); };
+    options.notify = [&log](std::string_view text) { log.write(Priority::notice, event::misses, text); };
     if (options.address.empty() && options.incidents_dir.empty()) return nullptr;
     auto monitor = monitor::Monitor::open(std::move(options));
     if (monitor) return std::move(*monitor);
-    log.say(Priority::error, event::fault, "the monitor cannot start, the walk goes on: " + monitor.error().text());
+    log.write(Priority::error, event::fault, "the monitor cannot start, the walk goes on: " + monitor.error().text());
     return nullptr;
 }
 

@@ -37,8 +37,8 @@ void block_service_signals() {
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
 
-Service::Service(const Options& options, Log& log, Standing& standing, Notifier& notifier, std::int64_t watchdog_ns)
-    : options_(options), log_(log), standing_(standing), notifier_(notifier), heartbeat_(watchdog_ns, 0) {
+Service::Service(const Options& options, Log& log, ServiceState& state, Notifier& notifier, std::int64_t watchdog_ns)
+    : options_(options), log_(log), state_(state), notifier_(notifier), heartbeat_(watchdog_ns, 0) {
     const sigset_t set = service_signals();
     signals_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
     thread_ = std::thread([this] { run(); });
@@ -62,7 +62,7 @@ void Service::run() {
         if (::poll(&readable, 1, look_ms) > 0) take_signals();
         const std::int64_t now_ns = clock.now_ns();
         guard(now_ns);
-        tell(now_ns);
+        notify_systemd(now_ns);
         feed(now_ns);
     }
 }
@@ -79,49 +79,49 @@ void Service::take_signals() {
 
 /// A good configuration ends the walk, and the main thread begins it anew; a bad one changes nothing.
 void Service::reload() {
-    if (standing_.leaving.load()) return;
+    if (state_.leaving.load()) return;
     const rt::RealClock clock;
     notifier_.send(fmt::format("RELOADING=1\nMONOTONIC_USEC={}", clock.now_ns() / 1000));
     Loaded loaded = load(options_);
     if (loaded.problems.empty()) {
-        log_.say(Priority::notice, event::reloading, "the configuration is read again, and the walk restarts with it",
-                 {{"SUREFOOT_CONFIG", options_.config_file}});
-        standing_.refuse({});
-        standing_.put_next(std::move(loaded.configuration));
+        log_.write(Priority::notice, event::reloading, "the configuration is read again, and the walk restarts with it",
+                   {{"SUREFOOT_CONFIG", options_.config_file}});
+        state_.refuse({});
+        state_.put_next(std::move(loaded.configuration));
         ready_ = false;
-        standing_.stop_walk.store(true);
+        state_.stop_walk.store(true);
         return;
     }
     std::string why;
     for (const Error& problem : loaded.problems) why += (why.empty() ? "" : "; ") + problem.text();
-    log_.say(Priority::error, event::refused, "the configuration is refused, the last good one stays in use: " + why,
-             {{"SUREFOOT_CONFIG", options_.config_file}});
-    standing_.refuse(why);
+    log_.write(Priority::error, event::refused, "the configuration is refused, the last good one stays in use: " + why,
+               {{"SUREFOOT_CONFIG", options_.config_file}});
+    state_.refuse(why);
     // Still opening: READY=1 comes with the first frame, as ever.
     if (ready_) send_status("READY=1\n");
 }
 
 void Service::leave(int signal) {
-    if (standing_.leaving.exchange(true)) return;
+    if (state_.leaving.exchange(true)) return;
     const rt::RealClock clock;
     leaving_since_ns_ = clock.now_ns();
-    standing_.stopping();
-    standing_.stop_walk.store(true);
+    state_.stopping();
+    state_.stop_walk.store(true);
     send_status("STOPPING=1\n");
-    told_ = Phase::stopping;
-    log_.say(Priority::info, event::stopping, fmt::format("ends, as {} asks", signal == SIGTERM ? "SIGTERM" : "SIGINT"));
+    notified_phase_ = Phase::stopping;
+    log_.write(Priority::info, event::stopping, fmt::format("ends, as {} asks", signal == SIGTERM ? "SIGTERM" : "SIGINT"));
 }
 
 void Service::send_status(const std::string& first) {
-    status_ = status_text(standing_.facts());
+    status_ = status_text(state_.facts());
     notifier_.send(first + "STATUS=" + one_line(status_));
-    told_ns_ = rt::RealClock().now_ns();
+    notified_ns_ = rt::RealClock().now_ns();
 }
 
-void Service::tell(std::int64_t now_ns) {
-    const Facts facts = standing_.facts();
-    if (facts.phase != told_) {
-        told_ = facts.phase;
+void Service::notify_systemd(std::int64_t now_ns) {
+    const Facts facts = state_.facts();
+    if (facts.phase != notified_phase_) {
+        notified_phase_ = facts.phase;
         if (facts.phase == Phase::opening) {
             ready_ = false;
             opening_since_ns_ = now_ns;
@@ -131,33 +131,33 @@ void Service::tell(std::int64_t now_ns) {
             heartbeat_.frames_begin(now_ns, facts.period_ns);
         }
     }
-    if (facts.phase == Phase::opening && now_ns - told_ns_ >= extend_every_ns &&
+    if (facts.phase == Phase::opening && now_ns - notified_ns_ >= extend_every_ns &&
         now_ns - opening_since_ns_ < facts.open_limit_ns) {
         send_status(fmt::format("EXTEND_TIMEOUT_USEC={}\n", extend_us));
     }
     if (facts.phase != Phase::walking) return;
-    if (!ready_ && facts.walk_frames > 0 && !standing_.stop_walk.load()) {
+    if (!ready_ && facts.walk_frames > 0 && !state_.stop_walk.load()) {
         ready_ = true;
         send_status("READY=1\n");
-        log_.say(Priority::notice, event::walking, fmt::format("walking {} at {}", facts.model, facts.in_short),
-                 {{"SUREFOOT_MODEL", facts.model}});
-    } else if (ready_ && now_ns - told_ns_ >= status_every_ns) {
+        log_.write(Priority::notice, event::walking, fmt::format("walking {} at {}", facts.model, facts.in_short),
+                   {{"SUREFOOT_MODEL", facts.model}});
+    } else if (ready_ && now_ns - notified_ns_ >= status_every_ns) {
         send_status({});
     }
 }
 
 void Service::feed(std::int64_t now_ns) {
-    if (told_ == Phase::stopping) return;
-    const Beat beat = heartbeat_.look(now_ns, standing_.frames());
+    if (notified_phase_ == Phase::stopping) return;
+    const Beat beat = heartbeat_.look(now_ns, state_.frames());
     if (beat.ping) notifier_.send("WATCHDOG=1");
     if (!beat.stalled && !beat.resumed) return;
-    standing_.stalled.store(beat.stalled);
+    state_.stalled.store(beat.stalled);
     if (beat.stalled) {
-        log_.say(Priority::error, event::stalled,
-                 fmt::format("no frame for {:.1f} s: the watchdog is no longer notified",
-                             static_cast<double>(heartbeat_.stall_ns()) * 1e-9));
+        log_.write(Priority::error, event::stalled,
+                   fmt::format("no frame for {:.1f} s: the watchdog is no longer notified",
+                               static_cast<double>(heartbeat_.stall_ns()) * 1e-9));
     } else {
-        log_.say(Priority::notice, event::resumed, "frames are presented again");
+        log_.write(Priority::notice, event::resumed, "frames are presented again");
     }
     send_status({});
 }
@@ -165,16 +165,16 @@ void Service::feed(std::int64_t now_ns) {
 void Service::guard(std::int64_t now_ns) {
     if (const auto runaway = rt::runaway_seen()) {
         const std::string who = runaway->tid != 0 ? fmt::format("thread {} ({})", runaway->name, runaway->tid) : "a thread";
-        log_.say(Priority::error, event::fault,
-                 fmt::format("{} ran without sleeping for too long; {}. The service ends and is restarted", who,
-                             runaway->demoted ? "its real-time priority was taken" : "it could not be stopped"),
-                 {{"SUREFOOT_FAULT", "runaway"}});
+        log_.write(Priority::error, event::fault,
+                   fmt::format("{} ran without sleeping for too long; {}. The service ends and is restarted", who,
+                               runaway->demoted ? "its real-time priority was taken" : "it could not be stopped"),
+                   {{"SUREFOOT_FAULT", "runaway"}});
         _exit(exit_runaway);
     }
     if (leaving_since_ns_ == 0 || now_ns - leaving_since_ns_ < stop_limit_ns) return;
     // What must be kept is on the disk already: a stop is written as it happens.
-    log_.say(Priority::warning, event::stopping,
-             "the walk does not end in time (a model is being opened, or the driver hangs): the service ends without it");
+    log_.write(Priority::warning, event::stopping,
+               "the walk does not end in time (a model is being opened, or the driver hangs): the service ends without it");
     _exit(exit_success);
 }
 

@@ -10,7 +10,7 @@
 #include "systemd/daemon/log.hpp"
 #include "systemd/daemon/notify.hpp"
 #include "systemd/daemon/options.hpp"
-#include "systemd/daemon/standing.hpp"
+#include "systemd/daemon/service_state.hpp"
 
 namespace surefoot::daemon {
 
@@ -22,7 +22,7 @@ class Service {
 public:
     /// Make it on a neutral thread, after block_service_signals(). All must outlive it. Once a stop has taken longer than it may,
     /// or a real-time thread has run away, the process ends here, whatever the other threads do.
-    Service(const Options& options, Log& log, Standing& standing, Notifier& notifier, std::int64_t watchdog_ns);
+    Service(const Options& options, Log& log, ServiceState& state, Notifier& notifier, std::int64_t watchdog_ns);
     ~Service();
     Service(const Service&) = delete;
     Service& operator=(const Service&) = delete;
@@ -32,21 +32,21 @@ private:
     void take_signals();
     void reload();
     void leave(int signal);
-    void tell(std::int64_t now_ns);
+    void notify_systemd(std::int64_t now_ns);
     void feed(std::int64_t now_ns);
     void guard(std::int64_t now_ns);
     void send_status(const std::string& first);
 
     const Options& options_;
     Log& log_;
-    Standing& standing_;
+    ServiceState& state_;
     Notifier& notifier_;
     Heartbeat heartbeat_;
     int signals_ = -1;
-    Phase told_ = Phase::stopping;  ///< the phase that systemd and the log know of
-    bool ready_ = false;            ///< of this walk
-    std::string status_;            ///< as told last
-    std::int64_t told_ns_ = 0, opening_since_ns_ = 0, leaving_since_ns_ = 0;
+    Phase notified_phase_ = Phase::stopping;  ///< the phase that systemd and the log know of
+    bool ready_ = false;                      ///< of this walk
+    std::string status_;                      ///< as told last
+    std::int64_t notified_ns_ = 0, opening_since_ns_ = 0, leaving_since_ns_ = 0;
     std::atomic<bool> ending_{false};
     std::thread thread_;
 };

@@ -325,8 +325,8 @@ TEST(ClusterCards, OfManyCrownsAreSomeOfThemLargerWithinTheLevelsErrors) {
     EXPECT_EQ(solid.parts[0].material, 1U);
     const std::vector<std::uint32_t> owners(all.vertices.size(), 0);
     ClusteringLimits limits;
-    limits.most = 40;
-    limits.least = 12;
+    limits.max_triangles = 40;
+    limits.min_triangles = 12;
     const LodChain grid = cluster_vertices(solid, owners, {true, true, true}, limits);
     const LodChain chain = with_cards(grid, solid, cards, {300, 20, 0.25F});
     ASSERT_GE(chain.levels.size(), 4U);

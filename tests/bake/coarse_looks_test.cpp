@@ -109,14 +109,14 @@ Geometry slab() {
 
 TEST(Corners, GoToTheVertexInTheirPlaceThatFacesAsTheirTriangleDoes) {
     Geometry g = slab();
-    const Places places(g);
+    const CoincidentVertices coincident(g);
     Level level;
     level.parts = g.parts;
     // As a simplifier leaves it: every corner of the front is one of an edge's.
     std::vector<std::uint32_t>& indices = level.parts[0].indices;
     std::size_t moved = 0;
     for (std::size_t i = 30; i < 36; ++i) {
-        for (const std::uint32_t other : places.with(indices[i])) {
+        for (const std::uint32_t other : coincident.with(indices[i])) {
             if (g.vertices[other].normal[2] != 0) continue;
             indices[i] = other;
             ++moved;
@@ -124,7 +124,7 @@ TEST(Corners, GoToTheVertexInTheirPlaceThatFacesAsTheirTriangleDoes) {
         }
     }
     ASSERT_EQ(moved, 6U);
-    mend_corners(g, places, level.parts[0]);
+    repair_corners(g, coincident, level.parts[0]);
     EXPECT_EQ(g.vertices.size(), 24U) << "there was one that fits";
     for (std::size_t i = 30; i < 36; ++i) {
         EXPECT_EQ(g.vertices[indices[i]].normal[2], 127);
@@ -138,7 +138,7 @@ TEST(Corners, WhereNoneFitsGetTheTrianglesNormalAndOtherMaterialsAreLeftAlone) {
     GeometryPart front{1, {g.parts[0].indices.end() - 6, g.parts[0].indices.end()}};
     g.parts[0].indices.resize(30);
     g.parts.push_back(front);
-    const Places places(g);
+    const CoincidentVertices coincident(g);
     const auto at = [&](int axis, const vec3& place) {  // of the face across that axis
         for (std::uint32_t v = 0; v < 20; ++v)
             if (g.vertices[v].normal[axis] != 0 && position_of(g.vertices[v]) == place) return v;
@@ -146,7 +146,7 @@ TEST(Corners, WhereNoneFitsGetTheTrianglesNormalAndOtherMaterialsAreLeftAlone) {
     };
     GeometryPart part{0, {at(0, {-0.5F, -1, 0.025F}), at(1, {0.5F, -1, 0.025F}), at(0, {0.5F, 1, 0.025F})}};
     for (const std::uint32_t i : part.indices) ASSERT_NE(i, model::none);
-    mend_corners(g, places, part);
+    repair_corners(g, coincident, part);
     for (const std::uint32_t i : part.indices) {
         EXPECT_GE(i, 24U);
         EXPECT_EQ(std::abs(g.vertices[i].normal[2]), 127);
@@ -186,11 +186,11 @@ TEST(Corners, ThatAreBentInTheFullDetailStayBent) {
         v.normal[0] = v.normal[2] = 0;
         v.normal[1] = 127;
     }
-    const Places places(g);
+    const CoincidentVertices coincident(g);
     GeometryPart part{0, g.parts[0].indices};
     part.indices = {part.indices.end() - 6, part.indices.end()};
     const std::vector<std::uint32_t> before = part.indices;
-    mend_corners(g, places, part);
+    repair_corners(g, coincident, part);
     EXPECT_EQ(part.indices, before);
 }
 

@@ -18,9 +18,9 @@ TEST(Limits, TheMostOfEachIsAllowedAndOneMoreIsRefusedByName) {
         std::uint64_t most;
         const char* name;
     };
-    constexpr std::uint64_t signed_most = 0x7fffffff, most = 0xffffffff;
+    constexpr std::uint64_t signed_max = 0x7fffffff, most = 0xffffffff;
     for (const Case& c :
-         {Case{&Counts::vertices, signed_most, "vertices"}, Case{&Counts::indices, most, "indices"},
+         {Case{&Counts::vertices, signed_max, "vertices"}, Case{&Counts::indices, most, "indices"},
           Case{&Counts::parts, most, "parts"}, Case{&Counts::placements, most, "placements"},
           Case{&Counts::materials, most, "materials"}, Case{&Counts::representations, most, "representations"},
           Case{&Counts::nodes, most, "nodes"}, Case{&Counts::name_bytes, most, "bytes of names"},

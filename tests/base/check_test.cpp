@@ -51,13 +51,13 @@ TEST(CheckRare, CountsAndGoesOn) {
     EXPECT_EQ(rare_check_count() - before, 4U);
 }
 
-bool met(int number) { return CHECK_RARE(number < 0, "nobody comes"); }
+bool came(int number) { return CHECK_RARE(number < 0, "nobody comes"); }
 
 TEST(CheckRare, ManyThreadsAtAPlaceAreCountedEachTime) {
     std::vector<std::thread> threads;
     for (int i = 0; i < 4; ++i) {
         threads.emplace_back([] {
-            for (int k = 0; k < 1000; ++k) (void)met(k);
+            for (int k = 0; k < 1000; ++k) (void)came(k);
         });
     }
     for (std::thread& t : threads) t.join();
@@ -67,25 +67,25 @@ TEST(CheckRare, ManyThreadsAtAPlaceAreCountedEachTime) {
 TEST(AnnotatedMutex, ConditionWaitsUntilToldOrUntilItsDeadline) {
     Mutex mutex;
     Condition changed;
-    bool told = false;
+    bool notified = false;
     {
         const MutexLock lock(mutex);
         while (changed.wait_until(mutex, std::chrono::steady_clock::now() - std::chrono::seconds(1))) {
         }
     }
-    std::thread teller([&] {
+    std::thread notifier([&] {
         const MutexLock lock(mutex);
-        told = true;
+        notified = true;
         changed.notify_all();
     });
     {
         const MutexLock lock(mutex);
         const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-        while (!told && changed.wait_until(mutex, deadline)) {
+        while (!notified && changed.wait_until(mutex, deadline)) {
         }
-        EXPECT_TRUE(told);
+        EXPECT_TRUE(notified);
     }
-    teller.join();
+    notifier.join();
 }
 
 }  // namespace

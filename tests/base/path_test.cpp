@@ -63,19 +63,19 @@ TEST_F(PathTest, MissingLastColumnMeansSixtyDegrees) {
 }
 
 TEST_F(PathTest, BadRowsAreRefusedWithTheirLine) {
-    refused("0,0,0,0,0,0,0,1\n1,0,abc,0,0,0,0,1\n", ":2", "'abc' is not a number");
+    refused("0,0,0,0,0,0,0,1\n1,0,abc,0,0,0,0,1\n", ":2", "Column 3 holds 'abc', which is not a number");
     refused("# c\n\n0,0,0,nan,0,0,0,1\n", ":3", "not finite");
     refused("0,0,0,inf,0,0,0,1\n", ":1", "not finite");
     refused("0,0,0,1e999,0,0,0,1\n", ":1", "not finite");
-    refused("0,0,0,0,0,0,0,1\n1e300,0,0,0,0,0,0,1\n", ":2", "column 1: 1e300 is beyond");
-    refused("0,0,-1e300,0,0,0,0,1\n", ":1", "column 3: -1e300 is beyond");
-    refused("0,0,0,0,1e300,0,0,1\n", ":1", "column 5: 1e300 is beyond");
+    refused("0,0,0,0,0,0,0,1\n1e300,0,0,0,0,0,0,1\n", ":2", "Column 1 holds 1e300, which is beyond");
+    refused("0,0,-1e300,0,0,0,0,1\n", ":1", "Column 3 holds -1e300, which is beyond");
+    refused("0,0,0,0,1e300,0,0,1\n", ":1", "Column 5 holds 1e300, which is beyond");
     refused("0,0,0,0,0,0,0,0\n", ":1", "quaternion");
     refused("0,0,0,0,0,0,0\n", ":1", "7 columns");
     refused("0,0,0,0,0,0,0,1,60,4\n", ":1", "10 columns");
     refused("0,0,0,0,0,0,0,1\n0,0,0,0,0,0,0,1\n", ":2", "does not come after");
     refused("# fov_y_deg\n0,0,0,0,0,0,0,1,180\n", ":2", "fov_y_deg");
-    refused("0,0,0,0,0,0,0,\n", ":1", "column 8");
+    refused("0,0,0,0,0,0,0,\n", ":1", "Column 8");
     refused("", "", "no poses");
     refused("# only a comment\n", "", "no poses");
 }

@@ -65,7 +65,7 @@ void BlameStages::select(rt::FrameRecord& r) {
 void BlameStages::submit(rt::FrameRecord& r) {
     if (now(r, rt::Cause::preempted)) {
         const std::int64_t from_ns = clock_.now_ns() + ms;
-        blocker_.ask(from_ns, 0, from_ns + extra_ns(r.frame));
+        blocker_.schedule(from_ns, 0, from_ns + extra_ns(r.frame));
         blocking_ = true;
     }
     clock_.burn_ns(3 * ms);
@@ -93,7 +93,7 @@ bool BlameStages::stopped_for(std::int64_t ns) {
 }
 
 void BlameStages::finish(rt::FrameRecord& r) {
-    rasteriser_.ask(0, 3 * ms + (now(r, rt::Cause::raster) ? extra_ns(r.frame) : 0), 0);
+    rasteriser_.schedule(0, 3 * ms + (now(r, rt::Cause::raster) ? extra_ns(r.frame) : 0), 0);
     rasteriser_.finish();
     r.rastered_ns = clock_.now_ns();
     clock_.burn_ns(ms / 10);
@@ -123,7 +123,7 @@ void BlameStages::account(rt::FrameRecord& r) {
     if (cause_ == rt::Cause::page_fault && injected(r.frame + 2)) pages_.renew();
     if (cause_ == rt::Cause::woken_late && injected(r.frame + 1)) {
         const std::int64_t due_ns = r.due_ns + period_ns;
-        blocker_.ask(due_ns - ms, 0, due_ns + extra_ns(r.frame + 1));
+        blocker_.schedule(due_ns - ms, 0, due_ns + extra_ns(r.frame + 1));
         blocking_ = true;
     }
 }

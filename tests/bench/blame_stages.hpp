@@ -26,13 +26,13 @@ namespace surefoot::bench {
 class Helper {
 public:
     explicit Helper(const rt::Placement& placement) {
-        sem_init(&asked_, 0, 0);
+        sem_init(&requested_, 0, 0);
         sem_init(&done_, 0, 0);
         thread_ = std::thread([this, placement] {
             if (!rt::place_thread(0, placement)) misplaced_ = true;
             tid_ = rt::own_tid();
             sem_post(&done_);
-            for (wait(asked_); !ending_; wait(asked_)) {
+            for (wait(requested_); !ending_; wait(requested_)) {
                 clock_.sleep_until_ns(from_ns_);
                 if (cpu_ns_ > 0) clock_.burn_ns(cpu_ns_);
                 while (clock_.now_ns() < until_ns_) {
@@ -44,18 +44,18 @@ public:
     }
     ~Helper() {
         ending_ = true;
-        sem_post(&asked_);
+        sem_post(&requested_);
         thread_.join();
     }
     Helper(const Helper&) = delete;
     Helper& operator=(const Helper&) = delete;
 
     /// From from_ns on: burns so much CPU time, and spins until until_ns.
-    void ask(std::int64_t from_ns, std::int64_t cpu_ns, std::int64_t until_ns) {
+    void schedule(std::int64_t from_ns, std::int64_t cpu_ns, std::int64_t until_ns) {
         from_ns_ = from_ns;
         cpu_ns_ = cpu_ns;
         until_ns_ = until_ns;
-        sem_post(&asked_);
+        sem_post(&requested_);
     }
     void finish() { wait(done_); }
     [[nodiscard]] pid_t tid() const { return tid_; }
@@ -67,7 +67,7 @@ private:
         }
     }
     rt::RealClock clock_;
-    sem_t asked_{}, done_{};
+    sem_t requested_{}, done_{};
     std::atomic<bool> ending_{false};
     bool misplaced_ = false;
     std::int64_t from_ns_ = 0, cpu_ns_ = 0, until_ns_ = 0;
@@ -89,12 +89,12 @@ public:
         // At once, also where the machine is busy: a stop that falls on another frame teaches nothing.
         (void)rt::place_thread(0, {.policy = rt::Policy::fifo, .priority = 95, .cpus = {}, .name = "stopper"});
         rt::RealClock clock;
-        Wish wish;
-        while (read(ends_[0], &wish, sizeof wish) == sizeof wish) {
+        StopRequest request;
+        while (read(ends_[0], &request, sizeof request) == sizeof request) {
             // To the thread that runs: the process's own would be taken by the main thread, which waits its turn where the
             // machine is busy.
-            syscall(SYS_tgkill, parent, wish.thread, SIGSTOP);
-            clock.sleep_until_ns(clock.now_ns() + wish.for_ns);
+            syscall(SYS_tgkill, parent, request.thread, SIGSTOP);
+            clock.sleep_until_ns(clock.now_ns() + request.for_ns);
             kill(parent, SIGCONT);
         }
         _exit(0);
@@ -108,12 +108,12 @@ public:
     Stopper& operator=(const Stopper&) = delete;
     /// Stops the whole process, through the calling thread.
     void stop_for(std::int64_t ns) {
-        const Wish wish{ns, static_cast<pid_t>(syscall(SYS_gettid))};
-        (void)!write(ends_[1], &wish, sizeof wish);
+        const StopRequest request{ns, static_cast<pid_t>(syscall(SYS_gettid))};
+        (void)!write(ends_[1], &request, sizeof request);
     }
 
 private:
-    struct Wish {
+    struct StopRequest {
         std::int64_t for_ns = 0;
         pid_t thread = 0;
     };

@@ -1,6 +1,6 @@
 // Bench: predicted against measured whole-frame cost on random poses, online correction frozen at 1.
-// Each is drawn in eight rounds, and counts as measure::settle() says; beside it, how far apart two measurements of one frame
-// are here, once round for round and once settled over four rounds each: no prediction can be nearer than that.
+// Each is drawn in eight rounds, and counts as measure::robust_frame_times() says; beside it, how two measurements differ
+// here, once round for round and once by robust_frame_times() over four rounds each: no prediction can be nearer than that.
 // bench_whole_frame_cost MODEL.walk [POSES 500] [PATH.csv] [STATE_DIR] [fitted|table] [LIFT_M] -> one JSON object.
 #include <fmt/format.h>
 
@@ -131,9 +131,9 @@ int main(int argc, char** argv) {
 
     constexpr int rounds = 8;
     const Rounds frames = drawn(**engine, path->path, static_cast<std::size_t>(poses), rounds);
-    const measure::Settled settled = measure::settle(frames);
+    const measure::FrameTimes frame_times = measure::robust_frame_times(frames);
     std::vector<double> took, predicted, ratios, at_speed;
-    for (const measure::FrameSample& f : settled.frames) {
+    for (const measure::FrameSample& f : frame_times.frames) {
         took.push_back(f.actual_us);
         predicted.push_back(
             static_cast<double>(costs->combine.frame_us(static_cast<float>(f.submit_us), static_cast<float>(f.raster_us))));
@@ -149,7 +149,8 @@ int main(int argc, char** argv) {
         "{}}}}}\n",
         argv[1], poses, quantiles_json(relative_errors(predicted, took)), quantiles_json(relative_errors(at_speed, took)),
         quantile_of(ratios, 0.1), speed, quantile_of(ratios, 0.9), 1e-3 * quantile_of(took, 0.5), 1e-3 * quantile_of(took, 0.9),
-        settled.slowdown, settled.repeated, quantiles_json(apart(round_of(frames, 1), round_of(frames, rounds - 1))),
-        quantiles_json(apart(measure::settle(half_of(frames, 0)).frames, measure::settle(half_of(frames, 1)).frames)));
+        frame_times.slowdown, frame_times.repeated, quantiles_json(apart(round_of(frames, 1), round_of(frames, rounds - 1))),
+        quantiles_json(apart(measure::robust_frame_times(half_of(frames, 0)).frames,
+                             measure::robust_frame_times(half_of(frames, 1)).frames)));
     return 0;
 }

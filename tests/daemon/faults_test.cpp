@@ -15,7 +15,7 @@ TEST(Faults, TheWatchdogStarvesWhileTheFrameThreadAloneIsFrozen) {
     Running daemon("freeze");
     daemon.environment = {{"WATCHDOG_USEC", "800000"}};  // a ping every 0.2 s
     daemon.start();
-    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.log_text();
     for (int ping = 0; ping < 3; ++ping)
         ASSERT_TRUE(daemon.socket.wait_for("WATCHDOG=1", 5)) << "not fed: " << daemon.socket.text();
 
@@ -36,16 +36,16 @@ TEST(Faults, TheWatchdogStarvesWhileTheFrameThreadAloneIsFrozen) {
     daemon.socket.listen(1.0);  // longer than systemd waits
     EXPECT_EQ(daemon.socket.count("WATCHDOG=1", stalled_from), 0U) << daemon.socket.text();
     EXPECT_EQ(daemon.socket.count("STATUS=NO FRAMES COME"), 1U) << daemon.socket.text();
-    EXPECT_EQ(daemon.lines_with("no frame for"), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("no frame for"), 1) << daemon.log_text();
 
     ASSERT_EQ(::ptrace(PTRACE_DETACH, frame, nullptr, nullptr), 0);
     EXPECT_TRUE(daemon.socket.wait_for("WATCHDOG=1", 5)) << "recovery does not resume the pings: " << daemon.socket.text();
     EXPECT_TRUE(daemon.socket.wait_for("STATUS=walking", 5)) << "the status still says that none come: " << daemon.socket.text();
-    EXPECT_EQ(daemon.lines_with("frames are presented again"), 1) << daemon.said();
-    EXPECT_TRUE(daemon.wait_line("missed", missed_before, 20)) << "a burst is told once it is over: " << daemon.said();
+    EXPECT_EQ(daemon.lines_with("frames are presented again"), 1) << daemon.log_text();
+    EXPECT_TRUE(daemon.wait_line("missed", missed_before, 20)) << "a burst is told once it is over: " << daemon.log_text();
     ::kill(daemon.pid, SIGTERM);
     EXPECT_EQ(daemon.wait_exit(20), exit_success);
-    EXPECT_EQ(daemon.lines_with("missed") - missed_before, 1) << "one line for the whole burst: " << daemon.said();
+    EXPECT_EQ(daemon.lines_with("missed") - missed_before, 1) << "one line for the whole burst: " << daemon.log_text();
 }
 
 TEST(Faults, AThreadThatNeverSleepsEndsItWithinASecond) {
@@ -54,22 +54,22 @@ TEST(Faults, AThreadThatNeverSleepsEndsItWithinASecond) {
     Running daemon("runaway");
     daemon.environment = {{"SUREFOOT_TEST_FAULT", "runaway"}};
     daemon.start({}, {}, SUREFOOT_DAEMON_WITH_FAULTS);
-    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.log_text();
     // It runs away 40 frames of 20 ms after the first.
     const std::int64_t ready_ns = daemon.socket.all.back().at_ns;
-    ASSERT_EQ(daemon.wait_exit(20), exit_runaway) << daemon.said();
-    EXPECT_LT(NotifySocket::now_ns() - ready_ns, 1'900'000'000) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("thread sf-frame"), 1) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("real-time priority was taken"), 1) << daemon.said();
+    ASSERT_EQ(daemon.wait_exit(20), exit_runaway) << daemon.log_text();
+    EXPECT_LT(NotifySocket::now_ns() - ready_ns, 1'900'000'000) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("thread sf-frame"), 1) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("real-time priority was taken"), 1) << daemon.log_text();
 }
 
 TEST(Faults, ALostContextHasItsOwnExitCode) {
     Running daemon("context-lost");
     daemon.environment = {{"SUREFOOT_TEST_FAULT", "context-lost"}};
     daemon.start({}, {}, SUREFOOT_DAEMON_WITH_FAULTS);
-    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
-    EXPECT_EQ(daemon.wait_exit(20), exit_unavailable) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("graphics context: The context was lost while walking"), 1) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.log_text();
+    EXPECT_EQ(daemon.wait_exit(20), exit_unavailable) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("graphics context: The context was lost while walking"), 1) << daemon.log_text();
 }
 
 TEST(Faults, AStateFolderThatCannotBeWrittenIsKnownAtTheStart) {
@@ -78,16 +78,16 @@ TEST(Faults, AStateFolderThatCannotBeWrittenIsKnownAtTheStart) {
     // A file stands where the folder should be: not even root can write below it.
     EXPECT_TRUE(write_text(daemon.dir + "/file", "").ok());
     daemon.start({"--set", "state=" + daemon.dir + "/file"});
-    EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("The emergency stop cannot be stored in the state folder"), 1) << daemon.said();
+    EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("The emergency stop cannot be stored in the state folder"), 1) << daemon.log_text();
 }
 
 TEST(Faults, AFullDiskIsKnownAtTheStart) {
     Running daemon("full-disk");
     daemon.write_config("input = \"devices\"\n");
     daemon.start({}, {.file_bytes = 3000});  // enough for what it says, not for a page
-    EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("The emergency stop cannot be stored in the state folder"), 1) << daemon.said();
+    EXPECT_EQ(daemon.wait_exit(start_s), exit_cannot_write) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("The emergency stop cannot be stored in the state folder"), 1) << daemon.log_text();
 }
 
 }  // namespace

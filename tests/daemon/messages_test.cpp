@@ -97,14 +97,14 @@ TEST(Journal, AFullSocketDropsAndTheNextLineSaysHowMany) {
     target.journal_socket = name;
     Log log(target);
     const std::int64_t before = NotifySocket::now_ns();
-    int said = 0;
-    for (; said < 100'000 && log.dropped() < 5; ++said) log.say(Priority::info, event::input, "a line");
+    int sent = 0;
+    for (; sent < 100'000 && log.dropped() < 5; ++sent) log.write(Priority::info, event::input, "a line");
     ASSERT_EQ(log.dropped(), 5U) << "the socket never filled, so nothing was shown";
     EXPECT_LT(NotifySocket::now_ns() - before, 5'000'000'000) << "it waited";
     journal.take_all();
-    EXPECT_EQ(journal.all.size(), static_cast<std::size_t>(said - 5));
-    log.say(Priority::info, event::input, "after");
-    log.say(Priority::info, event::input, "last");
+    EXPECT_EQ(journal.all.size(), static_cast<std::size_t>(sent - 5));
+    log.write(Priority::info, event::input, "after");
+    log.write(Priority::info, event::input, "last");
     ASSERT_TRUE(journal.wait_for("last", 1));
     EXPECT_TRUE(journal.all[journal.all.size() - 2].has("SUREFOOT_DROPPED_LINES=5\n"));
     EXPECT_FALSE(journal.all.back().has("DROPPED")) << "told once";
@@ -117,12 +117,12 @@ TEST(PlainLog, IsAPrefixedLineAndNeverWaits) {
     target.fd = pipe[1];
     {
         Log log(target);
-        log.say(Priority::error, event::fault, "broken\nin two");
+        log.write(Priority::error, event::fault, "broken\nin two");
         std::array<char, 200> bytes{};
         const ssize_t got = ::read(pipe[0], bytes.data(), bytes.size());
         EXPECT_EQ(std::string(bytes.data(), static_cast<std::size_t>(got)), "<3>surefootd: broken in two\n");
         const std::string long_line(1000, 'x');
-        for (int i = 0; i < 200; ++i) log.say(Priority::info, event::input, long_line);  // 200 kB into 64 kB
+        for (int i = 0; i < 200; ++i) log.write(Priority::info, event::input, long_line);  // 200 kB into 64 kB
         EXPECT_GT(log.dropped(), 100U);
     }
     ::close(pipe[0]);

@@ -30,15 +30,15 @@ TEST(Monitoring, FiguresAreServedAndGoOnOverAReload) {
     Running daemon("monitored");
     daemon.environment = {{"RUNTIME_DIRECTORY", daemon.dir}};
     daemon.start();
-    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.log_text();
     const std::string socket = daemon.dir + "/surefoot.sock";
     EXPECT_NE(page(socket, "/metrics").find("surefoot_frames_total"), std::string::npos);
     EXPECT_NE(page(socket, "/status.json").find("forest.walk"), std::string::npos);
     ::kill(daemon.pid, SIGHUP);
-    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.log_text();
     EXPECT_NE(page(socket, "/status.json").find("walking"), std::string::npos) << "the same socket, after the walk began anew";
     ::kill(daemon.pid, SIGTERM);
-    EXPECT_EQ(daemon.wait_exit(20), exit_success) << daemon.said();
+    EXPECT_EQ(daemon.wait_exit(20), exit_success) << daemon.log_text();
     EXPECT_FALSE(std::filesystem::exists(socket)) << "nothing is left behind";
 }
 
@@ -46,8 +46,8 @@ TEST(Monitoring, AnAddressThatCannotBeHadCostsTheFiguresAndNotTheWalk) {
     Running daemon("unmonitored");
     daemon.write_config("monitor = \"unix:" + daemon.dir + "/absent/s.sock\"\n");
     daemon.start();
-    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
-    EXPECT_EQ(daemon.lines_with("the monitor cannot start, the walk goes on"), 1) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("the monitor cannot start, the walk goes on"), 1) << daemon.log_text();
 }
 
 TEST(Monitoring, AnAddressThatIsNoneIsRefusedByLine) {
@@ -55,7 +55,7 @@ TEST(Monitoring, AnAddressThatIsNoneIsRefusedByLine) {
     daemon.write_config("monitor = \"0.0.0.0:80\"\n");
     daemon.start();
     EXPECT_EQ(daemon.wait_exit(start_s), exit_config);
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:5, monitor: "), 1) << daemon.said();
+    EXPECT_EQ(daemon.lines_with("surefoot.toml:5, monitor: "), 1) << daemon.log_text();
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ constexpr bool memory_counts = true;
 constexpr int warm_up = 3, usual_reloads = 12;
 #endif
 // Software GL keeps some of every context (Mesa 22.3: up to 140 KiB); our own parts nothing.
-constexpr std::int64_t most_kib_a_reload = 16, most_kib_a_reload_gl = 256;
+constexpr std::int64_t max_kib_a_reload = 16, max_kib_a_reload_gl = 256;
 
 // What rt::prefault_heap() touches of the frame thread's own heap. Which of glibc's heaps that is, is glibc's choice in every
 // walk, and a heap stays as large as it was: locked memory rises by so much once for each heap, and never again. By less where
@@ -71,7 +71,7 @@ std::string why_not_opened(const char* library) {
 }
 
 /// The least of each: what comes and goes is no growth.
-Held least_of(const Held& a, const Held& b) {
+Held min_of(const Held& a, const Held& b) {
     return {std::min(a.descriptors, b.descriptors), std::min(a.threads, b.threads), std::min(a.resident_kib, b.resident_kib)};
 }
 
@@ -88,8 +88,8 @@ TEST_P(Growth, OfManyReloadsIsNone) {
         if (absent) GTEST_SKIP() << why << "; apt install " << (backend == "egl" ? "libegl1" : "libosmesa6");
         ASSERT_EQ(why, "");
     }
-    const char* asked = std::getenv("SUREFOOT_RELOADS");
-    const int reloads = asked != nullptr ? std::max(usual_reloads, std::atoi(asked)) : usual_reloads;
+    const char* requested = std::getenv("SUREFOOT_RELOADS");
+    const int reloads = requested != nullptr ? std::max(usual_reloads, std::atoi(requested)) : usual_reloads;
     const int few = reloads / 3;
     Running daemon("reload-growth-" + backend);
     // In turns another size: nothing of the last walk fits the next.
@@ -99,19 +99,19 @@ TEST_P(Growth, OfManyReloadsIsNone) {
     };
     config(0);
     daemon.start();
-    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.said();
+    ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.log_text();
     const Held all{1'000'000, 1'000'000, 1'000'000'000};
     Held before = all, between = all, after = all;  // least of each third of the walks after the warm-up
     for (int n = 1; n <= warm_up + reloads; ++n) {
         config(n);
         ::kill(daemon.pid, SIGHUP);
-        ASSERT_TRUE(daemon.socket.wait_for("RELOADING=1", 5)) << daemon.said();
-        ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << "reload " << n << ": " << daemon.said();
+        ASSERT_TRUE(daemon.socket.wait_for("RELOADING=1", 5)) << daemon.log_text();
+        ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << "reload " << n << ": " << daemon.log_text();
         ASSERT_TRUE(daemon.socket.all.back().has(size(n))) << "refused, or taken back: " << daemon.socket.text();
         const Held held = held_by(daemon.pid);
         if (n <= warm_up) continue;
         Held& third = n <= warm_up + few ? before : n <= warm_up + reloads - few ? between : after;
-        third = least_of(third, held);
+        third = min_of(third, held);
     }
     std::printf(
         "%s, %d reloads: descriptors %ld to %ld, threads %ld to %ld, resident %ld, %ld, %ld KiB beside %ld heaps of 16 MiB\n",
@@ -123,13 +123,13 @@ TEST_P(Growth, OfManyReloadsIsNone) {
     EXPECT_LE(after.descriptors, before.descriptors);
     EXPECT_LE(after.threads, before.threads);
     if (memory_counts) {
-        const std::int64_t most_kib = backend == "null" ? most_kib_a_reload : most_kib_a_reload_gl;
+        const std::int64_t max_kib = backend == "null" ? max_kib_a_reload : max_kib_a_reload_gl;
         const std::int64_t first = between.resident_kib - before.resident_kib, then = after.resident_kib - between.resident_kib;
-        EXPECT_LE(first + then, most_kib * (reloads - few) + rest_of_a_walk_kib);
-        EXPECT_LE(std::min(first, then), most_kib * few) << "it grows on and on: by " << first << " KiB, then by " << then;
+        EXPECT_LE(first + then, max_kib * (reloads - few) + rest_of_a_walk_kib);
+        EXPECT_LE(std::min(first, then), max_kib * few) << "it grows on and on: by " << first << " KiB, then by " << then;
     }
     ::kill(daemon.pid, SIGTERM);
-    EXPECT_EQ(daemon.wait_exit(10), 0) << daemon.said();
+    EXPECT_EQ(daemon.wait_exit(10), 0) << daemon.log_text();
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, Growth, testing::Values("null", "egl", "osmesa"),

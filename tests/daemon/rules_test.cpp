@@ -3,7 +3,7 @@
 
 #include "systemd/daemon/heartbeat.hpp"
 #include "systemd/daemon/misses.hpp"
-#include "systemd/daemon/standing.hpp"
+#include "systemd/daemon/service_state.hpp"
 
 namespace surefoot::daemon {
 namespace {
@@ -97,28 +97,28 @@ rt::FrameRecord frame(std::uint64_t slot, bool missed, rt::Cause cause = rt::Cau
 
 TEST(Bursts, AreOneLineEach) {
     Bursts bursts;
-    std::vector<Burst> told;
+    std::vector<Burst> reported;
     std::uint64_t slot = 0;
     const auto pass = [&](int count, bool missed, rt::Cause cause = rt::Cause::none) {
         for (int i = 0; i < count; ++i) {
-            if (auto burst = bursts.add(frame(slot++, missed, cause))) told.push_back(*burst);
+            if (auto burst = bursts.add(frame(slot++, missed, cause))) reported.push_back(*burst);
         }
     };
     pass(100, false);
-    EXPECT_TRUE(told.empty());
+    EXPECT_TRUE(reported.empty());
     pass(3, true, rt::Cause::raster);
     pass(20, false);
     pass(1, true, rt::Cause::stolen);
     pass(49, false);
-    EXPECT_TRUE(told.empty()) << "a second has not passed";
+    EXPECT_TRUE(reported.empty()) << "a second has not passed";
     pass(200, false);
-    ASSERT_EQ(told.size(), 1U);
-    EXPECT_EQ(told[0].misses, 4U);
-    EXPECT_EQ(told[0].own_misses, 3U);
-    EXPECT_EQ(told[0].first_slot, 100U);
-    EXPECT_EQ(told[0].last_slot, 123U);
-    EXPECT_EQ(told[0].main_cause(), rt::Cause::raster);
-    EXPECT_EQ(told[0].text(), "4 frames missed in 0.5 s, at worst 3.0 ms late: stolen 1, raster 3");
+    ASSERT_EQ(reported.size(), 1U);
+    EXPECT_EQ(reported[0].misses, 4U);
+    EXPECT_EQ(reported[0].own_misses, 3U);
+    EXPECT_EQ(reported[0].first_slot, 100U);
+    EXPECT_EQ(reported[0].last_slot, 123U);
+    EXPECT_EQ(reported[0].main_cause(), rt::Cause::raster);
+    EXPECT_EQ(reported[0].text(), "4 frames missed in 0.5 s, at worst 3.0 ms late: stolen 1, raster 3");
     EXPECT_FALSE(bursts.finish()) << "none is open";
 }
 
@@ -136,10 +136,10 @@ TEST(Bursts, AFrameThatTookSecondsAndTheSlotsItCostAreOne) {
 
 TEST(Bursts, EveryMissIsInExactlyOneLineAndALongOneIsToldByTheMinute) {
     Bursts bursts;
-    std::uint64_t told = 0, lines = 0, skipped = 0;
+    std::uint64_t reported = 0, lines = 0, skipped = 0;
     for (std::uint64_t slot = 0; slot < 50 * 300; ++slot) {
         if (auto burst = bursts.add(frame(slot, slot % 3 == 0, rt::Cause::submit, slot % 100 == 1 ? 2 : 0))) {
-            told += burst->misses;
+            reported += burst->misses;
             skipped += burst->skipped;
             ++lines;
             EXPECT_TRUE(burst->goes_on);
@@ -150,7 +150,7 @@ TEST(Bursts, EveryMissIsInExactlyOneLineAndALongOneIsToldByTheMinute) {
     const auto rest = bursts.finish();
     ASSERT_TRUE(rest);
     EXPECT_FALSE(rest->goes_on);
-    EXPECT_EQ(told + rest->misses, 5000U);
+    EXPECT_EQ(reported + rest->misses, 5000U);
     EXPECT_EQ(skipped + rest->skipped, 300U);
 }
 
@@ -164,12 +164,12 @@ TEST(Status, SaysTheMostImportantFirst) {
     f.skipped = 1;
     EXPECT_EQ(status_text(f), "walking lobby.walk (60 Hz, 1280x720, egl): 1000 frames, 2 missed, 1 slots skipped");
     f.lacks = {"SCHED_FIFO is refused", "no isolated core among 0-1"};
-    f.refused = "s.toml:3: unknown key 'x'";
+    f.refused = "s.toml:3: The key 'x' is unknown";
     f.uncalibrated = true;
     EXPECT_EQ(
         status_text(f),
         "walking lobby.walk (60 Hz, 1280x720, egl): 1000 frames, 2 missed, 1 slots skipped; the configuration was refused, the "
-        "last good one is in use: s.toml:3: unknown key 'x'; not fully real-time: SCHED_FIFO is refused, no isolated core "
+        "last good one is in use: s.toml:3: The key 'x' is unknown; not fully real-time: SCHED_FIFO is refused, no isolated core "
         "among 0-1; uncalibrated");
     f.stalled = true;
     EXPECT_TRUE(status_text(f).starts_with("NO FRAMES COME; "));

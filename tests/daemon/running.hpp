@@ -129,7 +129,7 @@ public:
         ::close(changes);
         return found;
     }
-    [[nodiscard]] std::string said() const { return text_of(dir + "/stderr"); }
+    [[nodiscard]] std::string log_text() const { return text_of(dir + "/stderr"); }
     [[nodiscard]] std::string printed() const { return text_of(dir + "/stdout"); }
     /// Lines of stderr that hold the words.
     [[nodiscard]] int lines_with(std::string_view words) const {

@@ -1,4 +1,4 @@
-// The frame's own code allocates nothing . operator new is counted: our code and the standard library use it, and so
+// The frame's own code allocates nothing. operator new is counted: our code and the standard library use it, and so
 // does the driver's compiler, while the driver's C code calls malloc.
 
 #include <gtest/gtest.h>

@@ -111,7 +111,7 @@ TEST(NullDevice, charges_exactly_what_prepare_predicts_of_parts) {
     };
     EXPECT_DOUBLE_EQ(charged, frame_us(item_costs.of(node - 1, box, dvec3(0), scale)));
     std::array<float, 2> of_part{};
-    ASSERT_TRUE(model::Surfaces(scene.model).part_pixels(scene.model, node - 1, box, dvec3(0), scale, of_part));
+    ASSERT_TRUE(model::PixelEstimator(scene.model).part_pixels(scene.model, node - 1, box, dvec3(0), scale, of_part));
     const float whole = of_part[0] + of_part[1];
     ASSERT_GT(whole, 1e5F);
     EXPECT_LT(charged, 0.8 * frame_us(costs.item(4, whole, dear))) << "not all of it by the dear class";

@@ -59,7 +59,7 @@ TEST(House, ForbiddenArrowsAreFound) {
     EXPECT_NE(include_problem("render/draw/tables.cpp", "render/gl/device.hpp"), "");
     EXPECT_NE(include_problem("render/gl/device.cpp", "render/effects/effects.hpp"), "");
     EXPECT_NE(include_problem("render/prepare/prepare.cpp", "render/select/select.hpp"), "");
-    EXPECT_NE(include_problem("render/select/search.cpp", "rt/frame/record.hpp"), "");
+    EXPECT_NE(include_problem("render/select/depth_first.cpp", "rt/frame/record.hpp"), "");
     EXPECT_NE(include_problem("config/schema.cpp", "render/engine.hpp"), "");
     EXPECT_NE(include_problem("rt/base/file.cpp", "rt/frame/record.hpp"), "");
     EXPECT_NE(include_problem("rt/frame/loop.cpp", "config/settings.hpp"), "");

@@ -162,7 +162,7 @@ TEST(Names, ThatAreRepeatedAreFound) {
     EXPECT_EQ(found("tools/cli/x.cpp", R"("surefoot bake lobby.glb")"), "");
     EXPECT_EQ(found("tools/cli/x.cpp", R"(a();  // "flat")"), "");
     EXPECT_EQ(found("tools/cli/x.cpp", R"("a flat roof", "two-stages")"), "");
-    EXPECT_EQ(found("render/select/fixed.cpp", R"("distance")"), "");
+    EXPECT_EQ(found("render/select/flat_distance.cpp", R"("distance")"), "");
     EXPECT_EQ(found("render/selection/fixed.cpp", R"("distance")"), "distance");
 }
 

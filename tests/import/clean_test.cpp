@@ -36,7 +36,7 @@ TEST(Clean, NotFiniteGoesAndTakesItsVertexAlong) {
     p.positions[3].x = nan;
     const auto warnings = cleaned(p);
     ASSERT_EQ(warnings.size(), 1U);
-    EXPECT_EQ(warnings[0], "mesh 'lamp': 1 triangles dropped: position not finite");
+    EXPECT_EQ(warnings[0], "Mesh 'lamp': 1 triangles are dropped: position not finite");
     EXPECT_EQ(p.indices, (std::vector<std::uint32_t>{0, 1, 2}));
     EXPECT_EQ(p.positions.size(), 3U);
 }
@@ -46,7 +46,7 @@ TEST(Clean, OutOfRangeIndexGoes) {
     p.indices = {0, 1, 2, 0, 2, 4, 0xffffffffU, 1, 2};
     const auto warnings = cleaned(p);
     ASSERT_EQ(warnings.size(), 1U);
-    EXPECT_NE(warnings[0].find("2 triangles dropped: index out of range"), std::string::npos);
+    EXPECT_NE(warnings[0].find("2 triangles are dropped: index out of range"), std::string::npos);
     EXPECT_EQ(p.indices.size(), 3U);
 }
 
@@ -57,8 +57,8 @@ TEST(Clean, RepeatedIndexAndZeroAreaAreCountedApart) {
     p.indices.insert(p.indices.end(), {0, 0, 1, 0, 1, 4, 0, 5, 1});  // repeated, collinear, two corners in one place
     const auto warnings = cleaned(p);
     ASSERT_EQ(warnings.size(), 2U);
-    EXPECT_NE(warnings[0].find("1 triangles dropped: repeated index"), std::string::npos);
-    EXPECT_NE(warnings[1].find("2 triangles dropped: zero area"), std::string::npos);
+    EXPECT_NE(warnings[0].find("1 triangles are dropped: repeated index"), std::string::npos);
+    EXPECT_NE(warnings[1].find("2 triangles are dropped: zero area"), std::string::npos);
     EXPECT_EQ(p.indices.size(), 6U);
     EXPECT_EQ(p.positions.size(), 4U);
 }

@@ -18,11 +18,11 @@ std::string import_error(const std::vector<std::string>& files) {
 
 TEST(ImportFiles, EachMistakeHasItsWords) {
     const Folder folder;
-    EXPECT_NE(import_error({}).find("no file given"), std::string::npos);
-    EXPECT_NE(import_error({folder.file("none.glb")}).find("no such file"), std::string::npos);
-    EXPECT_NE(import_error({folder.file("")}).find("is a directory"), std::string::npos);
+    EXPECT_NE(import_error({}).find("No file is given"), std::string::npos);
+    EXPECT_NE(import_error({folder.file("none.glb")}).find("There is no such file"), std::string::npos);
+    EXPECT_NE(import_error({folder.file("")}).find("is a folder"), std::string::npos);
     EXPECT_NE(import_error({folder.write("a.glb", "")}).find("is empty"), std::string::npos);
-    EXPECT_NE(import_error({folder.write("a.xyz", "x")}).find("unknown ending '.xyz'"), std::string::npos);
+    EXPECT_NE(import_error({folder.write("a.xyz", "x")}).find("The ending '.xyz' is unknown"), std::string::npos);
     EXPECT_NE(import_error({folder.write("a", "x")}).find("has no ending"), std::string::npos);
     EXPECT_NE(import_error({folder.write("a.glb", "not a model at all, but long enough")}).find("JSON"), std::string::npos);
 }

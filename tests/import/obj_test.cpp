@@ -105,8 +105,8 @@ TEST(Obj, TextureWithHolesIsMaskedAndMissingOnesAreWhite) {
     EXPECT_TRUE(scene->images[0].clamp);
     EXPECT_EQ(scene->materials[0].alpha, model::AlphaMode::mask);
     EXPECT_EQ(scene->materials[1].image, none);
-    EXPECT_TRUE(warns(*scene, "texture 'no.png' left white"));
-    EXPECT_TRUE(lacks(*scene, "texture 'no.png' left white"));
+    EXPECT_TRUE(warns(*scene, "Texture 'no.png' is left white"));
+    EXPECT_TRUE(lacks(*scene, "Texture 'no.png' is left white"));
 }
 
 TEST(Obj, VertexColoursAndNaNColours) {
@@ -127,20 +127,20 @@ TEST(Obj, MapCoordinatesKeepTheirMillimetres) {
 }
 
 TEST(Obj, BadNumbersAreErrorsWithTheirLine) {
-    EXPECT_NE(error_of("v 0 0 0\nv 1 bleh 0\n").find("model.obj:2: 'bleh' is not a number"), std::string::npos);
-    EXPECT_NE(error_of("v 0 0\n").find(":1: position of 2 numbers"), std::string::npos);
+    EXPECT_NE(error_of("v 0 0 0\nv 1 bleh 0\n").find("model.obj:2: The word 'bleh' is not a number"), std::string::npos);
+    EXPECT_NE(error_of("v 0 0\n").find(":1: A position has only 2 numbers"), std::string::npos);
     EXPECT_NE(error_of(square + "f 1 2 3/1/1/1\n").find(":5:"), std::string::npos);
 }
 
 TEST(Obj, FacesOutOfRangeAreDroppedWithTheFirstLine) {
     const Scene scene = import_text(square + "f 1 2 3\nf 1 2 9\nf 0 1 2\nf 1 2\nl 1 2\n");
     EXPECT_EQ(scene.triangles(), 1U);
-    EXPECT_TRUE(warns(scene, "3 faces dropped"));
-    EXPECT_TRUE(lacks(scene, "2 faces dropped: index out of range")) << "an edge of two corners is none of them";
+    EXPECT_TRUE(warns(scene, "3 faces are dropped"));
+    EXPECT_TRUE(lacks(scene, "2 faces are dropped: index out of range")) << "an edge of two corners is none of them";
     EXPECT_TRUE(import_text(square + "f 1 2 3\nf 1 2\nusemtl any\nf 1 3 4\n").damage.empty()) << "no library was named";
-    EXPECT_TRUE(lacks(import_text(square + "vt 0 0\nf 1/1 2/1 3/2\n"), "texture coordinate or normal that is not there"));
+    EXPECT_TRUE(lacks(import_text(square + "vt 0 0\nf 1/1 2/1 3/2\n"), "texture coordinate or normal that does not exist"));
     EXPECT_TRUE(warns(scene, "first in line 6"));
-    EXPECT_TRUE(warns(scene, "1 points or lines dropped"));
+    EXPECT_TRUE(warns(scene, "1 points or lines are dropped"));
 }
 
 TEST(Obj, NothingDrawableIsAnError) {

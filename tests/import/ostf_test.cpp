@@ -128,8 +128,8 @@ TEST(Ostf, ImportWeldsVerticesAndWarnsOfMissingTextures) {
     EXPECT_EQ(scene->meshes[0].primitives[0].positions.size(), 3U);
     EXPECT_EQ(scene->meshes[0].primitives[0].colours[0], (std::array<std::uint8_t, 4>{255, 0, 0, 255}));
     EXPECT_EQ(scene->meshes[0].primitives[0].uvs[0], vec2(0, 1));
-    EXPECT_TRUE(warns(*scene, "texture 'gone.tex' left white"));
-    EXPECT_TRUE(lacks(*scene, "texture 'gone.tex' left white"));
+    EXPECT_TRUE(warns(*scene, "Texture 'gone.tex' is left white"));
+    EXPECT_TRUE(lacks(*scene, "Texture 'gone.tex' is left white"));
 }
 
 TEST(Ostf, ErrorsCarryTheLine) {
@@ -138,14 +138,14 @@ TEST(Ostf, ErrorsCarryTheLine) {
         EXPECT_FALSE(index.ok()) << text;
         return index.ok() ? "" : index.error().text();
     };
-    EXPECT_NE(what("BEGIN\n").find(":1: 'BEGIN' where START_TAG"), std::string::npos);
-    EXPECT_NE(what("START_TAG\na\nmany\n").find(":3: 'many' is not the number"), std::string::npos);
-    EXPECT_NE(what(leaf("a", 4, "", triangle + triangle + triangle)).find("'END_TAG' in the triangles of 'a'"),
+    EXPECT_NE(what("BEGIN\n").find(":1: The line 'BEGIN' stands where START_TAG"), std::string::npos);
+    EXPECT_NE(what("START_TAG\na\nmany\n").find(":3: The text 'many' is not the number"), std::string::npos);
+    EXPECT_NE(what(leaf("a", 4, "", triangle + triangle + triangle)).find("'END_TAG' stands among the triangles of 'a'"),
               std::string::npos);
     EXPECT_NE(what(leaf("a", 1, "", triangle + triangle)).find("where START_TAG or END_TAG belongs"), std::string::npos);
     EXPECT_NE(what(leaf("a", 2000000000, "", triangle)).find("more than the file can hold"), std::string::npos);
     EXPECT_NE(what("START_TAG\na\n0\n").find("'a' has no END_TAG"), std::string::npos);
-    EXPECT_NE(what("END_TAG\n").find("without START_TAG"), std::string::npos);
+    EXPECT_NE(what("END_TAG\n").find("has no START_TAG"), std::string::npos);
     EXPECT_NE(what("\n \n").find("holds no object"), std::string::npos);
     EXPECT_NE(what(std::string(200000, 'x')).find("longer than 64 KiB"), std::string::npos);
     std::string deep;

@@ -23,9 +23,9 @@ struct Adapter {
         : live(describe_device(layout_of(hex(descriptor)), {})),
           mapping(default_mapping(live.device.controls, live.device.device_class)),
           mapper(*compile(mapping, live.device.controls)) {}
-    Asked after(const std::string& report) {
+    DeviceOutput after(const std::string& report) {
         EXPECT_EQ(live.feed(report), ReportFate::accepted) << report;
-        return ask(mapper, live.state, now_ns += 500'000'000);  // what is smoothed has come to its end
+        return evaluate(mapper, live.state, now_ns += 500'000'000);  // what is smoothed has come to its end
     }
     Live live;
     DeviceMapping mapping;
@@ -38,26 +38,26 @@ TEST(Adapter, APadSteersFromWhicheverSocketItIsIn) {
     EXPECT_EQ(two.mapping.name, "default: gamepad, 2 ports");
     EXPECT_TRUE(two.after("01 80 80 80 80 00").neutral);
     EXPECT_TRUE(two.after("02 80 80 80 80 00").neutral);
-    EXPECT_NEAR(two.after("01 80 00 80 80 00").wish.forward, 1, 1e-4);
-    EXPECT_NEAR(two.after("01 80 80 80 80 00").wish.forward, 0, 1e-9);
-    EXPECT_NEAR(two.after("02 80 00 80 80 00").wish.forward, 1, 1e-4);
-    EXPECT_LE(two.after("01 80 00 80 80 00").wish.forward, 1 + 1e-9) << "two hands are no faster than one";
+    EXPECT_NEAR(two.after("01 80 00 80 80 00").request.forward, 1, 1e-4);
+    EXPECT_NEAR(two.after("01 80 80 80 80 00").request.forward, 0, 1e-9);
+    EXPECT_NEAR(two.after("02 80 00 80 80 00").request.forward, 1, 1e-4);
+    EXPECT_LE(two.after("01 80 00 80 80 00").request.forward, 1 + 1e-9) << "two hands are no faster than one";
     two.after("01 80 80 80 80 00");
     two.after("02 80 80 80 80 00");
-    EXPECT_TRUE(two.after("02 80 80 80 80 01").wish.next_viewpoint);
-    EXPECT_FALSE(two.after("01 80 80 80 80 00").wish.next_viewpoint);
-    EXPECT_TRUE(two.after("01 80 80 80 80 02").wish.reset);
+    EXPECT_TRUE(two.after("02 80 80 80 80 01").request.next_viewpoint);
+    EXPECT_FALSE(two.after("01 80 80 80 80 00").request.next_viewpoint);
+    EXPECT_TRUE(two.after("01 80 80 80 80 02").request.reset);
 }
 
 TEST(Adapter, AnEmptySocketThatIsNeverAtRestHoldsNobody) {
     for (const bool first_is_empty : {true, false}) {
         Adapter two(pad("05", "01") + pad("05", "02"));
         const std::string empty = first_is_empty ? "01" : "02", used = first_is_empty ? "02" : "01";
-        EXPECT_EQ(two.after(empty + " 00 00 00 00 00").wish.forward, 0) << "never seen at rest";
+        EXPECT_EQ(two.after(empty + " 00 00 00 00 00").request.forward, 0) << "never seen at rest";
         EXPECT_TRUE(two.after(used + " 80 80 80 80 00").neutral);
-        const Asked pushed = two.after(used + " 80 00 80 80 00");
-        EXPECT_NEAR(pushed.wish.forward, 1, 1e-4);
-        EXPECT_NEAR(pushed.wish.side, 0, 0.01) << "the other socket's corner";
+        const DeviceOutput pushed = two.after(used + " 80 00 80 80 00");
+        EXPECT_NEAR(pushed.request.forward, 1, 1e-4);
+        EXPECT_NEAR(pushed.request.side, 0, 0.01) << "the other socket's corner";
         EXPECT_TRUE(two.after(used + " 80 80 80 80 00").neutral);
     }
 }
@@ -74,13 +74,13 @@ TEST(Adapter, AnEmptySocketsHatAndButtonsAreUnknownUntilItReports) {
     Adapter two(pad_with_hat("01") + pad_with_hat("02"));
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(two.after("02 80 80 80 80 0f 00").neutral);
     for (int i = 0; i < 3; ++i) {
-        const Asked empty = two.after("01 00 00 00 00 00 ff");
-        EXPECT_EQ(empty.wish.up, 0) << "a hat that was never seen centred";
-        EXPECT_FALSE(empty.wish.next_viewpoint || empty.wish.reset || empty.wish.tour || empty.wish.pause)
+        const DeviceOutput empty = two.after("01 00 00 00 00 00 ff");
+        EXPECT_EQ(empty.request.up, 0) << "a hat that was never seen centred";
+        EXPECT_FALSE(empty.request.next_viewpoint || empty.request.reset || empty.request.tour || empty.request.pause)
             << "buttons that were held when they were first heard of";
     }
-    EXPECT_GT(two.after("02 80 80 80 80 00 00").wish.up, 0.4) << "the pad's own hat";
-    EXPECT_TRUE(two.after("02 80 80 80 80 0f 01").wish.next_viewpoint);
+    EXPECT_GT(two.after("02 80 80 80 80 00 00").request.up, 0.4) << "the pad's own hat";
+    EXPECT_TRUE(two.after("02 80 80 80 80 0f 01").request.next_viewpoint);
 }
 
 TEST(Adapter, APadThatIsPulledOutPushedStopsWhileAnotherReportsOn) {
@@ -123,9 +123,9 @@ TEST(Adapter, OfPucksStreamsAsAPuckDoes) {
 TEST(Adapter, APadThatComesDeflectedIsAtRestUntilSeenNeutral) {
     Adapter two(pad("04", "01") + pad("04", "02"));
     two.after("02 80 80 80 80 00");
-    EXPECT_EQ(two.after("01 ff 00 80 80 00").wish.forward, 0);
-    EXPECT_EQ(two.after("01 80 80 80 80 00").wish.forward, 0);
-    EXPECT_GT(two.after("01 80 00 80 80 00").wish.forward, 0.99);
+    EXPECT_EQ(two.after("01 ff 00 80 80 00").request.forward, 0);
+    EXPECT_EQ(two.after("01 80 80 80 80 00").request.forward, 0);
+    EXPECT_GT(two.after("01 80 00 80 80 00").request.forward, 0.99);
 }
 
 TEST(Adapter, WhatIsNoSecondPadIsNoPort) {

@@ -29,9 +29,9 @@ public:
         DeviceEvent e;
         e.kind = DeviceEvent::Kind::added;
         e.device = next_++;
-        if (ready) {
-            readied_.push_back(ready(*p));
-            e.readied = readied_.back().get();
+        if (attachment_factory) {
+            attachments_.push_back(attachment_factory(*p));
+            e.attachment = attachments_.back().get();
         }
         e.plugged = plugged_.emplace_back(std::move(p));
         push(e);
@@ -72,10 +72,11 @@ public:
     [[nodiscard]] const std::optional<Error>& trouble() const override { return without; }
     std::optional<Error> without;
     std::int64_t now_ns = 1'000'000'000;
-    std::function<std::unique_ptr<Readied>(const PluggedDevice&)> ready;  ///< as FinderOptions::ready
+    std::function<std::unique_ptr<DeviceAttachment>(const PluggedDevice&)>
+        attachment_factory;  ///< as FinderOptions::attachment_factory
 
 private:
-    std::deque<std::unique_ptr<Readied>> readied_;  ///< kept, as are the plugged: nothing is freed inside take()
+    std::deque<std::unique_ptr<DeviceAttachment>> attachments_;  ///< kept, as are the plugged: nothing is freed inside take()
     std::deque<std::shared_ptr<const PluggedDevice>> plugged_;
     int next_ = 0;
     Error unplugged_{"fake", "was unplugged", ""};

@@ -37,7 +37,7 @@ public:
     FakeLines(FakeChip& chip, std::size_t count) : chip_(chip), count_(count) {}
     [[nodiscard]] std::span<const pollfd> polled() const override { return {}; }
     Result<std::size_t> read(std::span<LineEdge> edges) override {
-        if (chip_.gone) return Error{"fake", "the chip is gone", {}};
+        if (chip_.gone) return Error{"fake", "The chip is gone", "Plug it in again"};
         const std::size_t count = std::min(edges.size(), chip_.queue.size());
         for (std::size_t i = 0; i < count; ++i) {
             edges[i] = chip_.queue.front();
@@ -46,7 +46,7 @@ public:
         return count;
     }
     Result<void> levels(std::span<bool> active) override {
-        if (chip_.gone) return Error{"fake", "the chip is gone", {}};
+        if (chip_.gone) return Error{"fake", "The chip is gone", "Plug it in again"};
         for (std::size_t i = 0; i < count_; ++i) active[i] = chip_.level[i];
         return {};
     }
@@ -59,7 +59,7 @@ private:
 inline Result<std::unique_ptr<GpioLines>> open_fake(std::span<const LineRequest> requests, std::string_view, void* context) {
     auto& chip = *static_cast<FakeChip*>(context);
     ++chip.tried;
-    if (chip.gone) return Error{"fake", "cannot open the chip: No such device", {}};
+    if (chip.gone) return Error{"fake", "The chip cannot be opened: No such device", "Plug it in"};
     if (!chip.busy_by.empty()) return Error{"fake line 'ESTOP'", "is in use by '" + chip.busy_by + "'", "stop that program"};
     ++chip.opened;
     chip.queue.clear();

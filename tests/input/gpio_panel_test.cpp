@@ -22,15 +22,15 @@ TEST(Contact, AssertsAtOnceAndReleasesAfterItsSettleTime) {
         bool level = true;
         for (int i = 0, edges = 2 * static_cast<int>(random.below(11)); i < edges; ++i) {  // bounces of 0.2 to 5 ms
             now += 200'000 + random.below(4'800'000);
-            settle(c, 10 * ms, now);
+            release_when_due(c, 10 * ms, now);
             edge(c, level = !level, now, 10 * ms);
             ASSERT_TRUE(c.asserted);
         }
         ASSERT_EQ(c.presses, 1U) << "bounces are no presses";
         edge(c, false, now += 5 * ms, 10 * ms);
-        settle(c, 10 * ms, now + 10 * ms - 1);
+        release_when_due(c, 10 * ms, now + 10 * ms - 1);
         ASSERT_TRUE(c.asserted);
-        settle(c, 10 * ms, now + 10 * ms);
+        release_when_due(c, 10 * ms, now + 10 * ms);
         ASSERT_FALSE(c.asserted);
     }
 }
@@ -118,9 +118,9 @@ TEST(Panel, ConfigurationsAreCheckedWithTheLinesName) {
         return checked.ok() ? std::string() : checked.error().text();
     };
     EXPECT_NE(problem([](auto& l) { l.erase(l.begin() + 4); }).find("'knob'"), std::string::npos);
-    EXPECT_NE(problem([](auto& l) { l[4].request.chip = "gpiochip1"; }).find("pair"), std::string::npos) << "one request";
+    EXPECT_NE(problem([](auto& l) { l[4].request.chip = "gpiochip1"; }).find("partner"), std::string::npos) << "one request";
     EXPECT_NE(problem([](auto& l) { l[2].name = "stop"; }).find("twice"), std::string::npos);
-    EXPECT_NE(problem([](auto& l) { l[2].request.line = "stop"; }).find("another"), std::string::npos);
+    EXPECT_NE(problem([](auto& l) { l[2].request.line = "stop"; }).find("Another entry uses the same line"), std::string::npos);
     EXPECT_NE(problem([](auto& l) { l[2].name = ""; }), "");
 }
 

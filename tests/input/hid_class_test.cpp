@@ -64,7 +64,7 @@ TEST(HidClass, AButtonBoxMayLeaveItsApplicationUndefined) {
     const auto of = [](const std::string& text) { return describe_device(layout_of(hex(text)), {0x1fd1, 0x03ea}); };
     const HidDevice box = of(head + buttons + "c0");
     EXPECT_EQ(box.device_class, DeviceClass::buttons) << box.reason;
-    EXPECT_EQ(box.reason, "a box that names no application, with 32 buttons");
+    EXPECT_EQ(box.reason, "a button box that names no application, with 32 buttons");
     EXPECT_EQ(box.controls.size(), 32U);
     EXPECT_EQ(of("a1 01 " + buttons + "c0").device_class, DeviceClass::buttons) << "no usage at all";
     // What has nothing but axes there says nothing of what they measure; a mouse or keyboard beside it is what the device is.

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "tests/input/foretold_events.hpp"
+#include "tests/input/expected_events.hpp"
 #include "tests/input/hid_corpus.hpp"
 
 namespace surefoot::input {
@@ -43,7 +43,7 @@ protected:
     void expect_equal(const CorpusDevice& device, std::vector<KernelEvent> mine, std::vector<KernelEvent> theirs);
 
     Differences allowed;
-    std::array<std::size_t, without_control.size()> unforetold{};
+    std::array<std::size_t, without_control.size()> unexpected{};
     std::size_t recordings = 0, compared = 0, events_equal = 0, moving_reports = 0;
 };
 
@@ -51,7 +51,7 @@ void HidCorpusReports::expect_equal(const CorpusDevice& device, std::vector<Kern
     std::erase_if(theirs, [&](const KernelEvent& e) {
         const std::size_t row = row_of(device.slug, e);
         if (row == without_control.size()) return false;
-        ++unforetold[row];
+        ++unexpected[row];
         return true;
     });
     std::sort(mine.begin(), mine.end());
@@ -75,7 +75,7 @@ void HidCorpusReports::compare(const CorpusDevice& device, const std::string& ki
     ASSERT_EQ(events.reports.size(), count);
     const HidDevice described = device.described();
     ReportDecoder decoder(described);
-    ForetoldEvents foretold(described, read_kernel_dump(device.folder / "kernel-rdesc.txt"), events, allowed);
+    ExpectedEvents expected(described, read_kernel_dump(device.folder / "kernel-rdesc.txt"), events, allowed);
     DeviceState state;
     const auto purpose = purposes(file, *recording);
     for (std::size_t i = 0; i < count; ++i, ++compared) {
@@ -83,7 +83,7 @@ void HidCorpusReports::compare(const CorpusDevice& device, const std::string& ki
         const ReportFate fate = decoder.decode(recording->report(i), static_cast<std::int64_t>(i) + 1, state);
         EXPECT_EQ(fate, expected_fate(purpose[i]));
         if (fate != ReportFate::accepted) allowed.add(Difference::not_as_declared);
-        expect_equal(device, fate == ReportFate::accepted ? foretold.step(state) : std::vector<KernelEvent>{}, events.reports[i]);
+        expect_equal(device, fate == ReportFate::accepted ? expected.step(state) : std::vector<KernelEvent>{}, events.reports[i]);
     }
     ++recordings;
 }
@@ -105,7 +105,7 @@ TEST_F(HidCorpusReports, AreTheEventsOfEvdev) {
     EXPECT_GE(synthetic, corpus_synthetic);
     EXPECT_GE(events_equal, corpus_events);
     for (std::size_t i = 0; i < without_control.size(); ++i)
-        EXPECT_EQ(unforetold[i], without_control[i].events) << without_control[i].slug << ": " << without_control[i].why;
+        EXPECT_EQ(unexpected[i], without_control[i].events) << without_control[i].slug << ": " << without_control[i].why;
     // Each difference is needed as often as the reports were made to show it, or not at all.
     EXPECT_EQ(allowed.times(Difference::null_state), 0U);
     EXPECT_EQ(allowed.times(Difference::hat_outside), 0U);

@@ -67,8 +67,8 @@ std::vector<std::vector<std::byte>> corpus(bool text) {
 
 /// A few bytes changed, doubled, lost or taken from elsewhere.
 void mutate(std::vector<std::byte>& b, Random& random) {
-    static constexpr unsigned telling[] = {0x00, 0x01, 0xff, 0x7f, 0x80, 0xa1, 0xc0, 0x81,
-                                           0x75, 0x95, 0x85, 0xa4, 0xb4, 0x27, 0x2b, 0xa9};
+    static constexpr unsigned boundary_values[] = {0x00, 0x01, 0xff, 0x7f, 0x80, 0xa1, 0xc0, 0x81,
+                                                   0x75, 0x95, 0x85, 0xa4, 0xb4, 0x27, 0x2b, 0xa9};
     for (std::uint32_t n = 1 + random.below(6); n > 0; --n) {
         if (b.empty()) b.push_back(std::byte{0});
         const auto at = static_cast<std::ptrdiff_t>(random.below(static_cast<std::uint32_t>(b.size())));
@@ -77,10 +77,10 @@ void mutate(std::vector<std::byte>& b, Random& random) {
                 b[static_cast<std::size_t>(at)] ^= static_cast<std::byte>(1U << random.below(8));
                 break;
             case 1:
-                b[static_cast<std::size_t>(at)] = static_cast<std::byte>(telling[random.below(16)]);
+                b[static_cast<std::size_t>(at)] = static_cast<std::byte>(boundary_values[random.below(16)]);
                 break;
             case 2:
-                b.insert(b.begin() + at, static_cast<std::byte>(telling[random.below(16)]));
+                b.insert(b.begin() + at, static_cast<std::byte>(boundary_values[random.below(16)]));
                 break;
             case 3:
                 b.erase(b.begin() + at);

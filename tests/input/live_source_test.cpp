@@ -48,13 +48,13 @@ struct Rig {
         chip.level[0] = true;
         auto fake = std::make_unique<FakeDevices>();
         devices = fake.get();
-        devices->ready = readier(mappings);
+        devices->attachment_factory = attachment_factory(mappings);
         LiveOptions options;
         options.mappings = std::move(mappings);
         options.lines = std::move(wired);
         options.open_lines = test::open_fake;
         options.lines_context = &chip;
-        options.lines_opened = Opening::here;  // in virtual time
+        options.lines_opened = Opening::same_thread;  // in virtual time
         options.stamps = 1000;
         source = std::make_unique<LiveSource>(std::move(options), std::move(fake));
         source->begin(steering, devices->now_ns);
@@ -70,7 +70,7 @@ struct Rig {
         }
         violations += rt::guard_counters().own_violations - before;
         presses += sample.next_viewpoint ? 1 : 0;
-        for (NoteLine note; source->next_note(note);) said.emplace_back(note.view());
+        for (MessageLine note; source->next_message(note);) messages.emplace_back(note.view());
         return sample;
     }
     void run(int ticks) {
@@ -83,9 +83,9 @@ struct Rig {
         }
     }
     [[nodiscard]] double speed() const { return glm::length(sample.velocity_m_s); }
-    [[nodiscard]] int times_said(const std::string& what) const {
-        return static_cast<int>(
-            std::count_if(said.begin(), said.end(), [&](const std::string& s) { return s.find(what) != std::string::npos; }));
+    [[nodiscard]] int count_messages(const std::string& what) const {
+        return static_cast<int>(std::count_if(messages.begin(), messages.end(),
+                                              [&](const std::string& s) { return s.find(what) != std::string::npos; }));
     }
 
     FakeChip chip;
@@ -93,7 +93,7 @@ struct Rig {
     FakeDevices* devices = nullptr;
     std::unique_ptr<LiveSource> source;
     NavigationSample sample;
-    std::vector<std::string> said;
+    std::vector<std::string> messages;
     std::uint64_t violations = 0;
     int presses = 0;
 };
@@ -114,8 +114,8 @@ TEST(LiveSource, ComesWalksGoesComesBackAndNeedsNoMemoryForIt) {
     EXPECT_EQ(rig.violations, 0U);
     if (!rt::guard_active()) std::printf("allocations are not counted in this build\n");
     EXPECT_EQ(rig.source->log().count(), 960U);
-    EXPECT_EQ(rig.times_said("steers, by the mapping \"default: joystick\""), 3);
-    EXPECT_EQ(rig.times_said("was unplugged"), 3);
+    EXPECT_EQ(rig.count_messages("The device steers by the mapping \"default: joystick\""), 3);
+    EXPECT_EQ(rig.count_messages("was unplugged"), 3);
     ASSERT_EQ(rig.source->devices().size(), 1U) << "one device, however often it comes";
     EXPECT_EQ(rig.source->devices()[0].name, "test stick");
     EXPECT_EQ(rig.source->devices()[0].mapping, "default: joystick");
@@ -140,7 +140,7 @@ TEST(LiveSource, ManyDevicesComeAndGoWithoutMemory) {
 TEST(LiveSource, NobodyToSteerIsRestAndSaidOnce) {
     Rig rig;
     rig.run(2000);
-    EXPECT_EQ(rig.times_said("no device is there that steers"), 1);
+    EXPECT_EQ(rig.count_messages("No connected device steers"), 1);
     EXPECT_EQ(rig.speed(), 0);
     EXPECT_EQ(rig.violations, 0U);
     Rig steered;
@@ -148,21 +148,21 @@ TEST(LiveSource, NobodyToSteerIsRestAndSaidOnce) {
     steered.hold(device, 0, 0, 5);
     steered.devices->pull(device);
     steered.run(2000);
-    EXPECT_EQ(steered.times_said("no device is there"), 0) << "it was, and its going is said";
+    EXPECT_EQ(steered.count_messages("No connected device"), 0) << "it was, and its going is said";
 }
 
 TEST(LiveSource, WhatTheDevicesHaveToDoWithoutIsSaidOnce) {
     auto fake = std::make_unique<FakeDevices>();
-    fake->without = Error{"udev", "its events cannot be received", "allow netlink sockets"};
+    fake->without = Error{"udev", "Events cannot be received", "Allow netlink sockets"};
     LiveSource source(LiveOptions{}, std::move(fake));
     Steering steering{MotionLimits{}, SafetyLimits{}};
     steering.steers.plays();
     source.begin(steering, 1'000'000'000);
     for (int i = 0; i < 100; ++i) (void)source.drain(steering, 1'000'000'000 + i * tick_ns);
-    int said = 0;
-    for (NoteLine note; source.next_note(note);)
-        said += note.view().find("its events cannot be received") != std::string::npos ? 1 : 0;
-    EXPECT_EQ(said, 1);
+    int messages = 0;
+    for (MessageLine note; source.next_message(note);)
+        messages += note.view().find("Events cannot be received. Allow netlink sockets.") != std::string::npos ? 1 : 0;
+    EXPECT_EQ(messages, 1);
 }
 
 // A service that may open no netlink socket looks around instead; here no descriptor is left for one.
@@ -200,25 +200,25 @@ TEST(LiveSource, AMappingThatFitsNothingIsSaidOnceAndTheOthersAreNot) {
     Rig rig({}, {named("typo", "Sitck"), off, named("ours", "")});
     rig.devices->plug(stick());
     rig.run(2000);
-    EXPECT_EQ(rig.times_said("[[device]] 1 \"typo\" steers none"), 1);
-    EXPECT_EQ(rig.times_said("steers none"), 1);
+    EXPECT_EQ(rig.count_messages("[[device]] 1 \"typo\" matches no connected device"), 1);
+    EXPECT_EQ(rig.count_messages("matches no connected device"), 1);
     EXPECT_EQ(rig.violations, 0U);
 }
 
 TEST(LiveSource, ARefusedDeviceIsSaidWithItsRemedy) {
     Rig rig;
-    Error why{"/dev/hidraw7 (pad)", "may not be opened: Permission denied", "install the rules"};
+    Error why{"/dev/hidraw7 (pad)", "The device cannot be opened: Permission denied", "Install the rules"};
     DeviceEvent e;
     e.kind = DeviceEvent::Kind::refused;
     e.why = &why;
     rig.devices->push(e);
     rig.tick();
-    EXPECT_EQ(rig.times_said("/dev/hidraw7 (pad): may not be opened: Permission denied (install the rules)"), 1);
+    EXPECT_EQ(rig.count_messages("/dev/hidraw7 (pad): The device cannot be opened: Permission denied. Install the rules."), 1);
     Error endless{"place", std::string(5000, 'x'), "remedy"};
     e.why = &endless;
     rig.devices->push(e);
     rig.tick();
-    EXPECT_EQ(rig.said.back().size(), NoteLine{}.text.size()) << "cut, not overrun";
+    EXPECT_EQ(rig.messages.back().size(), MessageLine{}.text.size()) << "cut, not overrun";
     EXPECT_EQ(rig.violations, 0U);
 }
 
@@ -231,10 +231,10 @@ TEST(LiveSource, NotesThatNobodyTakesAreCountedAndHarmNothing) {
         rig.steering.steers.plays();
         (void)rig.source->drain(rig.steering, rig.devices->now_ns);
     }
-    EXPECT_GT(rig.source->lost_notes(), 0U);
+    EXPECT_GT(rig.source->lost_messages(), 0U);
     int left = 0;
-    for (NoteLine note; rig.source->next_note(note);) ++left;
-    EXPECT_EQ(left + static_cast<int>(rig.source->lost_notes()), 1000);
+    for (MessageLine note; rig.source->next_message(note);) ++left;
+    EXPECT_EQ(left + static_cast<int>(rig.source->lost_messages()), 1000);
 }
 
 TEST(LivePanel, ItsStopLatchesInTheSameStepAndItsResetTakesItOff) {
@@ -276,7 +276,7 @@ TEST(LivePanel, ButtonsAndEncodersSteerAsADeviceOfTheirOwn) {
     EXPECT_EQ(rig.source->devices()[0].name, panel_name);
     EXPECT_EQ(rig.source->devices()[0].device_class, "buttons");
     EXPECT_GE(rig.source->log().count(), 6U) << "what the panel tells counts as reports";
-    EXPECT_EQ(rig.times_said("no device is there"), 0);
+    EXPECT_EQ(rig.count_messages("No connected device"), 0);
     EXPECT_EQ(rig.violations, 0U);
 }
 
@@ -291,12 +291,12 @@ TEST(LivePanel, AVanishedChipIsAStopSaidOnceAndTheNextOneServesAgain) {
     EXPECT_TRUE(rig.tick().stopped);
     rig.run(3000);
     EXPECT_TRUE(rig.sample.stopped);
-    EXPECT_EQ(rig.times_said("the chip is gone"), 1);
+    EXPECT_EQ(rig.count_messages("The chip is gone"), 1);
     EXPECT_GT(rig.chip.tried, 2);
-    EXPECT_LE(rig.times_said(std::string(panel_name)), 2) << "each trouble once";
+    EXPECT_LE(rig.count_messages(std::string(panel_name)), 2) << "each trouble once";
     rig.chip.gone = false;
     rig.run(1200);  // tried every 2 s by now
-    EXPECT_EQ(rig.times_said("its lines are there"), 1);
+    EXPECT_EQ(rig.count_messages("The lines are open"), 1);
     rig.steering.steers.plays();
     EXPECT_TRUE(rig.steering.safety().latched) << "back is not reset";
     rig.chip.set(2, true, rig.devices->now_ns + 1);
@@ -313,15 +313,15 @@ TEST(LivePanel, AVanishedChipIsAStopSaidOnceAndTheNextOneServesAgain) {
 TEST(LivePanel, ABusyLineIsAStopThatNamesWhoHasIt) {
     FakeChip chip;
     chip.busy_by = "gpiomon";
-    std::vector<std::string> said;
+    std::vector<std::string> messages;
     PanelDevice panel(
-        lines(), {}, test::open_fake, &chip, [&](std::string_view text) { said.emplace_back(text); }, Opening::here);
+        lines(), {}, test::open_fake, &chip, [&](std::string_view text) { messages.emplace_back(text); }, Opening::same_thread);
     panel.open();
     Steering steering{MotionLimits{}, SafetyLimits{}};
     steering.steers.plays();
     for (int i = 1; i < 200; ++i) EXPECT_TRUE(panel.step(steering, i * tick_ns).lines.stop);
-    ASSERT_EQ(said.size(), 1U);
-    EXPECT_NE(said[0].find("gpiomon"), std::string::npos) << said[0];
+    ASSERT_EQ(messages.size(), 1U);
+    EXPECT_NE(messages[0].find("gpiomon"), std::string::npos) << messages[0];
     chip.busy_by.clear();
     chip.level[0] = true;
     bool stop = true;
@@ -345,7 +345,7 @@ public:
     [[nodiscard]] std::span<const pollfd> polled() const override { return {}; }
     Result<std::size_t> read(std::span<LineEdge>) override {
         if (chip_.there) return std::size_t{0};
-        return Error{"gpiochip7 of the panel", "the chip is gone, as far as anybody can tell", "plug it in again"};
+        return Error{"gpiochip7 of the panel", "The chip is gone, as far as anybody can tell", "Plug it in again"};
     }
     Result<void> levels(std::span<bool> active) override {
         std::fill(active.begin(), active.end(), true);
@@ -393,7 +393,7 @@ TEST(LivePanel, AChipThatIsMissingOrGoesIsOpenedAndClosedBesideTheInputThread) {
     SharedChip chip;
     std::size_t times = 0;
     PanelDevice panel(
-        lines(), {}, open_shared, &chip, [&](std::string_view) { ++times; }, Opening::beside);
+        lines(), {}, open_shared, &chip, [&](std::string_view) { ++times; }, Opening::own_thread);
     panel.open();
     EXPECT_EQ(chip.tried, 1) << "the first try is over before the input thread starts";
     EXPECT_EQ(times, 1U);

@@ -16,10 +16,10 @@ using test::axis;
 using test::button;
 using test::set;
 
-Asked after(Mapper& mapper, DeviceState& state, std::size_t control, std::int32_t value, std::int64_t now_ns = 0) {
+DeviceOutput after(Mapper& mapper, DeviceState& state, std::size_t control, std::int32_t value, std::int64_t now_ns = 0) {
     set(state, control, value);
     ++state.reports;
-    return ask(mapper, state, now_ns);
+    return evaluate(mapper, state, now_ns);
 }
 
 /// A device with its default mapping, shown at rest once.
@@ -31,16 +31,16 @@ struct Given {
         mapper = std::move(*compiled);
         state.reports = 1;
         for (std::size_t i = 0; i < rests.size(); ++i) set(state, i, rests[i]);
-        EXPECT_TRUE(ask(mapper, state, 0).neutral);
+        EXPECT_TRUE(evaluate(mapper, state, 0).neutral);
     }
-    Wish at(std::size_t control, std::int32_t value) {
+    MotionRequest at(std::size_t control, std::int32_t value) {
         const auto before = state;
-        const Wish wish = after(mapper, state, control, value).wish;
+        const MotionRequest request = after(mapper, state, control, value).request;
         state.value = before.value;
         state.has_value = before.has_value;
         ++state.reports;
-        ask(mapper, state, 0);
-        return wish;
+        evaluate(mapper, state, 0);
+        return request;
     }
     std::vector<ControlInfo> controls;
     DeviceMapping mapping;
@@ -114,18 +114,18 @@ TEST(Defaults, SixRelativeAxesOfAStrangerMoveAtTheirPaceAndStopWithTheReports) {
     EXPECT_EQ(mapping.name, "default: six relative axes");
     auto mapper = *compile(mapping, controls);
     DeviceState state;
-    Wish wish;
+    MotionRequest request;
     const auto pushed = [&](int y, int ms) {
         const bool reports = ms % 8 == 0;
-        return reports ? after(mapper, state, 1, y, ms * 1'000'000LL).wish : ask(mapper, state, ms * 1'000'000LL).wish;
+        return reports ? after(mapper, state, 1, y, ms * 1'000'000LL).request : evaluate(mapper, state, ms * 1'000'000LL).request;
     };
-    for (int ms = 0; ms < 800; ++ms) wish = pushed(-350, ms);
-    EXPECT_GT(wish.forward, 0.9);
-    for (int ms = 800; ms < 1600; ++ms) wish = pushed(-175, ms);
-    EXPECT_LT(wish.forward, 0.6) << "half pushed is slower";
-    EXPECT_GT(wish.forward, 0.2);
-    for (int ms = 1601; ms < 2200; ++ms) wish = ask(mapper, state, ms * 1'000'000LL).wish;
-    EXPECT_EQ(wish.forward, 0);
+    for (int ms = 0; ms < 800; ++ms) request = pushed(-350, ms);
+    EXPECT_GT(request.forward, 0.9);
+    for (int ms = 800; ms < 1600; ++ms) request = pushed(-175, ms);
+    EXPECT_LT(request.forward, 0.6) << "half pushed is slower";
+    EXPECT_GT(request.forward, 0.2);
+    for (int ms = 1601; ms < 2200; ++ms) request = evaluate(mapper, state, ms * 1'000'000LL).request;
+    EXPECT_EQ(request.forward, 0);
     EXPECT_TRUE(default_mapping(controls, DeviceClass::reject).axes.empty());
 }
 
@@ -134,10 +134,10 @@ TEST(Defaults, AHatAloneSteers) {
     EXPECT_EQ(pad.mapping.name, "default: hat");
     EXPECT_EQ(pad.mapping.buttons.size(), 1U);
     const auto held = [&](int direction, int from_ms) {
-        Wish wish;
+        MotionRequest request;
         for (int ms = from_ms; ms < from_ms + 1000; ++ms)
-            wish = after(pad.mapper, pad.state, 0, direction, ms * 1'000'000LL).wish;
-        return wish;
+            request = after(pad.mapper, pad.state, 0, direction, ms * 1'000'000LL).request;
+        return request;
     };
     EXPECT_NEAR(held(0, 0).forward, 0.5, 1e-3) << "half pace: a hat has no half way";
     EXPECT_NEAR(held(6, 1000).turn, 0.5, 1e-3) << "to the left";
@@ -222,14 +222,14 @@ TEST(Mapper, AxesWaitToBeSeenAtRest) {
     set(state, 0, 255);
     set(state, 1, 128);
     state.reports = 1;
-    Asked asked = ask(mapper, state, 0);
-    EXPECT_EQ(asked.wish.side, 0);
-    EXPECT_FALSE(asked.neutral);
-    asked = after(mapper, state, 0, 128);
-    EXPECT_TRUE(asked.neutral);
-    EXPECT_NEAR(after(mapper, state, 0, 255).wish.side, 1, 1e-4);
+    DeviceOutput output = evaluate(mapper, state, 0);
+    EXPECT_EQ(output.request.side, 0);
+    EXPECT_FALSE(output.neutral);
+    output = after(mapper, state, 0, 128);
+    EXPECT_TRUE(output.neutral);
+    EXPECT_NEAR(after(mapper, state, 0, 255).request.side, 1, 1e-4);
     forget(mapper);
-    EXPECT_EQ(after(mapper, state, 0, 255).wish.side, 0) << "again after a replug";
+    EXPECT_EQ(after(mapper, state, 0, 255).request.side, 0) << "again after a replug";
 }
 
 TEST(Mapper, HatsRestInEveryNullStateAndDiagonalsAreNoFaster) {
@@ -239,15 +239,15 @@ TEST(Mapper, HatsRestInEveryNullStateAndDiagonalsAreNoFaster) {
     auto mapper = *compile(m, controls);
     DeviceState state;
     state.reports = 1;
-    EXPECT_TRUE(ask(mapper, state, 0).neutral);
-    EXPECT_NEAR(after(mapper, state, 0, 0).wish.forward, 1, 1e-4);
-    EXPECT_NEAR(after(mapper, state, 0, 2).wish.side, 1, 1e-4);
-    const Wish d = after(mapper, state, 0, 3).wish;
+    EXPECT_TRUE(evaluate(mapper, state, 0).neutral);
+    EXPECT_NEAR(after(mapper, state, 0, 0).request.forward, 1, 1e-4);
+    EXPECT_NEAR(after(mapper, state, 0, 2).request.side, 1, 1e-4);
+    const MotionRequest d = after(mapper, state, 0, 3).request;
     EXPECT_NEAR(std::hypot(d.side, d.forward), 1, 1e-12);
     EXPECT_LT(d.forward, 0);
     for (const int outside : {-1, 8, 15, 255}) EXPECT_TRUE(after(mapper, state, 0, outside).neutral) << outside;
     state.has_value.reset();
-    EXPECT_EQ(ask(mapper, state, 0).wish.side, 0);
+    EXPECT_EQ(evaluate(mapper, state, 0).request.side, 0);
 }
 
 TEST(Mapper, AnAxisThatLosesItsValueRests) {
@@ -255,10 +255,10 @@ TEST(Mapper, AnAxisThatLosesItsValueRests) {
     DeviceState state;
     after(mapper, state, 0, 128);
     after(mapper, state, 1, 128);
-    EXPECT_NEAR(after(mapper, state, 0, 255).wish.side, 1, 1e-4);
+    EXPECT_NEAR(after(mapper, state, 0, 255).request.side, 1, 1e-4);
     state.has_value.reset(0);
-    EXPECT_EQ(ask(mapper, state, 0).wish.side, 0);
-    EXPECT_NEAR(after(mapper, state, 0, 100000).wish.side, 1, 1e-4) << "out of range: clamped";
+    EXPECT_EQ(evaluate(mapper, state, 0).request.side, 0);
+    EXPECT_NEAR(after(mapper, state, 0, 100000).request.side, 1, 1e-4) << "out of range: clamped";
 }
 
 TEST(Mapper, EdgesComeOnceAndOnlyForPressesAfterARelease) {
@@ -267,16 +267,16 @@ TEST(Mapper, EdgesComeOnceAndOnlyForPressesAfterARelease) {
                  {{"button-2", 0, 0, ""}, Action::forward, -1, 0, 0, false}};
     auto mapper = *compile(m, test::stick_controls());
     DeviceState state;
-    EXPECT_FALSE(after(mapper, state, 2, 1).wish.reset) << "held when it came";
+    EXPECT_FALSE(after(mapper, state, 2, 1).request.reset) << "held when it came";
     after(mapper, state, 2, 0, 1'000'000);
-    EXPECT_FALSE(after(mapper, state, 2, 1, 2'000'000).wish.reset) << "bounced: 1 ms is no release";
+    EXPECT_FALSE(after(mapper, state, 2, 1, 2'000'000).request.reset) << "bounced: 1 ms is no release";
     after(mapper, state, 2, 0, 3'000'000);
     after(mapper, state, 2, 0, 9'000'000);
-    EXPECT_TRUE(after(mapper, state, 2, 1, 10'000'000).wish.reset);
-    EXPECT_FALSE(after(mapper, state, 2, 1, 11'000'000).wish.reset);
+    EXPECT_TRUE(after(mapper, state, 2, 1, 10'000'000).request.reset);
+    EXPECT_FALSE(after(mapper, state, 2, 1, 11'000'000).request.reset);
     after(mapper, state, 3, 0);
-    const Asked walking = after(mapper, state, 3, 1);
-    EXPECT_EQ(walking.wish.forward, -1);
+    const DeviceOutput walking = after(mapper, state, 3, 1);
+    EXPECT_EQ(walking.request.forward, -1);
     EXPECT_FALSE(walking.neutral);
 }
 
@@ -285,7 +285,7 @@ TEST(Mapper, StopsAreAssertedByOpenContactsAndUnknownOnes) {
     m.buttons = {{{"button-1", 0, 0, ""}, Action::stop, 1, 0, 0, true}};
     auto mapper = *compile(m, test::stick_controls());
     DeviceState state;
-    EXPECT_TRUE(ask(mapper, state, 0).stop);
+    EXPECT_TRUE(evaluate(mapper, state, 0).stop);
     EXPECT_FALSE(after(mapper, state, 2, 1).stop);
     EXPECT_TRUE(after(mapper, state, 2, 0).stop);
 }
@@ -306,11 +306,11 @@ Mapper relative_turn() {
 TEST(Mapper, RelativeControlsBecomeAPaceAndRestByThemselves) {
     auto mapper = relative_turn();
     DeviceState state;
-    Wish wish;
-    for (int i = 0; i < 500; ++i) wish = after(mapper, state, 0, 1, i * 1'000'000LL).wish;  // 1000 counts a second
-    EXPECT_GT(wish.turn, 0.95);
-    for (int i = 500; i < 700; ++i) wish = ask(mapper, state, i * 1'000'000LL).wish;
-    EXPECT_EQ(wish.turn, 0);
+    MotionRequest request;
+    for (int i = 0; i < 500; ++i) request = after(mapper, state, 0, 1, i * 1'000'000LL).request;  // 1000 counts a second
+    EXPECT_GT(request.turn, 0.95);
+    for (int i = 500; i < 700; ++i) request = evaluate(mapper, state, i * 1'000'000LL).request;
+    EXPECT_EQ(request.turn, 0);
 }
 
 TEST(Mapper, ADisplacementIsWalkedOnceThoughReportsOfOtherIdsFollow) {
@@ -318,12 +318,12 @@ TEST(Mapper, ADisplacementIsWalkedOnceThoughReportsOfOtherIdsFollow) {
     DeviceState state;
     after(mapper, state, 0, 20);
     state.carried_over.set(0);
-    Wish wish;
+    MotionRequest request;
     for (int ms = 1; ms < 1000; ++ms) {
         ++state.reports;
-        wish = ask(mapper, state, ms * 1'000'000LL).wish;
+        request = evaluate(mapper, state, ms * 1'000'000LL).request;
     }
-    EXPECT_EQ(wish.turn, 0);
+    EXPECT_EQ(request.turn, 0);
 }
 
 TEST(Mapper, AStickHasTwoAxes) {
@@ -342,11 +342,11 @@ TEST(Mapper, SmoothingLagsAsStatedAndEndsExactlyAtRest) {
     DeviceState state;
     after(mapper, state, 0, 128);
     after(mapper, state, 1, 128);
-    Wish wish;
-    for (int i = 0; i <= 100; ++i) wish = after(mapper, state, 0, 255, i * 1'000'000LL).wish;
-    EXPECT_NEAR(wish.side, 1 - std::exp(-1.0), 0.01);
-    for (int i = 101; i < 1200; ++i) wish = after(mapper, state, 0, 128, i * 1'000'000LL).wish;
-    EXPECT_EQ(wish.side, 0);
+    MotionRequest request;
+    for (int i = 0; i <= 100; ++i) request = after(mapper, state, 0, 255, i * 1'000'000LL).request;
+    EXPECT_NEAR(request.side, 1 - std::exp(-1.0), 0.01);
+    for (int i = 101; i < 1200; ++i) request = after(mapper, state, 0, 128, i * 1'000'000LL).request;
+    EXPECT_EQ(request.side, 0);
 }
 
 TEST(Mapper, WhatCannotBeBoundIsNamedWithTheNearest) {
@@ -356,7 +356,7 @@ TEST(Mapper, WhatCannotBeBoundIsNamedWithTheNearest) {
     auto bad = compile(m, test::stick_controls());
     ASSERT_FALSE(bad.ok());
     EXPECT_NE(bad.error().text().find("'yy'"), std::string::npos);
-    EXPECT_NE(bad.error().text().find("did you mean 'y'"), std::string::npos) << bad.error().text();
+    EXPECT_NE(bad.error().text().find("Did you mean 'y'"), std::string::npos) << bad.error().text();
     EXPECT_EQ(compile_what_fits(m, test::stick_controls()).notes.size(), 1U);
     m = {};
     AxisMapping a;
@@ -369,13 +369,13 @@ TEST(Mapper, WhatCannotBeBoundIsNamedWithTheNearest) {
 }
 
 TEST(Merge, NothingExceedsOneFullDeflection) {
-    Wish a, b;
+    MotionRequest a, b;
     a.forward = b.forward = 1;
     a.side = 1;
     a.turn = b.turn = a.look = 1;
     a.speed = b.speed = 1;
     b.tour = true;
-    const Wish sum = merge(std::vector{a, b});
+    const MotionRequest sum = merge(std::vector{a, b});
     EXPECT_NEAR(std::hypot(sum.forward, sum.side, sum.up), 1, 1e-12);
     EXPECT_NEAR(std::hypot(sum.turn, sum.look), 1, 1e-12);
     EXPECT_EQ(sum.speed, 1);

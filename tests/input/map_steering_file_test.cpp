@@ -102,8 +102,8 @@ TEST(SteeringFile, DefaultsOfEveryClassSurviveTheFile) {
 }
 
 TEST(SteeringFile, SlipsAreNamedWithLineKeyAndRemedy) {
-    refused("[motoin]\n", 1, "unknown key 'motoin'", "'motion'");
-    refused("[motion]\nwalk = 1\n", 2, "unknown key 'motion.walk'", "'walk_m_s'");
+    refused("[motoin]\n", 1, "The key 'motoin' is unknown", "'motion'");
+    refused("[motion]\nwalk = 1\n", 2, "The key 'motion.walk' is unknown", "'walk_m_s'");
     refused("[motion]\nwalk_m_s = -1\n", 2, "motion.walk_m_s = -1 is not a number from 0.01 to 100 (m/s)");
     refused("[motion]\nwalk_m_s = nan\n", 2, "motion.walk_m_s");
     refused("[motion]\nwalk_m_s = \"fast\"\n", 2, "motion.walk_m_s");
@@ -112,7 +112,8 @@ TEST(SteeringFile, SlipsAreNamedWithLineKeyAndRemedy) {
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\n", 2, "device.axis.action is missing");
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"tunr\"\n", 4, "one of \"none\", \"forward\"", "\"turn\"");
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"reset\"\n", 4, "no action for an axis", "forward");
-    refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"turn\"\ndeadzone = 0.1\n", 5, "unknown key", "'dead_zone'");
+    refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"turn\"\ndeadzone = 0.1\n", 5,
+            "The key 'device.axis.deadzone' is unknown", "'dead_zone'");
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"turn\"\ndead_zone = 0.01\n", 5,
             "narrower than the hysteresis");
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"turn\"\nsaturation = 0.12\n", 5, "leaves nothing");
@@ -124,7 +125,7 @@ TEST(SteeringFile, SlipsAreNamedWithLineKeyAndRemedy) {
             "not allowed for a stop", "normally closed");
     refused("[[gpio]]\nname = \"s\"\nchip = \"c\"\n", 1, "gpio.line is missing");
     refused("x = \n", 1, "");
-    refused("a = 1\n[motion]\n", 1, "unknown key 'a'", "\"motion\"");
+    refused("a = 1\n[motion]\n", 1, "The key 'a' is unknown", "\"motion\"");
     const auto twice = parse_steering("[[gpio]]\nname=\"e\"\nchip=\"c\"\nline=\"1\"\nrole=\"encoder_a\"\n", "s.toml");
     ASSERT_FALSE(twice.ok());
     EXPECT_NE(twice.error().text().find("one encoder_a and one encoder_b"), std::string::npos) << twice.error().text();

@@ -19,10 +19,10 @@ constexpr int virtual_seconds = 3600;
 
 Command walk(double forward, double side = 0, double turn = 0, double look = 0) {
     Command c;
-    c.wish.forward = forward;
-    c.wish.side = side;
-    c.wish.turn = turn;
-    c.wish.look = look;
+    c.request.forward = forward;
+    c.request.side = side;
+    c.request.turn = turn;
+    c.request.look = look;
     return c;
 }
 
@@ -63,8 +63,8 @@ TEST(Motion, SpeedAndAccelerationStayWithinTheirLimits) {
         const std::int64_t passed = random.below(20) == 0 ? random.below(80) * ms : ms;
         if (random.below(50) == 0) {
             command = walk(random.range(-3, 3), random.range(-3, 3), random.range(-3, 3), random.range(-3, 3));
-            command.wish.up = random.range(-3, 3);
-            command.wish.speed = random.range(-2, 2);
+            command.request.up = random.range(-3, 3);
+            command.request.speed = random.range(-2, 2);
         }
         const dvec3 was = state.velocity;
         const auto after = step(state, limits, command, now += passed);
@@ -184,7 +184,7 @@ TEST(Motion, StopIsThisStepAndBrakeWithinItsTime) {
     step(state, limits, {}, 0);
     std::int64_t now = 0;
     Command fast = walk(1, 0, 1);
-    fast.wish.speed = 1;
+    fast.request.speed = 1;
     for (int i = 0; i < 3000; ++i) step(state, limits, fast, now += ms);
     EXPECT_GT(glm::length(state.velocity), 5);
     MotionState other = state;
@@ -216,7 +216,7 @@ TEST(Motion, StallsAndClocksThatGoBackMakeNoLeap) {
     EXPECT_EQ(state.position, before);
     EXPECT_EQ(state.clock_back, 1U);
     Command bad = walk(std::numeric_limits<double>::quiet_NaN());
-    bad.wish.turn = std::numeric_limits<double>::infinity();
+    bad.request.turn = std::numeric_limits<double>::infinity();
     step(state, limits, bad, 60'010 * ms);
     EXPECT_TRUE(std::isfinite(state.position.z) && std::isfinite(state.yaw.value));
     EXPECT_EQ(state.refused, 1U);
@@ -270,7 +270,7 @@ TEST(Prediction, NoWalkLeavesItsUncertainty) {
     for (int i = 0; i < 400'000; ++i) {
         if (random.below(60) == 0) {
             command = walk(random.range(-2, 2), random.range(-2, 2), random.range(-2, 2), random.range(-2, 2));
-            command.wish.speed = random.range(-1, 1);
+            command.request.speed = random.range(-1, 1);
             command.order = random.below(20) == 0 ? Order::stop : Order::walk;
         }
         const Ground ground = (i / 50'000) % 2 == 0 ? Ground{} : Ground{stop_at_wall, &wall, 0};

@@ -81,7 +81,7 @@ TEST(ReplaySource, AHandThatIsHeldWhenTheRecordingEndsComesToRestThoughItsPadRep
     EXPECT_GT(glm::length(run(source, steering, now, 800 * ms).velocity_m_s), 1.0) << "held, and silent for long: it walks";
     EXPECT_GT(glm::length(run(source, steering, now, 1000 * ms).velocity_m_s), 1.0);
     EXPECT_EQ(glm::length(run(source, steering, now, 1200 * ms).velocity_m_s), 0.0);
-    EXPECT_EQ(steering.safety().silences, 1U);
+    EXPECT_EQ(steering.safety().timeouts, 1U);
     EXPECT_EQ(steering.safety().losses, 0U) << "an end is no pulled cable";
 }
 

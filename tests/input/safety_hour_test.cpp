@@ -202,7 +202,7 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
         "%d s, %llu reports: fastest %.2f m/s, |q| off by %.1e; %llu stops, %llu overflows, %llu silences, %llu losses; stopped "
         "%.0f %% of the time; allocations %llu; %.0f ns a report\n",
         hour_seconds, static_cast<unsigned long long>(reports), fastest, norm, static_cast<unsigned long long>(s.stops),
-        static_cast<unsigned long long>(s.overflows), static_cast<unsigned long long>(s.silences),
+        static_cast<unsigned long long>(s.overflows), static_cast<unsigned long long>(s.timeouts),
         static_cast<unsigned long long>(s.losses), 100.0 * static_cast<double>(stops) / (hour_seconds * 1000.0),
         static_cast<unsigned long long>(after.own_violations - guard.own_violations), took * 1e9 / static_cast<double>(reports));
     EXPECT_EQ(after.own_violations, guard.own_violations) << "nothing may be allocated or freed";
@@ -210,7 +210,7 @@ TEST(Hour, EightHostileDevicesStayWithinEveryLimit) {
     EXPECT_GT(fastest, 1.0) << "it must have walked";
     EXPECT_GT(s.stops, 0U);
     EXPECT_GT(s.overflows, 0U);
-    EXPECT_GT(s.silences, 0U);
+    EXPECT_GT(s.timeouts, 0U);
     EXPECT_GT(s.losses, 0U);
     for (const ReportDecoder& decoder : decoders) {
         const ReportCounts& c = decoder.counts();

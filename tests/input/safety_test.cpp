@@ -105,7 +105,7 @@ TEST(Silence, AStreamingDeviceIsBelievedForAHundredMillisecondsOnly) {
     while (walk.tick().velocity_m_s != dvec3(0.0) && until < 1000) ++until;
     EXPECT_GT(until, 95);
     EXPECT_LE(until, 140);
-    EXPECT_EQ(walk.safety().silences, 1U);
+    EXPECT_EQ(walk.safety().timeouts, 1U);
     EXPECT_LT(glm::length(walk.last.pose.position - at.position), 0.25);
     walk.hold(device, 128, 0, 500);
     EXPECT_GT(walk.speed(), 1.0) << "it speaks again: no neutral needed, nobody let go";
@@ -116,7 +116,7 @@ TEST(Silence, AtRestMeansNothing) {
     const int device = walk.plug();
     walk.hold(device, 128, 128, 20);
     for (int i = 0; i < 5000; ++i) walk.tick();
-    EXPECT_EQ(walk.safety().silences, 0U);
+    EXPECT_EQ(walk.safety().timeouts, 0U);
     walk.hold(device, 128, 0, 300);
     EXPECT_GT(walk.speed(), 1.0);
 }
@@ -132,22 +132,22 @@ TEST(Silence, ADeviceThatReportsChangesOnlyIsNotPutToRest) {
     }
     for (int i = 0; i < 20'000; ++i) walk.tick();
     EXPECT_GT(walk.speed(), 1.3) << "held for 20 s without a report";
-    EXPECT_EQ(walk.safety().silences, 0U);
+    EXPECT_EQ(walk.safety().timeouts, 0U);
 }
 
 TEST(Silence, StreamingIsLearnedFromEqualReportsAndUnlearnedFromGaps) {
     Walk walk;
     int device = walking(walk, Reporting::learn);
-    EXPECT_TRUE(walk.safety().devices[0].habit.learned_streaming);
+    EXPECT_TRUE(walk.safety().devices[0].cadence.learned_streaming);
     for (int i = 0; i < 200; ++i) walk.tick();
     EXPECT_EQ(walk.speed(), 0);
-    // It goes on as if nothing had been, twice: so silence is its habit.
+    // It goes on as if nothing had been, twice: so silence is normal for it.
     walk.hold(device, 128, 0, 5);
-    EXPECT_FALSE(walk.safety().devices[0].habit.learned_streaming);
+    EXPECT_FALSE(walk.safety().devices[0].cadence.learned_streaming);
     walk.hold(device, 128, 0, 200);
     for (int i = 0; i < 200; ++i) walk.tick();
     walk.hold(device, 128, 0, 500);
-    EXPECT_TRUE(walk.safety().devices[0].habit.barred);
+    EXPECT_TRUE(walk.safety().devices[0].cadence.barred);
     for (int i = 0; i < 2000; ++i) walk.tick();
     EXPECT_GT(walk.speed(), 1.3);
     // Our own sleep proves nothing against a device.
@@ -155,7 +155,7 @@ TEST(Silence, StreamingIsLearnedFromEqualReportsAndUnlearnedFromGaps) {
     device = walking(other, Reporting::learn);
     other.now_ns += 500'000'000;
     other.hold(device, 128, 0, 10);
-    EXPECT_TRUE(other.safety().devices[0].habit.learned_streaming);
+    EXPECT_TRUE(other.safety().devices[0].cadence.learned_streaming);
 }
 
 /// 16 bits at 125 Hz: a second at rest, one pushed forward, each with noise of a few counts; then nothing more for a second.
@@ -269,14 +269,14 @@ TEST(Merge, TwoFullDevicesAreNoFasterAndSwitchingMakesNoStep) {
     const int a = walk.plug(), b = walk.plug();
     walk.hold(a, 128, 128, 1);
     walk.hold(b, 128, 128, 1);
-    Wish before;
+    MotionRequest before;
     Random random(6);
     for (int i = 0; i < 20'000; ++i) {
         if (i % 97 == 0) walk.state = {};
         walk.send(a, i % 400 < 200 ? 255 : 128, i % 300 < 150 ? 0 : 255);
         walk.send(b, i % 500 < 250 ? 0 : 255, i % 700 < 350 ? 0 : 128);
         walk.tick();
-        const Wish& now = walk.safety().slewed;
+        const MotionRequest& now = walk.safety().slewed;
         const double step = std::hypot(now.forward - before.forward, now.side - before.side, now.up - before.up);
         ASSERT_LE(step, limits.slew_per_s * 1e-3 + 1e-12);
         ASSERT_LE(std::hypot(now.forward, now.side, now.up), 1 + 1e-12);

@@ -28,8 +28,8 @@ struct User {
         }
     }
     void wait_for_question() {
-        for (int i = 0; i < 1000 && teach.phase() == Teach::Phase::settle; ++i) report();
-        ASSERT_NE(teach.phase(), Teach::Phase::settle);
+        for (int i = 0; i < 1000 && teach.phase() == Teach::Phase::rest; ++i) report();
+        ASSERT_NE(teach.phase(), Teach::Phase::rest);
     }
     [[nodiscard]] std::size_t at(const std::string& name) const {
         for (std::size_t i = 0; i < controls.size(); ++i)
@@ -83,20 +83,20 @@ std::vector<ControlInfo> pad() {
 }
 
 /// Asked of a device that was taught, with one control held.
-Asked asked(const DeviceMapping& mapping, User& user, const std::string& name, std::int32_t value) {
+DeviceOutput output_of(const DeviceMapping& mapping, User& user, const std::string& name, std::int32_t value) {
     auto mapper = compile(mapping, user.controls);
     EXPECT_TRUE(mapper.ok()) << (mapper.ok() ? "" : mapper.error().text());
     DeviceState state = user.state;
     const std::size_t i = user.at(name);
     state.reports = 1;
-    Asked a;
+    DeviceOutput a;
     std::int64_t now = 0;
-    for (int k = 0; k < 20; ++k) a = ask(*mapper, state, now += 10 * ms);
+    for (int k = 0; k < 20; ++k) a = evaluate(*mapper, state, now += 10 * ms);
     state.value[i] = value;
     state.has_value.set(i);
     for (int k = 0; k < 200; ++k) {
         ++state.reports;
-        a = ask(*mapper, state, now += 10 * ms);
+        a = evaluate(*mapper, state, now += 10 * ms);
     }
     return a;
 }
@@ -124,14 +124,14 @@ TEST(Teach, AGamepadIsTaughtAndSteersAsItWasShown) {
     EXPECT_EQ(m.sticks[0].invert, (std::array{false, true}));
     EXPECT_EQ(m.sticks[1].actions, (std::array{Action::turn, Action::look}));
     u.state.value[u.at("slider")] = 512;
-    EXPECT_NEAR(asked(m, u, "y", 0).wish.forward, 1, 1e-3);
-    EXPECT_NEAR(asked(m, u, "x", 255).wish.side, 1, 1e-3);
-    EXPECT_NEAR(asked(m, u, "x", 0).wish.side, -1, 1e-3);
-    EXPECT_NEAR(asked(m, u, "rx", 255).wish.up, 1, 1e-3);
-    EXPECT_EQ(asked(m, u, "rx", 0).wish.up, 0);
-    EXPECT_NEAR(asked(m, u, "z", 0).wish.turn, 1, 1e-3);
-    EXPECT_NEAR(asked(m, u, "rz", 0).wish.look, 1, 1e-3);
-    EXPECT_GT(asked(m, u, "slider", 1023).wish.speed, 0.9);
+    EXPECT_NEAR(output_of(m, u, "y", 0).request.forward, 1, 1e-3);
+    EXPECT_NEAR(output_of(m, u, "x", 255).request.side, 1, 1e-3);
+    EXPECT_NEAR(output_of(m, u, "x", 0).request.side, -1, 1e-3);
+    EXPECT_NEAR(output_of(m, u, "rx", 255).request.up, 1, 1e-3);
+    EXPECT_EQ(output_of(m, u, "rx", 0).request.up, 0);
+    EXPECT_NEAR(output_of(m, u, "z", 0).request.turn, 1, 1e-3);
+    EXPECT_NEAR(output_of(m, u, "rz", 0).request.look, 1, 1e-3);
+    EXPECT_GT(output_of(m, u, "slider", 1023).request.speed, 0.9);
     ASSERT_EQ(m.buttons.size(), 3U);
     EXPECT_EQ(m.buttons[0].action, Action::next_viewpoint);
     EXPECT_EQ(m.buttons[1].control.name, "button-3");

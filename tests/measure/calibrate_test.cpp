@@ -86,23 +86,23 @@ std::vector<measure::FrameSample> times(std::initializer_list<double> us, double
 TEST(FrameFit, settles_on_the_least_at_the_median_speed) {
     const std::vector<std::vector<measure::FrameSample>> rounds = {times({150, 100, 120, 126}), times({200, 260, 900}),
                                                                    times({50, 52}), times({10})};
-    const measure::Settled settled = measure::settle(rounds);
-    EXPECT_NEAR(settled.slowdown, 1.23, 1e-9);  // of (120 + 126) / 2 / 100, 260 / 200 and 51 / 50
-    EXPECT_EQ(settled.repeated, 3U);
-    ASSERT_EQ(settled.frames.size(), 4U);
+    const measure::FrameTimes frame_times = measure::robust_frame_times(rounds);
+    EXPECT_NEAR(frame_times.slowdown, 1.23, 1e-9);  // of (120 + 126) / 2 / 100, 260 / 200 and 51 / 50
+    EXPECT_EQ(frame_times.repeated, 3U);
+    ASSERT_EQ(frame_times.frames.size(), 4U);
     for (const std::size_t i : {0, 1, 2, 3})
-        EXPECT_NEAR(settled.frames[i].actual_us, 1.23 * (std::array{100.0, 200.0, 50.0, 10.0})[i], 1e-9);
-    EXPECT_EQ(settled.frames[0].raster_us, 7);
-    EXPECT_EQ(measure::settle({}).slowdown, 1.0);
+        EXPECT_NEAR(frame_times.frames[i].actual_us, 1.23 * (std::array{100.0, 200.0, 50.0, 10.0})[i], 1e-9);
+    EXPECT_EQ(frame_times.frames[0].raster_us, 7);
+    EXPECT_EQ(measure::robust_frame_times({}).slowdown, 1.0);
 }
 
 TEST(FrameFit, settles_by_what_was_drawn_as_in_the_last_round) {
     std::vector<measure::FrameSample> rounds = times({40}, 5);  // something else
     for (const auto& sample : times({100, 110})) rounds.push_back(sample);
     const std::vector<std::vector<measure::FrameSample>> frames = {rounds};
-    const measure::Settled settled = measure::settle(frames);
-    EXPECT_EQ(settled.frames[0].raster_us, 7);
-    EXPECT_NEAR(settled.frames[0].actual_us, 105, 1e-9);
+    const measure::FrameTimes frame_times = measure::robust_frame_times(frames);
+    EXPECT_EQ(frame_times.frames[0].raster_us, 7);
+    EXPECT_NEAR(frame_times.frames[0].actual_us, 105, 1e-9);
 }
 
 // A machine that runs at two speeds, in turns of some frames: what one round says of a frame is the turn that it fell into.
@@ -120,12 +120,12 @@ TEST(FrameFit, of_rounds_is_the_same_whatever_turns_the_machine_takes) {
             rounds[i].push_back(once[i]);
         }
     }
-    const measure::Settled settled = measure::settle(rounds);
-    EXPECT_GT(settled.slowdown, 1.2);
-    EXPECT_LT(settled.slowdown, 1.8 + 1e-6);
+    const measure::FrameTimes frame_times = measure::robust_frame_times(rounds);
+    EXPECT_GT(frame_times.slowdown, 1.2);
+    EXPECT_LT(frame_times.slowdown, 1.8 + 1e-6);
     std::vector<measure::FrameSample> middle = clean;
-    for (measure::FrameSample& sample : middle) sample.actual_us *= settled.slowdown;
-    EXPECT_LT(measure::relative_error(middle, measure::fit_combine(settled.frames, prior), 0.9), 0.02);
+    for (measure::FrameSample& sample : middle) sample.actual_us *= frame_times.slowdown;
+    EXPECT_LT(measure::relative_error(middle, measure::fit_combine(frame_times.frames, prior), 0.9), 0.02);
     EXPECT_GT(measure::relative_error(once, measure::fit_combine(once, prior), 0.9), 0.2) << "one round would have done";
 }
 
@@ -190,7 +190,7 @@ TEST_F(CostFile, comes_back_bit_for_bit) {
     ASSERT_TRUE(read.ok()) << read.error().text();
     EXPECT_EQ(read->combine.raster_weight, costs_.combine.raster_weight);
     EXPECT_EQ(read->combine.max_weight, costs_.combine.max_weight);
-    EXPECT_EQ(read->upper_factor, costs_.upper_factor);
+    EXPECT_EQ(read->headroom, costs_.headroom);
     ASSERT_EQ(read->grids.size(), costs_.grids.size());
     for (std::size_t g = 0; g < costs_.grids.size(); ++g) {
         EXPECT_EQ(read->grids[g].effects, costs_.grids[g].effects);
@@ -239,13 +239,13 @@ TEST_F(CostFile, with_a_wrong_key_is_refused_by_its_name) {
         EXPECT_EQ(read.error().place, file_);
         return read.error().what;
     };
-    EXPECT_EQ(problem("slice_us", ""), "'slice_us' is missing or out of range");
-    EXPECT_EQ(problem("upper_factor", "upper_factor = 101"), "'upper_factor' is missing or out of range");
-    EXPECT_EQ(problem("max_weight =", "max_weight = \"1\""), "'combine.max_weight' is missing or out of range");
-    EXPECT_EQ(problem("pixel_steps", "pixel_steps = 0"), "'class.triangle_steps' is missing or out of range");
-    EXPECT_EQ(problem("effects", "effects = -1"), "'class.effects' is missing or out of range");
-    EXPECT_EQ(problem("submit_us = [", "submit_us = [ -1,"), "'class.submit_us' is missing or out of range");
-    EXPECT_EQ(problem("version", "version = 9"), "'version' is missing or out of range");
+    EXPECT_EQ(problem("slice_us", ""), "The key 'slice_us' is missing or out of range");
+    EXPECT_EQ(problem("upper_factor", "upper_factor = 101"), "The key 'upper_factor' is missing or out of range");
+    EXPECT_EQ(problem("max_weight =", "max_weight = \"1\""), "The key 'combine.max_weight' is missing or out of range");
+    EXPECT_EQ(problem("pixel_steps", "pixel_steps = 0"), "The key 'class.triangle_steps' is missing or out of range");
+    EXPECT_EQ(problem("effects", "effects = -1"), "The key 'class.effects' is missing or out of range");
+    EXPECT_EQ(problem("submit_us = [", "submit_us = [ -1,"), "The key 'class.submit_us' is missing or out of range");
+    EXPECT_EQ(problem("version", "version = 9"), "The key 'version' is missing or out of range");
     EXPECT_EQ(problem("version", "version = 1"), "nothing");
 }
 
@@ -341,7 +341,7 @@ TEST(Calibrate, measures_a_table_that_predicts_more_for_more) {
     EXPECT_TRUE(c->costs.calibrated);
     EXPECT_EQ(c->costs.grids.size(), 4U);
     EXPECT_EQ(c->points.size(), 4U * 4U * 6U);
-    EXPECT_GE(c->costs.upper_factor, 1);
+    EXPECT_GE(c->costs.headroom, 1);
     EXPECT_TRUE(std::isfinite(c->frame_error_p99));
     const auto& grid = c->costs.grid_for(0);
     const auto less = c->costs.item(10, 100, grid);

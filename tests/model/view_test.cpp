@@ -62,7 +62,7 @@ TEST(Frustum, BoxesBehindAndBesideAreNot) {
     EXPECT_FALSE(visible(frustum, Box{}));
 }
 
-// Six planes alone keep this one: no plane has it wholly outside, yet it lies behind the eye's corner.
+// Six planes alone keep this box: no plane has it wholly outside, yet it lies behind the eye's corner.
 TEST(Frustum, LargeBoxAcrossTwoPlanesIsDropped) {
     Pose pose;
     pose.orientation = glm::angleAxis(0.785398, dvec3(0, 1, 0));  // looks along -x-z

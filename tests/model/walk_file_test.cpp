@@ -125,7 +125,7 @@ TEST_F(WalkFile, EveryTruncationIsAnError) {
     EXPECT_FALSE(read_walk(file).ok());
 }
 
-// A forger who mends the checksums still meets validate(): these models are written with right ones.
+// A forger who repairs the checksums still meets validate(): these models are written with right ones.
 TEST_F(WalkFile, WrongIndexWithRightChecksumIsRefused) {
     Model model = two_triangles();
     model.indices[1] = 3;
@@ -135,8 +135,8 @@ TEST_F(WalkFile, WrongIndexWithRightChecksumIsRefused) {
     EXPECT_NE(read.error().place.find("parts[0]"), std::string::npos);
 }
 
-/// Mends section, table and header checksums after a change in section `number`.
-void mend_checksums(std::vector<std::byte>& bytes, std::size_t number) {
+/// Repairs section, table and header checksums after a change in section `number`.
+void repair_checksums(std::vector<std::byte>& bytes, std::size_t number) {
     constexpr std::size_t header = 56, entry = 20, sections = 9;
     const auto get = [&](std::size_t at) {
         std::uint64_t value = 0;
@@ -163,7 +163,7 @@ TEST_F(WalkFile, ForgedPayloadSizesDoNotAllocate) {
         for (const std::uint64_t size : {1ULL << 60U, 1ULL << 20U, 32ULL * 300, 0ULL}) {
             auto bad = good;
             std::memcpy(bad.data() + 56 + pages_size + 8 * which, &size, sizeof(size));
-            mend_checksums(bad, 0);
+            repair_checksums(bad, 0);
             put(bad);
             EXPECT_FALSE(read_walk(file).ok()) << which << ' ' << size;
         }
@@ -180,7 +180,7 @@ TEST_F(WalkFile, ForgedRecordCountsDoNotAllocate) {
         const std::uint64_t huge = 1ULL << 40U;
         auto bad = good;
         std::memcpy(bad.data() + at + (section == 0 ? 24 : 0), &huge, sizeof(huge));
-        mend_checksums(bad, section);
+        repair_checksums(bad, section);
         put(bad);
         const auto read = read_walk(file);
         ASSERT_FALSE(read.ok()) << section;

@@ -34,7 +34,7 @@ public:
         if (fd_ >= 0) ::close(fd_);
     }
     [[nodiscard]] bool connected() const { return connected_; }
-    bool say(std::string_view text) {
+    bool send_text(std::string_view text) {
         return ::send(fd_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
     }
     /// All until the other side closes, or `timeout_ms` without a byte.

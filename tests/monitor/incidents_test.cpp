@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::TemporaryFolder;
 
-rt::BlackBox::Incident an_incident(std::uint64_t number, int frames = 200) {
-    rt::BlackBox::Incident incident;
+rt::IncidentRecorder::Incident an_incident(std::uint64_t number, int frames = 200) {
+    rt::IncidentRecorder::Incident incident;
     incident.number = number;
     incident.period_ns = 10'000'000;
     incident.first_frame = 100;
@@ -119,14 +119,14 @@ TEST(Incidents, KeepTheMissedFrameThatIsTheirs) {
 TEST(Incidents, AFullDiskIsSaidOnceAndSurvived) {
     const TemporaryFolder folder;
     const std::string dir = folder / "incidents";
-    rt::BlackBoxOptions box_options;
+    rt::IncidentRecorderOptions box_options;
     box_options.between_s = 0;
     box_options.keep_s = 2;
     box_options.after_s = 0.05;
-    rt::BlackBox box(box_options);
+    rt::IncidentRecorder box(box_options);
     box.begin(10'000'000);
-    std::vector<std::string> said;
-    auto writer = IncidentWriter::start(dir, box, {}, [&](std::string_view text) { said.emplace_back(text); });
+    std::vector<std::string> messages;
+    auto writer = IncidentWriter::start(dir, box, {}, [&](std::string_view text) { messages.emplace_back(text); });
     ASSERT_TRUE(writer.ok()) << writer.error().text();
     std::uint64_t frame = 0;
     const auto burst = [&](std::uint64_t outcomes) {
@@ -159,8 +159,8 @@ TEST(Incidents, AFullDiskIsSaidOnceAndSurvived) {
     burst(5);
     EXPECT_EQ((*writer)->written(), 2U) << "it goes on when there is room again";
     writer->reset();
-    ASSERT_EQ(said.size(), 3U) << "written; not written, once; written";
-    EXPECT_NE(said[1].find("could not be recorded"), std::string::npos) << said[1];
+    ASSERT_EQ(messages.size(), 3U) << "written; not written, once; written";
+    EXPECT_NE(messages[1].find("could not be recorded"), std::string::npos) << messages[1];
     for (const std::string& name : names_in(dir))
         EXPECT_TRUE(name.starts_with("incident-")) << name << ": something half is left";
     EXPECT_EQ(names_in(dir).size(), 2U);
@@ -171,7 +171,7 @@ TEST(Incidents, WhatAnEarlierProcessLeftHalfIsClearedAway) {
     const std::string dir = folder / "incidents";
     fs::create_directories(dir + "/.incident-20260102T030405Z-000001");
     ASSERT_TRUE(write_text(dir + "/.incident-20260102T030405Z-000001/ledger.csv", "half").ok());
-    rt::BlackBox box({});
+    rt::IncidentRecorder box({});
     auto writer = IncidentWriter::start(dir, box, {}, {});
     ASSERT_TRUE(writer.ok());
     EXPECT_TRUE(names_in(dir).empty());

@@ -176,7 +176,7 @@ public:
         for (int i = 0; i < 40; ++i) half_open_.emplace_back(address_);
         for (int i = 0; i < 10; ++i) {
             stopped_.emplace_back(address_);
-            stopped_.back().say("GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
+            stopped_.back().send_text("GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
         }
         for (int i = 0; i < 2; ++i)
             threads_.emplace_back([this] {  // a hundred scrapes a second, of both together

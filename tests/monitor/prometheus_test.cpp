@@ -50,7 +50,7 @@ protected:
         telemetry_->begin({period_30_ns, rt::LatePolicy::lock, 2});
         page_.figures = &telemetry_->figures();
         page_.version = "1.2.3";
-        page_.state = ServiceState::walking;
+        page_.state = ServicePhase::walking;
         page_.walk.model = "town.walk";
         page_.walk.setup = telemetry_->figures().setup;
         page_.process = rt::read_process();
@@ -226,7 +226,7 @@ TEST_F(MonitorPages, LabelsAreBoundedWhateverTheMachineLacks) {
     EXPECT_EQ(e.values_of.at("surefoot_degraded/reason").size(), degraded_reasons().size());
     EXPECT_EQ(e.at("surefoot_degraded{reason=\"fifo\"}"), 1);
     EXPECT_EQ(e.at("surefoot_degraded{reason=\"census\"}"), 0);
-    for (const auto& [label, values] : e.values_of) EXPECT_LE(values.size(), rt::Edges::most + 1) << label;
+    for (const auto& [label, values] : e.values_of) EXPECT_LE(values.size(), rt::Edges::max_edges + 1) << label;
 }
 
 TEST_F(MonitorPages, TheStatusPageIsOneLineOfJsonThatAgreesWithTheMetrics) {

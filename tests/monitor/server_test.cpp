@@ -25,7 +25,7 @@ namespace {
 using test::RawReader;
 using test::TemporaryFolder;
 
-constexpr std::string_view ask_hello = "GET /hello HTTP/1.1\r\nHost: localhost\r\n\r\n";
+constexpr std::string_view hello_request = "GET /hello HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 Server::Pages hello_pages(std::size_t bytes = 0) {
     auto body = std::make_shared<const std::string>(bytes == 0 ? std::string("hello\n") : std::string(bytes, 'x'));
@@ -100,11 +100,11 @@ TEST(Server, SaysWhatItMakesOfARequest) {
     const auto server = serving(any_port(), hello_pages());
     const auto answer_to = [&](std::string_view request) {
         RawReader r(server->address());
-        EXPECT_TRUE(r.say(request));
+        EXPECT_TRUE(r.send_text(request));
         const std::string answer = r.listen();
         return answer.substr(0, answer.find("\r\n"));
     };
-    EXPECT_EQ(answer_to(ask_hello), "HTTP/1.1 200 OK");
+    EXPECT_EQ(answer_to(hello_request), "HTTP/1.1 200 OK");
     EXPECT_EQ(answer_to("GET /hello?format=text HTTP/1.0\r\n\r\n"), "HTTP/1.1 200 OK");
     EXPECT_EQ(answer_to("HEAD /hello HTTP/1.1\r\nHost: localhost\r\n\r\n"), "HTTP/1.1 200 OK");
     EXPECT_EQ(answer_to("POST /hello HTTP/1.1\r\n\r\n"), "HTTP/1.1 405 Method Not Allowed");
@@ -120,7 +120,7 @@ TEST(Server, APortAnswersOnlyRequestsThatNameThisMachine) {
     const auto server = serving(any_port(), hello_pages());
     const auto answer_to = [&](const std::string& head) {
         RawReader r(server->address());
-        EXPECT_TRUE(r.say("GET /hello " + head + "\r\n\r\n"));
+        EXPECT_TRUE(r.send_text("GET /hello " + head + "\r\n\r\n"));
         const std::string answer = r.listen();
         EXPECT_EQ(answer.find("hello\n") != std::string::npos, answer.starts_with("HTTP/1.1 200")) << head;
         return answer.substr(9, 3);
@@ -146,14 +146,14 @@ TEST(Server, ASocketAsksForNoHost) {
     const TemporaryFolder folder;
     const auto server = serving(at_socket(folder), hello_pages());
     RawReader r(server->address());
-    EXPECT_TRUE(r.say("GET /hello HTTP/1.1\r\nHost: attacker.example\r\n\r\n"));
+    EXPECT_TRUE(r.send_text("GET /hello HTTP/1.1\r\nHost: attacker.example\r\n\r\n"));
     EXPECT_TRUE(r.listen().starts_with("HTTP/1.1 200 OK")) << "no browser opens a Unix socket";
 }
 
 TEST(Server, ARequestMayComeInPieces) {
     const auto server = serving(any_port(), hello_pages());
     RawReader r(server->address());
-    for (const char& c : ask_hello) ASSERT_TRUE(r.say(std::string_view(&c, 1)));
+    for (const char& c : hello_request) ASSERT_TRUE(r.send_text(std::string_view(&c, 1)));
     EXPECT_NE(r.listen().find("hello"), std::string::npos);
 }
 
@@ -162,13 +162,13 @@ TEST(Server, HalfOpenReadersAreGivenUpAndTheOthersServed) {
     limits.readers = 8;
     limits.request_ms = 1000;
     const auto server = serving(any_port(), hello_pages(), limits);
-    std::vector<RawReader> silent;
-    for (int i = 0; i < 8; ++i) silent.emplace_back(server->address());
-    silent[3].say("GET /he");
+    std::vector<RawReader> idle;
+    for (int i = 0; i < 8; ++i) idle.emplace_back(server->address());
+    idle[3].send_text("GET /he");
     for (int i = 0; i < 10; ++i) EXPECT_EQ(*fetch(server->address(), "/hello"), "hello\n") << "one more always gets in";
     EXPECT_TRUE(soon([&] { return server->counts().open == 0; })) << "silence is given up";
     EXPECT_EQ(server->counts().dropped_slow + server->counts().dropped_full, 8U);
-    EXPECT_EQ(silent.back().listen(), "") << "and told so by closing";
+    EXPECT_EQ(idle.back().listen(), "") << "and told so by closing";
 }
 
 TEST(Server, AReaderThatStopsReadingHoldsNobodyUp) {
@@ -179,10 +179,10 @@ TEST(Server, AReaderThatStopsReadingHoldsNobodyUp) {
     std::vector<RawReader> stopped;
     for (int i = 0; i < 5; ++i) {
         stopped.emplace_back(server->address(), 4096);
-        ASSERT_TRUE(stopped.back().say(ask_hello));
+        ASSERT_TRUE(stopped.back().send_text(hello_request));
     }
     RawReader head(server->address());
-    ASSERT_TRUE(head.say("HEAD /hello HTTP/1.1\r\nHost: localhost\r\n\r\n"));
+    ASSERT_TRUE(head.send_text("HEAD /hello HTTP/1.1\r\nHost: localhost\r\n\r\n"));
     EXPECT_TRUE(head.listen().starts_with("HTTP/1.1 200 OK"));
     EXPECT_TRUE(soon([&] { return server->counts().dropped_slow == 5; })) << server->counts().dropped_slow;
 }
@@ -199,7 +199,7 @@ TEST(Server, AFloodIsTurnedAwayAtItsRate) {
         flood.emplace_back([&] {
             while (!done.load()) {
                 RawReader r(server->address());
-                r.say(ask_hello);
+                r.send_text(hello_request);
                 (void)r.listen(50);
             }
         });
@@ -232,7 +232,7 @@ TEST(Server, WithoutDescriptorsItWaitsAndComesBack) {
     std::this_thread::sleep_for(std::chrono::milliseconds(600));
     EXPECT_LT(process_cpu_ns() - cpu_before, 200'000'000) << "it spins";
     setrlimit(RLIMIT_NOFILE, &before);
-    EXPECT_TRUE(late.say(ask_hello));
+    EXPECT_TRUE(late.send_text(hello_request));
     EXPECT_NE(late.listen().find("hello"), std::string::npos);
 }
 

@@ -37,7 +37,7 @@ json viewed_status(int frames, const std::string& model = "/srv/models/town.walk
     MonitorPage page;
     page.figures = &telemetry->figures();
     page.version = "1.2.3";
-    page.state = ServiceState::walking;
+    page.state = ServicePhase::walking;
     page.walk.model = model;
     page.walk.rate_hz = 50;
     page.walk.setup = telemetry->figures().setup;
@@ -52,7 +52,7 @@ std::string joined(const std::vector<std::string>& lines) {
     return all;
 }
 
-Look a_look(std::size_t width, std::size_t height, bool colour = false, bool unicode = false) {
+TerminalStyle a_style(std::size_t width, std::size_t height, bool colour = false, bool unicode = false) {
     return {colour, unicode, width, height};
 }
 
@@ -64,7 +64,7 @@ TEST(View, StatusIsAPageThatNamesWhatMatters) {
         EXPECT_NE(all.find(text), std::string::npos) << text << " is not in\n" << all;
     EXPECT_LE(lines.size(), 40U) << "a page of a screen";
     EXPECT_EQ(all.find('\033'), std::string::npos) << "colour where none is wanted";
-    EXPECT_NE(status_page(viewed_status(400), a_look(80, 24, true))[0].find("\033["), std::string::npos);
+    EXPECT_NE(status_page(viewed_status(400), a_style(80, 24, true))[0].find("\033["), std::string::npos);
 }
 
 TEST(View, AFailedCheckIsNamedWithItsPlaceAndCount) {
@@ -89,7 +89,7 @@ TEST(View, TopFitsAnyWindow) {
     for (const std::size_t width : {1U, 20U, 40U, 80U, 200U})
         for (const std::size_t height : {3U, 10U, 24U, 60U})
             for (const bool colour : {false, true}) {
-                const auto lines = top_page(now, before, 1, a_look(width, height, colour, true));
+                const auto lines = top_page(now, before, 1, a_style(width, height, colour, true));
                 EXPECT_LE(lines.size(), height);
                 for (const std::string& line : lines) EXPECT_LE(places(line), width) << line;
             }
@@ -97,7 +97,7 @@ TEST(View, TopFitsAnyWindow) {
 
 TEST(View, TopShowsRatesSlotsAndCauses) {
     const json before = viewed_status(300), now = viewed_status(350);
-    const std::string all = joined(top_page(now, before, 1, a_look(100, 30)));
+    const std::string all = joined(top_page(now, before, 1, a_style(100, 30)));
     EXPECT_NE(all.find("50 frames/s"), std::string::npos) << all;
     EXPECT_NE(all.find("stolen 8"), std::string::npos) << all;
     EXPECT_NE(all.find("least -5.00 ms"), std::string::npos) << all;

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "render/prepare/evaluate.hpp"
-#include "render/prepare/passes.hpp"
 #include "render/prepare/prepared.hpp"
+#include "render/prepare/tree_passes.hpp"
 #include "tests/prepare/random_model.hpp"
 
 namespace surefoot::prepare {
@@ -167,7 +167,7 @@ TEST(Prepare, PlaneMasksChangeNoAnswer) {
         std::vector<PlaneMask> masks(m.nodes.size(), all_planes);
         for (Index n = 0; n < m.nodes.size(); ++n) {
             const PlaneMask above = n == 0 ? all_planes : masks[m.nodes[n].parent];
-            masks[n] = above == culled ? culled : narrow(frustum, m.nodes[n].box, above);
+            masks[n] = above == culled ? culled : cull_planes(frustum, m.nodes[n].box, above);
             const bool visible = model::visible(frustum, m.nodes[n].box);
             EXPECT_TRUE(above == culled || (masks[n] != culled) == visible) << "seed " << seed << " node " << n;
         }
@@ -257,12 +257,12 @@ TEST(Prepare, TooManyVisitsRaiseTheErrorTargetUntilTheyFit) {
     EXPECT_GT(f.visits, 4000U);
     for (int i = 0; i < 20; ++i) preparer.run(region, {1280, 720}, 0, 0, 0, f);
     EXPECT_LE(f.visits, 1000U);
-    const std::uint32_t settled = f.visits;
+    const std::uint32_t steady_visits = f.visits;
     for (int i = 0; i < 10; ++i) {
         preparer.run(region, {1280, 720}, 0, 0, 0, f);
         EXPECT_LE(f.visits, 1000U);
     }
-    EXPECT_GT(settled, 300U);
+    EXPECT_GT(steady_visits, 300U);
 }
 
 TEST(Prepare, FullDepthGoesToEveryVisibleLeaf) {
@@ -326,8 +326,8 @@ float benefit_of_step(float step_us) {
     combine.raster_weight = 1;
     combine.max_weight = 0;
     std::vector<Weight> weights(1);
-    gather_up(combine, 1e-3F, weights, frame);
-    hold_down(frame);
+    propagate_up(combine, 1e-3F, weights, frame);
+    enforce_monotone_benefit(frame);
     EXPECT_EQ(frame.choices[0].benefit, frame.choices[0].subtree_benefit);
     return frame.choices[0].benefit;
 }

@@ -96,22 +96,22 @@ TEST_F(ReportFiles, EmptyWalkStillMakesReadableFiles) {
     EXPECT_NE(read_text(in("r/index.html"))->find("No frame was drawn."), std::string::npos);
 }
 
-ReportShot shot_of(std::uint64_t frame) {
-    ReportShot shot;
-    shot.frame = frame;
-    shot.width = 8;
-    shot.height = 4;
-    shot.walk.assign(8 * 4 * 4, 90);
-    shot.full.assign(8 * 4 * 4, 100);
-    shot.difference.assign(8 * 4 * 4, 40);
-    shot.snr_db = 12.5;
-    shot.ssim = 0.9;
-    shot.triangles = 100;
-    shot.full_triangles = 400;
-    shot.drawn = {{0, 0, 4, 4, 0, 0.2F}, {1, 1, 2, 2, 1, 1.0F}, {std::numeric_limits<float>::quiet_NaN(), 0, 1, 1, 1, 1}};
-    shot.forward = {0, 0, -1};
-    shot.world_xz = {-5, -5, 5, 5};
-    return shot;
+ReportSnapshot snapshot_of(std::uint64_t frame) {
+    ReportSnapshot snapshot;
+    snapshot.frame = frame;
+    snapshot.width = 8;
+    snapshot.height = 4;
+    snapshot.walk.assign(8 * 4 * 4, 90);
+    snapshot.full.assign(8 * 4 * 4, 100);
+    snapshot.difference.assign(8 * 4 * 4, 40);
+    snapshot.snr_db = 12.5;
+    snapshot.ssim = 0.9;
+    snapshot.triangles = 100;
+    snapshot.full_triangles = 400;
+    snapshot.drawn = {{0, 0, 4, 4, 0, 0.2F}, {1, 1, 2, 2, 1, 1.0F}, {std::numeric_limits<float>::quiet_NaN(), 0, 1, 1, 1, 1}};
+    snapshot.forward = {0, 0, -1};
+    snapshot.world_xz = {-5, -5, 5, 5};
+    return snapshot;
 }
 
 TEST_F(ReportFiles, PageNeedsNothingOutsideItself) {
@@ -122,8 +122,8 @@ TEST_F(ReportFiles, PageNeedsNothingOutsideItself) {
     s.degraded = {{rt::LackKind::fifo, "FIFO refused", "grant rtprio"}};
     s.control.ran = true;
     s.control.blocks.resize(4);
-    const std::vector<ReportShot> shots = {shot_of(0), shot_of(2)};
-    ASSERT_TRUE(write_report(in("r"), s, records, shots).ok());
+    const std::vector<ReportSnapshot> snapshots = {snapshot_of(0), snapshot_of(2)};
+    ASSERT_TRUE(write_report(in("r"), s, records, snapshots).ok());
     const auto page = *read_text(in("r/index.html"));
     EXPECT_EQ(page.find("http"), std::string::npos);
     EXPECT_EQ(page.find("<script"), std::string::npos);
@@ -154,11 +154,11 @@ TEST_F(ReportFiles, PicturesOfTheNullBackendMayBeMissing) {
     WalkSummary s;
     const auto records = good_frames(3);
     summarize(records, period_ns, s);
-    ReportShot shot = shot_of(1);
-    shot.walk.clear();
-    shot.full.clear();
-    shot.difference.clear();
-    ASSERT_TRUE(write_report(in("r"), s, records, std::vector<ReportShot>{shot}).ok());
+    ReportSnapshot snapshot = snapshot_of(1);
+    snapshot.walk.clear();
+    snapshot.full.clear();
+    snapshot.difference.clear();
+    ASSERT_TRUE(write_report(in("r"), s, records, std::vector<ReportSnapshot>{snapshot}).ok());
     const auto page = *read_text(in("r/index.html"));
     EXPECT_EQ(page.find("<img"), std::string::npos);
     EXPECT_NE(page.find("nodes drawn"), std::string::npos);

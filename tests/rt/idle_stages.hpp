@@ -16,16 +16,16 @@ public:
 };
 
 /// Says when the loop is well under way.
-class TellingStages final : public IdleStages {
+class SignallingStages final : public IdleStages {
 public:
-    explicit TellingStages(Told& under_way) : under_way_(under_way) {}
+    explicit SignallingStages(StartSignal& under_way) : under_way_(under_way) {}
     void sample(FrameRecord& r) override {
         IdleStages::sample(r);
-        if (r.frame == 8) under_way_.tell();
+        if (r.frame == 8) under_way_.send();
     }
 
 private:
-    Told& under_way_;
+    StartSignal& under_way_;
 };
 
 }  // namespace surefoot::rt::test

@@ -13,19 +13,19 @@ namespace surefoot::rt::test {
 constexpr int passed = 0, failed = 1;
 
 /// Told once by one process and waited for by another; made before the fork.
-class Told {
+class StartSignal {
 public:
-    Told() : open_(::pipe(ends_.data()) == 0) {}
-    ~Told() {
+    StartSignal() : open_(::pipe(ends_.data()) == 0) {}
+    ~StartSignal() {
         for (const int end : ends_)
             if (open_) ::close(end);
     }
-    Told(const Told&) = delete;
-    Told& operator=(const Told&) = delete;
-    void tell() { (void)!::write(ends_[1], "x", 1); }
+    StartSignal(const StartSignal&) = delete;
+    StartSignal& operator=(const StartSignal&) = delete;
+    void send() { (void)!::write(ends_[1], "x", 1); }
     void wait() {
-        char told = 0;
-        (void)!::read(ends_[0], &told, 1);
+        char byte = 0;
+        (void)!::read(ends_[0], &byte, 1);
     }
 
 private:

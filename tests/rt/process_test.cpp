@@ -54,7 +54,7 @@ public:
 /// Makes oneTBB start its workers: three tasks that all wait until three threads have met (or none more comes).
 int start_workers(bool placed) {
     std::array<pid_t, 3> tids{};
-    int met = 0;
+    int arrived = 0;
     Mutex mutex;
     Condition changed;
     const auto deadline = std::chrono::steady_clock::now() + start_within;
@@ -68,9 +68,9 @@ int start_workers(bool placed) {
             [&](int i) {
                 const MutexLock lock(mutex);
                 tids[static_cast<std::size_t>(i)] = own_tid();
-                ++met;
+                ++arrived;
                 changed.notify_all();
-                while (met < 3 && changed.wait_until(mutex, deadline)) {
+                while (arrived < 3 && changed.wait_until(mutex, deadline)) {
                 }
             },
             tbb::simple_partitioner{});
@@ -128,22 +128,22 @@ TEST(CensusWithTbb, OnlyWorkersThatArePlacedAsTheyStartPass) {
     EXPECT_EQ(in_child([] {
                   // The workers carry the program's name and are SCHED_OTHER.
                   const auto problems = census_with_workers(Made::by_the_main_thread);
-                  return has(problems, "too many") && has(problems, "'sf-worker': missing") ? passed : failed;
+                  return has(problems, "is there too often") && has(problems, "'sf-worker' is missing") ? passed : failed;
               }),
               passed);
     EXPECT_EQ(in_child([] {
                   // The workers carry the frame thread's name and priority.
-                  return has(census_with_workers(Made::by_the_frame_thread), "'sf-frame': too many") ? passed : failed;
+                  return has(census_with_workers(Made::by_the_frame_thread), "'sf-frame' is there too often") ? passed : failed;
               }),
               passed);
 }
 
 TEST(Stopped, AProcessStoppedForThreeTenthsOfASecondCountsItsSlotsAndNamesTheCause) {
     if (!guard_active()) GTEST_SKIP() << "sanitizers make a forked child's signals unreliable";
-    test::Told under_way;
+    test::StartSignal under_way;
     const auto body = [&] {
         RealClock clock;
-        test::TellingStages stages(under_way);
+        test::SignallingStages stages(under_way);
         SpscRing<FrameRecord> ring(128);
         FrameLoopOptions options;
         options.frames = 30;

@@ -111,9 +111,9 @@ long change_mask(const std::array<long, 6>& arguments, ucontext_t& context) {
     std::uint64_t mask = 0;
     std::memcpy(&mask, &context.uc_sigmask, sizeof mask);
     const std::uint64_t before = mask;
-    if (const auto* asked = reinterpret_cast<const void*>(arguments[1]); asked != nullptr) {
+    if (const auto* requested = reinterpret_cast<const void*>(arguments[1]); requested != nullptr) {
         std::uint64_t set = 0;
-        std::memcpy(&set, asked, sizeof set);
+        std::memcpy(&set, requested, sizeof set);
         switch (arguments[0]) {
             case SIG_BLOCK:
                 mask |= set;

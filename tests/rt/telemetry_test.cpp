@@ -120,11 +120,11 @@ TEST(Telemetry, EdgesAreFineWhereAFrameIsAboutToBeLate) {
 TEST(Telemetry, EdgesOfARoundPeriodAreNotDoubled) {
     const Edges edges(10 * one_ms);
     EXPECT_EQ(std::adjacent_find(edges.ns().begin(), edges.ns().end()), edges.ns().end());
-    EXPECT_LT(edges.ns().size(), Edges::most);
+    EXPECT_LT(edges.ns().size(), Edges::max_edges);
     Distribution d;
     for (const std::int64_t v : {std::int64_t{0}, 5 * one_ms, 100'000 * one_ms}) d.add(edges, v);
     EXPECT_EQ(all_of(d), 3U);
-    EXPECT_EQ(d.up_to[Edges::most], 1U);
+    EXPECT_EQ(d.up_to[Edges::max_edges], 1U);
 }
 
 TEST(Telemetry, AProgressionIsTheSameAsItsValues) {

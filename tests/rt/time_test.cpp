@@ -118,26 +118,26 @@ TEST(Loop, ControlBlocksAlternateAndTheBareLoopBurnsTheSame) {
 
 TEST(Controller, SpendsTheTablesUpperFactorUntilFramesSayBetter) {
     CostController c;
-    EXPECT_EQ(c.upper(1.4), 1.4);
+    EXPECT_EQ(c.headroom(1.4), 1.4);
     for (int i = 0; i < 57; ++i) c.update(100, 101);
-    EXPECT_EQ(c.upper(1.4), 1.4);  // six of 64 are still unknown
+    EXPECT_EQ(c.headroom(1.4), 1.4);  // six of 64 are still unknown
     for (int i = 0; i < 200; ++i) c.update(100, 101);
-    EXPECT_EQ(c.upper(1.4), CostController::least_upper);
-    EXPECT_EQ(c.upper(1.02), 1.02);  // never above the table's
-    EXPECT_EQ(c.upper(0.5), 1);
+    EXPECT_EQ(c.headroom(1.4), CostController::min_headroom);
+    EXPECT_EQ(c.headroom(1.02), 1.02);  // never above the table's
+    EXPECT_EQ(c.headroom(0.5), 1);
 }
 
 TEST(Controller, UpperIsTheNinetiethPercentileOfRecentFrames) {
     CostController c;
     for (int i = 0; i < 1000; ++i) c.update(100, i % 5 == 0 ? 125 : 100);  // a fifth of the frames cost a quarter more
     EXPECT_EQ(c.factor(), 1);
-    EXPECT_EQ(c.upper(1.4), 1.25);
+    EXPECT_EQ(c.headroom(1.4), 1.25);
     for (int i = 0; i < 1000; ++i) c.update(100, i % 20 == 0 ? 190 : 100);  // a twentieth is outliers
-    EXPECT_EQ(c.upper(1.4), CostController::least_upper);
+    EXPECT_EQ(c.headroom(1.4), CostController::min_headroom);
     for (int i = 0; i < 7; ++i) c.update(100, 150);  // rises as soon as a tenth of the window says so
-    EXPECT_GT(c.upper(2), 1.4);
+    EXPECT_GT(c.headroom(2), 1.4);
     for (int i = 0; i < 64; ++i) c.update(100, 100);  // and falls with the window, not long after it
-    EXPECT_EQ(c.upper(2), CostController::least_upper);
+    EXPECT_EQ(c.headroom(2), CostController::min_headroom);
 }
 
 TEST(Controller, MeetsADoubledCostAndIsDeafToOutliers) {

@@ -209,28 +209,28 @@ TEST(Paths, KeepClearOfWallsTrunksAndFurniture) {
 /// Of a path's views, one a second: what stands near, how far one sees, and how much there is to draw.
 struct Views {
     double nearest_m = 1e9, farthest_m = 0;
-    std::uint64_t least_triangles = ~0ULL, most_triangles = 0;       ///< in view
-    std::uint64_t simplest_passed = ~0ULL, most_complex_passed = 0;  ///< triangles of a thing within three metres, in view
-    std::size_t most_near = 0;                                       ///< things within three metres and in view at once
+    std::uint64_t min_triangles = ~0ULL, max_triangles = 0;                ///< in view
+    std::uint64_t min_triangles_passed = ~0ULL, max_triangles_passed = 0;  ///< triangles of a thing within three metres, in view
+    std::size_t max_near = 0;                                              ///< things within three metres and in view at once
 };
 
 Views views_of(const GeneratedScene& generated) {
-    struct Thing {
+    struct PlacedObject {
         Box box;
         std::uint64_t triangles = 0;
     };
-    std::vector<Thing> things;
+    std::vector<PlacedObject> objects;
     Box whole;
     for (const importer::Node& node : generated.scene.nodes) {
         if (node.mesh == none) continue;
-        Thing thing;
+        PlacedObject object;
         for (const importer::Primitive& p : generated.scene.meshes[node.mesh].primitives) {
-            for (const vec3& v : p.positions) thing.box.grow(dvec3(node.world * dvec4(v, 1)));
-            thing.triangles += p.indices.size() / 3;
+            for (const vec3& v : p.positions) object.box.grow(dvec3(node.world * dvec4(v, 1)));
+            object.triangles += p.indices.size() / 3;
         }
-        whole.grow(thing.box.min);
-        whole.grow(thing.box.max);
-        things.push_back(thing);
+        whole.grow(object.box.min);
+        whole.grow(object.box.max);
+        objects.push_back(object);
     }
     Views views;
     for (std::size_t s = 0; s < generated.path.samples.size(); s += 30) {
@@ -238,20 +238,20 @@ Views views_of(const GeneratedScene& generated) {
         const model::Frustum frustum = model::make_frustum(pose, {1280, 720}, whole.diagonal());
         std::uint64_t triangles = 0;
         std::size_t near = 0;
-        for (const Thing& thing : things) {
-            if (!model::visible(frustum, thing.box)) continue;
-            triangles += thing.triangles;
-            const double distance = thing.box.distance(pose.position);
+        for (const PlacedObject& object : objects) {
+            if (!model::visible(frustum, object.box)) continue;
+            triangles += object.triangles;
+            const double distance = object.box.distance(pose.position);
             views.farthest_m = std::max(views.farthest_m, distance);
             if (distance > 3) continue;
             if (distance > 0) views.nearest_m = std::min(views.nearest_m, distance);  // 0: ground, walls about the eye
-            views.simplest_passed = std::min(views.simplest_passed, thing.triangles);
-            views.most_complex_passed = std::max(views.most_complex_passed, thing.triangles);
+            views.min_triangles_passed = std::min(views.min_triangles_passed, object.triangles);
+            views.max_triangles_passed = std::max(views.max_triangles_passed, object.triangles);
             ++near;
         }
-        views.most_near = std::max(views.most_near, near);
-        views.least_triangles = std::min(views.least_triangles, triangles);
-        views.most_triangles = std::max(views.most_triangles, triangles);
+        views.max_near = std::max(views.max_near, near);
+        views.min_triangles = std::min(views.min_triangles, triangles);
+        views.max_triangles = std::max(views.max_triangles, triangles);
     }
     return views;
 }
@@ -259,15 +259,15 @@ Views views_of(const GeneratedScene& generated) {
 TEST(Paths, PassNearClutterAndFarViewsTheSimpleAndTheComplex) {
     for (const auto& [name, far_m] : {std::pair{"forest", 40.0}, {"room", 5.0}, {"town", 100.0}}) {
         const Views v = views_of(made(name, 1));
-        std::cout << name << ": " << v.nearest_m << " to " << v.farthest_m << " m; at most " << v.most_near
-                  << " things within 3 m, of " << v.simplest_passed << " to " << v.most_complex_passed << " triangles; "
-                  << v.least_triangles << " to " << v.most_triangles << " triangles in view\n";
+        std::cout << name << ": " << v.nearest_m << " to " << v.farthest_m << " m; at most " << v.max_near
+                  << " things within 3 m, of " << v.min_triangles_passed << " to " << v.max_triangles_passed << " triangles; "
+                  << v.min_triangles << " to " << v.max_triangles << " triangles in view\n";
         EXPECT_LT(v.nearest_m, 1.0) << name;
-        EXPECT_GE(v.most_near, 5U) << name;
+        EXPECT_GE(v.max_near, 5U) << name;
         EXPECT_GT(v.farthest_m, far_m) << name;
-        EXPECT_LE(v.simplest_passed, 60U) << name;
-        EXPECT_GE(v.most_complex_passed, 900U) << name;
-        EXPECT_GE(v.most_triangles, 3 * v.least_triangles) << name;
+        EXPECT_LE(v.min_triangles_passed, 60U) << name;
+        EXPECT_GE(v.max_triangles_passed, 900U) << name;
+        EXPECT_GE(v.max_triangles, 3 * v.min_triangles) << name;
     }
 }
 

@@ -22,7 +22,7 @@ double predicted(const Scene& s, double submit, double raster) {
     const model::FrameCombine& c = s.costs.combine;
     const double items = submit * c.submit_weight + raster * c.raster_weight + std::max(submit, raster) * c.max_weight;
     const double end = c.submit_weight * s.costs.slice_us;
-    return (c.fixed_us + end + items * (1.0 + end / 1000.0)) * s.costs.upper_factor;
+    return (c.fixed_us + end + items * (1.0 + end / 1000.0)) * s.costs.headroom;
 }
 
 TEST(Select, PredictedStaysWithinBudgetOrFloorAndCutsAreLegalOnTenThousandTrees) {

@@ -145,18 +145,18 @@ double frame_us(Scene& s, double limit_us, double wrong, bool check) {
     const auto us = [&](const model::ItemCost& c) {
         return static_cast<double>(w.frame_us(c.submit_us, c.raster_us) - w.fixed_us);
     };
-    const double upper = static_cast<double>(s.costs.upper_factor), end = static_cast<double>(s.costs.slice_us);
+    const double headroom = static_cast<double>(s.costs.headroom), end = static_cast<double>(s.costs.slice_us);
     CheckInput in;
     in.elapsed_us = in.predicted_so_far_us = static_cast<double>(w.fixed_us);
     in.limit_us = limit_us;
     for (const Slice& slice : s.plan.slices) {
-        in.rest_stand_in_us += us(slice.stand_in_cost) * upper + end;
+        in.rest_stand_in_us += us(slice.stand_in_cost) * headroom + end;
     }
     bool full = true;
     for (const Slice& slice : s.plan.slices) {
-        in.rest_stand_in_us -= us(slice.stand_in_cost) * upper + end;
-        in.next_us = us(slice.cost) * upper + end;
-        in.next_stand_in_us = us(slice.stand_in_cost) * upper + end;
+        in.rest_stand_in_us -= us(slice.stand_in_cost) * headroom + end;
+        in.next_us = us(slice.cost) * headroom + end;
+        in.next_stand_in_us = us(slice.stand_in_cost) * headroom + end;
         if (full && check) full = still_fits(in);
         const double predicted = us(full ? slice.cost : slice.stand_in_cost) + end;
         in.predicted_so_far_us += predicted;

@@ -64,9 +64,9 @@ bool within_seconds(double seconds, Condition condition) {
     return condition();
 }
 
-class SoakLoad : public testing::TestWithParam<LoadKind> {};
+class SoakLoadTest : public testing::TestWithParam<LoadKind> {};
 
-TEST_P(SoakLoad, IsThereAndCounted) {
+TEST_P(SoakLoadTest, IsThereAndCounted) {
     const LoadKind kind = GetParam();
     auto runner = LoadRunner::start(all_the_time(load_bit(kind)), small_load());
     ASSERT_TRUE(runner.ok()) << runner.error().text();
@@ -90,7 +90,7 @@ TEST_P(SoakLoad, IsThereAndCounted) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, SoakLoad,
+INSTANTIATE_TEST_SUITE_P(Kinds, SoakLoadTest,
                          testing::Values(LoadKind::cpu, LoadKind::memory, LoadKind::io, LoadKind::forks, LoadKind::devices),
                          [](const auto& kind) { return std::string(load_names[static_cast<std::size_t>(kind.param)]); });
 

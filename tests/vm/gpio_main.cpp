@@ -228,7 +228,7 @@ void check_dead_man(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
 /// release, stays stopped through all others, and walks again only after 20 ms of quiet.
 void check_bounces(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
     constexpr int wanted = 40;
-    constexpr double quiet_ms = 20, longest_bounce_ms = 5, most_ms = 45'000;
+    constexpr double quiet_ms = 20, longest_bounce_ms = 5, max_ms = 45'000;
     Random random(14);
     int rounds = 0, late = 0, walked = 0, early = 0, stuck = 0;
     double slowest_ms = 0;
@@ -238,7 +238,7 @@ void check_bounces(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
             rig.serve(random.range(0.2, longest_bounce_ms));
         }
     };
-    for (const std::int64_t from = now_ns(); rounds < wanted && ms_since(from) < most_ms;) {
+    for (const std::int64_t from = now_ns(); rounds < wanted && ms_since(from) < max_ms;) {
         (void)rig.until([&] { return !rig.stop(); }, 500);
         rig.last_ns = 0;
         rig.longest_gap_ms = 0;

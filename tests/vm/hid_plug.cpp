@@ -91,22 +91,22 @@ private:
 };
 
 /// When udev has told last that a hidraw device came: its rules have run then.
-class UdevTold {
+class UdevEventTime {
 public:
-    UdevTold() : context_(udev_new()) {
+    UdevEventTime() : context_(udev_new()) {
         auto monitor = input::UdevMonitor::listen(context_.get());
         if (!monitor) return;
         watcher_ = std::thread([this, m = std::move(*monitor)]() mutable {
             for (pollfd one{m.fd(), POLLIN, 0}; !ending_;)
-                if (::poll(&one, 1, 20) > 0 && !m.news().changed.empty()) at_ns_ = now_ns();
+                if (::poll(&one, 1, 20) > 0 && !m.take_changes().changed.empty()) at_ns_ = now_ns();
         });
     }
-    ~UdevTold() {
+    ~UdevEventTime() {
         ending_ = true;
         if (watcher_.joinable()) watcher_.join();
     }
-    UdevTold(const UdevTold&) = delete;
-    UdevTold& operator=(const UdevTold&) = delete;
+    UdevEventTime(const UdevEventTime&) = delete;
+    UdevEventTime& operator=(const UdevEventTime&) = delete;
     [[nodiscard]] std::int64_t at_ns() const { return at_ns_; }
     void forget() { at_ns_ = 0; }
 
@@ -178,22 +178,22 @@ void check_permission(Checks& checks, const Guest& guest) {
     Watching watch(as_nobody + "--groups=$(getent group surefoot-input | cut -d: -f3) " + guest.tool +
                    " devices watch --json --seconds 5");
     sleep_ms(1500);
-    const std::string said = output_of(
+    const std::string printed = output_of(
         "cp " + guest.rules +
         " /etc/udev/rules.d/ && udevadm control --reload && udevadm trigger --subsystem-match=hidraw && udevadm settle");
-    const std::int64_t settled = now_ns();
+    const std::int64_t idle = now_ns();
     watch.end();
     const auto refused = watch.of("refused"), added = watch.of("added");
-    const double ms = added.empty() ? -1e9 : static_cast<double>(added.front()->ns - settled) * 1e-6;
+    const double ms = added.empty() ? -1e9 : static_cast<double>(added.front()->ns - idle) * 1e-6;
     checks.check("late_permission.by_udev",
                  refused.size() == 1 && added.size() == 1 && ms > -2000 && ms <= 250 && opens.count() <= 20,
                  fmt::format("refused {} times, opened {:.1f} ms after udev had settled (at most 250); {} opens tried {}",
-                             refused.size(), ms, opens.count(), said));
+                             refused.size(), ms, opens.count(), printed));
 }
 
 void check_hot_plug(Checks& checks, const Guest& guest) {
     const auto pad = like(guest, "f310-like");
-    UdevTold udev;
+    UdevEventTime udev;
     Walker walker;
     walker.run_ms(200);
     std::vector<double> reported, in_all;

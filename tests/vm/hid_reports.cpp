@@ -130,8 +130,8 @@ void compare(Checks& checks, const Guest& guest, const std::string& name, unsign
         if (decoder.decode(report, now_ns(), state) != input::ReportFate::accepted) ++refused;
         read_events(fd, kernel);
         for (const auto& [at, value] : as_events(device, state, first_button)) {
-            const auto said = kernel.find(at);
-            const int theirs = said == kernel.end() ? 0 : said->second;  // without an event it is where it began
+            const auto reported = kernel.find(at);
+            const int theirs = reported == kernel.end() ? 0 : reported->second;  // without an event it is where it began
             ++compared;
             if (theirs == value) continue;
             if (different++ == 0)

@@ -71,8 +71,8 @@ public:
         reader_ = std::thread([this] {
             std::array<char, 4096> line{};
             while (pipe_ != nullptr && std::fgets(line.data(), static_cast<int>(line.size()), pipe_) != nullptr) {
-                said_ += line.data();
-                if (std::string_view(line.data()).find("steers, by the mapping") != std::string_view::npos) ++steers_;
+                output_ += line.data();
+                if (std::string_view(line.data()).find("The device steers by the mapping") != std::string_view::npos) ++steers_;
             }
             ended_ = true;
         });
@@ -90,11 +90,11 @@ public:
         pipe_ = nullptr;
         return status_;
     }
-    [[nodiscard]] const std::string& said() const { return said_; }  ///< after end()
+    [[nodiscard]] const std::string& output() const { return output_; }  ///< after end()
 
 private:
     std::FILE* pipe_;
-    std::string said_;
+    std::string output_;
     std::atomic<int> steers_ = 0;
     std::atomic<bool> ended_ = false;
     int status_ = -1;
@@ -137,7 +137,7 @@ void walk_with(Checks& checks, const Guest& guest, const WalkKind& kind) {
     const std::int64_t released = now_ns();
     hold(*device, 128, 500);
     const int status = walk.end();
-    std::ofstream(guest.keep + "/" + kind.name + ".txt") << walk.said();
+    std::ofstream(guest.keep + "/" + kind.name + ".txt") << walk.output();
     const auto rows = ledger(file);
     const double follows = gone(rows, pushed + 500 * ms, pulled), stops = gone(rows, pulled + 500 * ms, back),
                  waits = gone(rows, back, neutral), resumes = gone(rows, again + 500 * ms, released);

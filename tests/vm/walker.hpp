@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "input/devices/attendant.hpp"
+#include "input/devices/device_router.hpp"
 #include "input/devices/live.hpp"
 #include "input/steering.hpp"
 #include "tests/vm/checks.hpp"
@@ -42,7 +42,7 @@ public:
             if (e.kind == input::DeviceEvent::Kind::added) added_ns = e.stamp_ns;
             if (e.kind == input::DeviceEvent::Kind::removed) removed_ns = e.stamp_ns;
             if (e.kind == input::DeviceEvent::Kind::report && first_report_ns == 0) first_report_ns = e.stamp_ns;
-            attendant.attend(e);
+            router.dispatch(e);
         }
         steering.steers.plays();
         sample = steering.tick(lines, now_ns());
@@ -70,9 +70,9 @@ public:
         return true_now();
     }
 
-    std::vector<std::string> said;
+    std::vector<std::string> messages;
     input::Steering steering{input::MotionLimits{}, input::SafetyLimits{}};
-    input::Attendant attendant{{}, steering, [this](std::string_view text) { said.emplace_back(text); }};
+    input::DeviceRouter router{{}, steering, [this](std::string_view text) { messages.emplace_back(text); }};
     std::unique_ptr<input::LiveDevices> source;
     input::Lines lines;
     input::NavigationSample sample;

@@ -8,7 +8,7 @@
 #include "render/capture/capture.hpp"
 #include "rt/base/path.hpp"
 #include "tests/walk/walk_fixture.hpp"
-#include "tools/walk/visit.hpp"
+#include "tools/walk/tour_controller.hpp"
 
 namespace surefoot::walk {
 namespace {
@@ -30,22 +30,22 @@ TEST(EndlessWalk, HandsOverEveryFrameAndKeepsNone) {
     std::atomic<int> started{0};
     std::vector<rt::FrameRecord> seen;
     std::vector<WalkStep> steps;
-    WalkWatch watch;
-    watch.on_step = [&](WalkStep step) { steps.push_back(step); };
-    watch.on_started = [&](const WalkStart& start) {
+    WalkObserver observer;
+    observer.on_step = [&](WalkStep step) { steps.push_back(step); };
+    observer.on_started = [&](const WalkStart& start) {
         ++started;
         EXPECT_EQ(start.period_ns, 33'333'333);
         EXPECT_EQ(start.t0_ns, start.period_ns);
         EXPECT_EQ(start.path, request.path_file);
         EXPECT_NE(start.uncalibrated, "") << "there is no cost table";
     };
-    watch.on_record = [&](const rt::FrameRecord& record) {
+    observer.on_record = [&](const rt::FrameRecord& record) {
         seen.push_back(record);
         if (seen.size() == wanted) stop.store(true);
     };
     Progress progress;
     progress.stop = &stop;
-    auto outcome = run_walk(request, progress, watch);
+    auto outcome = run_walk(request, progress, observer);
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     EXPECT_TRUE(outcome->stopped);
     EXPECT_TRUE(outcome->records.empty());
@@ -81,9 +81,9 @@ TEST(WatchedWalk, AnErrorBelongsToTheStepToldLast) {
     WalkRequest request = Forest::get().virtual_request(10);
     request.model_file = Forest::get().dir + "/absent.walk";
     WalkStep last = WalkStep::request;
-    WalkWatch watch;
-    watch.on_step = [&](WalkStep step) { last = step; };
-    EXPECT_FALSE(run_walk(request, {}, watch).ok());
+    WalkObserver observer;
+    observer.on_step = [&](WalkStep step) { last = step; };
+    EXPECT_FALSE(run_walk(request, {}, observer).ok());
     EXPECT_EQ(last, WalkStep::model);
 }
 
@@ -91,17 +91,17 @@ TEST(WatchedWalk, HandsOverAMissedFrameThatReplays) {
     WalkRequest request = Forest::get().virtual_request(120);
     request.correct_costs = false;
     request.in_frame_check = false;
-    WalkWatch watch;
+    WalkObserver observer;
     std::vector<capture::Capture> captures;
     std::set<std::uint64_t> missed;
-    watch.on_missed_frame = [&](const capture::Capture& c) { captures.push_back(c); };
-    watch.on_record = [&](const rt::FrameRecord& record) {
+    observer.on_missed_frame = [&](const capture::Capture& c) { captures.push_back(c); };
+    observer.on_record = [&](const rt::FrameRecord& record) {
         if (record.missed) missed.insert(record.frame);
     };
-    ASSERT_TRUE(run_walk(request, {}, watch).ok());
+    ASSERT_TRUE(run_walk(request, {}, observer).ok());
     EXPECT_TRUE(captures.empty()) << "frame " << captures[0].frame << " was in time";
     request.cost_scale = 2;
-    ASSERT_TRUE(run_walk(request, {}, watch).ok());
+    ASSERT_TRUE(run_walk(request, {}, observer).ok());
     ASSERT_FALSE(captures.empty());
     for (const capture::Capture& c : captures) {
         EXPECT_TRUE(missed.contains(c.frame)) << c.frame;
@@ -112,7 +112,7 @@ TEST(WatchedWalk, HandsOverAMissedFrameThatReplays) {
     captures.clear();
     request.capture_file = Forest::get().dir + "/asked.capture";
     request.capture_frame = 5;
-    ASSERT_TRUE(run_walk(request, {}, watch).ok());
+    ASSERT_TRUE(run_walk(request, {}, observer).ok());
     EXPECT_TRUE(captures.empty());
 }
 
@@ -120,13 +120,13 @@ TEST(WatchedWalk, SeesWhatIsKeptAndFaultsComeStageByStage) {
     const WalkRequest request = Forest::get().virtual_request(40);
     std::vector<std::uint64_t> seen;
     std::vector<FramePhase> phases;
-    WalkWatch watch;
-    watch.on_record = [&](const rt::FrameRecord& record) { seen.push_back(record.cut_hash); };
-    watch.inject = [&](FramePhase phase, const rt::FrameRecord& record) {
+    WalkObserver observer;
+    observer.on_record = [&](const rt::FrameRecord& record) { seen.push_back(record.cut_hash); };
+    observer.inject = [&](FramePhase phase, const rt::FrameRecord& record) {
         if (record.frame == 7) phases.push_back(phase);
         return Fault::none;
     };
-    auto outcome = run_walk(request, {}, watch);
+    auto outcome = run_walk(request, {}, observer);
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     ASSERT_EQ(seen.size(), 40U);
     ASSERT_EQ(outcome->records.size(), 40U);
@@ -138,12 +138,12 @@ TEST(WatchedWalk, SeesWhatIsKeptAndFaultsComeStageByStage) {
 TEST(WatchedWalk, ALostContextEndsItAndIsSaid) {
     const WalkRequest request = Forest::get().virtual_request(40);
     WalkStep last = WalkStep::request;
-    WalkWatch watch;
-    watch.on_step = [&](WalkStep step) { last = step; };
-    watch.inject = [](FramePhase phase, const rt::FrameRecord& record) {
+    WalkObserver observer;
+    observer.on_step = [&](WalkStep step) { last = step; };
+    observer.inject = [](FramePhase phase, const rt::FrameRecord& record) {
         return phase == FramePhase::finish && record.frame == 7 ? Fault::context_lost : Fault::none;
     };
-    auto outcome = run_walk(request, {}, watch);
+    auto outcome = run_walk(request, {}, observer);
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     EXPECT_TRUE(outcome->lost);
     EXPECT_FALSE(outcome->stopped);

@@ -112,7 +112,7 @@ TEST(ModelCosts, a_fit_is_nearer_to_measured_frames_than_a_table_five_times_off)
     ASSERT_TRUE(fit.ok()) << fit.error().text();
     EXPECT_EQ(fit->frames, 60U);
     EXPECT_LT(fit->after.p50, fit->before.p50);
-    EXPECT_GE(fit->costs.upper_factor, 1);
+    EXPECT_GE(fit->costs.headroom, 1);
     EXPECT_EQ(fit->costs.grids.size(), wrong.grids.size());
 }
 
@@ -120,7 +120,7 @@ TEST(ModelCosts, stopping_a_fit_is_an_error) {
     auto model = model::read_walk(model_file());
     ASSERT_TRUE(model.ok());
     const std::atomic<bool> stop{true};
-    auto fit = fit_to_model(std::move(*model), Path{{PathSample{}}}, table(1), {}, {.report = {}, .stop = &stop, .note = {}});
+    auto fit = fit_to_model(std::move(*model), Path{{PathSample{}}}, table(1), {}, {.report = {}, .stop = &stop, .notify = {}});
     ASSERT_FALSE(fit.ok());
 }
 

@@ -112,9 +112,9 @@ TEST(SettingsRequest, ALaterWalkKeepsTheProcesssRasterisers) {
     WalkRequest first, later;
     first.rasterisers = 2;
     later.rasterisers = 3;
-    const std::string said = keep_process(first, later);
-    EXPECT_NE(said.find("3 take effect at the next start"), std::string::npos) << said;
-    EXPECT_NE(said.find("draws with 2"), std::string::npos) << said;
+    const std::string remark = keep_process(first, later);
+    EXPECT_NE(remark.find("3 take effect at the next start"), std::string::npos) << remark;
+    EXPECT_NE(remark.find("draws with 2"), std::string::npos) << remark;
     EXPECT_EQ(later.rasterisers, 2) << "or the cost table of another machine would be looked for";
     EXPECT_EQ(keep_process(first, later), "");
     // 0 is a number too: the default.

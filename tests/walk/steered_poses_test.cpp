@@ -58,20 +58,20 @@ TEST_F(SteeredPosesTest, APoseIsCarriedToTheFramesTimeAndAStalledInputStandsStil
 TEST_F(SteeredPosesTest, EveryPoseOfTheNextThreeFramesIsForeseen) {
     publish(10 * ms, 1, 1);
     const FramePose pose = poses.sample({0, 11 * ms, 11 * ms});
-    ASSERT_TRUE(pose.foresight.known);
-    EXPECT_DOUBLE_EQ(pose.foresight.speed_m_s, 2);
+    ASSERT_TRUE(pose.predicted.known);
+    EXPECT_DOUBLE_EQ(pose.predicted.speed_m_s, 2);
     const double horizon_s = 3 * static_cast<double>(period_ns) * 1e-9;
     for (const double share : {0.0, 0.3, 1.0}) {
         const double t = share * horizon_s;
         for (const double a : {-limits.accel_m_s2, 0.0, limits.accel_m_s2}) {
             Pose there = pose.pose;
             there.position.x += 2 * t + 0.5 * a * t * t;
-            EXPECT_TRUE(covers(pose.foresight.region, there, {1280, 720})) << "after " << t << " s at " << a << " m/s2";
+            EXPECT_TRUE(covers(pose.predicted.region, there, {1280, 720})) << "after " << t << " s at " << a << " m/s2";
         }
     }
     Pose beyond = pose.pose;
     beyond.position.x += 5;
-    EXPECT_FALSE(covers(pose.foresight.region, beyond, {1280, 720})) << "a region of everything foresees nothing";
+    EXPECT_FALSE(covers(pose.predicted.region, beyond, {1280, 720})) << "a region of everything foresees nothing";
 }
 
 TEST(Covers, ZoomingOutUsesUpWhatIsLeftOfTurning) {
@@ -105,7 +105,7 @@ TEST_F(SteeredPosesTest, JumpsAndStopsAreSaidAndATourIsNotForeseenByTheLimits) {
     FramePose pose = poses.sample({0, 11 * ms, 11 * ms});
     EXPECT_TRUE(pose.jumped);
     EXPECT_TRUE(pose.stopped);
-    EXPECT_FALSE(pose.foresight.known);
+    EXPECT_FALSE(pose.predicted.known);
     const auto step = pose.pose.position - pose.before.position;
     EXPECT_LT(glm::length(step - next.nav.velocity_m_s * (static_cast<double>(period_ns) * 1e-9)), 1e-9)
         << "its first frame knows";

@@ -115,7 +115,7 @@ TEST(SteeredWalk, RestsWhenTheRecordingEndsAndEndsASecondLater) {
     EXPECT_EQ(outcome.records.size(), 90U);
     EXPECT_GT(glm::length(eye(at(outcome, 2.0)) - eye(at(outcome, 1.9))), 0.1);
     EXPECT_LT(glm::length(eye(at(outcome, 2.9)) - eye(at(outcome, 2.2))), 1e-9);
-    EXPECT_EQ(outcome.summary.input.silences, 1U);
+    EXPECT_EQ(outcome.summary.input.timeouts, 1U);
     request.seconds = 5;
     EXPECT_EQ(walk(request).records.size(), 150U);
     request.frames = 20;
@@ -200,24 +200,25 @@ TEST(SteeredWalk, RefusalsNameFilePlaceAndRemedy) {
         EXPECT_FALSE(outcome.error().remedy.empty()) << outcome.error().text();
         return outcome.error().text();
     };
-    const auto says = [&](const std::string& text, const std::string& what, const std::string& steering = {}) {
-        const std::string said = refused(text, steering);
-        EXPECT_NE(said.find(what), std::string::npos) << said;
+    const auto expect_refusal = [&](const std::string& text, const std::string& what, const std::string& steering = {}) {
+        const std::string refusal = refused(text, steering);
+        EXPECT_NE(refusal.find(what), std::string::npos) << refusal;
     };
     const std::string good = input::test::walk_and_turn().text();
     const std::string head = good.substr(0, good.find("\nE:") + 1);
-    says("", "bad.hid: has no R: line");
-    says(head, "bad.hid: holds no reports");
-    says(good.substr(0, good.size() - 8), "bad.hid: line ");
-    says(good.substr(0, good.size() - 8), "cut off");
-    says("hello\n", "bad.hid: line 1");
-    says("R: 3 05 01 c0\nE: 0.0 1 00\n", "bad.hid: R: byte 2");
-    says(head + "E: 0.0 2 00 00\n", "5");  // bytes it declares
-    says(head + "E: 0.0 2 00 00\n", "none of the 1 reports fits");
-    says(head + "E: 0.0 5 80 80 80 80 00\nE: 99999999.0 5 80 80 80 80 00\n", "span");
-    says(*read_text(std::string(SUREFOOT_SOURCE_DIR) + "/tests/input/devices/boot-keyboard.hid"), "class reject");
-    says(good, "bad.toml:2", "[motion]\nwalk_speed = 9\n");
-    says(good, "button-77", "[[device]]\nname = \"x\"\n[[device.button]]\ncontrol = \"button-77\"\naction = \"stop\"\n");
+    expect_refusal("", "bad.hid: The recording has no R: line");
+    expect_refusal(head, "bad.hid: The recording holds no reports");
+    expect_refusal(good.substr(0, good.size() - 8), "bad.hid: line ");
+    expect_refusal(good.substr(0, good.size() - 8), "cut off");
+    expect_refusal("hello\n", "bad.hid: line 1");
+    expect_refusal("R: 3 05 01 c0\nE: 0.0 1 00\n", "bad.hid: R: byte 2");
+    expect_refusal(head + "E: 0.0 2 00 00\n", "5");  // bytes it declares
+    expect_refusal(head + "E: 0.0 2 00 00\n", "None of the 1 reports fits");
+    expect_refusal(head + "E: 0.0 5 80 80 80 80 00\nE: 99999999.0 5 80 80 80 80 00\n", "span");
+    expect_refusal(*read_text(std::string(SUREFOOT_SOURCE_DIR) + "/tests/input/devices/boot-keyboard.hid"), "class reject");
+    expect_refusal(good, "bad.toml:2", "[motion]\nwalk_speed = 9\n");
+    expect_refusal(good, "button-77",
+                   "[[device]]\nname = \"x\"\n[[device.button]]\ncontrol = \"button-77\"\naction = \"stop\"\n");
     walk::WalkRequest request = test::Forest::get().virtual_request(5);
     request.input_file = "absent.hid";
     EXPECT_NE(walk::run_walk(request, {}).error().text().find("absent.hid"), std::string::npos);

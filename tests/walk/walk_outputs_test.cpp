@@ -12,7 +12,7 @@
 #include "rt/base/file.hpp"
 #include "tests/walk/walk_fixture.hpp"
 #include "tools/walk/real_time.hpp"
-#include "tools/walk/shots.hpp"
+#include "tools/walk/snapshots.hpp"
 #include "tools/walk/walk_results.hpp"
 
 namespace surefoot {
@@ -98,9 +98,9 @@ TEST(WalkOutputs, AStoppedWalkSumsUpWhatRan) {
     std::atomic<bool> stop{false};
     Progress progress;
     progress.stop = &stop;
-    int told = 0;  // every 5 ms: a busy machine may let the first frame wait for some
+    int updates = 0;  // every 5 ms: a busy machine may let the first frame wait for some
     progress.report = [&](std::string_view stage, double) {
-        if (stage == "walk" && ++told > 60) stop.store(true);
+        if (stage == "walk" && ++updates > 60) stop.store(true);
     };
     auto outcome = walk::run_walk(request, progress);
     ASSERT_TRUE(outcome.ok());
@@ -128,20 +128,20 @@ TEST(Snaps, AreCappedByMemoryAndTheCapIsSaid) {
     request.snap_every = 1;
     std::vector<std::string> notes;
     constexpr std::size_t items = 60'000;  // about half a megabyte a picture
-    const std::size_t fit = walk::shots_that_fit(items);
-    EXPECT_LE(fit * items * sizeof(gl::DrawItem), walk::shot_memory_bytes);
-    const walk::ShotStore all = walk::make_shot_store(request, fit, items, notes);
-    EXPECT_EQ(all.shots().size(), fit);
+    const std::size_t fit = walk::snapshots_that_fit(items);
+    EXPECT_LE(fit * items * sizeof(gl::DrawItem), walk::snapshot_memory_bytes);
+    const walk::SnapshotStore all = walk::make_snapshot_store(request, fit, items, notes);
+    EXPECT_EQ(all.snapshots().size(), fit);
     EXPECT_TRUE(notes.empty());
-    const walk::ShotStore capped = walk::make_shot_store(request, 3 * fit, items, notes);
-    EXPECT_EQ(capped.shots().size(), fit);
+    const walk::SnapshotStore capped = walk::make_snapshot_store(request, 3 * fit, items, notes);
+    EXPECT_EQ(capped.snapshots().size(), fit);
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_NE(notes[0].find("--every 3"), std::string::npos) << notes[0];
     request.snap_every = 3;
     notes.clear();
-    EXPECT_EQ(walk::make_shot_store(request, 3 * fit, items, notes).shots().size(), fit);
+    EXPECT_EQ(walk::make_snapshot_store(request, 3 * fit, items, notes).snapshots().size(), fit);
     EXPECT_TRUE(notes.empty()) << "the remedy that was named must work";
-    EXPECT_EQ(walk::shots_that_fit(1U << 30U), 1U);
+    EXPECT_EQ(walk::snapshots_that_fit(1U << 30U), 1U);
 }
 
 TEST(Strict, NamesEveryLackWithItsRemedy) {

@@ -161,7 +161,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
     std::vector<double> full_ms;
     for (std::uint32_t i = 0; i < request.poses; ++i) {
         if (progress.stopped()) return Error{request.model_file, "The sweep was stopped by the user", "", ErrorKind::stopped};
-        progress.say("full detail", static_cast<double>(i) / request.poses);
+        progress.update("full detail", static_cast<double>(i) / request.poses);
         Station& station = sweep.stations[i];
         station.pose = sample_path(chosen->path, chosen->path.duration_s() * (i + 0.5) / request.poses);
         full_ms.push_back(sweep.time_full(station, engine.full_detail(station.pose)));
@@ -186,7 +186,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
         const select::SelectorEntry& entry = **select::selector_named(selector);
         for (std::size_t b = 0; b < budgets.size(); ++b) {
             if (progress.stopped()) return Error{request.model_file, "The sweep was stopped by the user", "", ErrorKind::stopped};
-            progress.say(selector, static_cast<double>(done++) / points);
+            progress.update(selector, static_cast<double>(done++) / points);
             const bool by_threshold = entry.goes_by == select::GoesBy::threshold;
             const double threshold = pixel * 32.0 * std::pow(0.5, static_cast<double>(b));  // 32 pixels down to a quarter
             auto point = sweep.measure(selector, by_threshold ? 1e12 : budgets[b] * 1e3, by_threshold ? threshold : 0.0);

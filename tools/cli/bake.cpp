@@ -58,15 +58,15 @@ private:
 };
 
 /// Each once with its number, the first dozen of them: the rest is in the model.
-void say_warnings(const std::vector<std::string>& warnings) {
+void print_warnings(const std::vector<std::string>& warnings) {
     constexpr std::size_t most = 12;
     std::map<std::string_view, std::size_t> times;
     std::vector<std::string_view> kinds;
     for (const std::string& warning : warnings)
         if (++times[warning] == 1) kinds.push_back(warning);
     for (std::size_t i = 0; i < std::min(kinds.size(), most); ++i)
-        note(times[kinds[i]] > 1 ? fmt::format("{} ({} times)", kinds[i], times[kinds[i]]) : std::string(kinds[i]));
-    if (kinds.size() > most) note(fmt::format("and {} more: `surefoot inspect` lists all", kinds.size() - most));
+        notify(times[kinds[i]] > 1 ? fmt::format("{} ({} times)", kinds[i], times[kinds[i]]) : std::string(kinds[i]));
+    if (kinds.size() > most) notify(fmt::format("and {} more: `surefoot inspect` lists all", kinds.size() - most));
 }
 
 int run_bake(const BakeArguments& a, const Context& context) {
@@ -105,8 +105,8 @@ int run_bake(const BakeArguments& a, const Context& context) {
     times.see("write");
     end_progress(context);
     if (!written) return fail(written.error());
-    if (!cost_note.empty()) note(cost_note);
-    say_warnings(model->provenance.warnings);
+    if (!cost_note.empty()) notify(cost_note);
+    print_warnings(model->provenance.warnings);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     if (a.json) {
         print_json({{"file", a.out},

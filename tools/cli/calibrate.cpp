@@ -32,8 +32,8 @@ struct CalibrateArguments {
 
 nlohmann::ordered_json to_json(const model::CostModel& costs) {
     const model::FrameCombine& k = costs.combine;
-    return {{"fixed_us", k.fixed_us},     {"submit_weight", k.submit_weight},   {"raster_weight", k.raster_weight},
-            {"max_weight", k.max_weight}, {"upper_factor", costs.upper_factor}, {"slice_us", costs.slice_us}};
+    return {{"fixed_us", k.fixed_us},     {"submit_weight", k.submit_weight}, {"raster_weight", k.raster_weight},
+            {"max_weight", k.max_weight}, {"upper_factor", costs.headroom},   {"slice_us", costs.slice_us}};
 }
 
 void print_frame(const model::FrameCombine& k) {
@@ -62,11 +62,11 @@ Result<std::function<void()>> placed_as_walked() {
     const rt::Capabilities capable = rt::probe_capabilities(walk::WalkRequest{}.frame_priority);
     auto plan = walk::plan_placing({}, capable.fifo_priority >= walk::WalkRequest{}.frame_priority);
     if (!plan) return plan.error();
-    if (!plan->fifo) note("not fully real-time: SCHED_FIFO is refused. The figures are measured with ordinary scheduling");
+    if (!plan->fifo) notify("not fully real-time: SCHED_FIFO is refused. The figures are measured with ordinary scheduling");
     if (rt::guard_active()) (void)rt::prepare_memory({});
     return std::function<void()>([plan = *plan]() mutable {
-        if (auto placed = walk::place_rasterisers(plan); !placed) note(placed.error().text());
-        if (auto placed = rt::place_thread(0, walk::frame_placement(plan)); !placed) note(placed.error().text());
+        if (auto placed = walk::place_rasterisers(plan); !placed) notify(placed.error().text());
+        if (auto placed = rt::place_thread(0, walk::frame_placement(plan)); !placed) notify(placed.error().text());
     });
 }
 
@@ -122,7 +122,7 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
                      "First run `surefoot calibrate` with the same backend and rasterisers", ErrorKind::misuse});
     }
     if (fit->after.p50 + fit->after.p90 >= fit->before.p50 + fit->before.p90) {
-        note(
+        notify(
             fmt::format("the fit (held-out p50 {:.0f} %, p90 {:.0f} %) is no better than the table (p50 {:.0f} %, p90 {:.0f} %), "
                         "so the table is kept",
                         100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->before.p50, 100 * fit->before.p90));
@@ -149,7 +149,7 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
         "{:.0f} %; the budget spends x{:.2f}\n  a frame's median time is {:.2f} of its best here ({} of {} frames were drawn "
         "alike)\n",
         100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->after.p99, 100 * fit->before.p50, 100 * fit->before.p90,
-        100 * fit->before.p99, fit->costs.upper_factor, fit->slowdown, fit->repeated, fit->frames);
+        100 * fit->before.p99, fit->costs.headroom, fit->slowdown, fit->repeated, fit->frames);
     return exit_success;
 }
 
@@ -183,8 +183,8 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (auto made = make_folder(dir); !made) return fail(made.error());
     if (auto written = measure::write_costs(file, c->costs); !written) return fail(written.error());
     if (const std::size_t old = walk::drop_old_fits(dir, c->costs); old > 0) {
-        note(fmt::format("{} to the old table {} removed. Fit again with `surefoot calibrate MODEL.walk`",
-                         old == 1 ? "the fit" : fmt::format("{} fits", old), old == 1 ? "is" : "are"));
+        notify(fmt::format("{} to the old table {} removed. Fit again with `surefoot calibrate MODEL.walk`",
+                           old == 1 ? "the fit" : fmt::format("{} fits", old), old == 1 ? "is" : "are"));
     }
     std::vector<report::CostPoint> points;
     for (const measure::CalibrationPoint& p : c->points) {
@@ -195,7 +195,7 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     fmt::print("{}\n  table {} ({} points, {:.0f} s), plot {}\n", c->costs.machine, file, c->points.size(), c->seconds, plot);
     print_frame(c->costs.combine);
     fmt::print("  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; the budget spends x{:.2f}\n",
-               100 * c->frame_error_p50, 100 * c->frame_error_p90, 100 * c->frame_error_p99, c->costs.upper_factor);
+               100 * c->frame_error_p50, 100 * c->frame_error_p90, 100 * c->frame_error_p99, c->costs.headroom);
     fmt::print("  timer query: {} (reports {:.3f} ms where {:.3f} ms pass): {}\n",
                !c->timer.available ? "absent"
                : c->timer.honest   ? "honest"

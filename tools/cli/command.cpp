@@ -62,9 +62,9 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
 Progress terminal_progress(const Context& context) {
     Progress progress;
     progress.stop = context.stop;
-    progress.note = [terminal = context.terminal](std::string_view text) {
+    progress.notify = [terminal = context.terminal](std::string_view text) {
         if (terminal) (void)std::fputs(report::clear_line, stderr);
-        note(std::string(text));
+        notify(std::string(text));
     };
     if (context.terminal) {
         auto bar = std::make_shared<BarState>();
@@ -78,17 +78,17 @@ void end_progress(const Context& context) {
 }
 
 int fail(const Error& error) {
-    note(error.text());
+    notify(error.text());
     return exit_failure;
 }
 
 int misuse(const Error& error) {
-    note(error.text());
+    notify(error.text());
     return exit_usage;
 }
 
 // Not fmt::print: it throws where nothing can be written, and of that nobody could be told.
-void note(const std::string& text) { (void)std::fputs(("surefoot: " + text + "\n").c_str(), stderr); }
+void notify(const std::string& text) { (void)std::fputs(("surefoot: " + text + "\n").c_str(), stderr); }
 
 // Names come from files, and a file's name may hold any byte: what is no UTF-8 is replaced.
 std::string json_text(const nlohmann::ordered_json& value, int indent) {

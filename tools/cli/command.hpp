@@ -18,7 +18,7 @@ constexpr int exit_success = 0, exit_failure = 1, exit_usage = 2;
 /// Ended early by Ctrl-C, SIGTERM or SIGHUP; the number is that of shells.
 constexpr int exit_stopped = 130;
 
-/// Handed to the commands: what to run after parsing, and the wish to stop.
+/// Handed to the commands: what to run after parsing, and the request to stop.
 struct Context {
     std::function<int()> run;                 ///< set by the chosen command
     const std::atomic<bool>* stop = nullptr;  ///< set by SIGINT and SIGTERM
@@ -43,7 +43,7 @@ void end_progress(const Context& context);
 int fail(const Error& error);
 /// The same for wrong use; returns exit_usage.
 int misuse(const Error& error);
-void note(const std::string& text);
+void notify(const std::string& text);
 /// JSON as valid UTF-8, even if names in it are not; indent -1: one line.
 std::string json_text(const nlohmann::ordered_json& value, int indent);
 void print_json(const nlohmann::ordered_json& object);

@@ -34,7 +34,7 @@ int run_check(const ConfigArguments& a) {
         for (const config::Problem& problem : problems) errors.push_back(to_json(problem));
         print_json({{"file", a.file}, {"ok", problems.empty()}, {"errors", errors}});
     }
-    for (const config::Problem& problem : problems) note(problem.error.text());
+    for (const config::Problem& problem : problems) notify(problem.error.text());
     if (!problems.empty()) return exit_failure;
     if (!a.json) fmt::print("{}: OK\n", a.file);
     return exit_success;

@@ -75,7 +75,7 @@ Result<Material> gather(const DescribeArguments& a) {
             return Error{a.reports, "The recording holds no reports (E: lines)", "Record it again while you move the device",
                          ErrorKind::damaged};
         if (!recording->descriptor.empty() && recording->descriptor != m.descriptor) {
-            note(a.reports + ": the recording is of a device with another descriptor");
+            notify(a.reports + ": the recording is of a device with another descriptor");
         }
         m.recording = std::move(*recording);
         have_recording = true;
@@ -236,7 +236,7 @@ ordered_json decode_each(const input::HidDevice& d, const input::Recording& reco
 
 ordered_json notes_json(const input::Layout& l) {
     ordered_json list = ordered_json::array();
-    for (const input::Note& n : l.notes) list.push_back({{"offset", n.offset}, {"what", n.what}});
+    for (const input::DescriptorNote& n : l.notes) list.push_back({{"offset", n.offset}, {"what", n.what}});
     return list;
 }
 

@@ -56,7 +56,8 @@ public:
     /// False: stopped, or no device came and nobody is there to plug one in.
     bool run() {
         Keys keys;
-        const std::int64_t patience_ns = std::max<std::int64_t>(limits_.ask_ns, 2'000'000'000), begun_ns = rt::monotonic_ns();
+        const std::int64_t patience_ns = std::max<std::int64_t>(limits_.answer_limit_ns, 2'000'000'000),
+                           begun_ns = rt::monotonic_ns();
         while (teach_.phase() != Teach::Phase::done) {
             if (context_.stop->load()) {
                 end_progress(context_);
@@ -67,7 +68,7 @@ public:
             const std::size_t before = teach_.learned().size();
             if (keys.enter()) teach_.skip(rt::monotonic_ns());
             if (!numbers_.empty()) teach_.tick(rt::monotonic_ns());
-            tell(before);
+            print_learned(before);
             show();
         }
         end_progress(context_);
@@ -78,7 +79,7 @@ public:
 private:
     static input::TeachLimits limits(const MapArguments& a) {
         input::TeachLimits l;
-        l.ask_ns = static_cast<std::int64_t>(a.timeout_s * 1e9);
+        l.answer_limit_ns = static_cast<std::int64_t>(a.timeout_s * 1e9);
         return l;
     }
     void take(const DeviceEvent& e) {
@@ -86,36 +87,36 @@ private:
         if (e.kind == DeviceEvent::Kind::added) {
             const auto& p = *e.plugged;
             numbers_[e.device] = teach_.add_device({p.vendor, p.product, p.name, p.device.device_class}, p.device.controls);
-            say(fmt::format("{}: connected", device_line(p)));
+            print(fmt::format("{}: connected", device_line(p)));
         } else if (e.kind == DeviceEvent::Kind::removed ||
                    (e.kind == DeviceEvent::Kind::refused && e.refused != input::Refused::unwanted)) {
-            say(e.why->text());
+            print(e.why->text());
         } else if (e.kind == DeviceEvent::Kind::report && d != nullptr && d->state.stamp_ns == e.stamp_ns) {
             const std::size_t before = teach_.learned().size();
             teach_.observe(numbers_[e.device], d->state, e.stamp_ns);
-            tell(before);
+            print_learned(before);
         }
     }
-    void say(const std::string& text) const {
+    void print(const std::string& text) const {
         end_progress(context_);
         (void)std::fputs((text + "\n").c_str(), stderr);
     }
-    void tell(std::size_t before) {
+    void print_learned(std::size_t before) {
         for (const auto& l : teach_.learned().subspan(before))
-            say(fmt::format("  {}{}: {}", input::name_of(l.action), l.sign < 0 ? " (reversed)" : "",
-                            teach_.control(l.device, l.control).name));
+            print(fmt::format("  {}{}: {}", input::name_of(l.action), l.sign < 0 ? " (reversed)" : "",
+                              teach_.control(l.device, l.control).name));
     }
     /// On a terminal one line that changes; elsewhere each question once.
     void show() {
-        const std::string question = teach_.phase() == Teach::Phase::settle ? "Release all controls" : teach_.question();
+        const std::string question = teach_.phase() == Teach::Phase::rest ? "Release all controls" : teach_.question();
         if (!context_.terminal) {
-            if (teach_.phase() == Teach::Phase::ask && question != shown_) say(question + " (Enter: skip)");
-            if (teach_.phase() == Teach::Phase::ask) shown_ = question;
+            if (teach_.phase() == Teach::Phase::question && question != shown_) print(question + " (Enter: skip)");
+            if (teach_.phase() == Teach::Phase::question) shown_ = question;
             return;
         }
         std::string line = std::string(report::clear_line) + question;
         if (numbers_.empty()) line += " (no device yet: plug one in)";
-        if (teach_.phase() == Teach::Phase::ask)
+        if (teach_.phase() == Teach::Phase::question)
             line += fmt::format("  [Enter: skip, {:.0f} s]", teach_.seconds_left(rt::monotonic_ns()));
         if (const auto l = teach_.leader())
             line += fmt::format("  {} {:3.0f} %", teach_.control(l->device, l->control).name, 100 * std::abs(l->moved));

@@ -72,7 +72,7 @@ private:
             case DeviceEvent::Kind::added:
                 if (device_ < 0) {
                     device_ = e.device;
-                    note(fmt::format("recording {} ({}) to {}. Ctrl-C ends it", e.plugged->node, e.plugged->name, a_.file));
+                    notify(fmt::format("recording {} ({}) to {}. Ctrl-C ends it", e.plugged->node, e.plugged->name, a_.file));
                 }
                 return {};
             case DeviceEvent::Kind::refused:
@@ -116,10 +116,10 @@ int run_record(const RecordArguments& a, const Context& context) {
     Recorder recorder(context, a, *file);
     if (auto recorded = recorder.run(**source); !recorded) return fail(recorded.error());
     if (auto done = file->commit(); !done) return fail(done.error());
-    if (recorder.ended() == "unplugged") note(fmt::format("{}: the device was unplugged", (*device)->node));
-    if (recorder.ended() == "full") note(fmt::format("{}: the recording has reached its maximum size and ends", a.file));
+    if (recorder.ended() == "unplugged") notify(fmt::format("{}: the device was unplugged", (*device)->node));
+    if (recorder.ended() == "full") notify(fmt::format("{}: the recording has reached its maximum size and ends", a.file));
     if (recorder.overflows() > 0)
-        note(fmt::format("reports were lost {} times: this machine did not read them in time", recorder.overflows()));
+        notify(fmt::format("reports were lost {} times: this machine did not read them in time", recorder.overflows()));
     if (a.json) {
         print_json({{"file", a.file},
                     {"device", device_json(**device)},

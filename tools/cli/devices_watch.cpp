@@ -107,7 +107,7 @@ std::vector<std::string> control_lines(std::span<const input::ControlInfo> contr
 }
 
 std::vector<std::string> screen(LiveStates& states, const std::vector<std::string>& notes) {
-    const std::size_t width = report::terminal_look(false).width;
+    const std::size_t width = report::terminal_style(false).width;
     std::vector<std::string> lines;
     for (const auto& [number, d] : states.devices()) {
         const double age_s = static_cast<double>(rt::monotonic_ns() - d->first_ns) * 1e-9;
@@ -134,7 +134,7 @@ public:
         std::int64_t due = start;
         bool going = true;
         for (const DeviceEvent& e : source_.take()) going = take(e, start) && going;
-        if (!bars_ && states_.devices().empty()) note("no such device is plugged in: waiting for one");
+        if (!bars_ && states_.devices().empty()) notify("no such device is plugged in: waiting for one");
         while (going && !context_.stop->load() && rt::monotonic_ns() < end) {
             for (const DeviceEvent& e : input::poll(source_, std::min(end, due))) going = take(e, start) && going;
             if (rt::monotonic_ns() < due) continue;

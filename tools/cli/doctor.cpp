@@ -63,7 +63,7 @@ void wake_up(const DoctorArguments& a, const Context& context, int core, doctor:
         options.priority = probed.wake_up->priority;
         auto theirs = doctor::run_cyclictest(*program, options, terminal_progress(context));
         if (theirs) probed.cyclictest = *theirs;
-        if (!theirs && !context.stop->load()) note(theirs.error().text());
+        if (!theirs && !context.stop->load()) notify(theirs.error().text());
     }
     end_progress(context);
 }
@@ -97,7 +97,7 @@ int run_doctor(const DoctorArguments& a, const Context& context) {
     if (a.json) {
         print_json(to_json(machine, examined));
     } else {
-        fmt::print("{}", doctor::table(machine, examined, report::terminal_look(context.colour, 120)));
+        fmt::print("{}", doctor::table(machine, examined, report::terminal_style(context.colour, 120)));
     }
     return doctor::summarise(examined).fail == 0 ? exit_success : exit_failure;
 }

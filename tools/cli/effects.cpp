@@ -26,7 +26,7 @@ int run_effects(const EffectsArguments& a) {
             if (a.json) {
                 list.push_back({{"effect", std::string(effect.name)},
                                 {"what", std::string(effect.help)},
-                                {"asked_by", std::string(effect.asked_by)},
+                                {"asked_by", std::string(effect.requested_by)},
                                 {"called_for", f.called_for},
                                 {"triangles", f.triangles},
                                 {"reason", f.reason}});

@@ -58,7 +58,7 @@ void add_scene(CLI::App& app, Context& context) {
         ->required()
         ->check(one_of(names));
     c->add_option("--scale", a->scale, "Factor on the size of the scene")
-        ->check(number_within(scenes::least_scale, scenes::most_scale))
+        ->check(number_within(scenes::min_scale, scenes::max_scale))
         ->capture_default_str();
     c->add_option("--seed", a->seed, "Random seed; the same seed gives the same file, bit for bit")
         ->check(whole_number_within(0, std::numeric_limits<std::uint64_t>::max()))

@@ -61,8 +61,8 @@ Redraw::~Redraw() {
 }
 
 void Redraw::draw(std::span<const std::string> lines) {
-    const report::Look look = report::terminal_look(false);
-    const std::size_t room = look.height - 1;
+    const report::TerminalStyle style = report::terminal_style(false);
+    const std::size_t room = style.height - 1;
     std::string out;
     if (drawn_ > 0) out += fmt::format("\033[{}F", drawn_);
     std::size_t n = 0;
@@ -72,7 +72,7 @@ void Redraw::draw(std::span<const std::string> lines) {
             ++n;
             break;
         }
-        out += "\033[K" + report::cut_to(line, look.width) + "\n";
+        out += "\033[K" + report::cut_to(line, style.width) + "\n";
         ++n;
     }
     out += "\033[J";

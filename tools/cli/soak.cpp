@@ -49,25 +49,25 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
     if (!request) return misuse(request.error());
     walk::prepare_process(request->walk);
     if (request->seconds < judged_from_s) {
-        note(fmt::format("a verdict needs at least {:.1f} minutes: in {:.0f} s some rules cannot be judged", judged_from_s / 60,
-                         request->seconds));
+        notify(fmt::format("a verdict needs at least {:.1f} minutes: in {:.0f} s some rules cannot be judged", judged_from_s / 60,
+                           request->seconds));
     }
     auto outcome = soak::run_soak(*request, terminal_progress(context));
     end_progress(context);
     if (!outcome) return fail(outcome.error());
     const soak::SoakSummary& s = outcome->summary;
-    for (const std::string& text : outcome->notes) note(text);
+    for (const std::string& text : outcome->notes) notify(text);
     if (a.json) {
         fmt::print("{}", soak::soak_json(s));
-        if (!s.walk.uncalibrated.empty()) note("uncalibrated: " + s.walk.uncalibrated);
-        for (const rt::Lack& d : s.walk.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
+        if (!s.walk.uncalibrated.empty()) notify("uncalibrated: " + s.walk.uncalibrated);
+        for (const rt::Lack& d : s.walk.degraded) notify("not fully real-time: " + d.what + " (" + d.remedy + ")");
     } else {
         fmt::print("{}", soak::soak_table(s, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
     }
     for (const Error& error : outcome->failures) fail(error);
     if (s.stopped)
-        note(fmt::format("stopped by the user after {:.0f} of {:.0f} s. The figures cover this time", s.ran_s, s.asked_s));
+        notify(fmt::format("stopped by the user after {:.0f} of {:.0f} s. The figures cover this time", s.ran_s, s.requested_s));
     const bool holds = soak::verdict_of(s) == soak::Judged::holds;
     return holds && outcome->failures.empty() && !s.stopped ? exit_success : exit_failure;
 }

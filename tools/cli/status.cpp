@@ -27,17 +27,17 @@ struct LookArguments {
     bool json = false;
 };
 
-struct Asked {
+struct Reply {
     std::string text;
     json status;
 };
 
-Result<Asked> ask(const monitor::Address& address) {
+Result<Reply> fetch(const monitor::Address& address) {
     auto text = monitor::fetch(address, "/status.json");
     if (!text) return text.error();
     auto status = monitor::parse_status(address, *text);
     if (!status) return status.error();
-    return Asked{std::move(*text), std::move(*status)};
+    return Reply{std::move(*text), std::move(*status)};
 }
 
 Result<monitor::Address> place_of(const LookArguments& a) {
@@ -47,13 +47,13 @@ Result<monitor::Address> place_of(const LookArguments& a) {
 int run_status(const LookArguments& a, const Context& context) {
     const auto address = place_of(a);
     if (!address) return misuse(address.error());
-    const auto asked = ask(*address);
-    if (!asked) return fail(asked.error());
+    const auto reply = fetch(*address);
+    if (!reply) return fail(reply.error());
     if (a.json) {
-        print_json(nlohmann::ordered_json::parse(asked->text));
+        print_json(nlohmann::ordered_json::parse(reply->text));
         return exit_success;
     }
-    for (const std::string& line : monitor::status_page(asked->status, report::terminal_look(context.colour)))
+    for (const std::string& line : monitor::status_page(reply->status, report::terminal_style(context.colour)))
         fmt::print("{}\n", line);
     return exit_success;
 }
@@ -66,7 +66,7 @@ public:
 
     int run() {
         // The first answer decides whether there is anything to look at; later, a service may come and go.
-        auto first = ask(address_);
+        auto first = fetch(address_);
         if (!first) return fail(first.error());
         if (screen_wanted_) screen_.emplace();
         const std::int64_t every_ns = static_cast<std::int64_t>(a_.every_s * 1e9), start_ns = rt::monotonic_ns();
@@ -77,7 +77,7 @@ public:
             due_ns += every_ns;
             if (!wait_until(due_ns)) break;
             due_ns = std::max(due_ns, rt::monotonic_ns() - every_ns);
-            going = show(ask(address_));
+            going = show(fetch(address_));
         }
         screen_.reset();
         return going ? exit_success : exit_failure;
@@ -101,15 +101,15 @@ private:
         return false;
     }
     /// False: nobody reads what is printed.
-    bool show(Result<Asked> asked) {
+    bool show(Result<Reply> reply) {
         const std::int64_t now_ns = rt::monotonic_ns();
-        trouble_ = asked ? std::string() : asked.error().text();
-        if (!asked) {
-            if (!screen_) note(trouble_);
+        trouble_ = reply ? std::string() : reply.error().text();
+        if (!reply) {
+            if (!screen_) notify(trouble_);
             if (screen_) draw();
             return true;
         }
-        before_ = std::exchange(status_, std::move(asked->status));
+        before_ = std::exchange(status_, std::move(reply->status));
         between_s_ = before_.is_null() ? 0 : static_cast<double>(now_ns - shown_ns_) * 1e-9;
         shown_ns_ = now_ns;
         if (screen_) {
@@ -117,14 +117,14 @@ private:
             return true;
         }
         const std::string line =
-            a_.json ? asked->text : time_of_day() + " " + monitor::top_line(status_, before_, between_s_) + "\n";
+            a_.json ? reply->text : time_of_day() + " " + monitor::top_line(status_, before_, between_s_) + "\n";
         return std::fputs(line.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
     }
     void draw() {
-        const report::Look look = report::terminal_look(context_.colour);
-        std::vector<std::string> lines = monitor::top_page(status_, before_, between_s_, look);
+        const report::TerminalStyle style = report::terminal_style(context_.colour);
+        std::vector<std::string> lines = monitor::top_page(status_, before_, between_s_, style);
         if (!trouble_.empty() && !lines.empty())
-            lines.back() = report::cut_to("the service does not answer, trying again: " + trouble_, look.width);
+            lines.back() = report::cut_to("the service does not answer, trying again: " + trouble_, style.width);
         screen_->draw(lines);
     }
     static std::string time_of_day() {

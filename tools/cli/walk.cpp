@@ -86,9 +86,9 @@ Result<std::unique_ptr<monitor::Monitor>> open_monitor(const MonitorArguments& a
     options.address = a.address;
     options.incidents_dir = a.incidents_dir;
     options.version = SUREFOOT_VERSION;
-    options.say = [](std::string_view text) { note(std::string(text)); };
+    options.notify = [](std::string_view text) { notify(std::string(text)); };
     auto monitor = monitor::Monitor::open(std::move(options));
-    if (monitor && !a.address.empty()) note(fmt::format("watch it live with: surefoot top --socket {}", (*monitor)->address()));
+    if (monitor && !a.address.empty()) notify(fmt::format("watch it live with: surefoot top --socket {}", (*monitor)->address()));
     return monitor;
 }
 
@@ -101,12 +101,12 @@ int run_walk_command(WalkArguments& a, const Context& context) {
     }
     auto monitor = open_monitor(a.watch);
     if (!monitor) return fail(monitor.error());
-    walk::WalkWatch watch;
+    walk::WalkObserver watch;
     Progress progress = terminal_progress(context);
     if (*monitor) {
-        monitor::watch_with(**monitor, *request, watch);
-        progress.note = [tell = progress.note, m = monitor->get()](std::string_view text) {
-            tell(text);
+        monitor::attach_monitor(**monitor, *request, watch);
+        progress.notify = [notify_terminal = progress.notify, m = monitor->get()](std::string_view text) {
+            notify_terminal(text);
             m->add_note(text);
         };
     }
@@ -114,22 +114,22 @@ int run_walk_command(WalkArguments& a, const Context& context) {
     monitor->reset();  // what waits to be written is, before the figures are
     end_progress(context);
     if (!outcome) return fail(outcome.error());
-    for (const std::string& text : outcome->notes) note(text);
+    for (const std::string& text : outcome->notes) notify(text);
     if (a.json) {
         fmt::print("{}\n", report::to_json(outcome->summary));
         // The table says these itself.
-        if (!outcome->summary.uncalibrated.empty()) note("uncalibrated: " + outcome->summary.uncalibrated);
-        for (const rt::Lack& d : outcome->summary.degraded) note("not fully real-time: " + d.what + " (" + d.remedy + ")");
-        for (const std::string& problem : outcome->summary.census_problems) note("thread census: " + problem);
+        if (!outcome->summary.uncalibrated.empty()) notify("uncalibrated: " + outcome->summary.uncalibrated);
+        for (const rt::Lack& d : outcome->summary.degraded) notify("not fully real-time: " + d.what + " (" + d.remedy + ")");
+        for (const std::string& problem : outcome->summary.census_problems) notify("thread census: " + problem);
     } else {
         fmt::print("{}", report::to_table(outcome->summary, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
     }
     for (const Error& error : outcome->failures) fail(error);
     if (outcome->stopped)
-        note(fmt::format("stopped by the user after {} frames. The figures cover these", outcome->summary.frames));
+        notify(fmt::format("stopped by the user after {} frames. The figures cover these", outcome->summary.frames));
     const bool broken = report::rule_broken(outcome->summary.control);
-    if (broken) note("the deadline rule is broken. See the control's figures");
+    if (broken) notify("the deadline rule is broken. See the control's figures");
     return outcome->failures.empty() && !outcome->stopped && !broken ? exit_success : exit_failure;
 }
 

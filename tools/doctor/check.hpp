@@ -61,6 +61,6 @@ Summary summarise(std::span<const Examined> examined);
 
 /// The findings for people, grouped by topic. Evidence is wrapped at the look's width; remedies are not, so that they can be
 /// copied.
-std::string table(const Machine& machine, std::span<const Examined> examined, const report::Look& look);
+std::string table(const Machine& machine, std::span<const Examined> examined, const report::TerminalStyle& style);
 
 }  // namespace surefoot::doctor

@@ -40,8 +40,8 @@ bool by_number(const std::string& a, const std::string& b) {
     return x && y ? *x < *y : a < b;
 }
 
-std::optional<int> choose_core(const Machine& machine, const std::optional<int>& asked, const rt::CpuMask& granted) {
-    if (asked) return asked;
+std::optional<int> choose_core(const Machine& machine, const std::optional<int>& requested, const rt::CpuMask& granted) {
+    if (requested) return requested;
     const auto list = machine.own_status("Cpus_allowed_list");
     auto allowed = list ? rt::CpuMask::parse(*list) : Result<rt::CpuMask>(Error{});
     if (!allowed) {

@@ -17,7 +17,7 @@ namespace surefoot::monitor {
 
 namespace {
 
-constexpr std::size_t most_bytes = 16U << 20U;
+constexpr std::size_t max_bytes = 16U << 20U;
 
 struct OwnSocket {
     int fd;
@@ -119,7 +119,7 @@ Result<std::string> fetch(const Address& address, std::string_view path, std::in
         }
         if (got == 0) return body_of(address, path, answer);
         answer.append(part.data(), static_cast<std::size_t>(got));
-        if (answer.size() > most_bytes)
+        if (answer.size() > max_bytes)
             return Error{address.text(), "The answer does not end", "Check that a surefoot monitor serves there",
                          ErrorKind::out_of_limits};
     }

@@ -62,7 +62,7 @@ void make_room(const std::string& dir, std::uint64_t coming, const IncidentLimit
     }
 }
 
-std::string summary_json(const rt::BlackBox::Incident& incident, std::string_view time, const MissedFrame* missed) {
+std::string summary_json(const rt::IncidentRecorder::Incident& incident, std::string_view time, const MissedFrame* missed) {
     std::map<std::string, std::uint64_t> causes;
     std::uint64_t frames = 0, misses = 0, own = 0, skipped = 0;
     std::int64_t worst_ns = 0;
@@ -93,12 +93,12 @@ std::string summary_json(const rt::BlackBox::Incident& incident, std::string_vie
     return j.dump(2) + "\n";
 }
 
-bool belongs_to(const MissedFrame* missed, const rt::BlackBox::Incident& incident) {
+bool belongs_to(const MissedFrame* missed, const rt::IncidentRecorder::Incident& incident) {
     return missed != nullptr && missed->write && !incident.records.empty() && missed->frame >= incident.first_frame &&
            missed->frame <= incident.records.back().frame;
 }
 
-Result<void> write_files(const fs::path& folder, const rt::BlackBox::Incident& incident, std::string_view time,
+Result<void> write_files(const fs::path& folder, const rt::IncidentRecorder::Incident& incident, std::string_view time,
                          const MissedFrame* missed) {
     if (!belongs_to(missed, incident)) missed = nullptr;
     if (auto ok = report::write_ledger(folder / "ledger.csv", incident.records); !ok) return ok;
@@ -111,8 +111,8 @@ Result<void> write_files(const fs::path& folder, const rt::BlackBox::Incident& i
 
 }  // namespace
 
-Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::Incident& incident, const IncidentLimits& limits,
-                                   std::int64_t unix_s, const MissedFrame* missed) {
+Result<std::string> write_incident(const std::string& dir, const rt::IncidentRecorder::Incident& incident,
+                                   const IncidentLimits& limits, std::int64_t unix_s, const MissedFrame* missed) {
     const std::string time = fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(static_cast<std::time_t>(unix_s)));
     const std::string name = fmt::format("{}{}-{:06}", folder_prefix, time, incident.number);
     const fs::path half = fs::path(dir) / ("." + name), whole = fs::path(dir) / name;
@@ -139,13 +139,13 @@ Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::I
     return whole.string();
 }
 
-IncidentWriter::IncidentWriter(std::string dir, rt::BlackBox& box, const IncidentLimits& limits,
-                               std::function<void(std::string_view)> say)
-    : dir_(std::move(dir)), box_(box), limits_(limits), say_(std::move(say)) {}
+IncidentWriter::IncidentWriter(std::string dir, rt::IncidentRecorder& box, const IncidentLimits& limits,
+                               std::function<void(std::string_view)> notify)
+    : dir_(std::move(dir)), box_(box), limits_(limits), notify_(std::move(notify)) {}
 
-Result<std::unique_ptr<IncidentWriter>> IncidentWriter::start(const std::string& dir, rt::BlackBox& box,
+Result<std::unique_ptr<IncidentWriter>> IncidentWriter::start(const std::string& dir, rt::IncidentRecorder& box,
                                                               const IncidentLimits& limits,
-                                                              std::function<void(std::string_view)> say) {
+                                                              std::function<void(std::string_view)> notify) {
     std::error_code problem;
     fs::create_directories(dir, problem);
     if (problem)
@@ -153,7 +153,7 @@ Result<std::unique_ptr<IncidentWriter>> IncidentWriter::start(const std::string&
                      ErrorKind::unwritable};
     if (auto ok = probe_writable((fs::path(dir) / "incident.json").string()); !ok) return ok.error();
     for (const fs::path& half : folders_in(dir, half_prefix)) fs::remove_all(half, problem);
-    std::unique_ptr<IncidentWriter> writer(new IncidentWriter(dir, box, limits, std::move(say)));
+    std::unique_ptr<IncidentWriter> writer(new IncidentWriter(dir, box, limits, std::move(notify)));
     writer->thread_ = std::thread([w = writer.get()] { w->run(); });
     return writer;
 }
@@ -169,7 +169,7 @@ void IncidentWriter::run() {
         own->name = "sf-incidents";
         (void)rt::restore_thread(*own);
     }
-    while (const rt::BlackBox::Incident* incident = box_.wait()) {
+    while (const rt::IncidentRecorder::Incident* incident = box_.wait()) {
         const bool done = write(*incident);
         box_.done();
         (done ? written_ : failed_).fetch_add(1, std::memory_order_release);  // whoever sees it may offer the next
@@ -181,7 +181,7 @@ void IncidentWriter::offer(MissedFrame missed) {
     missed_ = std::move(missed);
 }
 
-bool IncidentWriter::write(const rt::BlackBox::Incident& incident) {
+bool IncidentWriter::write(const rt::IncidentRecorder::Incident& incident) {
     MissedFrame missed;
     {
         const MutexLock lock(missed_mutex_);
@@ -191,11 +191,11 @@ bool IncidentWriter::write(const rt::BlackBox::Incident& incident) {
     const auto folder =
         write_incident(dir_, incident, limits_, std::chrono::duration_cast<std::chrono::seconds>(now).count(), &missed);
     if (folder) {
-        if (say_) say_(fmt::format("a burst of misses from frame {} on was recorded: {}", incident.first_frame, *folder));
+        if (notify_) notify_(fmt::format("a burst of misses from frame {} on was recorded: {}", incident.first_frame, *folder));
         failing_ = false;
         return true;
     }
-    if (!failing_ && say_) say_("a burst of misses could not be recorded: " + folder.error().text());
+    if (!failing_ && notify_) notify_("a burst of misses could not be recorded: " + folder.error().text());
     failing_ = true;
     return false;
 }

@@ -12,7 +12,7 @@
 
 #include "rt/base/mutex.hpp"
 #include "rt/base/result.hpp"
-#include "rt/monitor/black_box.hpp"
+#include "rt/monitor/incident_recorder.hpp"
 
 namespace surefoot::monitor {
 
@@ -32,9 +32,10 @@ struct MissedFrame {
 class IncidentWriter {
 public:
     /// Creates the folder if it is missing, and removes unfinished incidents of an earlier process. Its thread, sf-incidents,
-    /// inherits the caller's place. say: what somebody should know, once; on that thread. `box` must outlive it.
-    static Result<std::unique_ptr<IncidentWriter>> start(const std::string& dir, rt::BlackBox& box, const IncidentLimits& limits,
-                                                         std::function<void(std::string_view)> say);
+    /// inherits the caller's place. notify: what somebody should know, once; on that thread. `box` must outlive it.
+    static Result<std::unique_ptr<IncidentWriter>> start(const std::string& dir, rt::IncidentRecorder& box,
+                                                         const IncidentLimits& limits,
+                                                         std::function<void(std::string_view)> notify);
     ~IncidentWriter();  ///< writes waiting incidents first
     IncidentWriter(const IncidentWriter&) = delete;
     IncidentWriter& operator=(const IncidentWriter&) = delete;
@@ -46,15 +47,16 @@ public:
     [[nodiscard]] std::uint64_t failed() const { return failed_.load(std::memory_order_acquire); }
 
 private:
-    IncidentWriter(std::string dir, rt::BlackBox& box, const IncidentLimits& limits, std::function<void(std::string_view)> say);
+    IncidentWriter(std::string dir, rt::IncidentRecorder& box, const IncidentLimits& limits,
+                   std::function<void(std::string_view)> notify);
     void run();
     /// False: it failed, and that was logged.
-    bool write(const rt::BlackBox::Incident& incident) REQUIRES(writes_) EXCLUDES(missed_mutex_);
+    bool write(const rt::IncidentRecorder::Incident& incident) REQUIRES(writes_) EXCLUDES(missed_mutex_);
 
     std::string dir_;
-    rt::BlackBox& box_;
+    rt::IncidentRecorder& box_;
     IncidentLimits limits_;
-    std::function<void(std::string_view)> say_;
+    std::function<void(std::string_view)> notify_;
     [[no_unique_address]] ThreadRole writes_;  ///< the thread below
     bool failing_ GUARDED_BY(writes_) = false;
     Mutex missed_mutex_;
@@ -65,7 +67,7 @@ private:
 
 /// One incident into `dir`, within the limits; the new folder's name. `unix_s`: now, seconds since 1970. `missed`: written too,
 /// if it is one of the burst; may be null.
-Result<std::string> write_incident(const std::string& dir, const rt::BlackBox::Incident& incident, const IncidentLimits& limits,
-                                   std::int64_t unix_s, const MissedFrame* missed = nullptr);
+Result<std::string> write_incident(const std::string& dir, const rt::IncidentRecorder::Incident& incident,
+                                   const IncidentLimits& limits, std::int64_t unix_s, const MissedFrame* missed = nullptr);
 
 }  // namespace surefoot::monitor

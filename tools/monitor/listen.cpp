@@ -15,7 +15,7 @@ namespace surefoot::monitor {
 
 namespace {
 
-constexpr int waiting_most = 16;  // in the system's queue: a flood waits or is turned away there, at no cost to us
+constexpr int max_waiting = 16;  // in the system's queue: a flood waits or is turned away there, at no cost to us
 
 Error listen_error(const Address& address, int error) {
     std::string remedy = "Name another address";
@@ -66,7 +66,7 @@ Result<Listener> open_listener(const Address& wanted) {
     if (l.fd < 0) return listen_error(wanted, errno);
     const int on = 1;
     if (!local) (void)::setsockopt(l.fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (::bind(l.fd, at.get(), at.length) != 0 || ::listen(l.fd, waiting_most) != 0) {
+    if (::bind(l.fd, at.get(), at.length) != 0 || ::listen(l.fd, max_waiting) != 0) {
         const int error = errno;
         ::close(l.fd);
         return listen_error(wanted, error);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t page_age_ns = 200'000'000;       // figures are published four times a second
 constexpr std::int64_t process_age_ns = 1'000'000'000;  // reading /proc costs about a millisecond
-constexpr std::size_t notes_most = 5, note_bytes_most = 300;
+constexpr std::size_t max_notes = 5, max_note_bytes = 300;
 constexpr std::int64_t cpu_every_ns = 1'000'000'000;
 
 }  // namespace
@@ -32,7 +32,7 @@ struct Monitor::Cached {
 
 Monitor::Monitor(MonitorOptions options)
     : options_(std::move(options)),
-      black_box_(options_.black_box),
+      incident_recorder_(options_.incident_recorder),
       cached_(std::make_unique<Cached>()),
       started_ns_(rt::monotonic_ns()) {
     facts_.version = options_.version;
@@ -51,7 +51,7 @@ Result<std::unique_ptr<Monitor>> Monitor::open(MonitorOptions options) {
     std::unique_ptr<Monitor> monitor(new Monitor(std::move(options)));
     const MonitorOptions& o = monitor->options_;
     if (!o.incidents_dir.empty()) {
-        auto writer = IncidentWriter::start(o.incidents_dir, monitor->black_box_, o.incidents, o.say);
+        auto writer = IncidentWriter::start(o.incidents_dir, monitor->incident_recorder_, o.incidents, o.notify);
         if (!writer) return writer.error();
         monitor->writer_ = std::move(*writer);
     }
@@ -79,20 +79,20 @@ std::string Monitor::address() const { return server_ ? server_->address().text(
 void Monitor::begin_walk(const MonitoredWalk& walk) {
     const MutexLock lock(facts_mutex_);
     facts_.walk = walk;
-    facts_.state = ServiceState::walking;
+    facts_.state = ServicePhase::walking;
     setup_ = walk.setup;
     walk_waits_.store(true, std::memory_order_release);
 }
 
 void Monitor::end_walk() {
     // The monitor thread of that walk has ended: its part is ours.
-    black_box_.finish();
+    incident_recorder_.finish();
     telemetry_.publish();
     const MutexLock lock(facts_mutex_);
-    facts_.state = ServiceState::stopped;
+    facts_.state = ServicePhase::stopped;
 }
 
-void Monitor::set_state(ServiceState state) {
+void Monitor::set_state(ServicePhase state) {
     const MutexLock lock(facts_mutex_);
     facts_.state = state;
 }
@@ -114,8 +114,8 @@ void Monitor::set_input(const rt::InputState& input) {
 
 void Monitor::add_note(std::string_view text) {
     const MutexLock lock(facts_mutex_);
-    notes_.push_back({rt::monotonic_ns(), std::string(text.substr(0, note_bytes_most))});
-    if (notes_.size() > notes_most) notes_.pop_front();
+    notes_.push_back({rt::monotonic_ns(), std::string(text.substr(0, max_note_bytes))});
+    if (notes_.size() > max_notes) notes_.pop_front();
 }
 
 void Monitor::take_walk() {
@@ -126,14 +126,14 @@ void Monitor::take_walk() {
         walk_waits_.store(false, std::memory_order_relaxed);
     }
     telemetry_.begin(setup);
-    black_box_.begin(setup.period_ns);
+    incident_recorder_.begin(setup.period_ns);
 }
 
 void Monitor::on_record(const rt::FrameRecord& record) {
     monitor_thread_.plays();
     if (walk_waits_.load(std::memory_order_acquire)) take_walk();
     telemetry_.add(record);
-    black_box_.add(record);
+    incident_recorder_.add(record);
     if (record.presented_ns - cpu_read_ns_ < cpu_every_ns && record.presented_ns >= cpu_read_ns_) return;
     cpu_read_ns_ = record.presented_ns;
     const std::int64_t cpu_ns = rt::own_cpu_ns();  // another walk's monitor is another thread, and starts from zero
@@ -163,8 +163,8 @@ const MonitorPage& Monitor::fill_page(bool with_threads) {
                              ? static_cast<double>(std::max<std::int64_t>(now_ns - p.figures->last.presented_ns, 0)) * 1e-9
                              : -1;
     p.counts.monitor_cpu_s = static_cast<double>(cpu_ns_.load(std::memory_order_relaxed)) * 1e-9;
-    p.counts.bursts = black_box_.bursts();
-    p.counts.incidents_suppressed = black_box_.suppressed();
+    p.counts.bursts = incident_recorder_.bursts();
+    p.counts.incidents_suppressed = incident_recorder_.suppressed();
     if (writer_) {
         p.counts.incidents_written = writer_->written();
         p.counts.incidents_failed = writer_->failed();

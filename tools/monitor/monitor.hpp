@@ -2,7 +2,7 @@
 // down. What the daemon and `walk --monitor` construct.
 //
 //   monitor thread ──► figures ──► (latest copy) ──► sf-console: /metrics, /status.json   ordinary threads;
-//                 └──► black box ──► (hand-over) ──► sf-incidents: folders on disk        the first waits for none
+//                 └──► IncidentRecorder ──► (hand-over) ──► sf-incidents: folders on disk        the first waits for none
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@
 
 #include "rt/base/mutex.hpp"
 #include "rt/base/result.hpp"
-#include "rt/monitor/black_box.hpp"
+#include "rt/monitor/incident_recorder.hpp"
 #include "rt/monitor/telemetry.hpp"
 #include "tools/monitor/incidents.hpp"
 #include "tools/monitor/page.hpp"
@@ -24,7 +24,7 @@
 
 namespace surefoot::walk {
 struct WalkRequest;
-struct WalkWatch;
+struct WalkObserver;
 }  // namespace surefoot::walk
 
 namespace surefoot::monitor {
@@ -33,15 +33,15 @@ struct MonitorOptions {
     std::string address;        ///< see parse_address(); empty: nobody can look
     std::string incidents_dir;  ///< empty: incidents are counted, and not written
     std::string version;
-    rt::BlackBoxOptions black_box;
+    rt::IncidentRecorderOptions incident_recorder;
     IncidentLimits incidents;
     ServerLimits server;
-    std::function<void(std::string_view)> say;  ///< something to be told, once; on sf-incidents
+    std::function<void(std::string_view)> notify;  ///< something to be told, once; on sf-incidents
 };
 
-/// Wired to a walk by watch_with() (watch.hpp). Lives as long as the service, over many walks; counters go on from walk to walk
-/// (with another rate they start anew, as after a restart). Open it from a neutral thread, before memory is locked: its threads
-/// inherit the caller's place.
+/// Wired to a walk by attach_monitor() (attach_monitor.hpp). Lives as long as the service, over many walks; counters go on from
+/// walk to walk (with another rate they start anew, as after a restart). Open it from a neutral thread, before memory is locked:
+/// its threads inherit the caller's place.
 class Monitor {
 public:
     /// Errors: an address that is none, is in use or may not be had; a folder that cannot be written.
@@ -53,7 +53,7 @@ public:
     /// Any thread but the monitor's, in any order:
     void begin_walk(const MonitoredWalk& walk);  ///< before its first record
     void end_walk();                             ///< after its last record
-    void set_state(ServiceState state);
+    void set_state(ServicePhase state);
     void set_degraded(std::vector<rt::Lack> degraded);
     void add_degraded(const rt::Lack& degraded);
     void set_input(const rt::InputState& input);
@@ -80,7 +80,7 @@ private:
     [[no_unique_address]] ThreadRole monitor_thread_;
     // The monitor thread's, and (the published copy) the readers'.
     rt::Telemetry telemetry_;
-    rt::BlackBox black_box_;
+    rt::IncidentRecorder incident_recorder_;
     std::atomic<bool> walk_waits_{false};                       ///< setup_ is to be taken before the next record
     std::atomic<std::int64_t> cpu_ns_{0};                       ///< of all walks' monitor threads
     std::int64_t cpu_read_ns_ GUARDED_BY(monitor_thread_) = 0;  ///< record time
@@ -107,6 +107,6 @@ private:
 };
 
 /// Adds the monitor to the observers of `watch`, after those it has. Monitor and request must outlive the walk.
-void watch_with(Monitor& monitor, const walk::WalkRequest& request, walk::WalkWatch& watch);
+void attach_monitor(Monitor& monitor, const walk::WalkRequest& request, walk::WalkObserver& watch);
 
 }  // namespace surefoot::monitor

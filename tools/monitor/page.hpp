@@ -16,9 +16,9 @@
 namespace surefoot::monitor {
 
 /// What the service does. Prometheus has a series for each.
-enum class ServiceState : std::uint8_t { starting, walking, stopped, failed };
+enum class ServicePhase : std::uint8_t { starting, walking, stopped, failed };
 constexpr std::size_t service_state_count = 4;
-std::string_view service_state_name(ServiceState state);
+std::string_view service_phase_name(ServicePhase state);
 
 /// Known when a walk begins.
 struct MonitoredWalk {
@@ -48,7 +48,7 @@ struct MonitorPage {
     const rt::Figures* figures = nullptr;
     std::string version;
     std::int64_t pid = 0;
-    ServiceState state = ServiceState::starting;
+    ServicePhase state = ServicePhase::starting;
     double up_s = 0;               ///< of this monitor
     double started_unix_s = 0;     ///< the same moment as wall time, seconds since 1970
     double last_frame_age_s = -1;  ///< since the newest frame that the figures know of; -1: none yet, or the clock is not real

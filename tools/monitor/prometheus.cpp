@@ -111,8 +111,8 @@ void add_identity(Exposition& e, const MonitorPage& p) {
     }
     e.family("surefoot_state", "gauge", "1 for what the service does now, 0 for the others.");
     for (std::size_t i = 0; i < service_state_count; ++i) {
-        const auto state = static_cast<ServiceState>(i);
-        e.sample(p.state == state ? 1 : 0, fmt::format("state=\"{}\"", service_state_name(state)));
+        const auto state = static_cast<ServicePhase>(i);
+        e.sample(p.state == state ? 1 : 0, fmt::format("state=\"{}\"", service_phase_name(state)));
     }
     e.family("surefoot_degraded", "gauge",
              "1 if something that real time needs is refused or missing, by reason. `surefoot status` shows how to grant it.");
@@ -210,12 +210,12 @@ void add_work(Exposition& e, const Figures& f) {
 void add_now(Exposition& e, const MonitorPage& p) {
     const Figures& f = *p.figures;
     constexpr std::uint64_t look_back = 256;
-    const std::uint64_t n = std::min({f.recent_count, look_back, std::uint64_t{Figures::recent_most}});
-    double used = 0, accuracy_least = std::numeric_limits<double>::infinity();
+    const std::uint64_t n = std::min({f.recent_count, look_back, std::uint64_t{Figures::max_recent}});
+    double used = 0, min_accuracy = std::numeric_limits<double>::infinity();
     for (std::uint64_t i = f.recent_count - n; i < f.recent_count; ++i) {
-        const rt::RecentFrame& r = f.recent[i % Figures::recent_most];
+        const rt::RecentFrame& r = f.recent[i % Figures::max_recent];
         used += double{r.used};
-        if (!std::isnan(r.accuracy)) accuracy_least = std::min(accuracy_least, double{r.accuracy});
+        if (!std::isnan(r.accuracy)) min_accuracy = std::min(min_accuracy, double{r.accuracy});
     }
     const double unknown = std::nan("");
     const bool any = n > 0;
@@ -229,7 +229,7 @@ void add_now(Exposition& e, const MonitorPage& p) {
     e.gauge("surefoot_accuracy_per_radian",
             "Accuracy that the newest frame reached: 1 / its largest angular error; +Inf where all was exact.",
             any ? double{f.last.accuracy} : unknown);
-    e.gauge("surefoot_accuracy_least_per_radian", "Least accuracy of the last 256 frames.", any ? accuracy_least : unknown);
+    e.gauge("surefoot_accuracy_least_per_radian", "Least accuracy of the last 256 frames.", any ? min_accuracy : unknown);
     e.gauge("surefoot_prepared_age_frames", "Age of the prepared set that the newest frame used; 1 is the newest possible.",
             any ? f.last.prepared_age : unknown);
     e.gauge("surefoot_last_frame_age_seconds", "Time since the end of the newest frame that the monitor has received.",
@@ -246,7 +246,7 @@ void add_process(Exposition& e, const rt::ProcessFigures& p) {
     e.gauge("process_virtual_memory_bytes", "Virtual memory.", known(p.virtual_bytes));
     e.gauge("surefoot_locked_memory_bytes", "Memory locked by this process.", known(p.locked_bytes));
     e.gauge("process_open_fds", "Open file descriptors.", known(p.descriptors));
-    e.gauge("process_max_fds", "Limit of open file descriptors.", known(p.descriptors_most));
+    e.gauge("process_max_fds", "Limit of open file descriptors.", known(p.max_descriptors));
     e.gauge("process_threads", "Threads of this process.", known(p.threads));
     if (p.cpu_s >= 0) e.counter("process_cpu_seconds_total", "CPU time of the whole process, user and system.", p.cpu_s);
     if (p.steal_s >= 0)

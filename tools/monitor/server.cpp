@@ -199,7 +199,7 @@ bool Server::read_request(Reader& r) {
 }
 
 void Server::answer(Reader& r, std::int64_t now_ns) {
-    const auto say = [&](int code, std::string_view reason) {
+    const auto respond = [&](int code, std::string_view reason) {
         r.body = std::make_shared<const std::string>(fmt::format("{} {}\n", code, reason));
         r.head = head(code, reason, "text/plain; charset=utf-8", r.body->size());
         refused_.fetch_add(1, std::memory_order_relaxed);
@@ -211,19 +211,19 @@ void Server::answer(Reader& r, std::int64_t now_ns) {
     const std::string_view method = line.substr(0, method_end);
     const bool request = method_end != std::string_view::npos && path_end != std::string_view::npos &&
                          line.substr(path_end + 1).starts_with("HTTP/1.");
-    if (r.request.size() > limits_.request_bytes) return say(431, "Request Header Fields Too Large");
-    if (!request) return say(400, "Bad Request");
-    if (method != "GET" && method != "HEAD") return say(405, "Method Not Allowed");
+    if (r.request.size() > limits_.request_bytes) return respond(431, "Request Header Fields Too Large");
+    if (!request) return respond(400, "Bad Request");
+    if (method != "GET" && method != "HEAD") return respond(405, "Method Not Allowed");
     if (address_.socket_path.empty()) {  // a port: a browser can be led here by another site's page
         const HostField host = host_of(r.request);
         const bool must_name = !line.substr(path_end + 1).starts_with("HTTP/1.0");
-        if (host == HostField::twice || (host == HostField::absent && must_name)) return say(400, "Bad Request");
-        if (host == HostField::foreign) return say(421, "Misdirected Request");
+        if (host == HostField::twice || (host == HostField::absent && must_name)) return respond(400, "Bad Request");
+        if (host == HostField::foreign) return respond(421, "Misdirected Request");
     }
     std::string_view path = line.substr(method_end + 1, path_end - method_end - 1);
     path = path.substr(0, path.find('?'));
     const auto page = pages_(path);
-    if (!page) return say(404, "Not Found");
+    if (!page) return respond(404, "Not Found");
     r.head = head(200, "OK", page->content_type, page->body->size());
     r.body = method == "HEAD" ? std::make_shared<const std::string>() : page->body;
     answered_.fetch_add(1, std::memory_order_relaxed);

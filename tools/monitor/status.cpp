@@ -38,12 +38,12 @@ ordered_json few_json(std::vector<double> values) {
 ordered_json recent_json(const Figures& f) {
     constexpr double look_back_s = 10;
     const auto most = static_cast<std::uint64_t>(std::ceil(look_back_s * 1e9 / static_cast<double>(f.setup.period_ns)));
-    const std::uint64_t n = std::min({f.recent_count, std::max<std::uint64_t>(most, 30), std::uint64_t{Figures::recent_most}});
+    const std::uint64_t n = std::min({f.recent_count, std::max<std::uint64_t>(most, 30), std::uint64_t{Figures::max_recent}});
     std::vector<double> frame, wake, slack, used, accuracy;
     ordered_json frames = ordered_json::array(), causes = ordered_json::object();
     std::uint64_t misses = 0, skipped = 0;
     for (std::uint64_t i = f.recent_count - n; i < f.recent_count; ++i) {
-        const rt::RecentFrame& r = f.recent[i % Figures::recent_most];
+        const rt::RecentFrame& r = f.recent[i % Figures::max_recent];
         frame.push_back(double{r.frame_us} * 1e-3);
         wake.push_back(double{r.wake_us});
         slack.push_back(double{r.slack_us} * 1e-3);
@@ -160,7 +160,7 @@ ordered_json monitor_json(const MonitorCounts& c) {
 
 }  // namespace
 
-std::string_view service_state_name(ServiceState state) {
+std::string_view service_phase_name(ServicePhase state) {
     constexpr std::array<std::string_view, service_state_count> names = {"starting", "walking", "stopped", "failed"};
     return names[static_cast<std::size_t>(state)];
 }
@@ -175,7 +175,7 @@ std::string status_json(const MonitorPage& p) {
     for (const rt::Lack& d : p.degraded)
         degraded.push_back({{"reason", std::string(degraded_reason(d.kind))}, {"what", d.what}, {"remedy", d.remedy}});
     for (const MonitoredNote& n : p.notes) notes.push_back({{"age_s", n.age_s}, {"text", n.text}});
-    ordered_json j = {{"version", p.version}, {"pid", p.pid}, {"state", std::string(service_state_name(p.state))}};
+    ordered_json j = {{"version", p.version}, {"pid", p.pid}, {"state", std::string(service_phase_name(p.state))}};
     j["up_s"] = p.up_s;
     j["last_frame_age_s"] = p.last_frame_age_s >= 0 ? ordered_json(p.last_frame_age_s) : ordered_json(nullptr);
     j["walk"] = walk_json(p.walk);

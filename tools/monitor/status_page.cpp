@@ -29,13 +29,13 @@ constexpr TimeRow time_rows[] = {{"frame", "frame_ms", "ms"},
                                  {"animation error", "animation_error_ms", "ms"},
                                  {"input age", "input_age_ms", "ms"}};
 
-void add_head(const json& s, const Look& look, std::vector<std::string>& lines) {
+void add_head(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     const std::string state = text_at(s, "/state");
     const Ink ink = state == "walking" ? Ink::good : state == "failed" ? Ink::bad : Ink::warn;
     lines.push_back(fmt::format("surefoot {}, pid {}, up {}: {}", text_at(s, "/version"), number_at(s, "/pid"),
-                                duration(number_at(s, "/up_s")), inked(look, ink, state)));
+                                duration(number_at(s, "/up_s")), inked(style, ink, state)));
     if (const double age = number_at(s, "/last_frame_age_s"); state == "walking" && age > 2)
-        lines.push_back(inked(look, Ink::bad, fmt::format("no frame for {:.1f} s", age)));
+        lines.push_back(inked(style, Ink::bad, fmt::format("no frame for {:.1f} s", age)));
     if (!s.contains("walk") || !s["walk"].is_object()) return;
     lines.push_back(
         fmt::format("{} along {}, by {}", text_at(s, "/walk/model"), text_at(s, "/walk/path"), text_at(s, "/walk/selector")));
@@ -44,21 +44,21 @@ void add_head(const json& s, const Look& look, std::vector<std::string>& lines) 
                                 text_at(s, "/walk/backend"), text_at(s, "/walk/renderer")));
 }
 
-void add_lacks(const json& s, const Look& look, std::vector<std::string>& lines) {
+void add_lacks(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     if (!s.contains("degraded") || s["degraded"].empty()) {
-        if (s.contains("walk") && s["walk"].is_object()) lines.push_back(inked(look, Ink::good, "fully real-time"));
+        if (s.contains("walk") && s["walk"].is_object()) lines.push_back(inked(style, Ink::good, "fully real-time"));
         return;
     }
-    lines.push_back(inked(look, Ink::warn, "not fully real-time:"));
+    lines.push_back(inked(style, Ink::warn, "not fully real-time:"));
     for (const json& d : s["degraded"]) {
         lines.push_back("  " + text_at(d, "/what"));
         if (const std::string remedy = text_at(d, "/remedy"); !remedy.empty()) lines.push_back("    -> " + remedy);
     }
 }
 
-void add_counts(const json& s, const Look& look, std::vector<std::string>& lines) {
+void add_counts(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     const double misses = number_at(s, "/totals/misses"), skipped = number_at(s, "/totals/skipped");
-    const auto count = [&](double value, Ink if_any) { return inked(look, value > 0 ? if_any : Ink::plain, grouped(value)); };
+    const auto count = [&](double value, Ink if_any) { return inked(style, value > 0 ? if_any : Ink::plain, grouped(value)); };
     lines.push_back(fmt::format("{} slots: {} frames, {} skipped, {} misses ({} own)", grouped(number_at(s, "/totals/slots")),
                                 grouped(number_at(s, "/totals/frames")), count(skipped, Ink::bad), count(misses, Ink::bad),
                                 count(number_at(s, "/totals/own_misses"), Ink::bad)));
@@ -72,10 +72,10 @@ void add_counts(const json& s, const Look& look, std::vector<std::string>& lines
 }
 
 /// Checks that failed without ending the program: bugs to report.
-void add_rare_checks(const json& s, const Look& look, std::vector<std::string>& lines) {
+void add_rare_checks(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     if (!s.contains("rare_checks") || !s["rare_checks"].is_array()) return;
     for (const json& c : s["rare_checks"])
-        lines.push_back(inked(look, Ink::bad,
+        lines.push_back(inked(style, Ink::bad,
                               fmt::format("a check failed {} times: {} ({})", grouped(number_at(c, "/count")),
                                           text_at(c, "/sentence"), text_at(c, "/place"))));
 }
@@ -95,13 +95,13 @@ void add_times(const json& s, std::vector<std::string>& lines) {
         lines.push_back(columns.row({"1 % low", short_number(low)}) + " Hz");
 }
 
-void add_recent(const json& s, const Look& look, std::vector<std::string>& lines) {
+void add_recent(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     if (!(number_at(s, "/recent/frames") > 0)) return;
     const double misses = number_at(s, "/recent/misses"), skipped = number_at(s, "/recent/skipped");
     lines.push_back(fmt::format(
         "last {:.0f} s: {}, slack min {} ms, p50 {} ms, budget used {:.0f} %", number_at(s, "/recent/seconds"),
-        misses + skipped > 0 ? inked(look, Ink::bad, fmt::format("{} missed, {} skipped", grouped(misses), grouped(skipped)))
-                             : inked(look, Ink::good, "no misses"),
+        misses + skipped > 0 ? inked(style, Ink::bad, fmt::format("{} missed, {} skipped", grouped(misses), grouped(skipped)))
+                             : inked(style, Ink::good, "no misses"),
         short_number(number_at(s, "/recent/slack_ms/min")), short_number(number_at(s, "/recent/slack_ms/p50")),
         100 * number_at(s, "/recent/budget_used/mean")));
     const double accuracy = number_at(s, "/recent/accuracy/mean");
@@ -111,11 +111,11 @@ void add_recent(const json& s, const Look& look, std::vector<std::string>& lines
                                                        grouped(number_at(s, "/now/triangles"))));
 }
 
-void add_input(const json& s, const Look& look, std::vector<std::string>& lines) {
+void add_input(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     if (flag_at(s, "/input/emergency_stop"))
-        lines.push_back(inked(look, Ink::bad, "emergency stop: the walk stands still"));
+        lines.push_back(inked(style, Ink::bad, "emergency stop: the walk stands still"));
     else if (flag_at(s, "/now/standing_still"))
-        lines.push_back(inked(look, Ink::warn, "the walk stands still: stop or dead-man"));
+        lines.push_back(inked(style, Ink::warn, "the walk stands still: stop or dead-man"));
     if (flag_at(s, "/input/live")) lines.push_back(fmt::format("steered by {} devices", grouped(number_at(s, "/input/devices"))));
     if (!s.contains("notes") || !s["notes"].is_array()) return;
     for (const json& n : s["notes"])
@@ -144,15 +144,15 @@ Result<json> parse_status(const Address& address, const std::string& text) {
                  "Name the monitor's address with --socket", ErrorKind::damaged};
 }
 
-std::vector<std::string> status_page(const json& status, const Look& look) {
+std::vector<std::string> status_page(const json& status, const TerminalStyle& style) {
     std::vector<std::string> lines;
-    add_head(status, look, lines);
-    add_lacks(status, look, lines);
+    add_head(status, style, lines);
+    add_lacks(status, style, lines);
     lines.emplace_back();
-    add_counts(status, look, lines);
-    add_rare_checks(status, look, lines);
-    add_recent(status, look, lines);
-    add_input(status, look, lines);
+    add_counts(status, style, lines);
+    add_rare_checks(status, style, lines);
+    add_recent(status, style, lines);
+    add_input(status, style, lines);
     lines.emplace_back();
     add_times(status, lines);
     lines.emplace_back();

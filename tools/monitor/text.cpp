@@ -89,7 +89,7 @@ std::string causes_text(const json& causes) {
     return text;
 }
 
-std::vector<std::string> frame_chart(const json& frames, double period_ms, const Look& look, std::size_t columns,
+std::vector<std::string> frame_chart(const json& frames, double period_ms, const TerminalStyle& style, std::size_t columns,
                                      std::size_t rows) {
     constexpr std::array<std::string_view, 9> blocks = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
     constexpr std::array<std::string_view, 9> plain = {" ", ".", ".", ":", ":", "|", "|", "#", "#"};
@@ -100,14 +100,14 @@ std::vector<std::string> frame_chart(const json& frames, double period_ms, const
         std::string line(columns - slots.size(), ' ');
         for (const Column& c : slots) {
             if (c.skipped) {
-                line += row == 0 ? inked(look, Ink::bad, look.unicode ? "×" : "x") : " ";
+                line += row == 0 ? inked(style, Ink::bad, style.unicode ? "×" : "x") : " ";
                 continue;
             }
             const double filled = std::clamp(c.ms / row_ms - static_cast<double>(row), 0.0, 1.0);
             const auto eighths = static_cast<std::size_t>(std::lround(filled * 8));
             const std::string_view block =
-                (look.unicode ? blocks : plain)[row == 0 ? std::max<std::size_t>(eighths, 1) : eighths];
-            line += c.missed && eighths > 0 ? inked(look, Ink::bad, block) : std::string(block);
+                (style.unicode ? blocks : plain)[row == 0 ? std::max<std::size_t>(eighths, 1) : eighths];
+            line += c.missed && eighths > 0 ? inked(style, Ink::bad, block) : std::string(block);
         }
         lines.push_back(std::move(line));
     }

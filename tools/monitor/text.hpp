@@ -14,9 +14,9 @@ namespace surefoot::monitor {
 using report::cut_to;
 using report::Ink;
 using report::inked;
-using report::Look;
 using report::places;
 using report::share_bar;
+using report::TerminalStyle;
 
 /// A number at a JSON pointer ("/recent/frame_ms/p50"); NaN where there is none.
 double number_at(const nlohmann::json& j, const char* pointer);
@@ -36,7 +36,7 @@ std::string causes_text(const nlohmann::json& causes);
 
 /// Frames as columns of `rows` lines, newest at the right; the last row but one ends at the period. A skipped slot is a column
 /// too. frames: [[ms, skipped before, missed], …]
-std::vector<std::string> frame_chart(const nlohmann::json& frames, double period_ms, const Look& look, std::size_t columns,
-                                     std::size_t rows);
+std::vector<std::string> frame_chart(const nlohmann::json& frames, double period_ms, const TerminalStyle& style,
+                                     std::size_t columns, std::size_t rows);
 
 }  // namespace surefoot::monitor

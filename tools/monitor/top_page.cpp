@@ -30,64 +30,66 @@ std::string spread(const std::string& left, const std::string& right, std::size_
     return used + 2 <= width ? left + std::string(width - used, ' ') + right : left;
 }
 
-void add_title(const json& s, const Look& look, std::vector<std::string>& lines) {
+void add_title(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     const std::string state = text_at(s, "/state");
     const double age = number_at(s, "/last_frame_age_s");
     const bool stalled = state == "walking" && age > 2;
     const std::string what = text_at(s, "/walk/model");
-    std::string left = inked(look, Ink::bold, what.empty() ? "surefoot" : what.substr(what.rfind('/') + 1));
+    std::string left = inked(style, Ink::bold, what.empty() ? "surefoot" : what.substr(what.rfind('/') + 1));
     if (!what.empty())
         left += fmt::format("  {:.4g} Hz {}, {}, {}", number_at(s, "/walk/rate_hz"), text_at(s, "/walk/late"),
                             text_at(s, "/walk/selector"), text_at(s, "/walk/backend"));
-    const std::string right = stalled ? inked(look, Ink::bad, fmt::format("no frame for {:.0f} s", age))
-                                      : inked(look, state == "walking" ? Ink::good : Ink::warn, state);
-    lines.push_back(spread(left, right + "  up " + duration(number_at(s, "/up_s")), look.width));
+    const std::string right = stalled ? inked(style, Ink::bad, fmt::format("no frame for {:.0f} s", age))
+                                      : inked(style, state == "walking" ? Ink::good : Ink::warn, state);
+    lines.push_back(spread(left, right + "  up " + duration(number_at(s, "/up_s")), style.width));
 }
 
-void add_totals(const json& s, const json& before, double between_s, const Look& look, std::vector<std::string>& lines) {
+void add_totals(const json& s, const json& before, double between_s, const TerminalStyle& style,
+                std::vector<std::string>& lines) {
     const auto alarm = [&](const char* pointer) {
         const double value = number_at(s, pointer);
-        return inked(look, value > 0 ? Ink::bad : Ink::plain, grouped(value));
+        return inked(style, value > 0 ? Ink::bad : Ink::plain, grouped(value));
     };
     const std::string left = fmt::format("frames {}  skipped {}  misses {} (own {})", grouped(number_at(s, "/totals/frames")),
                                          alarm("/totals/skipped"), alarm("/totals/misses"), alarm("/totals/own_misses"));
-    lines.push_back(spread(left, rate_text(rate_of(s, before, between_s, "/totals/frames")) + " frames/s", look.width));
+    lines.push_back(spread(left, rate_text(rate_of(s, before, between_s, "/totals/frames")) + " frames/s", style.width));
     std::string lacks;
     if (s.contains("degraded") && s["degraded"].is_array())
         for (const json& d : s["degraded"]) lacks += (lacks.empty() ? "" : ", ") + text_at(d, "/reason");
     if (!lacks.empty())
-        lines.push_back(inked(look, Ink::warn, "not fully real-time: " + lacks + "  (surefoot status says more)"));
+        lines.push_back(inked(style, Ink::warn, "not fully real-time: " + lacks + "  (surefoot status says more)"));
 }
 
-void add_chart(const json& s, const Look& look, std::vector<std::string>& lines) {
+void add_chart(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     const double period_ms = number_at(s, "/walk/period_ms");
     if (!(period_ms > 0) || !(number_at(s, "/recent/frames") > 0)) {
         lines.push_back("no frames yet");
         return;
     }
     const auto ms = [&](const char* q) { return short_number(number_at(s, fmt::format("/recent/frame_ms/{}", q).c_str())); };
-    lines.push_back(fmt::format("{}  p50 {}  p99 {}  max {} ms, last {:.0f} s", inked(look, Ink::bold, "frame time"), ms("p50"),
+    lines.push_back(fmt::format("{}  p50 {}  p99 {}  max {} ms, last {:.0f} s", inked(style, Ink::bold, "frame time"), ms("p50"),
                                 ms("p99"), ms("max"), number_at(s, "/recent/seconds")));
-    const std::size_t columns = look.width > label_places + 10 ? look.width - label_places : 10;
-    const auto chart = frame_chart(s["recent"]["frame_ms_skipped_missed"], period_ms, look, columns, chart_rows);
+    const std::size_t columns = style.width > label_places + 10 ? style.width - label_places : 10;
+    const auto chart = frame_chart(s["recent"]["frame_ms_skipped_missed"], period_ms, style, columns, chart_rows);
     for (std::size_t i = 0; i < chart.size(); ++i) {
         // The second line from above ends at the deadline.
         std::string label(label_places, ' ');
         if (i == 1) label = fmt::format("{:>5} ms ", short_number(period_ms));
         if (i == 3) label = fmt::format("{:>5} ms ", short_number(period_ms / 2));
-        lines.push_back(inked(look, Ink::dim, label) + chart[i]);
+        lines.push_back(inked(style, Ink::dim, label) + chart[i]);
     }
 }
 
-void add_gauges(const json& s, const Look& look, std::vector<std::string>& lines) {
+void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     if (!(number_at(s, "/recent/frames") > 0)) return;
     const double period_ms = number_at(s, "/walk/period_ms");
-    const std::size_t width = std::clamp<std::size_t>(look.width > 60 ? look.width - 52 : 8, 8, 40);
+    const std::size_t width = std::clamp<std::size_t>(style.width > 60 ? style.width - 52 : 8, 8, 40);
     const double slack = number_at(s, "/recent/slack_ms/p50"), least = number_at(s, "/recent/slack_ms/min");
-    lines.push_back(fmt::format("slack    {} {:>6} ms   least {}", share_bar(look, slack / period_ms, width), short_number(slack),
-                                inked(look, least < 0 ? Ink::bad : Ink::plain, short_number(least) + " ms")));
+    lines.push_back(fmt::format("slack    {} {:>6} ms   least {}", share_bar(style, slack / period_ms, width),
+                                short_number(slack),
+                                inked(style, least < 0 ? Ink::bad : Ink::plain, short_number(least) + " ms")));
     const double used = number_at(s, "/recent/budget_used/mean");
-    lines.push_back(fmt::format("used     {} {:>6.0f} %    p99 {:.0f} % of the period", share_bar(look, used, width), 100 * used,
+    lines.push_back(fmt::format("used     {} {:>6.0f} %    p99 {:.0f} % of the period", share_bar(style, used, width), 100 * used,
                                 100 * number_at(s, "/recent/budget_used/p99")));
     const double accuracy = number_at(s, "/recent/accuracy/mean");
     lines.push_back(std::isnan(accuracy) ? fmt::format("accuracy exact, {} triangles", grouped(number_at(s, "/now/triangles")))
@@ -96,17 +98,18 @@ void add_gauges(const json& s, const Look& look, std::vector<std::string>& lines
                                                        grouped(number_at(s, "/now/triangles"))));
 }
 
-void add_events(const json& s, const json& before, double between_s, const Look& look, std::vector<std::string>& lines) {
+void add_events(const json& s, const json& before, double between_s, const TerminalStyle& style,
+                std::vector<std::string>& lines) {
     const auto rate = [&](const char* pointer) { return rate_text(rate_of(s, before, between_s, pointer)); };
     lines.push_back(fmt::format("a second: {} switches, {} downgrades, {} faults (driver {}), {} reports",
                                 rate("/totals/switches"), rate("/totals/downgrades"), rate("/totals/page_faults"),
                                 rate("/totals/driver_faults"), rate("/totals/input_reports")));
     const std::string causes = causes_text(s["totals"]["miss_causes"]);
-    lines.push_back("misses   " + (causes.empty() ? inked(look, Ink::good, "none") : inked(look, Ink::bad, causes)));
+    lines.push_back("misses   " + (causes.empty() ? inked(style, Ink::good, "none") : inked(style, Ink::bad, causes)));
     if (flag_at(s, "/input/emergency_stop"))
-        lines.push_back(inked(look, Ink::bad, "EMERGENCY STOP: the walk stands still"));
+        lines.push_back(inked(style, Ink::bad, "EMERGENCY STOP: the walk stands still"));
     else if (flag_at(s, "/now/standing_still"))
-        lines.push_back(inked(look, Ink::warn, "the walk stands still: stop or dead-man"));
+        lines.push_back(inked(style, Ink::warn, "the walk stands still: stop or dead-man"));
     const std::string note = s.contains("notes") && !s["notes"].empty() ? text_at(s["notes"].back(), "/text") : "";
     if (flag_at(s, "/input/live"))
         lines.push_back(
@@ -143,13 +146,14 @@ std::vector<ThreadLine> thread_lines(const json& s, const json& before, double b
     return all;
 }
 
-void add_threads(const json& s, const json& before, double between_s, const Look& look, std::vector<std::string>& lines) {
-    if (lines.size() + 3 > look.height) return;
+void add_threads(const json& s, const json& before, double between_s, const TerminalStyle& style,
+                 std::vector<std::string>& lines) {
+    if (lines.size() + 3 > style.height) return;
     const auto all = thread_lines(s, before, between_s);
     const report::Columns columns({{"thread", 16}, {"policy", 12}, {"prio", -4}, {"cores", 10, 2}, {"CPU %", -6}});
-    lines.push_back(inked(look, Ink::dim, columns.heading()));
+    lines.push_back(inked(style, Ink::dim, columns.heading()));
     for (const ThreadLine& t : all) {
-        if (lines.size() + 2 > look.height) break;
+        if (lines.size() + 2 > style.height) break;
         lines.push_back(columns.row(
             {t.name, t.policy, grouped(t.priority), t.cores, std::isnan(t.share) ? "-" : fmt::format("{:.1f}", 100 * t.share)}));
     }
@@ -157,19 +161,19 @@ void add_threads(const json& s, const json& before, double between_s, const Look
 
 }  // namespace
 
-std::vector<std::string> top_page(const json& status, const json& before, double between_s, const Look& look) {
+std::vector<std::string> top_page(const json& status, const json& before, double between_s, const TerminalStyle& style) {
     std::vector<std::string> lines;
-    add_title(status, look, lines);
-    add_totals(status, before, between_s, look, lines);
+    add_title(status, style, lines);
+    add_totals(status, before, between_s, style, lines);
     lines.emplace_back();
-    add_chart(status, look, lines);
-    add_gauges(status, look, lines);
-    add_events(status, before, between_s, look, lines);
-    if (lines.size() + 4 <= look.height) lines.emplace_back();
-    add_threads(status, before, between_s, look, lines);
-    if (lines.size() >= look.height) lines.resize(look.height - 1);
-    lines.push_back(inked(look, Ink::dim, "q: quit"));
-    for (std::string& line : lines) line = cut_to(line, look.width);
+    add_chart(status, style, lines);
+    add_gauges(status, style, lines);
+    add_events(status, before, between_s, style, lines);
+    if (lines.size() + 4 <= style.height) lines.emplace_back();
+    add_threads(status, before, between_s, style, lines);
+    if (lines.size() >= style.height) lines.resize(style.height - 1);
+    lines.push_back(inked(style, Ink::dim, "q: quit"));
+    for (std::string& line : lines) line = cut_to(line, style.width);
     return lines;
 }
 

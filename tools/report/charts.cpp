@@ -46,7 +46,7 @@ std::string frame_time_chart(const WalkFrames& walk, double budget_ms) {
     chart.lines = {{deadline, fmt::format("deadline {:.1f} ms", deadline), "deadline"}};
     if (budget_ms > 0 && budget_ms < deadline)
         chart.lines.push_back({budget_ms, fmt::format("budget {:.1f} ms", budget_ms), "budget"});
-    chart.shots_s = walk.shots_s;
+    chart.snapshots_s = walk.snapshots_s;
     for (const FrameRecord* f : walk.frames)
         if (f->missed)
             chart.markers.push_back({walk.time_s(*f), frame_ms(*f),
@@ -163,7 +163,7 @@ std::string accuracy_chart_over_time(const WalkFrames& walk) {
     chart.width = small_width;
     chart.height = small_height;
     chart.log = true;
-    chart.shots_s = walk.shots_s;
+    chart.snapshots_s = walk.snapshots_s;
     return time_chart(chart);
 }
 
@@ -175,7 +175,7 @@ std::string triangles_chart(const WalkFrames& walk, std::uint64_t model_triangle
     if (model > 0 && model < most * 4) chart.lines = {{model, "the whole model", "budget"}};
     chart.width = small_width;
     chart.height = small_height;
-    chart.shots_s = walk.shots_s;
+    chart.snapshots_s = walk.snapshots_s;
     return time_chart(chart);
 }
 

@@ -24,9 +24,9 @@ struct TimeChart {
         double time_s, value;
         std::string tip;
     };
-    std::vector<Marker> markers;  ///< misses
-    std::vector<double> shots_s;  ///< moments of the pictures further down
-    double top = 0;               ///< of the axis; 0: from the values
+    std::vector<Marker> markers;      ///< misses
+    std::vector<double> snapshots_s;  ///< moments of the pictures further down
+    double top = 0;                   ///< of the axis; 0: from the values
     bool log = false;
     double width = 960, height = 240;
 };
@@ -37,7 +37,7 @@ struct WalkFrames {
     std::vector<const rt::FrameRecord*> frames;
     std::int64_t start_ns = 0;
     std::int64_t period_ns = 1;
-    std::vector<double> shots_s;
+    std::vector<double> snapshots_s;
     [[nodiscard]] double time_s(const rt::FrameRecord& f) const { return static_cast<double>(f.due_ns - start_ns) * 1e-9; }
 };
 
@@ -53,8 +53,8 @@ std::string cause_chart(const WalkSummary& summary);
 std::string control_chart(const ControlSummary& control);
 
 /// The path from above with the misses and the places of the pictures.
-std::string path_map(const WalkFrames& walk, std::span<const ReportShot> shots);
+std::string path_map(const WalkFrames& walk, std::span<const ReportSnapshot> snapshots);
 /// What was drawn at one place, from above.
-std::string top_view(const ReportShot& shot);
+std::string top_view(const ReportSnapshot& snapshot);
 
 }  // namespace surefoot::report

@@ -70,7 +70,7 @@ Json input_of(const InputSummary& in) {
         {"stops", in.stops},
         {"stopped_frames", in.stopped_frames},
         {"stop_latched", in.stop_latched},
-        {"silences", in.silences},
+        {"silences", in.timeouts},
         {"overflows", in.overflows},
         {"losses", in.losses},
         {"presses", {{"next_viewpoint", in.next_viewpoint}, {"reset", in.reset}, {"tour", in.tour}, {"pause", in.pause}}},

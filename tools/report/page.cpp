@@ -20,7 +20,7 @@ namespace {
 
 using rt::FrameRecord;
 
-WalkFrames walk_frames(const WalkSummary& s, std::span<const FrameRecord> records, std::span<const ReportShot> shots) {
+WalkFrames walk_frames(const WalkSummary& s, std::span<const FrameRecord> records, std::span<const ReportSnapshot> snapshots) {
     WalkFrames walk;
     for (const FrameRecord& record : records)
         if (!record.control) walk.frames.push_back(&record);
@@ -30,10 +30,11 @@ WalkFrames walk_frames(const WalkSummary& s, std::span<const FrameRecord> record
     } else if (s.rate_hz > 0) {
         walk.period_ns = static_cast<std::int64_t>(1e9 / s.rate_hz);
     }
-    for (const ReportShot& shot : shots) {
-        const auto at = std::lower_bound(walk.frames.begin(), walk.frames.end(), shot.frame,
+    for (const ReportSnapshot& snapshot : snapshots) {
+        const auto at = std::lower_bound(walk.frames.begin(), walk.frames.end(), snapshot.frame,
                                          [](const FrameRecord* f, std::uint64_t frame) { return f->frame < frame; });
-        walk.shots_s.push_back(at != walk.frames.end() && (*at)->frame == shot.frame ? walk.time_s(**at) : shot.time_s);
+        walk.snapshots_s.push_back(at != walk.frames.end() && (*at)->frame == snapshot.frame ? walk.time_s(**at)
+                                                                                             : snapshot.time_s);
     }
     return walk;
 }
@@ -65,7 +66,7 @@ std::string time_section(const WalkSummary& s, const WalkFrames& walk) {
     return out + "</div>\n";
 }
 
-std::string picture_section(const WalkSummary& s, const WalkFrames& walk, std::span<const ReportShot> shots) {
+std::string picture_section(const WalkSummary& s, const WalkFrames& walk, std::span<const ReportSnapshot> snapshots) {
     std::string out =
         "<h2>What was drawn</h2>\n<p class=\"sub\">Accuracy is one over the largest angular error of anything on screen: higher "
         "is finer. "
@@ -78,12 +79,12 @@ std::string picture_section(const WalkSummary& s, const WalkFrames& walk, std::s
                                                     short_number(static_cast<double>(s.model_triangles)))
                                       : fmt::format("Mean {}.", short_number(s.triangles_mean)),
                 triangles_chart(walk, s.model_triangles));
-    out += card("The path", shots.empty() ? "From above." : "From above; numbers are where the pictures were taken.",
-                path_map(walk, shots));
+    out += card("The path", snapshots.empty() ? "From above." : "From above; numbers are where the pictures were taken.",
+                path_map(walk, snapshots));
     out += s.misses > 0 ? card("Misses by cause", "One cause per miss, from the measurements of that frame.", cause_chart(s))
                         : card("Switches", "Nodes drawn in another form than in the previous frame. Fewer is better.",
                                switches_chart(walk));
-    return out + "</div>\n" + shot_cards(s, walk.shots_s, shots);
+    return out + "</div>\n" + snapshot_cards(s, walk.snapshots_s, snapshots);
 }
 
 std::string control_section(const ControlSummary& control) {
@@ -93,16 +94,16 @@ std::string control_section(const ControlSummary& control) {
                        control_chart(control));
 }
 
-std::string body_of(const WalkSummary& s, std::span<const FrameRecord> records, std::span<const ReportShot> shots) {
-    const WalkFrames walk = walk_frames(s, records, shots);
-    return page_header(s) + degraded_notes(s) + tiles(s) + time_section(s, walk) + picture_section(s, walk, shots) +
+std::string body_of(const WalkSummary& s, std::span<const FrameRecord> records, std::span<const ReportSnapshot> snapshots) {
+    const WalkFrames walk = walk_frames(s, records, snapshots);
+    return page_header(s) + degraded_notes(s) + tiles(s) + time_section(s, walk) + picture_section(s, walk, snapshots) +
            control_section(s.control) + figures_table(s) + machine_table(s) + page_footer();
 }
 
 }  // namespace
 
 Result<void> write_report(const std::string& dir, const WalkSummary& summary, std::span<const FrameRecord> records,
-                          std::span<const ReportShot> shots) {
+                          std::span<const ReportSnapshot> snapshots) {
     auto files = FileSet::create(dir);
     if (!files) return files.error();
     auto ledger = files->add("ledger.csv");
@@ -110,7 +111,7 @@ Result<void> write_report(const std::string& dir, const WalkSummary& summary, st
     if (auto written = write_ledger(**ledger, records); !written) return written;
     if (auto written = files->add("walk.json", to_json(summary)); !written) return written;
     const std::string title = fmt::format("Surefoot: {}", escaped(summary.model));
-    if (auto written = files->add("index.html", page(title, body_of(summary, records, shots))); !written) return written;
+    if (auto written = files->add("index.html", page(title, body_of(summary, records, snapshots))); !written) return written;
     return files->commit();
 }
 

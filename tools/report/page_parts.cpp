@@ -44,28 +44,29 @@ std::string figure(const std::string& uri, std::string_view alt, std::string_vie
                        caption);
 }
 
-std::string shot_card(const ReportShot& shot, std::size_t number, double time_s, const std::string& selector) {
+std::string snapshot_card(const ReportSnapshot& snapshot, std::size_t number, double time_s, const std::string& selector) {
     const auto chip = [](std::string_view name, const std::string& value) {
         return fmt::format("<span class=\"chip\">{} <b>{}</b></span>", name, value);
     };
     std::string out = fmt::format("<section class=\"shot\"><div class=\"head\"><h3>{}</h3><div class=\"chips\">", number);
-    out += chip("at", fmt::format("{:.1f} s", time_s)) + chip("frame", grouped(static_cast<double>(shot.frame)));
+    out += chip("at", fmt::format("{:.1f} s", time_s)) + chip("frame", grouped(static_cast<double>(snapshot.frame)));
     const double share =
-        shot.full_triangles > 0 ? static_cast<double>(shot.triangles) / static_cast<double>(shot.full_triangles) : 1;
-    out += chip("triangles", fmt::format("{} of {} ({})", short_number(static_cast<double>(shot.triangles)),
-                                         short_number(static_cast<double>(shot.full_triangles)), percent(share)));
-    if (!shot.difference.empty()) out += chip("SNR", decibels(shot.snr_db)) + chip("SSIM", fmt::format("{:.3f}", shot.ssim));
-    out +=
-        chip("accuracy", fmt::format("{} rad⁻¹", short_number(double{shot.accuracy}))) + "</div></div>\n<div class=\"views\">\n";
+        snapshot.full_triangles > 0 ? static_cast<double>(snapshot.triangles) / static_cast<double>(snapshot.full_triangles) : 1;
+    out += chip("triangles", fmt::format("{} of {} ({})", short_number(static_cast<double>(snapshot.triangles)),
+                                         short_number(static_cast<double>(snapshot.full_triangles)), percent(share)));
+    if (!snapshot.difference.empty())
+        out += chip("SNR", decibels(snapshot.snr_db)) + chip("SSIM", fmt::format("{:.3f}", snapshot.ssim));
+    out += chip("accuracy", fmt::format("{} rad⁻¹", short_number(double{snapshot.accuracy}))) +
+           "</div></div>\n<div class=\"views\">\n";
     const auto uri = [&](const std::vector<std::uint8_t>& rgba) {
-        return jpeg_data_uri(rgba, shot.width, shot.height, picture_quality);
+        return jpeg_data_uri(rgba, snapshot.width, snapshot.height, picture_quality);
     };
-    out += figure(uri(shot.walk), "the walk's picture", fmt::format("The walk, {}", escaped(selector)));
-    out += figure(uri(shot.full), "full detail", "Full detail, without a deadline");
-    out += figure(uri(shot.difference), "difference of the two", "Difference, four times amplified");
-    if (!shot.drawn.empty())
+    out += figure(uri(snapshot.walk), "the walk's picture", fmt::format("The walk, {}", escaped(selector)));
+    out += figure(uri(snapshot.full), "full detail", "Full detail, without a deadline");
+    out += figure(uri(snapshot.difference), "difference of the two", "Difference, four times amplified");
+    if (!snapshot.drawn.empty())
         out += fmt::format("<figure><div class=\"map\">{}</div><figcaption>From above: {} nodes drawn</figcaption></figure>\n",
-                           top_view(shot), grouped(static_cast<double>(shot.drawn.size())));
+                           top_view(snapshot), grouped(static_cast<double>(snapshot.drawn.size())));
     return out + "</div></section>\n";
 }
 
@@ -129,8 +130,8 @@ std::string tiles(const WalkSummary& s) {
     return out + "</div>\n";
 }
 
-std::string shot_cards(const WalkSummary& s, std::span<const double> time_s, std::span<const ReportShot> shots) {
-    if (shots.empty()) return {};
+std::string snapshot_cards(const WalkSummary& s, std::span<const double> time_s, std::span<const ReportSnapshot> snapshots) {
+    if (snapshots.empty()) return {};
     std::string out =
         "<h2>Along the path</h2>\n<p class=\"sub\">The same pose drawn by the walk, and in full detail without a deadline. "
         "From above: "
@@ -138,7 +139,7 @@ std::string shot_cards(const WalkSummary& s, std::span<const double> time_s, std
         "<div class=\"legend\"><span><i class=\"c1\"></i>cluster: one shape for several objects</span><span><i "
         "class=\"c0\"></i>object</span>"
         "<span><i class=\"c2\"></i>piece of an object</span></div>\n";
-    for (std::size_t i = 0; i < shots.size(); ++i) out += shot_card(shots[i], i + 1, time_s[i], s.selector);
+    for (std::size_t i = 0; i < snapshots.size(); ++i) out += snapshot_card(snapshots[i], i + 1, time_s[i], s.selector);
     return out;
 }
 

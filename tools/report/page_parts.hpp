@@ -16,8 +16,8 @@ std::string page_header(const WalkSummary& summary);
 std::string degraded_notes(const WalkSummary& summary);
 /// The six figures that matter.
 std::string tiles(const WalkSummary& summary);
-/// Pictures along the path, each with its top view; empty without shots. time_s: one a shot.
-std::string shot_cards(const WalkSummary& summary, std::span<const double> time_s, std::span<const ReportShot> shots);
+/// Pictures along the path, each with its top view; empty without snapshots. time_s: one a snapshot.
+std::string snapshot_cards(const WalkSummary& summary, std::span<const double> time_s, std::span<const ReportSnapshot> snapshots);
 /// All percentiles, for who wants them.
 std::string figures_table(const WalkSummary& summary);
 std::string machine_table(const WalkSummary& summary);

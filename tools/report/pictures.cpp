@@ -19,7 +19,7 @@ struct ErrorReturn {
 };
 
 void return_from_error(j_common_ptr info) { std::longjmp(reinterpret_cast<ErrorReturn*>(info->err)->back, 1); }
-void say_nothing(j_common_ptr) {}
+void ignore_message(j_common_ptr) {}
 
 /// Only plain data between setjmp and longjmp. `row` has room for width * 3 bytes; *out is malloc'ed by libjpeg.
 bool compress(const std::uint8_t* rgba, std::uint32_t width, std::uint32_t height, int quality, JSAMPLE* row, unsigned char** out,
@@ -28,7 +28,7 @@ bool compress(const std::uint8_t* rgba, std::uint32_t width, std::uint32_t heigh
     ErrorReturn errors;
     info.err = jpeg_std_error(&errors.manager);
     errors.manager.error_exit = return_from_error;
-    errors.manager.output_message = say_nothing;
+    errors.manager.output_message = ignore_message;
     if (setjmp(errors.back) != 0) {
         jpeg_destroy_compress(&info);
         return false;

@@ -48,7 +48,7 @@ struct InputSummary {
     std::uint64_t stops = 0;           ///< emergency stops
     std::uint64_t stopped_frames = 0;  ///< that stood still by order: emergency stop or dead-man
     bool stop_latched = false;         ///< at the end
-    std::uint64_t silences = 0, overflows = 0, losses = 0;
+    std::uint64_t timeouts = 0, overflows = 0, losses = 0;
     std::uint64_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0;  ///< presses
     std::uint64_t jumps = 0;                                           ///< placings elsewhere
     double filter_lag_ms = 0;                                          ///< at most, of mapping and filter
@@ -94,7 +94,7 @@ Result<void> write_ledger(AtomicFile& out, std::span<const rt::FrameRecord> reco
 Result<void> write_trace(const std::string& file, std::span<const rt::FrameRecord> records);
 
 /// One place along the path: the walk's picture, full detail, difference, and the top view of what was drawn.
-struct ReportShot {
+struct ReportSnapshot {
     std::uint64_t frame = 0;
     double time_s = 0;
     std::uint32_t width = 0, height = 0;
@@ -116,7 +116,7 @@ struct ReportShot {
 
 /// DIR/index.html, self-contained (SVG and data-URI pictures, light and dark, no network), and DIR/ledger.csv, DIR/walk.json.
 Result<void> write_report(const std::string& dir, const WalkSummary& summary, std::span<const rt::FrameRecord> records,
-                          std::span<const ReportShot> shots);
+                          std::span<const ReportSnapshot> snapshots);
 
 /// Maciel's figure 3.4 for this machine: cost against pixels, a line a triangle count, a panel a state class.
 struct CostPoint {

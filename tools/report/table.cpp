@@ -23,7 +23,7 @@ void timing_rows(LabelledText& table, const WalkSummary& s) {
             columns.row({std::string(label), text(q.p50), text(q.p90), text(q.p99), text(q.p999), text(q.max)});
         table.raw(note.empty() ? line : fmt::format("{}   {}", line, note));
     };
-    table.raw(inked(table.look(), Ink::dim, columns.heading()));
+    table.raw(inked(table.style(), Ink::dim, columns.heading()));
     row("frame, ms", s.frame_ms, 2, s.rate_hz > 0 ? fmt::format("deadline {:.2f}", 1000 / s.rate_hz) : "");
     row("wake, us", s.wake_us, 0, "");
     row("select, us", s.select_us, 0, "");

@@ -42,26 +42,26 @@ void append_cell(std::string& line, const TextColumn& column, std::string_view t
 
 }  // namespace
 
-Look terminal_look(bool colour, std::size_t width) {
-    Look look;
-    look.colour = colour;
-    look.unicode = speaks_utf8();
-    look.width = width;
+TerminalStyle terminal_style(bool colour, std::size_t width) {
+    TerminalStyle style;
+    style.colour = colour;
+    style.unicode = speaks_utf8();
+    style.width = width;
     winsize size{};
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
-        look.width = size.ws_col;
-        look.height = std::max<std::size_t>(size.ws_row, 3);
+        style.width = size.ws_col;
+        style.height = std::max<std::size_t>(size.ws_row, 3);
     }
-    return look;
+    return style;
 }
 
 bool colour_wanted() {
     return isatty(STDOUT_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr;
 }  // NOLINT(concurrency-mt-unsafe)
 
-std::string inked(const Look& look, Ink ink, std::string_view text) {
+std::string inked(const TerminalStyle& style, Ink ink, std::string_view text) {
     constexpr std::array<std::string_view, 10> codes = {"", "1", "2", "32", "33", "31", "36", "1;32", "1;33", "1;31"};
-    if (!look.colour || ink == Ink::plain) return std::string(text);
+    if (!style.colour || ink == Ink::plain) return std::string(text);
     return fmt::format("\033[{}m{}\033[0m", codes[static_cast<std::size_t>(ink)], text);
 }
 
@@ -125,11 +125,11 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
     return lines;
 }
 
-std::string share_bar(const Look& look, double share, std::size_t width) {
+std::string share_bar(const TerminalStyle& style, double share, std::size_t width) {
     const double cells = std::isfinite(share) ? std::clamp(share, 0.0, 1.0) * static_cast<double>(width) : 0;
     const auto whole = static_cast<std::size_t>(std::lround(cells));
     std::string bar;
-    for (std::size_t i = 0; i < width; ++i) bar += look.unicode ? (i < whole ? "█" : "░") : (i < whole ? "#" : "-");
+    for (std::size_t i = 0; i < width; ++i) bar += style.unicode ? (i < whole ? "█" : "░") : (i < whole ? "#" : "-");
     return bar;
 }
 
@@ -168,8 +168,8 @@ std::string Columns::row(std::initializer_list<std::string> cells) const {
 void LabelledText::row(std::string_view label, std::string_view words, Ink ink) {
     constexpr std::size_t width = max_columns - label_columns;
     for (const std::string& line : wrapped(words, width)) {
-        raw(inked(look_, Ink::dim, fmt::format("{:<{}}", label, label_columns)) +
-            inked(look_, ink, places(line) > width ? end_of(line, width) : line));
+        raw(inked(style_, Ink::dim, fmt::format("{:<{}}", label, label_columns)) +
+            inked(style_, ink, places(line) > width ? end_of(line, width) : line));
         label = {};
     }
 }

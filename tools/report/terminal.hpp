@@ -1,5 +1,5 @@
 // What the tool shows on a terminal is made of this: colours, wrapped text, labelled rows, columns, bars. Pure functions of a
-// Look.
+// TerminalStyle.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@
 namespace surefoot::report {
 
 /// What a terminal can show.
-struct Look {
+struct TerminalStyle {
     bool colour = false, unicode = false;
     std::size_t width = 80, height = 24;  ///< places and lines
 };
 
 /// Of the terminal on stdout as it is now. width: where stdout is no terminal.
-Look terminal_look(bool colour, std::size_t width = 80);
+TerminalStyle terminal_style(bool colour, std::size_t width = 80);
 /// stdout is a terminal, and the user has not set NO_COLOR.
 bool colour_wanted();
 
 /// good, warn and bad are green, yellow and red; strong ones are bold, too.
 enum class Ink { plain, bold, dim, good, warn, bad, hint, strong_good, strong_warn, strong_bad };
-std::string inked(const Look& look, Ink ink, std::string_view text);
+std::string inked(const TerminalStyle& style, Ink ink, std::string_view text);
 /// The bold one of good, warn and bad; others as they are.
 Ink strong(Ink ink);
 
@@ -38,7 +38,7 @@ std::string cut_to(std::string_view line, std::size_t width);
 std::vector<std::string> wrapped(std::string_view text, std::size_t width);
 
 /// `share` 0..1 of `width` places.
-std::string share_bar(const Look& look, double share, std::size_t width);
+std::string share_bar(const TerminalStyle& style, double share, std::size_t width);
 /// '#' from the middle to `at` (0..1 of `width` places), '-' elsewhere, and '|' at the middle.
 std::string deflection_bar(double at, std::size_t width);
 /// "bake                   [######                  ]  25 %  3 s left"
@@ -68,16 +68,16 @@ constexpr std::size_t label_columns = 16;
 /// Lines that begin with a label, wrapped at 100 places.
 class LabelledText {
 public:
-    explicit LabelledText(bool colour) : look_{.colour = colour} {}
+    explicit LabelledText(bool colour) : style_{.colour = colour} {}
 
     void raw(const std::string& line) { text_ += line + "\n"; }
     /// A label, and words that are wrapped under each other.
     void row(std::string_view label, std::string_view words, Ink ink = Ink::plain);
-    [[nodiscard]] const Look& look() const { return look_; }
+    [[nodiscard]] const TerminalStyle& style() const { return style_; }
     [[nodiscard]] const std::string& text() const { return text_; }
 
 private:
-    Look look_;
+    TerminalStyle style_;
     std::string text_;
 };
 

@@ -98,8 +98,8 @@ std::string lines_of(const TimeChart& c, const PlotArea& area, const Scale& y) {
 
 std::string markers_of(const TimeChart& c, const PlotArea& area, const Scale& x, const Scale& y) {
     std::string out;
-    for (std::size_t i = 0; i < c.shots_s.size(); ++i) {
-        const double at = x(c.shots_s[i]);
+    for (std::size_t i = 0; i < c.snapshots_s.size(); ++i) {
+        const double at = x(c.snapshots_s[i]);
         out += line_between(at, area.top, at, area.bottom, "shot-line");
         out += text_at(at, area.top - 3, "note mid", std::to_string(i + 1));
     }

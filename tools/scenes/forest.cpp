@@ -176,7 +176,7 @@ const Kind& kind_at(const std::vector<Kind>& kinds, const dvec2& p, std::uint64_
     return kinds[static_cast<std::size_t>(spread * static_cast<double>(kinds.size()))];
 }
 
-dmat4 standing(const Land& land, const dvec2& p, double size, Random& random) {
+dmat4 upright(const Land& land, const dvec2& p, double size, Random& random) {
     const double sideways = random.range(-0.035, 0.035), forward = random.range(-0.035, 0.035);
     const double tall = random.range(0.92, 1.1), about = random.range(0, 2 * pi);
     return move({p.x, land.height(p.x, p.y), p.y}) * turn(forward, dvec3(1, 0, 0)) * turn(sideways, dvec3(0, 0, 1)) *
@@ -200,7 +200,7 @@ void plant_trees(SceneMaker& maker, const Land& land, const PlantMaterials& plan
             continue;
         }
         trees.add(p);
-        maker.node(fmt::format("{} {}", kind.name, planted), group, kind.mesh, standing(land, p, random.range(0.8, 1.2), random));
+        maker.node(fmt::format("{} {}", kind.name, planted), group, kind.mesh, upright(land, p, random.range(0.8, 1.2), random));
         ++planted;
     }
 }

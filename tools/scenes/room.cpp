@@ -61,14 +61,14 @@ Pieces make_pieces(SceneMaker& maker, const Stuff& stuff, const Detail& detail, 
     return p;
 }
 
-struct Surfaces {
+struct WallSurfaces {
     Index paper, floor, ceiling;
 };
 
-WallStyle style_of(const Surfaces& surfaces) { return {surfaces.ceiling, surfaces.paper, surfaces.ceiling, 0.5, 1.0}; }
+WallStyle style_of(const WallSurfaces& surfaces) { return {surfaces.ceiling, surfaces.paper, surfaces.ceiling, 0.5, 1.0}; }
 
 /// Walls, floor, ceiling, window, skirting, door lining. Open to the east: the next room's west wall stands there.
-importer::Mesh shell(const Stuff& stuff, const Surfaces& surfaces, bool open_east) {
+importer::Mesh shell(const Stuff& stuff, const WallSurfaces& surfaces, bool open_east) {
     MeshMaker maker("room");
     const WallStyle style = style_of(surfaces);
     const double t = 0.5 * wall_thickness, w = width, d = depth;
@@ -96,7 +96,7 @@ importer::Mesh shell(const Stuff& stuff, const Surfaces& surfaces, bool open_eas
 }
 
 /// Before the first door: a short corridor to come from.
-importer::Mesh corridor(const Surfaces& surfaces) {
+importer::Mesh corridor(const WallSurfaces& surfaces) {
     MeshMaker maker("corridor");
     const WallStyle style = style_of(surfaces);
     const double t = wall_thickness, x0 = -4.0, x1 = -t, z0 = 3.4, z1 = 5.6;
@@ -214,10 +214,11 @@ GeneratedScene make_room(double scale, std::uint64_t seed) {
     SceneMaker maker;
     Random random(seed);
     const Stuff stuff = make_stuff(maker, seed);
-    const Surfaces surfaces{maker.material("wallpaper", {255, 255, 255, 255},
-                                           maker.image(wallpaper(seed + 40, rgb(226, 214, 188), rgb(160, 150, 112)))),
-                            maker.material("parquet", {255, 255, 255, 255}, maker.image(planks(seed + 41, rgb(190, 146, 98)))),
-                            maker.material("plaster", {255, 255, 255, 255}, maker.image(plaster(seed + 42, rgb(246, 243, 236))))};
+    const WallSurfaces surfaces{
+        maker.material("wallpaper", {255, 255, 255, 255},
+                       maker.image(wallpaper(seed + 40, rgb(226, 214, 188), rgb(160, 150, 112)))),
+        maker.material("parquet", {255, 255, 255, 255}, maker.image(planks(seed + 41, rgb(190, 146, 98)))),
+        maker.material("plaster", {255, 255, 255, 255}, maker.image(plaster(seed + 42, rgb(246, 243, 236))))};
     const Detail detail{0.69 * std::clamp(std::sqrt(scale), 0.1, 1.0)};
     const Pieces pieces = make_pieces(maker, stuff, detail, seed);
     const int rooms = std::max(1, static_cast<int>(std::lround(scale)));

@@ -44,9 +44,9 @@ std::vector<std::string> scene_names() {
 }
 
 Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed) {
-    if (!(scale >= least_scale && scale <= most_scale))
+    if (!(scale >= min_scale && scale <= max_scale))
         return Error{std::string(name), fmt::format("The scale {} is out of range", scale),
-                     fmt::format("Choose {} to {}", least_scale, most_scale), ErrorKind::misuse};
+                     fmt::format("Choose {} to {}", min_scale, max_scale), ErrorKind::misuse};
     for (const Maker& maker : makers) {
         if (name != maker.name) continue;
         GeneratedScene made = maker.make(scale, seed);

@@ -22,7 +22,7 @@ struct GeneratedScene {
 /// forest, room, town.
 std::vector<std::string> scene_names();
 
-constexpr double least_scale = 0.01, most_scale = 200.0;
+constexpr double min_scale = 0.01, max_scale = 200.0;
 
 /// scale > 0 multiplies what there is (trees, rooms' area, blocks of houses), 1 is the size named above; 0.01 to 200.
 /// Errors: unknown name, scale out of range.

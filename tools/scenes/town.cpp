@@ -155,8 +155,8 @@ void make_meshes(Town& town) {
 
 void place_house(Town& town, Index parent, int kind, int number, const dmat4& where) {
     const Index group = town.maker.node(fmt::format("house {}", number), parent, none, where);
-    for (const House::Thing& thing : town.houses[static_cast<std::size_t>(kind)].things)
-        town.maker.node(thing.name, group, thing.mesh, thing.where);
+    for (const House::HousePart& part : town.houses[static_cast<std::size_t>(kind)].parts)
+        town.maker.node(part.name, group, part.mesh, part.where);
 }
 
 void plant(Town& town, Index parent, std::size_t tree, double x, double z) {

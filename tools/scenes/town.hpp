@@ -22,12 +22,12 @@ struct TownStuff {
 /// One kind of house, its furniture included: a group of meshes to be placed again and again. Its front is the plane
 /// z = 0 looking to +z, its west corner x = 0; door at house_door_m; ground floor at y = 0.
 struct House {
-    struct Thing {
+    struct HousePart {
         const char* name;
         Index mesh;
         dmat4 where;
     };
-    std::vector<Thing> things;
+    std::vector<HousePart> parts;
 };
 
 constexpr double house_width_m = 8.5, house_depth_m = 9.0;

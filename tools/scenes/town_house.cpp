@@ -221,7 +221,7 @@ struct Furnisher {
         return found != made.end() ? found->second : made[key] = maker.mesh(std::move(mesh));
     }
     void put(const char* name, importer::Mesh mesh, const dvec3& at, double angle = 0) const {
-        house.things.push_back({name, shared(std::move(mesh)), move(at) * turn_y(angle)});
+        house.parts.push_back({name, shared(std::move(mesh)), move(at) * turn_y(angle)});
     }
     double about(double value, double spread) const { return value + random.range(-spread, spread); }
 };
@@ -289,11 +289,11 @@ House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail
     const Kind& k = kinds[static_cast<std::size_t>(kind)];
     Random random(seed + static_cast<std::uint64_t>(kind));
     House house;
-    house.things.push_back({"walls", maker.mesh(walls_mesh(stuff, k, kind)), dmat4(1.0)});
-    house.things.push_back({"windows", maker.mesh(fittings_mesh(stuff, k, kind, random)), dmat4(1.0)});
+    house.parts.push_back({"walls", maker.mesh(walls_mesh(stuff, k, kind)), dmat4(1.0)});
+    house.parts.push_back({"windows", maker.mesh(fittings_mesh(stuff, k, kind, random)), dmat4(1.0)});
     // Hinged in the doorway, standing wide open into the hall, along its west side.
-    house.things.push_back({"door", maker.mesh(door_leaf(stuff.stuff, 0.96, 2.12, k.door, detail)),
-                            move({house_door_m - 0.48, 0, -outer}) * turn_y(0.5 * pi - 0.08)});
+    house.parts.push_back({"door", maker.mesh(door_leaf(stuff.stuff, 0.96, 2.12, k.door, detail)),
+                           move({house_door_m - 0.48, 0, -outer}) * turn_y(0.5 * pi - 0.08)});
     const Furnisher furnisher{maker, stuff, detail, house, random, made};
     furnish_living_room(furnisher, kind);
     furnish_kitchen(furnisher, kind);

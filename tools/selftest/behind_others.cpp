@@ -149,8 +149,8 @@ dvec3 any_direction(Random& random) {
 }
 
 /// About any axis; drawn in one order by every compiler.
-dquat any_turn_up_to(double most_rad, Random& random) {
-    const double angle = random.range(0, most_rad);
+dquat any_turn_up_to(double max_rad, Random& random) {
+    const double angle = random.range(0, max_rad);
     const dvec3 axis = any_direction(random);
     return glm::normalize(glm::angleAxis(angle, axis));
 }

@@ -10,8 +10,8 @@
 #include "rt/base/random.hpp"
 #include "rt/clock/grid.hpp"
 #include "rt/frame/controller.hpp"
+#include "tools/selftest/cut_fixture.hpp"
 #include "tools/selftest/families.hpp"
-#include "tools/selftest/look.hpp"
 
 namespace surefoot::selftest {
 
@@ -32,20 +32,20 @@ void odd_budgets(const Effort&, Outcome& out) {
     std::uint64_t cuts = 0, over = 0, made = 0;
     for (const std::uint32_t leaves : {1U, 2U, 300U}) {
         for (const bool free : {false, true}) {
-            Look look(star(leaves, 3));
+            CutFixture fixture(star(leaves, 3));
             if (free) {
-                for (model::CostGrid& grid : look.costs().grids)
+                for (model::CostGrid& grid : fixture.costs().grids)
                     std::fill(grid.cells.begin(), grid.cells.end(), model::ItemCost{});
-                look.costs().combine = {0, 0, 0, 0};
-                look.costs().slice_us = 0;
+                fixture.costs().combine = {0, 0, 0, 0};
+                fixture.costs().slice_us = 0;
             }
-            const prepare::PreparedFrame& frame = look.prepare({over_the_row(), 0, 0});
-            cuts += frame.candidates.empty() ? 1 : unsound(frame, look.costs());
+            const prepare::PreparedFrame& frame = fixture.prepare({over_the_row(), 0, 0});
+            cuts += frame.candidates.empty() ? 1 : unsound(frame, fixture.costs());
             for (const std::string_view selector : select::selector_names()) {
                 for (const double budget_us : {0.0, -1.0, 1e-300, 700.0, 1e300, nan, infinity, -infinity}) {
                     for (const double correction : {1.0, 0.0, -3.0, nan, infinity, 1e300}) {
-                        look.forget();
-                        const select::Cut& cut = look.select(selector, budget_us, correction);
+                        fixture.forget();
+                        const select::Cut& cut = fixture.select(selector, budget_us, correction);
                         ++made;
                         if (correction != 1e300) cuts += illegal(frame, cut);
                         const bool search = is_search(selector);
@@ -69,16 +69,16 @@ void many_children(const Effort& effort, Outcome& out) {
     options.max_candidates = count + 1;
     options.max_choices = 2 * count + 1;
     options.full_depth = true;
-    Look look(star(count, 2), options);
+    CutFixture fixture(star(count, 2), options);
     Pose pose;
     pose.position = {1500, 4000, 10};  // above the middle of the square, looking down on all of it
     pose.orientation = glm::angleAxis(-1.2, dvec3(1, 0, 0));
     pose.fov_y_rad = 2.5;
-    const prepare::PreparedFrame& frame = look.prepare({pose, 0, 0}, {1280, 720});
-    std::uint64_t bad = unsound(frame, look.costs());
+    const prepare::PreparedFrame& frame = fixture.prepare({pose, 0, 0}, {1280, 720});
+    std::uint64_t bad = unsound(frame, fixture.costs());
     std::size_t most = 0;
     for (const double budget_us : {0.0, 20000.0, infinity}) {
-        const select::Cut& cut = look.select(select::usual_selector, budget_us);
+        const select::Cut& cut = fixture.select(select::usual_selector, budget_us);
         bad += illegal(frame, cut);
         most = std::max(most, cut.items.size());
         out.digest_of(cut.hash);
@@ -92,11 +92,11 @@ void deep_chain(const Effort&, Outcome& out) {
     constexpr std::uint32_t depth = 10'000;
     prepare::PrepareOptions options;
     options.full_depth = true;
-    Look look(chain(depth), options);
-    const prepare::PreparedFrame& frame = look.prepare({{}, 0, 0});
-    std::uint64_t bad = unsound(frame, look.costs());
+    CutFixture fixture(chain(depth), options);
+    const prepare::PreparedFrame& frame = fixture.prepare({{}, 0, 0});
+    std::uint64_t bad = unsound(frame, fixture.costs());
     for (const std::string_view selector : select::selector_names()) {
-        const select::Cut& cut = look.select(selector, infinity);
+        const select::Cut& cut = fixture.select(selector, infinity);
         bad += illegal(frame, cut) + (cut.items.size() == 1 ? 0 : 1);
         out.digest_of(cut.hash);
     }
@@ -106,29 +106,29 @@ void deep_chain(const Effort&, Outcome& out) {
 
 /// All alike: what is refined may follow no chance, and may not change from frame to frame.
 void equal_benefits(const Effort&, Outcome& out) {
-    Look look(star(1000, 3));
+    CutFixture fixture(star(1000, 3));
     Pose pose;
     pose.position = {48, 0.5, 1e6};  // so far away that every box looks the same
     pose.fov_y_rad = 1e-3;
-    const prepare::PreparedFrame& frame = look.prepare({pose, 0, 0});
-    const double budget_us = 0.75 * static_cast<double>(look.select(select::full_detail_selector, infinity).predicted_us);
+    const prepare::PreparedFrame& frame = fixture.prepare({pose, 0, 0});
+    const double budget_us = 0.75 * static_cast<double>(fixture.select(select::full_detail_selector, infinity).predicted_us);
     std::uint64_t flicker = 0, bad = frame.candidates.empty() ? 1 : 0;
     std::size_t fewest = 1000;
     model::Index coarsest = 99, finest = 0;  // forms that two-stage shows
     for (const std::string_view selector : select::selector_names()) {
-        look.forget();
-        const select::Cut& first = look.select(selector, budget_us);
+        fixture.forget();
+        const select::Cut& first = fixture.select(selector, budget_us);
         const std::uint64_t hash = first.hash;
         fewest = std::min(fewest, is_search(selector) ? first.items.size() : fewest);
         if (selector == select::usual_selector) {
             for (const select::CutItem& item : first.items) {
-                const model::Index form = item.rep - look.model().nodes[item.node].first_rep;
+                const model::Index form = item.rep - fixture.model().nodes[item.node].first_rep;
                 coarsest = std::min(coarsest, form);
                 finest = std::max(finest, form);
             }
         }
         for (int i = 0; i < 20; ++i) {
-            const select::Cut& cut = look.select(selector, budget_us);
+            const select::Cut& cut = fixture.select(selector, budget_us);
             flicker += cut.hash != hash || cut.switches != 0 ? 1 : 0;
             bad += illegal(frame, cut);
         }
@@ -147,7 +147,7 @@ void odd_costs(const Effort&, Outcome& out) {
     for (const double actual : {0.0, -1.0, nan, infinity, -infinity, most * 1e9, 1e-300, -most}) {
         for (const double predicted : {0.0, -1.0, nan, infinity, 1000.0, 1e-300}) {
             controller.update(predicted, actual);
-            const double f = controller.factor(), u = controller.upper(1.5);
+            const double f = controller.factor(), u = controller.headroom(1.5);
             bad += f >= rt::CostController::lowest && f <= rt::CostController::highest && u >= 1 && u <= 1.5 ? 0 : 1;
         }
     }
@@ -169,8 +169,8 @@ void odd_clocks(const Effort&, Outcome& out) {
     input::MotionState state;
     input::MotionLimits limits;
     input::Command command;
-    command.wish.forward = 1;
-    command.wish.turn = 0.5;
+    command.request.forward = 1;
+    command.request.turn = 0.5;
     std::int64_t now = 1'000'000'000;
     for (int i = 0; i < 300; ++i) (void)input::step(state, limits, command, now += 16'666'667);
     double leap = 0;

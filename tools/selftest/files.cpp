@@ -18,9 +18,9 @@
 #include "render/model/walk_file.hpp"
 #include "rt/base/path.hpp"
 #include "rt/base/random.hpp"
+#include "tools/selftest/cut_fixture.hpp"
 #include "tools/selftest/families.hpp"
 #include "tools/selftest/fixtures.hpp"
-#include "tools/selftest/look.hpp"
 
 namespace surefoot::selftest {
 
@@ -78,7 +78,7 @@ void corrupt(Bytes& bytes, Random& random) {
 
 void attack(const Reader& reader, const Effort& effort, Outcome& out) {
     const Bytes& good = reader.fixture;
-    out.at_most("bytes of the fixture", static_cast<double>(good.size()), most_fixture_bytes);
+    out.at_most("bytes of the fixture", static_cast<double>(good.size()), max_fixture_bytes);
     out.exactly("the fixture itself is taken", reader.read(good).taken ? 1 : 0, 1);
     std::uint64_t unsound = 0, cut_taken = 0, changed_taken = 0;
     const std::size_t step = effort.share < 0.02 ? 7 : 1;
@@ -119,11 +119,12 @@ void walk_files(const Effort& effort, Outcome& out) {
         if (!model) return refusal(model.error());
         prepare::PrepareOptions options;
         options.max_candidates = 1U << 12U;
-        Look look(std::move(*model), options);
+        CutFixture cut_fixture(std::move(*model), options);
         Pose pose;
         pose.position = {2, 1, 8};
-        const prepare::PreparedFrame& frame = look.prepare({pose, 0, 0}, {64, 64});
-        return {true, unsound(frame, look.costs()) + illegal(frame, look.select(select::usual_selector, 1000)) == 0};
+        const prepare::PreparedFrame& frame = cut_fixture.prepare({pose, 0, 0}, {64, 64});
+        return {true,
+                unsound(frame, cut_fixture.costs()) + illegal(frame, cut_fixture.select(select::usual_selector, 1000)) == 0};
     };
     attack({*fixture, read, 1, reseal_walk}, effort, out);
 }

@@ -12,7 +12,7 @@
 namespace surefoot::selftest {
 
 using Bytes = std::vector<std::byte>;
-constexpr std::size_t most_fixture_bytes = 4096;
+constexpr std::size_t max_fixture_bytes = 4096;
 
 /// A file in memory with a name that readers can open.
 class MemoryFile {

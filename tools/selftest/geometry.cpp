@@ -7,7 +7,7 @@
 #include "render/bake/geometry.hpp"
 #include "render/measure/mesh_distance.hpp"
 #include "tools/selftest/families.hpp"
-#include "tools/selftest/judge.hpp"
+#include "tools/selftest/scene_check.hpp"
 
 namespace surefoot::selftest {
 
@@ -22,44 +22,46 @@ void bad_numbers(const Effort&, Outcome& out) {
         for (int axis = 0; axis < 3; ++axis) {
             vec3 corner(3, 3, 3);
             corner[axis] = bad;
-            judge("a corner at " + std::to_string(bad), scene_of(with({{2, 0, 0}, {3, 0, 0}, corner}, {0, 1, 2})), 2, tally, out);
+            check_scene("a corner at " + std::to_string(bad), scene_of(with({{2, 0, 0}, {3, 0, 0}, corner}, {0, 1, 2})), 2, tally,
+                        out);
         }
         auto normals = with({}, {});
         normals.normals.assign(4, vec3(bad, 0, bad));
-        judge("normals of " + std::to_string(bad), scene_of(normals), 2, tally, out);
+        check_scene("normals of " + std::to_string(bad), scene_of(normals), 2, tally, out);
         auto uvs = with({}, {});
         uvs.uvs.assign(4, vec2(bad, 0));
-        judge("texture coordinates of " + std::to_string(bad), scene_of(uvs), 2, tally, out);
+        check_scene("texture coordinates of " + std::to_string(bad), scene_of(uvs), 2, tally, out);
         auto scene = scene_of(with({}, {}), scaled(dvec3(static_cast<double>(bad))));
-        judge("a scale of " + std::to_string(bad), scene, refused, tally, out);
+        check_scene("a scale of " + std::to_string(bad), scene, refused, tally, out);
         scene = scene_of(with({}, {}), moved({0, static_cast<double>(bad), 0}));
-        judge("a place at " + std::to_string(bad), scene, refused, tally, out);
+        check_scene("a place at " + std::to_string(bad), scene, refused, tally, out);
     }
-    judge("denormal corners", scene_of(with({{1e-40F, 0, 0}, {0, 1e-40F, 0}, {0, 0, 0}}, {0, 1, 2})), 3, tally, out);
-    judge("nothing but not a number", scene_of(triangles({vec3(nan), vec3(nan), vec3(nan)}, {0, 1, 2})), refused, tally, out);
+    check_scene("denormal corners", scene_of(with({{1e-40F, 0, 0}, {0, 1e-40F, 0}, {0, 0, 0}}, {0, 1, 2})), 3, tally, out);
+    check_scene("nothing but not a number", scene_of(triangles({vec3(nan), vec3(nan), vec3(nan)}, {0, 1, 2})), refused, tally,
+                out);
     report(tally, 40, out);
 }
 
 void degenerate(const Effort&, Outcome& out) {
     Tally tally;
-    judge("no area", scene_of(with({{2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, {0, 1, 2})), 2, tally, out);
-    judge("one point", scene_of(with({vec3(5), vec3(5), vec3(5)}, {0, 1, 2})), 2, tally, out);
-    judge("a repeated index", scene_of(with({{2, 0, 0}, {3, 0, 0}}, {0, 1, 1})), 2, tally, out);
-    judge("an index out of range", scene_of(with({{2, 0, 0}}, {0, 70, 4'000'000})), 2, tally, out);
-    judge("a sliver of 1e-9", scene_of(with({{2, 0, 0}, {3, 0, 0}, {2.5F, 1e-9F, 0}}, {0, 1, 2})), 3, tally, out);
-    judge("a vertex and no triangle", scene_of(triangles({{1, 2, 3}}, {})), refused, tally, out);
-    judge("no vertex", scene_of(triangles({}, {})), refused, tally, out);
-    judge("one triangle", scene_of(triangles({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2})), 1, tally, out);
+    check_scene("no area", scene_of(with({{2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, {0, 1, 2})), 2, tally, out);
+    check_scene("one point", scene_of(with({vec3(5), vec3(5), vec3(5)}, {0, 1, 2})), 2, tally, out);
+    check_scene("a repeated index", scene_of(with({{2, 0, 0}, {3, 0, 0}}, {0, 1, 1})), 2, tally, out);
+    check_scene("an index out of range", scene_of(with({{2, 0, 0}}, {0, 70, 4'000'000})), 2, tally, out);
+    check_scene("a sliver of 1e-9", scene_of(with({{2, 0, 0}, {3, 0, 0}, {2.5F, 1e-9F, 0}}, {0, 1, 2})), 3, tally, out);
+    check_scene("a vertex and no triangle", scene_of(triangles({{1, 2, 3}}, {})), refused, tally, out);
+    check_scene("no vertex", scene_of(triangles({}, {})), refused, tally, out);
+    check_scene("one triangle", scene_of(triangles({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2})), 1, tally, out);
     std::vector<vec3> line{{2, 0, 0}};
     std::vector<std::uint32_t> fan;
     for (std::uint32_t i = 1; i < 60; ++i) {
         line.push_back({2 + static_cast<float>(i), 0, 0});
         if (i > 1) fan.insert(fan.end(), {0, i - 1, i});
     }
-    judge("a fan along a line", scene_of(with(line, fan)), 2, tally, out);
+    check_scene("a fan along a line", scene_of(with(line, fan)), 2, tally, out);
     // A strip of slivers so thin that normals and quadrics have nothing to hold on to.
     importer::Primitive slivers = surface(200, 1, [](double u, double v) { return vec3(dvec3(u, 1e-9 * v, 0)); });
-    judge("a strip of slivers", scene_of(slivers), 400, tally, out);
+    check_scene("a strip of slivers", scene_of(slivers), 400, tally, out);
     report(tally, 10, out);
 }
 
@@ -72,38 +74,38 @@ void not_manifold(const Effort&, Outcome& out) {
         fin.push_back(vec3(dvec3(std::cos(a), 0.5, std::sin(a))));
         blades.insert(blades.end(), {0, 1, i + 2});
     }
-    judge("an edge of seven faces", scene_of(triangles(fin, blades)), 7, tally, out);
+    check_scene("an edge of seven faces", scene_of(triangles(fin, blades)), 7, tally, out);
     const auto ball = bumpy_ball(12, 1);
     const std::uint64_t n = ball.indices.size() / 3;
     importer::Primitive twice = ball;
     twice.indices.insert(twice.indices.end(), ball.indices.begin(), ball.indices.end());
-    judge("every face twice", scene_of(twice), 2 * n, tally, out);
+    check_scene("every face twice", scene_of(twice), 2 * n, tally, out);
     importer::Primitive inside_out = ball;
     for (std::size_t i = 0; i + 2 < inside_out.indices.size(); i += 3)
         std::swap(inside_out.indices[i], inside_out.indices[i + 1]);
-    judge("inside out", scene_of(inside_out), n, tally, out);
+    check_scene("inside out", scene_of(inside_out), n, tally, out);
     importer::Primitive both = ball;
     both.indices.insert(both.indices.end(), inside_out.indices.begin(), inside_out.indices.end());
-    judge("every face with its opposite", scene_of(both), 2 * n, tally, out);
+    check_scene("every face with its opposite", scene_of(both), 2 * n, tally, out);
     const auto band = surface(60, 4, [](double u, double v) {
         const double a = 6.283185307179586 * u, w = 0.3 * (v - 0.5);
         return vec3(dvec3((1 + w * std::cos(a / 2)) * std::cos(a), (1 + w * std::cos(a / 2)) * std::sin(a), w * std::sin(a / 2)));
     });
-    judge("a Moebius band", scene_of(band), band.indices.size() / 3, tally, out);
+    check_scene("a Moebius band", scene_of(band), band.indices.size() / 3, tally, out);
     const auto crossing = surface(40, 40, [](double u, double v) {  // a figure of eight, drawn out: it goes through itself
         const double a = 6.283185307179586 * u;
         return vec3(dvec3(std::sin(a), std::sin(2 * a), v));
     });
-    judge("a surface through itself", scene_of(crossing), crossing.indices.size() / 3, tally, out);
+    check_scene("a surface through itself", scene_of(crossing), crossing.indices.size() / 3, tally, out);
     importer::Primitive soup = ball;  // no two triangles share a vertex
     soup.positions.clear();
     for (std::uint32_t& i : soup.indices) {
         soup.positions.push_back(ball.positions[i]);
         i = static_cast<std::uint32_t>(soup.positions.size() - 1);
     }
-    judge("a soup", scene_of(soup), n, tally, out);
+    check_scene("a soup", scene_of(soup), n, tally, out);
     importer::Primitive bow = triangles({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {0, 1, 2, 0, 3, 4});
-    judge("two triangles at one vertex", scene_of(bow), 2, tally, out);
+    check_scene("two triangles at one vertex", scene_of(bow), 2, tally, out);
     report(tally, 8, out);
 }
 

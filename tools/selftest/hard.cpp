@@ -17,14 +17,14 @@ namespace surefoot::selftest {
 
 namespace {
 
-std::string upper(std::string text) {
+std::string upper_case(std::string text) {
     for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     return text;
 }
 
 /// "N9" names N9, N9a and N9b, and not N90.
 bool named(std::string_view row, const std::string& id) {
-    const std::string of_row = upper(std::string(row));
+    const std::string of_row = upper_case(std::string(row));
     if (of_row == id) return true;
     return of_row.starts_with(id) && of_row.size() > id.size() &&
            std::isalpha(static_cast<unsigned char>(of_row[id.size()])) != 0;
@@ -106,7 +106,7 @@ Result<std::vector<const Row*>> select_rows(std::span<const std::string> ids) {
     for (const Row& row : rows()) {
         bool wanted = ids.empty();
         for (std::size_t i = 0; i < ids.size(); ++i) {
-            if (!named(row.id, upper(ids[i]))) continue;
+            if (!named(row.id, upper_case(ids[i]))) continue;
             wanted = used[i] = true;
         }
         if (wanted) selection.push_back(&row);
@@ -116,7 +116,7 @@ Result<std::vector<const Row*>> select_rows(std::span<const std::string> ids) {
     const std::string& id = ids[static_cast<std::size_t>(missing - used.begin())];
     std::vector<std::string_view> known;
     for (const Row& row : rows()) known.push_back(row.id);
-    const std::string_view nearest = nearest_word(upper(id), known);
+    const std::string_view nearest = nearest_word(upper_case(id), known);
     return Error{"row '" + id + "'",
                  "There is no such row" + (nearest.empty() ? "" : fmt::format(". Did you mean '{}'?", nearest)),
                  "List them: surefoot selftest --hard --list", ErrorKind::not_found};
@@ -127,7 +127,7 @@ Result<std::vector<RowResult>> run_rows(std::span<const Row* const> selection, c
     std::vector<RowResult> results;
     for (const Row* row : selection) {
         if (effort.progress != nullptr)
-            effort.progress->say(row->id, static_cast<double>(results.size()) / static_cast<double>(selection.size()));
+            effort.progress->update(row->id, static_cast<double>(results.size()) / static_cast<double>(selection.size()));
         RowResult result = run_row(*row, effort);
         if (effort.stopped())
             return Error{"selftest",

@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint64_t thousand_million = 1'000'000'000;
 constexpr std::int64_t period_ns = 16'666'667;
 
-void said(Outcome& out, std::uint64_t done, const char* what) {
+void mark_scaled(Outcome& out, std::uint64_t done, const char* what) {
     if (done < thousand_million) out.scaled = std::to_string(done) + " " + what + " of 1000000000";
 }
 
@@ -73,7 +73,7 @@ void turning(const Effort& effort, Outcome& out) {
     const double sure = 2e-13 + 1e-20 * static_cast<double>(done);
     out.at_most("heading off after turning", static_cast<double>(std::abs(off)), sure, "rad");
     out.at_most("heading out of -pi to pi by", std::abs(angle.value) - 3.1415926535897936, 0, "rad");
-    said(out, done, "steps");
+    mark_scaled(out, done, "steps");
 }
 
 /// A walker who goes round a circle must stay on it, upright.
@@ -82,8 +82,8 @@ void walking(const Effort& effort, Outcome& out) {
     input::MotionState state;
     const input::MotionLimits limits;
     input::Command command;
-    command.wish.forward = 1;
-    command.wish.turn = 1;
+    command.request.forward = 1;
+    command.request.turn = 1;
     std::int64_t now = 1;
     for (int i = 0; i < 1000; ++i) (void)input::step(state, limits, command, now += period_ns);
     const double turn = limits.turn_rad_s * 1e-9 * period_ns;
@@ -107,7 +107,7 @@ void walking(const Effort& effort, Outcome& out) {
     out.at_most("off the circle", off, 1e-6, "m");
     out.at_most("horizon leans", roll, 1e-12, "rad");
     out.at_most("length of the orientation less 1", unit, 1e-14);
-    said(out, steps, "steps");
+    mark_scaled(out, steps, "steps");
 }
 
 /// Counts beyond 2^63, sums over the bins, and stalls at the end of time.

@@ -5,8 +5,8 @@
 
 #include "render/model/pixels.hpp"
 #include "rt/base/random.hpp"
+#include "tools/selftest/cut_fixture.hpp"
 #include "tools/selftest/families.hpp"
-#include "tools/selftest/look.hpp"
 #include "tools/selftest/separating.hpp"
 #include "tools/selftest/shapes.hpp"
 #include "tools/selftest/views.hpp"
@@ -95,20 +95,20 @@ void odd_views(const Effort&, Outcome& out) {
 void inside_boxes(const Effort& effort, Outcome& out) {
     auto model = import_and_bake(hard_town());
     if (!model) return out.none_of("bakes refused (" + model.error().text() + ")", 1);
-    Look look(*model);
+    CutFixture fixture(*model);
     std::uint64_t numbers = 0, cuts = 0, differ = 0, coarse = 0, made = 0;
     for (const Placed& place : awkward_places(*model, effort.count(1000, 50))) {
         if (effort.stopped()) break;
-        const prepare::PreparedFrame& frame = look.prepare({place.pose, 0, 0}, place.viewport);
-        numbers += unsound(frame, look.costs());
+        const prepare::PreparedFrame& frame = fixture.prepare({place.pose, 0, 0}, place.viewport);
+        numbers += unsound(frame, fixture.costs());
         for (const std::string_view selector : select::selector_names()) {
             for (const double budget_us : {0.0, 2500.0, infinity}) {
-                look.forget();
-                const select::Cut& cut = look.select(selector, budget_us);
+                fixture.forget();
+                const select::Cut& cut = fixture.select(selector, budget_us);
                 cuts += illegal(frame, cut);
                 const std::uint64_t hash = cut.hash;
-                look.forget();
-                differ += look.select(selector, budget_us).hash != hash ? 1 : 0;
+                fixture.forget();
+                differ += fixture.select(selector, budget_us).hash != hash ? 1 : 0;
                 ++made;
                 if (selector == select::usual_selector) out.digest_of(hash);
                 if (selector == select::usual_selector && budget_us == infinity)
@@ -131,12 +131,12 @@ void nothing_lost(const Effort& effort, Outcome& out) {
     if (!model) return out.none_of("bakes refused (" + model.error().text() + ")", 1);
     prepare::PrepareOptions options;
     options.occlusion = false;  // the oracle knows views only; what others hide has rows of its own
-    Look look(*model, options);
+    CutFixture fixture(*model, options);
     std::uint64_t lost = 0, seen = 0;
     for (const Placed& place : awkward_places(*model, effort.count(3000, 100))) {
         if (effort.stopped()) break;
-        look.prepare({place.pose, 0, 0}, place.viewport);
-        const select::Cut& cut = look.select(select::usual_selector, 4000);
+        fixture.prepare({place.pose, 0, 0}, place.viewport);
+        const select::Cut& cut = fixture.select(select::usual_selector, 4000);
         const LeavesInView leaves = leaves_in_view(*model, cut, place.pose, place.viewport);
         seen += leaves.seen;
         lost += leaves.lost;

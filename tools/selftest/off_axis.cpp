@@ -7,8 +7,8 @@
 #include "render/measure/image_metrics.hpp"
 #include "render/model/pixels.hpp"
 #include "render/select/registry.hpp"
+#include "tools/selftest/cut_fixture.hpp"
 #include "tools/selftest/families.hpp"
-#include "tools/selftest/look.hpp"
 #include "tools/selftest/picture.hpp"
 #include "tools/selftest/separating.hpp"
 #include "tools/selftest/shapes.hpp"
@@ -65,8 +65,8 @@ void shifted_boxes(const Effort& effort, Outcome& out) {
 }
 
 /// About any axis.
-dquat turned_up_to(double most_rad, Random& random) {
-    const double angle = random.range(0, most_rad);
+dquat turned_up_to(double max_rad, Random& random) {
+    const double angle = random.range(0, max_rad);
     const dquat to = any_turn(random);
     const dvec3 axis{to.x, to.y, to.z};
     return glm::length(axis) > 1e-6 ? glm::angleAxis(angle, glm::normalize(axis)) : dquat(1, 0, 0, 0);
@@ -131,20 +131,20 @@ void shifted_cuts(const Effort& effort, Outcome& out) {
     if (!model) return out.none_of("bakes refused (" + model.error().text() + ")", 1);
     prepare::PrepareOptions options;
     options.occlusion = false;  // the oracle knows views only
-    Look look(*model, options);
+    CutFixture fixture(*model, options);
     Random random(93);
     std::uint64_t numbers = 0, cuts = 0, lost = 0, seen = 0;
     for (const Placed& place : awkward_places(*model, effort.count(1500, 400))) {
         if (effort.stopped()) break;
         const model::Viewport viewport = any_shifted_viewport(random);
-        const prepare::PreparedFrame& frame = look.prepare({place.pose, 0, 0}, viewport);
-        numbers += unsound(frame, look.costs());
+        const prepare::PreparedFrame& frame = fixture.prepare({place.pose, 0, 0}, viewport);
+        numbers += unsound(frame, fixture.costs());
         for (const std::string_view selector : select::selector_names()) {
-            look.forget();
-            cuts += illegal(frame, look.select(selector, 2500));
+            fixture.forget();
+            cuts += illegal(frame, fixture.select(selector, 2500));
         }
-        look.forget();
-        const select::Cut& cut = look.select(select::usual_selector, 4000);
+        fixture.forget();
+        const select::Cut& cut = fixture.select(select::usual_selector, 4000);
         out.digest_of(cut.hash);
         const LeavesInView leaves = leaves_in_view(*model, cut, place.pose, viewport);
         seen += leaves.seen;
@@ -170,10 +170,10 @@ void wall_of_screens(const Effort& effort, Outcome& out) {
         gl::PixelImage image;
         const auto device = open_picture(viewport, effort, out);
         if (!device || !load(*device, *town, out)) return image;
-        Look look(*town);
-        look.prepare({from, 0, 0}, viewport);
+        CutFixture fixture(*town);
+        fixture.prepare({from, 0, 0}, viewport);
         std::vector<gl::DrawItem> items;
-        for (const select::CutItem& item : look.select(select::usual_selector, no_end).items)
+        for (const select::CutItem& item : fixture.select(select::usual_selector, no_end).items)
             items.push_back({item.node, item.rep});
         return draw(*device, items, from);
     };

@@ -6,8 +6,8 @@
 #include "render/measure/image_metrics.hpp"
 #include "rt/base/path.hpp"
 #include "tools/scenes/scenes.hpp"
+#include "tools/selftest/cut_fixture.hpp"
 #include "tools/selftest/families.hpp"
-#include "tools/selftest/look.hpp"
 #include "tools/selftest/picture.hpp"
 #include "tools/selftest/shapes.hpp"
 
@@ -33,10 +33,10 @@ Pose moved_pose(Pose pose, const dvec3& by, const dquat& turn) {
 }
 
 std::vector<gl::DrawItem> some_cut(const model::Model& model, const Pose& pose, double budget_us) {
-    Look look(model);
-    look.prepare({pose, 0, 0}, view);
+    CutFixture fixture(model);
+    fixture.prepare({pose, 0, 0}, view);
     std::vector<gl::DrawItem> items;
-    for (const select::CutItem& item : look.select(select::usual_selector, budget_us).items)
+    for (const select::CutItem& item : fixture.select(select::usual_selector, budget_us).items)
         items.push_back({item.node, item.rep});
     return items;
 }
@@ -115,13 +115,13 @@ void streets(const Effort& effort, Outcome& out) {
     if (!town) return out.none_of("scenes refused (" + town.error().text() + ")", 1);
     const auto here = bake::bake(town->scene, {}, {});
     if (!here) return out.none_of("bakes refused (" + here.error().text() + ")", 1);
-    double worst = 1, least_drawn = 1;
+    double worst = 1, min_drawn = 1;
     for (const double share : {0.2, 0.7}) {
         const Pose pose = sample_path(town->path, share * town->path.duration_s());
         const auto cut = some_cut(*here, pose, 6000);
         if (!load(*device, *here, out)) return;
         const gl::PixelImage image = draw(*device, cut, pose);
-        least_drawn = std::min(least_drawn, share_drawn(image));
+        min_drawn = std::min(min_drawn, share_drawn(image));
         for (const dvec3& by : {dvec3(1e6 + 0.3, 0, 0), on_earth}) {
             const model::Model moved = moved_model(*here, by);
             if (!load(*device, moved, out)) return;
@@ -129,7 +129,7 @@ void streets(const Effort& effort, Outcome& out) {
         }
     }
     out.at_least("pixels within 1/255, moved there, a cut", worst, 0.999);
-    out.at_least("of the picture drawn on", least_drawn, 0.3);
+    out.at_least("of the picture drawn on", min_drawn, 0.3);
     out.triangles = here->triangles();
 }
 

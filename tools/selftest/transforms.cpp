@@ -4,7 +4,7 @@
 
 #include "tools/selftest/families.hpp"
 #include "tools/selftest/fixtures.hpp"
-#include "tools/selftest/judge.hpp"
+#include "tools/selftest/scene_check.hpp"
 
 namespace surefoot::selftest {
 
@@ -34,7 +34,7 @@ void other_scales(const Effort&, Outcome& out) {
     const auto want = levels_of(*here);
     std::uint64_t other = 0;
     const auto compare = [&](const std::string& name, const importer::Scene& scene) {
-        judge(name, scene, here->triangles(), tally, out);
+        check_scene(name, scene, here->triangles(), tally, out);
         const auto there = import_and_bake(scene);
         if (there && levels_of(*there) != want) {
             ++other;
@@ -48,22 +48,23 @@ void other_scales(const Effort&, Outcome& out) {
         const double scale = std::ldexp(1.0, exponent);
         compare("a transform of 2^" + std::to_string(exponent), scene_of(hills(1, 0), scaled(dvec3(scale))));
         // Its cluster's mesh is another: that is made in the world.
-        judge("a mirroring one of 2^" + std::to_string(exponent), scene_of(hills(1, 0), scaled(dvec3(-scale, scale, scale))),
-              here->triangles(), tally, out);
+        check_scene("a mirroring one of 2^" + std::to_string(exponent),
+                    scene_of(hills(1, 0), scaled(dvec3(-scale, scale, scale))), here->triangles(), tally, out);
     }
     // What nobody could see, and what is no place: refused by name, and nothing beside it is lost.
     for (const int exponent : {-140, -100, -66}) {
         const double scale = std::ldexp(1.0, exponent);
         const std::string name = "2^" + std::to_string(exponent);
-        judge(name, scene_of(hills(scale, 0)), refused, tally, out);
+        check_scene(name, scene_of(hills(scale, 0)), refused, tally, out);
         for (const double mirrored : {1.0, -1.0}) {
             importer::Scene scene = scene_of(hills(1, 0), scaled(scale * dvec3(mirrored, 1, 1)));
-            judge("a transform of " + name, scene, refused, tally, out);
+            check_scene("a transform of " + name, scene, refused, tally, out);
             place(scene, hills(1, 0), "good", dmat4(1.0));
-            judge("a good one beside it", scene, here->triangles(), tally, out);
+            check_scene("a good one beside it", scene, here->triangles(), tally, out);
         }
     }
-    judge("2^33 times 2^33", scene_of(hills(std::ldexp(1.0, 33), 0), scaled(dvec3(std::ldexp(1.0, 33)))), refused, tally, out);
+    check_scene("2^33 times 2^33", scene_of(hills(std::ldexp(1.0, 33), 0), scaled(dvec3(std::ldexp(1.0, 33)))), refused, tally,
+                out);
     out.none_of("scales at which the levels are others than at the origin", other);
     report(tally, 24, out);
 }
@@ -74,7 +75,9 @@ void transforms(const Effort&, Outcome& out) {
     const std::uint64_t n = ball.indices.size() / 3;
     dmat4 shear(1.0);
     shear[1][0] = 50;
-    const auto good = [&](const std::string& name, const dmat4& world) { judge(name, scene_of(ball, world), n, tally, out); };
+    const auto good = [&](const std::string& name, const dmat4& world) {
+        check_scene(name, scene_of(ball, world), n, tally, out);
+    };
     good("mirrored", scaled({-1, 1, 1}));
     good("mirrored thrice", scaled({-1, -1, -1}));
     good("flattened a million times", scaled({1, 1e-6, 1}));
@@ -82,7 +85,7 @@ void transforms(const Effort&, Outcome& out) {
     good("sheared by 50", shear);
     good("sheared and mirrored", shear * scaled({1, -2, 0.1}));
     const auto bad = [&](const std::string& name, const dmat4& world) {
-        judge(name, scene_of(ball, world), refused, tally, out);
+        check_scene(name, scene_of(ball, world), refused, tally, out);
     };
     bad("a scale of 0", scaled({1, 0, 1}));
     bad("all zeros", dmat4(0.0));
@@ -93,7 +96,7 @@ void transforms(const Effort&, Outcome& out) {
     dmat4 two = dmat4(1.0);  // one good object beside one that is none
     importer::Scene scene = scene_of(ball, two);
     place(scene, ball, "flat", rank_one);
-    judge("one good beside one singular", scene, n, tally, out);
+    check_scene("one good beside one singular", scene, n, tally, out);
     report(tally, 10, out);
 }
 
@@ -116,7 +119,7 @@ Bytes chain_gltf(int nodes, double scale, bool cycle) {
 
 void graphs(const Effort&, Outcome& out) {
     Tally tally;
-    const auto judge_file = [&](const std::string& name, const Bytes& bytes, std::uint64_t wanted) {
+    const auto check_file = [&](const std::string& name, const Bytes& bytes, std::uint64_t wanted) {
         MemoryFile file;
         file.set(bytes);
         auto scene = importer::import_gltf(file.name(), {});
@@ -126,13 +129,13 @@ void graphs(const Effort&, Outcome& out) {
             if (wanted != refused) tally.complain(name + " is refused: " + scene.error().text());
             return;
         }
-        judge(name, std::move(*scene), wanted, tally, out);
+        check_scene(name, std::move(*scene), wanted, tally, out);
     };
-    judge_file("200 deep", chain_gltf(200, 1, false), 200);
-    judge_file("200 deep, each a little smaller than its parent", chain_gltf(200, 0.95, false), 200);
-    judge_file("200 deep, each twice its parent", chain_gltf(200, 2, false), 39);  // 2^40 is beyond a million million metres
-    judge_file("a node that is its own child", chain_gltf(1, 1, true), refused);
-    judge_file("a ring of 200", chain_gltf(200, 1, true), refused);
+    check_file("200 deep", chain_gltf(200, 1, false), 200);
+    check_file("200 deep, each a little smaller than its parent", chain_gltf(200, 0.95, false), 200);
+    check_file("200 deep, each twice its parent", chain_gltf(200, 2, false), 39);  // 2^40 is beyond a million million metres
+    check_file("a node that is its own child", chain_gltf(1, 1, true), refused);
+    check_file("a ring of 200", chain_gltf(200, 1, true), refused);
     report(tally, 5, out);
 }
 
@@ -142,18 +145,18 @@ void crowds(const Effort& effort, Outcome& out) {
     importer::Primitive point = with({}, {});
     point.positions.resize(4 + static_cast<std::size_t>(points), vec3(7));
     for (std::uint32_t i = 0; i + 2 < points; i += 3) point.indices.insert(point.indices.end(), {4 + i, 5 + i, 6 + i});
-    judge("vertices in a point", scene_of(std::move(point)), 2, tally, out);
+    check_scene("vertices in a point", scene_of(std::move(point)), 2, tally, out);
     const auto alike = static_cast<std::uint32_t>(effort.count(40'000, 2'000));
     importer::Primitive pile;  // triangles with an area, all in one place: a median of their centres parts none
     for (std::uint32_t i = 0; i < alike; ++i) {
         pile.positions.insert(pile.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
         pile.indices.insert(pile.indices.end(), {3 * i, 3 * i + 1, 3 * i + 2});
     }
-    judge("triangles in one place", scene_of(std::move(pile)), alike, tally, out);
+    check_scene("triangles in one place", scene_of(std::move(pile)), alike, tally, out);
     const auto objects = static_cast<std::uint32_t>(effort.count(20'000, 1'000));
     importer::Scene crowd = scene_of(triangles({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}));
     while (crowd.nodes.size() < objects) crowd.nodes.push_back(crowd.nodes[0]);
-    judge("objects in one place", std::move(crowd), objects, tally, out);
+    check_scene("objects in one place", std::move(crowd), objects, tally, out);
     report(tally, 3, out);
     if (points < 10'000'000) out.scaled = std::to_string(points) + " vertices of 10000000";
 }

@@ -17,7 +17,7 @@ SoakSample read_footprint();
 /// Samples into memory that was set aside before, so that watching for growth does not grow.
 class Footprint {
 public:
-    explicit Footprint(std::size_t most_samples) { samples_.reserve(most_samples); }
+    explicit Footprint(std::size_t max_samples) { samples_.reserve(max_samples); }
     ~Footprint() { stop(); }
     Footprint(const Footprint&) = delete;
     Footprint& operator=(const Footprint&) = delete;

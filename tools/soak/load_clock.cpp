@@ -12,7 +12,7 @@ namespace surefoot::soak {
 
 namespace {
 
-volatile std::sig_atomic_t asked_to_end = 0;
+volatile std::sig_atomic_t stop_requested = 0;
 
 std::int64_t ns_of(const timespec& t) { return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec; }
 
@@ -34,8 +34,8 @@ bool set_offset(std::int64_t offset) {
     return clock_settime(CLOCK_REALTIME, &time) == 0;
 }
 
-void doze_until_asked(std::int64_t ms, const std::atomic<bool>& stop) {
-    for (std::int64_t i = 0; i < ms / 10 && asked_to_end == 0 && !stop.load(); ++i) {
+void sleep_until_stopped(std::int64_t ms, const std::atomic<bool>& stop) {
+    for (std::int64_t i = 0; i < ms / 10 && stop_requested == 0 && !stop.load(); ++i) {
         const timespec time{0, 10'000'000};
         nanosleep(&time, nullptr);
     }
@@ -46,11 +46,11 @@ void doze_until_asked(std::int64_t ms, const std::atomic<bool>& stop) {
 void run_clock_steps(LoadBoard& board, const LoadSettings& settings) {
     LoadCounters& c = board.of(LoadKind::clock);
     struct sigaction end {};
-    end.sa_handler = [](int) { asked_to_end = 1; };
+    end.sa_handler = [](int) { stop_requested = 1; };
     for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGALRM}) sigaction(signal, &end, nullptr);
     const auto step_ns = static_cast<std::int64_t>(settings.clock_step_s * 1e9);
     std::int64_t sign = 1;
-    while (asked_to_end == 0 && !board.stop.load()) {
+    while (stop_requested == 0 && !board.stop.load()) {
         const std::int64_t right = offset_ns();
         if (!set_offset(right + sign * step_ns)) {
             c.refused = errno;
@@ -58,13 +58,13 @@ void run_clock_steps(LoadBoard& board, const LoadSettings& settings) {
         }
         const std::int64_t stepped = offset_ns() - right;
         if (std::llabs(stepped - sign * step_ns) > 50'000'000) ++c.failures;
-        doze_until_asked(300, board.stop);
+        sleep_until_stopped(300, board.stop);
         if (!set_offset(right)) ++c.failures;
         const auto off_us = static_cast<std::uint64_t>(std::llabs(offset_ns() - right) / 1000);
         if (off_us > c.evidence.load()) c.evidence = off_us;
         ++c.amount;
         sign = -sign;
-        doze_until_asked(1200, board.stop);
+        sleep_until_stopped(1200, board.stop);
     }
 }
 

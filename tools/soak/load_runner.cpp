@@ -24,7 +24,7 @@ namespace surefoot::soak {
 
 namespace {
 
-volatile std::sig_atomic_t told_to_end = 0;
+volatile std::sig_atomic_t end_requested = 0;
 
 void doze_20ms() {
     const timespec time{0, 20'000'000};
@@ -129,7 +129,7 @@ void be_ordinary() {
 void keep_timetable(const LoadPlan& plan, const LoadSettings& settings, LoadBoard& board, pid_t soak) {
     Workers workers(board, settings);
     const std::int64_t last_ns = rt::monotonic_ns() + static_cast<std::int64_t>(settings.longest_s * 1e9);
-    while (told_to_end == 0 && !board.stop.load() && getppid() == soak && rt::monotonic_ns() < last_ns) {
+    while (end_requested == 0 && !board.stop.load() && getppid() == soak && rt::monotonic_ns() < last_ns) {
         const std::int64_t start_ns = board.start_ns.load();
         const double time_s = static_cast<double>(rt::monotonic_ns() - start_ns) * 1e-9;
         if (start_ns != 0) workers.match(time_s < plan.seconds ? plan.at(time_s) : proof_loads(plan.mix));
@@ -161,7 +161,7 @@ Result<LoadRunner> LoadRunner::start(const LoadPlan& plan, const LoadSettings& s
     if (child == 0) {
         belong_to(soak, SIGTERM);
         prctl(PR_SET_CHILD_SUBREAPER, 1);
-        set_signals([](int) { told_to_end = 1; });
+        set_signals([](int) { end_requested = 1; });
         be_ordinary();
         keep_timetable(plan, settings, *board, soak);
         _exit(0);

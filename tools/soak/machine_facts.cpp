@@ -33,7 +33,7 @@ std::uint64_t proc_figure_of(const std::string& file, std::string_view name) {
 
 namespace {
 
-constexpr std::size_t most_interrupts = 20;
+constexpr std::size_t max_interrupts = 20;
 
 std::string text_of(const std::string& file) {
     auto text = read_text(file, 1U << 24U);
@@ -118,10 +118,10 @@ SoakMachine machine_facts(const MachineCounters& before, const MachineCounters& 
         if (meanwhile > 0) m.interrupts.push_back({key, meanwhile});
     }
     std::stable_sort(m.interrupts.begin(), m.interrupts.end(), [](const auto& a, const auto& b) { return a.count > b.count; });
-    if (m.interrupts.size() > most_interrupts) {
+    if (m.interrupts.size() > max_interrupts) {
         double rest = 0;
-        for (std::size_t i = most_interrupts; i < m.interrupts.size(); ++i) rest += m.interrupts[i].count;
-        m.interrupts.resize(most_interrupts);
+        for (std::size_t i = max_interrupts; i < m.interrupts.size(); ++i) rest += m.interrupts[i].count;
+        m.interrupts.resize(max_interrupts);
         m.interrupts.push_back({"others", rest});
     }
     const double spent_us = std::max((after.time_s - before.time_s) * 1e6, 1.0);

@@ -55,7 +55,7 @@ std::string header_of(const SoakSummary& s) {
     } else {
         out += fmt::format(", while {} kinds of load took turns on {} cores.", s.loads.size(), s.machine.cores);
     }
-    if (s.stopped) out += fmt::format(" The user stopped it; {} were requested.", duration_words(s.asked_s));
+    if (s.stopped) out += fmt::format(" The user stopped it; {} were requested.", duration_words(s.requested_s));
     return out + "</p>\n</header>\n";
 }
 
@@ -83,9 +83,9 @@ std::string hours_section(const SoakSummary& s) {
         "dot (a large one is the walk's own doing; point at it for its cause), and under it what loaded the machine at that time."
         "</p>\n";
     out += fmt::format("<div class=\"card wide\">{}</div>\n", soak_time_chart(s));
-    if (s.misses_untold > 0)
+    if (s.misses_unlisted > 0)
         out += fmt::format("<p class=\"sub\">The first {} misses are marked; {} more are in the figures alone.</p>\n",
-                           s.misses.size(), s.misses_untold);
+                           s.misses.size(), s.misses_unlisted);
     out += "<div class=\"two\">\n";
     out +=
         half_card("Memory", "What the process has taken, the files that it shows left out. A leak climbs.", soak_memory_chart(s));

@@ -15,9 +15,9 @@
 #include "rt/base/path.hpp"
 #include "rt/clock/grid.hpp"
 #include "tools/soak/footprint.hpp"
-#include "tools/soak/judge.hpp"
 #include "tools/soak/load_runner.hpp"
 #include "tools/soak/machine_facts.hpp"
+#include "tools/soak/soak_verdict.hpp"
 #include "tools/soak/tally.hpp"
 #include "tools/walk/settings_request.hpp"
 #include "tools/walk/state.hpp"
@@ -27,7 +27,7 @@ namespace surefoot::soak {
 namespace {
 
 constexpr double after_the_end_s = 120;  // how long load may outlive its plan: the control's proof, and a late judge
-constexpr double most_samples = 7200;
+constexpr double max_samples = 7200;
 constexpr double virtual_sample_s = 10;
 
 /// What a service does when it is told to read its settings anew: all of them, on a thread that is none of the frame's.
@@ -75,7 +75,7 @@ Result<void> make_plan(Soak& s) {
     }
     s.plan = plan_loads(s.virtual_clock ? r.mix & virtual_loads : r.mix, seconds, pair_s, r.seed);
     s.tally = std::make_unique<SoakTally>(s.plan, *period_ns, seconds);
-    s.footprint = std::make_unique<Footprint>(static_cast<std::size_t>(most_samples) + 16);
+    s.footprint = std::make_unique<Footprint>(static_cast<std::size_t>(max_samples) + 16);
     return {};
 }
 
@@ -96,28 +96,28 @@ LoadSettings load_settings(const Soak& s) {
 
 void reload(Soak& s) { reload_once(s.walk) ? ++s.own.amount : ++s.own.failures; }
 
-walk::WalkWatch watch_of(Soak& s) {
-    walk::WalkWatch watch;
-    watch.on_started = [&s](const walk::WalkStart& start) {
+walk::WalkObserver observer_of(Soak& s) {
+    walk::WalkObserver observer;
+    observer.on_started = [&s](const walk::WalkStart& start) {
         s.tally->begin(start.t0_ns);
         if (s.runner) s.runner->begin(start.t0_ns);
         if (s.virtual_clock) return;
-        const double every_s = std::max(1.0, s.plan.seconds / most_samples);
+        const double every_s = std::max(1.0, s.plan.seconds / max_samples);
         s.footprint->watch(start.t0_ns, every_s, [&s](double time_s) {
             if (has_load(s.plan.at(time_s), LoadKind::reloads)) reload(s);
         });
     };
-    watch.on_record = [&s](const rt::FrameRecord& record) {
+    observer.on_record = [&s](const rt::FrameRecord& record) {
         s.tally->add(record);
         if (!s.virtual_clock) return;
         const double time_s = s.tally->ran_s();
         if (time_s < s.next_sample_s) return;
-        const double every_s = std::max(virtual_sample_s, s.plan.seconds / most_samples);
+        const double every_s = std::max(virtual_sample_s, s.plan.seconds / max_samples);
         s.next_sample_s = (std::floor(time_s / every_s) + 1) * every_s;
         if (has_load(s.plan.at(time_s), LoadKind::reloads)) reload(s);
         s.footprint->take(time_s);
     };
-    return watch;
+    return observer;
 }
 
 void describe_loads(const Soak& s, SoakSummary& summary) {
@@ -155,7 +155,7 @@ Result<SoakOutcome> run_soak(const SoakRequest& request, const Progress& progres
         s.runner.emplace(std::move(*runner));
     }
     const MachineCounters before = read_counters();
-    auto walked = walk::run_walk(s.walk, progress, watch_of(s));
+    auto walked = walk::run_walk(s.walk, progress, observer_of(s));
     s.footprint->stop();
     if (s.runner) s.runner->stop();
     if (!walked) return walked.error();
@@ -168,7 +168,7 @@ Result<SoakOutcome> run_soak(const SoakRequest& request, const Progress& progres
     s.tally->fill(summary);
     summary.command_line = own_command_line();
     summary.seed = request.seed;
-    summary.asked_s = s.plan.seconds;
+    summary.requested_s = s.plan.seconds;
     summary.stopped = walked->stopped || progress.stopped();
     summary.samples = s.footprint->samples();
     // What is held while the threads go and the control is proven is no longer the walk's.

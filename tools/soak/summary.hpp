@@ -84,7 +84,7 @@ struct SoakSummary {
     report::WalkSummary walk;  ///< counts are of the walk's own frames, without the control's
     std::string command_line;
     std::uint64_t seed = 0;
-    double asked_s = 0, ran_s = 0, warm_up_s = 0;
+    double requested_s = 0, ran_s = 0, warm_up_s = 0;
     bool stopped = false;  ///< before its end, by the user
     std::vector<SoakCheck> checks;
     std::vector<SoakLoad> loads;
@@ -92,7 +92,7 @@ struct SoakSummary {
     std::vector<SoakColumn> columns;
     double column_s = 1;
     std::vector<SoakMiss> misses;  ///< the first few hundred
-    std::uint64_t misses_untold = 0;
+    std::uint64_t misses_unlisted = 0;
     std::vector<SoakSample> samples;
     Trend memory;                    ///< of memory_kib over time_s, after the warm-up
     std::int64_t grid_drift_ns = 0;  ///< largest difference of a frame's due time from t0 + slot x period

@@ -9,7 +9,7 @@ namespace surefoot::soak {
 
 namespace {
 
-constexpr std::size_t most_columns = 600, most_misses = 400;
+constexpr std::size_t max_columns = 600, max_misses = 400;
 
 Quantiles quantiles_of(const rt::Histogram& h, double factor) {
     const auto at = [&](double q) { return static_cast<double>(h.quantile(q)) * factor; };
@@ -24,10 +24,10 @@ Quantiles quantiles_of(const rt::Histogram& h, double factor) {
 }  // namespace
 
 SoakTally::SoakTally(const LoadPlan& plan, std::int64_t period_ns, double seconds)
-    : plan_(plan), period_ns_(period_ns), column_s_(std::max(1.0, std::ceil(seconds / static_cast<double>(most_columns)))) {
+    : plan_(plan), period_ns_(period_ns), column_s_(std::max(1.0, std::ceil(seconds / static_cast<double>(max_columns)))) {
     phases_.resize(std::max<std::size_t>(plan.phases.size(), 1));
     columns_.resize(static_cast<std::size_t>(seconds / column_s_) + 2);
-    misses_.reserve(most_misses);
+    misses_.reserve(max_misses);
 }
 
 double SoakTally::ran_s() const { return any_ ? time_s(last_end_ns_) : 0; }
@@ -39,11 +39,11 @@ void SoakTally::add(const rt::FrameRecord& record) {
     if (last_was_walk_) {
         skipped_ += record.skipped_before;
         phases_[last_phase_].skipped += record.skipped_before;
-        if (last_miss_told_) misses_.back().skipped = record.skipped_before;
+        if (last_miss_listed_) misses_.back().skipped = record.skipped_before;
     }
     last_phase_ = std::min(plan_.phase_at(time_s(record.due_ns)), phases_.size() - 1);
     last_was_walk_ = !record.control;
-    last_miss_told_ = false;
+    last_miss_listed_ = false;
     if (!record.control) add_walk_frame(record);
     last_end_ns_ = std::max(record.presented_ns, record.deadline_ns);
 }
@@ -102,11 +102,11 @@ void SoakTally::add_walk_frame(const rt::FrameRecord& r) {
     if (r.own_miss) ++own_missed_, ++phase.own_misses;
     ++causes_[static_cast<std::size_t>(r.cause)];
     if (misses_.size() == misses_.capacity()) {
-        ++misses_untold_;
+        ++misses_unlisted_;
         return;
     }
     misses_.push_back({at_s, frame_ms, rt::cause_of(r), r.own_miss, 0});
-    last_miss_told_ = true;
+    last_miss_listed_ = true;
 }
 
 void SoakTally::fill(SoakSummary& s) const {
@@ -148,7 +148,7 @@ void SoakTally::fill(SoakSummary& s) const {
     s.records_lost = lost_;
     s.grid_drift_ns = drift_ns_;
     s.misses = misses_;
-    s.misses_untold = misses_untold_;
+    s.misses_unlisted = misses_unlisted_;
     s.column_s = column_s_;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         const Column& c = columns_[i];

@@ -50,12 +50,12 @@ private:
     std::vector<Phase> phases_;
     std::vector<Column> columns_;
     std::vector<SoakMiss> misses_;
-    std::uint64_t misses_untold_ = 0, skipped_ = 0, missed_ = 0, own_missed_ = 0;
+    std::uint64_t misses_unlisted_ = 0, skipped_ = 0, missed_ = 0, own_missed_ = 0;
     double accuracy_min_ = 0, accuracy_sum_ = 0, triangles_sum_ = 0;
     std::uint64_t accuracy_frames_ = 0, triangles_max_ = 0, downgrades_ = 0, floor_bound_ = 0, switches_ = 0;
     std::uint64_t page_faults_ = 0, driver_faults_ = 0, driver_allocations_ = 0, guard_violations_ = 0;
     // The grid.
-    bool any_ = false, last_was_walk_ = false, last_miss_told_ = false;
+    bool any_ = false, last_was_walk_ = false, last_miss_listed_ = false;
     std::size_t last_phase_ = 0;
     std::uint64_t last_slot_ = 0, run_ = 0, skipped_all_ = 0, lost_ = 0;
     std::int64_t drift_ns_ = 0, last_end_ns_ = 0;

@@ -64,7 +64,7 @@ std::string soak_table(const SoakSummary& s, bool colour) {
     const Judged verdict = verdict_of(s);
     table.row("soak", soak_headline(s), report::strong(ink_of(verdict)));
     if (s.stopped)
-        table.row("", fmt::format("stopped by the user; {} were requested", duration_words(s.asked_s)), report::Ink::warn);
+        table.row("", fmt::format("stopped by the user; {} were requested", duration_words(s.requested_s)), report::Ink::warn);
     for (const SoakCheck& check : s.checks)
         table.row(check.name, fmt::format("{}: {}", judged_name(check.judged), check.words), ink_of(check.judged));
     for (const SoakLoad& load : s.loads)

@@ -66,7 +66,7 @@ double missed_under_other(const PlacingPlan& plan, std::int64_t period_ns, std::
 void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, ControlBlocks& blocks,
                    WalkOutcome& outcome, const Progress& progress) {
     const std::vector<rt::BlockTally> tallied = blocks.finish();
-    progress.say("control under SCHED_OTHER", 0.5);
+    progress.update("control under SCHED_OTHER", 0.5);
     report::ControlSummary& c = outcome.summary.control;
     c.ran = true;
     c.burn_ms = static_cast<double>(burn_ns) * 1e-6;

@@ -12,8 +12,8 @@ namespace surefoot::walk {
 
 namespace {
 
-void say_what_is_passed_over(const input::SteeringFile& steering, const input::RecordedDevice& recorded,
-                             const WalkRequest& request, std::vector<std::string>& notes) {
+void warn_of_ignored_input(const input::SteeringFile& steering, const input::RecordedDevice& recorded, const WalkRequest& request,
+                           std::vector<std::string>& notes) {
     if (!steering.lines.empty()) {
         notes.push_back(
             fmt::format("{}: its {} GPIO lines are not read: a recording steers", request.steering_file, steering.lines.size()));
@@ -50,7 +50,7 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
     }
     auto recorded = input::open_recorded(request.input_file, steering, request.steering_file);
     if (!recorded) return recorded.error();
-    say_what_is_passed_over(steering, *recorded, request, notes);
+    warn_of_ignored_input(steering, *recorded, request, notes);
     session->duration_s_ = recorded->duration_s() + after_recording_s;
     session->source_ = std::make_unique<input::ReplaySource>(std::move(*recorded));
     session->steering_ = std::make_unique<input::Steering>(session->motion_, steering.safety);
@@ -58,9 +58,9 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
 }
 
 void InputSession::begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement) {
-    visit_ = std::make_unique<Visit>(path);
-    stepper_ =
-        std::make_unique<InputStepper>(*source_, *steering_, *visit_, samples_, places_, live_ ? live_->keeper() : nullptr);
+    tour_controller_ = std::make_unique<TourController>(path);
+    stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, samples_, places_,
+                                              live_ ? live_->keeper() : nullptr);
     poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get());
     stepper_->begin(start_ns);
     if (real_clock) thread_ = std::make_unique<InputThread>(*stepper_, placement);
@@ -91,7 +91,7 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     const input::SafetyState& safety = steering_->safety();
     s.stops = safety.stops;
     s.stop_latched = safety.latched;
-    s.silences = safety.silences;
+    s.timeouts = safety.timeouts;
     s.overflows = safety.overflows;
     s.losses = safety.losses;
     for (const rt::FrameRecord& r : records) s.stopped_frames += r.stopped ? 1 : 0;
@@ -100,7 +100,7 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     s.reset = presses.reset;
     s.tour = presses.tour;
     s.pause = presses.pause;
-    s.jumps = visit_->jumps();
+    s.jumps = tour_controller_->jumps();
     s.filter_lag_ms = steering_->worst_lag_s() * 1e3;
     s.guard_violations = guard_violations_;
     return s;

@@ -39,11 +39,11 @@ public:
     /// For the preparation: where buttons put the eye.
     [[nodiscard]] PlaceBuffer* places() { return &places_; }
     /// Live: call it every few milliseconds during the walk. Reports what devices do, and stores an emergency stop.
-    void attend(const Progress& progress, std::vector<std::string>& notes) {
-        if (live_) live_->attend(progress, notes);
+    void poll_live(const Progress& progress, std::vector<std::string>& notes) {
+        if (live_) live_->poll_live(progress, notes);
     }
     [[nodiscard]] bool live() const { return live_.has_value(); }
-    /// As of the last attend().
+    /// As of the last poll_live().
     [[nodiscard]] rt::InputState now() const {
         return live_ ? rt::InputState{true, live_->steering_now(), live_->stop_latched()} : rt::InputState{};
     }
@@ -65,7 +65,7 @@ private:
     std::unique_ptr<input::Steering> steering_;
     rt::TripleBuffer<SteeredSample> samples_;
     PlaceBuffer places_;
-    std::unique_ptr<Visit> visit_;
+    std::unique_ptr<TourController> tour_controller_;
     std::unique_ptr<InputStepper> stepper_;
     std::unique_ptr<SteeredPoses> poses_;
     std::unique_ptr<InputThread> thread_;

@@ -7,10 +7,15 @@
 
 namespace surefoot::walk {
 
-InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit,
+InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller,
                            rt::TripleBuffer<SteeredSample>& samples, PlaceBuffer& places, input::StopKeeper* keeper)
-    : source_(source), steering_(steering), visit_(visit), samples_(samples), places_(places), keeper_(keeper) {
-    steering_.place(visit_.start());
+    : source_(source),
+      steering_(steering),
+      tour_controller_(tour_controller),
+      samples_(samples),
+      places_(places),
+      keeper_(keeper) {
+    steering_.place(tour_controller_.start());
 }
 
 void InputStepper::begin(std::int64_t start_ns) {
@@ -18,7 +23,7 @@ void InputStepper::begin(std::int64_t start_ns) {
     tick_at_ns_ = start_ns;
     source_.begin(steering_, start_ns);
     input::NavigationSample first;
-    first.pose = visit_.start();
+    first.pose = tour_controller_.start();
     publish(first, start_ns);
 }
 
@@ -29,7 +34,7 @@ void InputStepper::step(std::int64_t now_ns) {
     const input::Lines lines = source_.drain(steering_, now_ns);
     input::NavigationSample sample = steering_.tick(lines, now_ns);
     if (keeper_ != nullptr) keeper_->set(steering_.safety().latched);
-    visit_.follow(sample, steering_, now_ns);
+    tour_controller_.follow(sample, steering_, now_ns);
     publish(sample, now_ns);
     tick_at_ns_ = now_ns + input_tick_ns;
 }
@@ -42,8 +47,8 @@ void InputStepper::advance_to(std::int64_t now_ns) {
 }
 
 void InputStepper::publish(const input::NavigationSample& sample, std::int64_t now_ns) {
-    if (visit_.jumps() != jumps_told_) {
-        jumps_told_ = visit_.jumps();
+    if (tour_controller_.jumps() != jumps_reported_) {
+        jumps_reported_ = tour_controller_.jumps();
         PoseSample& place = places_.back();
         place.pose = sample.pose;
         place.dt_s = static_cast<double>(input_tick_ns) * 1e-9;
@@ -55,8 +60,8 @@ void InputStepper::publish(const input::NavigationSample& sample, std::int64_t n
     out.nav = sample;
     out.time_ns = now_ns;
     out.reports = source_.log().count();
-    out.jumps = visit_.jumps();
-    out.touring = visit_.touring();
+    out.jumps = tour_controller_.jumps();
+    out.touring = tour_controller_.touring();
     samples_.publish();
 }
 

@@ -1,7 +1,7 @@
 // One step of the input: read what there is, steer, act on buttons, publish. Real time runs it on a thread of its own
 // (input_thread.hpp); the virtual clock runs it inline up to each frame's start. Both run this body.
 //
-//   ReportSource ─drain─► Steering ─tick─► Visit ─follow─► SteeredSample ─► triple buffer ─► frame thread (steered_poses.hpp)
+//   ReportSource ─drain─► Steering ─tick─► TourController ─follow─► SteeredSample ─► triple buffer ─► steered_poses.hpp
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 #include "input/steering.hpp"
 #include "rt/exchange/triple_buffer.hpp"
 #include "tools/walk/prepare_thread.hpp"
-#include "tools/walk/visit.hpp"
+#include "tools/walk/tour_controller.hpp"
 
 namespace surefoot::walk {
 
@@ -23,17 +23,17 @@ struct SteeredSample {
     input::NavigationSample nav;
     std::int64_t time_ns = 0;   ///< of the step: nav.pose is the pose then
     std::uint64_t reports = 0;  ///< accepted, up to and with this sample
-    std::uint32_t jumps = 0;    ///< Visit::jumps()
+    std::uint32_t jumps = 0;    ///< TourController::jumps()
     bool touring = false;
 };
 
 class InputStepper {
 public:
-    /// All of them must outlive this; `steering` is placed at the visit's start.
+    /// All of them must outlive this; `steering` is placed at the tour's start.
     /// `keeper`, if given, is notified at each step whether an emergency stop is latched.
     /// `places` is notified of jumps: poses that the eye does not walk to.
-    InputStepper(input::ReportSource& source, input::Steering& steering, Visit& visit, rt::TripleBuffer<SteeredSample>& samples,
-                 PlaceBuffer& places, input::StopKeeper* keeper = nullptr);
+    InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller,
+                 rt::TripleBuffer<SteeredSample>& samples, PlaceBuffer& places, input::StopKeeper* keeper = nullptr);
 
     /// Publishes the start, and attaches connected devices. On a neutral thread, before the first step; allocates.
     void begin(std::int64_t start_ns);
@@ -51,11 +51,11 @@ private:
 
     input::ReportSource& source_;
     input::Steering& steering_;
-    Visit& visit_;
+    TourController& tour_controller_;
     rt::TripleBuffer<SteeredSample>& samples_;
     PlaceBuffer& places_;
     input::StopKeeper* keeper_;
-    std::uint32_t jumps_told_ = 0;
+    std::uint32_t jumps_reported_ = 0;
     std::int64_t tick_at_ns_ = 0;
 };
 

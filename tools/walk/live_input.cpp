@@ -11,9 +11,9 @@ namespace surefoot::walk {
 
 namespace {
 
-void say(const Progress& progress, std::vector<std::string>& notes, std::string text) {
-    if (progress.note)
-        progress.note(text);
+void notify(const Progress& progress, std::vector<std::string>& notes, std::string text) {
+    if (progress.notify)
+        progress.notify(text);
     else
         notes.push_back(std::move(text));
 }
@@ -61,26 +61,27 @@ Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::Steer
     return live;
 }
 
-void LiveInput::attend(const Progress& progress, std::vector<std::string>& notes) {
-    for (input::NoteLine note; live_->next_note(note);) say(progress, notes, std::string(note.view()));
+void LiveInput::poll_live(const Progress& progress, std::vector<std::string>& notes) {
+    for (input::MessageLine note; live_->next_message(note);) notify(progress, notes, std::string(note.view()));
     if (!keeper_) return;
     if (const bool latched = keeper_->latched(); latched != stop_latched_) {
         stop_latched_ = latched;
-        say(progress, notes,
-            latched ? "emergency stop: the walk stands still until the control for `stop_reset` is pressed"
-                    : "emergency stop: released");
+        notify(progress, notes,
+               latched ? "emergency stop: the walk stands still until the control for `stop_reset` is pressed"
+                       : "emergency stop: released");
     }
     const auto written = keeper_->flush();
     const std::string why = written ? std::string() : written.error().text();
-    if (why != unwritten_ && !why.empty()) say(progress, notes, "the emergency stop cannot be stored: " + why);
+    if (why != unwritten_ && !why.empty()) notify(progress, notes, "the emergency stop cannot be stored: " + why);
     unwritten_ = why;
 }
 
 void LiveInput::finish(bool latched, const Progress& progress, std::vector<std::string>& notes) {
     if (keeper_) keeper_->set(latched);
-    attend(progress, notes);
-    if (live_->lost_notes() > 0)
-        say(progress, notes, fmt::format("{} more messages about devices came too fast and are not shown", live_->lost_notes()));
+    poll_live(progress, notes);
+    if (live_->lost_messages() > 0)
+        notify(progress, notes,
+               fmt::format("{} more messages about devices came too fast and are not shown", live_->lost_messages()));
 }
 
 }  // namespace surefoot::walk

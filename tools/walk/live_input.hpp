@@ -28,7 +28,7 @@ public:
     [[nodiscard]] input::StopKeeper* keeper() { return keeper_.get(); }
 
     /// Call every few milliseconds from a thread that may wait: stores the stop, and passes on messages.
-    void attend(const Progress& progress, std::vector<std::string>& notes);
+    void poll_live(const Progress& progress, std::vector<std::string>& notes);
     /// After the input thread's end: the last messages. Returns whether the stop is latched.
     void finish(bool latched, const Progress& progress, std::vector<std::string>& notes);
 

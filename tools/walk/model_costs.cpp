@@ -60,21 +60,21 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
             engine.select(prepared, budget_us, {}, 0);
             const measure::FrameSample sample = measured(engine, pose);
             if (i >= warm_up) drawn[i - warm_up].push_back(sample);
-            progress.say("frames", (round + static_cast<double>(i) / a_round) / rounds);
+            progress.update("frames", (round + static_cast<double>(i) / a_round) / rounds);
         }
     }
-    const measure::Settled settled = measure::settle(drawn);
+    const measure::FrameTimes frame_times = measure::robust_frame_times(drawn);
     std::vector<measure::FrameSample> taught, held_out;
-    for (std::size_t i = 0; i < settled.frames.size(); ++i) (i % 2 == 0 ? taught : held_out).push_back(settled.frames[i]);
+    for (std::size_t i = 0; i < frame_times.frames.size(); ++i) (i % 2 == 0 ? taught : held_out).push_back(frame_times.frames[i]);
     ModelFit fit;
     fit.costs = table;
     fit.costs.combine = measure::fit_combine(taught, table.combine);
-    fit.costs.upper_factor = static_cast<float>(std::max(1.0, measure::ratio(held_out, fit.costs.combine, 0.9)));
+    fit.costs.headroom = static_cast<float>(std::max(1.0, measure::ratio(held_out, fit.costs.combine, 0.9)));
     fit.before = errors_of(held_out, table.combine);
     fit.after = errors_of(held_out, fit.costs.combine);
     fit.frames = options.poses;
-    fit.repeated = settled.repeated;
-    fit.slowdown = settled.slowdown;
+    fit.repeated = frame_times.repeated;
+    fit.slowdown = frame_times.slowdown;
     fit.machine = measure::machine_identity(engine.device().renderer(), options.device.rasterisers);
     fit.seconds = static_cast<double>(rt::monotonic_ns() - begun) * 1e-9;
     return fit;

@@ -26,18 +26,18 @@ struct FrameErrors {
 };
 
 struct ModelFit {
-    model::CostModel costs;     ///< the table with `combine` and `upper_factor` of this model
+    model::CostModel costs;     ///< the table with `combine` and `headroom` of this model
     FrameErrors before, after;  ///< on the half of the frames that taught nothing
     std::string machine;        ///< that drew it, as a table names its own
     std::uint32_t frames = 0;
     std::size_t repeated = 0;  ///< of them, drawn alike in at least two rounds
-    double slowdown = 1;       ///< measure::Settled's
+    double slowdown = 1;       ///< measure::FrameTimes's
     double seconds = 0;
 };
 
-/// Draws random views near the path at random budgets, in several rounds (measure::settle); every other one teaches the weights,
-/// the rest judge them. The table itself stays: its cells are of single items, and what differs between models is how these
-/// overlap and what hides what.
+/// Draws random views near the path at random budgets, in several rounds (measure::robust_frame_times); every other one teaches
+/// the weights, the rest judge them. The table itself stays: its cells are of single items, and what differs between models is
+/// how these overlap and what hides what.
 Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
                               const Progress& progress);
 

@@ -47,12 +47,12 @@ Pose random_pose(const Path& path, Random& random) {
     return pose;
 }
 
-Result<ChosenPath> choose_path(const std::string& asked, const std::string& model_file, const model::Model& model,
+Result<ChosenPath> choose_path(const std::string& requested, const std::string& model_file, const model::Model& model,
                                double lift_m) {
     if (!(std::abs(lift_m) <= 1e7))
         return Error{"--lift", "The lift is not a height", "Give metres, for example 1.5", ErrorKind::misuse};
     ChosenPath chosen;
-    std::string file = asked;
+    std::string file = requested;
     if (file.empty()) {
         const std::string beside = std::filesystem::path(model_file).replace_extension(".path.csv").string();
         std::error_code ignored;

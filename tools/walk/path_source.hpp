@@ -16,7 +16,8 @@ struct ChosenPath {
 };
 
 /// asked: a CSV file or empty. lift_m is added to every y (recorded drives give the vehicle's ground pose).
-Result<ChosenPath> choose_path(const std::string& asked, const std::string& model_file, const model::Model& model, double lift_m);
+Result<ChosenPath> choose_path(const std::string& requested, const std::string& model_file, const model::Model& model,
+                               double lift_m);
 
 /// A place on the path, moved by up to 3 m, looking anywhere about the horizon: for judging what is predicted of any view.
 Pose random_pose(const Path& path, Random& random);

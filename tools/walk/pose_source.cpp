@@ -1,7 +1,7 @@
 // Poses along a path.
 #include "tools/walk/pose_source.hpp"
 
-#include "tools/walk/visit.hpp"
+#include "tools/walk/tour_controller.hpp"
 
 namespace surefoot::walk {
 

@@ -9,7 +9,7 @@
 namespace surefoot::walk {
 
 void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out) {
-    if (const Foresight& f = sample.foresight; f.known) {
+    if (const PredictedRegion& f = sample.predicted; f.known) {
         engine.prepare(f.region, sample.frame, f.speed_m_s, f.turn_rad_s, out);
         return;
     }
@@ -50,7 +50,7 @@ void PrepareThread::prepare_newest() {
         sample.pose = places_->front().pose;
         sample.before = places_->front().before;
         sample.dt_s = places_->front().dt_s;
-        sample.foresight = {};
+        sample.predicted = {};
     }
     seen_ = sample.frame;
     prepare_after(engine_, sample, period_s, prepared_.back());

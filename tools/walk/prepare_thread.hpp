@@ -18,7 +18,7 @@
 namespace surefoot::walk {
 
 /// Where the eye can be until `horizon_periods` from now, where that is known from what steers it.
-struct Foresight {
+struct PredictedRegion {
     bool known = false;
     prepare::Region region;  ///< the pose if the hand stays as it is, and how far from it the limits of motion allow
     double speed_m_s = 0, turn_rad_s = 0;
@@ -30,7 +30,7 @@ struct PoseSample {
     std::int64_t time_ns = 0;  ///< when it was due
     Pose pose, before;         ///< now, and one frame ago
     double dt_s = 0;
-    Foresight foresight;  ///< not known: the last two poses say where the walk goes
+    PredictedRegion predicted;  ///< not known: the last two poses say where the walk goes
     bool valid = false;
 };
 

@@ -19,8 +19,8 @@ std::string environment(const char* name) {
 }
 }  // namespace
 
-std::string state_directory(const std::string& asked) {
-    if (!asked.empty()) return asked;
+std::string state_directory(const std::string& requested) {
+    if (!requested.empty()) return requested;
     // systemd gives a list separated by ':' where a unit names several; the first is ours.
     if (const std::string s = environment("STATE_DIRECTORY"); !s.empty()) return s.substr(0, s.find(':'));
     if (const std::string s = environment("XDG_STATE_HOME"); !s.empty()) return s + "/surefoot";

@@ -8,8 +8,8 @@
 
 namespace surefoot::walk {
 
-/// `asked` if not empty, else $STATE_DIRECTORY, else $XDG_STATE_HOME/surefoot, else ~/.local/state/surefoot.
-std::string state_directory(const std::string& asked);
+/// `requested` if not empty, else $STATE_DIRECTORY, else $XDG_STATE_HOME/surefoot, else ~/.local/state/surefoot.
+std::string state_directory(const std::string& requested);
 /// Whether an emergency stop is still latched.
 std::string stop_file(const std::string& state_dir);
 std::string cost_table_file(const std::string& state_dir);

@@ -41,10 +41,10 @@ FramePose SteeredPoses::pose_of(const FrameTime& time) const {
     if (s.touring) return out;  // the limits say nothing about a path: the last two poses do
     const double ahead_s = horizon_periods * static_cast<double>(period_ns_) * 1e-9 + static_cast<double>(carry_limit_ns) * 1e-9;
     const input::Prediction ahead = input::predict(s.nav, limits_, ahead_s);
-    out.foresight.known = true;
-    out.foresight.region = {ahead.pose, ahead.uncertainty_m, ahead.uncertainty_rad};
-    out.foresight.speed_m_s = glm::length(s.nav.velocity_m_s);
-    out.foresight.turn_rad_s = glm::length(s.nav.angular_rad_s);
+    out.predicted.known = true;
+    out.predicted.region = {ahead.pose, ahead.uncertainty_m, ahead.uncertainty_rad};
+    out.predicted.speed_m_s = glm::length(s.nav.velocity_m_s);
+    out.predicted.turn_rad_s = glm::length(s.nav.angular_rad_s);
     return out;
 }
 

@@ -29,14 +29,14 @@ WalkStagesOptions stages_options(Session& s) {
     o.limit_us = limit_share * period_us;
     o.target_error_rad = s.request.accuracy > 0 ? 1.0 / s.request.accuracy : 0;
     if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
-    o.capture_missed = s.request.capture_file.empty() && s.watch.on_missed_frame;
-    if (s.watch.inject) o.inject = &s.watch.inject;
+    o.capture_missed = s.request.capture_file.empty() && s.observer.on_missed_frame;
+    if (s.observer.inject) o.inject = &s.observer.inject;
     o.lost = &s.lost;
     return o;
 }
 
-void tell_started(const Session& s) {
-    if (!s.watch.on_started) return;
+void notify_started(const Session& s) {
+    if (!s.observer.on_started) return;
     WalkStart start;
     start.t0_ns = s.grid.t0_ns;
     start.period_ns = s.grid.period_ns;
@@ -46,19 +46,19 @@ void tell_started(const Session& s) {
     start.path = s.path.source;
     start.granted = {s.plan.fifo, s.facts.locked, s.facts.isolated, s.plan.frame_core};
     start.rasterisers = s.plan.rasterisers;
-    s.watch.on_started(start);
+    s.observer.on_started(start);
 }
 
-void tell_input(Session& s) {
-    if (!s.watch.on_input || !s.input || s.input->now() == s.input_told) return;
-    s.input_told = s.input->now();
-    s.watch.on_input(s.input_told);
+void notify_input(Session& s) {
+    if (!s.observer.on_input || !s.input || s.input->now() == s.reported_input) return;
+    s.reported_input = s.input->now();
+    s.observer.on_input(s.reported_input);
 }
 
-void tell_census(const Session& s) {
-    if (!s.watch.on_degraded) return;
+void notify_census(const Session& s) {
+    if (!s.observer.on_degraded) return;
     for (const std::string& problem : s.facts.census_problems)
-        s.watch.on_degraded({rt::LackKind::census, "thread census: " + problem, ""});
+        s.observer.on_degraded({rt::LackKind::census, "thread census: " + problem, ""});
 }
 
 /// How much of the walk is done, 0..1; of a walk without end nothing.
@@ -91,34 +91,34 @@ rt::FrameLoopOptions loop_options(const Session& s, const Progress& progress) {
     return o;
 }
 
-void tell_missed_frame(Session& s) {
-    if (!s.request.capture_file.empty() || !s.watch.on_missed_frame || !s.kept.kept.load(std::memory_order_acquire)) return;
-    s.watch.on_missed_frame(capture_of(s.kept, s.request, *s.engine));
+void notify_missed_frame(Session& s) {
+    if (!s.request.capture_file.empty() || !s.observer.on_missed_frame || !s.kept.kept.load(std::memory_order_acquire)) return;
+    s.observer.on_missed_frame(capture_of(s.kept, s.request, *s.engine));
     s.kept.kept.store(false, std::memory_order_release);
 }
 
-/// While the frame thread walks: attends to the input, tells how far it is, and counts the threads once they have settled.
-void attend(Session& s, rt::Clock& clock, const std::atomic<bool>& done, const Progress& progress) {
+/// While the frame thread walks: serves the input, reports progress, and counts the threads once all have started.
+void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, const Progress& progress) {
     bool counted = s.virtual_clock;
     const int look_ms = s.virtual_clock ? 5 : s.input && s.input->live() ? 10 : 100;
     while (!done.load()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
-        if (s.input) s.input->attend(progress, s.notes);
-        tell_input(s);
-        tell_missed_frame(s);
+        if (s.input) s.input->poll_live(progress, s.notes);
+        notify_input(s);
+        notify_missed_frame(s);
         const double ran =
             s.virtual_clock ? 0.5 : static_cast<double>(clock.now_ns() - s.grid.t0_ns) / static_cast<double>(s.grid.period_ns);
-        progress.say("walk", share_done(s, ran));
+        progress.update("walk", share_done(s, ran));
         if (!counted && ran > 30) {
             take_census(s.plan, s.facts);
-            tell_census(s);
+            notify_census(s);
             counted = true;
         }
     }
 }
 
-/// The frame loop on its own thread; the caller's thread attends meanwhile.
-void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring, const Progress& progress) {
+/// The frame loop on its own thread; the caller's thread supervises meanwhile.
+void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord>& ring, const Progress& progress) {
     rt::RealClock real;
     rt::VirtualClock virtual_time;
     rt::Clock& clock = s.virtual_clock ? static_cast<rt::Clock&>(virtual_time) : real;
@@ -137,7 +137,7 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
     PathPoses path_poses(s.path.path, s.grid.period_ns);
     if (s.input) s.input->begin(s.path.path, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
     PoseSource& pose_source = s.input ? s.input->poses() : static_cast<PoseSource&>(path_poses);
-    if (s.virtual_clock) tell_started(s);
+    if (s.virtual_clock) notify_started(s);
     std::atomic<bool> done{false};
     std::optional<Error> misplaced;  // the frame thread's until it is in place
     std::latch in_place(1);
@@ -149,17 +149,17 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
         in_place.count_down();
         rt::prefault_stack();
         if (!s.virtual_clock) rt::prefault_heap();
-        WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, shots, s.kept, stages_options(s));
+        WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, snapshots, s.kept, stages_options(s));
         s.engine->device().bind();
         s.burn_ns = rt::run_frame_loop(options, clock, stages, ring).burn_ns;
         s.engine->device().release();
         done.store(true);
     });
     in_place.wait();
-    if (!s.virtual_clock) tell_started(s);
-    attend(s, clock, done, progress);
+    if (!s.virtual_clock) notify_started(s);
+    supervise(s, clock, done, progress);
     frame_thread.join();
-    tell_missed_frame(s);
+    notify_missed_frame(s);
     s.facts.pinned = !misplaced && !s.virtual_clock;
     if (misplaced) {
         s.plan.fifo = false;  // the figures must say so
@@ -170,25 +170,25 @@ void run_loop(Session& s, ShotStore& shots, rt::SpscRing<rt::FrameRecord>& ring,
 }
 
 /// What the user should know before the walk begins, where someone listens; else it stays for the end.
-void tell_now(std::vector<std::string>& notes, const Progress& progress) {
-    if (!progress.note) return;
-    for (const std::string& text : notes) progress.note(text);
+void notify_user(std::vector<std::string>& notes, const Progress& progress) {
+    if (!progress.notify) return;
+    for (const std::string& text : notes) progress.notify(text);
     notes.clear();
 }
 
 /// What was walked until then is summed up; pictures can no longer be drawn.
-void note_loss(const Session& s, WalkOutcome& outcome) {
+void record_loss(const Session& s, WalkOutcome& outcome) {
     outcome.lost = s.lost.load();
     if (!outcome.lost) return;
-    tell(s, WalkStep::device);
+    notify_step(s, WalkStep::device);
     outcome.failures.push_back(Error{"graphics context", "The context was lost while walking: the driver was reset or removed",
                                      "Start again, and see the kernel's log for resets of the GPU", ErrorKind::no_device});
 }
 
 }  // namespace
 
-Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkWatch& watch) {
-    Session s(request, watch);
+Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkObserver& observer) {
+    Session s(request, observer);
     if (auto ok = open_session(s, progress); !ok) return ok.error();
     if (!s.virtual_clock) {
         auto placed = place_rasterisers(s.plan);
@@ -199,9 +199,9 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     s.plan.unnamed = count_unnamed(program_invocation_short_name);
 
     WalkOutcome outcome;
-    tell_now(s.notes, progress);
+    notify_user(s.notes, progress);
     // After memory is locked: what the store sets aside is locked with it, and touched.
-    ShotStore shots = make_shot_store(request, s.frames, s.engine->drawn_capacity(), s.notes);
+    SnapshotStore snapshots = make_snapshot_store(request, s.frames, s.engine->drawn_capacity(), s.notes);
     rt::SpscRing<rt::FrameRecord> ring(4096);
     ControlBlocks blocks;
     std::uint64_t seen = 0;
@@ -211,20 +211,20 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     recorder_options.on_record = [&](const rt::FrameRecord& record) {
         ++seen;
         if (!request.endless) blocks.on_record(record);
-        if (watch.on_record) watch.on_record(record);
+        if (observer.on_record) observer.on_record(record);
     };
     rt::Recorder recorder(ring, recorder_options);
 
     const double steal_before = total_steal_ms();
-    tell(s, WalkStep::frames);
-    run_loop(s, shots, ring, progress);
+    notify_step(s, WalkStep::frames);
+    run_loop(s, snapshots, ring, progress);
     recorder.stop();
-    tell(s, WalkStep::ending);
+    notify_step(s, WalkStep::ending);
     outcome.notes.insert(outcome.notes.begin(), s.notes.begin(), s.notes.end());
     s.facts.steal_ms = total_steal_ms() - steal_before;
     s.facts.dropped_records = ring.dropped();
     outcome.records = recorder.take_records();
-    note_loss(s, outcome);
+    record_loss(s, outcome);
     outcome.stopped = progress.stopped() && (request.endless || seen < s.frames);
     if (s.input) outcome.summary.input = s.input->summary(outcome.records);
     fill_summary(request, s.facts, s.plan, s.grid.period_ns, s.path.source, *s.engine, outcome);
@@ -235,7 +235,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
         return outcome;
     }
     s.engine->device().bind();
-    write_outputs(request, s.kept, *s.engine, shots, outcome, progress);
+    write_outputs(request, s.kept, *s.engine, snapshots, outcome, progress);
     s.engine->device().release();
     return outcome;
 }

@@ -73,7 +73,7 @@ struct WalkStart {
 };
 
 /// Observers of a walk: telemetry, the daemon, soaks. Each may be empty.
-struct WalkWatch {
+struct WalkObserver {
     std::function<void(WalkStep)> on_step;                  ///< on the caller's thread, as each begins
     std::function<void(const WalkStart&)> on_started;       ///< on the caller's thread, before the first slot is due (real clock)
     std::function<void(const rt::FrameRecord&)> on_record;  ///< on the monitor thread: every frame, in order
@@ -88,6 +88,6 @@ struct WalkWatch {
 /// Errors, all before the first frame: unreadable model, path, recording or steering file, no context, --strict without real
 /// time, outputs that could not be written. What fails after the walk is in the outcome's failures. Stopping (progress.stop) ends
 /// the walk at the next frame; what was walked is summed up and written. An endless walk has an end too, but no figures.
-Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkWatch& watch = {});
+Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progress, const WalkObserver& observer = {});
 
 }  // namespace surefoot::walk

@@ -55,19 +55,19 @@ Result<void> write_capture(const WalkRequest& request, const KeptFrame& kept, co
     return capture::write_capture(request.capture_file, capture_of(kept, request, engine));
 }
 
-Result<void> write_report_pages(const WalkRequest& request, Engine& engine, const ShotStore& shots, WalkOutcome& outcome,
+Result<void> write_report_pages(const WalkRequest& request, Engine& engine, const SnapshotStore& snapshots, WalkOutcome& outcome,
                                 const Progress& progress) {
-    std::vector<report::ReportShot> developed;
+    std::vector<report::ReportSnapshot> rendered;
     // Snapshots may be many: the page shows at most seven of them, evenly spread.
-    const std::size_t step = std::max<std::size_t>(1, (shots.used() + 6) / 7);
-    for (std::size_t i = 0; i < shots.used(); i += step) {
+    const std::size_t step = std::max<std::size_t>(1, (snapshots.used() + 6) / 7);
+    for (std::size_t i = 0; i < snapshots.used(); i += step) {
         if (progress.stopped() || outcome.lost) break;  // a shorter page is better than none
-        progress.say("pictures", static_cast<double>(i) / static_cast<double>(shots.used()));
-        auto shot = develop(engine, shots.shots()[i]);
-        if (!shot) return shot.error();
-        developed.push_back(std::move(*shot));
+        progress.update("pictures", static_cast<double>(i) / static_cast<double>(snapshots.used()));
+        auto snapshot = render_snapshot(engine, snapshots.snapshots()[i]);
+        if (!snapshot) return snapshot.error();
+        rendered.push_back(std::move(*snapshot));
     }
-    auto written = report::write_report(request.report_dir, outcome.summary, outcome.records, developed);
+    auto written = report::write_report(request.report_dir, outcome.summary, outcome.records, rendered);
     if (!written) return written;
     outcome.report_page = request.report_dir + "/index.html";
     return {};
@@ -88,22 +88,22 @@ void take_census(const PlacingPlan& plan, WalkFacts& facts) {
     facts.threads.insert(facts.threads.end(), rows.begin(), rows.end());
 }
 
-ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
-                          std::vector<std::string>& notes) {
+SnapshotStore make_snapshot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
+                                  std::vector<std::string>& notes) {
     const bool page_only = request.snap_every == 0;
     if (page_only && request.report_dir.empty()) return {0, 0, 0};
     const std::uint64_t every = page_only ? std::max<std::uint64_t>(1, frames / 6) : request.snap_every;
     const std::uint64_t wanted = page_only ? 7 : (frames - 1) / every + 1;
-    const std::uint64_t fit = shots_that_fit(max_items);
+    const std::uint64_t fit = snapshots_that_fit(max_items);
     if (wanted > fit) {
         notes.push_back(
             fmt::format("--snap: {} of {} pictures are kept, because no more fit in {} MiB of memory. Take fewer with --every {}",
-                        fit, wanted, shot_memory_bytes >> 20U, (frames - 1) / fit + 1));
+                        fit, wanted, snapshot_memory_bytes >> 20U, (frames - 1) / fit + 1));
     }
     return {every, static_cast<std::size_t>(std::min(wanted, fit)), max_items};
 }
 
-void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots,
+void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const SnapshotStore& snapshots,
                    WalkOutcome& outcome, const Progress& progress) {
     const auto put = [&](const std::string& place, auto write) {
         if (place.empty()) return;
@@ -112,8 +112,8 @@ void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& en
     put(request.ledger_file, [&] { return report::write_ledger(request.ledger_file, outcome.records); });
     put(request.trace_file, [&] { return report::write_trace(request.trace_file, outcome.records); });
     put(request.capture_file, [&] { return write_capture(request, kept, engine); });
-    if (!outcome.lost) put(request.snap_dir, [&] { return write_snaps(engine, shots, request.snap_dir, progress); });
-    put(request.report_dir, [&] { return write_report_pages(request, engine, shots, outcome, progress); });
+    if (!outcome.lost) put(request.snap_dir, [&] { return write_snaps(engine, snapshots, request.snap_dir, progress); });
+    put(request.report_dir, [&] { return write_report_pages(request, engine, snapshots, outcome, progress); });
 }
 
 }  // namespace surefoot::walk

@@ -7,7 +7,7 @@
 #include "render/engine.hpp"
 #include "rt/base/result.hpp"
 #include "tools/walk/placing.hpp"
-#include "tools/walk/shots.hpp"
+#include "tools/walk/snapshots.hpp"
 #include "tools/walk/walk.hpp"
 #include "tools/walk/walk_stages.hpp"
 
@@ -34,12 +34,12 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
 void take_census(const PlacingPlan& plan, WalkFacts& facts);
 
 /// Room for the pictures that --snap or --report will want of `frames` frames; a note where that is less than all.
-ShotStore make_shot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
-                          std::vector<std::string>& notes);
+SnapshotStore make_snapshot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
+                                  std::vector<std::string>& notes);
 
 /// Ledger, trace, capture, pictures, report: what the request names. One that fails goes to outcome.failures, and the next is
 /// written. The device must be bound to the calling thread.
-void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const ShotStore& shots,
+void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& engine, const SnapshotStore& snapshots,
                    WalkOutcome& outcome, const Progress& progress);
 
 /// Errors: an output that cannot be written, that is an input or another output, or that the backend cannot make (pictures of

@@ -19,7 +19,7 @@ namespace surefoot::walk {
 
 namespace {
 
-constexpr std::uint64_t most_frames = 4'000'000;  // records of 0.4 KiB
+constexpr std::uint64_t max_frames = 4'000'000;  // records of 0.4 KiB
 
 Result<void> read_request(Session& s) {
     auto period = rt::period_of_rate_ns(s.request.rate_hz);
@@ -31,7 +31,7 @@ Result<void> read_request(Session& s) {
 /// Read first of all: a wrong steering file is found before a large model is opened.
 Result<void> open_input(Session& s) {
     if (s.request.input_file.empty()) return {};
-    tell(s, WalkStep::input);
+    notify_step(s, WalkStep::input);
     auto input = InputSession::open(s.request, s.grid.period_ns, s.notes);
     if (!input) return input.error();
     s.input = std::move(*input);
@@ -41,18 +41,18 @@ Result<void> open_input(Session& s) {
 /// Real time and the cost table, or what they lack; with --strict a lack is an error.
 Result<void> claim(Session& s) {
     const WalkRequest& r = s.request;
-    tell(s, WalkStep::real_time);
+    notify_step(s, WalkStep::real_time);
     auto plan = claim_real_time(r, !s.virtual_clock, s.facts);
     if (!plan) return plan.error();
     s.plan = *plan;
     s.plan.input = s.input != nullptr;
     s.plan.devices = s.input && s.input->live();
-    tell(s, WalkStep::input);
+    notify_step(s, WalkStep::input);
     auto costs = load_costs(state_directory(r.state_dir), "", s.facts.uncalibrated);
     if (!costs) return costs.error();
     s.costs = std::move(*costs);
     if (!r.strict) return {};
-    tell(s, WalkStep::real_time);
+    notify_step(s, WalkStep::real_time);
     std::vector<rt::Lack> lacks = s.facts.degraded;
     if (!s.facts.uncalibrated.empty()) lacks.push_back({rt::LackKind::cost_table, s.facts.uncalibrated, ""});
     return require_real_time(lacks);
@@ -80,8 +80,8 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
 
 Result<void> open_engine(Session& s, const Progress& progress) {
     const WalkRequest& r = s.request;
-    tell(s, WalkStep::model);
-    progress.say("open", 0.1);
+    notify_step(s, WalkStep::model);
+    progress.update("open", 0.1);
     model::WalkFileInfo file;
     auto model = model::read_walk(r.model_file, &file);
     if (!model) return model.error();
@@ -97,8 +97,8 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     if (!options) return options.error();
     s.plan.workers = options->prepare.workers;
     options->prepare.worker_hooks = s.worker_places.emplace(s.plan).hooks();
-    tell(s, WalkStep::device);
-    progress.say("open", 0.5);
+    notify_step(s, WalkStep::device);
+    progress.update("open", 0.5);
     auto engine = Engine::open(std::move(*model), s.costs, *options);
     if (!engine) return engine.error();
     s.engine = std::move(*engine);
@@ -111,12 +111,12 @@ Result<void> open_engine(Session& s, const Progress& progress) {
         s.facts.uncalibrated = "the cost table was measured on \"" + s.costs.machine + "\", this is \"" + s.facts.machine +
                                "\". Run `surefoot calibrate` here";
         if (r.strict) {
-            tell(s, WalkStep::real_time);
+            notify_step(s, WalkStep::real_time);
             return require_real_time(std::vector<rt::Lack>{{rt::LackKind::cost_table, s.facts.uncalibrated, ""}});
         }
     }
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
-    if (!r.capture_file.empty() || s.watch.on_missed_frame) s.kept.reserve(*s.engine);
+    if (!r.capture_file.empty() || s.observer.on_missed_frame) s.kept.reserve(*s.engine);
     return {};
 }
 
@@ -130,13 +130,13 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
     const double frames = s.request.control      ? static_cast<double>(s.control.slots())
                           : s.request.frames > 0 ? static_cast<double>(s.request.frames)
                                                  : std::max(1.0, std::round(seconds / period_s));
-    if (s.request.keep_records && !(frames <= static_cast<double>(most_frames))) {
-        const bool asked = s.request.frames > 0 || s.request.seconds > 0 || s.request.control;
-        return Error{asked      ? "walk"
+    if (s.request.keep_records && !(frames <= static_cast<double>(max_frames))) {
+        const bool limited = s.request.frames > 0 || s.request.seconds > 0 || s.request.control;
+        return Error{limited    ? "walk"
                      : recorded ? s.request.input_file
                                 : s.path.source,
                      fmt::format("The walk takes {:.4g} frames, and at most {} are kept ({:.0f} hours at this rate)", frames,
-                                 most_frames, static_cast<double>(most_frames) * period_s / 3600.0),
+                                 max_frames, static_cast<double>(max_frames) * period_s / 3600.0),
                      "Give a smaller --frames or --seconds", ErrorKind::out_of_limits};
     }
     if (!s.request.capture_file.empty() && static_cast<double>(s.request.capture_frame) >= frames) {
@@ -157,12 +157,12 @@ Session::~Session() {
     if (!virtual_clock && rt::guard_active()) rt::release_memory();
 }
 
-void tell(const Session& s, WalkStep step) {
-    if (s.watch.on_step) s.watch.on_step(step);
+void notify_step(const Session& s, WalkStep step) {
+    if (s.observer.on_step) s.observer.on_step(step);
 }
 
 Result<void> open_session(Session& s, const Progress& progress) {
-    tell(s, WalkStep::request);
+    notify_step(s, WalkStep::request);
     if (auto ok = read_request(s); !ok) return ok;
     if (auto ok = check_outputs(s.request); !ok) return ok;
     if (auto ok = open_input(s); !ok) return ok;

@@ -29,14 +29,14 @@ constexpr double budget_share = 0.80;
 
 struct Session {
     const WalkRequest& request;
-    const WalkWatch& watch;
+    const WalkObserver& observer;
     WalkFacts facts;
     PlacingPlan plan;
     std::optional<WorkerPlaces> worker_places;  ///< of the engine's workers
     std::unique_ptr<Engine> engine;
     ChosenPath path;
     std::unique_ptr<InputSession> input;  ///< null: the path is followed
-    rt::InputState input_told;
+    rt::InputState reported_input;
     std::vector<std::string> notes;
     rt::Grid grid;
     const bool virtual_clock = request.clock == rt::ClockKind::virtual_time;
@@ -51,7 +51,7 @@ struct Session {
     model::CostModel costs;
     std::atomic<bool> lost{false};  ///< the graphics context
 
-    Session(const WalkRequest& r, const WalkWatch& w) : request(r), watch(w) {}
+    Session(const WalkRequest& r, const WalkObserver& w) : request(r), observer(w) {}
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
     /// On every way out, refusals included: ends the workers, and releases the memory that claim() had locked.
@@ -59,7 +59,7 @@ struct Session {
 };
 
 /// Notifies the observers which step begins.
-void tell(const Session& s, WalkStep step);
+void notify_step(const Session& s, WalkStep step);
 /// Opens all that a walk needs but its threads: request, input, real time, costs, model, path, device. Fails with the first thing
 /// that is wrong, named; what was opened until then goes with the session.
 Result<void> open_session(Session& s, const Progress& progress);

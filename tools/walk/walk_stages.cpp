@@ -21,7 +21,7 @@ void KeptFrame::reserve(const Engine& engine) {
 
 capture::Capture capture_of(const KeptFrame& kept, const WalkRequest& request, const Engine& engine) {
     const select::SelectInput input{&engine.model(),        &kept.prepared,        &engine.costs(),  kept.budget_us,
-                                    kept.correction.factor, kept.target_error_rad, request.slice_us, kept.correction.upper};
+                                    kept.correction.factor, kept.target_error_rad, request.slice_us, kept.correction.headroom};
     capture::Capture taken =
         capture::take(input, request.selector, static_cast<float>(request.hysteresis), kept.memory, kept.cut);
     taken.frame = kept.frame;
@@ -29,14 +29,14 @@ capture::Capture capture_of(const KeptFrame& kept, const WalkRequest& request, c
 }
 
 WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
-                       rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
+                       rt::TripleBuffer<prepare::PreparedFrame>& prepared, SnapshotStore& snapshots, KeptFrame& kept,
                        const WalkStagesOptions& options)
     : engine_(engine),
       pose_source_(pose_source),
       clock_(clock),
       poses_(poses),
       prepared_(prepared),
-      shots_(shots),
+      snapshots_(snapshots),
       kept_(kept),
       options_(options),
       request_(options.request),
@@ -60,14 +60,14 @@ void WalkStages::sample(rt::FrameRecord& record) {
         if (unseen) {
             now_.pose = newest.pose;
             now_.before = newest.before;
-            now_.foresight = newest.foresight;
+            now_.predicted = newest.predicted;
             now_.dt_s = period_s;
         }
         prepare_inline();
     }
     now_.before = unseen ? newest.before : now_.pose;
     now_.dt_s = period_s * (1.0 + (request_.control || unseen ? 0 : record.skipped_before));
-    now_.foresight = newest.foresight;
+    now_.predicted = newest.predicted;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
     now_.valid = true;
@@ -117,7 +117,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
     const double budget_us = std::max(0.0, options_.budget_us - spent_us);
     const Correction correction =
-        request_.correct_costs ? Correction{controller_.factor(), controller_.upper(engine_.costs().upper_factor)} : Correction{};
+        request_.correct_costs ? Correction{controller_.factor(), controller_.headroom(engine_.costs().headroom)} : Correction{};
     const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
     record.floor_us = cut.floor_us;
     record.floor_binds = cut.floor_binds;
@@ -128,24 +128,24 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.candidates = static_cast<std::uint32_t>(set.candidates.size());
     record.prepare_cpu_us = static_cast<float>(set.cpu_us);
     cut_ = &cut;
-    asked_budget_us_ = budget_us;
-    asked_correction_ = correction;
+    requested_budget_us_ = budget_us;
+    requested_correction_ = correction;
 }
 
 /// After the frame, when it is known whether it was late. Copying takes a tenth of a millisecond for a few thousand candidates;
 /// of larger sets only the frame that was asked for is kept, so that one miss does not make the next.
 void WalkStages::keep(const rt::FrameRecord& record) {
-    constexpr std::size_t most_candidates = 16'384;
+    constexpr std::size_t max_candidates = 16'384;
     const prepare::PreparedFrame& set = prepared_.front();
-    const bool missed = options_.capture_missed && record.missed && set.candidates.size() <= most_candidates;
+    const bool missed = options_.capture_missed && record.missed && set.candidates.size() <= max_candidates;
     if (coarse_ || cut_ == nullptr || (record.frame != options_.capture_frame && !missed)) return;
     if (kept_.kept.load(std::memory_order_acquire)) return;
     kept_.frame = record.frame;
     kept_.prepared = set;  // into vectors that were reserved: no allocation
     kept_.cut = *cut_;
     kept_.memory = engine_.selection_memory().before;
-    kept_.budget_us = asked_budget_us_;
-    kept_.correction = asked_correction_;
+    kept_.budget_us = requested_budget_us_;
+    kept_.correction = requested_correction_;
     kept_.target_error_rad = options_.target_error_rad;
     kept_.kept.store(true, std::memory_order_release);
 }
@@ -192,7 +192,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     keep(record);
     const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
-    shots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn());
+    snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn());
 }
 
 }  // namespace surefoot::walk

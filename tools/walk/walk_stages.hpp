@@ -13,7 +13,7 @@
 #include "rt/frame/loop.hpp"
 #include "tools/walk/pose_source.hpp"
 #include "tools/walk/prepare_thread.hpp"
-#include "tools/walk/shots.hpp"
+#include "tools/walk/snapshots.hpp"
 #include "tools/walk/walk.hpp"
 
 namespace surefoot::walk {
@@ -52,7 +52,7 @@ class WalkStages final : public rt::FrameStages {
 public:
     /// `clock` is the loop's; where the request's is virtual, a rt::VirtualClock. Everything must outlive this.
     WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
-               rt::TripleBuffer<prepare::PreparedFrame>& prepared, ShotStore& shots, KeptFrame& kept,
+               rt::TripleBuffer<prepare::PreparedFrame>& prepared, SnapshotStore& snapshots, KeptFrame& kept,
                const WalkStagesOptions& options);
 
     void sample(rt::FrameRecord& record) override;
@@ -74,7 +74,7 @@ private:
     rt::Clock& clock_;
     rt::TripleBuffer<PoseSample>& poses_;
     rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
-    ShotStore& shots_;
+    SnapshotStore& snapshots_;
     KeptFrame& kept_;
     WalkStagesOptions options_;
     const WalkRequest& request_;  ///< control: bare blocks lie between, the path's time is counted in walked frames
@@ -85,8 +85,8 @@ private:
     std::uint64_t walked_ = 0, path_slot_ = 0;
     bool coarse_ = false;
     const select::Cut* cut_ = nullptr;  ///< the last selection's, and what it was asked
-    double asked_budget_us_ = 0;
-    Correction asked_correction_;
+    double requested_budget_us_ = 0;
+    Correction requested_correction_;
 };
 
 }  // namespace surefoot::walk

@@ -5,7 +5,7 @@ namespace surefoot::input {
 
 Result<std::unique_ptr<GpioLines>> open_lines(std::span<const LineRequest> requests, std::string_view, void*) {
     const std::string place = requests.empty() ? "gpio" : requests.front().chip + " line " + requests.front().line;
-    return Error{place, "this build has no libgpiod", "install libgpiod-dev and build again"};
+    return Error{place, "This build has no libgpiod", "Install libgpiod-dev and build again", ErrorKind::unsupported};
 }
 
 std::string gpio_back_end() { return "none: built without libgpiod"; }

@@ -24,8 +24,8 @@ struct Chip {
     std::vector<std::uint32_t> index;  ///< into the requests, a line of the bulk
 };
 
-Error system_error(std::string place, std::string_view what, int code, std::string remedy = {}) {
-    return {std::move(place), fmt::format("{}: {}", what, std::strerror(code)), std::move(remedy)};
+Error system_error(std::string place, std::string_view what, int code, std::string remedy = "Check that the chip is plugged in") {
+    return {std::move(place), fmt::format("{}: {}", what, std::strerror(code)), std::move(remedy), ErrorKind::no_device};
 }
 
 int flags_of(const LineRequest& request) {
@@ -73,7 +73,7 @@ public:
         for (Chip& chip : chips_) {
             std::array<int, GPIOD_LINE_BULK_MAX_LINES> values{};
             if (gpiod_line_get_value_bulk(&chip.bulk, values.data()) != 0)
-                return system_error(chip.name, "cannot read its lines", errno, "is it still plugged in?");
+                return system_error(chip.name, "The lines cannot be read", errno);
             for (std::size_t i = 0; i < chip.index.size(); ++i) active[chip.index[i]] = values[i] != 0;
         }
         return {};
@@ -88,13 +88,15 @@ private:
             gpiod_line_bulk_init(&at->bulk);
         }
         if (at->chip == nullptr)
-            return system_error(request.chip, "cannot open the chip", errno, "see 'gpiodetect'; the user needs the gpio group");
+            return system_error(request.chip, "The chip cannot be opened", errno,
+                                "See `gpiodetect`, and add the user to the group gpio");
         gpiod_line* line = find(at->chip, request.line);
         const std::string place = fmt::format("{} line '{}'", request.chip, request.line);
-        if (line == nullptr) return Error{place, "there is no such line", "see 'gpioinfo'"};
+        if (line == nullptr) return Error{place, "There is no such line", "See `gpioinfo`", ErrorKind::not_found};
         if (gpiod_line_is_used(line)) return busy(place, line);
         if (at->index.size() == GPIOD_LINE_BULK_MAX_LINES)
-            return Error{place, "is the chip's 65th line", "at most 64 are allowed"};
+            return Error{place, "The line is the 65th of its chip; at most 64 are allowed", "Remove a line of this chip",
+                         ErrorKind::out_of_limits};
         gpiod_line_bulk_add(&at->bulk, line);
         at->index.push_back(index);
         return {};
@@ -102,8 +104,8 @@ private:
 
     static Error busy(const std::string& place, gpiod_line* line) {
         const char* user = gpiod_line_consumer(line);
-        return {place, fmt::format("is in use by '{}'", user != nullptr ? user : "the kernel"),
-                "stop that program, or use another line"};
+        return {place, fmt::format("The line is in use by '{}'", user != nullptr ? user : "the kernel"),
+                "Stop that program, or use another line", ErrorKind::no_device};
     }
 
     /// Flags hold for a whole request in libgpiod 1, so lines that differ in them are requested one by one.
@@ -115,7 +117,7 @@ private:
             gpiod_line* line = chip.bulk.lines[i];
             const std::string place = fmt::format("{} line '{}'", chip.name, requests[chip.index[i]].line);
             if (code == EBUSY && gpiod_line_update(line) == 0 && gpiod_line_is_used(line)) return busy(place, line);
-            return system_error(place, "cannot be requested", code);
+            return system_error(place, "The line cannot be requested", code);
         };
         if (same) {
             if (gpiod_line_request_bulk_both_edges_events_flags(&chip.bulk, consumer.c_str(), first) != 0)
@@ -138,14 +140,15 @@ private:
         waiting_.clear();
         given_ = 0;
         const int ready = ::poll(polled_.data(), polled_.size(), 0);
-        if (ready < 0 && errno != EINTR) return system_error("gpio", "cannot be polled", errno);
+        if (ready < 0 && errno != EINTR) return system_error("gpio", "The lines cannot be polled", errno);
         if (ready <= 0) return {};
         for (std::size_t i = 0; i < polled_.size(); ++i) {
-            if ((polled_[i].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) return Error{"gpio", "the chip is gone", {}};
+            if ((polled_[i].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0)
+                return Error{"gpio", "The chip is gone", "Plug it in again", ErrorKind::no_device};
             if ((polled_[i].revents & POLLIN) == 0) continue;
             std::array<gpiod_line_event, kernel_queue> events{};
             const int count = gpiod_line_event_read_fd_multiple(polled_[i].fd, events.data(), events.size());
-            if (count < 0) return system_error("gpio", "cannot read edges", errno);
+            if (count < 0) return system_error("gpio", "The edges cannot be read", errno);
             for (int k = 0; k < count; ++k) {
                 const auto& event = events[static_cast<std::size_t>(k)];
                 waiting_.push_back({index_[i], event.event_type == GPIOD_LINE_EVENT_RISING_EDGE,

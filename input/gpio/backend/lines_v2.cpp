@@ -42,8 +42,8 @@ struct Chip {
     std::vector<unsigned> offsets;     ///< parallel to index
 };
 
-Error system_error(std::string place, std::string_view what, int code, std::string remedy = {}) {
-    return {std::move(place), fmt::format("{}: {}", what, std::strerror(code)), std::move(remedy)};
+Error system_error(std::string place, std::string_view what, int code, std::string remedy = "Check that the chip is plugged in") {
+    return {std::move(place), fmt::format("{}: {}", what, std::strerror(code)), std::move(remedy), ErrorKind::no_device};
 }
 
 /// By name, path or label, as libgpiod 1 looks chips up.
@@ -80,7 +80,7 @@ class LinesV2 final : public GpioLines {
 public:
     Result<void> request(std::span<const LineRequest> requests, std::string_view consumer) {
         buffer_.reset(gpiod_edge_event_buffer_new(edges_at_once));
-        if (!buffer_) return system_error("gpio", "no memory for edges", errno);
+        if (!buffer_) return system_error("gpio", "No memory is left for edges", errno, "Close other programs");
         for (std::uint32_t i = 0; i < requests.size(); ++i)
             if (auto added = add(requests[i], i); !added) return added;
         for (Chip& chip : chips_)
@@ -97,13 +97,13 @@ public:
             while (count < edges.size()) {
                 pollfd one = polled_[c];
                 const int ready = ::poll(&one, 1, 0);
-                if (ready < 0 && errno != EINTR) return system_error(chips_[c].name, "cannot be polled", errno);
+                if (ready < 0 && errno != EINTR) return system_error(chips_[c].name, "The lines cannot be polled", errno);
                 if (ready > 0 && (one.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0)
-                    return Error{chips_[c].name, "the chip is gone", {}};
+                    return Error{chips_[c].name, "The chip is gone", "Plug it in again", ErrorKind::no_device};
                 if (ready <= 0 || (one.revents & POLLIN) == 0) break;
                 const int got = gpiod_line_request_read_edge_events(chips_[c].request.get(), buffer_.get(),
                                                                     std::min(edges_at_once, edges.size() - count));
-                if (got < 0) return system_error(chips_[c].name, "cannot read edges", errno);
+                if (got < 0) return system_error(chips_[c].name, "The edges cannot be read", errno);
                 for (int k = 0; k < got; ++k) edges[count++] = edge_of(chips_[c], static_cast<unsigned long>(k));
             }
         }
@@ -115,7 +115,7 @@ public:
             std::array<gpiod_line_value, 64> values{};
             if (gpiod_line_request_get_values_subset(chip.request.get(), chip.offsets.size(), chip.offsets.data(),
                                                      values.data()) != 0)
-                return system_error(chip.name, "cannot read its lines", errno, "is it still plugged in?");
+                return system_error(chip.name, "The lines cannot be read", errno);
             for (std::size_t i = 0; i < chip.index.size(); ++i) active[chip.index[i]] = values[i] == GPIOD_LINE_VALUE_ACTIVE;
         }
         return {};
@@ -129,14 +129,17 @@ private:
             at = chips_.end() - 1;
         }
         if (!at->chip)
-            return system_error(request.chip, "cannot open the chip", errno, "see 'gpiodetect'; the user needs the gpio group");
+            return system_error(request.chip, "The chip cannot be opened", errno,
+                                "See `gpiodetect`, and add the user to the group gpio");
         const std::string place = fmt::format("{} line '{}'", request.chip, request.line);
         int offset = gpiod_chip_get_line_offset_from_name(at->chip.get(), request.line.c_str());
         if (offset < 0) offset = number_in<int>(request.line).value_or(-1);
         const InfoPtr info{offset < 0 ? nullptr : gpiod_chip_get_line_info(at->chip.get(), static_cast<unsigned>(offset))};
-        if (!info) return Error{place, "there is no such line", "see 'gpioinfo'"};
+        if (!info) return Error{place, "There is no such line", "See `gpioinfo`", ErrorKind::not_found};
         if (gpiod_line_info_is_used(info.get())) return busy(place, info.get());
-        if (at->index.size() == 64) return Error{place, "is the chip's 65th line", "at most 64 are allowed"};
+        if (at->index.size() == 64)
+            return Error{place, "The line is the 65th of its chip; at most 64 are allowed", "Remove a line of this chip",
+                         ErrorKind::out_of_limits};
         at->index.push_back(index);
         at->offsets.push_back(static_cast<unsigned>(offset));
         return {};
@@ -144,20 +147,20 @@ private:
 
     static Error busy(const std::string& place, gpiod_line_info* info) {
         const char* user = gpiod_line_info_get_consumer(info);
-        return {place, fmt::format("is in use by '{}'", user != nullptr ? user : "the kernel"),
-                "stop that program, or use another line"};
+        return {place, fmt::format("The line is in use by '{}'", user != nullptr ? user : "the kernel"),
+                "Stop that program, or use another line", ErrorKind::no_device};
     }
 
     Result<void> request_chip(Chip& chip, std::span<const LineRequest> requests, const std::string& consumer) {
         const LinesPtr lines{gpiod_line_config_new()};
         const ConfigPtr config{gpiod_request_config_new()};
-        if (!lines || !config) return system_error(chip.name, "no memory for a request", errno);
+        if (!lines || !config) return system_error(chip.name, "No memory is left for a request", errno, "Close other programs");
         gpiod_request_config_set_consumer(config.get(), consumer.c_str());
         gpiod_request_config_set_event_buffer_size(config.get(), queue);
         for (std::size_t i = 0; i < chip.index.size(); ++i) {
             const SettingsPtr settings = settings_of(requests[chip.index[i]]);
             if (!settings || gpiod_line_config_add_line_settings(lines.get(), &chip.offsets[i], 1, settings.get()) != 0)
-                return system_error(chip.name, "cannot set up a line", errno);
+                return system_error(chip.name, "A line cannot be set up", errno);
         }
         chip.request.reset(gpiod_chip_request_lines(chip.chip.get(), config.get(), lines.get()));
         if (!chip.request) {
@@ -167,7 +170,7 @@ private:
                 if (info && gpiod_line_info_is_used(info.get()))
                     return busy(fmt::format("{} line '{}'", chip.name, requests[chip.index[i]].line), info.get());
             }
-            return system_error(chip.name, "its lines cannot be requested", code);
+            return system_error(chip.name, "The lines cannot be requested", code);
         }
         polled_.push_back({gpiod_line_request_get_fd(chip.request.get()), POLLIN, 0});
         return {};

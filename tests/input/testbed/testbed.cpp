@@ -167,9 +167,9 @@ void Testbed::pull(Plug& plug) {
     std::filesystem::remove(root_ + plug.node);
 }
 
-void Testbed::permit(const Plug& plug, bool tell) {
+void Testbed::permit(const Plug& plug, bool send_event) {
     chmod((root_ + plug.node).c_str(), 0666);
-    if (tell) umockdev_testbed_uevent(bed_, plug.place.c_str(), "change");
+    if (send_event) umockdev_testbed_uevent(bed_, plug.place.c_str(), "change");
 }
 
 NoOverride::NoOverride() { override_modes(false); }

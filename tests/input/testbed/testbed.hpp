@@ -80,7 +80,7 @@ public:
     /// Hangs up; udev says nothing yet.
     void hang_up(Plug& plug);
     /// udev's rules have run: the node may be read.
-    void permit(const Plug& plug, bool tell = true);
+    void permit(const Plug& plug, bool send_event = true);
 
     [[nodiscard]] const std::string& root() const { return root_; }
     [[nodiscard]] double held_up_ms() const { return hold_ups_.ms(); }

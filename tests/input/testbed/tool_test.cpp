@@ -181,8 +181,8 @@ TEST(DevicesTool, MapStoppedOrUnansweredWritesNothing) {
     ASSERT_TRUE(stopped.until("walks forward")) << stopped.err();
     stopped.signal(SIGINT);
     EXPECT_EQ(stopped.wait(), 130);
-    Tool silent({"map", "-o", file, "--timeout", "0.1"});
-    EXPECT_EQ(silent.wait(20'000), 1);
+    Tool timed_out({"map", "-o", file, "--timeout", "0.1"});
+    EXPECT_EQ(unanswered.wait(20'000), 1);
     EXPECT_FALSE(std::filesystem::exists(file));
 }
 

@@ -3,7 +3,7 @@
 #include <functional>
 #include <thread>
 
-#include "input/devices/attendant.hpp"
+#include "input/devices/device_router.hpp"
 #include "rt/base/random.hpp"
 #include "rt/threads/guard.hpp"
 #include "tests/input/plain_stick.hpp"
@@ -31,7 +31,7 @@ struct Walk {
     explicit Walk(bool beside = false) : source(live(beside)) {}
     double step(std::int64_t until_ns = 0) {
         source->wait(until_ns == 0 ? test::now_ns() + 1'000'000 : until_ns);
-        attendant.attend(source->take());
+        router.dispatch(source->take());
         steering.steers.plays();
         sample = steering.tick({}, test::now_ns());
         return glm::length(sample.velocity_m_s);
@@ -60,9 +60,9 @@ struct Walk {
     [[nodiscard]] double speed() const { return glm::length(sample.velocity_m_s); }
 
     test::HoldUps hold_ups;
-    std::vector<std::string> said;
+    std::vector<std::string> messages;
     Steering steering{MotionLimits{}, SafetyLimits{}};
-    Attendant attendant{{}, steering, [this](std::string_view text) { said.emplace_back(text); }};
+    DeviceRouter router{{}, steering, [this](std::string_view text) { messages.emplace_back(text); }};
     std::unique_ptr<LiveDevices> source;
     NavigationSample sample;
 };
@@ -100,7 +100,7 @@ double pulled_to_rest_ms(bool beside, Wire wire) {
     if (wire == Wire::terminal) bed.pull(plug);
     walk.run_ms(20);
     EXPECT_EQ(walk.speed(), 0);
-    EXPECT_EQ(walk.attendant.attended().size(), 0U);
+    EXPECT_EQ(walk.router.attached().size(), 0U);
     return ms;
 }
 
@@ -133,7 +133,7 @@ TEST_P(Unplug, PluggedInAgainItSteersOnlyOnceSeenNeutral) {
     hold(walk, plug, 0, 0, 20);
     hold(walk, plug, 0, -127, 200);
     ASSERT_GT(walk.speed(), 0.5);
-    const auto before = walk.attendant.attended().front();
+    const auto before = walk.router.attached().front();
     bed.pull(plug);
     ASSERT_GE(walk.ms_to_rest(), 0);
     const std::int64_t from = test::now_ns();
@@ -143,8 +143,8 @@ TEST_P(Unplug, PluggedInAgainItSteersOnlyOnceSeenNeutral) {
     const double ms = walk.ms_since(from, held_up);
     EXPECT_LE(ms, 1000);
     std::printf("[ figure   ] plugged to open: %.1f ms\n", ms);
-    ASSERT_EQ(walk.attendant.attended().size(), 1U);
-    const auto after = walk.attendant.attended().front();
+    ASSERT_EQ(walk.router.attached().size(), 1U);
+    const auto after = walk.router.attached().front();
     EXPECT_NE(after.device, before.device);
     EXPECT_EQ(after.steering, before.steering) << "known by its serial, it gets its number again";
     hold(walk, plug, 0, -127, 100);
@@ -204,9 +204,9 @@ TEST(Stall, AfterAnOverflowItRestsThoughTheLastReportSaysFullDeflection) {
     int kept = 0;  // nobody reads for half a second
     for (int i = 0; i < 500; ++i) kept += kept < 63 && Testbed::send(plug, at(0, i < 400 ? -127 : 0)) ? 1 : 0;
     ASSERT_EQ(kept, 63);
-    const auto reports = walk.attendant.accepted_reports();
+    const auto reports = walk.router.accepted_reports();
     walk.step();
-    EXPECT_EQ(walk.attendant.accepted_reports() - reports, 63U) << "not drained whole";
+    EXPECT_EQ(walk.router.accepted_reports() - reports, 63U) << "not drained whole";
     walk.steering.steers.plays();
     EXPECT_EQ(walk.steering.safety().devices[0].held, Held::overflow);
     EXPECT_GE(walk.ms_to_rest(), 0);
@@ -249,7 +249,7 @@ TEST(Flood, OneDeviceThatNeverStopsHoldsUpNobody) {
         walk.source->wait(test::now_ns() + 1'000'000);
         std::size_t flooded = 0;
         for (const DeviceEvent& e : walk.source->take()) {
-            walk.attendant.attend(e);
+            walk.router.dispatch(e);
             if (e.kind == Kind::report) ++(e.device == 0 ? flooded : quiet_reports);
         }
         most = std::max(most, flooded);
@@ -276,11 +276,11 @@ TEST(RealTime, ReadingNeitherAllocatesNorFrees) {
         for (int k = 0; k < 3; ++k) ASSERT_TRUE(Testbed::send(plug, at(i % 100, -k)));
         const rt::OwnScope scope;
         walk.source->wait(test::now_ns() + 1'000'000);
-        walk.attendant.attend(walk.source->take());
+        walk.router.dispatch(walk.source->take());
         walk.steering.steers.plays();
         walk.sample = walk.steering.tick({}, test::now_ns());
     }
-    EXPECT_GE(walk.attendant.accepted_reports(), 1500U);
+    EXPECT_GE(walk.router.accepted_reports(), 1500U);
     EXPECT_EQ(rt::guard_counters().own_violations, before.own_violations);
 }
 

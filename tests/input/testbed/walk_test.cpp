@@ -149,7 +149,7 @@ double ride() {
     const Recording device = test::GamepadSession().recording();
     auto plug = bed.plug(device, {.serial = "0001", .wire = Wire::terminal});
     Tool tool(Place::get().walk("600"), false, "walk");
-    EXPECT_TRUE(tool.until("steers, by the mapping", 30'000)) << tool.err();
+    EXPECT_TRUE(tool.until("The device steers by the mapping", 30'000)) << tool.err();
     usleep(400'000);
     hold(plug, 0, 200);
     const double pushed = seconds_now();
@@ -209,11 +209,11 @@ TEST(WalkTool, WithoutADeviceItRestsAndSaysSoOnce) {
     bed.plug(recorded("boot-mouse"));
     Tool tool(Place::get().walk("2"), false, "walk");
     ASSERT_EQ(tool.wait(30'000), 0) << tool.err();
-    const std::string said = tool.err();
-    const auto first = said.find("no device is there that steers");
-    ASSERT_NE(first, std::string::npos) << said;
-    EXPECT_EQ(said.find("no device is there that steers", first + 1), std::string::npos) << said;
-    EXPECT_NE(said.find("[[device]]"), std::string::npos) << "why the mouse does not steer: " << said;
+    const std::string errors = tool.err();
+    const auto first = errors.find("No connected device steers");
+    ASSERT_NE(first, std::string::npos) << errors;
+    EXPECT_EQ(errors.find("No connected device steers", first + 1), std::string::npos) << errors;
+    EXPECT_NE(errors.find("[[device]]"), std::string::npos) << "why the mouse does not steer: " << errors;
     const auto rows = ledger(Place::get().dir + "/ledger.csv");
     ASSERT_EQ(rows.size(), 60U);
     EXPECT_EQ(rows.front().eye, rows.back().eye);
@@ -242,7 +242,7 @@ action = "stop_reset"
         std::vector<std::string> words = {"--steering", dir + "/stop.toml"};
         words.insert(words.end(), more.begin(), more.end());
         Tool tool(Place::get().walk("600", words), false, "walk");
-        EXPECT_TRUE(tool.until("steers, by the mapping", 30'000)) << tool.err();
+        EXPECT_TRUE(tool.until("The device steers by the mapping", 30'000)) << tool.err();
         usleep(400'000);
         hands(tool, plug);
         usleep(200'000);
@@ -265,10 +265,10 @@ action = "stop_reset"
     });
     EXPECT_TRUE(moved());
     EXPECT_EQ(*read_text(dir + "/emergency-stop"), "surefoot emergency stop: latched\n");
-    const auto [second, said] = walk({}, push);
+    const auto [second, errors] = walk({}, push);
     EXPECT_FALSE(moved()) << "the stop was forgotten";
     EXPECT_EQ(second["stop_latched"], true);
-    EXPECT_NE(said.find("still latched"), std::string::npos) << said;
+    EXPECT_NE(errors.find("still latched"), std::string::npos) << errors;
     const auto [third, reset] = walk({}, [&](Tool& tool, test::Plug& plug) {
         hold(plug, 0, 100);
         hold_until(tool, "emergency stop: released", plug, 32);

@@ -107,10 +107,10 @@ TEST(NothingHidden, TwentyStallsOfFiftyMillisecondsAppearInFull) {
 
 TEST(NothingHidden, AStopOfHalfASecondCostsThirtySlotsAndLeavesThePhase) {
     if (!guard_active()) GTEST_SKIP() << "sanitizers make a forked child's signals unreliable";
-    test::Told under_way;
+    test::StartSignal under_way;
     const auto body = [&] {
         RealClock clock;
-        test::TellingStages stages(under_way);
+        test::SignallingStages stages(under_way);
         SpscRing<FrameRecord> ring(256);
         FrameLoopOptions options;
         options.period_ns = period_ns;
@@ -157,8 +157,8 @@ TEST(NothingHidden, AStopOfHalfASecondCostsThirtySlotsAndLeavesThePhase) {
 
 /// SUREFOOT_GRID_SECONDS=600 is the ten minutes of the requirement.
 TEST(NothingHidden, RunAndSkippedAreElapsedExactly) {
-    const char* asked = std::getenv("SUREFOOT_GRID_SECONDS");
-    const double seconds = asked != nullptr ? std::atof(asked) : 3;
+    const char* requested = std::getenv("SUREFOOT_GRID_SECONDS");
+    const double seconds = requested != nullptr ? std::atof(requested) : 3;
     RealClock clock;
     Stalling stages;
     stages.stalls = 10;

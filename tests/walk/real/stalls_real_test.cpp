@@ -23,8 +23,8 @@ TEST(MonitoredWalk, TwentyInjectedStallsOfFiftyMillisecondsAreThereInFull) {
     telemetry->begin({*rt::period_of_rate_ns(request.rate_hz), rt::LatePolicy::lock, 1});
     std::uint64_t injected = 0, skipped_after = 0, first_slot = 0, last_slot = 0, late_in_full = 0;
     bool stalled = false;
-    walk::WalkWatch watch;
-    watch.inject = [&](walk::FramePhase phase, const rt::FrameRecord& frame) {
+    walk::WalkObserver observer;
+    observer.inject = [&](walk::FramePhase phase, const rt::FrameRecord& frame) {
         if (phase == walk::FramePhase::select && frame.frame >= 30 && frame.frame % 12 == 0 && injected < stalls) {
             const timespec stall{0, stall_ns};
             (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &stall, nullptr);
@@ -32,7 +32,7 @@ TEST(MonitoredWalk, TwentyInjectedStallsOfFiftyMillisecondsAreThereInFull) {
         }
         return walk::Fault::none;
     };
-    watch.on_record = [&](const rt::FrameRecord& frame) {
+    observer.on_record = [&](const rt::FrameRecord& frame) {
         if (frame.frame == 0) first_slot = frame.slot;
         last_slot = frame.slot;
         skipped_after += stalled ? frame.skipped_before : 0;
@@ -40,7 +40,7 @@ TEST(MonitoredWalk, TwentyInjectedStallsOfFiftyMillisecondsAreThereInFull) {
         late_in_full += stalled && frame.presented_ns - frame.due_ns >= stall_ns ? 1 : 0;
         telemetry->add(frame);
     };
-    const auto outcome = walk::run_walk(request, {}, watch);
+    const auto outcome = walk::run_walk(request, {}, observer);
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
 
     const rt::Figures& f = telemetry->figures();

@@ -70,12 +70,12 @@ TEST_P(Workers, OfAWalkAreInTheirPlacesBeforeTheFirstFrameAndTheCensusCountsThem
     request.rate_hz = 100;
     request.workers = workers;
     std::vector<Scheduled> started, preparing;
-    walk::WalkWatch watch;
-    watch.on_started = [&](const walk::WalkStart&) {
+    walk::WalkObserver observer;
+    observer.on_started = [&](const walk::WalkStart&) {
         started = threads_named("sf-worker");
         preparing = threads_named("sf-prepare");
     };
-    const auto outcome = walk::run_walk(request, {}, watch);
+    const auto outcome = walk::run_walk(request, {}, observer);
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     EXPECT_EQ(started.size(), static_cast<std::size_t>(workers - 1)) << "the walk's own thread is one of the workers";
     EXPECT_EQ(preparing.size(), 1U);

@@ -1,0 +1,190 @@
+// From choices a candidate to the cut: floor, list, sums, hash, switches, memory.
+#include "render/select/cut_builder.hpp"
+
+#include <algorithm>
+
+#include "render/select/bucket_queue.hpp"
+#include "render/select/scratch.hpp"
+#include "rt/base/hash.hpp"
+
+namespace surefoot::select {
+
+namespace {
+
+// One multiplication an item: FNV-1a over eight bytes each takes longer than the whole search.
+std::uint64_t mixed(std::uint64_t hash, const CutItem& item) {
+    hash = (hash ^ (static_cast<std::uint64_t>(item.node) << 32U | item.rep)) * 0x9e3779b97f4a7c15ULL;
+    return hash ^ (hash >> 29U);
+}
+
+}  // namespace
+
+SelectState::SelectState() : scratch_(std::make_unique<Scratch>()) {}
+SelectState::~SelectState() = default;
+SelectState::SelectState(SelectState&&) noexcept = default;
+SelectState& SelectState::operator=(SelectState&&) noexcept = default;
+
+std::uint32_t SelectState::max_candidates() const { return static_cast<std::uint32_t>(scratch_->chosen.size()); }
+
+void SelectState::reserve(const model::Model& model, std::uint32_t max_candidates) {
+    shown.assign(model.nodes.size(), none);
+    for (std::vector<Shown>* list : {&touched, &before}) {
+        list->clear();
+        list->reserve(max_candidates);
+    }
+    scratch_->links.resize(max_candidates);
+    scratch_->queue_heads.resize(2 * BucketQueue::buckets);
+    scratch_->step_sums.resize(4 * BucketQueue::buckets);
+    scratch_->chosen.resize(max_candidates);
+    scratch_->list.resize(max_candidates);
+}
+
+void reserve(Cut& cut, std::uint32_t max_candidates) { cut.items.reserve(max_candidates); }
+
+void clear(Cut& cut) {
+    cut.items.clear();
+    cut.sum = {};
+    cut.predicted_us = cut.floor_us = cut.worst_error_rad = 0;
+    cut.floor_binds = false;
+    cut.benefit = 0;
+    cut.triangles = cut.hash = 0;
+    cut.switches = cut.refinements = 0;
+}
+
+bool has_room(const SelectInput& input, const SelectState& state, const Cut& cut) {
+    const std::size_t n = input.prepared->candidates.size();
+    return n > 0 && n <= state.max_candidates() && n <= state.touched.capacity() && n <= state.before.capacity() &&
+           n <= cut.items.capacity();
+}
+
+CutBuilder::CutBuilder(const SelectInput& input, SelectState& state)
+    : prepared_(*input.prepared),
+      state_(state),
+      chosen_(std::span(state.scratch().chosen).first(input.prepared->candidates.size())),
+      scratch_(std::span(state.scratch().list).first(input.prepared->candidates.size())) {}
+
+// Candidates are in breadth-first order, so a first-in first-out walk meets them ascending.
+std::span<std::uint32_t> CutBuilder::take_floor() {
+    std::fill(chosen_.begin(), chosen_.end(), none);
+    floor_ = {};
+    std::size_t head = 0, tail = 1, items = 0;
+    scratch_[0] = 0;
+    while (head < tail) {
+        const Index c = scratch_[head++];
+        const prepare::Candidate& candidate = prepared_.candidates[c];
+        if (candidate.floor_open) {
+            open(c);
+            for (Index k = 0; k < candidate.child_count; ++k) scratch_[tail++] = candidate.first_child + k;
+        } else {
+            choose(c, 0);
+            floor_.add(prepared_.choices[candidate.first_choice].cost);
+            scratch_[items++] = c;
+        }
+    }
+    return scratch_.first(items);
+}
+
+std::uint32_t CutBuilder::take_finest() {
+    std::uint32_t steps = 0;
+    for (Index c = 0; c < chosen_.size(); ++c) {
+        const prepare::Candidate& candidate = prepared_.candidates[c];
+        const bool leaf = candidate.child_count == 0;
+        if (chosen_[c] != SelectState::opened) steps += candidate.choice_count - (leaf ? 1U : 0U);  // else the floor did
+        chosen_[c] = leaf ? candidate.choice_count - 1 : SelectState::opened;
+    }
+    return steps;
+}
+
+bool CutBuilder::finest_is_cheapest(const Budget& budget) const {
+    Sum full;
+    full.add(prepared_.full_cost);
+    return budget.predicted_us(full) * (1.0 + 1e-6) < budget.predicted_us(floor_);
+}
+
+void CutBuilder::take_root(std::uint32_t offset) {
+    take_floor();  // for its cost
+    std::fill(chosen_.begin(), chosen_.end(), none);
+    choose(0, offset);
+}
+
+// A thing that came into view is no switch; a thing that was shown by another form, an ancestor or descendants is.
+bool CutBuilder::switched(Index c, Index rep) const {
+    const Index before = state_.shown[prepared_.candidates[c].node];
+    if (before != none) return before != rep;
+    for (Index p = prepared_.candidates[c].parent; p != none; p = prepared_.candidates[p].parent) {
+        const Index above = state_.shown[prepared_.candidates[p].node];
+        if (above != none) return above != SelectState::opened;
+    }
+    return false;
+}
+
+void CutBuilder::list_items(const Budget& budget, Cut& cut) {
+    Sum sum;
+    cut.hash = fnv_start;
+    for (Index c = 0; c < chosen_.size(); ++c) {
+        if (chosen_[c] >= SelectState::opened) continue;
+        const prepare::Candidate& candidate = prepared_.candidates[c];
+        const Index k = candidate.first_choice + chosen_[c];
+        const prepare::Choice& choice = prepared_.choices[k];
+        const CutItem item{c, candidate.node, choice.rep, k};
+        cut.items.push_back(item);
+        sum.add(choice.cost);
+        cut.worst_error_rad = std::max(cut.worst_error_rad, choice.error_rad);
+        cut.benefit += 1.0 - static_cast<double>(choice.benefit);
+        cut.triangles += choice.triangles;
+        cut.switches += switched(c, choice.rep) ? 1U : 0U;
+        cut.hash = mixed(cut.hash, item);
+    }
+    cut.sum = {static_cast<float>(sum.submit_us), static_cast<float>(sum.raster_us)};
+    cut.predicted_us = static_cast<float>(budget.predicted_us(sum));
+}
+
+void CutBuilder::remember(const Cut& cut) {
+    for (const Shown& last : state_.touched) state_.shown[last.node] = none;
+    std::swap(state_.before, state_.touched);
+    state_.touched.clear();
+    const CutItem* item = cut.items.data();  // one a candidate that is drawn, in order
+    for (Index c = 0; c < chosen_.size(); ++c) {
+        if (chosen_[c] == none) continue;
+        const bool open = chosen_[c] == SelectState::opened;
+        const Shown now = open ? Shown{prepared_.candidates[c].node, SelectState::opened} : Shown{item->node, item->rep};
+        if (!open) ++item;
+        state_.shown[now.node] = now.form;
+        state_.touched.push_back(now);
+    }
+}
+
+void CutBuilder::finish(const Budget& budget, std::uint32_t refinements, Cut& cut) {
+    list_items(budget, cut);
+    // What is drawn is a legal cut: if it is cheaper than the floor, it is the floor.
+    cut.floor_us = std::min(static_cast<float>(budget.predicted_us(floor_)), cut.predicted_us);
+    cut.floor_binds = !budget.fits_us(static_cast<double>(cut.floor_us));
+    cut.refinements = refinements;
+    remember(cut);
+}
+
+std::string check_legal(const prepare::PreparedFrame& prepared, const Cut& cut) {
+    const auto& candidates = prepared.candidates;
+    std::vector<std::uint8_t> covered(candidates.size(), 0);
+    for (const CutItem& item : cut.items) {
+        if (item.candidate >= candidates.size()) return "The candidate of an item does not exist";
+        const prepare::Candidate& c = candidates[item.candidate];
+        if (item.node != c.node) return "The item of candidate " + std::to_string(item.candidate) + " names another node";
+        if (item.choice < c.first_choice || item.choice - c.first_choice >= c.choice_count ||
+            prepared.choices[item.choice].rep != item.rep) {
+            return "Candidate " + std::to_string(item.candidate) + " is drawn by a form that is none of its choices";
+        }
+        if (covered[item.candidate] != 0) return "Candidate " + std::to_string(item.candidate) + " is drawn twice";
+        covered[item.candidate] = 1;
+    }
+    for (std::size_t i = 0; i < candidates.size(); ++i) {  // parents before children: one pass hands the cover down
+        const prepare::Candidate& c = candidates[i];
+        const bool above = c.parent != none && covered[c.parent] != 0;
+        if (above && covered[i] != 0) return "Candidate " + std::to_string(i) + " is drawn below a drawn ancestor";
+        if (above) covered[i] = 1;
+        if (c.child_count == 0 && covered[i] == 0) return "The visible leaf " + std::to_string(i) + " is not covered";
+    }
+    return {};
+}
+
+}  // namespace surefoot::select

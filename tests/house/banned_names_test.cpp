@@ -1,0 +1,345 @@
+// Names that were replaced by the field's standard words do not come back: as identifiers in code, and as names of files.
+// Comments and string literals are not looked at: keys and messages are contracts.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace surefoot::house {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path top_folder = SUREFOOT_SOURCE_DIR;
+
+struct Banned {
+    std::string_view name, instead;
+};
+
+const std::vector<Banned>& banned_names() {
+    static const std::vector<Banned> names = {
+        {"absorbed", "combined"},
+        {"ask", "evaluate or schedule"},
+        {"ask_axes", "evaluate_axes"},
+        {"ask_hat", "evaluate_hat"},
+        {"ask_ns", "answer_limit_ns"},
+        {"ask_relative", "evaluate_relative"},
+        {"Asked", "DeviceOutput or Requested"},
+        {"asked", "output or requested"},
+        {"asks", "requests_motion"},
+        {"attend", "dispatch or poll_live or supervise"},
+        {"Attendant", "DeviceRouter"},
+        {"attendant", "router"},
+        {"Attended", "Attached"},
+        {"attended", "attached"},
+        {"Bakery", "BakeContext"},
+        {"bakery", "context"},
+        {"bent", "custom_normal"},
+        {"bent_", "custom_normal_"},
+        {"Beside", "ThreadedDiscoverer"},
+        {"black_box", "incident_recorder"},
+        {"black_box_", "incident_recorder_"},
+        {"BlackBox", "IncidentRecorder"},
+        {"BlackBoxOptions", "IncidentRecorderOptions"},
+        {"Cover", "CutBuilder or TriangleCoverage"},
+        {"develop", "render_snapshot"},
+        {"discover_beside", "threaded_discoverer"},
+        {"discover_here", "inline_discoverer"},
+        {"do_button", "evaluate_button"},
+        {"Foresight", "PredictedRegion"},
+        {"foresight", "predicted"},
+        {"foretold", "expected"},
+        {"ForetoldEvents", "ExpectedEvents"},
+        {"gather_up", "propagate_up"},
+        {"Habit", "ReportCadence"},
+        {"habit", "cadence"},
+        {"hold_down", "enforce_monotone_benefit"},
+        {"input_told", "reported_input"},
+        {"Look", "CutFixture or TerminalStyle"},
+        {"look_at_children", "visit_children"},
+        {"lost_notes", "lost_messages"},
+        {"make_ready", "make_attachment"},
+        {"make_shot_store", "make_snapshot_store"},
+        {"mend", "repair"},
+        {"mend_checksums", "repair_checksums"},
+        {"mend_corners", "repair_corners"},
+        {"mend_uvs", "repair_uvs"},
+        {"Mended", "Repairs"},
+        {"MetDevice", "KnownDevice"},
+        {"narrow", "cull_planes"},
+        {"News", "ReportActivity"},
+        {"news", "activity"},
+        {"next_note", "next_message"},
+        {"note_loss", "record_loss"},
+        {"note_told", "mark_reported"},
+        {"noted", "format_message"},
+        {"NoteLine", "MessageLine"},
+        {"OpensBeside", "ThreadedLineOpener"},
+        {"OpensHere", "InlineLineOpener"},
+        {"Places", "CoincidentVertices"},
+        {"put_off_", "deferred_"},
+        {"put_off_count_", "deferred_count_"},
+        {"Readied", "DeviceAttachment"},
+        {"readied", "attachment"},
+        {"readier", "attachment_factory"},
+        {"ReadyDevice", "SteeringAttachment"},
+        {"ReportShot", "ReportSnapshot"},
+        {"ring_bell", "signal_event"},
+        {"said", "messages or reported or sent"},
+        {"Say", "MessageSink"},
+        {"say", "emit or log or notify or print or write"},
+        {"says", "expects"},
+        {"settle", "robust_frame_times"},
+        {"settle_at_most_ns", "max_rest_wait_ns"},
+        {"settle_ns", "debounce_ns"},
+        {"settle_s", "debounce_s"},
+        {"settle_ties", "apply_depth_bias"},
+        {"Settled", "FrameTimes"},
+        {"settled", "frame_times"},
+        {"Shot", "FrameSnapshot"},
+        {"shot", "snapshot"},
+        {"shot_card", "snapshot_card"},
+        {"shot_cards", "snapshot_cards"},
+        {"shot_memory_bytes", "snapshot_memory_bytes"},
+        {"shot_of", "snapshot_of"},
+        {"shots", "snapshots"},
+        {"shots_", "snapshots_"},
+        {"shots_s", "snapshots_s"},
+        {"shots_that_fit", "snapshots_that_fit"},
+        {"ShotStore", "SnapshotStore"},
+        {"silent", "timed_out"},
+        {"Standing", "ServiceState"},
+        {"standing", "state"},
+        {"standing_", "state_"},
+        {"Surfaces", "PixelEstimator"},
+        {"tell", "emit or notify"},
+        {"TellingStages", "SignallingStages"},
+        {"tells", "reports"},
+        {"terminal_look", "terminal_style"},
+        {"thrift", "cost_penalty"},
+        {"tie_ranks", "depth_bias_ranks"},
+        {"TieRanks", "DepthBiasRanks"},
+        {"ties", "depth_bias"},
+        {"times_said", "count_messages"},
+        {"told", "notified or reported"},
+        {"UdevTold", "UdevEventTime"},
+        {"unforetold", "unexpected"},
+        {"upper_factor", "headroom"},
+        {"upper_factor_of", "headroom_of"},
+        {"Visit", "NodeVisit or StackEntry or TourController or Visitor"},
+        {"waiting_said_", "unused_reported_"},
+        {"WalkWatch", "WalkObserver"},
+        {"was_told", "was_reported"},
+        {"watch_with", "attach_monitor"},
+        {"Wish", "MotionRequest or StopRequest"},
+        {"wish", "request"},
+        {"wishes", "requests"},
+        {"wrongness", "unusable_penalty"},
+    };
+    return names;
+}
+
+/// Identifiers that begin so.
+const std::vector<Banned>& banned_prefixes() {
+    static const std::vector<Banned> prefixes = {
+        {"most_", "max_"},    {"least_", "min_"},     {"say_", "log_ or warn_ or print_"},
+        {"tell_", "notify_"}, {"told_", "reported_"}, {"said_", "reported_"},
+    };
+    return prefixes;
+}
+
+/// Sources by path without ending.
+const std::vector<Banned>& banned_files() {
+    static const std::vector<Banned> files = {
+        {"input/devices/attendant", "device_router"},
+        {"input/devices/discover_beside", "threaded_discoverer"},
+        {"input/devices/discover_here", "inline_discoverer"},
+        {"input/notes", "messages"},
+        {"input/safety/habit", "report_cadence"},
+        {"tests/input/attendant_test", "device_router_test"},
+        {"tests/input/foretold_events", "expected_events"},
+        {"tools/walk/visit", "tour_controller"},
+        {"tests/walk/visit_test", "tour_controller_test"},
+        {"systemd/daemon/standing", "service_state"},
+        {"tools/walk/shots", "snapshots"},
+        {"rt/monitor/black_box", "incident_recorder"},
+        {"tests/rt/black_box_test", "incident_recorder_test"},
+        {"render/model/surfaces", "pixel_estimator"},
+        {"tests/model/surfaces_test", "pixel_estimator_test"},
+        {"render/draw/ties", "coincidence"},
+        {"render/prepare/passes", "tree_passes"},
+        {"render/select/queue", "bucket_queue"},
+        {"render/select/fixed", "flat_distance"},
+        {"render/select/search", "depth_first"},
+        {"render/select/cover", "cut_builder"},
+        {"render/measure/cover", "triangle_coverage"},
+        {"render/import/mend", "repair"},
+        {"tools/soak/judge", "soak_verdict"},
+        {"tests/soak/judge_test", "soak_verdict_test"},
+        {"tools/selftest/judge", "scene_check"},
+        {"tools/selftest/look", "cut_fixture"},
+        {"tools/monitor/watch", "attach_monitor"},
+    };
+    return files;
+}
+
+/// What to say instead of an identifier; empty where it may stay.
+std::string_view instead_of(std::string_view identifier) {
+    for (const Banned& banned : banned_names())
+        if (identifier == banned.name) return banned.instead;
+    for (const Banned& banned : banned_prefixes())
+        if (identifier.starts_with(banned.name)) return banned.instead;
+    return {};
+}
+
+struct Found {
+    std::size_t line = 0;
+    std::string identifier;
+};
+
+bool begins_identifier(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool is_part(char c) { return begins_identifier(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+/// Walks over C++ text and collects the banned identifiers of its code.
+class Reader {
+public:
+    explicit Reader(std::string_view text) : text_(text) {}
+
+    std::vector<Found> run() {
+        while (at_ < text_.size()) {
+            const std::string_view rest = text_.substr(at_);
+            if (rest.starts_with("//"))
+                skip_to("\n", 0);
+            else if (rest.starts_with("/*"))
+                skip_to("*/", 2);
+            else if (rest.front() == '"')
+                skip_quoted('"');
+            else if (rest.front() == '\'')
+                skip_quoted('\'');
+            else if (std::isdigit(static_cast<unsigned char>(rest.front())) != 0)
+                skip_number();
+            else if (begins_identifier(rest.front()))
+                take_identifier();
+            else
+                advance(1);
+        }
+        return std::move(found_);
+    }
+
+private:
+    void advance(std::size_t count) {
+        count = std::min(count, text_.size() - at_);
+        line_ += static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_),
+                                                     text_.begin() + static_cast<std::ptrdiff_t>(at_ + count), '\n'));
+        at_ += count;
+    }
+    void skip_to(std::string_view end, std::size_t beyond) {
+        const auto found = text_.find(end, at_ + beyond);
+        advance(found == std::string_view::npos ? text_.size() : found + beyond - at_);
+    }
+    void skip_quoted(char quote) {
+        std::size_t end = at_ + 1;
+        while (end < text_.size() && text_[end] != quote) end += text_[end] == '\\' ? 2 : 1;
+        advance(end + 1 - at_);
+    }
+    void skip_number() {  // 1'000'000 too
+        std::size_t end = at_;
+        while (end < text_.size() && (is_part(text_[end]) || text_[end] == '.' || text_[end] == '\'')) ++end;
+        advance(end - at_);
+    }
+    void take_identifier() {
+        std::size_t end = at_;
+        while (end < text_.size() && is_part(text_[end])) ++end;
+        const std::string_view identifier = text_.substr(at_, end - at_);
+        if (identifier.ends_with('R') && identifier.size() <= 3 && end < text_.size() && text_[end] == '"') {
+            const auto open = text_.find('(', end);
+            const std::string close = ")" + std::string(text_.substr(end + 1, open - end - 1)) + "\"";
+            advance(open + 1 - at_);
+            skip_to(close, 0);
+            advance(close.size());
+            return;
+        }
+        if (!instead_of(identifier).empty()) found_.push_back({line_, std::string(identifier)});
+        advance(identifier.size());
+    }
+
+    std::string_view text_;
+    std::size_t at_ = 0, line_ = 1;
+    std::vector<Found> found_;
+};
+
+std::string text_of(const fs::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// What a file should be called; empty where its name may stay. `file`: from the root, with '/'.
+std::string_view other_name(std::string_view file) {
+    for (const Banned& banned : banned_files())
+        if (file == std::string(banned.name) + ".cpp" || file == std::string(banned.name) + ".hpp") return banned.instead;
+    return {};
+}
+
+TEST(BannedNames, StandNowhereInTheSources) {
+    std::size_t files = 0;
+    for (const auto* top : {"rt", "render", "input", "config", "systemd", "tools", "tests"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(top_folder / top)) {
+            const auto kind = entry.path().extension();
+            if (!entry.is_regular_file() || (kind != ".cpp" && kind != ".hpp")) continue;
+            ++files;
+            const std::string file = fs::relative(entry.path(), top_folder).generic_string();
+            EXPECT_EQ(other_name(file), "") << file << " has another name now";
+            const std::string text = text_of(entry.path());
+            for (const Found& found : Reader(text).run())
+                ADD_FAILURE() << file << ":" << found.line << ": " << found.identifier << " is called "
+                              << instead_of(found.identifier);
+        }
+    }
+    EXPECT_GT(files, 500U) << "the sources were not found";
+}
+
+TEST(BannedNames, AreFoundInCodeAndNowhereElse) {
+    const auto found = [](std::string_view text) {
+        std::string all;
+        for (const Found& f : Reader(text).run()) all += (all.empty() ? "" : " ") + std::to_string(f.line) + ":" + f.identifier;
+        return all;
+    };
+    EXPECT_EQ(found("int a;\nAttendant b;\n"), "2:Attendant");
+    EXPECT_EQ(found("x->most_parts + least_m;"), "1:most_parts 1:least_m");
+    EXPECT_EQ(found("at_most(1); outermost; attendants; max_parts;"), "");
+    EXPECT_EQ(found("// Attendant\n/* Attendant\n */ tell(s);"), "3:tell");
+    EXPECT_EQ(found(R"(f("say \" Attendant", '"', say);)"), "1:say");
+    EXPECT_EQ(found("f(R\"x(\n\" say )\" )x\", said);"), "2:said");
+    EXPECT_EQ(found("a = 1'000'000; b = 'x'; thrift(1'0);"), "1:thrift");
+    EXPECT_EQ(found("#include \"input/devices/attendant.hpp\"\n"), "");
+}
+
+TEST(BannedNames, OfFilesAreFound) {
+    EXPECT_EQ(other_name("input/devices/attendant.hpp"), "device_router");
+    EXPECT_EQ(other_name("render/select/queue.hpp"), "bucket_queue");
+    EXPECT_EQ(other_name("render/select/bucket_queue.hpp"), "");
+    EXPECT_EQ(other_name("tools/walk/visit.md"), "");
+}
+
+TEST(BannedNames, HaveAnAllowedNameInstead) {
+    for (const auto* list : {&banned_names(), &banned_prefixes()}) {
+        EXPECT_FALSE(list->empty());
+        for (const Banned& banned : *list) {
+            EXPECT_FALSE(banned.instead.empty()) << banned.name;
+            std::size_t from = 0;
+            for (std::size_t end = 0; end != std::string_view::npos; from = end + 4) {
+                end = banned.instead.find(" or ", from);
+                EXPECT_EQ(instead_of(banned.instead.substr(from, end - from)), "") << "in place of " << banned.name;
+                if (end == std::string_view::npos) break;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::house

@@ -1,0 +1,126 @@
+// Snapshots of frames: remembered during a walk without allocating, and drawn again after it.
+#include "tools/walk/snapshots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "render/image/image.hpp"
+#include "render/measure/image_metrics.hpp"
+#include "rt/base/check.hpp"
+
+namespace surefoot::walk {
+
+std::size_t snapshots_that_fit(std::size_t max_items) {
+    return std::max<std::size_t>(1, snapshot_memory_bytes / (sizeof(FrameSnapshot) + max_items * sizeof(gl::DrawItem)));
+}
+
+SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t most, std::size_t max_items)
+    : every_(every), snapshots_(every == 0 ? 0 : most) {
+    for (FrameSnapshot& snapshot : snapshots_) {
+        snapshot.items.resize(max_items);  // touched now, so that the copy later does not fault
+        snapshot.items.clear();
+    }
+}
+
+void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, std::uint64_t triangles,
+                             std::span<const gl::DrawItem> items) {
+    if (every_ == 0 || frame % every_ != 0 || used_ == snapshots_.size()) return;
+    FrameSnapshot& snapshot = snapshots_[used_];
+    if (!CHECK_RARE(items.size() <= snapshot.items.capacity(), "a shot has room for all that is drawn")) return;
+    snapshot.frame = frame;
+    snapshot.time_s = time_s;
+    snapshot.pose = pose;
+    snapshot.accuracy = accuracy;
+    snapshot.triangles = triangles;
+    snapshot.items.assign(items.begin(), items.end());
+    ++used_;
+}
+
+namespace {
+
+/// 0 for the coarsest form of a node, 1 for its full detail.
+float detail_of(const model::Model& model, const gl::DrawItem& item) {
+    const model::Node& node = model.nodes[item.node];
+    if (node.triangles == 0) return 1.0F;
+    const double share = static_cast<double>(model.reps[item.rep].triangles) / static_cast<double>(node.triangles);
+    return static_cast<float>(std::clamp(1.0 + std::log2(std::max(share, 1e-6)) / 10.0, 0.0, 1.0));
+}
+
+void add_top_view(const Engine& engine, const FrameSnapshot& snapshot, report::ReportSnapshot& out) {
+    const model::Model& model = engine.model();
+    const Box& world = model.nodes[0].box;
+    out.world_xz = {world.min.x, world.min.z, world.max.x, world.max.z};
+    const dvec3 forward = snapshot.pose.forward();
+    out.eye = {snapshot.pose.position.x, snapshot.pose.position.y, snapshot.pose.position.z};
+    out.forward = {forward.x, forward.y, forward.z};
+    const model::SideAngles sides = model::side_angles(snapshot.pose, engine.options().device.viewport);
+    out.left_rad = sides.left;
+    out.right_rad = sides.right;
+    out.drawn.reserve(snapshot.items.size());
+    for (const gl::DrawItem& item : snapshot.items) {
+        const model::Node& node = model.nodes[item.node];
+        out.drawn.push_back({static_cast<float>(node.box.min.x), static_cast<float>(node.box.min.z),
+                             static_cast<float>(node.box.max.x), static_cast<float>(node.box.max.z), static_cast<int>(node.kind),
+                             detail_of(model, item)});
+    }
+}
+
+}  // namespace
+
+Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapshot& snapshot) {
+    report::ReportSnapshot out;
+    out.frame = snapshot.frame;
+    out.time_s = snapshot.time_s;
+    out.triangles = snapshot.triangles;
+    out.accuracy = snapshot.accuracy;
+    add_top_view(engine, snapshot, out);
+    const std::vector<gl::DrawItem> full = engine.full_detail(snapshot.pose);
+    for (const gl::DrawItem& item : full) out.full_triangles += engine.model().reps[item.rep].triangles;
+    if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
+
+    engine.device().draws.plays();
+    engine.draw_unbudgeted(snapshot.pose, snapshot.items);
+    auto walk = engine.device().read_pixels();
+    if (!walk) return walk.error();
+    engine.draw_unbudgeted(snapshot.pose, full);
+    auto reference = engine.device().read_pixels();
+    if (!reference) return reference.error();
+    out.width = walk->width;
+    out.height = walk->height;
+    out.snr_db = measure::snr(walk->rgba, reference->rgba).db;
+    out.ssim = measure::ssim(walk->rgba, reference->rgba, walk->width, walk->height);
+    out.difference = measure::difference_image(walk->rgba, reference->rgba);
+    out.walk = std::move(walk->rgba);
+    out.full = std::move(reference->rgba);
+    return out;
+}
+
+Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::string& dir, const Progress& progress) {
+    engine.device().draws.plays();
+    std::error_code error;
+    std::filesystem::create_directories(dir, error);
+    if (error)
+        return Error{dir, "The folder cannot be made: " + error.message(), "Name another folder with --snap",
+                     ErrorKind::unwritable};
+    for (std::size_t i = 0; i < store.used(); ++i) {
+        if (progress.stopped()) {
+            return Error{
+                dir,
+                fmt::format("The walk was stopped by the user with {} of {} pictures written: the rest is lost", i, store.used()),
+                "", ErrorKind::stopped};
+        }
+        progress.update("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
+        const FrameSnapshot& snapshot = store.snapshots()[i];
+        engine.draw_unbudgeted(snapshot.pose, snapshot.items);
+        auto image = engine.device().read_pixels();
+        if (!image) return image.error();
+        auto written = image::write_png(fmt::format("{}/{:05}.png", dir, i), image->width, image->height, image->rgba);
+        if (!written) return written;
+    }
+    return {};
+}
+
+}  // namespace surefoot::walk

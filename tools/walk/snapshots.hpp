@@ -1,0 +1,55 @@
+// Snapshots of frames: remembered during a walk without allocating, and drawn again after it: the walk's picture beside full
+// detail.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/engine.hpp"
+#include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
+#include "rt/frame/record.hpp"
+#include "tools/report/report.hpp"
+
+namespace surefoot::walk {
+
+/// What one frame drew, exactly: enough to draw it again.
+struct FrameSnapshot {
+    std::uint64_t frame = 0;
+    double time_s = 0;
+    Pose pose;
+    float accuracy = 0;
+    std::uint64_t triangles = 0;
+    std::vector<gl::DrawItem> items;
+};
+
+/// What all snapshots of a walk may take. 512 of them on the largest models.
+constexpr std::size_t snapshot_memory_bytes = 256U << 20U;
+/// At least one.
+std::size_t snapshots_that_fit(std::size_t max_items);
+
+/// Sized before the walk; remember() only copies.
+class SnapshotStore {
+public:
+    /// Every `every` frames, at most `most` snapshots of at most `max_items` items each.
+    SnapshotStore(std::uint64_t every, std::size_t most, std::size_t max_items);
+    /// On the frame thread. Frames that are not due, or beyond the store, are passed over.
+    void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, std::uint64_t triangles,
+                  std::span<const gl::DrawItem> items);
+    [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
+    [[nodiscard]] std::size_t used() const { return used_; }
+
+private:
+    std::uint64_t every_;
+    std::vector<FrameSnapshot> snapshots_;
+    std::size_t used_ = 0;
+};
+
+/// Draws a snapshot again, and full detail, and measures the difference; with the top view of what was drawn.
+Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapshot& snapshot);
+
+/// DIR/00000.png, ... one a snapshot, named by frame number over `every`.
+Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::string& dir, const Progress& progress);
+
+}  // namespace surefoot::walk

@@ -1,0 +1,51 @@
+// What the visitor's buttons do: next viewpoint, reset, tour, pause; and what becomes of a tick's sample.
+//
+//   steered ──tour──► touring (follows the path from where the tour was left) ──the hand moves, or a stop──► steered
+//   pause: stands still until pressed again; the other three go on from a pause. A stop lets nothing through but pause.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "input/steering.hpp"
+#include "rt/base/path.hpp"
+
+namespace surefoot::walk {
+
+constexpr int viewpoint_count = 8;  ///< along the path, at equal times
+
+/// The pose at a time: the path forth and back again for as long as the walk lasts (a jump back would be a teleport).
+Pose pose_at(const Path& path, double time_s);
+
+class TourController {
+public:
+    /// Starts where the path does. The path must outlive this.
+    explicit TourController(const Path& path);
+
+    [[nodiscard]] const Pose& start() const { return viewpoints_.front(); }
+    /// After every tick of `steering`, on its thread: puts the eye elsewhere where a button asks for it, and writes what the
+    /// frame thread is to see into `sample`. Edges are taken from the tick, so none is lost and none is taken twice.
+    void follow(input::NavigationSample& sample, input::Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers);
+
+    [[nodiscard]] bool touring() const { return touring_; }
+    [[nodiscard]] bool paused() const { return paused_; }
+    /// How often the eye was put elsewhere without walking there.
+    [[nodiscard]] std::uint32_t jumps() const { return jumps_; }
+
+private:
+    void press_buttons(input::NavigationSample& sample, input::Steering& steering) REQUIRES(steering.steers);
+    void put(const Pose& pose, input::NavigationSample& sample, input::Steering& steering) REQUIRES(steering.steers);
+    void tour(input::NavigationSample& sample, input::Steering& steering, double dt_s) REQUIRES(steering.steers);
+
+    const Path& path_;
+    std::vector<Pose> viewpoints_;
+    std::size_t viewpoint_ = 0;
+    double tour_s_ = 0;
+    bool touring_ = false, paused_ = false;
+    bool hand_rested_ = false;  ///< since the tour began: a hand that held on while it was pressed does not end it
+    std::uint32_t jumps_ = 0;
+    std::int64_t last_ns_ = -1;
+    Pose last_;
+};
+
+}  // namespace surefoot::walk
