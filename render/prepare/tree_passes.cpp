@@ -7,6 +7,10 @@ namespace surefoot::prepare {
 
 namespace {
 
+/// Costs that differ by less count as equal: a node and its only child fill the same pixels, and rounding decides which comes out
+/// dearer. Otherwise the cut would depend on the compiler.
+constexpr float same_cost = 1.0001F;
+
 struct Below {
     Weight weight;      ///< greatest weight and least distance among the visible leaves below
     float benefit = 0;  ///< the children's greatest
@@ -52,7 +56,7 @@ void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std
             continue;
         }
         const Below sum = below(candidate, weights, frame, candidate.children_cost);
-        if (cost_metric(combine, sum.floor) <= cost_metric(combine, candidate.floor_cost)) {
+        if (cost_metric(combine, sum.floor) <= same_cost * cost_metric(combine, candidate.floor_cost)) {
             candidate.floor_cost = sum.floor;  // no dearer and finer
             candidate.floor_open = true;
         }

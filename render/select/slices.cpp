@@ -107,7 +107,7 @@ void append_unit(const CutTree& tree, Index unit, std::span<std::uint32_t> stack
     while (top > 0) {
         const Index c = stack[--top];
         const prepare::Candidate& candidate = tree.candidate(c);
-        if (!tree.is_item(c) && candidate.floor_open) {  // the children are no dearer than the node
+        if (!tree.is_item(c) && candidate.floor_open) {  // the children are no dearer than the node, but for rounding
             for (Index k = candidate.child_count; k-- > 0;) stack[top++] = candidate.first_child + k;
             continue;
         }

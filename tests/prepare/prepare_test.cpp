@@ -343,5 +343,30 @@ TEST(Thrift, OfTwoStepsThatAreEquallyWorthTheCheaperGoesFirst) {
     EXPECT_FLOAT_EQ(benefit_of_step(-5), 0.8F) << "what costs less than nothing is worth no more than it is";
 }
 
+/// A node that costs 500 ms and its only child, dearer by `factor`: is the child the floor?
+bool child_is_the_floor(float factor) {
+    PreparedFrame frame;
+    Candidate node, child;
+    node.choice_count = child.choice_count = 1;
+    node.first_child = child.first_choice = 1;
+    node.child_count = 1;
+    child.parent = 0;
+    frame.candidates = {node, child};
+    frame.choices.resize(2);
+    frame.choices[0].cost.raster_us = 500'000;
+    frame.choices[1].cost.raster_us = 500'000 * factor;
+    std::vector<Weight> weights(2);
+    gather_up({}, 1e-3F, weights, frame);
+    return frame.candidates[0].floor_open;
+}
+
+TEST(Floor, OpensWhereTheChildrenAreNoDearerButForRounding) {
+    EXPECT_TRUE(child_is_the_floor(0.9F));
+    EXPECT_TRUE(child_is_the_floor(1.0F));
+    EXPECT_TRUE(child_is_the_floor(1.00001F)) << "as much as the order of a sum may change it";
+    EXPECT_FALSE(child_is_the_floor(1.001F));
+    EXPECT_FALSE(child_is_the_floor(2.0F));
+}
+
 }  // namespace
 }  // namespace surefoot::prepare

@@ -72,7 +72,7 @@ boot() {
   local limit_s=$1 parameters=$2 from qemu tail_pid
   local accelerator=(-accel tcg -cpu max)
   accelerated=tcg
-  if kvm_works; then accelerator=(-accel kvm -cpu host) accelerated=kvm; fi
+  if kvm_works 2>/dev/null; then accelerator=(-accel kvm -cpu host) accelerated=kvm; fi
   echo "$accelerated" >"$share/in/accelerated"
   built_s=$((SECONDS - start - image_s))
   say "Booting $(cat "$cache/kernel/release") ($accelerated)"
