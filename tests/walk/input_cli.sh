@@ -61,7 +61,7 @@ tr -s ' \n' ' ' <out | grep -q '1 emergency stop; the walk stood still for' || c
 refuse 1 '^surefoot: absent.hid' walk f.walk $virtual --input absent.hid
 : >empty.hid; refuse 1 '^surefoot: empty.hid: .*R: line' walk f.walk $virtual --input empty.hid
 grep -v '^E:' walk-and-turn.hid >none.hid; refuse 1 '^surefoot: none.hid: .*no reports' walk f.walk $virtual --input none.hid
-head -c 1990 walk-and-turn.hid >cut.hid; refuse 1 '^surefoot: cut.hid: line [0-9]+: .*announced' walk f.walk $virtual --input cut.hid
+head -c 1990 walk-and-turn.hid >cut.hid; refuse 1 '^surefoot: cut.hid: line [0-9]+: .*announces' walk f.walk $virtual --input cut.hid
 refuse 1 'boot-keyboard.hid: .*does not steer: class reject' walk f.walk $virtual --input "$devices/boot-keyboard.hid"
 refuse 1 '^surefoot: f.glb' walk f.walk $virtual --input f.glb
 refuse 1 '^surefoot: absent.toml' walk f.walk $virtual --input buttons.hid --steering absent.toml
