@@ -3,8 +3,7 @@
 // Same as the kernel (hid-core, hid-input): sign extension only if the logical minimum is below zero. Values outside the logical
 // range are clamped; if the field has a null state, they are no value. Arrays list pressed buttons; a missing one is released; a
 // roll-over code keeps the array's last state. Different on purpose:
-//   - short, long and undeclared reports change nothing and are counted. The kernel cuts long ones. It drops short ones, but
-//   older
+//   - short, long and undeclared reports change nothing and are counted. The kernel cuts long ones. It drops short ones. Older
 //     kernels fill them with zeros, which is full deflection on an unsigned axis;
 //   - a null state of an axis or button is "no value", where evdev keeps the last one;
 //   - a hat is 0..7 and centred for *any* value outside its range (the kernel's division rounds some to north).

@@ -356,7 +356,7 @@ bool child_is_the_floor(float factor) {
     frame.choices[0].cost.raster_us = 500'000;
     frame.choices[1].cost.raster_us = 500'000 * factor;
     std::vector<Weight> weights(2);
-    gather_up({}, 1e-3F, weights, frame);
+    propagate_up({}, 1e-3F, weights, frame);
     return frame.candidates[0].floor_open;
 }
 
