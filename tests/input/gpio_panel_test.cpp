@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <utility>
-
 #include "rt/base/random.hpp"
 #include "tests/input/fake_lines.hpp"
 #include "tests/time_units.hpp"
@@ -82,9 +80,9 @@ TEST(Quadrature, IllegalTransitionsAreCountedNotGuessed) {
     EXPECT_EQ(q.turn(true, false), 1) << "11 to 10 counts up";
 }
 
-LineConfig line(std::string name, LineRole role) {
+LineConfig line(const std::string& name, LineRole role) {
     LineConfig c;
-    c.name = std::move(name);
+    c.name = name;
     c.role = role;
     c.request.chip = "gpiochip0";
     c.request.line = role == LineRole::encoder_b ? name + "-b" : name;
