@@ -182,7 +182,7 @@ TEST(DevicesTool, MapStoppedOrUnansweredWritesNothing) {
     stopped.signal(SIGINT);
     EXPECT_EQ(stopped.wait(), 130);
     Tool timed_out({"map", "-o", file, "--timeout", "0.1"});
-    EXPECT_EQ(unanswered.wait(20'000), 1);
+    EXPECT_EQ(timed_out.wait(20'000), 1);
     EXPECT_FALSE(std::filesystem::exists(file));
 }
 
