@@ -67,7 +67,8 @@ struct Occlusion::Tangents {
 };
 
 void Occlusion::begin_surface(const Rect& rect) {
-    const auto count = static_cast<std::size_t>(rect.x1 - rect.x0 + 1);
+    const int width = rect.x1 - rect.x0 + 1;
+    const auto count = static_cast<std::size_t>(width);
     for (int y = rect.y0; y <= rect.y1; ++y) {
         const std::size_t at = static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(rect.x0);
         std::fill_n(&covered_[at], count, 0.0F);
