@@ -22,7 +22,7 @@ void warn_of_ignored_input(const input::SteeringFile& steering, const input::Rec
         notes.push_back(fmt::format("{}: {} reports of other devices are ignored: only one device steers", request.input_file,
                                     recorded.recording.other_devices));
     }
-    for (const std::string& left_out : recorded.mapper.notes) notes.push_back(request.input_file + ": " + left_out);
+    for (const std::string& left_out : recorded.mapper.messages) notes.push_back(request.input_file + ": " + left_out);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pos
                              std::span<const gl::DrawItem> items) {
     if (every_ == 0 || frame % every_ != 0 || used_ == snapshots_.size()) return;
     FrameSnapshot& snapshot = snapshots_[used_];
-    if (!CHECK_RARE(items.size() <= snapshot.items.capacity(), "a shot has room for all that is drawn")) return;
+    if (!CHECK_RARE(items.size() <= snapshot.items.capacity(), "A snapshot has room for all that is drawn")) return;
     snapshot.frame = frame;
     snapshot.time_s = time_s;
     snapshot.pose = pose;
