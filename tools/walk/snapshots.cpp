@@ -17,8 +17,8 @@ std::size_t snapshots_that_fit(std::size_t max_items) {
     return std::max<std::size_t>(1, snapshot_memory_bytes / (sizeof(FrameSnapshot) + max_items * sizeof(gl::DrawItem)));
 }
 
-SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t most, std::size_t max_items)
-    : every_(every), snapshots_(every == 0 ? 0 : most) {
+SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items)
+    : every_(every), snapshots_(every == 0 ? 0 : max_snapshots) {
     for (FrameSnapshot& snapshot : snapshots_) {
         snapshot.items.resize(max_items);  // touched now, so that the copy later does not fault
         snapshot.items.clear();
