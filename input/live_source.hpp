@@ -1,4 +1,4 @@
-// Live devices as a source of reports: a thread finds and opens them, the attendant maps them; wired switches included.
+// Live devices as a source of reports: a thread finds and opens them, the router maps them; wired switches included.
 //
 //   sf-devices: finds, opens, maps ─► LiveDevices ─► DeviceRouter ─┐
 //   sf-lines: opens ─► GpioPanel ─► PanelDevice ───────────────────┴► Steering        messages ─► ring ─► whoever prints
@@ -26,7 +26,7 @@ struct LiveOptions {
     std::size_t stamps = std::size_t{1} << 20U;  ///< number of reports whose age is kept: 17 minutes at 1 kHz
 };
 
-/// For the real clock only. Without any device the walk rests until one is plugged in; this is noted once, and is no error.
+/// For the real clock only. Without any device the walk rests until one is plugged in; one message says so, and it is no error.
 class LiveSource final : public ReportSource {
 public:
     /// The real devices, found from now on. Error: udev cannot be used.
@@ -43,8 +43,8 @@ public:
     /// How many devices steer now, as of the last drain; any thread.
     [[nodiscard]] int steering_now() const { return steering_now_.load(std::memory_order_relaxed); }
 
-    /// The next note for the user; false: none. For one thread other than the draining one.
-    bool next_message(MessageLine& note) { return messages_.try_pop(note); }
+    /// The next message for the user; false: none. For one thread other than the draining one.
+    bool next_message(MessageLine& message) { return messages_.try_pop(message); }
     /// Messages that came too fast for that thread.
     [[nodiscard]] std::uint64_t lost_messages() const { return messages_.dropped(); }
 

@@ -1,4 +1,4 @@
-// Notes of the input thread for people: lines of fixed size, so that emitting one neither allocates, locks nor waits.
+// Messages of the input thread for people: lines of fixed size, so that emitting one neither allocates, locks nor waits.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ struct MessageLine {
     [[nodiscard]] std::string_view view() const { return {text.data(), size}; }
 };
 
-/// The receiver of notes. Must neither allocate nor lock if its caller must not.
+/// The receiver of messages. Must neither allocate nor lock if its caller must not.
 using MessageSink = std::function<void(std::string_view)>;
 
 template <class... T>

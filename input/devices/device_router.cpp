@@ -106,7 +106,7 @@ void DeviceRouter::added(const DeviceEvent& e) {
         own = make_attachment(mappings_, p);
         attachment = own.get();
     }
-    for (const std::string& note : attachment->mapper.notes) emit(sink_, "{} ({}): {}", p.node, p.name, note);
+    for (const std::string& message : attachment->mapper.messages) emit(sink_, "{} ({}): {}", p.node, p.name, message);
     if (attachment->configured >= 0) fitted_[static_cast<std::size_t>(attachment->configured)] = true;
     Slot* slot = find(-1);
     const int number = slot == nullptr ? -1

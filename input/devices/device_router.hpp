@@ -29,7 +29,7 @@ struct KnownDevice {
     rt::SteeringDevice description;
 };
 
-/// A device made ready for the attendant: holds everything that needs memory.
+/// A device prepared for the router: holds everything that needs memory.
 struct SteeringAttachment final : DeviceAttachment {
     explicit SteeringAttachment(const HidDevice& device) : decoder(device) {}
     Mapper mapper;
@@ -38,18 +38,18 @@ struct SteeringAttachment final : DeviceAttachment {
     DeviceState state;
     std::string identity, mapping;
     int configured = -1;  ///< which of the mappings; -1: the default of its class
-    KnownDevice known;    ///< entry for the list of met devices
+    KnownDevice known;    ///< entry for known_devices()
 };
 /// Uses the first matching mapping, else the default of the device's class.
 std::unique_ptr<SteeringAttachment> make_attachment(std::span<const DeviceMapping> mappings, const PluggedDevice& device);
 /// For FinderOptions: makes SteeringAttachments where devices are opened.
 std::function<std::unique_ptr<DeviceAttachment>(const PluggedDevice&)> attachment_factory(std::vector<DeviceMapping> mappings);
 
-/// Belongs to the thread that plays its steering's `steers`. dispatch() neither allocates nor frees if devices come readied, also
-/// while they come and go. Else it makes them ready itself.
+/// Belongs to the thread that plays its steering's `steers`. If devices come with their SteeringAttachment, dispatch() neither
+/// allocates nor frees, also while they come and go. Else it makes the attachment itself.
 class DeviceRouter {
 public:
-    /// `sink` gets a note, once each: devices that come, go or are refused; controls of a mapping that a device lacks.
+    /// `sink` gets a message, once each: devices that come, go or are refused; controls of a mapping that a device lacks.
     DeviceRouter(std::vector<DeviceMapping> mappings, Steering& steering, MessageSink sink = {});
 
     void dispatch(const DeviceEvent& event);
@@ -71,7 +71,7 @@ public:
     [[nodiscard]] int steering_now() const;
     /// How many pluggings have steered.
     [[nodiscard]] std::uint64_t pluggings() const { return pluggings_; }
-    /// Notes the mappings that match no device yet, except those that `elsewhere` reports as in use.
+    /// Emits a message for each mapping that matches no device yet, except those that `elsewhere` reports as used.
     void warn_unused_mappings(const std::function<bool(const DeviceMapping&)>& elsewhere) const;
     /// Short, long and undeclared reports: they changed nothing.
     [[nodiscard]] std::uint64_t refused_reports() const { return refused_reports_; }

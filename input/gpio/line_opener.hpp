@@ -44,8 +44,8 @@ public:
 enum class Opening : std::uint8_t { same_thread, own_thread };
 
 constexpr const char* lines_thread_name = "sf-lines";
-/// here: inside next(), when a try is due. beside: in its own thread named lines_thread_name, at SCHED_OTHER; then the calls
-/// neither allocate, free nor lock.
+/// same_thread: inside next(), when a try is due. own_thread: in a thread named lines_thread_name, at SCHED_OTHER; then the
+/// calls neither allocate, free nor lock.
 std::unique_ptr<LineOpener> make_line_opener(LinesToOpen lines, Opening where);
 
 }  // namespace surefoot::input

@@ -33,8 +33,8 @@ struct LineConfig {
 /// Checks: names are unique except for encoders; an encoder has two lines of one chip; at most 64 lines. Errors name the line.
 Result<void> check_lines(std::span<const LineConfig> lines);
 
-/// Reads the lines; one thread. Allocations of the GPIO library count as the driver's. Nothing else allocates if the lines are
-/// opened beside.
+/// Reads the lines; one thread. Allocations of the GPIO library count as the driver's. With Opening::own_thread,
+/// nothing else allocates.
 class GpioPanel {
 public:
     /// `lines` must have passed check_lines. `opener` and `context`: open_lines, or a fake.

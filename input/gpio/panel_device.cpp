@@ -49,7 +49,7 @@ PanelDevice::PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMa
     const DeviceMapping mapping = panel_mapping(mappings, panel_.controls());
     mapping_ = mapping.name;
     mapper_ = compile_what_fits(mapping, panel_.controls());
-    for (const std::string& note : mapper_.notes) emit(sink_, "{}: {}", panel_name, note);
+    for (const std::string& message : mapper_.messages) emit(sink_, "{}: {}", panel_name, message);
     spare_ = mapper_;
 }
 

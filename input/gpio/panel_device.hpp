@@ -1,4 +1,4 @@
-// The panel in a walk: its switches as Lines, its buttons and encoders as a device of the steering. Notes each problem once.
+// The panel in a walk: its switches as Lines, its buttons and encoders as a device of the steering. Logs each problem once.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,11 @@ constexpr std::string_view panel_name = "gpio panel";
 /// the default of a button box.
 DeviceMapping panel_mapping(std::span<const DeviceMapping> mappings, std::span<const ControlInfo> controls);
 
-/// Belongs to the input thread. If the lines are opened beside, step() neither allocates nor locks, also while the chip comes and
+/// Belongs to the input thread. With Opening::own_thread, step() neither allocates nor locks, also while the chip comes and
 /// goes. Allocations of the GPIO library count as the driver's. A missing chip is tried again after 0.1 to 2 s.
 class PanelDevice {
 public:
-    /// `lines` must have passed check_lines. `sink` gets a note for each new problem, and when it is over.
+    /// `lines` must have passed check_lines. `sink` gets a message for each new problem, and when it is over.
     PanelDevice(std::vector<LineConfig> lines, std::span<const DeviceMapping> mappings, OpenLines opener, void* context,
                 MessageSink sink, Opening where);
 

@@ -2,8 +2,8 @@
 //
 // Source: "Device Class Definition for Human Interface Devices" 1.11, sections 5 and 6.2.2, with the choices and limits
 // of Linux's hid-core where the text is open, because the kernel decides what reaches hidraw. Every descriptor that the kernel
-// accepts is accepted here with the same layout. classify.hpp decides whether it may *steer*. Accepted oddities are listed in
-// `notes`, each with its byte and its reason.
+// accepts is accepted here with the same layout. classify.cpp decides whether the device may steer. Accepted oddities are listed
+// in `notes`, each with its byte and its reason.
 #pragma once
 
 #include <array>

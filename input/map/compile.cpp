@@ -169,7 +169,7 @@ Result<Mapper> compile(const DeviceMapping& mapping, std::span<const ControlInfo
 
 Mapper compile_what_fits(const DeviceMapping& mapping, std::span<const ControlInfo> controls) {
     Compiler c = compiled(mapping, controls);
-    for (const Error& error : c.errors()) c.mapper.notes.push_back(error.text());
+    for (const Error& error : c.errors()) c.mapper.messages.push_back(error.text());
     return std::move(c.mapper);
 }
 

@@ -50,8 +50,8 @@ struct Binding {
 
 struct Mapper {
     std::vector<Binding> bindings;
-    bool adapter = false;            ///< of one for several pads: each reports in its own way and time
-    std::vector<std::string> notes;  ///< named controls that cannot be bound, for the log
+    bool adapter = false;               ///< of one for several pads: each reports in its own way and time
+    std::vector<std::string> messages;  ///< named controls that cannot be bound, for the log
     std::int64_t last_ns = -1;
     std::uint64_t last_reports = 0;
     std::int64_t last_report_ns = -1;  ///< when evaluate() saw the newest one
@@ -62,7 +62,7 @@ struct Mapper {
 
 /// Binds by name, or by usage and collection. A missing control is an error with the nearest name.
 Result<Mapper> compile(const DeviceMapping& mapping, std::span<const ControlInfo> controls);
-/// The same, but leaves out controls that cannot be bound, with a note for each.
+/// The same, but leaves out controls that cannot be bound, with a message for each.
 Mapper compile_what_fits(const DeviceMapping& mapping, std::span<const ControlInfo> controls);
 
 /// Call it after each accepted report, and at least once a tick, because smoothing continues. If `now_ns` goes back, time stands

@@ -385,7 +385,7 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         return Error{place_of(scene), "The scene holds nothing to draw", "Check that its nodes have meshes with triangles",
                      ErrorKind::damaged};
     }
-    if (auto ok = check_limits(counts_of(context.proxy_input(), context.object_boxes), place_of(scene), options.most); !ok)
+    if (auto ok = check_limits(counts_of(context.proxy_input(), context.object_boxes), place_of(scene), options.max_counts); !ok)
         return ok.error();
     progress.update("write", 0.0);
     arena.execute([&] { context.emit(); });

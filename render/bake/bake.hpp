@@ -16,10 +16,10 @@ enum class Quality { draft, full };
 
 struct BakeOptions {
     Quality quality = Quality::draft;
-    int workers = 0;                          ///< 0: all cores
-    double frame_us = 33333;                  ///< the frame of the 1/16 rule, at 30 Hz
-    const model::CostModel* costs = nullptr;  ///< calibrated; null: default_costs()
-    model::Counts most = model::max_counts;   ///< that the model may hold; less only where a test asks for it
+    int workers = 0;                               ///< 0: all cores
+    double frame_us = 33333;                       ///< the frame of the 1/16 rule, at 30 Hz
+    const model::CostModel* costs = nullptr;       ///< calibrated; null: default_costs()
+    model::Counts max_counts = model::max_counts;  ///< that the model may hold; less only where a test asks for it
 };
 
 /// Deterministic at any worker count. Errors: nothing drawable, stopped by the user, out of limits.

@@ -12,7 +12,7 @@ namespace {
 
 struct Grower {
     std::span<const Box> objects;
-    std::uint32_t most;
+    std::uint32_t max_children;
     ClusterTree tree;
 
     [[nodiscard]] const Box& box_of(std::uint32_t entity) const {
@@ -21,13 +21,13 @@ struct Grower {
     std::uint32_t make(std::vector<std::uint32_t> children);
 };
 
-/// One cluster of `children`; more than `most` are halved at the median of the longest axis until they fit.
+/// One cluster of `children`; more than `max_children` are halved at the median of the longest axis until they fit.
 std::uint32_t Grower::make(std::vector<std::uint32_t> children) {
     if (children.size() == 1) return children[0];
-    while (children.size() > most) {
-        // Groups of about `most`, by halving: each group is a cluster of its own.
+    while (children.size() > max_children) {
+        // Groups of about `max_children`, by halving: each group is a cluster of its own.
         std::vector<std::vector<std::uint32_t>> groups{children};
-        while (groups.size() < most && groups.front().size() > 2) {
+        while (groups.size() < max_children && groups.front().size() > 2) {
             std::vector<std::vector<std::uint32_t>> halves;
             for (auto& group : groups) {
                 Box centres;
@@ -59,8 +59,8 @@ std::uint32_t Grower::make(std::vector<std::uint32_t> children) {
 
 }  // namespace
 
-ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t most) {
-    Grower grower{objects, most, {}};
+ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t max_children) {
+    Grower grower{objects, max_children, {}};
     std::vector<std::uint32_t> open;
     Box world;
     std::vector<double> sizes;

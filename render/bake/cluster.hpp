@@ -20,8 +20,8 @@ struct ClusterTree {
 };
 
 /// Cell sizes double from the smallest object's size to the whole scene. Entities that fit into one cell become a cluster; one
-/// alone does not. An entity fits if its centre is inside and its size is at most the cell's. No cluster has more than `most`
-/// children: larger groups are first split at medians.
-ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t most);
+/// alone does not. An entity fits if its centre is inside and its size is at most the cell's. No cluster has more than
+/// `max_children` children: larger groups are first split at medians.
+ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t max_children);
 
 }  // namespace surefoot::bake

@@ -37,7 +37,7 @@ Counts counts_of(const Model& model) {
     return counts;
 }
 
-Result<void> check_limits(const Counts& counts, const std::string& place, const Counts& most) {
+Result<void> check_limits(const Counts& counts, const std::string& place, const Counts& max) {
     struct Limited {
         std::string_view what;
         std::uint64_t Counts::*count;
@@ -50,10 +50,10 @@ Result<void> check_limits(const Counts& counts, const std::string& place, const 
         Limited{"textures", &Counts::textures},   Limited{"parts of representations", &Counts::drawn_parts},
     };
     for (const Limited& one : all) {
-        if (counts.*one.count <= most.*one.count) continue;
+        if (counts.*one.count <= max.*one.count) continue;
         return Error{place,
                      fmt::format("The model is out of limits: {} {} with all levels of detail, at most {}", counts.*one.count,
-                                 one.what, most.*one.count),
+                                 one.what, max.*one.count),
                      "Bake it in several parts, or with fewer triangles", ErrorKind::out_of_limits};
     }
     return {};

@@ -25,6 +25,6 @@ constexpr Counts max_counts{std::numeric_limits<std::int32_t>::max(), none, none
 Counts counts_of(const Model& model);
 
 /// Error "out of limits" at `place`, for the first count that is too large.
-Result<void> check_limits(const Counts& counts, const std::string& place, const Counts& most = max_counts);
+Result<void> check_limits(const Counts& counts, const std::string& place, const Counts& max = max_counts);
 
 }  // namespace surefoot::model

@@ -24,7 +24,7 @@ bool larger(const Found& a, const Found& b) { return a.area_m2 != b.area_m2 ? a.
 /// Keeps the largest in a heap whose top is the least of them.
 class Largest {
 public:
-    explicit Largest(std::size_t most) : max_(most) { heap_.reserve(most); }
+    explicit Largest(std::size_t max_occluders) : max_(max_occluders) { heap_.reserve(max_occluders); }
     void offer(const Found& found) {
         if (heap_.size() == max_) {
             if (max_ == 0 || !larger(found, heap_.front())) return;
@@ -82,10 +82,10 @@ private:
 
 }  // namespace
 
-Occluders find_occluders(const model::Model& model, std::uint32_t most) {
+Occluders find_occluders(const model::Model& model, std::uint32_t max_occluders) {
     Occluders out;
     if (model.nodes.empty()) return out;
-    Largest largest(most);
+    Largest largest(max_occluders);
     std::uint64_t order = 0;
     for (const model::Node& node : model.nodes) {
         if (node.child_count > 0) continue;

@@ -27,7 +27,8 @@ struct Occluders {
     std::uint32_t edge_count = 0;  ///< two triangles share an edge if they share both its corners
 };
 
-/// The `most` largest occluders; none if the model has no opaque surface. Deterministic; about 0.1 us a triangle of the model.
-Occluders find_occluders(const model::Model& model, std::uint32_t most = 8192);
+/// The `max_occluders` largest occluders; none if the model has no opaque surface. Deterministic; about 0.1 us a triangle of the
+/// model.
+Occluders find_occluders(const model::Model& model, std::uint32_t max_occluders = 8192);
 
 }  // namespace surefoot::prepare

@@ -40,14 +40,14 @@ void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std
         Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
         candidate.floor_cost = choices[0].cost;
-        const auto thrift_of = [&](std::size_t c) {
+        const auto penalty_of = [&](std::size_t c) {
             const model::ItemCost& next = c + 1 < choices.size() ? choices[c + 1].cost : candidate.children_cost;
             return cost_penalty(cost_metric(combine, next) - cost_metric(combine, choices[c].cost));
         };
         if (candidate.child_count == 0) {
             float least = 0;  // of the finest there is no leaving
             for (std::size_t c = choices.size(); c-- > 0;) {
-                if (c + 1 < choices.size()) choices[c].benefit *= thrift_of(c);
+                if (c + 1 < choices.size()) choices[c].benefit *= penalty_of(c);
                 least = std::max(least, choices[c].benefit);
                 choices[c].subtree_benefit = least;
             }
@@ -66,7 +66,7 @@ void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std
             const float gain =
                 benefit_of(sum.weight.weight, accuracy_gain(error_m / sum.weight.distance_m, pixel_angle_rad),
                            unusable_penalty(weights[i].size, choices[c].error_rad));  // its own: round the eye, not below
-            const float share = thrift_of(c);
+            const float share = penalty_of(c);
             choices[c].benefit *= share;
             least = std::max(least, gain * share);
             choices[c].subtree_benefit = least;

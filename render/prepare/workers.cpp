@@ -51,8 +51,8 @@ std::uint64_t next_id() {
 
 }  // namespace
 
-Workers::Observer::Observer(tbb::task_arena& arena, const WorkerHooks& hooks, int most)
-    : task_scheduler_observer(arena), hooks_(hooks), max_(most), id_(next_id()) {
+Workers::Observer::Observer(tbb::task_arena& arena, const WorkerHooks& hooks, int max_workers)
+    : task_scheduler_observer(arena), hooks_(hooks), max_workers_(max_workers), id_(next_id()) {
     observe(true);
 }
 
@@ -61,7 +61,7 @@ void Workers::Observer::on_scheduler_entry(bool is_worker) {
     if (!is_worker || registered_with == id_) return;
     registered_with = id_;
     const int number = ++started_;
-    (void)CHECK_RARE(number <= max_, "An arena has no more workers than requested");
+    (void)CHECK_RARE(number <= max_workers_, "An arena has no more workers than requested");
     if (hooks_.on_start) hooks_.on_start(number);
 }
 

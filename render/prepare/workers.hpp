@@ -27,7 +27,7 @@ public:
 private:
     class Observer final : public tbb::task_scheduler_observer {
     public:
-        Observer(tbb::task_arena& arena, const WorkerHooks& hooks, int most);
+        Observer(tbb::task_arena& arena, const WorkerHooks& hooks, int max_workers);
         ~Observer() override { observe(false); }
         Observer(const Observer&) = delete;
         Observer& operator=(const Observer&) = delete;
@@ -35,7 +35,7 @@ private:
 
     private:
         const WorkerHooks& hooks_;
-        const int max_;
+        const int max_workers_;
         const std::uint64_t id_;
         std::atomic<int> started_{0};
     };

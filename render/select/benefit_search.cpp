@@ -61,7 +61,7 @@ public:
         sum_up();
         const Edge both = common_edge();
         take_common(both);
-        if (deferred_count_ > 0 && !closed_) take_put_off(refined_edge(both));
+        if (deferred_count_ > 0 && !closed_) take_deferred(refined_edge(both));
         return taken_;
     }
 
@@ -170,7 +170,7 @@ private:
         return do_step(c, steps - 1, opens);
     }
 
-    void take_put_off(const Edge& edge) {
+    void take_deferred(const Edge& edge) {
         sum_ = edge.before;
         for (std::uint32_t i = 0; i < deferred_count_; ++i) {
             const Index c = deferred_[i];

@@ -13,7 +13,7 @@ struct Progress {
     std::function<void(std::string_view stage, double done)> report;
     /// Set (by a signal handler) when the user wants the work to stop; the work returns an Error soon after.
     const std::atomic<bool>* stop = nullptr;
-    /// Shows the user a note at once, on the calling thread. If empty, the result carries the note.
+    /// Shows the user a message at once, on the calling thread. If empty, the result carries the message.
     std::function<void(std::string_view text)> notify;
 
     [[nodiscard]] bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }

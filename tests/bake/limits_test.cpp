@@ -49,7 +49,7 @@ TEST(Limits, ABakeThatWouldHoldMoreIsRefused) {
     BakeOptions options;
     const auto whole = bake(scene, options, {});
     ASSERT_TRUE(whole.ok()) << whole.error().text();
-    options.most.vertices = whole->vertices.size() - 1;
+    options.max_counts.vertices = whole->vertices.size() - 1;
     const auto refused = bake(scene, options, {});
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().place, "ball.glb");

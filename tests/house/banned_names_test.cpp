@@ -1,5 +1,6 @@
-// Names that were replaced by the field's standard words do not come back: as identifiers in code, and as names of files.
-// Comments and string literals are not looked at: keys and messages are contracts.
+// Names that were replaced by the field's standard words do not come back: as identifiers in code, as words of identifiers and
+// of comments where no other meaning is possible, and as names of files.
+// String literals are not looked at: keys and messages are contracts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -153,6 +154,31 @@ const std::vector<Banned>& banned_prefixes() {
     return prefixes;
 }
 
+/// Words in a row that stand nowhere in an identifier, however it is written: put_off is found in take_put_off and TakePutOff.
+const std::vector<Banned>& banned_words() {
+    static const std::vector<Banned> words = {
+        {"attendant", "router"},
+        {"bakery", "context"},
+        {"beside_workers", "at_worker_priority"},
+        {"black_box", "incident_recorder"},
+        {"foresight", "predicted"},
+        {"foretold", "expected"},
+        {"place_buffer", "JumpBuffer"},
+        {"put_off", "deferred"},
+        {"readied", "attachment"},
+        {"shot", "snapshot"},
+        {"shots", "snapshots"},
+        {"thrift", "cost_penalty"},
+        {"tie_ranks", "depth_bias_ranks"},
+        {"visit_test", "TourControllerTest"},
+        {"wrongness", "unusable_penalty"},
+    };
+    return words;
+}
+
+/// Those of them that a comment may not use either: the others are plain English too.
+bool banned_in_comments(std::string_view words) { return words != "put_off"; }
+
 /// Sources by path without ending.
 const std::vector<Banned>& banned_files() {
     static const std::vector<Banned> files = {
@@ -188,24 +214,44 @@ const std::vector<Banned>& banned_files() {
     return files;
 }
 
+/// "take_put_off", "TakePutOff" and "take put off" are "_take_put_off_".
+std::string words_of(std::string_view text) {
+    std::string words = "_";
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto c = static_cast<unsigned char>(text[i]);
+        const bool after_small = i > 0 && std::islower(static_cast<unsigned char>(text[i - 1])) != 0;
+        const bool begins = std::isalnum(c) == 0 || (std::isupper(c) != 0 && after_small);
+        if (begins && words.back() != '_') words += '_';
+        if (std::isalnum(c) != 0) words += static_cast<char>(std::tolower(c));
+    }
+    return words + '_';
+}
+
+bool has_words(std::string_view words, std::string_view banned) {
+    return words.find("_" + std::string(banned) + "_") != std::string_view::npos;
+}
+
 /// What to say instead of an identifier; empty where it may stay.
 std::string_view instead_of(std::string_view identifier) {
+    const std::string words = words_of(identifier);
     for (const Banned& banned : banned_names())
         if (identifier == banned.name) return banned.instead;
     for (const Banned& banned : banned_prefixes())
         if (identifier.starts_with(banned.name)) return banned.instead;
+    for (const Banned& banned : banned_words())
+        if (has_words(words, banned.name)) return banned.instead;
     return {};
 }
 
 struct Found {
     std::size_t line = 0;
-    std::string identifier;
+    std::string identifier;  ///< or words of a comment, joined by '_'
 };
 
 bool begins_identifier(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool is_part(char c) { return begins_identifier(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// Walks over C++ text and collects the banned identifiers of its code.
+/// Walks over C++ text and collects the banned identifiers of its code and the banned words of its comments.
 class Reader {
 public:
     explicit Reader(std::string_view text) : text_(text) {}
@@ -214,9 +260,9 @@ public:
         while (at_ < text_.size()) {
             const std::string_view rest = text_.substr(at_);
             if (rest.starts_with("//"))
-                skip_to("\n", 0);
+                take_comment("\n", 0);
             else if (rest.starts_with("/*"))
-                skip_to("*/", 2);
+                take_comment("*/", 2);
             else if (rest.front() == '"')
                 skip_quoted('"');
             else if (rest.front() == '\'')
@@ -241,6 +287,14 @@ private:
     void skip_to(std::string_view end, std::size_t beyond) {
         const auto found = text_.find(end, at_ + beyond);
         advance(found == std::string_view::npos ? text_.size() : found + beyond - at_);
+    }
+    void take_comment(std::string_view end, std::size_t beyond) {
+        const std::size_t from = at_, line = line_;
+        skip_to(end, beyond);
+        const std::string words = words_of(text_.substr(from, at_ - from));
+        for (const Banned& banned : banned_words())
+            if (banned_in_comments(banned.name) && has_words(words, banned.name))
+                found_.push_back({line, std::string(banned.name)});
     }
     void skip_quoted(char quote) {
         std::size_t end = at_ + 1;
@@ -312,11 +366,28 @@ TEST(BannedNames, AreFoundInCodeAndNowhereElse) {
     EXPECT_EQ(found("int a;\nAttendant b;\n"), "2:Attendant");
     EXPECT_EQ(found("x->most_parts + least_m;"), "1:most_parts 1:least_m");
     EXPECT_EQ(found("at_most(1); outermost; attendants; max_parts;"), "");
-    EXPECT_EQ(found("// Attendant\n/* Attendant\n */ tell(s);"), "3:tell");
+    EXPECT_EQ(found("// Attended\n/* Attended\n */ tell(s);"), "3:tell");
     EXPECT_EQ(found(R"(f("say \" Attendant", '"', say);)"), "1:say");
     EXPECT_EQ(found("f(R\"x(\n\" say )\" )x\", said);"), "2:said");
     EXPECT_EQ(found("a = 1'000'000; b = 'x'; thrift(1'0);"), "1:thrift");
     EXPECT_EQ(found("#include \"input/devices/attendant.hpp\"\n"), "");
+}
+
+TEST(BannedNames, AreFoundAsWordsOfIdentifiersAndComments) {
+    EXPECT_NE(instead_of("take_put_off"), "");
+    EXPECT_NE(instead_of("TakePutOff"), "");
+    EXPECT_NE(instead_of("thrift_of"), "");
+    EXPECT_NE(instead_of("FirstShot"), "");
+    EXPECT_NE(instead_of("VisitTest"), "");
+    EXPECT_EQ(instead_of("put_offset"), "");
+    EXPECT_EQ(instead_of("output_off"), "");
+    EXPECT_EQ(instead_of("Screenshot"), "");
+    EXPECT_EQ(instead_of("NodeVisitTests"), "");
+    std::string all;
+    const std::string_view text =
+        "int a;  // the black box\n// It is put off.\n/* one\n Thrift */ int b;\n// a screenshot\nf(\"a shot\");";
+    for (const Found& f : Reader(text).run()) all += std::to_string(f.line) + ":" + f.identifier + " ";
+    EXPECT_EQ(all, "1:black_box 3:thrift ");
 }
 
 TEST(BannedNames, OfFilesAreFound) {
@@ -327,7 +398,7 @@ TEST(BannedNames, OfFilesAreFound) {
 }
 
 TEST(BannedNames, HaveAnAllowedNameInstead) {
-    for (const auto* list : {&banned_names(), &banned_prefixes()}) {
+    for (const auto* list : {&banned_names(), &banned_prefixes(), &banned_words()}) {
         EXPECT_FALSE(list->empty());
         for (const Banned& banned : *list) {
             EXPECT_FALSE(banned.instead.empty()) << banned.name;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The documents read at the first reading: sentences are short, lines fit, and every page or file that is named is there.
+# The documents read at the first reading: sentences are short, lines fit, and every page, file and name of code is there.
 # usage: prose.sh SOURCE_DIR
 # Read are README.md, ARCHITECTURE.md, CONTRIBUTING.md and every page beside the code. Not read: CHANGELOG.md, RESULTS.md.
 #   mean sentence of a page    at most 15 words
@@ -7,15 +7,38 @@
 #   a line                     at most 160 characters
 # A heading and a fenced block hold no sentences. A list item, and a cell of a table, ends a sentence. A cell of up to three
 # words is a label and does not count. Code in backticks is one word.
+# What a page names must be there:
+#   a page or a path           in the tree
+#   name.cpp, name.hpp         the end of a file's path; in backticks and in fenced blocks
+#   a name, Name::name, f()    each part stands in the sources, outside of comments; in fenced blocks only what is called
+#   Suite.Case, Suite.*        a test
 set -u
 export LC_ALL=C
 
-most_mean=15 most_words=30 most_line=160
+max_mean=15 max_words=30 max_line=160
 
-# Prints problems as FILE:LINE: WHAT, then one line "page FILE MEAN LONGEST LINE" for each page, and "name FILE:LINE NAME" for
-# each file that a page names.
+# Names that pages may use and no source has: samples, a family of GL, and what is not built.
+exceptions="snake_case PascalCase bench_NAME glMultiDrawElementsIndirect reactive greedy oracle"
+
+# Prints problems as FILE:LINE: WHAT, then one line "page FILE MEAN LONGEST LINE" for each page. For what a page names:
+# "name FILE:LINE NAME" (a page or path), "file FILE:LINE NAME" (a source), "word FILE:LINE NAME" (a name of code).
 read -r -d '' reader <<'AWK' || true
 function characters(text) { gsub(/[\200-\277]/, "", text); return length(text) }
+
+function name_sources(text,    name) {
+  while (match(text, /[A-Za-z0-9_.\/-]+\.[ch]pp/)) {
+    name = substr(text, RSTART, RLENGTH)
+    if (name !~ /[A-Z]/) print "file " FILENAME ":" FNR " " name  # NAME_test.cpp stands for many
+    text = substr(text, RSTART + RLENGTH)
+  }
+}
+
+function name_calls(text) {
+  while (match(text, /[A-Za-z_][A-Za-z0-9_]*\(/)) {
+    print "word " FILENAME ":" FNR " " substr(text, RSTART, RLENGTH - 1)
+    text = substr(text, RSTART + RLENGTH)
+  }
+}
 
 # Links and pictures become their text; code becomes one word.
 function plain(text,    out, inner) {
@@ -31,7 +54,11 @@ function plain(text,    out, inner) {
     inner = substr(text, RSTART + 1, RLENGTH - 2)
     if (inner ~ /^(rt|render|input|config|systemd|tools|tests)\/[A-Za-z0-9_.\/-]+$/ || inner ~ /^[A-Za-z0-9_.\/-]+\.md$/)
       print "name " FILENAME ":" FNR " " inner
-    text = substr(text, 1, RSTART - 1) "code" substr(text, RSTART + RLENGTH)
+    else if (inner !~ /\.[ch]pp$/ && inner ~ /^[A-Za-z_][A-Za-z0-9_]*((::|\.)[A-Za-z_][A-Za-z0-9_]*)*(\(\)|\.\*)?$/)
+      print "word " FILENAME ":" FNR " " inner
+    out = substr(text, 1, RSTART - 1) "code" substr(text, RSTART + RLENGTH)
+    name_sources(inner)
+    text = out
   }
   return text
 }
@@ -41,7 +68,7 @@ function end_sentence() {
     sentences++
     all += words
     if (words > longest) { longest = words; longest_at = began }
-    if (words > most_words) print FILENAME ":" began ": a sentence of " words " words: " start " ..."
+    if (words > max_words) print FILENAME ":" began ": a sentence of " words " words: " start " ..."
   }
   words = 0
   start = ""
@@ -80,9 +107,9 @@ function count_words(text,    list, n, i, count) {
 FNR == 1 { fenced = 0; words = 0; sentences = 0; all = 0; longest = 0; longest_at = 1 }
 {
   length_here = characters($0)
-  if (length_here > most_line) print FILENAME ":" FNR ": a line of " length_here " characters"
+  if (length_here > max_line) print FILENAME ":" FNR ": a line of " length_here " characters"
   if ($0 ~ /^[ \t]*(```|~~~)/) { end_sentence(); fenced = !fenced; next }
-  if (fenced) next
+  if (fenced) { name_sources($0); name_calls($0); next }
   if ($0 ~ /DESIGN|shared\//) print FILENAME ":" FNR ": names what is not in the repository"
   text = plain($0)
   if (text ~ /^[ \t]*$/ || text ~ /^#/ || text ~ /^(---|===)/ || text ~ /^[ \t]*<[^>]*>[ \t]*$/) { end_sentence(); next }
@@ -94,7 +121,7 @@ FNR == 1 { fenced = 0; words = 0; sentences = 0; all = 0; longest = 0; longest_a
 END {
   end_sentence()
   mean = sentences > 0 ? all / sentences : 0
-  if (mean > most_mean) printf "%s:1: %.1f words a sentence in the mean\n", FILENAME, mean
+  if (mean > max_mean) printf "%s:1: %.1f words a sentence in the mean\n", FILENAME, mean
   printf "page %s %.1f %d %d\n", FILENAME, mean, longest, longest_at
 }
 AWK
@@ -105,7 +132,39 @@ is_there() {
   [[ -e "$(dirname "$page")/$name" || -e "$name" ]] || compgen -G "$name.*" >/dev/null
 }
 
-# check_pages PAGE...: prints what is wrong and a line for each page; fails where something is wrong.
+sources() { git ls-files --cached --others --exclude-standard 2>/dev/null || find . -type f ! -path './build*' -printf '%P\n'; }
+
+# Every name in the sources, outside of comments that begin with two slashes; tests as Suite.Case and Suite.*.
+source_words() {
+  local list
+  list=$(sources | grep -vE '\.(md|csv|png|svg|glb|walk)$|^tests/house/(banned_names_test\.cpp|prose\.sh)$')
+  xargs -d '\n' sed -E 's#(^|[[:space:]])//.*##' <<<"$list" 2>/dev/null | grep -aoE '[A-Za-z_][A-Za-z0-9_]*'
+  grep -E '_test\.cpp$' <<<"$list" | xargs -r -d '\n' cat | tr '\n' ' ' | grep -oE 'TEST(_[FP])?\([A-Za-z0-9_]+, *[A-Za-z0-9_]+\)' |
+    sed -E 's/.*\((\w+), *(\w+)\)/\1.\2\n\1.*/'
+}
+
+declare -A files words
+read_sources() {
+  local name
+  files=() words=()
+  while IFS= read -r name; do
+    files[$name]=1
+    while [[ $name == */* ]]; do name=${name#*/} files[$name]=1; done
+  done < <(sources)
+  while IFS= read -r name; do words[$name]=1; done < <(source_words | sort -u; tr ' ' '\n' <<<"$exceptions")
+}
+
+is_known() { # NAME of code
+  local name=${1%"()"} part
+  [[ -v "files[$name]" ]] && return 0
+  if [[ $name =~ ^[A-Z][A-Za-z0-9]*\.([A-Z][A-Za-z0-9]*|\*)$ ]]; then
+    [[ -v "words[$name]" ]]
+    return
+  fi
+  for part in ${name//[:.]/ }; do [[ -v "words[$part]" ]] || return 1; done
+}
+
+# check_pages PAGE...: prints what is wrong and a line for each page; fails where something is wrong. After read_sources.
 check_pages() {
   local page line place name mean longest problems=0
   for page in "$@"; do
@@ -121,9 +180,15 @@ check_pages() {
           echo "$place: names $name, which is not there"
           problems=$((problems + 1))
           ;;
+        "file "* | "word "*)
+          place=${line#* } name=${place#* } place=${place%% *}
+          if [[ $line == file* ]]; then [[ -v "files[$name]" ]] && continue; else is_known "$name" && continue; fi
+          echo "$place: names $name, which no source has"
+          problems=$((problems + 1))
+          ;;
         *) echo "$line"; problems=$((problems + 1)) ;;
       esac
-    done < <(awk -v most_mean=$most_mean -v most_words=$most_words -v most_line=$most_line "$reader" "$page")
+    done < <(awk -v max_mean=$max_mean -v max_words=$max_words -v max_line=$max_line "$reader" "$page")
   done
   (( problems == 0 ))
 }
@@ -141,9 +206,13 @@ The next one, of about as many words, would make too many words of both if they 
   for i in {1..18}; do dull+="word "; done
   (
     cd "$folder" || exit 1
+    mkdir room
+    printf '// gone\nTEST(Suite,\n     Case) { there::also(1); }\n' >room/code_test.cpp
+    read_sources
     # good: a fence, a table, a link to itself and a name that is there may hold anything
-    printf '# %s\n%s\n%s\n\n| a | %s |\n|---|---|\n| b | c |\n\n```\n%s.\n```\n- [it](good.md) `good.md`\n' \
+    printf '# %s\n%s\n%s\n\n| a | %s |\n|---|---|\n| b | c |\n\n```\n%s.\ncode_test.cpp: also()\n```\n- [it](good.md) `good.md`\n' \
       "$thirty_one" "$good" "$after_sign" "$good" "$thirty_one" >good.md
+    printf -- '- `%s`\n' code_test.cpp room/code_test.cpp there 'also()' there::also Suite.Case 'Suite.*' NAME_test.cpp >>good.md
     check_pages good.md >good.log || { echo "a good page is refused:"; cat good.log; exit 1; }
     refused() { # NAME TEXT WHAT
       printf '%s\n' "$2" >"$1.md"
@@ -160,6 +229,15 @@ ${thirty_one:80}." "a sentence of 31 words"
     refused dead_link "[a page](nowhere.md)" "nowhere.md, which is not there"
     refused dead_page "See \`nowhere.md\`." "nowhere.md, which is not there"
     refused dead_file "See \`render/nowhere/no.hpp\`." "no.hpp, which is not there"
+    refused dead_source "See \`no.cpp\`." "no.cpp, which no source has"
+    refused dead_source_of_folder "See \`hall/code_test.cpp\`." "which no source has"
+    refused dead_source_in_words "See \`no.hpp: also()\`." "no.hpp, which no source has"
+    refused dead_source_in_fence "$(printf '```\nno.cpp\n```')" "no.cpp, which no source has"
+    refused dead_call_in_fence "$(printf '```\nno()\n```')" "no, which no source has"
+    refused dead_name "It is \`gone\`." "gone, which no source has"
+    refused dead_member "It is \`there::no()\`." "no(), which no source has"
+    refused dead_case "See \`Suite.Also\`." "Suite.Also, which no source has"
+    refused dead_suite "See \`Also.*\`." "which no source has"
     refused outside "As DESIGN says." "not in the repository"
     wide=$(printf 'µ%.0s' {1..160})
     printf '%s\n' "$wide" >wide.md
@@ -169,6 +247,7 @@ ${thirty_one:80}." "a sentence of 31 words"
 
 cd "${1:?SOURCE_DIR}" || exit 1
 check_itself || exit 1
+read_sources
 for page in README.md ARCHITECTURE.md CONTRIBUTING.md; do
   [[ -f "$page" ]] || { echo "$page is not there"; exit 1; }
 done

@@ -357,7 +357,7 @@ TEST(Mapper, WhatCannotBeBoundIsNamedWithTheNearest) {
     ASSERT_FALSE(bad.ok());
     EXPECT_NE(bad.error().text().find("'yy'"), std::string::npos);
     EXPECT_NE(bad.error().text().find("Did you mean 'y'"), std::string::npos) << bad.error().text();
-    EXPECT_EQ(compile_what_fits(m, test::stick_controls()).notes.size(), 1U);
+    EXPECT_EQ(compile_what_fits(m, test::stick_controls()).messages.size(), 1U);
     m = {};
     AxisMapping a;
     a.control = {"", 0x01, 0x31, "Stick"};

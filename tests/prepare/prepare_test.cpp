@@ -336,7 +336,7 @@ float benefit_of_step(float step_us) {
     return frame.choices[0].benefit;
 }
 
-TEST(Thrift, OfTwoStepsThatAreEquallyWorthTheCheaperGoesFirst) {
+TEST(CostPenalty, OfTwoStepsThatAreEquallyWorthTheCheaperGoesFirst) {
     EXPECT_FLOAT_EQ(benefit_of_step(0), 0.8F);
     EXPECT_FLOAT_EQ(benefit_of_step(2000), 0.4F);
     EXPECT_GT(benefit_of_step(8), benefit_of_step(1988));

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # surefoot walk --input: a recorded visitor steers; its contract on the tool itself.
-# usage: walk_input_cli.sh SUREFOOT MAKE_SESSION DEVICES_FOLDER
+# usage: input_cli.sh SUREFOOT MAKE_SESSION DEVICES_FOLDER
 set -u
 surefoot=$(realpath "$1") make_session=$(realpath "$2") devices=$(realpath "$3")
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/../contract.sh"

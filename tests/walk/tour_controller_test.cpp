@@ -21,7 +21,7 @@ Path straight_path() {
     return path;
 }
 
-class VisitTest : public ::testing::Test {
+class TourControllerTest : public ::testing::Test {
 protected:
     /// Ticks for so long with nothing pressed but what `press` says in the first; the hand moves at `speed`.
     void run(double seconds, double speed = 0, bool input::NavigationSample::*press = nullptr, bool stopped = false) {
@@ -49,7 +49,7 @@ protected:
     std::int64_t now_ns_ = 0;
 };
 
-TEST_F(VisitTest, ViewpointsLieAtEqualTimesAndComeInTurn) {
+TEST_F(TourControllerTest, ViewpointsLieAtEqualTimesAndComeInTurn) {
     for (int i = 1; i <= viewpoint_count; ++i) {
         run(0.1, 0, &input::NavigationSample::next_viewpoint);
         EXPECT_NEAR(x(), 10.0 * (i % viewpoint_count), 1e-9);
@@ -62,7 +62,7 @@ TEST_F(VisitTest, ViewpointsLieAtEqualTimesAndComeInTurn) {
     EXPECT_NEAR(x(), 10, 1e-9) << "after a reset the turn begins anew";
 }
 
-TEST_F(VisitTest, ATourFollowsThePathUntilTheHandMovesAndGoesOnWhereItWasLeft) {
+TEST_F(TourControllerTest, ATourFollowsThePathUntilTheHandMovesAndGoesOnWhereItWasLeft) {
     run(0.5, 1);
     run(1, 0, &input::NavigationSample::tour);
     EXPECT_TRUE(tour_controller_.touring());
@@ -83,7 +83,7 @@ TEST_F(VisitTest, ATourFollowsThePathUntilTheHandMovesAndGoesOnWhereItWasLeft) {
     EXPECT_NEAR(x(), 10, 0.1) << "a reset does";
 }
 
-TEST_F(VisitTest, AHandThatHoldsOnWhileTheTourIsPressedDoesNotEndIt) {
+TEST_F(TourControllerTest, AHandThatHoldsOnWhileTheTourIsPressedDoesNotEndIt) {
     run(0.2, 1);
     run(0.3, 1, &input::NavigationSample::tour);
     EXPECT_TRUE(tour_controller_.touring());
@@ -93,7 +93,7 @@ TEST_F(VisitTest, AHandThatHoldsOnWhileTheTourIsPressedDoesNotEndIt) {
     EXPECT_FALSE(tour_controller_.touring());
 }
 
-TEST_F(VisitTest, APauseHoldsTheEyeAgainstHandAndTourUntilPressedAgain) {
+TEST_F(TourControllerTest, APauseHoldsTheEyeAgainstHandAndTourUntilPressedAgain) {
     run(0.5, 1);
     const double stood = z();
     run(0.5, 1, &input::NavigationSample::pause);
@@ -108,7 +108,7 @@ TEST_F(VisitTest, APauseHoldsTheEyeAgainstHandAndTourUntilPressedAgain) {
     EXPECT_NEAR(x(), 20, 0.2);
 }
 
-TEST_F(VisitTest, AStopEndsTheTourAndLeavesTheVisitorStanding) {
+TEST_F(TourControllerTest, AStopEndsTheTourAndLeavesTheVisitorStanding) {
     run(1, 0, &input::NavigationSample::tour);
     const double stood = x();
     run(0.5, 1, nullptr, true);

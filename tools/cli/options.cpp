@@ -13,25 +13,25 @@
 
 namespace surefoot::cli {
 
-CLI::Validator number_within(double least, double most, const std::string& unit) {
+CLI::Validator number_within(double min, double max, const std::string& unit) {
     return {[=](std::string& text) {
                 const auto value = number_in<double>(text);
-                if (value && *value >= least && *value <= most) return std::string();
-                return fmt::format("'{}' is not a number from {} to {}{}{}", text, least, most, unit.empty() ? "" : " ", unit);
+                if (value && *value >= min && *value <= max) return std::string();
+                return fmt::format("'{}' is not a number from {} to {}{}{}", text, min, max, unit.empty() ? "" : " ", unit);
             },
-            fmt::format("{}..{}{}{}", least, most, unit.empty() ? "" : " ", unit)};
+            fmt::format("{}..{}{}{}", min, max, unit.empty() ? "" : " ", unit)};
 }
 
-CLI::Validator whole_number_within(std::uint64_t least, std::uint64_t most) {
+CLI::Validator whole_number_within(std::uint64_t min, std::uint64_t max) {
     return {[=](std::string& text) {
                 const auto value = number_in<std::uint64_t>(text);
-                if (!value || *value < least || *value > most) {
-                    return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+                if (!value || *value < min || *value > max) {
+                    return fmt::format("'{}' is not a whole number from {} to {}", text, min, max);
                 }
                 text = std::to_string(*value);
                 return std::string();
             },
-            fmt::format("{}..{}", least, most)};
+            fmt::format("{}..{}", min, max)};
 }
 
 CLI::Validator one_of(std::span<const std::string_view> words) {

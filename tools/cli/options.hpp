@@ -14,9 +14,9 @@
 namespace surefoot::cli {
 
 /// A finite number within the limits, these included. unit: for people; may be empty.
-CLI::Validator number_within(double least, double most, const std::string& unit = "");
+CLI::Validator number_within(double min, double max, const std::string& unit = "");
 /// A whole number within the limits; the text is put into plain decimal digits.
-CLI::Validator whole_number_within(std::uint64_t least, std::uint64_t most);
+CLI::Validator whole_number_within(std::uint64_t min, std::uint64_t max);
 /// One of the words.
 CLI::Validator one_of(std::span<const std::string_view> words);
 /// A backend of this version that draws pictures.

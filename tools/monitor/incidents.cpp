@@ -139,11 +139,11 @@ Result<std::string> write_incident(const std::string& dir, const rt::IncidentRec
     return whole.string();
 }
 
-IncidentWriter::IncidentWriter(std::string dir, rt::IncidentRecorder& box, const IncidentLimits& limits,
+IncidentWriter::IncidentWriter(std::string dir, rt::IncidentRecorder& recorder, const IncidentLimits& limits,
                                std::function<void(std::string_view)> notify)
-    : dir_(std::move(dir)), box_(box), limits_(limits), notify_(std::move(notify)) {}
+    : dir_(std::move(dir)), recorder_(recorder), limits_(limits), notify_(std::move(notify)) {}
 
-Result<std::unique_ptr<IncidentWriter>> IncidentWriter::start(const std::string& dir, rt::IncidentRecorder& box,
+Result<std::unique_ptr<IncidentWriter>> IncidentWriter::start(const std::string& dir, rt::IncidentRecorder& recorder,
                                                               const IncidentLimits& limits,
                                                               std::function<void(std::string_view)> notify) {
     std::error_code problem;
@@ -153,13 +153,13 @@ Result<std::unique_ptr<IncidentWriter>> IncidentWriter::start(const std::string&
                      ErrorKind::unwritable};
     if (auto ok = probe_writable((fs::path(dir) / "incident.json").string()); !ok) return ok.error();
     for (const fs::path& half : folders_in(dir, half_prefix)) fs::remove_all(half, problem);
-    std::unique_ptr<IncidentWriter> writer(new IncidentWriter(dir, box, limits, std::move(notify)));
+    std::unique_ptr<IncidentWriter> writer(new IncidentWriter(dir, recorder, limits, std::move(notify)));
     writer->thread_ = std::thread([w = writer.get()] { w->run(); });
     return writer;
 }
 
 IncidentWriter::~IncidentWriter() {
-    box_.stop();
+    recorder_.stop();
     if (thread_.joinable()) thread_.join();
 }
 
@@ -169,9 +169,9 @@ void IncidentWriter::run() {
         own->name = "sf-incidents";
         (void)rt::restore_thread(*own);
     }
-    while (const rt::IncidentRecorder::Incident* incident = box_.wait()) {
+    while (const rt::IncidentRecorder::Incident* incident = recorder_.wait()) {
         const bool done = write(*incident);
-        box_.done();
+        recorder_.done();
         (done ? written_ : failed_).fetch_add(1, std::memory_order_release);  // whoever sees it may offer the next
     }
 }

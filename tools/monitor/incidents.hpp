@@ -1,5 +1,5 @@
-// Incidents on disk: each record of the black box becomes a folder with a ledger and a trace. Their number and bytes are limited.
-// An ordinary thread writes them; a full disk is logged once and does no other harm.
+// Incidents on disk: each incident of the recorder becomes a folder with a ledger and a trace. Their number and bytes are
+// limited. An ordinary thread writes them; a full disk is logged once and does no other harm.
 #pragma once
 
 #include <atomic>
@@ -32,8 +32,9 @@ struct MissedFrame {
 class IncidentWriter {
 public:
     /// Creates the folder if it is missing, and removes unfinished incidents of an earlier process. Its thread, sf-incidents,
-    /// inherits the caller's place. notify: what somebody should know, once; on that thread. `box` must outlive it.
-    static Result<std::unique_ptr<IncidentWriter>> start(const std::string& dir, rt::IncidentRecorder& box,
+    /// inherits the caller's place. `notify` gets what the user should know, once; on that thread. `recorder` must
+    /// outlive it.
+    static Result<std::unique_ptr<IncidentWriter>> start(const std::string& dir, rt::IncidentRecorder& recorder,
                                                          const IncidentLimits& limits,
                                                          std::function<void(std::string_view)> notify);
     ~IncidentWriter();  ///< writes waiting incidents first
@@ -47,14 +48,14 @@ public:
     [[nodiscard]] std::uint64_t failed() const { return failed_.load(std::memory_order_acquire); }
 
 private:
-    IncidentWriter(std::string dir, rt::IncidentRecorder& box, const IncidentLimits& limits,
+    IncidentWriter(std::string dir, rt::IncidentRecorder& recorder, const IncidentLimits& limits,
                    std::function<void(std::string_view)> notify);
     void run();
     /// False: it failed, and that was logged.
     bool write(const rt::IncidentRecorder::Incident& incident) REQUIRES(writes_) EXCLUDES(missed_mutex_);
 
     std::string dir_;
-    rt::IncidentRecorder& box_;
+    rt::IncidentRecorder& recorder_;
     IncidentLimits limits_;
     std::function<void(std::string_view)> notify_;
     [[no_unique_address]] ThreadRole writes_;  ///< the thread below

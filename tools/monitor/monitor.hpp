@@ -36,10 +36,10 @@ struct MonitorOptions {
     rt::IncidentRecorderOptions incident_recorder;
     IncidentLimits incidents;
     ServerLimits server;
-    std::function<void(std::string_view)> notify;  ///< something to be told, once; on sf-incidents
+    std::function<void(std::string_view)> notify;  ///< gets what the user should know, once; on sf-incidents
 };
 
-/// Wired to a walk by attach_monitor() (attach_monitor.hpp). Lives as long as the service, over many walks; counters go on from
+/// Wired to a walk by attach_monitor(). Lives as long as the service, over many walks; counters go on from
 /// walk to walk (with another rate they start anew, as after a restart). Open it from a neutral thread, before memory is locked:
 /// its threads inherit the caller's place.
 class Monitor {
@@ -57,7 +57,7 @@ public:
     void set_degraded(std::vector<rt::Lack> degraded);
     void add_degraded(const rt::Lack& degraded);
     void set_input(const rt::InputState& input);
-    void add_note(std::string_view text);  ///< told to the user: the last few are shown
+    void add_note(std::string_view text);  ///< for the user: the last few are shown
 
     /// A missed frame, for the incident that it belongs to.
     void offer(MissedFrame missed);
@@ -107,6 +107,6 @@ private:
 };
 
 /// Adds the monitor to the observers of `watch`, after those it has. Monitor and request must outlive the walk.
-void attach_monitor(Monitor& monitor, const walk::WalkRequest& request, walk::WalkObserver& watch);
+void attach_monitor(Monitor& monitor, const walk::WalkRequest& request, walk::WalkObserver& observer);
 
 }  // namespace surefoot::monitor

@@ -146,7 +146,7 @@ std::string path_map(const WalkFrames& walk, std::span<const ReportSnapshot> sna
     }
     for (std::size_t i = 0; i < snapshots.size(); ++i) {
         const Point at = p(snapshots[i].eye[0], snapshots[i].eye[2]);
-        out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"9\" class=\"shot\"/>", at.x, at.y);
+        out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"9\" class=\"snapshot\"/>", at.x, at.y);
         out += text_at(at.x, at.y + 4, "mid strong", std::to_string(i + 1));
     }
     return out + scale_bar(p, height) + close_chart();

@@ -48,7 +48,7 @@ std::string snapshot_card(const ReportSnapshot& snapshot, std::size_t number, do
     const auto chip = [](std::string_view name, const std::string& value) {
         return fmt::format("<span class=\"chip\">{} <b>{}</b></span>", name, value);
     };
-    std::string out = fmt::format("<section class=\"shot\"><div class=\"head\"><h3>{}</h3><div class=\"chips\">", number);
+    std::string out = fmt::format("<section class=\"snapshot\"><div class=\"head\"><h3>{}</h3><div class=\"chips\">", number);
     out += chip("at", fmt::format("{:.1f} s", time_s)) + chip("frame", grouped(static_cast<double>(snapshot.frame)));
     const double share =
         snapshot.full_triangles > 0 ? static_cast<double>(snapshot.triangles) / static_cast<double>(snapshot.full_triangles) : 1;

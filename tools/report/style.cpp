@@ -33,8 +33,8 @@ constexpr std::string_view chart_rules = R"css(
 .chart .budget{stroke:var(--warn);stroke-width:1.4;stroke-dasharray:5 4}
 .chart .deadline-text{fill:var(--bad)}.chart .budget-text{fill:var(--warn)}
 .chart .miss{fill:var(--bad);stroke:var(--panel);stroke-width:1.2}
-.chart .shot{fill:var(--panel);stroke:var(--accent);stroke-width:1.8}
-.chart .shot-line{stroke:var(--accent);stroke-width:1;stroke-dasharray:2 3;opacity:.6}
+.chart .snapshot{fill:var(--panel);stroke:var(--accent);stroke-width:1.8}
+.chart .snapshot-line{stroke:var(--accent);stroke-width:1;stroke-dasharray:2 3;opacity:.6}
 .chart .hit{fill:var(--ink);fill-opacity:0}.chart .hit:hover{fill-opacity:.07}
 .chart .dot{stroke:var(--panel);stroke-width:1.5}
 .chart .cone{fill:var(--accent);opacity:.13}.chart .cone-edge{stroke:var(--accent);stroke-width:1;opacity:.55}
@@ -74,9 +74,9 @@ p{margin:0 0 12px;max-width:76ch}
 .two{display:grid;grid-template-columns:1fr 1fr;gap:14px}.two .card{margin:0}.two{margin:14px 0}
 .wide{overflow-x:auto}
 svg.chart{display:block;width:100%;height:auto;overflow:visible}
-.shot{background:var(--panel);border:1px solid var(--rule);border-radius:14px;padding:18px 20px 20px;margin:16px 0}
-.shot .head{display:flex;flex-wrap:wrap;gap:6px 14px;align-items:baseline;margin-bottom:12px}
-.shot .head h3{font-size:17px;margin:0}
+.snapshot{background:var(--panel);border:1px solid var(--rule);border-radius:14px;padding:18px 20px 20px;margin:16px 0}
+.snapshot .head{display:flex;flex-wrap:wrap;gap:6px 14px;align-items:baseline;margin-bottom:12px}
+.snapshot .head h3{font-size:17px;margin:0}
 .chips{display:flex;flex-wrap:wrap;gap:6px}
 .chip{border:1px solid var(--rule);border-radius:99px;padding:1px 10px;font-size:13px;color:var(--soft);font-variant-numeric:tabular-nums}
 .chip b{color:var(--ink);font-weight:600}
@@ -105,8 +105,8 @@ tr:last-child td{border-bottom:0}
 details summary{cursor:pointer;color:var(--soft);font-size:14px;padding:6px 0}
 footer{margin-top:56px;padding-top:18px;border-top:1px solid var(--rule);color:var(--soft);font-size:13.5px}
 footer a{color:var(--accent)}
-@media (max-width:760px){.two,.views{grid-template-columns:1fr}main{padding:26px 14px 56px}.wide svg.chart{min-width:680px}.card,.shot{padding:14px 14px 12px}}
-@media print{body{background:#fff}.card,.shot,.tile{break-inside:avoid}}
+@media (max-width:760px){.two,.views{grid-template-columns:1fr}main{padding:26px 14px 56px}.wide svg.chart{min-width:680px}.card,.snapshot{padding:14px 14px 12px}}
+@media print{body{background:#fff}.card,.snapshot,.tile{break-inside:avoid}}
 )css";
 
 }  // namespace

@@ -100,7 +100,7 @@ std::string markers_of(const TimeChart& c, const PlotArea& area, const Scale& x,
     std::string out;
     for (std::size_t i = 0; i < c.snapshots_s.size(); ++i) {
         const double at = x(c.snapshots_s[i]);
-        out += line_between(at, area.top, at, area.bottom, "shot-line");
+        out += line_between(at, area.top, at, area.bottom, "snapshot-line");
         out += text_at(at, area.top - 3, "note mid", std::to_string(i + 1));
     }
     for (const auto& m : c.markers) {

@@ -67,7 +67,7 @@ void seat_body(MeshMaker& maker, const Stuff& stuff, const Detail& detail, const
 
 }  // namespace
 
-int Detail::cut(int n, int least) const { return std::max(least, static_cast<int>(std::lround(n * factor))); }
+int Detail::cut(int n, int min) const { return std::max(min, static_cast<int>(std::lround(n * factor))); }
 
 Stuff make_stuff(SceneMaker& maker, std::uint64_t seed) {
     const auto textured = [&](const char* name, image::Image image, model::AlphaMode alpha = model::AlphaMode::opaque,

@@ -17,8 +17,8 @@ struct Stuff {
 /// How finely curves are cut: 1 for a room that one stands in.
 struct Detail {
     double factor = 1.0;
-    /// `n` sides or rings at factor 1, at least `least`.
-    [[nodiscard]] int cut(int n, int least = 5) const;
+    /// `n` sides or rings at factor 1, at least `min`.
+    [[nodiscard]] int cut(int n, int min = 5) const;
     /// Seen from the street through a window: legs are square and knobs are left out.
     [[nodiscard]] bool coarse() const { return factor < 0.3; }
 };

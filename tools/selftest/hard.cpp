@@ -48,8 +48,8 @@ std::string Figure::text() const {
     return fmt::format("{} {:.6g}{} ({} {:.6g}{})", name, value, of, word(relation), limit, of);
 }
 
-std::uint64_t Effort::count(std::uint64_t full, std::uint64_t least) const {
-    return std::max(least, static_cast<std::uint64_t>(std::llround(static_cast<double>(full) * share)));
+std::uint64_t Effort::count(std::uint64_t full, std::uint64_t min) const {
+    return std::max(min, static_cast<std::uint64_t>(std::llround(static_cast<double>(full) * share)));
 }
 
 void Outcome::at_most(std::string name, double value, double limit, std::string unit) {

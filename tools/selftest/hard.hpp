@@ -35,8 +35,8 @@ struct Effort {
     std::string backend = {};  ///< rows that draw: with this one only; empty: EGL, else OSMesa
 
     [[nodiscard]] bool stopped() const { return progress != nullptr && progress->stopped(); }
-    /// `full` times share, at least `least`.
-    [[nodiscard]] std::uint64_t count(std::uint64_t full, std::uint64_t least = 1) const;
+    /// `full` times share, at least `min`.
+    [[nodiscard]] std::uint64_t count(std::uint64_t full, std::uint64_t min = 1) const;
 };
 
 /// What a row found.

@@ -58,9 +58,9 @@ void check_scene(const std::string& name, importer::Scene scene, std::uint64_t w
     out.digest_of(hash);
 }
 
-void report(const Tally& tally, std::size_t least, Outcome& out) {
+void report(const Tally& tally, std::size_t min_cases, Outcome& out) {
     out.none_of("cases that do not end as they must" + (tally.first.empty() ? "" : " (" + tally.first + ")"), tally.wrong);
-    out.at_least("cases", static_cast<double>(tally.cases), static_cast<double>(least));
+    out.at_least("cases", static_cast<double>(tally.cases), static_cast<double>(min_cases));
     out.triangles = tally.kept;
 }
 

@@ -23,8 +23,8 @@ struct Tally {
 
 /// Imports and bakes the scene and looks at the model from four places. wanted: triangles that must be left, or `refused`.
 void check_scene(const std::string& name, importer::Scene scene, std::uint64_t wanted, Tally& tally, Outcome& out);
-/// The figures of a row of at least `least` cases.
-void report(const Tally& tally, std::size_t least, Outcome& out);
+/// The figures of a row of at least `min_cases` cases.
+void report(const Tally& tally, std::size_t min_cases, Outcome& out);
 
 /// A good square metre, and beside it more; indices are of `more`.
 importer::Primitive with(const std::vector<vec3>& more, std::vector<std::uint32_t> indices);

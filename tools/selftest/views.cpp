@@ -37,10 +37,10 @@ Box any_box(Random& random) {
     return {centre - half, centre + half};
 }
 
-std::vector<Placed> awkward_places(const model::Model& model, std::uint64_t most) {
+std::vector<Placed> awkward_places(const model::Model& model, std::uint64_t max_places) {
     std::vector<Placed> places;
     Random random(11);
-    while (places.size() < most) {
+    while (places.size() < max_places) {
         const model::Node& node = model.nodes[random.below(static_cast<std::uint32_t>(model.nodes.size()))];
         const dvec3 size = node.box.max - node.box.min;
         dvec3 at;

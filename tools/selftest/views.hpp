@@ -28,7 +28,7 @@ struct Placed {
 };
 
 /// At what can divide by nothing: on faces, corners, centres and in the insides of the boxes of nodes.
-std::vector<Placed> awkward_places(const model::Model& model, std::uint64_t most);
+std::vector<Placed> awkward_places(const model::Model& model, std::uint64_t max_places);
 
 /// Every number that follows from the view, and from a region about it, is finite; sizes are positive.
 bool sound_view(const Pose& pose, model::Viewport viewport);

@@ -22,7 +22,7 @@ void warn_of_ignored_input(const input::SteeringFile& steering, const input::Rec
         notes.push_back(fmt::format("{}: {} reports of other devices are ignored: only one device steers", request.input_file,
                                     recorded.recording.other_devices));
     }
-    for (const std::string& left_out : recorded.mapper.notes) notes.push_back(request.input_file + ": " + left_out);
+    for (const std::string& left_out : recorded.mapper.messages) notes.push_back(request.input_file + ": " + left_out);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
 
 void InputSession::begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement) {
     tour_controller_ = std::make_unique<TourController>(path);
-    stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, samples_, places_,
+    stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, samples_, jump_poses_,
                                               live_ ? live_->keeper() : nullptr);
     poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get());
     stepper_->begin(start_ns);

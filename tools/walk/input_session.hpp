@@ -36,8 +36,8 @@ public:
     void begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement);
     /// For the frame thread; after begin().
     [[nodiscard]] PoseSource& poses() { return *poses_; }
-    /// For the preparation: where buttons put the eye.
-    [[nodiscard]] PlaceBuffer* places() { return &places_; }
+    /// For the prepare thread: poses that the eye jumps to by a button.
+    [[nodiscard]] JumpBuffer* jump_poses() { return &jump_poses_; }
     /// Live: call it every few milliseconds during the walk. Reports what devices do, and stores an emergency stop.
     void poll_live(const Progress& progress, std::vector<std::string>& notes) {
         if (live_) live_->poll_live(progress, notes);
@@ -64,7 +64,7 @@ private:
     std::unique_ptr<input::ReportSource> source_;
     std::unique_ptr<input::Steering> steering_;
     rt::TripleBuffer<SteeredSample> samples_;
-    PlaceBuffer places_;
+    JumpBuffer jump_poses_;
     std::unique_ptr<TourController> tour_controller_;
     std::unique_ptr<InputStepper> stepper_;
     std::unique_ptr<SteeredPoses> poses_;

@@ -8,12 +8,12 @@
 namespace surefoot::walk {
 
 InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller,
-                           rt::TripleBuffer<SteeredSample>& samples, PlaceBuffer& places, input::StopKeeper* keeper)
+                           rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses, input::StopKeeper* keeper)
     : source_(source),
       steering_(steering),
       tour_controller_(tour_controller),
       samples_(samples),
-      places_(places),
+      jump_poses_(jump_poses),
       keeper_(keeper) {
     steering_.place(tour_controller_.start());
 }
@@ -49,12 +49,12 @@ void InputStepper::advance_to(std::int64_t now_ns) {
 void InputStepper::publish(const input::NavigationSample& sample, std::int64_t now_ns) {
     if (tour_controller_.jumps() != jumps_reported_) {
         jumps_reported_ = tour_controller_.jumps();
-        PoseSample& place = places_.back();
+        PoseSample& place = jump_poses_.back();
         place.pose = sample.pose;
         place.dt_s = static_cast<double>(input_tick_ns) * 1e-9;
         place.before = input::carried(sample, -place.dt_s);  // a tour goes on from there at once
         place.time_ns = now_ns;
-        places_.publish();
+        jump_poses_.publish();
     }
     SteeredSample& out = samples_.back();
     out.nav = sample;

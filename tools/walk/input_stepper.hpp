@@ -31,9 +31,9 @@ class InputStepper {
 public:
     /// All of them must outlive this; `steering` is placed at the tour's start.
     /// `keeper`, if given, is notified at each step whether an emergency stop is latched.
-    /// `places` is notified of jumps: poses that the eye does not walk to.
+    /// `jump_poses` is notified of jumps: poses that the eye does not walk to.
     InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller,
-                 rt::TripleBuffer<SteeredSample>& samples, PlaceBuffer& places, input::StopKeeper* keeper = nullptr);
+                 rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses, input::StopKeeper* keeper = nullptr);
 
     /// Publishes the start, and attaches connected devices. On a neutral thread, before the first step; allocates.
     void begin(std::int64_t start_ns);
@@ -53,7 +53,7 @@ private:
     input::Steering& steering_;
     TourController& tour_controller_;
     rt::TripleBuffer<SteeredSample>& samples_;
-    PlaceBuffer& places_;
+    JumpBuffer& jump_poses_;
     input::StopKeeper* keeper_;
     std::uint32_t jumps_reported_ = 0;
     std::int64_t tick_at_ns_ = 0;

@@ -62,7 +62,7 @@ Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::Steer
 }
 
 void LiveInput::poll_live(const Progress& progress, std::vector<std::string>& notes) {
-    for (input::MessageLine note; live_->next_message(note);) notify(progress, notes, std::string(note.view()));
+    for (input::MessageLine message; live_->next_message(message);) notify(progress, notes, std::string(message.view()));
     if (!keeper_) return;
     if (const bool latched = keeper_->latched(); latched != stop_latched_) {
         stop_latched_ = latched;

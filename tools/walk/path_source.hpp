@@ -1,4 +1,4 @@
-// Where a walk's path comes from: the file asked for, the one beside the model, or a tour made from the model's box.
+// Where a walk's path comes from: the requested file, the one beside the model, or a tour made from the model's box.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct ChosenPath {
     std::string source;  ///< the file, or "generated tour"
 };
 
-/// asked: a CSV file or empty. lift_m is added to every y (recorded drives give the vehicle's ground pose).
+/// `requested`: a CSV file, or empty. lift_m is added to every y (recorded drives give the vehicle's ground pose).
 Result<ChosenPath> choose_path(const std::string& requested, const std::string& model_file, const model::Model& model,
                                double lift_m);
 

@@ -21,12 +21,12 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
 }
 
 PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
-                             rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places, rt::Placement placement)
+                             rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, rt::Placement placement)
     : engine_(engine),
       grid_(grid),
       poses_(poses),
       prepared_(prepared),
-      places_(places),
+      jump_poses_(jump_poses),
       placement_(std::move(placement)),
       thread_([this] { run(); }) {
     placed_.wait();
@@ -42,14 +42,14 @@ void PrepareThread::stop() {
 void PrepareThread::prepare_newest() {
     const double period_s = static_cast<double>(grid_.period_ns) * 1e-9;
     const bool frame = poses_.refresh() && poses_.front().valid && poses_.front().frame != seen_;
-    bool place = places_ != nullptr && places_->refresh();
-    place = place && poses_.front().valid && places_->front().time_ns > poses_.front().time_ns;  // else a frame has it already
-    if (!frame && !place) return;
+    bool jump = jump_poses_ != nullptr && jump_poses_->refresh();
+    jump = jump && poses_.front().valid && jump_poses_->front().time_ns > poses_.front().time_ns;  // else a frame has it already
+    if (!frame && !jump) return;
     PoseSample sample = poses_.front();
-    if (place) {  // the next frame is drawn there
-        sample.pose = places_->front().pose;
-        sample.before = places_->front().before;
-        sample.dt_s = places_->front().dt_s;
+    if (jump) {  // the next frame is drawn there
+        sample.pose = jump_poses_->front().pose;
+        sample.before = jump_poses_->front().before;
+        sample.dt_s = jump_poses_->front().dt_s;
         sample.predicted = {};
     }
     seen_ = sample.frame;
@@ -67,7 +67,7 @@ void PrepareThread::run() {
     rt::RealClock clock;
     // A fortieth of a period after the frame's start: the pose is there by then, and most of the period is left.
     const std::int64_t offset_ns = grid_.period_ns / 40;
-    const std::int64_t step_ns = places_ != nullptr ? grid_.period_ns / 8 : grid_.period_ns;
+    const std::int64_t step_ns = jump_poses_ != nullptr ? grid_.period_ns / 8 : grid_.period_ns;
     while (!stopping_.load(std::memory_order_relaxed)) {
         prepare_newest();
         // The steps are counted from each frame's start, so that one of them is always where it is without them.

@@ -40,15 +40,15 @@ constexpr double horizon_periods = 3.0;
 /// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.
 void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out);
 
-/// Where the eye is being put, from the input thread; only poses and times count.
-using PlaceBuffer = rt::TripleBuffer<PoseSample>;
+/// Poses that the eye jumps to (buttons), from the input thread. Only poses and times are used.
+using JumpBuffer = rt::TripleBuffer<PoseSample>;
 
 class PrepareThread {
 public:
-    /// Start from a neutral thread; the thread is in its place when this returns. The buffers must outlive it. `places`: null
-    /// where nothing puts the eye elsewhere; else looked at eight times a period.
+    /// Start from a neutral thread; the thread is in its place when this returns. The buffers must outlive it. `jump_poses`: null
+    /// if the eye never jumps; else it is read eight times a period.
     PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
-                  rt::TripleBuffer<prepare::PreparedFrame>& prepared, PlaceBuffer* places, rt::Placement placement);
+                  rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, rt::Placement placement);
     ~PrepareThread();
     PrepareThread(const PrepareThread&) = delete;
     PrepareThread& operator=(const PrepareThread&) = delete;
@@ -64,7 +64,7 @@ private:
     rt::Grid grid_;
     rt::TripleBuffer<PoseSample>& poses_;
     rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
-    PlaceBuffer* places_;
+    JumpBuffer* jump_poses_;
     std::uint64_t seen_ GUARDED_BY(prepares_) = ~0ULL;  ///< frame prepared after last
     const rt::Placement placement_;
     std::optional<Error> misplaced_;  ///< written before placed_

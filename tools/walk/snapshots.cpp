@@ -17,8 +17,8 @@ std::size_t snapshots_that_fit(std::size_t max_items) {
     return std::max<std::size_t>(1, snapshot_memory_bytes / (sizeof(FrameSnapshot) + max_items * sizeof(gl::DrawItem)));
 }
 
-SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t most, std::size_t max_items)
-    : every_(every), snapshots_(every == 0 ? 0 : most) {
+SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items)
+    : every_(every), snapshots_(every == 0 ? 0 : max_snapshots) {
     for (FrameSnapshot& snapshot : snapshots_) {
         snapshot.items.resize(max_items);  // touched now, so that the copy later does not fault
         snapshot.items.clear();
@@ -29,7 +29,7 @@ void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pos
                              std::span<const gl::DrawItem> items) {
     if (every_ == 0 || frame % every_ != 0 || used_ == snapshots_.size()) return;
     FrameSnapshot& snapshot = snapshots_[used_];
-    if (!CHECK_RARE(items.size() <= snapshot.items.capacity(), "a shot has room for all that is drawn")) return;
+    if (!CHECK_RARE(items.size() <= snapshot.items.capacity(), "A snapshot has room for all that is drawn")) return;
     snapshot.frame = frame;
     snapshot.time_s = time_s;
     snapshot.pose = pose;

@@ -32,8 +32,8 @@ std::size_t snapshots_that_fit(std::size_t max_items);
 /// Sized before the walk; remember() only copies.
 class SnapshotStore {
 public:
-    /// Every `every` frames, at most `most` snapshots of at most `max_items` items each.
-    SnapshotStore(std::uint64_t every, std::size_t most, std::size_t max_items);
+    /// Every `every` frames, at most `max_snapshots` of them, each of at most `max_items` items.
+    SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items);
     /// On the frame thread. Frames that are not due, or beyond the store, are passed over.
     void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, std::uint64_t triangles,
                   std::span<const gl::DrawItem> items);

@@ -128,9 +128,10 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     const rt::FrameLoopOptions options = loop_options(s, progress);
 
     std::unique_ptr<PrepareThread> preparing;
-    PlaceBuffer* places = s.input ? s.input->places() : nullptr;
+    JumpBuffer* jump_poses = s.input ? s.input->jump_poses() : nullptr;
     if (!s.virtual_clock) {
-        preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, places, prepare_placement(s.plan));
+        preparing =
+            std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, jump_poses, prepare_placement(s.plan));
         if (const auto& refused = preparing->misplaced())
             s.facts.degraded.push_back({rt::LackKind::placing, refused->what, refused->remedy});
     }

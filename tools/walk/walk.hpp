@@ -1,5 +1,5 @@
 // The session: a real-time walk through a model, with its threads placed, its frames accounted and its results handed back.
-// walk, soak, compare and the daemon all run this.
+// The commands walk and soak, and the daemon, all run this.
 #pragma once
 
 #include <cstdint>
@@ -32,9 +32,9 @@ struct WalkRequest : config::Settings {
     bool clear_stop = false;   ///< live: release a stop that an earlier walk left latched
     std::uint64_t frames = 0;  ///< 0: as `seconds`, else as the recording plus a second, else (live too) as the path is long
     double seconds = 0;
-    bool keep_records = true;   ///< false: records go only to the watch, and no outputs are made of them
-    bool endless = false;       ///< until progress.stop: records go only to the watch and are not kept, so there are no outputs
-    double cost_noise = 0;      ///< relative, seeded (virtual clock)
+    bool keep_records = true;  ///< false: records go only to the observer, and no outputs are made of them
+    bool endless = false;      ///< until progress.stop: records go only to the observer and are not kept, so there are no outputs
+    double cost_noise = 0;     ///< relative, seeded (virtual clock)
     bool correct_costs = true;  ///< online correction of predictions; false: frozen at 1
     std::uint32_t control_pairs = 90;
     double control_block_s = 2.0;

@@ -33,7 +33,7 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
 /// The threads as they are now, and how they differ from the declared table.
 void take_census(const PlacingPlan& plan, WalkFacts& facts);
 
-/// Room for the pictures that --snap or --report will want of `frames` frames; a note where that is less than all.
+/// Room for the pictures that --snap or --report will want of `frames` frames; a message where that is less than all.
 SnapshotStore make_snapshot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
                                   std::vector<std::string>& notes);
 

@@ -151,7 +151,7 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
 
 Session::~Session() {
     if (engine) {
-        const BesideWorkers beside(plan);
+        const ScopedWorkerPriority at_worker_priority(plan);
         engine.reset();
     }
     if (!virtual_clock && rt::guard_active()) rt::release_memory();
@@ -177,8 +177,8 @@ Result<void> open_session(Session& s, const Progress& progress) {
 
 namespace {
 
-void prepare_beside_workers(Session& s, const prepare::Region& region, prepare::PreparedFrame& out) {
-    const BesideWorkers beside(s.plan);
+void prepare_at_worker_priority(Session& s, const prepare::Region& region, prepare::PreparedFrame& out) {
+    const ScopedWorkerPriority at_worker_priority(s.plan);
     s.engine->prepare(region, 0, 0, 0, out);
 }
 
@@ -193,7 +193,7 @@ void warm_up(Session& s) {
     for (int i = 0; i < 12; ++i) {
         const Pose pose = pose_at(s.path.path, i * s.path.path.duration_s() / 12.0);
         prepare::PreparedFrame& set = s.prepared.slot(0);
-        prepare_beside_workers(s, {pose, 0.1, 0.05}, set);
+        prepare_at_worker_priority(s, {pose, 0.1, 0.05}, set);
         engine.select(set, budget_share * period_us, {}, 0);
         engine.submit(pose, limits);
         engine.select_coarse();
@@ -206,7 +206,7 @@ void warm_up(Session& s) {
     prepare::Region region = predict_region(first.before, first.pose, period_s, horizon_periods * period_s);
     region.radius_m = std::max(region.radius_m, 0.5);
     region.angle_rad = std::max(region.angle_rad, 0.2);
-    prepare_beside_workers(s, region, s.prepared.back());
+    prepare_at_worker_priority(s, region, s.prepared.back());
     s.prepared.publish();
 }
 

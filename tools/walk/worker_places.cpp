@@ -5,7 +5,7 @@
 
 namespace surefoot::walk {
 
-BesideWorkers::BesideWorkers(const PlacingPlan& plan) {
+ScopedWorkerPriority::ScopedWorkerPriority(const PlacingPlan& plan) {
     rt::Placement placement = prepare_placement(plan);
     placement.name.clear();
     (void)rt::place_thread(0, placement);  // where that is refused, the workers are not above it either

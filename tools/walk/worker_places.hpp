@@ -14,9 +14,9 @@ namespace surefoot::walk {
 
 /// The calling thread among the workers, at their priority, while this lives. Whoever hands them work or ends them and stood
 /// below them would wait for his core while they look for work, which on a machine of few cores is long.
-class BesideWorkers {
+class ScopedWorkerPriority {
 public:
-    explicit BesideWorkers(const PlacingPlan& plan);
+    explicit ScopedWorkerPriority(const PlacingPlan& plan);
 
 private:
     const rt::PlacementScope back_;

@@ -113,7 +113,7 @@ TEST_P(Workers, AreInTheirPlacesWithinTheirFirstTask) {
     };
     std::optional<prepare::Preparer> preparer(std::in_place, *model, costs, options);
     {
-        const walk::BesideWorkers beside(*plan);
+        const walk::ScopedWorkerPriority at_worker_priority(*plan);
         preparer.reset();
     }
     EXPECT_EQ(at_work.size(), static_cast<std::size_t>(plan->workers - 1));
