@@ -104,20 +104,20 @@ Problem no_profile(const Reading& reading, const std::string& name, std::string_
 /// Values over `before`, and all problems by line; the values hold only where there is none.
 Reading read_toml(Configuration before, std::string_view text, const std::string& name, std::string_view profile) {
     Reading reading{std::move(before), {}, {}};
-    try {
-        const toml::table root = toml::parse(text, name);
-        for (const auto& [key, node] : root) {
-            if (key.str() != "profile") read_key(reading, key.str(), node, name, {});
-        }
-        read_profiles(reading, root, name, profile);
-    } catch (const toml::parse_error& error) {
+    std::uint32_t wrong_line = 0;
+    const auto root = parse_toml(text, name, &wrong_line);
+    if (!root) {
         Problem problem;
         problem.file = name;
-        problem.line = error.source().begin.line;
-        problem.error = toml_syntax_error(name, error);
+        problem.line = wrong_line;
+        problem.error = root.error();
         reading.problems.push_back(std::move(problem));
         return reading;
     }
+    for (const auto& [key, node] : *root) {
+        if (key.str() != "profile") read_key(reading, key.str(), node, name, {});
+    }
+    read_profiles(reading, *root, name, profile);
     std::stable_sort(reading.problems.begin(), reading.problems.end(),
                      [](const Problem& a, const Problem& b) { return a.line < b.line; });
     const bool there = std::find(reading.profiles.begin(), reading.profiles.end(), profile) != reading.profiles.end();

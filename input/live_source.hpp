@@ -39,6 +39,7 @@ public:
     Lines drain(Steering& steering, std::int64_t now_ns) override REQUIRES(steering.steers);
     [[nodiscard]] const StampLog& log() const override { return log_; }
     [[nodiscard]] std::uint64_t refused() const override { return router_ ? router_->refused_reports() : 0; }
+    [[nodiscard]] std::uint64_t illegal_encoder_steps() const override { return panel_ ? panel_->illegal_encoder_steps() : 0; }
     [[nodiscard]] std::vector<rt::SteeringDevice> devices() const override;
     /// How many devices steer now, as of the last drain; any thread.
     [[nodiscard]] int steering_now() const { return steering_now_.load(std::memory_order_relaxed); }

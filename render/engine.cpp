@@ -158,8 +158,6 @@ Result<void> Engine::set_selector(std::string_view name) {
     return {};
 }
 
-void Engine::set_in_frame_check(bool on) { impl_->options.in_frame_check = on; }
-
 const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction,
                                   double target_error_rad) {
     Impl& e = *impl_;

@@ -79,8 +79,6 @@ public:
 
     /// Changes the selector, from the next prepare() on. No prepare() may be running, since `flat` changes its depth. Allocates.
     Result<void> set_selector(std::string_view name);
-    /// Turns the in-frame check on or off; off for timing whole cuts.
-    void set_in_frame_check(bool on);
 
     /// budget_us: of the whole frame; target_error_rad 0: as far as the budget goes.
     const select::Cut& select(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction,

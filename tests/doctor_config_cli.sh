@@ -28,7 +28,9 @@ grep -q '"wake_up": null' out || complain "--quick measured"
 [ $got -le 1 ] || complain "exit $got of doctor --seconds 1"
 grep -q '"p999_us"' out || complain "no wake-up figures"
 "$surefoot" doctor --help | grep -qi 'exit status: 0 nothing fails' || complain "--help does not say the exit status"
-"$surefoot" doctor --seconds 60 >out 2>err & pid=$!; sleep 1; kill -INT $pid; wait $pid; got=$?
+"$surefoot" doctor --seconds 60 >out 2>err & pid=$!
+eventually 30 hears_interrupt $pid || complain "the doctor does not listen to Ctrl-C"
+kill -INT $pid; wait $pid; got=$?
 [ $got -eq 130 ] || complain "exit $got, not 130, of a stopped doctor"
 [ "$(wc -l < err)" -eq 1 ] || complain "not one line of a stopped doctor: $(cat err)"
 

@@ -20,7 +20,7 @@ lacks() {
   grep -qE "$what" full full-strict && complain "the full set of privileges already lacks /$what/"
   "$@" $walk --json >out 2>err || complain "exit $? instead of a degraded walk: $*: $(head -c 300 err)"
   [ "$(grep -cE "not fully real-time: .*$what" err)" -eq 1 ] || complain "not said once, /$what/: $*: $(cat err)"
-  grep -qE "not fully real-time: .*$what.*\(.+\)" err || complain "no remedy for /$what/: $(cat err)"
+  grep -qE "not fully real-time: .*$what.*\. .+\.\$" err || complain "no remedy for /$what/: $(cat err)"
   grep -q -- "$mark" out || complain "the figures are not marked with $mark: $*"
   "$@" $walk >out 2>err || complain "exit $? of the table: $*"
   [ "$(tr -s ' \n' ' ' <out | grep -oE "degraded $what" | wc -l)" -eq 1 ] || complain "the table does not say /$what/ once: $(grep -A1 degraded out)"

@@ -139,13 +139,6 @@ void DeviceRouter::removed(const DeviceEvent& e) {
     *s = {};
 }
 
-std::vector<DeviceRouter::Attached> DeviceRouter::attached() const {
-    std::vector<Attached> list;
-    for (const Slot& s : slots_)
-        if (s.device >= 0) list.push_back({s.device, s.steering, s.attachment->mapping, s.plugged});
-    return list;
-}
-
 int DeviceRouter::steering_now() const {
     return static_cast<int>(std::count_if(slots_.begin(), slots_.end(), [](const Slot& s) { return s.device >= 0; }));
 }

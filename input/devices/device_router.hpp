@@ -57,14 +57,6 @@ public:
         for (const DeviceEvent& e : events) dispatch(e);
     }
 
-    struct Attached {
-        int device = -1;    ///< the source's number; -1: nobody
-        int steering = -1;  ///< Steering's
-        std::string mapping;
-        std::shared_ptr<const PluggedDevice> plugged;
-    };
-    /// Allocates.
-    [[nodiscard]] std::vector<Attached> attached() const;
     /// Devices that steered at any time, once each; the first 64 of them.
     [[nodiscard]] std::vector<rt::SteeringDevice> known_devices() const;
     /// How many devices steer now.

@@ -124,7 +124,7 @@ void GpioPanel::start() {
     }
     for (Encoder& encoder : encoders_) {
         encoder.decoder.known = false;
-        encoder.decoder.turn(state_of_[encoder.a].contact.level, state_of_[encoder.b].contact.level);
+        turn(encoder);
     }
 }
 
@@ -171,11 +171,10 @@ bool GpioPanel::drain(std::int64_t now_ns) {
         close(now_ns);
         return false;
     }
-    for (std::size_t i = 0; i < configs_.size(); ++i) {
-        const bool before = state_of_[i].contact.level;
+    for (std::size_t i = 0; i < configs_.size(); ++i)
         reread(state_of_[i].contact, asserted_by(i, levels_[i]), now_ns, configs_[i].debounce_ns);
-        if (is_encoder(configs_[i].role) && before != state_of_[i].contact.level) turn(i);
-    }
+    // After all lines were read: an encoder whose two lines changed unseen has turned by an unknown way.
+    for (Encoder& encoder : encoders_) turn(encoder);
     return true;
 }
 
@@ -193,13 +192,12 @@ void GpioPanel::take(const LineEdge& got) {
         }
     }
     edge(line.contact, asserted, got.stamp_ns, configs_[got.line].debounce_ns);
-    if (is_encoder(configs_[got.line].role)) turn(got.line);
+    for (Encoder& encoder : encoders_)
+        if (encoder.a == got.line || encoder.b == got.line) turn(encoder);
 }
 
-void GpioPanel::turn(std::size_t line) {
-    for (Encoder& encoder : encoders_)
-        if (encoder.a == line || encoder.b == line)
-            encoder.decoder.turn(state_of_[encoder.a].contact.level, state_of_[encoder.b].contact.level);
+void GpioPanel::turn(Encoder& encoder) {
+    encoder.decoder.turn(state_of_[encoder.a].contact.level, state_of_[encoder.b].contact.level);
 }
 
 void GpioPanel::publish(std::int64_t now_ns) {
@@ -262,7 +260,7 @@ std::uint64_t GpioPanel::lost_edges() const {
     return sum;
 }
 
-std::uint64_t GpioPanel::illegal_steps() const {
+std::uint64_t GpioPanel::illegal_encoder_steps() const {
     std::uint64_t sum = 0;
     for (const Encoder& encoder : encoders_) sum += encoder.decoder.illegal;
     return sum;

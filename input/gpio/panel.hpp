@@ -58,7 +58,8 @@ public:
     [[nodiscard]] bool open() const { return opened_ != nullptr; }
     [[nodiscard]] std::string_view problem() const { return problem_.view(); }  ///< of the last failure; empty: open
     [[nodiscard]] std::uint64_t lost_edges() const;
-    [[nodiscard]] std::uint64_t illegal_steps() const;
+    /// Steps of encoders that went unseen, in an unknown direction: not counted as steps.
+    [[nodiscard]] std::uint64_t illegal_encoder_steps() const;
     [[nodiscard]] std::uint64_t opens() const { return opens_; }
 
 private:
@@ -80,7 +81,7 @@ private:
     bool call_library(const Read& read);
     bool drain(std::int64_t now_ns);
     void take(const LineEdge& edge);
-    void turn(std::size_t line);
+    void turn(Encoder& encoder);
     void publish(std::int64_t now_ns);
     [[nodiscard]] bool asserted_by(std::size_t line, bool active) const;
 

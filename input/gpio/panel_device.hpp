@@ -41,6 +41,7 @@ public:
     [[nodiscard]] std::span<const pollfd> polled() const { return panel_.polled(); }
     [[nodiscard]] bool has_controls() const { return !panel_.controls().empty(); }
     [[nodiscard]] const std::string& mapping() const { return mapping_; }
+    [[nodiscard]] std::uint64_t illegal_encoder_steps() const { return panel_.illegal_encoder_steps(); }
 
 private:
     void service(std::int64_t now_ns);

@@ -70,7 +70,6 @@ public:
     /// Deflection of a raw value, clamped: -1..1, or 0..1 where rest is at an end. 0 at the rest, exactly 1 at the ends.
     [[nodiscard]] double deflection(std::int32_t value) const;
     void learn(std::int32_t value, bool active, std::int64_t now_ns);
-    [[nodiscard]] double rest_counts() const { return rest_; }
     [[nodiscard]] double half_travel_counts() const;
 
 private:

@@ -236,17 +236,14 @@ Result<void> read_line(TableReader& table, std::vector<LineConfig>& into) {
 
 Result<SteeringFile> parse_steering(std::string_view text, const std::string& name) {
     SteeringFile steering;
-    try {
-        const toml::table root = toml::parse(text, name);
-        TableReader table(root, name, "");
-        table.table("motion", [&](TableReader& t) { return read_motion(t, steering.motion); });
-        table.table("safety", [&](TableReader& t) { return read_safety(t, steering.safety); });
-        table.tables("device", [&](TableReader& t) { return read_device(t, steering.devices); });
-        table.tables("gpio", [&](TableReader& t) { return read_line(t, steering.lines); });
-        if (const auto done = table.finish(); !done) return done.error();
-    } catch (const toml::parse_error& error) {
-        return toml_syntax_error(name, error);
-    }
+    const auto root = parse_toml(text, name);
+    if (!root) return root.error();
+    TableReader table(*root, name, "");
+    table.table("motion", [&](TableReader& t) { return read_motion(t, steering.motion); });
+    table.table("safety", [&](TableReader& t) { return read_safety(t, steering.safety); });
+    table.tables("device", [&](TableReader& t) { return read_device(t, steering.devices); });
+    table.tables("gpio", [&](TableReader& t) { return read_line(t, steering.lines); });
+    if (const auto done = table.finish(); !done) return done.error();
     if (const auto lines = check_lines(steering.lines); !lines) {
         Error error = lines.error();
         error.place = name + ", " + error.place;

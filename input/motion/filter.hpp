@@ -25,14 +25,13 @@ inline double worst_lag_s(const FilterSettings& settings) { return lag_of_cutoff
 template <class V>
 struct OneEuro {
     V value{0.0}, last{0.0}, rate{0.0};
-    double cutoff_hz = 0;
 
     /// dt_s > 0. The value stays in the convex hull of what went in. A still target at rest is reached exactly.
     const V& step(const FilterSettings& settings, const V& target, double dt_s) {
         const V speed = (target - last) / dt_s;
         last = target;
         rate += (speed - rate) * -std::expm1(-2 * std::numbers::pi * settings.rate_cutoff_hz * dt_s);
-        cutoff_hz = settings.min_cutoff_hz + settings.slope * glm::length(rate);
+        const double cutoff_hz = settings.min_cutoff_hz + settings.slope * glm::length(rate);
         value += (target - value) * -std::expm1(-2 * std::numbers::pi * cutoff_hz * dt_s);
         if (target == V(0.0) && glm::length(value) < rest_below) value = V(0.0);
         return value;
@@ -40,10 +39,6 @@ struct OneEuro {
     void set(const V& to) {
         value = last = to;
         rate = V(0.0);
-    }
-    /// Current lag, seconds; never above worst_lag_s.
-    [[nodiscard]] double lag_s(const FilterSettings& settings) const {
-        return lag_of_cutoff_s(std::max(cutoff_hz, settings.min_cutoff_hz));
     }
 
     static constexpr double rest_below = 1.0 / 512;  ///< of full deflection: a low pass alone would creep for ever

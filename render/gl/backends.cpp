@@ -1,10 +1,11 @@
 // The list of all backends, in the order in which people see them.
 #include "render/gl/backends.hpp"
 
+#include <algorithm>
 #include <array>
-#include <cassert>
 
 #include "render/gl/context.hpp"
+#include "rt/base/check.hpp"
 
 namespace surefoot::gl {
 
@@ -33,10 +34,9 @@ std::span<const Backend> backends() { return all_backends; }
 std::span<const Named> absent_backends() { return absent; }
 
 const Backend& backend_of(BackendKind kind) {
-    for (const Backend& backend : all_backends)
-        if (backend.kind == kind) return backend;
-    assert(false);  // every kind has its entry: tests/gl
-    return all_backends.back();
+    const auto found = std::ranges::find(all_backends, kind, &Backend::kind);
+    CHECK(found != all_backends.end(), "Every kind of back end has its entry");
+    return *found;
 }
 
 Result<const Backend*> backend_named(std::string_view name) {

@@ -153,16 +153,15 @@ Result<model::CostModel> read_costs(const std::string& file, const std::string& 
     if (first != fmt::format("{}{}\"", hash_key, hash_text(body))) {
         return Error{file, "The file was changed since it was measured: its checksum does not match", remedy, ErrorKind::damaged};
     }
-    model::CostModel costs;
-    try {
-        auto read = costs_of(toml::parse(body), file);
-        if (!read) return read.error();
-        costs = std::move(*read);
-    } catch (const toml::parse_error& error) {
-        return Error{file, fmt::format("The file is not valid TOML: {}", error.description()), remedy, ErrorKind::damaged};
+    auto table = parse_toml(*text, file);
+    if (!table) {
+        Error error = table.error();
+        error.remedy = remedy;
+        return error;
     }
-    if (!machine.empty() && costs.machine != machine) {
-        return Error{file, fmt::format("The file was measured on another machine: '{}', this is '{}'", costs.machine, machine),
+    auto costs = costs_of(*table, file);
+    if (costs && !machine.empty() && costs->machine != machine) {
+        return Error{file, fmt::format("The file was measured on another machine: '{}', this is '{}'", costs->machine, machine),
                      remedy, ErrorKind::misuse};
     }
     return costs;

@@ -3,14 +3,6 @@
 
 namespace surefoot {
 
-namespace {
-
-void end_sentence(std::string& line) {
-    if (!line.empty() && line.find_first_of(".?!:", line.size() - 1) == std::string::npos) line += '.';
-}
-
-}  // namespace
-
 std::string_view name_of(ErrorKind kind) {
     switch (kind) {
         case ErrorKind::failed:
@@ -41,14 +33,19 @@ std::string_view name_of(ErrorKind kind) {
     return "failed";
 }
 
+std::string_view full_stop_after(std::string_view sentence) {
+    constexpr std::string_view ends = ".?!:";
+    return sentence.empty() || ends.find(sentence.back()) != std::string_view::npos ? "" : ".";
+}
+
 std::string Error::text() const {
     std::string line = place;
     if (!line.empty() && !what.empty()) line += ": ";
     line += what;
     if (remedy.empty()) return line;
-    end_sentence(line);
+    line += full_stop_after(line);
     line += ' ' + remedy;
-    end_sentence(line);
+    line += full_stop_after(line);
     return line;
 }
 

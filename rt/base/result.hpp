@@ -28,6 +28,9 @@ enum class ErrorKind : std::uint8_t {
 /// "not_found": the name of a kind in JSON and metrics.
 std::string_view name_of(ErrorKind kind);
 
+/// "." if the sentence still needs its full stop, else nothing.
+std::string_view full_stop_after(std::string_view sentence);
+
 /// What went wrong, for a person who has to correct it. Printed as "place: What happened. What to do."
 struct Error {
     std::string place;   ///< file, and line, key or byte offset where known

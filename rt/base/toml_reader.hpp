@@ -28,10 +28,15 @@ inline std::string toml_place(std::string_view file, const toml::source_region& 
     return fmt::format("{}:{}", file, source.begin.line);
 }
 
-/// The error for an exception of toml::parse().
-inline Error toml_syntax_error(std::string_view file, const toml::parse_error& error) {
-    return {toml_place(file, error.source()), fmt::format("The file is not valid TOML: {}", error.description()),
-            "See https://toml.io for the syntax", ErrorKind::damaged};
+/// Parses the text of the file `name`. An error names the line, and writes its number to `wrong_line` where there is one.
+inline Result<toml::table> parse_toml(std::string_view text, const std::string& name, std::uint32_t* wrong_line = nullptr) {
+    try {
+        return toml::parse(text, name);
+    } catch (const toml::parse_error& error) {
+        if (wrong_line != nullptr) *wrong_line = error.source().begin.line;
+        return Error{toml_place(name, error.source()), fmt::format("The file is not valid TOML: {}", error.description()),
+                     "See https://toml.io for the syntax", ErrorKind::damaged};
+    }
 }
 
 /// Read every allowed key, then call finish(), which refuses all other keys. After the first error all calls do nothing. Values

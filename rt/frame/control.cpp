@@ -45,12 +45,6 @@ void BlockTallies::add(const FrameRecord& r) {
     last_block_ = r.block;
 }
 
-std::vector<BlockTally> tally_blocks(std::span<const FrameRecord> records) {
-    BlockTallies tallies;
-    for (const FrameRecord& r : records) tallies.add(r);
-    return tallies.blocks();
-}
-
 DeadlineVerdict judge(std::span<const BlockTally> blocks, double other_miss_share) {
     DeadlineVerdict v;
     for (const BlockTally& block : blocks) {

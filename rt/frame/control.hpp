@@ -52,8 +52,6 @@ private:
     std::vector<BlockTally> blocks_;
     std::uint32_t last_block_ = 0;
 };
-/// The same over records that were kept.
-std::vector<BlockTally> tally_blocks(std::span<const FrameRecord> records);
 
 /// The deadline rule.
 struct DeadlineVerdict {

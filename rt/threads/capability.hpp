@@ -28,7 +28,10 @@ enum class LackKind : std::uint8_t {
 struct Lack {
     LackKind kind = LackKind::other;
     std::string what;
-    std::string remedy;
+    std::string remedy;  ///< may be empty
+
+    /// "What is missing. How to grant it.", as Error::text().
+    [[nodiscard]] std::string text() const { return Error{{}, what, remedy}.text(); }
 };
 
 /// Read from the system; unknown numbers are -1.

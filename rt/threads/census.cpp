@@ -93,10 +93,4 @@ std::vector<CensusRow> census_rows(std::span<const DeclaredThread> declared, std
     return rows;
 }
 
-std::vector<std::string> census_now(std::span<const DeclaredThread> declared) {
-    const auto threads = read_threads();
-    if (!threads) return {threads.error().text()};
-    return census(declared, *threads);
-}
-
 }  // namespace surefoot::rt

@@ -37,7 +37,4 @@ struct CensusRow {
 /// Pure: all threads found, by row in the order of the table, undeclared ones last.
 std::vector<CensusRow> census_rows(std::span<const DeclaredThread> declared, std::span<const ThreadInfo> found);
 
-/// Of this process, now.
-std::vector<std::string> census_now(std::span<const DeclaredThread> declared);
-
 }  // namespace surefoot::rt

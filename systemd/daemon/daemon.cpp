@@ -36,8 +36,7 @@ struct Ending {
 
 void log_lack(Log& log, ServiceState& state, const rt::Lack& lack) {
     if (!state.lacks(lack)) return;
-    log.write(Priority::warning, event::degraded,
-              fmt::format("not fully real-time: {}{}", lack.what, lack.remedy.empty() ? "" : " (" + lack.remedy + ")"),
+    log.write(Priority::warning, event::degraded, "not fully real-time: " + lack.text(),
               {{"SUREFOOT_LACK", lack.what}, {"SUREFOOT_REMEDY", lack.remedy}});
 }
 

@@ -30,6 +30,7 @@ TEST_F(FileTest, ErrorReadsAsPlaceWhatRemedy) {
               "a.csv:3: Row 3 has two columns. Add the third one.");
     EXPECT_EQ((Error{"a", "b", ""}).text(), "a: b");
     EXPECT_EQ((Error{"", "b", ""}).text(), "b");
+    EXPECT_EQ((Error{"", "b", "Did you mean c?"}).text(), "b. Did you mean c?");
 }
 
 TEST_F(FileTest, MissingFileIsNamed) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -64,10 +65,23 @@ TEST(House, ForbiddenArrowsAreFound) {
     EXPECT_NE(include_problem("rt/base/file.cpp", "rt/frame/record.hpp"), "");
     EXPECT_NE(include_problem("rt/frame/loop.cpp", "config/settings.hpp"), "");
     EXPECT_NE(include_problem("tools/report/page.cpp", "tools/walk/walk.hpp"), "");
-    EXPECT_NE(include_problem("tools/walk/walk.cpp", "tools/cli/command.hpp"), "");
     EXPECT_NE(include_problem("systemd/daemon/daemon.cpp", "tools/cli/command.hpp"), "");
     EXPECT_NE(include_problem("systemd/daemon/daemon.cpp", "render/engine.hpp"), "");
+    for (const char* file : {"tools/walk/walk.cpp", "tools/soak/soak.cpp", "tools/accuracy/sweep.cpp", "tools/monitor/monitor.cpp",
+                             "tools/doctor/check.cpp", "tools/selftest/hard.cpp", "tools/report/page.cpp", "tools/scenes/room.cpp"})
+        EXPECT_NE(include_problem(file, "tools/cli/command.hpp"), "") << "a command is above all";
+    for (const char* file :
+         {"tools/cli/walk.cpp", "tools/walk/walk.cpp", "tools/soak/soak.cpp", "tools/accuracy/sweep.cpp",
+          "tools/monitor/monitor.cpp", "tools/doctor/check.cpp", "tools/selftest/hard.cpp", "render/engine.cpp"})
+        EXPECT_NE(include_problem(file, "systemd/daemon/daemon.hpp"), "") << "the service is above all";
     EXPECT_NE(include_problem("tools/soak/soak.cpp", "tools/monitor/monitor.hpp"), "");
+    EXPECT_NE(include_problem("tools/doctor/check.cpp", "tools/soak/soak.hpp"), "");
+    EXPECT_NE(include_problem("tools/doctor/check.cpp", "tools/accuracy/sweep.hpp"), "");
+    EXPECT_NE(include_problem("tools/doctor/check.cpp", "tools/monitor/monitor.hpp"), "");
+    EXPECT_NE(include_problem("tools/accuracy/sweep.cpp", "tools/scenes/scenes.hpp"), "");
+    EXPECT_NE(include_problem("tools/selftest/hard.cpp", "tools/walk/walk.hpp"), "");
+    EXPECT_NE(include_problem("render/stream/pages.cpp", "render/model/model.hpp"), "") << "a room that is not there";
+    EXPECT_NE(include_problem("render/cache/cache.cpp", "render/model/model.hpp"), "") << "a room that is not there";
     EXPECT_NE(include_problem("tools/cli/walk.cpp", "tests/house/house.hpp"), "");
     EXPECT_NE(include_problem("render/newroom/x.cpp", "rt/base/hash.hpp"), "") << "an unplanned room";
     EXPECT_NE(include_problem("rt/frame/loop.cpp", "record.hpp"), "") << "not relative to the root";
@@ -83,9 +97,36 @@ TEST(House, AllowedArrowsAreLeftAlone) {
     EXPECT_EQ(include_problem("render/engine.cpp", "render/gl/device.hpp"), "");
     EXPECT_EQ(include_problem("tools/cli/walk.cpp", "tools/walk/walk.hpp"), "");
     EXPECT_EQ(include_problem("tools/walk/walk.cpp", "tools/report/report.hpp"), "");
+    EXPECT_EQ(include_problem("tools/doctor/machine.cpp", "tools/walk/walk.hpp"), "");
+    EXPECT_EQ(include_problem("tools/cli/doctor.cpp", "tools/doctor/check.hpp"), "");
+    EXPECT_EQ(include_problem("systemd/daemon/daemon.cpp", "tools/monitor/monitor.hpp"), "");
+    EXPECT_EQ(include_problem("tests/daemon/reload_test.cpp", "systemd/daemon/daemon.hpp"), "");
     EXPECT_EQ(include_problem("tests/gl/slices_test.cpp", "render/gl/device.hpp"), "");
     EXPECT_EQ(system_include_problem("render/gl/egl.cpp", "EGL/egl.h"), "");
     EXPECT_EQ(system_include_problem("render/engine.cpp", "vector"), "");
+}
+
+/// Release builds leave assert() out: what cannot happen is a CHECK, which stays in every build.
+bool uses_assert(const std::string& line) {
+    const std::string code = line.substr(0, line.find("//"));
+    if (code.find("<cassert>") != std::string::npos || code.find("<assert.h>") != std::string::npos) return true;
+    for (std::size_t at = code.find("assert("); at != std::string::npos; at = code.find("assert(", at + 1))
+        if (at == 0 || (std::isalnum(static_cast<unsigned char>(code[at - 1])) == 0 && code[at - 1] != '_')) return true;
+    return false;
+}
+
+TEST(House, ProductCodeChecksInEveryBuildAndNeverAsserts) {
+    for (const auto& file : sources()) {
+        if (file.starts_with("tests/")) continue;
+        for_each_line(file, [&](std::size_t number, const std::string& line) {
+            EXPECT_FALSE(uses_assert(line)) << file << ":" << number << ": use CHECK of rt/base/check.hpp";
+        });
+    }
+    EXPECT_TRUE(uses_assert("    assert(false);"));
+    EXPECT_TRUE(uses_assert("#include <cassert>"));
+    EXPECT_TRUE(uses_assert("static_assert(a), assert(b);"));
+    EXPECT_FALSE(uses_assert("static_assert(sizeof(int) == 4);"));
+    EXPECT_FALSE(uses_assert("// never assert() here"));
 }
 
 TEST(House, IncludeLinesAreReadHoweverTheyAreSpaced) {

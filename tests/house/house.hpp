@@ -11,13 +11,19 @@
 namespace surefoot::house {
 
 /// A room's folder, and the folders that it may include beside its own and rt/base, which everyone may.
-/// "*": all. A trailing '/' stands for everything below.
+/// "*": all. A trailing '/' means everything below.
 struct Room {
     std::string_view folder;
     std::vector<std::string_view> may_include;
 };
 
 inline const std::vector<Room>& rooms() {
+    // All rooms below the tools, and what a tool includes beside them.
+    const auto below_tools_and = [](std::initializer_list<std::string_view> tools) {
+        std::vector<std::string_view> folders = {"rt/", "config", "input", "render/", "render"};
+        folders.insert(folders.end(), tools);
+        return folders;
+    };
     static const std::vector<Room> table = {
         {"rt/base", {}},
         {"rt/clock", {"rt/"}},
@@ -35,22 +41,20 @@ inline const std::vector<Room>& rooms() {
         {"render/bake", {"render/model", "render/image", "render/import", "render/measure", "render/gl"}},
         {"render/draw", {"render/model"}},
         {"render/gl", {"render/model", "render/draw"}},
-        {"render/stream", {"render/model", "render/gl"}},
-        {"render/cache", {"render/model", "render/gl"}},
         {"render/prepare", {"render/model", "rt/clock"}},
         {"render/select", {"render/model", "render/prepare", "rt/clock"}},
         {"render/effects", {"render/model", "render/gl"}},
         {"render/capture", {"render/model", "render/prepare", "render/select"}},
         {"render", {"render/"}},  // the door, engine.hpp, and what stands right behind it
-        {"tools/walk", {"*"}},
-        {"tools/cli", {"*"}},
+        {"tools/walk", below_tools_and({"tools/report", "tools/scenes"})},
+        // Features: each a room that stands on the session, and on no other feature.
+        {"tools/soak", below_tools_and({"tools/report", "tools/walk"})},
+        {"tools/accuracy", below_tools_and({"tools/report", "tools/walk"})},
+        {"tools/monitor", below_tools_and({"tools/report", "tools/walk"})},
+        {"tools/doctor", below_tools_and({"tools/report", "tools/walk"})},
+        {"tools/selftest", below_tools_and({"tools/scenes"})},
+        {"tools/cli", below_tools_and({"tools/"})},
         {"systemd/daemon", {"rt/", "config", "tools/walk", "tools/monitor"}},
-        {"tools/monitor", {"*"}},
-        {"tools/accuracy", {"*"}},
-        {"tools/soak", {"*"}},
-        {"tools/doctor", {"*"}},
-        // Its rows reach into every room below the session, and into no tool but the generators.
-        {"tools/selftest", {"rt/", "config", "input", "render/", "render", "tools/scenes"}},
         {"tools/report", {"rt/", "render/image", "render/model"}},
         {"tools/scenes", {"render/image", "render/import", "render/model"}},
         {"tests", {"*"}},
@@ -72,15 +76,6 @@ inline const Room* room_of(std::string_view path) {
 
 inline bool allowed(const Room& from, const Room& to) {
     if (&from == &to || to.folder == "rt/base") return true;
-    if (to.folder == "tests") return false;  // only tests include tests, and they are one room
-    // The session and the features beside it: no command, and no feature of another room.
-    const auto is_one_of = [](std::string_view folder, std::initializer_list<std::string_view> list) {
-        return std::find(list.begin(), list.end(), folder) != list.end();
-    };
-    if (from.folder == "tools/walk" && to.folder.starts_with("tools/"))
-        return is_one_of(to.folder, {"tools/report", "tools/scenes"});
-    if (is_one_of(from.folder, {"tools/accuracy", "tools/monitor", "tools/soak"}) && to.folder.starts_with("tools/"))
-        return is_one_of(to.folder, {"tools/walk", "tools/report", "tools/scenes"});
     return std::any_of(from.may_include.begin(), from.may_include.end(), [&](std::string_view rule) {
         return rule == "*" || rule == to.folder || (rule.ends_with('/') && to.folder.starts_with(rule));
     });

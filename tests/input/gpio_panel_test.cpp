@@ -251,10 +251,22 @@ TEST(Panel, EncodersTurnAsRelativeControlsAndButtonsAsButtons) {
     rig.serve();
     sum += rig.panel.state().value[1];
     EXPECT_EQ(sum, 4000);
-    EXPECT_EQ(rig.panel.illegal_steps(), 0U);
+    EXPECT_EQ(rig.panel.illegal_encoder_steps(), 0U);
     rig.chip.set(next_line, true, rig.now);
     rig.serve();
     EXPECT_EQ(rig.panel.state().value[0], 1);
+}
+
+TEST(Panel, AnEncoderWhoseTwoLinesChangeUnseenTurnsByNothingAndIsCounted) {
+    Rig rig;
+    rig.chip.level[a_line] = rig.chip.level[b_line] = true;  // no edge of either came
+    rig.serve();
+    EXPECT_EQ(rig.panel.state().value[1], 0) << "up or down by two: nobody knows";
+    EXPECT_EQ(rig.panel.illegal_encoder_steps(), 1U);
+    rig.chip.level[b_line] = false;
+    rig.serve();
+    EXPECT_EQ(rig.panel.state().value[1], 1) << "11 to 10 counts up";
+    EXPECT_EQ(rig.panel.illegal_encoder_steps(), 1U);
 }
 
 TEST(Panel, TheBackEndSaysWhatItIsAndRefusesWhatIsNotThere) {

@@ -277,6 +277,10 @@ TEST(LivePanel, ButtonsAndEncodersSteerAsADeviceOfTheirOwn) {
     EXPECT_EQ(rig.source->devices()[0].device_class, "buttons");
     EXPECT_GE(rig.source->log().count(), 6U) << "what the panel tells counts as reports";
     EXPECT_EQ(rig.count_messages("No connected device"), 0);
+    EXPECT_EQ(rig.source->illegal_encoder_steps(), 0U);
+    rig.chip.level[3] = rig.chip.level[4] = true;  // both lines of the encoder, without an edge
+    rig.run(20);
+    EXPECT_EQ(rig.source->illegal_encoder_steps(), 1U);
     EXPECT_EQ(rig.violations, 0U);
 }
 

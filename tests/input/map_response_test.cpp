@@ -137,13 +137,13 @@ TEST(Response, NoiseWithinNineTenthsOfTheBandNeverToggles) {
 TEST(Response, RestIsLearnedOnlyFromStillnessNearWhereItShouldBe) {
     RestFinder f(0, 255, Rest::centre);
     for (int i = 0; i < 1000; ++i) f.learn(131, false, i * 1'000'000LL);
-    EXPECT_EQ(f.rest_counts(), 131);
+    EXPECT_EQ(f.deflection(131), 0.0);
     for (int i = 1000; i < 9000; ++i) f.learn(170, false, i * 1'000'000LL);
-    EXPECT_EQ(f.rest_counts(), 131) << "a hand on the stick is no rest";
+    EXPECT_EQ(f.deflection(131), 0.0) << "a hand on the stick is no rest";
     for (int i = 9000; i < 19000; ++i) f.learn(125, true, i * 1'000'000LL);
-    EXPECT_EQ(f.rest_counts(), 131) << "not while it steers";
+    EXPECT_EQ(f.deflection(131), 0.0) << "not while it steers";
     for (int i = 19000; i < 19400; ++i) f.learn(125, false, i * 1'000'000LL);
-    EXPECT_EQ(f.rest_counts(), 131) << "not so soon";
+    EXPECT_EQ(f.deflection(131), 0.0) << "not so soon";
     EXPECT_EQ(f.deflection(255), 1.0);
     EXPECT_EQ(f.deflection(0), -1.0);
     RestFinder pedal(0, 1023, Rest::max);

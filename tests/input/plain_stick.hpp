@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "input/replay/recording.hpp"
+#include "input/steering.hpp"
 #include "tests/input/hid_test.hpp"
 
 namespace surefoot::input::test {
@@ -21,5 +22,14 @@ inline Recording stick(std::uint16_t product = 0x8001) {
     return r;
 }
 inline std::vector<std::byte> at(int x, int y) { return {static_cast<std::byte>(x), static_cast<std::byte>(y)}; }
+
+/// The steering's numbers that a device has, as of the last tick.
+inline std::vector<int> connected_numbers(const Steering& steering) {
+    steering.steers.plays();
+    std::vector<int> numbers;
+    for (std::size_t i = 0; i < max_devices; ++i)
+        if (steering.safety().devices[i].connected) numbers.push_back(static_cast<int>(i));
+    return numbers;
+}
 
 }  // namespace surefoot::input::test

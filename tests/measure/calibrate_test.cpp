@@ -247,6 +247,14 @@ TEST_F(CostFile, with_a_wrong_key_is_refused_by_its_name) {
     EXPECT_EQ(problem("submit_us = [", "submit_us = [ -1,"), "The key 'class.submit_us' is missing or out of range");
     EXPECT_EQ(problem("version", "version = 9"), "The key 'version' is missing or out of range");
     EXPECT_EQ(problem("version", "version = 1"), "nothing");
+    const std::string torn = "slice_us = = 1\n";
+    ASSERT_TRUE(write_text(file_, fmt::format("hash = \"{:016x}\"\n{}",
+                                              hash_bytes(std::as_bytes(std::span<const char>(torn))), torn))
+                    .ok());
+    const auto read = measure::read_costs(file_, "");
+    ASSERT_FALSE(read.ok());
+    EXPECT_EQ(read.error().place, file_ + ":2") << "the line as an editor counts it";
+    EXPECT_NE(read.error().remedy.find("calibrate"), std::string::npos) << read.error().remedy;
 }
 
 TEST_F(CostFile, with_any_byte_changed_is_refused) {

@@ -5,13 +5,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <thread>
 
 #include "rt/base/file.hpp"
+#include "tests/eventually.hpp"
 #include "tests/monitor/http.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tools/monitor/incidents.hpp"
@@ -139,8 +138,7 @@ TEST(Incidents, AFullDiskIsSaidOnceAndSurvived) {
             f.presented_ns = f.due_ns + (f.missed ? 11'000'000 : 5'000'000);
             box.add(f);
         }
-        for (int i = 0; i < 500 && (*writer)->written() + (*writer)->failed() < outcomes; ++i)
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        EXPECT_TRUE(test::eventually(5, [&] { return (*writer)->written() + (*writer)->failed() >= outcomes; })) << outcomes;
     };
     burst(1);
     EXPECT_EQ((*writer)->written(), 1U);

@@ -4,16 +4,14 @@
 #include <sys/resource.h>
 #include <time.h>
 
-#include <atomic>
-#include <chrono>
 #include <cstdlib>
-#include <functional>
 #include <memory>
 #include <thread>
 #include <vector>
 
 #include "rt/base/file.hpp"
 #include "rt/clock/clock.hpp"
+#include "tests/eventually.hpp"
 #include "tests/monitor/http.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tools/monitor/address.hpp"
@@ -22,6 +20,7 @@
 namespace surefoot::monitor {
 namespace {
 
+using test::eventually;
 using test::RawReader;
 using test::TemporaryFolder;
 
@@ -42,14 +41,6 @@ std::unique_ptr<Server> serving(const Address& address, Server::Pages pages, con
     auto server = Server::listen(address, std::move(pages), limits);
     EXPECT_TRUE(server.ok()) << (server.ok() ? "" : server.error().text());
     return server.ok() ? std::move(*server) : nullptr;
-}
-
-bool soon(const std::function<bool()>& is) {
-    for (int i = 0; i < 500; ++i) {
-        if (is()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
 }
 
 std::int64_t process_cpu_ns() {
@@ -166,7 +157,7 @@ TEST(Server, HalfOpenReadersAreGivenUpAndTheOthersServed) {
     for (int i = 0; i < 8; ++i) idle.emplace_back(server->address());
     idle[3].send_text("GET /he");
     for (int i = 0; i < 10; ++i) EXPECT_EQ(*fetch(server->address(), "/hello"), "hello\n") << "one more always gets in";
-    EXPECT_TRUE(soon([&] { return server->counts().open == 0; })) << "silence is given up";
+    EXPECT_TRUE(eventually(5, [&] { return server->counts().open == 0; })) << "silence is given up";
     EXPECT_EQ(server->counts().dropped_slow + server->counts().dropped_full, 8U);
     EXPECT_EQ(idle.back().listen(), "") << "and told so by closing";
 }
@@ -184,7 +175,7 @@ TEST(Server, AReaderThatStopsReadingHoldsNobodyUp) {
     RawReader head(server->address());
     ASSERT_TRUE(head.send_text("HEAD /hello HTTP/1.1\r\nHost: localhost\r\n\r\n"));
     EXPECT_TRUE(head.listen().starts_with("HTTP/1.1 200 OK"));
-    EXPECT_TRUE(soon([&] { return server->counts().dropped_slow == 5; })) << server->counts().dropped_slow;
+    EXPECT_TRUE(eventually(5, [&] { return server->counts().dropped_slow == 5; })) << server->counts().dropped_slow;
 }
 
 TEST(Server, AFloodIsTurnedAwayAtItsRate) {
@@ -192,22 +183,19 @@ TEST(Server, AFloodIsTurnedAwayAtItsRate) {
     limits.accepts_per_s = 50;
     const TemporaryFolder folder;
     const auto server = serving(at_socket(folder), hello_pages(), limits);
-    std::atomic<bool> done{false};
     std::vector<std::thread> flood;
     const std::int64_t begun_ns = rt::monotonic_ns();
     for (int i = 0; i < 4; ++i)
         flood.emplace_back([&] {
-            while (!done.load()) {
+            while (rt::monotonic_ns() < begun_ns + 1'000'000'000) {
                 RawReader r(server->address());
                 r.send_text(hello_request);
                 (void)r.listen(50);
             }
         });
-    std::this_thread::sleep_for(std::chrono::milliseconds(1000));
-    done.store(true);
+    for (std::thread& t : flood) t.join();
     const std::uint64_t answered = server->counts().answered;
     const double seconds = static_cast<double>(rt::monotonic_ns() - begun_ns) * 1e-9;
-    for (std::thread& t : flood) t.join();
     EXPECT_LE(static_cast<double>(answered), 50 + 50 * (seconds + 0.1)) << "a second's worth to begin with, and the rate after";
     EXPECT_GE(answered, 20U);
 }
@@ -229,8 +217,7 @@ TEST(Server, WithoutDescriptorsItWaitsAndComesBack) {
     RawReader late(server->address());  // takes the last one: none is left to accept it with
     EXPECT_TRUE(late.connected());
     const std::int64_t cpu_before = process_cpu_ns();
-    std::this_thread::sleep_for(std::chrono::milliseconds(600));
-    EXPECT_LT(process_cpu_ns() - cpu_before, 200'000'000) << "it spins";
+    EXPECT_FALSE(eventually(0.6, [&] { return process_cpu_ns() - cpu_before >= 200'000'000; })) << "it spins";
     setrlimit(RLIMIT_NOFILE, &before);
     EXPECT_TRUE(late.send_text(hello_request));
     EXPECT_NE(late.listen().find("hello"), std::string::npos);

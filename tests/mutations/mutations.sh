@@ -1,6 +1,8 @@
 # Read by tests/mutations/run: for each row the safeguard that is taken out. Not run by itself.
 # shellcheck shell=bash
 
+rows_of hard_rows
+
 eye='s/const dvec3 origin = placed.origin - eye;/const dvec3 origin = dvec3(vec3(placed.origin) - vec3(eye));/'
 mutation N16a render/draw/tables.cpp "$eye" "origins made relative to the eye in double"
 mutation N16b render/draw/tables.cpp "$eye" "the same"
@@ -62,3 +64,7 @@ mutation N13d render/select/steps.hpp 's/return refined \? benefit \* hysteresis
 mutation N25a render/bake/materials.cpp 's/bleed_colours\(bled, .*?\);//' "texels that are never shown take the nearest shown one's colour"
 mutation N25b render/bake/alpha_bleed.cpp 's/material.alpha == model::AlphaMode::mask \? material.alpha_cutoff \* 0.9999F : 1e-9F/1e-9F/' "never shown is all below a mask's cutoff, not only what is clear"
 mutation N25c render/bake/alpha_bleed.cpp 's/if \(material.alpha == model::AlphaMode::opaque\) return \{\};//' "an opaque material shows every texel"
+
+rows_of test_walk_real
+mutation Workers tools/walk/worker_places.cpp 's/= rt::place_thread\(0, wanted\);/= Result<void>();/' "workers placed as they start"
+mutation Workers tools/walk/worker_places.cpp 's/const rt::Placement wanted = (.*?);/rt::Placement wanted = $1; wanted.policy = rt::Policy::other; wanted.priority = 0;/' "their priority"

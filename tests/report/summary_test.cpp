@@ -245,11 +245,13 @@ TEST(Input, IsNullForAPathAndAnObjectWithUnitsAndWordsForAVisitor) {
     s.input.source = "pad.hid";
     s.input.devices = {{"session \"pad\"", "navigation", "default: gamepad"}};
     s.input.reports = 1234;
+    s.input.illegal_encoder_steps = 3;
     s.input.age_ms = quantiles({10, 20, 30.25});
     const auto json = nlohmann::json::parse(to_json(s))["input"];
     EXPECT_EQ(json["devices"], 1);
     EXPECT_EQ(json["steered_by"][0]["mapping"], "default: gamepad");
     EXPECT_EQ(json["reports"], 1234);
+    EXPECT_EQ(json["illegal_encoder_steps"], 3);
     EXPECT_EQ(json["age_ms"]["p50"], 20);
     EXPECT_EQ(json["age_ms"]["max"], 30.25);
     EXPECT_EQ(json["stops"], 0);

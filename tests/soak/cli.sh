@@ -32,19 +32,18 @@ expect 1 'some rules cannot be judged' soak f.walk $virtual --seconds 5
 grep -q 'not judged' out || complain "what was too short is not said"
 
 # On the real clock, in a session of its own: stopped by Ctrl-C it sums up and ends its load; killed, the load ends by itself.
+load_came() { [ "$(load_of $leader)" -ge 3 ]; }
+load_is_gone() { [ "$(load_of $leader)" -eq 0 ]; }
 soak="$surefoot soak f.walk --backend null --seconds 300 --no-control --mix cpu,forks,memory"
 setsid $soak >out 2>err & leader=$!
-for _ in $(seq 100); do [ "$(load_of $leader)" -ge 3 ] && break; sleep 0.1; done
-[ "$(load_of $leader)" -ge 3 ] || complain "no load came: $(cat err)"
+eventually 10 load_came || complain "no load came: $(cat err)"
 kill -INT $leader; wait $leader; got=$?
 [ $got -eq 130 ] || complain "exit $got, not 130, of a stopped soak: $(cat err)"
 grep -q 'stopped by the user after' err || complain "a stopped soak says '$(head -c 300 err)'"
 grep -q '^grid *holds' out || complain "a stopped soak is not judged: $(cat out)"
 [ "$(load_of $leader)" -eq 0 ] || complain "load goes on after a stopped soak"
 setsid $soak >out 2>err & leader=$!
-for _ in $(seq 100); do [ "$(load_of $leader)" -ge 3 ] && break; sleep 0.1; done
-[ "$(load_of $leader)" -ge 3 ] || complain "no load came the second time"
+eventually 10 load_came || complain "no load came the second time"
 kill -KILL $leader; wait $leader 2>/dev/null
-for _ in $(seq 50); do [ "$(load_of $leader)" -eq 0 ] && break; sleep 0.1; done
-[ "$(load_of $leader)" -eq 0 ] || complain "load goes on though its soak was killed"
+eventually 5 load_is_gone || complain "load goes on though its soak was killed"
 verdict "soak"

@@ -6,21 +6,22 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "rt/clock/clock.hpp"
+#include "tests/eventually.hpp"
 #include "tools/soak/load_runner.hpp"
 #include "tools/soak/machine_facts.hpp"
 
 namespace surefoot::soak {
 namespace {
+
+using test::eventually;
 
 LoadSettings small_load() {
     LoadSettings s;
@@ -53,17 +54,6 @@ bool alive(pid_t pid) {
     return end != std::string::npos && end + 2 < text.size() && text[end + 2] != 'Z';
 }
 
-void wait_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
-
-template <class Condition>
-bool within_seconds(double seconds, Condition condition) {
-    for (int i = 0; i < static_cast<int>(seconds * 50); ++i) {
-        if (condition()) return true;
-        wait_ms(20);
-    }
-    return condition();
-}
-
 class SoakLoadTest : public testing::TestWithParam<LoadKind> {};
 
 TEST_P(SoakLoadTest, IsThereAndCounted) {
@@ -71,11 +61,10 @@ TEST_P(SoakLoadTest, IsThereAndCounted) {
     auto runner = LoadRunner::start(all_the_time(load_bit(kind)), small_load());
     ASSERT_TRUE(runner.ok()) << runner.error().text();
     const LoadCounters& c = runner->board().of(kind);
-    wait_ms(60);
-    EXPECT_EQ(c.amount.load(), 0U) << "it began before it was told to";
+    EXPECT_FALSE(eventually(0.06, [&] { return c.amount.load() > 0; })) << "it began before it was told to";
     runner->begin(rt::monotonic_ns());
     const bool has_evidence = kind == LoadKind::memory || kind == LoadKind::forks || kind == LoadKind::devices;
-    const bool counted = within_seconds(
+    const bool counted = eventually(
         10, [&] { return (c.amount.load() > 0 && (c.evidence.load() > 0 || !has_evidence)) || c.refused.load() != 0; });
     runner->stop();
     if (c.refused.load() != 0) GTEST_SKIP() << "not permitted here: " << std::strerror(c.refused.load());
@@ -83,8 +72,7 @@ TEST_P(SoakLoadTest, IsThereAndCounted) {
     EXPECT_EQ(c.failures.load(), 0U);
     EXPECT_GT(c.on_ns.load(), 0);
     const std::uint64_t after = c.amount.load();
-    wait_ms(100);
-    EXPECT_EQ(c.amount.load(), after) << "it goes on after it was stopped";
+    EXPECT_FALSE(eventually(0.1, [&] { return c.amount.load() != after; })) << "it goes on after it was stopped";
     if (has_evidence) {
         EXPECT_GT(c.evidence.load(), 0U);
     }
@@ -108,7 +96,7 @@ pid_t soak_process(pid_t& runner_pid) {
         runner->begin(rt::monotonic_ns());
         const pid_t pid = runner->pid();
         (void)!write(ends[1], &pid, sizeof pid);
-        for (;;) wait_ms(1000);
+        for (;;) pause();
     }
     EXPECT_EQ(read(ends[0], &runner_pid, sizeof runner_pid), static_cast<ssize_t>(sizeof runner_pid));
     close(ends[0]);
@@ -121,10 +109,10 @@ TEST(SoakLoads, ASoakThatIsKilledLeavesNothingBehind) {
     prctl(PR_SET_CHILD_SUBREAPER, 1);
     pid_t runner = -1;
     const pid_t soak = soak_process(runner);
-    EXPECT_TRUE(within_seconds(10, [&] { return family_of(runner).size() >= 5; })) << "the load never came";
+    EXPECT_TRUE(eventually(10, [&] { return family_of(runner).size() >= 5; })) << "the load never came";
     const std::vector<pid_t> family = family_of(runner);
     kill(soak, SIGKILL);
-    const bool gone = within_seconds(10, [&] {
+    const bool gone = eventually(10, [&] {
         while (waitpid(-1, nullptr, WNOHANG) > 0) {
         }
         for (const pid_t pid : family)
@@ -139,9 +127,9 @@ TEST(SoakLoads, AnInterruptOfTheTerminalIsTheSoaksToHear) {
     auto runner = LoadRunner::start(all_the_time(some_loads), small_load());
     ASSERT_TRUE(runner.ok());
     runner->begin(rt::monotonic_ns());
-    EXPECT_TRUE(within_seconds(10, [&] { return family_of(runner->pid()).size() >= 5; }));
+    EXPECT_TRUE(eventually(10, [&] { return family_of(runner->pid()).size() >= 5; }));
     for (const pid_t pid : family_of(runner->pid())) kill(pid, SIGINT);
-    wait_ms(200);
+    EXPECT_FALSE(eventually(0.2, [&] { return !alive(runner->pid()); })) << "Ctrl-C ended the load's own parent";
     EXPECT_GE(family_of(runner->pid()).size(), 5U) << "Ctrl-C took the load away before the walk ended";
     const std::vector<pid_t> family = family_of(runner->pid());
     runner->stop();
@@ -155,7 +143,7 @@ TEST(SoakLoads, EndByThemselvesWhenTheirTimeIsOver) {
     ASSERT_TRUE(runner.ok());
     runner->begin(rt::monotonic_ns());
     const pid_t pid = runner->pid();
-    EXPECT_TRUE(within_seconds(10, [&] { return !alive(pid); }));
+    EXPECT_TRUE(eventually(10, [&] { return !alive(pid); }));
 }
 
 TEST(SoakLoads, ClockStepsAreUndoneAlsoWhereTheyAreEnded) {
@@ -172,13 +160,13 @@ TEST(SoakLoads, ClockStepsAreUndoneAlsoWhereTheyAreEnded) {
     const LoadCounters& c = runner->board().of(LoadKind::clock);
     runner->begin(rt::monotonic_ns());
     std::int64_t furthest = 0;
-    within_seconds(10, [&] {
+    eventually(10, [&] {
         furthest = std::max<std::int64_t>(furthest, std::llabs(offset_ns() - before));
         return c.refused.load() != 0 || c.amount.load() >= 2;
     });
     if (c.refused.load() != 0) GTEST_SKIP() << "not permitted here: " << std::strerror(c.refused.load());
     // Ended in the middle of a step, if it is in one.
-    within_seconds(3, [&] { return std::llabs(offset_ns() - before) > 30'000'000; });
+    eventually(3, [&] { return std::llabs(offset_ns() - before) > 30'000'000; });
     runner->stop();
     EXPECT_GT(furthest, 30'000'000) << "no step was seen";
     EXPECT_LT(std::llabs(offset_ns() - before), 5'000'000) << "the last step was not undone";

@@ -102,7 +102,7 @@ public:
     Log& operator=(const Log&) = delete;
     void state(const char* when, const Rig& rig) {
         line(fmt::format("{}: stop {} latched {} dead-man {} pressed {} dial {} illegal {}", when, rig.lines.stop,
-                         rig.safety.latched, rig.lines.dead_man, rig.pressed, rig.dial, rig.panel.illegal_steps()));
+                         rig.safety.latched, rig.lines.dead_man, rig.pressed, rig.dial, rig.panel.illegal_encoder_steps()));
     }
     void line(const std::string& text) {
         if (file_ != nullptr) std::fputs((text + "\n").c_str(), file_);
@@ -300,9 +300,9 @@ void check_encoder(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {
     turn(-150);
     rig.serve(20);
     log.state("dial -150", rig);
-    checks.check("encoder", up == 400 && rig.dial - from == 250 && rig.panel.illegal_steps() == 0,
+    checks.check("encoder", up == 400 && rig.dial - from == 250 && rig.panel.illegal_encoder_steps() == 0,
                  fmt::format("400 steps up, 150 back, one in 20 bounces: {} and {}; {} illegal", up, rig.dial - from,
-                             rig.panel.illegal_steps()));
+                             rig.panel.illegal_encoder_steps()));
 }
 
 void check_burst(Checks& checks, Rig& rig, SimulatedChip& chip, Log& log) {

@@ -96,9 +96,8 @@ void check_gadget(Checks& checks, const Guest& guest) {
     for (int i = 0; i < times; ++i) {
         if (i > 0) gadget.plug();
         if (!walker.until([&] { return walker.source->devices() == 1; }, 10'000)) break;
-        const auto attached = walker.router.attached();
-        if (attached.empty()) break;
-        const HangUp hang_up(attached.front().plugged->node.substr(5));  // without "/dev/"
+        if (walker.router.steering_now() == 0) break;
+        const HangUp hang_up(walker.node.substr(5));  // without "/dev/"
         const auto report = pad_at(static_cast<int>(random.below(70)), static_cast<int>(random.below(70)));
         // Until it moves: emulated, a report's way through the USB stack takes its time, and before neutral has been seen nothing
         // moves.

@@ -39,7 +39,7 @@ public:
         last_ns = began;
         source->wait(now_ns() + 1'000'000);
         for (const input::DeviceEvent& e : source->take()) {
-            if (e.kind == input::DeviceEvent::Kind::added) added_ns = e.stamp_ns;
+            if (e.kind == input::DeviceEvent::Kind::added) added_ns = e.stamp_ns, node = e.plugged->node;
             if (e.kind == input::DeviceEvent::Kind::removed) removed_ns = e.stamp_ns;
             if (e.kind == input::DeviceEvent::Kind::report && first_report_ns == 0) first_report_ns = e.stamp_ns;
             router.dispatch(e);
@@ -71,6 +71,7 @@ public:
     }
 
     std::vector<std::string> messages;
+    std::string node;  ///< of the device that came last
     input::Steering steering{input::MotionLimits{}, input::SafetyLimits{}};
     input::DeviceRouter router{{}, steering, [this](std::string_view text) { messages.emplace_back(text); }};
     std::unique_ptr<input::LiveDevices> source;

@@ -60,7 +60,7 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
     if (a.json) {
         fmt::print("{}", soak::soak_json(s));
         if (!s.walk.uncalibrated.empty()) notify("uncalibrated: " + s.walk.uncalibrated);
-        for (const rt::Lack& d : s.walk.degraded) notify("not fully real-time: " + d.what + " (" + d.remedy + ")");
+        for (const rt::Lack& d : s.walk.degraded) notify("not fully real-time: " + d.text());
     } else {
         fmt::print("{}", soak::soak_table(s, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);

@@ -119,7 +119,7 @@ int run_walk_command(WalkArguments& a, const Context& context) {
         fmt::print("{}\n", report::to_json(outcome->summary));
         // The table says these itself.
         if (!outcome->summary.uncalibrated.empty()) notify("uncalibrated: " + outcome->summary.uncalibrated);
-        for (const rt::Lack& d : outcome->summary.degraded) notify("not fully real-time: " + d.what + " (" + d.remedy + ")");
+        for (const rt::Lack& d : outcome->summary.degraded) notify("not fully real-time: " + d.text());
         for (const std::string& problem : outcome->summary.census_problems) notify("thread census: " + problem);
     } else {
         fmt::print("{}", report::to_table(outcome->summary, context.colour));

@@ -66,6 +66,7 @@ Json input_of(const InputSummary& in) {
         {"reports", in.reports},
         {"reports_shown", in.reports_shown},
         {"refused", in.refused},
+        {"illegal_encoder_steps", in.illegal_encoder_steps},
         {"age_ms", {{"p50", rounded(in.age_ms.p50)}, {"p99", rounded(in.age_ms.p99)}, {"max", rounded(in.age_ms.max)}}},
         {"stops", in.stops},
         {"stopped_frames", in.stopped_frames},

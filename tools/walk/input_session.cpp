@@ -84,6 +84,7 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
         s.devices.push_back({printable(d.name), d.device_class, printable(d.mapping)});
     s.reports = source_->log().count();
     s.refused = source_->refused();
+    s.illegal_encoder_steps = source_->illegal_encoder_steps();
     const std::vector<double> ages = report_ages_ms(records, source_->log().stamps());
     // Of a long live walk the first reports' ages are kept, not all.
     s.reports_shown = records.empty() ? 0 : std::max<std::uint64_t>(ages.size(), records.back().input_reports);

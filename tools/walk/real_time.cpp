@@ -73,7 +73,8 @@ Result<void> require_real_time(std::span<const rt::Lack> lacks) {
     if (lacks.empty()) return {};
     std::string all;
     for (const rt::Lack& lack : lacks) {
-        all += fmt::format("{}{}{}", all.empty() ? "" : "; ", lack.what, lack.remedy.empty() ? "" : " -> " + lack.remedy);
+        all += (all.empty() ? "" : " ") + lack.text();
+        all += full_stop_after(all);
     }
     return Error{"--strict", "The walk does not start: " + all,
                  "Grant these. Without --strict the walk starts and its figures are marked", ErrorKind::no_real_time};

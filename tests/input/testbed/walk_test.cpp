@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "rt/base/file.hpp"
+#include "tests/eventually.hpp"
 #include "tests/input/gamepad_session.hpp"
 #include "tests/input/testbed/testbed.hpp"
 #include "tests/input/testbed/tool.hpp"
@@ -115,6 +116,12 @@ void hold(test::Plug& plug, double forward, int ms, unsigned buttons = 0) {
     }
 }
 
+/// Nobody touches a pad for so long. The ledger of this time is judged afterwards: the tool tells nothing of it before it ends.
+void keep_off(int ms) {
+    test::Patience patience(ms);
+    (void)test::eventually(60, [&] { return patience.over(); });
+}
+
 /// Reports until the tool says `text`.
 void hold_until(Tool& tool, const std::string& text, test::Plug& plug, unsigned buttons) {
     test::Patience patience(20'000);
@@ -150,18 +157,17 @@ double ride() {
     auto plug = bed.plug(device, {.serial = "0001", .wire = Wire::terminal});
     Tool tool(Place::get().walk("600"), false, "walk");
     EXPECT_TRUE(tool.until("The device steers by the mapping", 30'000)) << tool.err();
-    usleep(400'000);
-    hold(plug, 0, 200);
+    hold(plug, 0, 600);
     const double pushed = seconds_now();
     hold(plug, 1, 1200);
     bed.hang_up(plug);
     const double pulled = seconds_now();
     EXPECT_TRUE(tool.until("was unplugged")) << tool.err();
     bed.pull(plug);
-    usleep(500'000);
+    keep_off(500);
     const double plugged = seconds_now();
     plug = bed.plug(device, {.node = "hidraw1", .serial = "0001", .wire = Wire::terminal});
-    usleep(300'000);
+    EXPECT_TRUE(tool.until(fmt::format("/dev/hidraw1 ({}): The device steers", device.name))) << tool.err();
     hold(plug, 1, 600);
     const double neutral = seconds_now();
     hold(plug, 0, 200);
@@ -244,9 +250,9 @@ action = "stop_reset"
         words.insert(words.end(), more.begin(), more.end());
         Tool tool(Place::get().walk("600", words), false, "walk");
         EXPECT_TRUE(tool.until("The device steers by the mapping", 30'000)) << tool.err();
-        usleep(400'000);
+        hold(plug, 0, 400);
         hands(tool, plug);
-        usleep(200'000);
+        hold(plug, 0, 200);
         end(tool);
         bed.pull(plug);
         return std::pair(json::parse(tool.out())["input"], tool.err());
