@@ -25,8 +25,10 @@ std::string escaped(std::string_view line) {
     return out;
 }
 
-/// Filled text; what begins with two spaces is shown line by line.
-std::string paragraphs(std::string_view text) {
+/// Filled text; what begins with two spaces is shown line by line. request: what begins a paragraph; ".IP" keeps it indented
+/// below an item's term.
+std::string paragraphs(std::string_view text, std::string_view request = ".PP") {
+    const std::string begin = std::string(request) + "\n";
     std::string out;
     bool literal = false;
     while (!text.empty()) {
@@ -34,11 +36,11 @@ std::string paragraphs(std::string_view text) {
         const std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
         const bool indented = line.starts_with("  ");
-        if (indented && !literal) out += ".PP\n.nf\n";
-        if (!indented && literal) out += ".fi\n.PP\n";
+        if (indented && !literal) out += begin + ".nf\n";
+        if (!indented && literal) out += ".fi\n" + begin;
         literal = indented;
         if (line.empty()) {
-            if (!literal && !out.empty() && !out.ends_with(".PP\n")) out += ".PP\n";
+            if (!literal && !out.empty() && !out.ends_with(begin)) out += begin;
             continue;
         }
         out += escaped(line) + "\n";
@@ -48,6 +50,12 @@ std::string paragraphs(std::string_view text) {
 }
 
 }  // namespace
+
+std::string sentence(std::string_view text) {
+    std::string whole(text);
+    if (!whole.empty() && std::string_view(".?!").find(whole.back()) == std::string_view::npos) whole += '.';
+    return whole;
+}
 
 std::string troff(const ManualPage& page) {
     std::string title;
@@ -60,7 +68,8 @@ std::string troff(const ManualPage& page) {
         out += fmt::format(".SH {}\n", escaped(section.title));
         out += paragraphs(section.text);
         for (const ManualItem& item : section.items)
-            out += fmt::format(".TP\n\\fB{}\\fR\n{}", escaped(item.term), paragraphs(item.text.empty() ? "\n" : item.text));
+            out +=
+                fmt::format(".TP\n\\fB{}\\fR\n{}", escaped(item.term), paragraphs(item.text.empty() ? "\n" : item.text, ".IP"));
     }
     return out;
 }
@@ -70,7 +79,7 @@ ManualPage settings_manual(const Schema& schema) {
     page.sections.push_back({"DESCRIPTION",
                              "The settings file is TOML. Keys stand at the top level. A table [profile.NAME] holds other values "
                              "for the same keys, and "
-                             "--profile NAME puts them in force. A command line option of the same name wins over the file. "
+                             "--profile NAME puts them in force. The command line option for a key wins over the file. "
                              "Paths are relative to the "
                              "file's folder.\n\nAn unknown key is an error. So is a value of the wrong type or outside its "
                              "limits. The message names the "
@@ -79,8 +88,8 @@ ManualPage settings_manual(const Schema& schema) {
     ManualSection keys{"KEYS", "", {}};
     for (const Entry& entry : schema.entries()) {
         std::string text =
-            fmt::format("{}.\n{}{}. Default: {}.", entry.help, entry.kind == Kind::flag ? "" : "Allowed: ", allowed(entry),
-                        value_text(schema.defaults(), entry));
+            fmt::format("{}\n{}{}. Default: {}.", sentence(entry.help),
+                        entry.kind == Kind::flag ? "" : "Allowed: ", allowed(entry), value_text(schema.defaults(), entry));
         for (const Named& choice : entry.choices) text += fmt::format("\n  {:<17} {}", choice.name, choice.help);
         keys.items.push_back({std::string(entry.key), std::move(text)});
     }

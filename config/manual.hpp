@@ -28,6 +28,9 @@ struct ManualPage {
     std::vector<ManualSection> sections;
 };
 
+/// The text with a full stop, if it does not end in a mark.
+std::string sentence(std::string_view text);
+
 /// The page for `man`. Text is escaped, so that nothing in it is a troff request.
 std::string troff(const ManualPage& page);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -17,32 +18,45 @@ inline std::string manual_term(const CLI::Option& option) {
     return term;
 }
 
-/// Options of `hidden_group` are left out. The summary is the description's first line without its full stop.
-inline ManualPage manual_from_cli(const CLI::App& app, const std::string& name, int section, std::string_view hidden_group) {
+/// What an option does, its default, and whether it must be given. The lines of its choices come last.
+inline std::string manual_text(const CLI::Option& option) {
+    const std::string help = option.get_description();
+    const auto choices = std::min(help.find('\n'), help.size());
+    std::string text = sentence(help.substr(0, choices));
+    if (const std::string usual = option.get_default_str(); !usual.empty()) text += " " + sentence("Default: " + usual);
+    if (option.get_required()) text += " Required.";
+    return text + help.substr(choices);
+}
+
+/// An argument as a synopsis shows it: "in...", and in brackets if it may be left out.
+inline std::string synopsis_of(const CLI::Option& argument) {
+    const std::string name = argument.get_name(true) + (argument.get_items_expected_max() > 1 ? "..." : "");
+    return argument.get_required() ? name : "[" + name + "]";
+}
+
+/// words: the command as a user types it, "surefoot devices list". Options of `hidden_group` are left out.
+/// The summary is the description's first line without its full stop; a description of one line has no section of its own.
+inline ManualPage manual_from_cli(const CLI::App& app, const std::string& words, int section, std::string_view hidden_group) {
     const std::string description = app.get_description();
     ManualPage page;
-    page.name = name;
+    page.name = words;
+    std::replace(page.name.begin(), page.name.end(), ' ', '-');
     page.section = section;
     page.summary = description.substr(0, description.find('\n'));
     while (page.summary.ends_with('.')) page.summary.pop_back();
-    std::string words = name;
-    if (const auto dash = words.find('-'); dash != std::string::npos) words[dash] = ' ';
     page.synopsis = words + (app.get_subcommands(nullptr).empty() ? "" : " COMMAND");
     ManualSection arguments{"ARGUMENTS", "", {}}, options{"OPTIONS", "", {}};
     for (const CLI::Option* option : app.get_options()) {
         if (option->get_group() == hidden_group || option->get_group().empty()) continue;
-        std::string text = option->get_description() + ".";
-        if (const std::string usual = option->get_default_str(); !usual.empty()) text += " Default: " + usual + ".";
-        if (option->get_required()) text += " Required.";
-        (option->get_positional() ? arguments : options).items.push_back({manual_term(*option), std::move(text)});
-        if (option->get_positional()) page.synopsis += " " + option->get_name(true);
+        (option->get_positional() ? arguments : options).items.push_back({manual_term(*option), manual_text(*option)});
+        if (option->get_positional()) page.synopsis += " " + synopsis_of(*option);
     }
     page.synopsis += " [OPTION]...";
-    page.sections.push_back({"DESCRIPTION", description, {}});
+    if (description.find('\n') != std::string::npos) page.sections.push_back({"DESCRIPTION", description, {}});
     ManualSection commands{"COMMANDS", "", {}};
     for (const CLI::App* command : app.get_subcommands(nullptr))
         if (!command->get_name().empty() && !command->get_group().empty())
-            commands.items.push_back({command->get_name(), command->get_description() + "."});
+            commands.items.push_back({command->get_name(), sentence(command->get_description())});
     for (ManualSection* list : {&commands, &arguments, &options})
         if (!list->items.empty()) page.sections.push_back(std::move(*list));
     if (!app.get_footer().empty()) page.sections.push_back({"NOTES", app.get_footer(), {}});

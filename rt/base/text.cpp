@@ -51,6 +51,7 @@ std::string_view nearest_word(std::string_view word, std::span<const std::string
     for (const std::string_view known : words) {
         const bool part = word.size() >= 3 && known.find(word) != std::string_view::npos;
         const std::size_t edits = part ? 1 : edits_between(word, known);
+        if (edits >= word.size()) continue;  // nothing of the word is left
         if (edits < fewest || (edits == fewest && nearest.empty())) {
             fewest = edits;
             nearest = known;

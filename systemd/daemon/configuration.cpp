@@ -45,10 +45,21 @@ Result<void> apply_set(config::Configuration& c, const std::string& assignment) 
     return Error{"--set " + assignment, set.error().what, set.error().remedy, set.error().kind};
 }
 
+/// Every --set in turn. Whether one is refused does not depend on the file.
+std::vector<Error> apply_sets(config::Configuration& c, const std::vector<std::string>& assignments) {
+    std::vector<Error> problems;
+    for (const std::string& assignment : assignments)
+        if (auto ok = apply_set(c, assignment); !ok) problems.push_back(ok.error());
+    return problems;
+}
+
 }  // namespace
 
 Loaded load(const Options& options) {
     Loaded loaded;
+    config::Configuration trial(walk::settings_schema());
+    loaded.problems = apply_sets(trial, options.set);
+    loaded.misuse = !loaded.problems.empty();
     for (const config::Problem& problem : config::problems_in_file(walk::settings_schema(), options.config_file))
         loaded.problems.push_back(problem.error);
     if (!loaded.problems.empty()) return loaded;
@@ -57,12 +68,7 @@ Loaded load(const Options& options) {
         loaded.problems.push_back(ok.error());
         return loaded;
     }
-    for (const std::string& assignment : options.set) {
-        if (auto ok = apply_set(c, assignment); !ok) {
-            loaded.problems.push_back(ok.error());
-            loaded.misuse = true;
-        }
-    }
+    loaded.problems = apply_sets(c, options.set);
     if (auto ok = config::check(c); !ok) loaded.problems.push_back(ok.error());
     for (Error& problem : own_rules(c, options.config_file)) loaded.problems.push_back(std::move(problem));
     loaded.configuration = std::move(c);

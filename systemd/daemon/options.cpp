@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "config/manual_from_cli.hpp"
+#include "config/wrong_use.hpp"
 #include "rt/base/named.hpp"
 #include "systemd/daemon/exit_code.hpp"
 
@@ -112,7 +113,10 @@ std::optional<Options> read_options(int argc, char** argv, int& code) {
     } catch (const CLI::ParseError& error) {
         std::ostringstream out, err;
         code = app.exit(error, out, err) == 0 ? exit_success : exit_usage;
-        if (!err.str().empty()) (void)std::fprintf(stderr, "surefootd: %s (see surefootd --help)\n", error.what());
+        const std::vector<std::string_view> arguments(argv + 1, argv + argc);
+        if (!err.str().empty())
+            (void)std::fprintf(stderr, "surefootd: %s\n",
+                               config::wrong_use(app, error, arguments, {}, hidden_group).text().c_str());
         const bool written = std::fputs(out.str().c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
         if (!written && code == exit_success) code = exit_failure;
         return std::nullopt;

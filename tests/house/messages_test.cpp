@@ -27,10 +27,13 @@ struct Opener {
 };
 
 constexpr std::size_t any = 99;
-constexpr std::array openers = {
-    Opener{"Error{", 1, 2},      Opener{"fail({", 1, 2},         Opener{"misuse({", 1, 2},          Opener{"add_option(", 1, any},
-    Opener{"add_flag(", 1, any}, Opener{"add_command(", 1, any}, Opener{"add_subcommand(", 1, any}, Opener{"footer(", 0, any},
-    Opener{"Named{", 1, 1},      Opener{"Backend{", 1, 1},       Opener{"Format{", 1, 1},           Opener{"_entry{", 1, 1}};
+constexpr std::array openers = {Opener{"Error{", 1, 2},         Opener{"fail({", 1, 2},
+                                Opener{"misuse({", 1, 2},       Opener{"add_option(", 1, any},
+                                Opener{"add_setting(", 4, any}, Opener{"add_flag(", 1, any},
+                                Opener{"add_command(", 1, any}, Opener{"add_subcommand(", 1, any},
+                                Opener{"footer(", 0, any},      Opener{"Named{", 1, 1},
+                                Opener{"Backend{", 1, 1},       Opener{"Format{", 1, 1},
+                                Opener{"_entry{", 1, 1}};
 /// Calls of these names are helpers of the settings' schema there, and something else in other files.
 constexpr std::array schema_openers = {Opener{"number(", 1, any}, Opener{"integer(", 1, any}, Opener{"flag(", 1, any},
                                        Opener{"choice(", 1, any}, Opener{"file_name(", 1, any}};

@@ -8,6 +8,7 @@
 #include "tools/accuracy/sweep.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/cli/walk_settings.hpp"
 #include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
@@ -15,7 +16,8 @@ namespace surefoot::cli {
 namespace {
 struct AccuracyArguments {
     accuracy::AccuracyRequest request;
-    std::string out = "accuracy", size = "1280x720";
+    std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
+    std::string out = "accuracy";
     bool json = false;
 };
 
@@ -39,12 +41,21 @@ void print_points(const accuracy::AccuracyRun& run) {
                                         std::to_string(p.exact), text(p.snr_db, 2), text(p.ssim, 4), text(p.triangles, 0)}));
 }
 
+void put_settings(const config::Settings& s, accuracy::AccuracyRequest& r) {
+    r.width = s.width;
+    r.height = s.height;
+    r.shift_x = s.shift_x;
+    r.shift_y = s.shift_y;
+    r.lift_m = s.lift_m;
+    r.workers = s.workers;
+    r.rasterisers = s.rasterisers;
+}
+
 int run_accuracy_command(AccuracyArguments& a, const Context& context) {
-    const auto size = parse_size(a.size);
-    if (!size) return misuse(size.error());
+    const auto read = read_settings(*a.settings);
+    if (!read) return misuse(read.error());
+    put_settings(read->values, a.request);
     gl::prepare_process(a.request.rasterisers);
-    a.request.width = size->width;
-    a.request.height = size->height;
     if (auto ok = accuracy::probe_accuracy_page(a.out); !ok) return fail(ok.error());
     auto run = accuracy::run_accuracy(a.request, terminal_progress(context));
     end_progress(context);
@@ -73,13 +84,9 @@ void add_accuracy(CLI::App& app, Context& context) {
     c->add_option("model", r.model_file, "The .walk model")->required();
     c->add_option("--path", r.path_file, "CSV file of the path along which poses are taken (else MODEL.path.csv, else a tour)");
     c->add_option("-o,--out", a->out, "Output folder for index.html, accuracy.svg and accuracy.csv")->capture_default_str();
-    c->add_option("--size", a->size, "Size of the picture in pixels")->capture_default_str();
-    c->add_option("--shift-x", r.shift_x, "Off-axis projection: offset of the image centre to the right of the view direction")
-        ->check(number_within(-8, 8, "half widths"))
-        ->capture_default_str();
-    c->add_option("--shift-y", r.shift_y, "Off-axis projection: offset of the image centre upwards")
-        ->check(number_within(-8, 8, "half heights"))
-        ->capture_default_str();
+    c->add_option("--size", a->settings->size, "Size of the picture in pixels [1280x720]");
+    add_setting(c, a->settings, "--shift-x", "shift_x");
+    add_setting(c, a->settings, "--shift-y", "shift_y");
     c->add_option("--poses", r.poses, "Number of poses along the path, 1 to 256")
         ->check(whole_number_within(1, 256))
         ->capture_default_str();
@@ -91,16 +98,12 @@ void add_accuracy(CLI::App& app, Context& context) {
         ->capture_default_str();
     c->add_option("--budget", r.budgets_ms, "Frame budgets in ms (else eight fractions of the time of a full frame)")
         ->check(number_within(0.001, 1e5, "ms"));
-    c->add_option("--lift", r.lift_m, "Height added to every pose of the path, in metres")
-        ->check(number_within(-1e7, 1e7, "m"))
-        ->capture_default_str();
+    add_setting(c, a->settings, "--lift", "lift_m");
     c->add_option("--backend", r.backend, "Backend that draws: " + gl::drawing_backends())
         ->check(drawing_backend())
         ->capture_default_str();
-    c->add_option("--workers", r.workers, "Number of threads that prepare frames; 0: one per core")
-        ->check(whole_number_within(0, 256));
-    c->add_option("--rasterisers", r.rasterisers, "Number of software GL threads; 0: the measured default")
-        ->check(whole_number_within(0, 64));
+    add_setting(c, a->settings, "--workers", "workers", "Threads that prepare frames; 0: one per core.");
+    add_setting(c, a->settings, "--rasterisers", "rasterisers", "Threads of a software renderer; 0: the measured default.");
     c->add_option("--state", r.state_dir, "Folder of the calibrated cost table");
     c->callback([&context, a] { context.run = [a, &context] { return run_accuracy_command(*a, context); }; });
 }

@@ -1,5 +1,6 @@
 // surefoot bake: imports model files, clusters, simplifies, captures, and writes a .walk model.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -14,6 +15,7 @@
 #include "rt/base/file.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/cli/walk_settings.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::cli {
@@ -22,10 +24,11 @@ namespace {
 struct BakeArguments {
     std::vector<std::string> in;
     std::string out, quality = "draft", state;
-    int workers = 0;
-    double rate_hz = 30;
+    std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool allow_incomplete = false, json = false;
 };
+
+constexpr std::array<std::string_view, 2> qualities = {"draft", "full"};
 
 double peak_memory_mib() {
     rusage usage{};
@@ -71,6 +74,8 @@ void print_warnings(const std::vector<std::string>& warnings) {
 
 int run_bake(const BakeArguments& a, const Context& context) {
     const auto begun = std::chrono::steady_clock::now();
+    const auto settings = read_settings(*a.settings);
+    if (!settings) return misuse(settings.error());
     for (const std::string& in : a.in) {
         std::error_code ignored;
         if (std::filesystem::equivalent(in, a.out, ignored)) {
@@ -96,8 +101,8 @@ int run_bake(const BakeArguments& a, const Context& context) {
     if (!a.allow_incomplete && !scene->damage.empty()) return end_progress(context), fail(incomplete(scene->damage));
     bake::BakeOptions options;
     options.quality = a.quality == "full" ? bake::Quality::full : bake::Quality::draft;
-    options.workers = a.workers;
-    options.frame_us = 1e6 / a.rate_hz;
+    options.workers = settings->values.workers;
+    options.frame_us = 1e6 / settings->values.rate_hz;
     options.costs = &*costs;
     auto model = bake::bake(*scene, options, progress);
     if (!model) return end_progress(context), fail(model.error());
@@ -137,13 +142,10 @@ void add_bake(CLI::App& app, Context& context) {
     c->add_option("-o,--out", a->out, "The .walk model to write; an older file is replaced only when the new one is complete")
         ->required();
     c->add_option("--quality", a->quality, "draft: at most one minute per million triangles; full: tighter error bounds")
-        ->check(CLI::IsMember({"draft", "full"}))
+        ->check(one_of(qualities))
         ->capture_default_str();
-    c->add_option("--workers", a->workers, "Number of threads; 0: one per core. The result does not depend on it")
-        ->check(whole_number_within(0, 256));
-    c->add_option("--rate", a->rate_hz, "Frame rate in Hz; no item of the model may cost more than 1/16 of a frame")
-        ->check(number_within(1, 240, "Hz"))
-        ->capture_default_str();
+    add_setting(c, a->settings, "--workers", "workers", "Threads; 0: one per core. The result does not depend on it.");
+    add_setting(c, a->settings, "--rate", "rate_hz", "Frame rate; no item of the model may cost more than 1/16 of a frame.");
     c->add_flag("--allow-incomplete", a->allow_incomplete,
                 "Bake a scene with missing or damaged textures, materials or coordinates, and warn about them");
     c->add_option("--state", a->state, "Folder of the calibrated cost table");

@@ -13,10 +13,12 @@
 #include "rt/threads/memory.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/cli/walk_settings.hpp"
 #include "tools/report/report.hpp"
 #include "tools/walk/model_costs.hpp"
 #include "tools/walk/path_source.hpp"
 #include "tools/walk/placing.hpp"
+#include "tools/walk/settings_request.hpp"
 #include "tools/walk/state.hpp"
 
 namespace surefoot::cli {
@@ -24,9 +26,7 @@ namespace surefoot::cli {
 namespace {
 struct CalibrateArguments {
     std::string model, path, state, backend{gl::usual_backend}, plot;
-    int rasterisers = 0;
-    std::uint32_t width = 1280, height = 720;
-    double rate_hz = 30, lift_m = 0;
+    std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool quick = false, json = false;
 };
 
@@ -82,7 +82,7 @@ Result<void> make_folder(const std::string& dir) {
 nlohmann::ordered_json to_json(const walk::FrameErrors& e) { return {{"p50", e.p50}, {"p90", e.p90}, {"p99", e.p99}}; }
 
 /// One model: the table stays, the weights of a frame's sums are fitted.
-int run_fit(const CalibrateArguments& a, const Context& context) {
+int run_fit(const CalibrateArguments& a, const config::Settings& s, const Context& context) {
     const auto backend = gl::backend_named(a.backend);
     if (!backend) return misuse(backend.error());
     if (!a.plot.empty())
@@ -98,9 +98,9 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
     model::WalkFileInfo info;
     auto model = model::read_walk(a.model, &info);
     if (!model) return fail(model.error());
-    auto path = walk::choose_path(a.path, a.model, *model, a.lift_m);
+    auto path = walk::choose_path(a.path, a.model, *model, s.lift_m);
     if (!path) return fail(path.error());
-    const walk::FitConditions conditions{info.hash, a.width, a.height, a.backend};
+    const walk::FitConditions conditions{info.hash, s.width, s.height, a.backend};
     const std::string file = walk::model_costs_file(dir, *table, conditions);
     if (auto made = make_folder(dir + "/models"); !made) return fail(made.error());
     if (auto ok = probe_writable(file); !ok) return fail(ok.error());
@@ -108,9 +108,9 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
     if (!placed) return fail(placed.error());
     walk::ModelFitOptions options;
     options.device.kind = (*backend)->kind;
-    options.device.viewport = {a.width, a.height};
-    options.device.rasterisers = a.rasterisers;
-    options.frame_us = 1e6 / a.rate_hz;
+    options.device.viewport = {s.width, s.height};
+    options.device.rasterisers = s.rasterisers;
+    options.frame_us = 1e6 / s.rate_hz;
     if (a.quick) options.poses = 80;
     options.opened = *placed;
     auto fit = walk::fit_to_model(std::move(*model), path->path, *table, options, terminal_progress(context));
@@ -154,10 +154,15 @@ int run_fit(const CalibrateArguments& a, const Context& context) {
 }
 
 int run_calibrate(const CalibrateArguments& a, const Context& context) {
-    gl::prepare_process(a.rasterisers);
-    if (!a.model.empty()) return run_fit(a, context);
-    for (const auto& [given, option] :
-         {std::pair{!a.path.empty(), "--path"}, {a.lift_m != 0, "--lift"}, {a.rate_hz != 30, "--rate"}}) {
+    const auto read = read_settings(*a.settings);
+    if (!read) return misuse(read.error());
+    const config::Settings& s = read->values;
+    const config::Settings& defaults = walk::settings_schema().defaults();
+    gl::prepare_process(s.rasterisers);
+    if (!a.model.empty()) return run_fit(a, s, context);
+    for (const auto& [given, option] : {std::pair{!a.path.empty(), "--path"},
+                                        {s.lift_m != defaults.lift_m, "--lift"},
+                                        {s.rate_hz != defaults.rate_hz, "--rate"}}) {
         if (given)
             return misuse(
                 {option, "This option needs a model", "Name the model: surefoot calibrate MODEL.walk ...", ErrorKind::misuse});
@@ -171,8 +176,8 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (auto ok = probe_writable(plot, a.plot.empty()); !ok) return fail(ok.error());
     measure::CalibrateOptions options;
     options.device.kind = (*backend)->kind;
-    options.device.viewport = {a.width, a.height};
-    options.device.rasterisers = a.rasterisers;
+    options.device.viewport = {s.width, s.height};
+    options.device.rasterisers = s.rasterisers;
     options.quick = a.quick;
     auto placed = placed_as_walked();
     if (!placed) return fail(placed.error());
@@ -211,23 +216,15 @@ void add_calibrate(CLI::App& app, Context& context) {
                               "surefoot calibrate && surefoot calibrate town.walk", a->json);
     c->add_option("MODEL", a->model, "Fit the cost table to this model. Later walks of the model use the fit");
     c->add_option("--path", a->path, "With a model: CSV file of the path to draw along (else MODEL.path.csv, else a tour)");
-    c->add_option("--lift", a->lift_m, "With a model: height added to every pose of the path, in metres")
-        ->check(number_within(-1e7, 1e7, "m"));
-    c->add_option("--rate", a->rate_hz, "With a model: frame rate of later walks")
-        ->check(number_within(1, 1000, "Hz"))
-        ->capture_default_str();
+    add_setting(c, a->settings, "--lift", "lift_m", "With a model: height added to every pose of the path.");
+    add_setting(c, a->settings, "--rate", "rate_hz", "With a model: frame rate of later walks.");
     c->add_option("--state", a->state, "Folder for costs.toml and costs.svg (else $STATE_DIRECTORY, else the XDG state folder)");
     c->add_option("--backend", a->backend, "Backend that draws: " + gl::drawing_backends())
         ->check(drawing_backend())
         ->capture_default_str();
-    c->add_option("--rasterisers", a->rasterisers, "Number of software GL threads; 0: the measured default")
-        ->check(whole_number_within(0, 64));
-    c->add_option("--width", a->width, "Width of the picture in pixels")
-        ->check(whole_number_within(16, 8192))
-        ->capture_default_str();
-    c->add_option("--height", a->height, "Height of the picture in pixels")
-        ->check(whole_number_within(16, 8192))
-        ->capture_default_str();
+    add_setting(c, a->settings, "--rasterisers", "rasterisers", "Threads of a software renderer; 0: the measured default.");
+    add_setting(c, a->settings, "--width", "width");
+    add_setting(c, a->settings, "--height", "height");
     c->add_option("--plot", a->plot, "SVG file for the plot of costs (else costs.svg in the state folder)");
     c->add_flag("--quick", a->quick, "Measure fewer frames and classes: faster, with larger errors");
     c->callback([&context, a] { context.run = [a, &context] { return run_calibrate(*a, context); }; });

@@ -10,6 +10,7 @@
 #include "rt/base/file.hpp"
 #include "rt/base/text.hpp"
 #include "tools/cli/devices.hpp"
+#include "tools/cli/options.hpp"
 #include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
@@ -375,7 +376,7 @@ void add_devices_describe(CLI::App& devices, Context& context) {
                   "Vendor and product id that select quirks, for example 046d:c626 (else those of the recording)")
         ->check([](const std::string& text) {
             std::uint16_t v = 0, p = 0;
-            return parse_id(text, v, p) ? std::string() : std::string("vendor and product ids look like 046d:c626");
+            return parse_id(text, v, p) ? std::string() : refused_value(text, "", "ids such as 046d:c626").text();
         });
     c->callback([&context, a] { context.run = [a] { return run_describe(*a); }; });
 }

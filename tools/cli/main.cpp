@@ -2,21 +2,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
-#include <optional>
 #include <sstream>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "config/wrong_use.hpp"
 #include "render/gl/device.hpp"
 #include "render/import/formats.hpp"
 #include "rt/base/file.hpp"
-#include "rt/base/text.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/report/terminal.hpp"
@@ -51,18 +49,6 @@ int run(const surefoot::cli::Context& context) {
         unexpected(error);
     }
     return cli::finish_output(code, output_error);
-}
-
-/// CLI11 only reports that a command is required. This names the unknown word and the nearest command.
-std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
-    if (argc < 2 || argv[1][0] == '-') return std::nullopt;
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
-    if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return std::nullopt;
-    const std::vector<std::string_view> words(names.begin(), names.end());
-    const std::string_view nearest = surefoot::nearest_word(argv[1], words);
-    return fmt::format("There is no command '{}'{}", argv[1],
-                       nearest.empty() ? "" : fmt::format(". Did you mean '{}'?", nearest));
 }
 
 }  // namespace
@@ -112,9 +98,8 @@ int main(int argc, char** argv) {
     cli::add_manual(app, context);
     app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {
         const std::vector<std::string_view> arguments(argv + 1, argv + argc);
-        const auto renamed = cli::renamed_option(arguments);
-        const std::string text = renamed ? *renamed : unknown_command(*of, argc, argv).value_or(error.what());
-        return "surefoot: " + text + " (see surefoot --help, or --help after the command)\n";
+        const Error wrong = config::wrong_use(*of, error, arguments, cli::renamed_options(), cli::hidden_group);
+        return "surefoot: " + wrong.text() + "\n";
     });
     try {
         app.parse(argc, argv);

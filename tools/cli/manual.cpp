@@ -33,12 +33,13 @@ std::vector<ManualPage> pages_of(const CLI::App& app) {
     const auto add = [&](const auto& self, const CLI::App& of, const std::string& prefix) -> void {
         for (const CLI::App* command : of.get_subcommands(nullptr)) {
             if (command->get_name().empty()) continue;
-            ManualPage page = config::manual_from_cli(*command, prefix + "-" + command->get_name(), 1, hidden_group);
+            const std::string words = prefix + " " + command->get_name();
+            ManualPage page = config::manual_from_cli(*command, words, 1, hidden_group);
             add_exit_codes(page);
             page.sections.push_back({"SEE ALSO", "surefoot(1), surefoot.toml(5)", {}});
             others += ", " + page.name + "(1)";
             pages.push_back(std::move(page));
-            self(self, *command, prefix + "-" + command->get_name());
+            self(self, *command, words);
         }
     };
     add(add, app, "surefoot");
@@ -52,8 +53,8 @@ int run_manual(const CLI::App& app, const std::string& folder, bool json) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
-        return fail(
-            {folder, "The folder cannot be made: " + error.message(), "Name another folder with -o", ErrorKind::unwritable});
+        return fail({folder.empty() ? "-o ''" : folder, "The folder cannot be made: " + error.message(),
+                     "Name another folder with -o", ErrorKind::unwritable});
     nlohmann::ordered_json files = nlohmann::ordered_json::array();
     for (const ManualPage& page : pages_of(app)) {
         const std::string file = fmt::format("{}/{}.{}", folder, page.name, page.section);

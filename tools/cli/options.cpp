@@ -7,31 +7,38 @@
 #include <cmath>
 #include <optional>
 
+#include "config/values.hpp"
 #include "render/gl/backends.hpp"
 #include "rt/base/text.hpp"
 #include "tools/walk/settings_request.hpp"
 
 namespace surefoot::cli {
 
+Error refused_value(const std::string& given, std::string_view why, const std::string& allowed) {
+    return {given, why.empty() ? "The value is not allowed" : fmt::format("The value {}", why), "Use " + allowed,
+            ErrorKind::misuse};
+}
+
 CLI::Validator number_within(double min, double max, const std::string& unit) {
     return {[=](std::string& text) {
                 const auto value = number_in<double>(text);
                 if (value && *value >= min && *value <= max) return std::string();
-                return fmt::format("'{}' is not a number from {} to {}{}{}", text, min, max, unit.empty() ? "" : " ", unit);
+                const std::string suffix = unit.empty() ? "" : " (" + unit + ")";
+                return refused_value(text, "", fmt::format("a number from {} to {}{}", min, max, suffix)).text();
             },
-            fmt::format("{}..{}{}{}", min, max, unit.empty() ? "" : " ", unit)};
+            fmt::format("{} to {}{}{}", min, max, unit.empty() ? "" : " ", unit)};
 }
 
 CLI::Validator whole_number_within(std::uint64_t min, std::uint64_t max) {
     return {[=](std::string& text) {
                 const auto value = number_in<std::uint64_t>(text);
                 if (!value || *value < min || *value > max) {
-                    return fmt::format("'{}' is not a whole number from {} to {}", text, min, max);
+                    return refused_value(text, "", fmt::format("a whole number from {} to {}", min, max)).text();
                 }
                 text = std::to_string(*value);
                 return std::string();
             },
-            fmt::format("{}..{}", min, max)};
+            fmt::format("{} to {}", min, max)};
 }
 
 CLI::Validator one_of(std::span<const std::string_view> words) {
@@ -40,7 +47,7 @@ CLI::Validator one_of(std::span<const std::string_view> words) {
     const std::vector<std::string> known(words.begin(), words.end());
     return {[known, all](std::string& text) {
                 if (std::find(known.begin(), known.end(), text) != known.end()) return std::string();
-                return fmt::format("'{}' is not one of {}", text, all);
+                return refused_value(text, "", "one of " + all).text();
             },
             all};
 }
@@ -48,23 +55,23 @@ CLI::Validator one_of(std::span<const std::string_view> words) {
 CLI::Validator drawing_backend() {
     return {[](std::string& text) {
                 const auto backend = gl::backend_named(text);
-                if (!backend) return backend.error().text();
-                if ((*backend)->draws()) return std::string();
-                return fmt::format("'{}' draws nothing; use one of: {}", text, gl::drawing_backends());
+                if (backend && (*backend)->draws()) return std::string();
+                const std::string_view why =
+                    backend.ok() ? "draws nothing" : config::absent_because(*walk::settings_schema().find("backend"), text);
+                return refused_value(text, why, "one of " + gl::drawing_backends()).text();
+            },
+            ""};
+}
+
+CLI::Validator names_something() {
+    return {[](std::string& text) {
+                if (!text.empty()) return std::string();
+                return Error{"''", "The value names nothing", "Give a name, or remove the option", ErrorKind::misuse}.text();
             },
             ""};
 }
 
 std::span<const config::Renamed> renamed_options() { return {}; }  // no option has had another name yet: tests/known_names.txt
-
-std::optional<std::string> renamed_option(std::span<const std::string_view> arguments) {
-    for (const std::string_view argument : arguments) {
-        if (!argument.starts_with("--")) continue;
-        if (auto error = config::renamed_error(renamed_options(), "command line", argument.substr(0, argument.find('='))))
-            return error->text();
-    }
-    return std::nullopt;
-}
 
 Result<Size> parse_size(const std::string& text) {
     const config::Entry& width = *walk::settings_schema().find("width");

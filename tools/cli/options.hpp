@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +12,11 @@
 
 namespace surefoot::cli {
 
+/// The error for a value that is not allowed, in one wording for all options. given: the option and the value, or the value
+/// alone. why: why not, as the end of a sentence; may be empty. allowed: what is.
+Error refused_value(const std::string& given, std::string_view why, const std::string& allowed);
+// Checks of CLI11 return that error's text with the value alone; config::wrong_use() puts the option before it.
+
 /// A finite number within the limits, these included. unit: for people; may be empty.
 CLI::Validator number_within(double min, double max, const std::string& unit = "");
 /// A whole number within the limits; the text is put into plain decimal digits.
@@ -21,11 +25,11 @@ CLI::Validator whole_number_within(std::uint64_t min, std::uint64_t max);
 CLI::Validator one_of(std::span<const std::string_view> words);
 /// A backend of this version that draws pictures.
 CLI::Validator drawing_backend();
+/// Any text but the empty one: an empty variable of a script is no wish for no output.
+CLI::Validator names_something();
 
 /// Options that earlier versions had.
 std::span<const config::Renamed> renamed_options();
-/// The error for the first of them on a refused command line; nothing if there is none.
-std::optional<std::string> renamed_option(std::span<const std::string_view> arguments);
 
 struct Size {
     std::uint32_t width = 0, height = 0;

@@ -30,13 +30,6 @@ struct WalkArguments {
     const CLI::Option* control_pairs = nullptr;
 };
 
-/// An empty variable of a script is no wish for no output.
-const CLI::Validator names_something(
-    [](const std::string& given) {
-        return given.empty() ? std::string("names nothing: leave it out, or give a name") : std::string();
-    },
-    "");
-
 /// Options whose value does not tell whether they were given.
 struct Given {
     bool every = false, capture_frame = false, control_pairs = false;
@@ -159,7 +152,7 @@ void add_walk(CLI::App& app, Context& context) {
          "needs the real clock, and ends with --seconds, --frames, or the path's length. A recording is in hid-recorder's text "
          "format, and ends a second after its last report. Check it with `surefoot devices describe`. A file named devices is "
          "./devices")
-        ->check(names_something);
+        ->check(names_something());
     c->add_option(
         "--steering", r.steering_file,
         "TOML file with [motion], [safety], [[device]] and [[gpio]] for --input (else the default of the device's class)");
@@ -185,22 +178,22 @@ void add_walk(CLI::App& app, Context& context) {
                            ->check(whole_number_within(1, 100000))
                            ->capture_default_str();
     c->add_option("--state", r.state_dir, "Folder of the calibrated cost table");
-    c->add_option("--ledger", r.ledger_file, "CSV file with one row per frame")->check(names_something);
-    c->add_option("--trace", r.trace_file, "Trace file for ui.perfetto.dev")->check(names_something);
-    c->add_option("--report", r.report_dir, "Folder for a report: index.html")->check(names_something);
+    c->add_option("--ledger", r.ledger_file, "CSV file with one row per frame")->check(names_something());
+    c->add_option("--trace", r.trace_file, "Trace file for ui.perfetto.dev")->check(names_something());
+    c->add_option("--report", r.report_dir, "Folder for a report: index.html")->check(names_something());
     c->add_option(
         "--monitor", a->watch.address,
         "Address for live figures: unix:PATH, or 127.0.0.1:PORT (port 0: any free port). `surefoot status`, `surefoot top` "
         "and Prometheus (/metrics) read them");
     c->add_option("--incidents", a->watch.incidents_dir,
                   "Folder for bursts of misses: the ledger and trace of the last minute. The newest 20 are kept, at most 256 MiB")
-        ->check(names_something);
+        ->check(names_something());
     c->add_option("--snap", r.snap_dir,
                   "Folder for pictures of the walk: 00000.png and so on, as many as fit in 256 MiB of memory")
-        ->check(names_something);
+        ->check(names_something());
     c->add_option("--every", r.snap_every, "Take a picture every N frames [30]")->check(whole_number_within(1, 1'000'000'000));
     c->add_option("--capture", r.capture_file, "File for the prepared arrays and cut of one frame, for `surefoot replay`")
-        ->check(names_something);
+        ->check(names_something());
     c->add_option("--capture-frame", r.capture_frame, "Number of the frame to capture [0]")
         ->check(whole_number_within(0, 4'000'000));
     c->callback([&context, a] { context.run = [a, &context] { return run_walk_command(*a, context); }; });

@@ -13,19 +13,18 @@ namespace {
 
 /// Sets a value of the command line through the schema. An error names the option as the user wrote it.
 Result<void> put_setting(config::Configuration& c, const std::string& flag, const std::string& key, const std::string& text) {
-    const std::string place = flag + " " + text;
     if (config::set_value(c, key, text)) return {};
     const config::Entry& entry = *c.schema->find(key);
-    const std::string_view why = config::absent_because(entry, text);
-    return Error{place, why.empty() ? "The value is not allowed" : fmt::format("The value {}", why),
-                 "Use " + config::allowed(entry), ErrorKind::misuse};
+    return refused_value(flag + " " + text, config::absent_because(entry, text), config::allowed(entry));
 }
 
-/// Adds an option that is checked and stored by the settings' schema under `key`.
-void add_setting(CLI::App* c, const std::shared_ptr<SettingArguments>& a, const std::string& flag, const std::string& key) {
+}  // namespace
+
+void add_setting(CLI::App* c, const std::shared_ptr<SettingArguments>& a, const std::string& flag, const std::string& key,
+                 std::string help) {
     const config::Schema& schema = walk::settings_schema();
     const config::Entry* entry = schema.find(key);
-    std::string help(entry->help);
+    if (help.empty()) help = entry->help;
     help += " Allowed: " + config::allowed(*entry) + " [" + config::value_text(schema.defaults(), *entry) + "]";
     for (const Named& choice : entry->choices) help += fmt::format("\n  {:<17} {}", choice.name, choice.help);
     c->add_option_function<std::string>(
@@ -35,8 +34,6 @@ void add_setting(CLI::App* c, const std::shared_ptr<SettingArguments>& a, const 
         },
         help);
 }
-
-}  // namespace
 
 void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& a, FlagsAndKeys more, FlagsAndKeys last) {
     command->add_option("--size", a->size, "Size of the picture in pixels [1280x720]");

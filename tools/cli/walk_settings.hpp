@@ -1,4 +1,4 @@
-// What the commands that walk share: settings from a file and from the command line, through the same schema and limits.
+// Options that are settings: read from a file and from the command line, through the same schema and limits for every command.
 #pragma once
 
 #include <initializer_list>
@@ -24,6 +24,9 @@ struct SettingArguments {
 
 using FlagsAndKeys = std::initializer_list<std::pair<const char*, const char*>>;
 
+/// An option that is checked and stored by the settings' schema under `key`. help: whole sentences, instead of the key's own.
+void add_setting(CLI::App* command, const std::shared_ptr<SettingArguments>& arguments, const std::string& flag,
+                 const std::string& key, std::string help = {});
 /// --config, --profile, --size, --no-fifo, an option for each setting that every walk has, and for those that only this command
 /// offers: `more` stands in --help behind the budget, `last` at the end.
 void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& arguments, FlagsAndKeys more = {},
