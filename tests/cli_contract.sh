@@ -29,9 +29,9 @@ expect 2 'selftest --hard' selftest
 expect 2 '--scale.*0.* 0.001 to' selftest --hard --scale 0
 
 # Wrong use is 2, bad input 1; what was there is still there.
-expect 2 'required|subcommand' --no-such-option
+expect 2 "The option '--no-such-option' is unknown" --no-such-option
 expect 2 "no command 'wlak'. Did you mean 'walk'" wlak f.walk
-expect 2 "no command 'xyzzy' " xyzzy
+expect 2 "There is no command 'xyzzy'" xyzzy
 expect 2 'Required|required' bake f.glb
 expect 2 'one of|selector' walk f.walk --selector best
 expect 2 'size' walk f.walk --size big

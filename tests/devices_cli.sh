@@ -27,7 +27,7 @@ says '"status": "accepted", *"values": \{ *"x": -127 *\}.*"long": 1' devices des
 says 'x=127.*2 accepted, 0 short, 1 long, 0 unknown' devices describe stick.bin --reports stick.hid
 says 'quirk|deflect' devices describe "$nav" --vid-pid 256f:c635
 says 'Example:' devices describe --help
-expect 2 'ids look like' devices describe stick.bin --vid-pid rubbish
+expect 2 'Use ids such as' devices describe stick.bin --vid-pid rubbish
 expect 2 '.' devices describe
 says . devices
 expect 1 'nothing.bin' devices describe nothing.bin

@@ -129,7 +129,7 @@ std::vector<std::string> sentences_of(std::string_view text) {
 }
 
 /// Runs between blanks that hold a letter, a digit or a value to be filled in.
-std::size_t words_of(std::string_view sentence) {
+std::size_t word_count(std::string_view sentence) {
     std::size_t words = 0;
     bool inside = false, counted = false;
     for (const char c : sentence) {
@@ -162,7 +162,7 @@ void find_texts(std::string_view source, const Openers& of, FoundTexts& found) {
                 for (const std::string& text : texts_in(arguments[i])) {
                     ++found.texts;
                     for (const std::string& sentence : sentences_of(text))
-                        if (words_of(sentence) > max_words) found.too_long.push_back(sentence);
+                        if (word_count(sentence) > max_words) found.too_long.push_back(sentence);
                 }
             }
         }
@@ -195,7 +195,7 @@ TEST(Messages, HaveSentencesOfAtMost25Words) {
             const FoundTexts found = texts_of(file, *source);
             texts += found.texts;
             for (const std::string& sentence : found.too_long)
-                ADD_FAILURE() << file << ": " << words_of(sentence) << " words: " << sentence;
+                ADD_FAILURE() << file << ": " << word_count(sentence) << " words: " << sentence;
         }
     }
     EXPECT_GT(texts, 500U) << "texts are no longer found: have their helpers got other names?";

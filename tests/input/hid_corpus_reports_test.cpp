@@ -27,7 +27,7 @@ ReportFate expected_fate(const std::string& purpose) {
     return ReportFate::accepted;
 }
 
-/// The row that explains an event which no control foretold; without_control.size() for none.
+/// The row that explains an event which no control expected; without_control.size() for none.
 std::size_t row_of(const std::string& slug, const KernelEvent& e) {
     const auto row = std::find_if(without_control.begin(), without_control.end(), [&](const NoControl& n) {
         if (slug != n.slug) return false;
@@ -67,7 +67,7 @@ void HidCorpusReports::compare(const CorpusDevice& device, const std::string& ki
     ASSERT_TRUE(recording.ok()) << recording.error().text();
     ASSERT_EQ(recording->reports.size(), count);
     EXPECT_EQ(recording->descriptor, device.descriptor());
-    // Without a node there is no file, and nothing to be foretold.
+    // Without a node there is no file, and nothing to expect.
     KernelEvents events = read_kernel_events(device.folder / ("kernel-evdev-" + kind + ".txt"));
     for (const auto& line : events.problems) ADD_FAILURE() << "not understood: " << line;
     EXPECT_EQ(events.nodes, device.nodes);

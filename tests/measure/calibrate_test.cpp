@@ -248,9 +248,9 @@ TEST_F(CostFile, with_a_wrong_key_is_refused_by_its_name) {
     EXPECT_EQ(problem("version", "version = 9"), "The key 'version' is missing or out of range");
     EXPECT_EQ(problem("version", "version = 1"), "nothing");
     const std::string torn = "slice_us = = 1\n";
-    ASSERT_TRUE(write_text(file_, fmt::format("hash = \"{:016x}\"\n{}",
-                                              hash_bytes(std::as_bytes(std::span<const char>(torn))), torn))
-                    .ok());
+    ASSERT_TRUE(
+        write_text(file_, fmt::format("hash = \"{:016x}\"\n{}", hash_bytes(std::as_bytes(std::span<const char>(torn))), torn))
+            .ok());
     const auto read = measure::read_costs(file_, "");
     ASSERT_FALSE(read.ok());
     EXPECT_EQ(read.error().place, file_ + ":2") << "the line as an editor counts it";

@@ -27,7 +27,7 @@ int let_one_run_away() {
     hog.detach();
     const RealClock clock;
     const std::int64_t begun = clock.now_ns();
-    if (!test::eventually(5, [] { return runaway_seen().has_value(); })) return 3;
+    if (!surefoot::test::eventually(5, [] { return runaway_seen().has_value(); })) return 3;
     const auto seen = runaway_seen();
     if (seen->name != "hog" || !seen->demoted) return 4;
     const auto now = read_thread(seen->tid);

@@ -41,14 +41,14 @@ struct InputSummary {
     bool given = false;  ///< false: a path was followed
     std::string source;  ///< the recording
     std::vector<rt::SteeringDevice> devices;
-    std::uint64_t reports = 0;         ///< accepted
-    std::uint64_t reports_shown = 0;   ///< of them, those that some frame's pose holds; the others came after the last frame
-    std::uint64_t refused = 0;         ///< short, long, undeclared: they changed nothing
+    std::uint64_t reports = 0;        ///< accepted
+    std::uint64_t reports_shown = 0;  ///< of them, those that some frame's pose holds; the others came after the last frame
+    std::uint64_t refused = 0;        ///< short, long, undeclared: they changed nothing
     std::uint64_t illegal_encoder_steps = 0;  ///< of wired encoders: they went unseen, in an unknown direction
-    Quantiles age_ms;                  ///< a report's, from its stamp until the first frame that holds it was submitted
-    std::uint64_t stops = 0;           ///< emergency stops
-    std::uint64_t stopped_frames = 0;  ///< that stood still by order: emergency stop or dead-man
-    bool stop_latched = false;         ///< at the end
+    Quantiles age_ms;                         ///< a report's, from its stamp until the first frame that holds it was submitted
+    std::uint64_t stops = 0;                  ///< emergency stops
+    std::uint64_t stopped_frames = 0;         ///< that stood still by order: emergency stop or dead-man
+    bool stop_latched = false;                ///< at the end
     std::uint64_t timeouts = 0, overflows = 0, losses = 0;
     std::uint64_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0;  ///< presses
     std::uint64_t jumps = 0;                                           ///< placings elsewhere

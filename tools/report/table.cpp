@@ -66,8 +66,7 @@ void real_time_rows(LabelledText& table, const WalkSummary& s) {
     if (!s.threads.empty()) table.row("threads", threads_words(s.threads));
     for (const std::string& problem : s.census_problems) table.row("census", problem, Ink::bad);
     if (!s.uncalibrated.empty()) table.row("uncalibrated", s.uncalibrated, Ink::warn);
-    for (const rt::Lack& d : s.degraded)
-        table.row("degraded", d.text(), Ink::warn);
+    for (const rt::Lack& d : s.degraded) table.row("degraded", d.text(), Ink::warn);
     if (s.control.ran) table.row("control", control_words(s.control), rule_broken(s.control) ? Ink::bad : Ink::plain);
 }
 

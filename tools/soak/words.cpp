@@ -81,8 +81,7 @@ std::string soak_table(const SoakSummary& s, bool colour) {
                                       report::accuracy_words(s.walk.accuracy_min)));
     table.row("machine", fmt::format("{}; {:.0f} ms stolen by the host", s.machine.kernel, s.machine.steal_ms));
     if (!s.walk.uncalibrated.empty()) table.row("uncalibrated", s.walk.uncalibrated, report::Ink::warn);
-    for (const rt::Lack& d : s.walk.degraded)
-        table.row("degraded", d.text(), report::Ink::warn);
+    for (const rt::Lack& d : s.walk.degraded) table.row("degraded", d.text(), report::Ink::warn);
     const std::string last = verdict == Judged::holds    ? "the verdict holds"
                              : verdict == Judged::broken ? "the verdict is broken"
                                                          : "no rule is broken, but some cannot be judged";
