@@ -119,7 +119,7 @@ void hold(test::Plug& plug, double forward, int ms, unsigned buttons = 0) {
 /// Nobody touches a pad for so long. The ledger of this time is judged afterwards: the tool tells nothing of it before it ends.
 void keep_off(int ms) {
     test::Patience patience(ms);
-    (void)test::eventually(60, [&] { return patience.over(); });
+    (void)surefoot::test::eventually(60, [&] { return patience.over(); });
 }
 
 /// Reports until the tool says `text`.
