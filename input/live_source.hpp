@@ -17,6 +17,7 @@
 
 namespace surefoot::input {
 
+/// Settings of a live source.
 struct LiveOptions {
     std::vector<DeviceMapping> mappings;  ///< none fits a device: the default of its class
     std::vector<LineConfig> lines;        ///< must have passed check_lines

@@ -24,9 +24,9 @@ public:
     Steering(const MotionLimits& motion, const SafetyLimits& safety, bool stop_latched = false);
 
     /// A device came. Returns its number, or -1 if max_devices are attached. It requests nothing until it was seen neutral.
-    /// A returning device with a stop or dead-man must get its old number (`again`): while it is away these hold the walk, and no
-    /// other device gets the number. `mapper` is swapped with the number's former mapper, so that a caller that must not free
-    /// memory can keep it.
+    /// A returning device with a stop or dead-man must get its old number (`again`). While such a device is away, its stop holds
+    /// the walk, and no other device gets its number. `mapper` is swapped with the number's former mapper, so that a caller that
+    /// must not free memory can keep it.
     int attach(Mapper&& mapper, std::size_t controls, Reporting reporting, int again = -1) REQUIRES(steers);
     /// Unplugged, or its reader failed.
     void detach(int device) REQUIRES(steers);

@@ -9,6 +9,7 @@
 
 namespace surefoot::input {
 
+/// Finds devices, on its caller's thread or on its own. One thread calls all members.
 class Discoverer {
 public:
     virtual ~Discoverer() = default;

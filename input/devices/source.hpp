@@ -41,7 +41,7 @@ enum class Refused : std::uint8_t {
     failed,      ///< anything else; tried again likewise
 };
 
-/// User data of a device, made and destroyed on the thread that opens devices, so that the reader does not allocate when one
+/// User data of a device. The thread that opens devices makes and destroys it, so the reader does not allocate when a device
 /// comes or goes.
 struct DeviceAttachment {
     DeviceAttachment() = default;
@@ -50,6 +50,7 @@ struct DeviceAttachment {
     virtual ~DeviceAttachment() = default;
 };
 
+/// One change or report of a device, as a DeviceSource hands it to the reader.
 struct DeviceEvent {
     enum class Kind : std::uint8_t { added, removed, refused, report, drained };
     Kind kind = Kind::report;

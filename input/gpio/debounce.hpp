@@ -8,6 +8,7 @@
 
 namespace surefoot::input {
 
+/// State of one debounced contact.
 struct Contact {
     bool level = false;              ///< newest raw level, true: asserted
     bool asserted = false;           ///< debounced

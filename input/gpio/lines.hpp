@@ -16,6 +16,7 @@ namespace surefoot::input {
 
 enum class Bias : std::uint8_t { as_is, pull_up, pull_down, off };
 
+/// One line to be opened.
 struct LineRequest {
     std::string chip;  ///< "gpiochip0", "/dev/gpiochip0", or a chip's label
     std::string line;  ///< a line's name, or its offset as a number
@@ -23,6 +24,7 @@ struct LineRequest {
     Bias bias = Bias::as_is;
 };
 
+/// One edge, as the kernel stamped it.
 struct LineEdge {
     std::uint32_t line = 0;      ///< index into the requests
     bool active = false;         ///< after active_low

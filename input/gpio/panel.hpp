@@ -22,6 +22,7 @@ namespace surefoot::input {
 
 enum class LineRole : std::uint8_t { button, stop, stop_reset, dead_man, encoder_a, encoder_b };
 
+/// One line of the panel, as the steering file describes it.
 struct LineConfig {
     std::string name;  ///< of the control; an encoder's two lines have the same
     LineRole role = LineRole::button;

@@ -31,6 +31,7 @@ public:
     /// The first try, before the input thread starts.
     void open();
 
+    /// Result of one service of the panel.
     struct Step {
         Lines lines;
         bool reported = false;  ///< a button or encoder moved

@@ -10,6 +10,7 @@
 
 namespace surefoot::input {
 
+/// One value of a report, before controls are made of it.
 struct Element {
     std::uint32_t field = 0, index = 0;  ///< as in ControlSource
     std::uint32_t usage = 0;

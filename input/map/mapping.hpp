@@ -48,6 +48,7 @@ struct ControlRef {
     [[nodiscard]] std::string text() const;
 };
 
+/// How an axis or hat becomes an action.
 struct AxisMapping {
     ControlRef control;
     Action action = Action::none;
@@ -77,6 +78,7 @@ struct HatMapping {
     double smoothing_s = 0;
 };
 
+/// How a button becomes an action.
 struct ButtonMapping {
     ControlRef control;
     Action action = Action::none;
@@ -100,6 +102,7 @@ struct DeviceMatch {
     std::optional<DeviceClass> device_class;
 };
 
+/// All mappings of one device, and which devices they fit.
 struct DeviceMapping {
     std::string name;
     DeviceMatch match;

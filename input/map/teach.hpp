@@ -17,6 +17,7 @@
 
 namespace surefoot::input {
 
+/// Times and thresholds of teaching.
 struct TeachLimits {
     std::int64_t still_ns = 300'000'000;            ///< so long everything must keep still before the next question
     std::int64_t max_rest_wait_ns = 3'000'000'000;  ///< then what trembles on is taken as it is
@@ -38,6 +39,7 @@ struct Learned {
     std::uint8_t hat_axis = 0;  ///< 0: right, 1: up
 };
 
+/// The open question, and what the controls did since. One thread calls all members.
 class Teach {
 public:
     enum class Phase : std::uint8_t { rest, question, done };

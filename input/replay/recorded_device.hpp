@@ -13,6 +13,7 @@ namespace surefoot::input {
 /// Maximum length of a recording: that of a walk.
 constexpr double max_recording_s = 1e6;
 
+/// A recording, with its device described and mapped.
 struct RecordedDevice {
     std::string file;
     Recording recording;

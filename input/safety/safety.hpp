@@ -19,6 +19,7 @@ namespace surefoot::input {
 
 constexpr std::size_t max_devices = 16;
 
+/// Limits of the safety stage.
 struct SafetyLimits {
     std::int64_t age_limit_ns = 100'000'000;  ///< no deflection of a streaming device is believed for longer
     /// This many reports in one drain mean overflow: the kernel's ring was full and dropped the newest. hidraw's ring of 64 slots
@@ -54,7 +55,9 @@ struct Lines {
 
 enum class Held : std::uint8_t { no, disconnected, not_neutral, timed_out, overflow };  ///< why a device is held at rest
 
+/// State of the safety stage between two steps.
 struct SafetyState {
+    /// State of one device, by its number.
     struct Device {
         std::uint32_t connection = 0;
         bool connected = false, interlocked = true, overflow = false, had_stop = false, contributed = false;

@@ -14,6 +14,7 @@ namespace surefoot::bake {
 
 enum class Quality { draft, full };
 
+/// Settings of a bake.
 struct BakeOptions {
     Quality quality = Quality::draft;
     int workers = 0;                               ///< 0: all cores

@@ -11,6 +11,7 @@ namespace surefoot::bake {
 
 /// An entity is an object (index below the number of boxes) or a cluster.
 struct ClusterTree {
+    /// A node for several entities.
     struct Cluster {
         Box box;
         std::vector<std::uint32_t> children;  ///< entities; n + i is clusters[i]

@@ -11,12 +11,14 @@
 
 namespace surefoot::bake {
 
+/// The forms of one cluster.
 struct ClusterForm {
     LodChain chain;  ///< world frame; full holds the levels' vertices only
     BoxForm box;
     bool has_box = false;
 };
 
+/// What all clusters are made from. Read by several threads at once.
 struct ProxyInput {
     std::span<const PlacedObject> objects;
     std::span<const MeshForm> forms;

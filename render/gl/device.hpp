@@ -21,6 +21,7 @@ namespace surefoot::gl {
 
 enum class BackendKind { egl, device, window, osmesa, null };  ///< backends.hpp has them by name
 
+/// An item to be drawn: one representation of a node.
 struct DrawItem {
     model::Index node = 0;
     model::Index rep = 0;
@@ -41,6 +42,7 @@ struct NullOptions {
     std::uint64_t seed = 1;
 };
 
+/// Settings of a device.
 struct DeviceOptions {
     BackendKind kind = BackendKind::egl;
     model::Viewport viewport;
@@ -51,11 +53,13 @@ struct DeviceOptions {
     NullOptions null;  ///< of the null backend
 };
 
+/// Counts and times of one drawn frame.
 struct FrameStats {
     std::uint32_t items = 0, draws = 0, batches = 0, state_changes = 0;
     std::uint64_t triangles = 0;
 };
 
+/// A picture in memory, RGBA8.
 struct PixelImage {
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> rgba;  ///< row 0 on top

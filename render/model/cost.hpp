@@ -43,6 +43,7 @@ struct FrameCombine {
     }
 };
 
+/// The cost table of a machine, fitted to a model of a whole frame.
 struct CostModel {
     std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
     FrameCombine combine;

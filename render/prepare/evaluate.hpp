@@ -68,7 +68,7 @@ inline float cost_metric(const model::FrameCombine& combine, const model::ItemCo
     return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
 }
 
-/// Factor 0..1 by which an expensive step loses benefit: a half at 2 ms, which is 1/16 of a 30 Hz frame, the limit of an item.
+/// Factor 0..1 by which an expensive step loses benefit. It is a half at 2 ms: 1/16 of a 30 Hz frame, the limit of an item.
 /// Of two equally wrong representations the cheaper step goes first. Otherwise one expensive step that does not fit would end
 /// the search before dozens of cheap ones.
 inline float cost_penalty(float step_us) {
@@ -76,6 +76,7 @@ inline float cost_penalty(float step_us) {
     return half_us / (half_us + std::max(step_us, 0.0F));
 }
 
+/// Fills the choices of a candidate with cost, error and benefit. Constant after it is made; any thread may use it.
 class Evaluator {
 public:
     Evaluator(const model::Model& model, const model::CostModel& costs);

@@ -53,6 +53,7 @@ struct Region {
     double angle_rad = 0;
 };
 
+/// The candidates of a region. Filled by the prepare thread, then read by the frame thread only.
 struct PreparedFrame {
     std::uint64_t frame = 0;  ///< the frame whose pose was newest when preparation began
     Region region;

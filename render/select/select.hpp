@@ -18,6 +18,7 @@ namespace surefoot::select {
 using model::Index;
 using model::none;
 
+/// An item of a cut: a node and the representation chosen for it.
 struct CutItem {
     Index candidate = 0;
     Index node = 0;
@@ -40,6 +41,7 @@ struct Cut {
     std::uint32_t refinements = 0;  ///< upgrades bought
 };
 
+/// All that a selection depends on, besides SelectState.
 struct SelectInput {
     const model::Model* model = nullptr;
     const prepare::PreparedFrame* prepared = nullptr;
@@ -106,6 +108,7 @@ struct Slice {
     model::ItemCost cost, stand_in_cost;
 };
 
+/// The cut, grouped into slices.
 struct SlicePlan {
     std::vector<Slice> slices;   ///< in submission order: nearest subtrees first
     std::vector<CutItem> order;  ///< the cut's items, grouped by slice

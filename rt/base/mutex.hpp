@@ -18,6 +18,7 @@ private:
     std::mutex mutex_;
 };
 
+/// Locks a Mutex while it lives.
 class SCOPED_CAPABILITY MutexLock {
 public:
     explicit MutexLock(Mutex& mutex) ACQUIRE(mutex) : mutex_(mutex) { mutex_.lock(); }

@@ -33,6 +33,7 @@ public:
     virtual void account(FrameRecord& record) = 0;
 };
 
+/// Settings of the loop. Pointers must outlive the run.
 struct FrameLoopOptions {
     std::int64_t period_ns = 16'666'667;
     std::int64_t t0_ns = 0;    ///< 0: the first slot is due one period after the call
@@ -49,6 +50,7 @@ struct FrameLoopOptions {
     bool wait_for_ring = false;                  ///< virtual clock only: yields to the recorder instead of dropping records
 };
 
+/// Counts of a finished loop.
 struct FrameLoopResult {
     std::uint64_t run = 0;      ///< frames, bare ones of the control included
     std::uint64_t skipped = 0;  ///< slots

@@ -8,6 +8,7 @@
 
 namespace surefoot::rt {
 
+/// What is locked and touched before the walk.
 struct MemoryOptions {
     bool lock = true;                        ///< mlockall, present and future
     std::size_t heap_bytes = 32U << 20U;     ///< touched and kept in the calling thread's heap

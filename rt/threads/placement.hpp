@@ -47,6 +47,7 @@ private:
 /// The CPUs that this process may use, by the affinity of its main thread.
 CpuMask allowed_cpus();
 
+/// Where a thread runs: policy, priority and cores.
 struct Placement {
     Policy policy = Policy::other;  ///< deadline is refused
     int priority = 0;               ///< 1 to 99 for fifo and round_robin, else 0

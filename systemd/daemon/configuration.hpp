@@ -11,6 +11,7 @@
 
 namespace surefoot::daemon {
 
+/// A configuration as it was read.
 struct Loaded {
     config::Configuration configuration{walk::settings_schema()};
     std::vector<Error> problems;  ///< empty: it can be used

@@ -12,6 +12,7 @@ struct Beat {
     bool resumed = false;  ///< frames again after a stall; true once
 };
 
+/// Decides when to feed the watchdog, and reports stalls. One thread calls all members.
 class Heartbeat {
 public:
     /// timeout_ns: systemd's watchdog timeout; 0: no pings, but stalls are still reported. period_ns: of a frame.

@@ -7,6 +7,7 @@
 
 namespace surefoot::daemon {
 
+/// Sends messages to systemd (sd_notify). Never blocks.
 class Notifier {
 public:
     /// `socket`: a path, or '@' and an abstract name; empty: nobody listens, and every message succeeds.

@@ -18,6 +18,7 @@ namespace surefoot::daemon {
 /// Call before any thread is made.
 void block_service_signals();
 
+/// The running service: starts, reloads and ends walks.
 class Service {
 public:
     /// Make it on a neutral thread, after block_service_signals(). All must outlive it. Once a stop has taken longer than it may,

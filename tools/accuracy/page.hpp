@@ -9,12 +9,14 @@
 
 namespace surefoot::accuracy {
 
+/// Figures of one selector at one budget.
 struct AccuracyPoint {
     std::string selector;
     double budget_ms = 0, frame_ms_p50 = 0, frame_ms_p90 = 0, accuracy_mean = 0, snr_db = 0, ssim = 0, triangles = 0, cost_us = 0;
     std::uint32_t snr_undefined = 0, snr_infinite = 0, frames = 0;
     std::uint32_t exact = 0;  ///< frames drawn exactly: left out of accuracy_mean, which is infinite where all are
 };
+/// All points of a sweep, and what they were measured with.
 struct AccuracyRun {
     std::string model, path, renderer, machine;
     std::string uncalibrated;  ///< where this machine's cost table is missing: what, and the remedy

@@ -15,6 +15,7 @@ namespace surefoot::accuracy {
 /// The selectors that are compared by default.
 std::vector<std::string> compared_selectors();
 
+/// Settings of a sweep.
 struct AccuracyRequest {
     std::string model_file, path_file, state_dir;
     std::string backend{gl::usual_backend};

@@ -24,6 +24,7 @@ struct WakeFigures {
     double steal_ms = -1;  ///< taken by the host from this core meanwhile; -1: not known
 };
 
+/// A renderer that a back end opened.
 struct RendererFound {
     std::string name;     ///< GL_RENDERER; empty: none opened
     std::string error;    ///< why not
@@ -32,6 +33,7 @@ struct RendererFound {
     bool software = false;
 };
 
+/// The cost table of this machine, if there is one.
 struct CostTableFound {
     std::string file;
     bool there = false;
@@ -64,6 +66,7 @@ struct Node {
     std::uint32_t mode = 0;  ///< the nine permission bits
 };
 
+/// The machine as the checks see it: files below a root, and programs that are asked.
 class Machine {
 public:
     /// root: a directory that stands for "/"; empty: this machine itself.

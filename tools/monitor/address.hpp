@@ -12,6 +12,7 @@
 
 namespace surefoot::monitor {
 
+/// Where the monitor listens: a Unix socket, or TCP on loopback.
 struct Address {
     std::string socket_path;  ///< empty: TCP
     std::string host;         ///< a numeric address on loopback
@@ -25,8 +26,9 @@ Result<Address> parse_address(const std::string& text);
 /// Where the service listens unless it is told otherwise: surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot.
 std::string default_address();
 
-/// Whether a request's Host field names this machine: localhost or an address on loopback, with or without a port. A web page of
-/// another site can make a browser ask a name of that site which resolves to loopback (DNS rebinding); its Host gives it away.
+/// Whether a request's Host field names this machine: localhost or an address on loopback, with or without a port. Protects
+/// from DNS rebinding: a foreign web page makes a browser send requests to a name of its own that resolves to loopback. Such a
+/// request carries that name as its Host.
 bool host_is_loopback(std::string_view host);
 
 /// As the system calls want it.

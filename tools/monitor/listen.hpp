@@ -8,6 +8,7 @@
 
 namespace surefoot::monitor {
 
+/// A listening socket.
 struct Listener {
     int fd = -1;
     Address address;                 ///< with the port that was given

@@ -29,6 +29,7 @@ struct WalkObserver;
 
 namespace surefoot::monitor {
 
+/// Settings of the monitor.
 struct MonitorOptions {
     std::string address;        ///< see parse_address(); empty: nobody can look
     std::string incidents_dir;  ///< empty: incidents are counted, and not written
@@ -39,9 +40,9 @@ struct MonitorOptions {
     std::function<void(std::string_view)> notify;  ///< gets what the user should know, once; on sf-incidents
 };
 
-/// Wired to a walk by attach_monitor(). Lives as long as the service, over many walks; counters go on from
-/// walk to walk (with another rate they start anew, as after a restart). Open it from a neutral thread, before memory is locked:
-/// its threads inherit the caller's place.
+/// Wired to a walk by attach_monitor(). Lives as long as the service, over many walks. Counters go on from walk to walk; with
+/// another frame rate they start anew, as after a restart. Open it from a neutral thread, before memory is locked: its threads
+/// inherit the caller's place.
 class Monitor {
 public:
     /// Errors: an address that is none, is in use or may not be had; a folder that cannot be written.

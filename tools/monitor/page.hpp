@@ -1,5 +1,5 @@
-// What is shown of a running service: the figures, what is known of the walk, the process and the monitor itself; as Prometheus
-// text, and as JSON for `surefoot status` and `surefoot top`. Pure functions of one struct.
+// The pages of a running service, as Prometheus text, and as JSON for `surefoot status` and `surefoot top`. They show the walk's
+// figures and settings, the process, and the monitor itself. Pure functions of one struct.
 #pragma once
 
 #include <cstdint>

@@ -22,12 +22,14 @@ class AtomicFile;
 
 namespace surefoot::report {
 
+/// Counts of one block of the control.
 struct ControlBlock {
     bool walk = false;  ///< else the bare loop
     std::uint32_t frames = 0, misses = 0, own_misses = 0;
     double steal_ms = 0;
 };
 
+/// The control of a walk, with its verdict.
 struct ControlSummary {
     bool ran = false;
     rt::DeadlineVerdict verdict;

@@ -35,6 +35,7 @@ struct LoadPhase {
     LoadSet loads = 0;
 };
 
+/// The order of the loads over the soak.
 struct LoadPlan {
     LoadSet mix = usual_loads;
     double seconds = 0;
@@ -46,9 +47,9 @@ struct LoadPlan {
     [[nodiscard]] std::size_t phase_at(double time_s) const;
 };
 
-/// Rounds: in each, every kind leads one phase, in an order by `seed`, and takes one or two others along; then one phase of all
-/// at once. Phases last 30 s, less where two rounds would not fit, and are whole multiples of pair_s (a pair of control blocks):
-/// no pair sees two loads.
+/// The plan consists of rounds. In a round each kind leads one phase, with one or two other kinds, in an order by `seed`. The
+/// last phase of a round has all kinds at once. Phases last 30 s, or less where two rounds would not fit. They are whole
+/// multiples of pair_s, the length of a pair of control blocks, so that no pair sees two loads.
 LoadPlan plan_loads(LoadSet mix, double seconds, double pair_s, std::uint64_t seed);
 
 }  // namespace surefoot::soak

@@ -50,6 +50,7 @@ struct SoakColumn {
     float accuracy_min = 0;  ///< rad^-1; 0: none had an error
 };
 
+/// One miss of the soak.
 struct SoakMiss {
     double time_s = 0, frame_ms = 0;
     std::string_view cause;  ///< one of rt::cause_names
@@ -71,6 +72,7 @@ struct SoakCount {
     double count = 0;
 };
 
+/// The machine that the soak ran on.
 struct SoakMachine {
     std::string kernel, kernel_command_line, processor;
     int cores = 0;
@@ -80,6 +82,7 @@ struct SoakMachine {
     double context_switches = 0, processes = 0;
 };
 
+/// All figures of a soak.
 struct SoakSummary {
     report::WalkSummary walk;  ///< counts are of the walk's own frames, without the control's
     std::string command_line;

@@ -28,9 +28,9 @@ private:
     double at_start_ms_ = -1;
 };
 
-/// Fills outcome.summary.control: takes the blocks, runs 10 s of the bare loop under SCHED_OTHER on the frame core with
-/// the same CPU time (the load counts only if that misses a fifth), and applies the permutation test.
-/// burn_ns: what the control's bare frames burned.
+/// Fills outcome.summary.control from the blocks, by the permutation test. First runs the bare loop for 10 s under SCHED_OTHER,
+/// on the frame core and with the same CPU time. The load counts only if that loop misses a fifth of its frames. burn_ns: what
+/// the control's bare frames burned.
 void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, ControlBlocks& blocks,
                    WalkOutcome& outcome, const Progress& progress);
 

@@ -27,6 +27,7 @@ struct SteeredSample {
     bool touring = false;
 };
 
+/// One step of the input: drains the source, steps the walker, publishes the sample. One thread calls all members.
 class InputStepper {
 public:
     /// All of them must outlive this; `steering` is placed at the tour's start.

@@ -13,6 +13,7 @@
 
 namespace surefoot::walk {
 
+/// Runs an InputStepper on a thread of its own.
 class InputThread {
 public:
     /// Start from a neutral thread, after stepper.begin(). When this returns, the thread has applied `placement`.

@@ -11,6 +11,7 @@
 
 namespace surefoot::walk {
 
+/// Settings of a fit.
 struct ModelFitOptions {
     gl::DeviceOptions device;
     double frame_us = 1e6 / 30;  ///< budgets are drawn from a tenth of it up to 85 %
@@ -25,6 +26,7 @@ struct FrameErrors {
     double p50 = 0, p90 = 0, p99 = 0;
 };
 
+/// A cost table fitted to one model.
 struct ModelFit {
     model::CostModel costs;     ///< the table with `combine` and `headroom` of this model
     FrameErrors before, after;  ///< on the half of the frames that taught nothing

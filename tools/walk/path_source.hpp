@@ -10,6 +10,7 @@
 
 namespace surefoot::walk {
 
+/// The path of a walk, and where it comes from.
 struct ChosenPath {
     Path path;
     std::string source;  ///< the file, or "generated tour"

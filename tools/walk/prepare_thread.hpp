@@ -43,6 +43,7 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
 /// Poses that the eye jumps to (buttons), from the input thread. Only poses and times are used.
 using JumpBuffer = rt::TripleBuffer<PoseSample>;
 
+/// Runs preparation on a thread of its own, once a frame.
 class PrepareThread {
 public:
     /// Start from a neutral thread; the thread is in its place when this returns. The buffers must outlive it. `jump_poses`: null

@@ -44,6 +44,7 @@ struct WalkRequest : config::Settings {
     std::uint64_t capture_frame = 0;
 };
 
+/// Result of a walk.
 struct WalkOutcome {
     report::WalkSummary summary;
     std::vector<rt::FrameRecord> records;

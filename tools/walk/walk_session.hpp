@@ -27,6 +27,7 @@ namespace surefoot::walk {
 /// Of the period: what a frame may cost where no budget is asked for.
 constexpr double budget_share = 0.80;
 
+/// What the parts of a session share while it runs.
 struct Session {
     const WalkRequest& request;
     const WalkObserver& observer;
