@@ -62,7 +62,7 @@ private:
     StampLog log_;
     std::int64_t start_ns_ = 0;
     std::atomic<int> steering_now_{0};
-    bool somebody_ = false;         ///< steers, or its absence was said
+    bool somebody_ = false;         ///< a device steers, or the message about none was emitted
     bool unused_reported_ = false;  ///< of mappings that fit no device
 };
 

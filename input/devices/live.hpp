@@ -12,8 +12,8 @@
 
 namespace surefoot::input {
 
-/// Maximum reports that one drain reads from one device. Far above 63, from which on safety/ assumes that the kernel dropped
-/// some. So a flooding device is at rest and delays nobody.
+/// Maximum reports that one drain reads from one device. Far above 63: from there on safety/ assumes that the
+/// kernel dropped some, and holds the device at rest. So a flooding device does not delay the others.
 constexpr std::uint32_t max_drain = 256;
 
 /// Devices of this machine, as the discoverer finds them.

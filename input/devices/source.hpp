@@ -35,7 +35,7 @@ struct PluggedDevice {
 
 /// Why a connected device is not read.
 enum class Refused : std::uint8_t {
-    unwanted,    ///< its class does not steer and nobody asked for it; it is not even opened
+    unwanted,    ///< its class does not steer and no mapping names it; it is not opened
     descriptor,  ///< its report descriptor cannot be read or is malformed
     permission,  ///< tried again at each change of the node, and on a schedule
     failed,      ///< anything else; tried again likewise

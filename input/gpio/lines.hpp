@@ -32,7 +32,7 @@ struct LineEdge {
     std::uint32_t sequence = 0;  ///< of this line, from 1; 0 where the kernel does not number them (libgpiod 1)
 };
 
-/// Requested lines. Gone when destroyed. One thread.
+/// Requested lines, released by the destructor. One thread calls all members.
 class GpioLines {
 public:
     GpioLines() = default;
@@ -42,7 +42,8 @@ public:
 
     /// What to poll for POLLIN; stays the same while the object lives.
     [[nodiscard]] virtual std::span<const pollfd> polled() const = 0;
-    /// Edges that wait, oldest first a line, without blocking; 0: none left. Error: the chip is gone.
+    /// Reads waiting edges, oldest first for each line. Returns their number; 0: none is left. Never blocks. Error: the chip is
+    /// gone.
     virtual Result<std::size_t> read(std::span<LineEdge> edges) = 0;
     /// All lines now, index-parallel to the requests, true: active. Error: the chip is gone.
     virtual Result<void> levels(std::span<bool> active) = 0;

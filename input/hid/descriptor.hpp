@@ -93,7 +93,7 @@ struct Report {
     [[nodiscard]] std::uint32_t bytes() const { return (bits + 7) / 8; }
 };
 
-/// Accepted, but worth saying.
+/// An oddity of a descriptor that is accepted all the same.
 struct DescriptorNote {
     std::uint32_t offset = 0;  ///< byte in the descriptor
     std::string what;

@@ -1,6 +1,6 @@
 // From commands to poses: filter, limits of speed and acceleration, integration in double, prediction.
 //
-//   Command ─► One-Euro filter ─► speed limit ─► acceleration limit ─► [may I go there?] ─► pose
+//   Command ─► One-Euro filter ─► speed limit ─► acceleration limit ─► [ground] ─► pose
 //
 // Pure functions of injected time: nothing here allocates, locks or reads a clock.
 #pragma once
@@ -68,7 +68,7 @@ struct MotionState {
 bool place(MotionState& state, const Pose& pose);
 [[nodiscard]] Pose pose_of(const MotionState& state);
 
-/// One step to `now_ns`; any rate, the first step only sets the time.
+/// One step to `now_ns`. The rate of steps may vary. The first step only sets the time.
 NavigationSample step(MotionState& state, const MotionLimits& limits, const Command& command, std::int64_t now_ns,
                       const Ground& ground = {});
 

@@ -1,4 +1,5 @@
-// A recording made ready to steer: device described and classified, mapping chosen and bound. All its errors come from here.
+// Opens a recording for steering: describes and classifies its device, chooses the mapping and binds it. All its errors come from
+// here.
 #pragma once
 
 #include <string>

@@ -137,7 +137,7 @@ Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Sou
     Command command;
     command.stamp_ns = state.stamp_ns;
     if (state.latched || (has_dead_man && !held)) {
-        // Only pause may still be asked for: nothing else should move the picture.
+        // Only pause still passes: nothing else should move the picture.
         command.request.pause = wanted.pause;
         command.order = Order::stop;
         state.slewed = {};

@@ -46,7 +46,7 @@ struct NullOptions {
 struct DeviceOptions {
     BackendKind kind = BackendKind::egl;
     model::Viewport viewport;
-    int rasterisers = 0;                  ///< software GL threads, as prepare_process was told; 0: the measured default
+    int rasterisers = 0;                  ///< threads of software GL, as given to prepare_process(); 0: the measured default
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
     std::array<float, 3> sky{0.62F, 0.72F, 0.82F};

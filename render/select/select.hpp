@@ -38,7 +38,7 @@ struct Cut {
     std::uint64_t triangles = 0;
     std::uint32_t switches = 0;     ///< representations that differ from the previous frame's
     std::uint64_t hash = 0;         ///< of (node, rep) in order
-    std::uint32_t refinements = 0;  ///< upgrades bought
+    std::uint32_t refinements = 0;  ///< steps taken
 };
 
 /// All that a selection depends on, besides SelectState.
@@ -100,8 +100,8 @@ std::string check_legal(const prepare::PreparedFrame& prepared, const Cut& cut);
 
 // ---- slices: subtree by subtree, each with a coarser stand-in ----
 
-/// Draws items [first_item, +item_count) of SlicePlan::order, or items [first_stand_in, +stand_in_count) of
-/// SlicePlan::stand_ins. The stand-ins are the coarsest legal cover of the same leaves.
+/// Items that are submitted together: [first_item, +item_count) of SlicePlan::order. Or instead their stand-ins:
+/// [first_stand_in, +stand_in_count) of SlicePlan::stand_ins, the coarsest legal forms that show the same leaves.
 struct Slice {
     std::uint32_t first_item = 0, item_count = 0;
     std::uint32_t first_stand_in = 0, stand_in_count = 0;
@@ -142,8 +142,8 @@ struct CheckInput {
     double margin = 1.0;             ///< factor on top of the headroom
 };
 /// True: draw the slice in full. False: draw this and all later slices as stand-ins. Pure.
-/// Predictions are scaled by the frame's error so far, 1..8. So that the first slices do not dominate, 1/20 of the
-/// limit counts as drawn without error. So does half of the rest; this half shrinks with the time left.
+/// Predictions are multiplied by a factor of 1..8: elapsed / predicted time of the frame so far. A few early slices must not
+/// decide alone. So a prior time is added to both: 1/20 of the limit, and half of the rest's cost times the share of time left.
 bool still_fits(const CheckInput& input);
 
 }  // namespace surefoot::select

@@ -1,4 +1,4 @@
-// Memory that never faults again: locked, the allocator kept from giving pages back, stack and heap touched beforehand.
+// Prevents page faults: locks memory, keeps the allocator from returning pages, and touches stack and heap beforehand.
 #pragma once
 
 #include <cstddef>

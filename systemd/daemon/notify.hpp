@@ -1,4 +1,4 @@
-// What systemd is told (sd_notify(3)), without libsystemd: one datagram a message to $NOTIFY_SOCKET.
+// Notifies systemd as sd_notify(3) does, without libsystemd: one datagram a message to $NOTIFY_SOCKET.
 #pragma once
 
 #include <cstdint>

@@ -15,9 +15,9 @@ namespace surefoot::house {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path root = SUREFOOT_SOURCE_DIR;
+const fs::path tree_of_headers = SUREFOOT_SOURCE_DIR;
 
-constexpr std::size_t max_words = 25;
+constexpr std::size_t max_words_of_comment = 25;
 
 struct Sentence {
     std::size_t line = 0, words = 0;  ///< line: where it begins, from 1
@@ -69,7 +69,7 @@ private:
     std::size_t line_ = 0;
 };
 
-std::vector<Sentence> sentences_of(const std::string& header) {
+std::vector<Sentence> comment_sentences(const std::string& header) {
     Sentences sentences;
     std::istringstream lines(header);
     for (std::string line; std::getline(lines, line);) sentences.add(line);
@@ -79,14 +79,14 @@ std::vector<Sentence> sentences_of(const std::string& header) {
 TEST(Comments, OfHeadersHaveSentencesOfAtMost25Words) {
     std::size_t count = 0;
     for (const auto* top : {"config", "input", "render", "rt", "tools", "systemd"}) {
-        for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+        for (const auto& entry : fs::recursive_directory_iterator(tree_of_headers / top)) {
             if (!entry.is_regular_file() || entry.path().extension() != ".hpp") continue;
             const auto header = read_text(entry.path().string());
             ASSERT_TRUE(header) << entry.path();
-            for (const Sentence& sentence : sentences_of(*header)) {
+            for (const Sentence& sentence : comment_sentences(*header)) {
                 ++count;
-                EXPECT_LE(sentence.words, max_words)
-                    << fs::relative(entry.path(), root).generic_string() << ":" << sentence.line << ": " << sentence.text;
+                EXPECT_LE(sentence.words, max_words_of_comment) << fs::relative(entry.path(), tree_of_headers).generic_string()
+                                                                << ":" << sentence.line << ": " << sentence.text;
             }
         }
     }
@@ -96,7 +96,7 @@ TEST(Comments, OfHeadersHaveSentencesOfAtMost25Words) {
 TEST(Comments, AreReadAsSentences) {
     const auto counts = [](const std::string& header) {
         std::vector<std::size_t> words;
-        for (const Sentence& sentence : sentences_of(header)) words.push_back(sentence.words);
+        for (const Sentence& sentence : comment_sentences(header)) words.push_back(sentence.words);
         return words;
     };
     using Counts = std::vector<std::size_t>;

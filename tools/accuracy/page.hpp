@@ -29,7 +29,7 @@ struct AccuracyRun {
 std::string accuracy_svg(const AccuracyRun& run, bool dark);
 std::string accuracy_csv(const AccuracyRun& run);
 std::string accuracy_json(const AccuracyRun& run);
-/// Whether the page could be written to `dir` now; to be asked before the sweep.
+/// Whether the page could be written to `dir` now. Call it before the sweep.
 Result<void> probe_accuracy_page(const std::string& dir);
 Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run);
 

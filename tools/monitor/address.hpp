@@ -1,5 +1,5 @@
 // Where a monitor is found: a Unix socket, or a port on loopback. Written unix:/PATH (or /PATH), 127.0.0.1:9464, [::1]:9464.
-// And a page asked for there.
+// Also fetches a page from there.
 #pragma once
 
 #include <sys/socket.h>
@@ -23,7 +23,7 @@ struct Address {
 /// Errors: neither of the two forms; a socket's path that is too long; a host that others than this machine could reach.
 Result<Address> parse_address(const std::string& text);
 
-/// Where the service listens unless it is told otherwise: surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot.
+/// Where the service listens by default: surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot.
 std::string default_address();
 
 /// Whether a request's Host field names this machine: localhost or an address on loopback, with or without a port. Protects

@@ -94,7 +94,7 @@ private:
         std::int64_t at_ns = 0;
         std::string text;
     };
-    std::deque<Note> notes_ GUARDED_BY(facts_mutex_);
+    std::deque<Note> recent_notes_ GUARDED_BY(facts_mutex_);
 
     // The readers'.
     struct Cached;
@@ -102,7 +102,7 @@ private:
     std::int64_t started_ns_ = 0;
 
     std::unique_ptr<IncidentWriter> writer_;
-    /// The same for its own thread, which may ask before the pointer below is set and while it is being taken back.
+    /// The same for its own thread, which may call it before the pointer below is set and while it is being taken back.
     std::atomic<const Server*> serving_{nullptr};
     std::unique_ptr<Server> server_;  ///< last: its thread uses all the others
 };

@@ -12,7 +12,7 @@ namespace surefoot::walk {
 struct FramePose {
     Pose pose;
     Pose before;                ///< one period earlier by the same motion; used if no frame has shown it
-    PredictedRegion predicted;  ///< possible poses of the next frames, if the source knows more than two poses tell
+    PredictedRegion predicted;  ///< possible poses of the next frames, if the source knows more than its last two poses
     bool jumped = false;        ///< a jump since the last frame: the last pose says nothing about this motion
     bool stopped = false;       ///< stands still: emergency stop or dead-man
     std::int64_t stamp_ns = 0;  ///< of the newest report in it; 0: none

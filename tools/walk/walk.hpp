@@ -52,7 +52,7 @@ struct WalkOutcome {
     std::vector<std::string> notes;  ///< messages for the user, one line each
     bool stopped = false;            ///< ended before its last frame, by progress.stop
     bool lost = false;               ///< ended because the graphics context was lost; failures has the error
-    std::string report_page;         ///< the report's index.html, where asked for
+    std::string report_page;         ///< the report's index.html, if requested
 };
 
 /// The step of a walk. An Error of run_walk() belongs to the last notified step.
