@@ -1,4 +1,4 @@
-// Everything that a sweep of budgets leaves for people: CSV, JSON, charts and the one-page report.
+// The outputs of a sweep of budgets: CSV, JSON, charts and the one-page report.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What accuracy costs in time: budgets swept over poses of a path, a line a selector, against full detail.
+// Measures what accuracy costs in time: draws poses of a path at several budgets, and compares with full detail.
 #pragma once
 
 #include <string>

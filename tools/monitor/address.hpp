@@ -20,7 +20,7 @@ struct Address {
     [[nodiscard]] std::string text() const;
 };
 
-/// Errors: neither of the two forms; a socket's path that is too long; a host that others than this machine could reach.
+/// Errors: not an address of these forms; a socket's path that is too long; a host that is not on loopback.
 Result<Address> parse_address(const std::string& text);
 
 /// Where the service listens by default: surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot.

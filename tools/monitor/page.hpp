@@ -59,7 +59,7 @@ struct MonitorPage {
     rt::ProcessFigures process;
     std::vector<rt::BusyThread> threads;  ///< only in the JSON
     MonitorCounts counts;
-    std::vector<RareCheck> rare_checks;  ///< of this process: what "cannot happen", and did
+    std::vector<RareCheck> rare_checks;  ///< of this process: counts of failed CHECK_RARE
 };
 
 /// What a lack is about, as a label's value: fifo, memory_lock, isolated_core, throttled, placing, cost_table, switched_off,

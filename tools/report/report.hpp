@@ -1,4 +1,4 @@
-// Everything that a walk leaves for people: ledger, trace, table, JSON, and the one-page report.
+// The outputs of a walk: ledger, trace, table, JSON, and the one-page report.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What the soak and the processes that load the machine share: one page of counters, and the words start and stop.
+// Shared memory of the soak and the processes that load the machine: one page of counters, and the words start and stop.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// What the machine was, and what the kernel counted while the soak ran: kept with the figures, so that they can be judged later.
+// Facts about the machine, and the kernel's counters while the soak ran. Kept with the figures, so that these can be judged
+// later.
 #pragma once
 
 #include <cstdint>

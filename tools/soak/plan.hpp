@@ -1,4 +1,4 @@
-// What loads a soak when: a seeded timetable of phases, known beforehand and the same for every process that reads it.
+// The timetable of a soak's loads: phases in an order given by a seed, so the same for every process that reads it.
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@ constexpr std::array<std::string_view, load_kinds> load_names = {"cpu",     "mem
 using LoadSet = std::uint32_t;
 constexpr LoadSet load_bit(LoadKind kind) { return 1U << static_cast<unsigned>(kind); }
 constexpr bool has_load(LoadSet set, LoadKind kind) { return (set & load_bit(kind)) != 0; }
-/// All but clock, which steps the time of day for the whole machine: only who asks for it gets it.
+/// All but clock, which steps the time of day for the whole machine: it runs only if it is named.
 constexpr LoadSet usual_loads = (1U << load_kinds) - 1U - load_bit(LoadKind::clock);
-/// Those that a virtual clock leaves a meaning: work in this process, rather than contention for a core.
+/// Loads that make sense on a virtual clock: those that make work in this process, not contention for a core.
 constexpr LoadSet virtual_loads = load_bit(LoadKind::reloads);
 
 /// "cpu,io": names apart by commas. Error: an unknown name, with what is allowed; nothing at all.

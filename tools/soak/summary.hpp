@@ -1,4 +1,4 @@
-// Everything that a soak leaves for people: verdict, JSON, table, and the one-page report.
+// The outputs of a soak: verdict, JSON, table, and the one-page report.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct SoakCheck {
     std::string words;  ///< what was seen and what is allowed
 };
 
-/// What ran on the machine beside the walk, for how long, and how it is known that it was real.
+/// One load that ran beside the walk: for how long, and the proof that it was real.
 struct SoakLoad {
     std::string name;
     double seconds = 0;  ///< for which it was on
@@ -61,7 +61,7 @@ struct SoakMiss {
 /// The process at one time.
 struct SoakSample {
     double time_s = 0;
-    double memory_kib = 0;  ///< anonymous memory in core: what the process has taken, not the files that it shows
+    double memory_kib = 0;  ///< anonymous memory in RAM, without mapped files
     double resident_kib = 0;
     std::uint32_t descriptors = 0, threads = 0;
 };

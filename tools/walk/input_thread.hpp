@@ -25,7 +25,7 @@ public:
     void stop();
     /// After stop(): allocations, frees inside its loop; must be 0.
     [[nodiscard]] std::uint64_t guard_violations() const { return guard_violations_; }
-    /// What kept it from its place.
+    /// The error if it could not be placed.
     [[nodiscard]] const std::optional<Error>& misplaced() const { return misplaced_; }
 
 private:

@@ -17,7 +17,7 @@
 
 namespace surefoot::walk {
 
-/// Where the eye can be until `horizon_periods` from now, where that is known from what steers it.
+/// Where the eye can be until `horizon_periods` from now, if its input knows that.
 struct PredictedRegion {
     bool known = false;
     prepare::Region region;  ///< the pose if the hand stays as it is, and how far from it the limits of motion allow
@@ -54,7 +54,7 @@ public:
     PrepareThread(const PrepareThread&) = delete;
     PrepareThread& operator=(const PrepareThread&) = delete;
     void stop();
-    /// What kept it from its place.
+    /// The error if it could not be placed.
     [[nodiscard]] const std::optional<Error>& misplaced() const { return misplaced_; }
 
 private:

@@ -1,4 +1,4 @@
-// What the machine grants of real time and what it lacks. With --strict nothing starts if something lacks.
+// Finds what the machine grants of real time, and what is missing. With --strict nothing starts if anything is missing.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Poses that an input steers: the newest sample, moved to the frame's own time, with the bounds of what may follow.
+// Poses that an input steers: the newest sample, moved to the frame's due time, with bounds of the next poses.
 #pragma once
 
 #include "input/motion/motion.hpp"

@@ -1,4 +1,4 @@
-// What the visitor's buttons do: next viewpoint, reset, tour, pause; and what becomes of a tick's sample.
+// Acts on the visitor's buttons: next viewpoint, reset, tour and pause.
 //
 //   steered ──tour──► touring (follows the path from where the tour was left) ──the hand moves, or a stop──► steered
 //   pause: stands still until pressed again; the other three go on from a pause. A stop lets nothing through but pause.
