@@ -30,7 +30,7 @@ private:
     Mutex& mutex_;
 };
 
-/// Waits without the mutex, returns with it. Wake-ups may be for nothing: ask again.
+/// Releases the mutex, waits, and locks it again. It may return without a cause, so test the condition again.
 class Condition {
 public:
     void notify_all() { condition_.notify_all(); }

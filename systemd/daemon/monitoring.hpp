@@ -11,10 +11,10 @@
 
 namespace surefoot::daemon {
 
-/// The setting `monitor` where nobody shall look.
+/// The value of the setting `monitor` for no monitor.
 constexpr std::string_view no_monitor = "none";
 
-/// Where the settings put it: as they say, else surefoot.sock in the service's run-time folder if it has one, else nowhere
+/// The monitor's address: that of the settings, else surefoot.sock in the service's run-time folder if it has one, else nowhere
 /// (empty).
 std::string monitor_address(const config::Settings& settings, bool has_runtime_directory);
 

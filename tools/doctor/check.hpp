@@ -62,7 +62,7 @@ struct Summary {
 };
 Summary summarise(std::span<const Examined> examined);
 
-/// The findings for people, grouped by topic. Evidence is wrapped at the look's width; remedies are not, so that they can be
+/// The findings for people, grouped by topic. Evidence is wrapped at the style's width; remedies are not, so that they can be
 /// copied.
 std::string table(const Machine& machine, std::span<const Examined> examined, const report::TerminalStyle& style);
 
