@@ -1,4 +1,5 @@
-// Exit codes of surefootd: one for each kind of fault, numbered as in sysexits.h, so that systemd shows the name too.
+// Exit codes of surefootd: one for each kind of fault. From 64 on they are those of sysexits.h, so that systemd
+// shows the name too.
 #pragma once
 
 #include "tools/walk/walk.hpp"

@@ -34,8 +34,10 @@ public:
         const bool inside_text =
             slashes != std::string_view::npos && source.substr(0, slashes).find('"') != std::string_view::npos;
         if (slashes == std::string_view::npos || inside_text) return end();
-        if (source.substr(0, slashes).find_first_not_of(' ') != std::string_view::npos) end();
+        const bool behind_code = source.substr(0, slashes).find_first_not_of(' ') != std::string_view::npos;
         source.remove_prefix(slashes + 2);
+        if (behind_code || (was_behind_code_ && !source.starts_with("/<"))) end();
+        was_behind_code_ = behind_code || source.starts_with("/<");
         if (source.starts_with('/')) source.remove_prefix(1);
         if (source.starts_with('<')) source.remove_prefix(1);
         if (source.find_first_not_of(' ') == std::string_view::npos || source.starts_with("   ") || source.starts_with(" ---"))
@@ -67,6 +69,7 @@ private:
     std::vector<Sentence> all_;
     Sentence now_;
     std::size_t line_ = 0;
+    bool was_behind_code_ = false;
 };
 
 std::vector<Sentence> comment_sentences(const std::string& header) {
@@ -104,6 +107,7 @@ TEST(Comments, AreReadAsSentences) {
     EXPECT_EQ(counts("// One two. Three! Four five (six seven.)\n"), (Counts{2, 1, 4})) << "several on a line";
     EXPECT_EQ(counts("int a;  ///< one two\nint b;  ///< three\n"), (Counts{2, 1})) << "one for each member";
     EXPECT_EQ(counts("int a;  ///< one two\n        ///< three\n"), Counts{3}) << "over two lines behind code";
+    EXPECT_EQ(counts("int a;  ///< one two\n/// three\nint b;\n"), (Counts{2, 1})) << "of two members";
     EXPECT_EQ(counts("/// One two\n///\n/// three\n"), (Counts{2, 1})) << "paragraphs";
     EXPECT_EQ(counts("// One\n//   a ──► b c d\n//   e\n// two\n"), (Counts{1, 1})) << "a diagram";
     EXPECT_EQ(counts("const char* a = \"http://one two\";\nint b;\n"), Counts{}) << "no comment";
