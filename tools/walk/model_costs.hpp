@@ -37,9 +37,9 @@ struct ModelFit {
     double seconds = 0;
 };
 
-/// Draws random views near the path at random budgets, in several rounds (measure::robust_frame_times); every other one is
-/// used for the fit, the rest to measure its error. The table's cells do not change, as they are of single items. Models differ
-/// in how items overlap and hide each other.
+/// Draws random views near the path at random budgets, in several rounds (measure::robust_frame_times). Every other view is used
+/// for the fit, the rest to measure its error. The table's cells do not change, as they are of single items. Models differ in how
+/// items overlap and hide each other.
 Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
                               const Progress& progress);
 
