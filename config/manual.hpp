@@ -14,12 +14,14 @@ struct ManualItem {
     std::string term, text;
 };
 
+/// A section of a manual page, in the order of the page.
 struct ManualSection {
     std::string title;  ///< as it is shown: "OPTIONS"
     std::string text;   ///< paragraphs are separated by an empty line; lines that begin with two spaces stay as they are
     std::vector<ManualItem> items;  ///< after the text
 };
 
+/// A manual page, before it is written as troff.
 struct ManualPage {
     std::string name;  ///< as a user asks `man` for it: "surefoot-walk"
     int section = 1;

@@ -70,7 +70,7 @@ void not_a_table(Reading& into, const std::string& name, const toml::node& node,
     complain(into, name, node, std::move(problem));
 }
 
-/// Every profile is read, also those not asked for: a slip should not wait for the day it is used.
+/// Every profile is read, not only the requested one, so that a mistake is reported before the profile is used.
 void read_profiles(Reading& into, const toml::table& root, const std::string& name, std::string_view wanted) {
     const toml::node* profiles = root.get("profile");
     if (profiles == nullptr) return;

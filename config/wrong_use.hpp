@@ -1,4 +1,4 @@
-// From CLI11's errors to this project's: what is wrong on a command line, in plain sentences. Header only, so that only programs
+// Turns CLI11's errors into this project's: plain sentences about a wrong command line. Header only, so that only programs
 // with CLI11 need CLI11.
 #pragma once
 

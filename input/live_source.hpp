@@ -17,6 +17,7 @@
 
 namespace surefoot::input {
 
+/// Settings of a live source.
 struct LiveOptions {
     std::vector<DeviceMapping> mappings;  ///< none fits a device: the default of its class
     std::vector<LineConfig> lines;        ///< must have passed check_lines
@@ -61,7 +62,7 @@ private:
     StampLog log_;
     std::int64_t start_ns_ = 0;
     std::atomic<int> steering_now_{0};
-    bool somebody_ = false;         ///< steers, or its absence was said
+    bool somebody_ = false;         ///< a device steers, or the message about none was emitted
     bool unused_reported_ = false;  ///< of mappings that fit no device
 };
 

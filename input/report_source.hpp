@@ -53,7 +53,7 @@ public:
     [[nodiscard]] virtual const StampLog& log() const = 0;
     /// Short, long and undeclared reports: they changed nothing.
     [[nodiscard]] virtual std::uint64_t refused() const = 0;
-    /// Of wired encoders: steps that went unseen, in an unknown direction.
+    /// Of wired encoders: missed steps, whose direction is unknown.
     [[nodiscard]] virtual std::uint64_t illegal_encoder_steps() const { return 0; }
     /// Devices that were there at any time.
     [[nodiscard]] virtual std::vector<rt::SteeringDevice> devices() const = 0;

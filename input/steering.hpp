@@ -12,21 +12,23 @@
 
 namespace surefoot::input {
 
-/// Of the thread that plays `steers`. After the constructor nothing allocates, frees, locks or reads a clock.
+/// All members belong to the thread with the role `steers`. After the constructor nothing allocates, frees, locks or reads a
+/// clock.
 ///
 ///   each wake-up:  for each readable device: read until nothing is left, report() each, then drained()
 ///                  then tick(): publish what it returns
 class Steering {
 public:
-    /// The input thread's; on the virtual clock the frame thread's; the maker's before and after.
+    /// The role of the input thread, or on the virtual clock of the frame thread. Before and after the walk, of the maker's
+    /// thread.
     [[no_unique_address]] ThreadRole steers;
 
     Steering(const MotionLimits& motion, const SafetyLimits& safety, bool stop_latched = false);
 
     /// A device came. Returns its number, or -1 if max_devices are attached. It requests nothing until it was seen neutral.
-    /// A returning device with a stop or dead-man must get its old number (`again`): while it is away these hold the walk, and no
-    /// other device gets the number. `mapper` is swapped with the number's former mapper, so that a caller that must not free
-    /// memory can keep it.
+    /// A returning device with a stop or dead-man must get its old number (`again`). While such a device is away, its stop holds
+    /// the walk, and no other device gets its number. `mapper` is swapped with the number's former mapper, so that a caller that
+    /// must not free memory can keep it.
     int attach(Mapper&& mapper, std::size_t controls, Reporting reporting, int again = -1) REQUIRES(steers);
     /// Unplugged, or its reader failed.
     void detach(int device) REQUIRES(steers);
@@ -34,7 +36,7 @@ public:
     /// The device sends no more reports (end of a recording): from now on silence means rest.
     void ended(int device) REQUIRES(steers);
 
-    /// One accepted report. Anything but `state.connected` false counts as the device being there.
+    /// One accepted report. The device counts as connected unless `state.connected` is false.
     void report(int device, const DeviceState& state, std::int64_t now_ns) REQUIRES(steers);
     /// After a drain that read until nothing was left: how many reports it read, and whether some were lost on the way.
     void drained(int device, std::uint32_t reports, bool lost = false) REQUIRES(steers);
@@ -53,7 +55,7 @@ private:
         Mapper mapper;
         std::size_t controls = 0;
         DeviceState newest;
-        bool ticked = true;  ///< nothing was asked since the last tick
+        bool ticked = true;  ///< no report since the last tick
     };
     [[nodiscard]] std::int64_t age_limit_ns(std::size_t device) const REQUIRES(steers);
 

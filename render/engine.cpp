@@ -62,7 +62,7 @@ struct Engine::Impl {
     EngineOptions options;
     std::unique_ptr<gl::Device> device;
     std::unique_ptr<prepare::Preparer> preparer;
-    bool full_depth_always = false;  ///< as asked for, whatever the selector
+    bool full_depth_always = false;  ///< requested by the options, for every selector
     const select::Selector* selector = nullptr;
     [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
     select::SelectState state GUARDED_BY(draws);

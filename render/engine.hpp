@@ -21,6 +21,7 @@
 
 namespace surefoot {
 
+/// Settings of an engine.
 struct EngineOptions {
     gl::DeviceOptions device;  ///< the costs of the null backend are the engine's
     prepare::PrepareOptions prepare;

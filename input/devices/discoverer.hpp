@@ -9,6 +9,7 @@
 
 namespace surefoot::input {
 
+/// Finds devices, on its caller's thread or on its own. One thread calls all members.
 class Discoverer {
 public:
     virtual ~Discoverer() = default;
@@ -16,12 +17,12 @@ public:
     virtual std::unique_ptr<Discovery> next(std::int64_t now_ns) = 0;
     /// Returns a discovery that the reader no longer needs. `failed`: reading its device failed, so it may be opened again.
     virtual void give_back(std::unique_ptr<Discovery> discovery, bool failed, std::int64_t now_ns) = 0;
-    /// Readable when next() has something, or may have; -1: ask at due_ns().
+    /// Readable when next() has something, or may have; -1: call next() at due_ns().
     [[nodiscard]] virtual int fd() const = 0;
     [[nodiscard]] virtual std::int64_t due_ns() const = 0;
 };
 
-/// Looks whenever it is asked.
+/// A discoverer that looks for devices inside next(), on the thread that calls it.
 std::unique_ptr<Discoverer> inline_discoverer(Finder finder);
 constexpr const char* devices_thread_name = "sf-devices";
 /// Starts a thread named devices_thread_name, at SCHED_OTHER. Opening and closing devices never delays the reader, whose calls

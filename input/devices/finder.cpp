@@ -82,7 +82,7 @@ void Finder::scan(std::vector<Discovery>& out, std::int64_t now_ns) {
     const auto nodes = list_nodes(context_.get());
     std::set<std::string> there;
     for (const ListedNode& n : nodes) there.insert(n.place);
-    // What went is told before what came: one device replugged is not two.
+    // Lost devices are reported before found ones, so that a replugged device is not counted as two.
     for (auto i = entries_.begin(); i != entries_.end();) {
         if (there.contains(i->first)) {
             ++i;
@@ -141,7 +141,7 @@ void Finder::try_open(std::vector<Discovery>& out, Entry& entry, std::int64_t no
     }
     entry.retry.failed(now_ns);
     const int code = d.handle.code();
-    if (code == ENOENT || code == ENODEV || code == ENXIO) return;  // just unplugged: the next look around tells
+    if (code == ENOENT || code == ENODEV || code == ENXIO) return;  // just unplugged: the next scan reports it
     d.kind = Discovery::Kind::refused;
     d.refused = code == EACCES || code == EPERM ? Refused::permission : Refused::failed;
     d.why = open_error(*entry.plugged, code, d.handle.what());

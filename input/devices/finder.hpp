@@ -34,6 +34,7 @@ using Wanted = std::function<bool(const PluggedDevice&)>;
 /// True for classes that steer without configuration: navigation and buttons.
 bool steers_by_class(const PluggedDevice& device);
 
+/// What the finder looks for, and how a found device is attached.
 struct FinderOptions {
     Wanted wanted = steers_by_class;
     std::function<std::unique_ptr<DeviceAttachment>(const PluggedDevice&)>
@@ -41,6 +42,7 @@ struct FinderOptions {
     bool open = true;        ///< false: devices are listed only; `found` then carries no open handle
 };
 
+/// Lists, opens and describes HID devices, and follows their plugging. One thread calls all members; it may block.
 class Finder {
 public:
     static Result<Finder> create(FinderOptions options);

@@ -9,6 +9,7 @@ struct hid_device_;
 
 namespace surefoot::input {
 
+/// An open hidraw node. Closes it at the end. Moves, does not copy.
 class HidHandle {
 public:
     HidHandle() = default;

@@ -1,4 +1,4 @@
-// The live source. A device that hangs up is told as removed by its own read, before udev says so.
+// The live source. If a device hangs up, its own read reports it as removed, before udev does.
 #include "input/devices/live.hpp"
 
 #include <algorithm>
@@ -125,7 +125,7 @@ void LiveDevices::discover(std::int64_t now_ns) {
         auto d = discoverer_->next(now_ns);
         if (!d) return;
         if (d->kind == Discovery::Kind::lost) {
-            // A device that hung up before is told already.
+            // A device that hung up was reported before.
             for (std::size_t i = 0; i < open_.size(); ++i)
                 if (open_[i]->device == d->device) {
                     lost(i, false, now_ns);

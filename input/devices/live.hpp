@@ -12,10 +12,11 @@
 
 namespace surefoot::input {
 
-/// Maximum reports that one drain reads from one device. Far above 63, from which on safety/ assumes that the kernel dropped
-/// some. So a flooding device is at rest and delays nobody.
+/// Maximum reports that one drain reads from one device. Far above 63: from there on safety/ assumes that the
+/// kernel dropped some, and holds the device at rest. So a flooding device does not delay the others.
 constexpr std::uint32_t max_drain = 256;
 
+/// Devices of this machine, as the discoverer finds them.
 class LiveDevices final : public DeviceSource {
 public:
     /// trouble: a limitation of the discoverer.
@@ -53,8 +54,8 @@ private:
     bool unwatchable_ = false;  ///< some device has no known file descriptor
 };
 
-/// Live devices with the finder in the same thread, or (`threaded`) in its own: then wait() and take() neither allocate, free nor
-/// lock, also while devices come and go.
+/// Live devices. The finder runs in the same thread, or in its own (`threaded`). With a thread of its own, wait() and take()
+/// neither allocate, free nor lock, even while devices come and go. Error: udev cannot be used.
 Result<std::unique_ptr<LiveDevices>> open_live(FinderOptions options, bool threaded = false);
 
 }  // namespace surefoot::input

@@ -35,13 +35,13 @@ struct PluggedDevice {
 
 /// Why a connected device is not read.
 enum class Refused : std::uint8_t {
-    unwanted,    ///< its class does not steer and nobody asked for it; it is not even opened
+    unwanted,    ///< its class does not steer and no mapping names it; it is not opened
     descriptor,  ///< its report descriptor cannot be read or is malformed
     permission,  ///< tried again at each change of the node, and on a schedule
     failed,      ///< anything else; tried again likewise
 };
 
-/// User data of a device, made and destroyed on the thread that opens devices, so that the reader does not allocate when one
+/// User data of a device. The thread that opens devices makes and destroys it, so the reader does not allocate when a device
 /// comes or goes.
 struct DeviceAttachment {
     DeviceAttachment() = default;
@@ -50,6 +50,7 @@ struct DeviceAttachment {
     virtual ~DeviceAttachment() = default;
 };
 
+/// One change or report of a device, as a DeviceSource hands it to the reader.
 struct DeviceEvent {
     enum class Kind : std::uint8_t { added, removed, refused, report, drained };
     Kind kind = Kind::report;

@@ -12,12 +12,14 @@ struct udev_monitor;
 
 namespace surefoot::input {
 
+/// Releases what libudev allocated.
 struct UdevDeleter {
     void operator()(udev* context) const;
     void operator()(udev_monitor* monitor) const;
 };
 using UdevContext = std::unique_ptr<udev, UdevDeleter>;
 
+/// Events of the kernel and of udev about hidraw nodes. One thread calls all members.
 class UdevMonitor {
 public:
     /// Listens from now on. Error: no netlink socket, as in some containers; then devices must be found by scanning.

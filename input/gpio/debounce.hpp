@@ -1,6 +1,6 @@
 // Debounce of one contact: asserted at its first edge, released after it was stable; lost edges are found and counted. Pure.
 //
-// Assertion is never delayed, because a stop asserted late is a walk that stops late. The kernel's debounce is not used: it runs
+// Assertion is never delayed, because the delay would make every stop late. The kernel's debounce is not used: it runs
 // in jiffies, and stamps an edge after its debounce time.
 #pragma once
 
@@ -8,6 +8,7 @@
 
 namespace surefoot::input {
 
+/// State of one debounced contact.
 struct Contact {
     bool level = false;              ///< newest raw level, true: asserted
     bool asserted = false;           ///< debounced
@@ -30,7 +31,7 @@ inline void edge(Contact& c, bool level, std::int64_t stamp_ns, std::int64_t deb
     release_when_due(c, debounce_ns, stamp_ns);
     if (level == c.level) {
         ++c.lost_edges;
-        // The lost one went the other way; a stop that was asserted for a moment was asserted.
+        // The lost edge went the other way. So even a short assertion counts, as of a stop.
         if (level)
             ++c.raw_releases;
         else

@@ -16,6 +16,7 @@ namespace surefoot::input {
 
 enum class Bias : std::uint8_t { as_is, pull_up, pull_down, off };
 
+/// One line to be opened.
 struct LineRequest {
     std::string chip;  ///< "gpiochip0", "/dev/gpiochip0", or a chip's label
     std::string line;  ///< a line's name, or its offset as a number
@@ -23,6 +24,7 @@ struct LineRequest {
     Bias bias = Bias::as_is;
 };
 
+/// One edge, as the kernel stamped it.
 struct LineEdge {
     std::uint32_t line = 0;      ///< index into the requests
     bool active = false;         ///< after active_low
@@ -30,7 +32,7 @@ struct LineEdge {
     std::uint32_t sequence = 0;  ///< of this line, from 1; 0 where the kernel does not number them (libgpiod 1)
 };
 
-/// Requested lines. Gone when destroyed. One thread.
+/// Requested lines, released by the destructor. One thread calls all members.
 class GpioLines {
 public:
     GpioLines() = default;
@@ -40,7 +42,8 @@ public:
 
     /// What to poll for POLLIN; stays the same while the object lives.
     [[nodiscard]] virtual std::span<const pollfd> polled() const = 0;
-    /// Edges that wait, oldest first a line, without blocking; 0: none left. Error: the chip is gone.
+    /// Reads waiting edges, oldest first for each line. Returns their number; 0: none is left. Never blocks. Error: the chip is
+    /// gone.
     virtual Result<std::size_t> read(std::span<LineEdge> edges) = 0;
     /// All lines now, index-parallel to the requests, true: active. Error: the chip is gone.
     virtual Result<void> levels(std::span<bool> active) = 0;

@@ -22,6 +22,7 @@ namespace surefoot::input {
 
 enum class LineRole : std::uint8_t { button, stop, stop_reset, dead_man, encoder_a, encoder_b };
 
+/// One line of the panel, as the steering file describes it.
 struct LineConfig {
     std::string name;  ///< of the control; an encoder's two lines have the same
     LineRole role = LineRole::button;
@@ -58,7 +59,7 @@ public:
     [[nodiscard]] bool open() const { return opened_ != nullptr; }
     [[nodiscard]] std::string_view problem() const { return problem_.view(); }  ///< of the last failure; empty: open
     [[nodiscard]] std::uint64_t lost_edges() const;
-    /// Steps of encoders that went unseen, in an unknown direction: not counted as steps.
+    /// Missed steps of encoders. Their direction is unknown, so they do not count as steps.
     [[nodiscard]] std::uint64_t illegal_encoder_steps() const;
     [[nodiscard]] std::uint64_t opens() const { return opens_; }
 

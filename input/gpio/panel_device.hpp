@@ -31,6 +31,7 @@ public:
     /// The first try, before the input thread starts.
     void open();
 
+    /// Result of one service of the panel.
     struct Step {
         Lines lines;
         bool reported = false;  ///< a button or encoder moved
@@ -53,7 +54,7 @@ private:
     MessageLine last_problem_;
     Mapper mapper_, spare_;  ///< after the first attach, the steering holds one of them
     bool attached_once_ = false;
-    int number_ = -1, known_ = -1;  ///< Steering's, now and ever
+    int number_ = -1, known_ = -1;  ///< the number in Steering: now (-1: not attached), and at the last attach
     std::uint64_t opens_ = 0, reports_ = 0;
 };
 

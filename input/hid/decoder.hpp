@@ -3,10 +3,10 @@
 // Same as the kernel (hid-core, hid-input): sign extension only if the logical minimum is below zero. Values outside the logical
 // range are clamped; if the field has a null state, they are no value. Arrays list pressed buttons; a missing one is released; a
 // roll-over code keeps the array's last state. Different on purpose:
-//   - short, long and undeclared reports change nothing and are counted. The kernel cuts long ones. It drops short ones. Older
-//     kernels fill them with zeros, which is full deflection on an unsigned axis;
-//   - a null state of an axis or button is "no value", where evdev keeps the last one;
-//   - a hat is 0..7 and centred for *any* value outside its range (the kernel's division rounds some to north).
+//   - Short, long and undeclared reports change nothing and are counted. The kernel cuts long ones and drops short ones. Older
+//     kernels fill short ones with zeros, which is full deflection on an unsigned axis.
+//   - A null state of an axis or button is "no value". evdev keeps the last value.
+//   - A hat is 0..7, and centred for any value outside its range. The kernel's division rounds some of these to north.
 #pragma once
 
 #include <array>
@@ -22,6 +22,7 @@ namespace surefoot::input {
 
 enum class ReportFate : std::uint8_t { accepted, too_short, too_long, undeclared };
 
+/// Counts of reports; all but `accepted` changed nothing.
 struct ReportCounts {
     std::uint64_t accepted = 0, too_short = 0, too_long = 0, undeclared = 0;
 };

@@ -1,7 +1,7 @@
 // A HID report descriptor as flat arrays: collections, reports and fields with exact bit offsets, as Linux lays them out.
 //
-// Source: "Device Class Definition for Human Interface Devices" 1.11, sections 5 and 6.2.2, with the choices and limits
-// of Linux's hid-core where the text is open, because the kernel decides what reaches hidraw. Every descriptor that the kernel
+// Source: "Device Class Definition for Human Interface Devices" 1.11, sections 5 and 6.2.2. Where the text leaves a choice, the
+// choices and limits of Linux's hid-core hold, because the kernel decides what reaches hidraw. Every descriptor that the kernel
 // accepts is accepted here with the same layout. classify.cpp decides whether the device may steer. Accepted oddities are listed
 // in `notes`, each with its byte and its reason.
 #pragma once
@@ -44,6 +44,7 @@ constexpr std::uint32_t no_collection = 0xffffffffU;
 /// Full usages are 32 bits: page << 16 | usage.
 constexpr std::uint32_t full_usage(std::uint32_t page, std::uint32_t usage) { return (page << 16U) | (usage & 0xffffU); }
 
+/// A collection of the descriptor.
 struct Collection {
     std::uint32_t usage = 0;
     std::uint32_t parent = no_collection;  ///< index, or no_collection
@@ -83,6 +84,7 @@ struct Field {
     [[nodiscard]] bool relative() const { return (flags & flag::relative) != 0; }
 };
 
+/// The layout of all reports of one kind and id.
 struct Report {
     ReportKind kind = ReportKind::input;
     std::uint8_t id = 0;
@@ -91,7 +93,7 @@ struct Report {
     [[nodiscard]] std::uint32_t bytes() const { return (bits + 7) / 8; }
 };
 
-/// Accepted, but worth saying.
+/// An oddity of a descriptor that is accepted all the same.
 struct DescriptorNote {
     std::uint32_t offset = 0;  ///< byte in the descriptor
     std::string what;

@@ -21,6 +21,7 @@ struct ControlSource {
     std::uint32_t index = 0;
 };
 
+/// A device as its descriptor describes it.
 struct HidDevice {
     Layout layout;
     std::vector<ControlInfo> controls;   ///< axes, hats, buttons of steering collections first, then the others

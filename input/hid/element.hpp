@@ -10,6 +10,7 @@
 
 namespace surefoot::input {
 
+/// One value of a report, before controls are made of it.
 struct Element {
     std::uint32_t field = 0, index = 0;  ///< as in ControlSource
     std::uint32_t usage = 0;
@@ -20,8 +21,8 @@ struct Element {
 /// In the order of the layout, at most max_elements looked at.
 std::vector<Element> find_elements(const Layout& layout);
 
-/// The outermost application collection that says something, else the outermost, else the
-/// outermost collection of any type, else 0 (HID 1.11, 6.2.2.6).
+/// Usage of the outermost application collection with a known purpose. Else that of the outermost application collection, else of
+/// the outermost collection, else 0 (HID 1.11, 6.2.2.6).
 std::uint32_t application_usage(const Layout& layout, std::uint32_t collection);
 
 /// Class of a device, with the reason.

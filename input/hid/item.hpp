@@ -21,6 +21,7 @@ constexpr std::uint8_t usage = 0, usage_minimum = 1, usage_maximum = 2, delimite
 constexpr std::uint8_t long_item = 15;
 }  // namespace tag
 
+/// One item of a report descriptor.
 struct Item {
     std::uint32_t offset = 0;  ///< byte of its prefix
     std::uint32_t size = 0;    ///< bytes of its value: 0, 1, 2, 4

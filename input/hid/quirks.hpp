@@ -19,6 +19,7 @@ enum class QuirkEffect : std::uint8_t {
     trackball,    ///< calls itself a mouse, but is a ball in a fixed housing
 };
 
+/// A correction for devices whose descriptor is wrong.
 struct Quirk {
     std::uint16_t vendor = 0;
     std::uint16_t first_product = 0, last_product = 0xffff;

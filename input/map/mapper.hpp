@@ -40,14 +40,15 @@ struct Binding {
     dvec2 smoothed{0.0};   ///< what goes out
     double travelled = 0;  ///< relative: leaky sum, in seconds of full response
     std::array<std::int64_t, 2> reported_ns{-1, -1};  ///< when a report last carried the control
-    /// For a control that rests at an end, or belongs to an adapter for several pads: it alone waits until it was seen at rest,
-    /// not its whole device.
+    /// This control waits until it was seen at rest; the other controls of its device do not wait for it. True for a control
+    /// that rests at an end, and for those of an adapter for several pads.
     bool own_interlock = false;
     bool armed = false;  ///< seen at rest since the device came; until then it requests nothing
     bool pressed = false;
     std::int64_t open_since_ns = -1;  ///< of a pressed button whose contact has opened
 };
 
+/// The mapping of one device with its state. Made by compile(), then used by one thread.
 struct Mapper {
     std::vector<Binding> bindings;
     bool adapter = false;               ///< of one for several pads: each reports in its own way and time

@@ -28,7 +28,7 @@ enum class Action : std::uint8_t {
     pause,       // edges, as in MotionRequest
     dead_man,    // walks only while held
     stop,        // emergency stop: latched
-    stop_reset,  // takes the latch off once the stop is no longer asserted
+    stop_reset,  // clears the latch once the stop is no longer asserted
 };
 constexpr std::size_t action_count = 14;
 
@@ -48,6 +48,7 @@ struct ControlRef {
     [[nodiscard]] std::string text() const;
 };
 
+/// How an axis or hat becomes an action.
 struct AxisMapping {
     ControlRef control;
     Action action = Action::none;
@@ -77,6 +78,7 @@ struct HatMapping {
     double smoothing_s = 0;
 };
 
+/// How a button becomes an action.
 struct ButtonMapping {
     ControlRef control;
     Action action = Action::none;
@@ -100,6 +102,7 @@ struct DeviceMatch {
     std::optional<DeviceClass> device_class;
 };
 
+/// All mappings of one device, and which devices they fit.
 struct DeviceMapping {
     std::string name;
     DeviceMatch match;
@@ -123,7 +126,7 @@ const DeviceMapping* find_mapping(std::span<const DeviceMapping> mappings, const
 
 /// The mapping of an unconfigured device, from its class, collections and usages. Known: gamepads, joysticks with or without
 /// twist and throttle, six-axis controllers, pedals, button boxes. Trackballs, mice, keyboards and rejected devices get an empty
-/// mapping: they steer only if configured. Each socket of an adapter is mapped as a device of its own. `name` tells the rule
+/// mapping: they steer only if configured. Each socket of an adapter is mapped as a device of its own. `name` is the rule
 /// used.
 DeviceMapping default_mapping(std::span<const ControlInfo> controls, DeviceClass device_class);
 

@@ -59,8 +59,8 @@ dvec2 with_play(const dvec2& held, const dvec2& deflection, double half_width);
 
 enum class Rest : std::uint8_t { centre, min, max };  ///< where the control stands when nobody touches it
 
-/// Learns where a control really rests: the middle of values that were stable for half a second, inside the dead zone and within
-/// 7 % of the travel from the nominal rest. Since it learns only inside the dead zone, a new rest never shows in the response.
+/// Learns where a control really rests: the middle of values that were stable for half a second. The values must lie inside the
+/// dead zone, and within 7 % of the travel from the nominal rest. So a new rest never shows in the response.
 class RestFinder {
 public:
     RestFinder() = default;

@@ -13,6 +13,7 @@
 
 namespace surefoot::input {
 
+/// The content of a steering file.
 struct SteeringFile {
     std::vector<DeviceMapping> devices;  ///< the first that fits a device is taken; none fits: the default of its class
     MotionLimits motion;

@@ -17,20 +17,21 @@
 
 namespace surefoot::input {
 
+/// Times and thresholds of teaching.
 struct TeachLimits {
-    std::int64_t still_ns = 300'000'000;            ///< so long everything must keep still before the next question
-    std::int64_t max_rest_wait_ns = 3'000'000'000;  ///< then what trembles on is taken as it is
+    std::int64_t still_ns = 300'000'000;            ///< all controls must keep still for so long before the next question
+    std::int64_t max_rest_wait_ns = 3'000'000'000;  ///< after so long, a trembling control counts as still
     std::int64_t stays_ns = 700'000'000;            ///< a lever that does not come back is taken after so long
     std::int64_t answer_limit_ns = 15'000'000'000;  ///< an unanswered question is skipped after so long
     double tremor = 0.04;                           ///< of the range: what still counts as keeping still
-    double moved = 0.5;                             ///< of the travel: what counts as meant
+    double moved = 0.5;                             ///< of the travel: a movement beyond it answers the question
     double relative_counts = 300;                   ///< of balls and wheels: so many counts are a full movement
 };
 
 /// One answer: this control, moved so, is that action.
 struct Learned {
     Action action = Action::none;
-    double sign = 1;  ///< -1: asked for the opposite (down, where another control is up)
+    double sign = 1;  ///< -1: the question was for the opposite direction, such as down
     int device = 0;
     std::size_t control = 0;
     Rest rest = Rest::centre;
@@ -38,6 +39,7 @@ struct Learned {
     std::uint8_t hat_axis = 0;  ///< 0: right, 1: up
 };
 
+/// The open question, and what the controls did since. One thread calls all members.
 class Teach {
 public:
     enum class Phase : std::uint8_t { rest, question, done };
@@ -49,7 +51,7 @@ public:
     /// After each accepted report.
     void observe(int device, const DeviceState& state, std::int64_t now_ns);
     void tick(std::int64_t now_ns);
-    /// Not this one.
+    /// Skips the open question.
     void skip(std::int64_t now_ns);
     /// No more questions.
     void finish() { phase_ = Phase::done; }

@@ -21,7 +21,7 @@ bool one_stick(const ControlInfo& a, const ControlInfo& b) {
                        [&](const auto& pair) { return a.usage == pair[0] && b.usage == pair[1]; });
 }
 
-/// Whether the response has to be turned round so that what was shown gives what was asked.
+/// Whether the response has to be turned round so that what was shown gives the requested direction.
 bool inverted(const Learned& l) { return (l.rest == Rest::centre ? l.positive : true) != (l.sign > 0); }
 
 void add_axes(DeviceMapping& m, std::span<const ControlInfo> infos, std::vector<Learned> axes) {

@@ -11,6 +11,7 @@
 
 namespace surefoot::input {
 
+/// Parameters of the one-euro filter.
 struct FilterSettings {
     double min_cutoff_hz = 4;   ///< for a hand that keeps still
     double slope = 3;           ///< Hz of cutoff per full deflection a second

@@ -1,6 +1,6 @@
 // From commands to poses: filter, limits of speed and acceleration, integration in double, prediction.
 //
-//   Command ─► One-Euro filter ─► speed limit ─► acceleration limit ─► [may I go there?] ─► pose
+//   Command ─► One-Euro filter ─► speed limit ─► acceleration limit ─► [ground] ─► pose
 //
 // Pure functions of injected time: nothing here allocates, locks or reads a clock.
 #pragma once
@@ -22,6 +22,7 @@ struct Ground {
     double stair_m = 0;  ///< how much further than wanted an answer may move the eye
 };
 
+/// Speeds, accelerations and limits of the walker.
 struct MotionLimits {
     double walk_m_s = 1.4;               ///< at full deflection with speed 0
     double slowest = 0.25, fastest = 4;  ///< factors at speed -1 and 1; geometric in between
@@ -46,6 +47,7 @@ struct Angle {
     void set(double to) { value = to, carry = 0; }
 };
 
+/// State of the walker between two steps.
 struct MotionState {
     dvec3 position{0.0};
     Angle yaw, pitch;  ///< yaw > 0 to the left, pitch > 0 upwards
@@ -66,10 +68,11 @@ struct MotionState {
 bool place(MotionState& state, const Pose& pose);
 [[nodiscard]] Pose pose_of(const MotionState& state);
 
-/// One step to `now_ns`; any rate, the first step only sets the time.
+/// One step to `now_ns`. The rate of steps may vary. The first step only sets the time.
 NavigationSample step(MotionState& state, const MotionLimits& limits, const Command& command, std::int64_t now_ns,
                       const Ground& ground = {});
 
+/// A predicted pose, with the bound of its error.
 struct Prediction {
     Pose pose;
     double uncertainty_m = 0, uncertainty_rad = 0;
@@ -77,9 +80,9 @@ struct Prediction {
 /// The sample's pose, that much later at the same rates; earlier where negative.
 Pose carried(const NavigationSample& sample, double by_s);
 
-/// The pose `lead_s` after the sample if the hand stays as it is, and a bound on its distance to any pose that the limits allow
-/// then. The bound covers a stop at any moment, by order or by a wall, and a new start in any direction. It holds for every input
-/// and order, except `brake` towards a moving request. `stair_m`: that of the Ground. The bound: |v(s) - v0| <= |v0| + A s,
+/// The pose `lead_s` after the sample if the hand stays as it is. Its uncertainty bounds the distance to any pose that the limits
+/// allow then. The bound covers a stop at any moment, by order or by a wall, and a new start in any direction. It holds for every
+/// input and order, except `brake` towards a moving request. `stair_m`: that of the Ground. The bound: |v(s) - v0| <= |v0| + A s,
 /// integrated over the lead t, with A = a + |v0| (|w0| + alpha t / 2), as the walker's frame turns.
 Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double stair_m = 0);
 

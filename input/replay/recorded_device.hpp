@@ -1,4 +1,5 @@
-// A recording made ready to steer: device described and classified, mapping chosen and bound. All its errors come from here.
+// Opens a recording for steering: describes and classifies its device, chooses the mapping and binds it. All its errors come from
+// here.
 #pragma once
 
 #include <string>
@@ -13,6 +14,7 @@ namespace surefoot::input {
 /// Maximum length of a recording: that of a walk.
 constexpr double max_recording_s = 1e6;
 
+/// A recording, with its device described and mapped.
 struct RecordedDevice {
     std::string file;
     Recording recording;

@@ -22,6 +22,7 @@ namespace surefoot::input {
 constexpr std::size_t max_recorded_report_bytes = 16384;  ///< of one report; a descriptor likewise
 constexpr std::size_t max_recording_bytes = 256U << 20U;  ///< of the file
 
+/// One report of a recording. Its bytes are in Recording::bytes.
 struct RecordedReport {
     std::int64_t time_us = 0;
     std::size_t first = 0, size = 0;  ///< in Recording::bytes

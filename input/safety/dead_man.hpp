@@ -6,27 +6,30 @@
 
 namespace surefoot::input {
 
+/// Times of the dead-man switch.
 struct DeadManSettings {
     std::int64_t press_ns = 20'000'000;           ///< a press counts once it lasted so long without a break
-    std::int64_t idle_limit_ns = 30'000'000'000;  ///< held without a walk; 0: never tires
+    std::int64_t idle_limit_ns = 30'000'000'000;  ///< held so long without motion, it must be pressed again; 0: never
 };
 
+/// State of the dead-man switch between two steps.
 struct DeadMan {
     std::int64_t down_since_ns = -1, last_walk_ns = 0;
     bool engaged = false;
-    bool tired = false;  ///< asks to be let go and pressed anew
+    bool must_release = false;  ///< held too long without motion: it must be released and pressed again
 };
 
-/// `pressed`: pressed now and, as far as anyone saw, without a break since the last step. `walking`: something was asked for.
+/// One step. Returns whether the walk may move. `pressed`: now, and in all reports since the last step. `walking`: motion is
+/// requested.
 inline bool step(DeadMan& switch_, const DeadManSettings& settings, bool pressed, bool walking, std::int64_t now_ns) {
     if (!pressed) {
         switch_ = DeadMan{};
         return false;
     }
     if (switch_.down_since_ns < 0) switch_.down_since_ns = switch_.last_walk_ns = now_ns;
-    if (walking && !switch_.tired) switch_.last_walk_ns = now_ns;
-    if (settings.idle_limit_ns > 0 && now_ns - switch_.last_walk_ns > settings.idle_limit_ns) switch_.tired = true;
-    switch_.engaged = !switch_.tired && now_ns - switch_.down_since_ns >= settings.press_ns;
+    if (walking && !switch_.must_release) switch_.last_walk_ns = now_ns;
+    if (settings.idle_limit_ns > 0 && now_ns - switch_.last_walk_ns > settings.idle_limit_ns) switch_.must_release = true;
+    switch_.engaged = !switch_.must_release && now_ns - switch_.down_since_ns >= settings.press_ns;
     return switch_.engaged;
 }
 

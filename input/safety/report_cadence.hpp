@@ -14,6 +14,7 @@
 
 namespace surefoot::input {
 
+/// What is known of one device's cadence; kept from step to step.
 struct ReportCadence {
     std::uint32_t equal_reports = 0, still_reports = 0, gaps = 0;
     bool learned_streaming = false;

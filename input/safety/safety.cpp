@@ -132,12 +132,12 @@ Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Sou
     }
     MotionRequest wanted = merge(std::span(passing).first(sources.size()));
     const bool held = step(state.dead_man, limits.dead_man, has_dead_man && dead_man, walking, now);
-    state.wants_press = state.dead_man.tired;
+    state.wants_press = state.dead_man.must_release;
 
     Command command;
     command.stamp_ns = state.stamp_ns;
     if (state.latched || (has_dead_man && !held)) {
-        // Only pause may still be asked for: nothing else should move the picture.
+        // Only pause still passes: nothing else should move the picture.
         command.request.pause = wanted.pause;
         command.order = Order::stop;
         state.slewed = {};

@@ -19,8 +19,9 @@ namespace surefoot::input {
 
 constexpr std::size_t max_devices = 16;
 
+/// Limits of the safety stage.
 struct SafetyLimits {
-    std::int64_t age_limit_ns = 100'000'000;  ///< no deflection of a streaming device is believed for longer
+    std::int64_t age_limit_ns = 100'000'000;  ///< a deflection of a streaming device counts for so long after its report
     /// This many reports in one drain mean overflow: the kernel's ring was full and dropped the newest. hidraw's ring of 64 slots
     /// holds 63, so from 63 on reports may be missing.
     std::uint32_t full_drain = 63;
@@ -44,7 +45,7 @@ struct Source {
     DeviceOutput output;  ///< newest; its edges and stops of any report since the last step, dead_man of all
 };
 
-/// Switches that are wired, not plugged: from gpio/. Lost chips and broken wires come as asserted and not pressed.
+/// Switches that are wired, not plugged: from gpio/. If the chip or a wire is lost, stop is asserted and the dead-man not held.
 struct Lines {
     bool stop = false;        ///< asserted now or at any moment since the last step
     bool stop_reset = false;  ///< held
@@ -54,7 +55,9 @@ struct Lines {
 
 enum class Held : std::uint8_t { no, disconnected, not_neutral, timed_out, overflow };  ///< why a device is held at rest
 
+/// State of the safety stage between two steps.
 struct SafetyState {
+    /// State of one device, by its number.
     struct Device {
         std::uint32_t connection = 0;
         bool connected = false, interlocked = true, overflow = false, had_stop = false, contributed = false;
@@ -69,17 +72,18 @@ struct SafetyState {
     bool latched = false;      ///< emergency stop; load it from the stop memory at the start
     bool asserted = false;     ///< now
     bool reset_down = true;    ///< a reset that is held from before does not count
-    bool wants_press = false;  ///< the dead-man asks to be pressed anew
+    bool wants_press = false;  ///< the dead-man switch must be released and pressed again
     std::int64_t last_ns = -1, brake_until_ns = -1;
     std::int64_t stamp_ns = 0;
     std::uint64_t overflows = 0, timeouts = 0, losses = 0, stops = 0;  ///< counted events
 };
 
-/// One step. At most max_devices sources; a source keeps its index. `now_ns` not before the last step's (then time stands still).
+/// One step. At most max_devices sources; a source keeps its index. If `now_ns` is before the last step's, time stands still.
 Command step(SafetyState& state, const SafetyLimits& limits, std::span<const Source> sources, const Lines& lines,
              std::int64_t now_ns);
 
-/// Two calls of evaluate() within one step made one: the newest request, edges of both, stop if either, dead-man if both.
+/// Combines two outputs of evaluate() within one step. Request: the newer one. Edges: of both. Stop: if either has it. Dead-man:
+/// if both have it.
 DeviceOutput combined(const DeviceOutput& older, const DeviceOutput& newer);
 
 }  // namespace surefoot::input

@@ -8,6 +8,7 @@
 
 namespace surefoot::input {
 
+/// The stored stop, as it was read.
 struct RememberedStop {
     bool latched = false;
     std::string note;  ///< why it counts as latched without a stored stop; else empty

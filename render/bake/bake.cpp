@@ -40,7 +40,7 @@ void for_all(std::size_t count, const Body& body) {
     loop.joined();
 }
 
-/// Progress from many threads, told about ten times a second; and the request to stop.
+/// Progress from many threads, reported about ten times a second; and the request to stop.
 class Stage {
 public:
     Stage(const Progress& progress, std::string_view name, std::size_t total) : progress_(progress), name_(name), total_(total) {}

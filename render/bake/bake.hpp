@@ -14,12 +14,13 @@ namespace surefoot::bake {
 
 enum class Quality { draft, full };
 
+/// Settings of a bake.
 struct BakeOptions {
     Quality quality = Quality::draft;
     int workers = 0;                               ///< 0: all cores
     double frame_us = 33333;                       ///< the frame of the 1/16 rule, at 30 Hz
     const model::CostModel* costs = nullptr;       ///< calibrated; null: default_costs()
-    model::Counts max_counts = model::max_counts;  ///< that the model may hold; less only where a test asks for it
+    model::Counts max_counts = model::max_counts;  ///< limits of the model; tests lower them
 };
 
 /// Deterministic at any worker count. Errors: nothing drawable, stopped by the user, out of limits.

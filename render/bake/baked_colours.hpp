@@ -11,8 +11,8 @@
 
 namespace surefoot::bake {
 
-/// One colour for each vertex of the primitive. `vertices`: the same vertices in the model's layout. In an opaque texture only
-/// the texels that its triangles show count: most of an atlas belongs to other objects, and its gaps are often black.
+/// One colour for each vertex of the primitive. `vertices`: the same vertices in the model's layout. Of an opaque
+/// texture, only texels that the triangles show count. Most of an atlas belongs to other objects, and its gaps are often black.
 std::vector<std::array<std::uint8_t, 4>> baked_colours(const model::Model& model, const importer::Primitive& primitive,
                                                        std::span<const model::Vertex> vertices);
 

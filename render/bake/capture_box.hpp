@@ -10,6 +10,7 @@
 
 namespace surefoot::bake {
 
+/// A triangle to be captured, with a colour at each corner.
 struct ColouredTriangle {
     std::array<vec3, 3> corners;  ///< relative to the box's centre
     std::array<std::array<std::uint8_t, 4>, 3> colours;

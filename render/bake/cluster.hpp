@@ -11,6 +11,7 @@ namespace surefoot::bake {
 
 /// An entity is an object (index below the number of boxes) or a cluster.
 struct ClusterTree {
+    /// A node for several entities.
     struct Cluster {
         Box box;
         std::vector<std::uint32_t> children;  ///< entities; n + i is clusters[i]
@@ -19,8 +20,8 @@ struct ClusterTree {
     std::uint32_t root = 0;  ///< entity
 };
 
-/// Cell sizes double from the smallest object's size to the whole scene. Entities that fit into one cell become a cluster; one
-/// alone does not. An entity fits if its centre is inside and its size is at most the cell's. No cluster has more than
+/// Cell sizes double from a size near the smaller objects' to the whole scene. Entities that fit into one cell become a cluster;
+/// one alone does not. An entity fits if its centre is inside and its size is at most the cell's. No cluster has more than
 /// `max_children` children: larger groups are first split at medians.
 ClusterTree grow_clusters(std::span<const Box> objects, std::uint32_t max_children);
 

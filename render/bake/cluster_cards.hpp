@@ -9,11 +9,13 @@
 
 namespace surefoot::bake {
 
-/// Moves the parts of alpha-tested materials out of the geometry. `cut_out`: by material. If there are too few
-/// cards, or one is most of them or has more than `largest_triangles`, they stay, with baked colours and the proxy's material.
+/// Moves the parts of alpha-tested materials out of the geometry. `cut_out`: by material. They stay, with
+/// baked colours and the proxy's material, if the cards cannot be thinned out. That is so with too few cards, with one card that
+/// holds most triangles, or with a card of more than `largest_triangles`.
 std::vector<GeometryPart> take_cards(Geometry& g, const std::vector<bool>& cut_out, model::Index proxy_material,
                                      std::uint32_t largest_triangles);
 
+/// Limits of the card levels of a cluster.
 struct CardLimits {
     std::uint32_t max_triangles = 1000;  ///< triangles of cards in the finest level
     std::uint32_t min_triangles = 16;    ///< and in the coarsest

@@ -12,6 +12,7 @@ namespace surefoot::bake {
 
 /// Where the levels of a chain lie in the model: a range of parts each, shared by all placements.
 struct EmittedChain {
+    /// One level, as a range of parts.
     struct Level {
         model::Index first_part = 0;
         std::uint32_t part_count = 0, triangles = 0;

@@ -10,6 +10,7 @@
 
 namespace surefoot::bake {
 
+/// The triangles of one material; three indices a triangle.
 struct GeometryPart {
     model::Index material = 0;
     std::vector<std::uint32_t> indices;
@@ -41,12 +42,13 @@ struct LodChain {
 };
 
 /// Minimum error of levels with baked colours, as a share of their size. Such a level has lost its texture, so it may only be
-/// shown small: an error of 1/8 pixel is then an object of 8 pixels.
+/// shown small. At an accepted error of 1/8 pixel, the object is 8 pixels large.
 constexpr double min_proxy_error = 1.0 / 64;
 
 /// The texture of a material, and how it wraps.
 enum class Picture : std::uint8_t { none, repeats, clamped };
 
+/// Settings of a chain.
 struct ChainOptions {
     bool lock_border = false;         ///< for pieces of one object: keep their common borders equal
     std::uint32_t smallest = 16;      ///< triangles at which the chain ends

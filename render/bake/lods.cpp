@@ -100,7 +100,8 @@ Thinned find_cards(const Geometry& g, const ChainOptions& options) {
     return thinned;
 }
 
-/// Beside many cards what is solid goes by smaller steps: a trunk of a few spikes shows in any crown.
+/// Share of the solid triangles to keep in a level. If most triangles are cards, solid parts shrink in smaller steps, because a
+/// trunk that is reduced to a few spikes shows in every crown.
 double solid_share(const Thinned& thinned, double share) { return thinned.mostly ? std::sqrt(share) : share; }
 
 /// Of the triangles of `parts`, those that simplify() is to leave.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t bins_an_alpha = 16, bins = 255 * bins_an_alpha + 1;
 
-/// Points a texel and direction: a few texels must tell what lies between them, of many each tells enough.
+/// Sample points for each texel and direction. Small images need more points between their texels than large ones.
 std::uint32_t points_of(const MaskLevel& level) {
     const std::uint64_t texels = std::uint64_t{level.width} * level.height;
     return texels <= 1U << 12U ? 16 : texels <= 1U << 14U ? 8 : texels <= 1U << 18U ? 4 : texels <= 1U << 22U ? 2 : 1;

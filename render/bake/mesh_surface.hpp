@@ -9,6 +9,7 @@
 
 namespace surefoot::bake {
 
+/// Owns the arrays that a measure::MeshView points to.
 class MeshSurface {
 public:
     MeshSurface() = default;

@@ -17,6 +17,7 @@ struct MeshForm {
     Box box;  ///< in the mesh's frame
 };
 
+/// One placement of a mesh, or of one piece of it.
 struct PlacedObject {
     std::uint32_t mesh = 0;  ///< in the list of forms
     dmat4 world{1};
@@ -27,6 +28,7 @@ struct PlacedObject {
     bool piece = false;
 };
 
+/// Limits above which a mesh is cut into pieces.
 struct CutLimits {
     std::uint32_t max_triangles = 8192;  ///< of a piece; keeps its cost below 1/16 of a frame
     double longest_m = 1e30;             ///< of a piece, mesh frame; limits what is drawn for one corner in view

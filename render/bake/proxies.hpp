@@ -11,12 +11,14 @@
 
 namespace surefoot::bake {
 
+/// The forms of one cluster.
 struct ClusterForm {
-    LodChain chain;  ///< world frame; full holds the levels' vertices only
+    LodChain chain;  ///< world frame; full has the levels' vertices and no triangles
     BoxForm box;
     bool has_box = false;
 };
 
+/// What all clusters are made from. Read by several threads at once.
 struct ProxyInput {
     std::span<const PlacedObject> objects;
     std::span<const MeshForm> forms;

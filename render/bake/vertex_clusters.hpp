@@ -11,6 +11,7 @@
 
 namespace surefoot::bake {
 
+/// Limits of the clustered levels.
 struct ClusteringLimits {
     std::uint32_t max_triangles = 1000;  ///< triangles of the finest level; exceeded only if two cells an axis need more
     std::uint32_t min_triangles = 64;    ///< the chain ends at the first level with at most this many triangles

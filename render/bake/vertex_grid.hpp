@@ -10,6 +10,7 @@
 
 namespace surefoot::bake {
 
+/// A triangle of the source, with its plane.
 struct SourceTriangle {
     std::array<std::uint32_t, 3> vertex;
     std::uint32_t part = 0;

@@ -14,6 +14,7 @@
 
 namespace surefoot::capture {
 
+/// One captured frame: prepared arrays, cut, and all that the selection depended on.
 struct Capture {
     std::uint64_t frame = 0;  ///< of the walk; prepared.frame is the frame whose pose started the preparation
     prepare::PreparedFrame prepared;

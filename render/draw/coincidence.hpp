@@ -14,8 +14,8 @@ struct DepthBiasRanks {
     std::vector<std::uint8_t> ranks;
 };
 
-/// Finds leaves whose parts fill the same box (two banners on one pole), and flat parts across an axis that overlap in one plane
-/// (a poster on a wall). Each gets the smallest rank that no earlier one of its group has. O(n log n).
+/// Finds two kinds of coincident parts. Some fill the same box, as two banners on one pole. Some are flat and overlap in one
+/// axis-aligned plane, as a poster on a wall. Each gets the smallest rank that no earlier part of its group has. O(n log n).
 /// Representations of one leaf with the same parts have the same ranks, so that a switch does not change the winner.
 /// Representations with other parts have the rank of the first part.
 DepthBiasRanks depth_bias_ranks(const model::Model& model);

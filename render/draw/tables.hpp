@@ -13,6 +13,7 @@ namespace surefoot::draw {
 
 enum class Culling : std::uint8_t { back, front_flipped, none };
 
+/// A part, as a draw command needs it.
 struct DrawPart {
     std::uint32_t first_index, index_count;
     std::int32_t base_vertex;
@@ -24,17 +25,20 @@ struct DrawPart {
     bool two_sided, blended;
 };
 
+/// A representation: its placement and its range of parts.
 struct DrawRep {
     std::uint32_t placement, first_part, part_count, triangles;
     std::uint32_t node;  ///< the node that it belongs to
 };
 
+/// A placement: origin in double, linear part in float.
 struct Placed {
     dvec3 origin;
     std::array<float, 9> rows;  ///< linear part, row-major
     bool mirrored;
 };
 
+/// All tables that drawing reads. Made once from a model; constant after that.
 struct DrawTables {
     TextureLayout textures;
     std::vector<model::EffectMask> masks;  ///< state classes of the model's parts, ascending

@@ -9,6 +9,7 @@
 
 namespace surefoot::draw {
 
+/// One texture array: textures of equal size and wrapping, a layer each.
 struct TextureArray {
     std::uint32_t width = 0, height = 0, levels = 1;
     bool clamp = false;
@@ -18,6 +19,7 @@ struct TextureArray {
 struct TextureSlot {
     std::uint32_t array = 0, layer = 0;
 };
+/// Which array and layer holds each texture of the model.
 struct TextureLayout {
     std::vector<TextureArray> arrays;
     std::vector<TextureSlot> slots;  ///< one a texture of the model

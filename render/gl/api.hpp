@@ -90,6 +90,7 @@ namespace surefoot::gl {
     X(VertexBindingDivisor, PFNGLVERTEXBINDINGDIVISORPROC)           \
     X(Viewport, PFNGLVIEWPORTPROC)
 
+/// Pointers to the functions of GL, loaded at run time. Null: not loaded.
 struct Api {
 #define SUREFOOT_GL_MEMBER(name, type) type name = nullptr;
     SUREFOOT_GL_FUNCTIONS(SUREFOOT_GL_MEMBER)

@@ -15,6 +15,7 @@ namespace surefoot::gl {
 
 class Context;
 
+/// The registry entry of a back end.
 struct Backend {
     std::string_view name, help;
     BackendKind kind = BackendKind::null;

@@ -21,6 +21,7 @@ namespace surefoot::gl {
 
 enum class BackendKind { egl, device, window, osmesa, null };  ///< backends.hpp has them by name
 
+/// An item to be drawn: one representation of a node.
 struct DrawItem {
     model::Index node = 0;
     model::Index rep = 0;
@@ -41,21 +42,24 @@ struct NullOptions {
     std::uint64_t seed = 1;
 };
 
+/// Settings of a device.
 struct DeviceOptions {
     BackendKind kind = BackendKind::egl;
     model::Viewport viewport;
-    int rasterisers = 0;                  ///< software GL threads, as prepare_process was told; 0: the measured default
+    int rasterisers = 0;                  ///< threads of software GL, as given to prepare_process(); 0: the measured default
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
     std::array<float, 3> sky{0.62F, 0.72F, 0.82F};
     NullOptions null;  ///< of the null backend
 };
 
+/// Counts and times of one drawn frame.
 struct FrameStats {
     std::uint32_t items = 0, draws = 0, batches = 0, state_changes = 0;
     std::uint64_t triangles = 0;
 };
 
+/// A picture in memory, RGBA8.
 struct PixelImage {
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> rgba;  ///< row 0 on top

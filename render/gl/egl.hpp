@@ -14,6 +14,7 @@
 
 namespace surefoot::gl {
 
+/// Pointers to the functions of EGL, loaded at run time.
 struct Egl {
     decltype(&eglGetError) GetError = nullptr;
     decltype(&eglQueryString) QueryString = nullptr;

@@ -13,6 +13,7 @@
 
 namespace surefoot::gl {
 
+/// The device that draws by OpenGL. Every member on the thread of its context.
 class GlDevice final : public Device {
 public:
     static Result<std::unique_ptr<Device>> make(std::unique_ptr<Context> context, const DeviceOptions& options);

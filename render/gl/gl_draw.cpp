@@ -19,9 +19,9 @@ std::uint64_t state_key(std::uint32_t program, draw::Culling culling, std::uint3
            static_cast<std::uint64_t>(texture & 0xfffffU) << 32U | distance_bits(distance);
 }
 
-/// Scales a part about the eye by its rank among what lies in exactly one place: it stays where it is on the screen, and of two
-/// such things the same one shows, whatever the order in which a cut or a slice draws them. One step is what depth tells apart
-/// over large triangles. What is in nobody's place is not moved: planes a millimetre apart at a kilometre keep their order.
+/// Scales a part about the eye by its rank among coincident parts. Its place on the screen does not change, but its depth does.
+/// So the same one of them shows, whatever the order of drawing. One rank is the smallest step that depth resolves over large
+/// triangles. Parts of rank 0 are not moved: planes a millimetre apart at a kilometre keep their order.
 void apply_depth_bias(std::uint8_t rank, std::array<float, 12>& rows) {
     if (rank == 0) return;
     const float away = 1.0F + static_cast<float>(rank) * 0x1p-20F;

@@ -21,6 +21,7 @@ struct Instance {
 };
 static_assert(sizeof(Instance) == 64);
 
+/// A linked program for one set of effects, with the places of its uniforms.
 struct Program {
     model::EffectMask mask = 0;
     ProgramSource source;

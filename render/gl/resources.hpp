@@ -36,6 +36,7 @@ struct FrameBuffers {
 };
 Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items);
 
+/// Buffers and textures of one model in the GL context.
 struct Resources {
     GLuint vertices = 0, indices = 0;
     std::vector<GLuint> textures;   ///< in the order of TextureLayout::arrays

@@ -137,13 +137,13 @@ bool drop_unless_parallel(std::vector<T>& values, std::size_t count) {
 }
 
 std::uint64_t repair_uvs(Primitive& p) {
-    std::uint64_t mended = 0;
+    std::uint64_t repaired = 0;
     for (vec2& uv : p.uvs) {
         if (std::isfinite(uv.x) && std::isfinite(uv.y)) continue;
         uv = vec2(0);
-        ++mended;
+        ++repaired;
     }
-    return mended;
+    return repaired;
 }
 
 }  // namespace

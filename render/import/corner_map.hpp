@@ -6,11 +6,13 @@
 
 namespace surefoot::importer {
 
+/// A corner of an OBJ face: three indices.
 struct Corner {
     std::uint32_t position, uv, normal;
     bool operator==(const Corner&) const = default;
 };
 
+/// A hash table of corners. One thread.
 class CornerMap {
 public:
     /// The number that this corner has; `next` becomes its number when it is new.

@@ -9,6 +9,7 @@
 
 namespace surefoot::importer {
 
+/// The registry entry of a format.
 struct Format {
     std::string_view name, help;
     std::span<const std::string_view> endings;  ///< lower case, with their point

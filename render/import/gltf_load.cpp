@@ -148,7 +148,7 @@ Files external_files(const json& root, const std::string& file) {
     return files;
 }
 
-/// Only names that a buffer asked for, only beside the file: tinygltf would also look in the working directory.
+/// Only names that a buffer refers to, only in the folder of the file: tinygltf would also look in the working directory.
 bool wanted_file(const std::string& path, void* user) {
     const auto* files = static_cast<const Files*>(user);
     return std::any_of(files->wanted_bytes.begin(), files->wanted_bytes.end(), [&](const auto& entry) {

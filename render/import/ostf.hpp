@@ -13,6 +13,7 @@
 
 namespace surefoot::importer {
 
+/// An object of an OSTF file, not yet read.
 struct OstfObject {
     std::string name;
     Index parent = none;          ///< index in OstfIndex::objects; parents come first
@@ -22,6 +23,7 @@ struct OstfObject {
     std::uint64_t line = 0;       ///< line of its START_TAG, for errors
 };
 
+/// The table of contents of an OSTF file.
 struct OstfIndex {
     std::string file;
     std::vector<OstfObject> objects;

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a person most often gets wrong, said before any reader starts.
+/// The most frequent mistakes, reported before any reader starts.
 Result<void> check_file(const std::string& file) {
     std::error_code code;
     const fs::file_status status = fs::status(file, code);

@@ -17,6 +17,7 @@ namespace surefoot::importer {
 using Index = std::uint32_t;
 constexpr Index none = model::none;
 
+/// A material of the scene.
 struct Material {
     std::string name;
     std::array<float, 4> colour{1, 1, 1, 1};
@@ -39,6 +40,7 @@ struct Primitive {
     Index material = 0;
 };
 
+/// A mesh: one primitive for each of its materials.
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
@@ -59,6 +61,7 @@ struct Damage {
     std::string file, what;
 };
 
+/// An imported scene, in metres with +Y up.
 struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;

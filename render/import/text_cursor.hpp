@@ -7,6 +7,7 @@
 
 namespace surefoot::importer {
 
+/// Reads numbers and words of a text, line by line. Never reads past its end.
 class TextCursor {
 public:
     explicit TextCursor(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}

@@ -13,11 +13,13 @@
 
 namespace surefoot::measure {
 
+/// Whether timer queries of the driver agree with wall time.
 struct TimerQueryCheck {
     bool available = false, honest = false;
     double query_ms = 0, wall_ms = 0;  ///< the same work, by timer query and by fence and wall time
 };
 
+/// One measured point of the cost table.
 struct CalibrationPoint {
     model::EffectMask effects = 0;
     double triangles = 0, pixels = 0;
@@ -25,6 +27,7 @@ struct CalibrationPoint {
     double spread = 0;  ///< (p90 - p10) / p50 of the repeats
 };
 
+/// The result of a calibration.
 struct Calibration {
     model::CostModel costs;
     TimerQueryCheck timer;
@@ -34,6 +37,7 @@ struct Calibration {
     double seconds = 0;
 };
 
+/// Settings of a calibration.
 struct CalibrateOptions {
     gl::DeviceOptions device;
     bool quick = false;  ///< fewer classes and repeats: under 20 s; else under 2 min

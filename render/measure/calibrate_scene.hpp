@@ -31,6 +31,7 @@ struct TownObject {
     model::EffectMask effects = 0;
 };
 
+/// The generated model, its cells for single costs, and its town for whole frames.
 struct CalibrationScene {
     model::Model model;
     model::PixelEstimator estimator;  ///< of the model

@@ -28,6 +28,7 @@ class TriangleTree {
 public:
     explicit TriangleTree(const MeshView& mesh);
 
+    /// The nearest point found.
     struct Hit {
         float distance = std::numeric_limits<float>::infinity();
         std::uint32_t triangle = 0xffffffffU;  ///< number in the tree's own order; for distance_to()

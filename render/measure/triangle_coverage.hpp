@@ -11,6 +11,7 @@
 
 namespace surefoot::measure {
 
+/// Tracks which part of one triangle is covered by pieces.
 class TriangleCoverage {
 public:
     /// The triangle to be covered. margin: narrower pieces count as covered, so callers must add it to their bound.

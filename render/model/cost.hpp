@@ -43,10 +43,11 @@ struct FrameCombine {
     }
 };
 
+/// The cost table of a machine, fitted to a model of a whole frame.
 struct CostModel {
     std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
     FrameCombine combine;
-    float headroom = 1.25F;  ///< headroom: p90 of actual / predicted whole-frame cost at calibration
+    float headroom = 1.25F;  ///< 90 % quantile of actual / predicted whole-frame cost at calibration
     float slice_us = 30;     ///< cost of ending a slice (flush and fence)
     std::string machine;     ///< CPU, renderer, rasteriser count; a table of another machine is refused
     bool timer_query_honest = false;

@@ -11,7 +11,7 @@
 
 namespace surefoot::model {
 
-/// A cost table applied to a model. Each state class among the parts of a representation has its own cell of the table: a wall
+/// A cost table applied to a model. Each state class among the parts of a representation has its own cell of the table. So a wall
 /// with one alpha-tested poster costs as much as a wall and a poster.
 class ItemCosts {
 public:

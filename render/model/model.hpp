@@ -36,6 +36,7 @@ struct Placement {
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
+/// A material: factors, texture and alpha test.
 struct Material {
     std::array<float, 4> colour{1, 1, 1, 1};  ///< RGBA factor
     Index texture = none;
@@ -101,6 +102,7 @@ struct Provenance {
     std::vector<std::string> warnings;  ///< one line each: "Mesh 'lamp': 12 triangles are dropped: zero area"
 };
 
+/// A baked model: the tree and its representations in flat arrays. Constant while a walk runs; any thread may read it.
 struct Model {
     std::vector<Node> nodes;
     std::vector<Representation> reps;

@@ -1,5 +1,5 @@
-// Estimates the rasterised pixels of a representation seen from a pose. Far away by its box; nearby by samples of the surface,
-// since it matters on which side of its box a wall stands; very near by every triangle.
+// Estimates the rasterised pixels of a representation seen from a pose. Far away, its box is used. Nearby, samples of its surface
+// are used, because it matters on which side of its box a wall stands. Very near, every triangle is used.
 #pragma once
 
 #include <cstdint>
@@ -27,10 +27,10 @@ public:
     /// noise from samples that enter or leave the view, and costs some accuracy on random poses (figures:
     /// render/model/README.md). Nearby 1 to 4 us; with part_pixels() up to 25 us.
     [[nodiscard]] float pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const;
-    /// Pixels by part, every triangle clipped to the view. True if the eye is nearer than 1.5 half diagonals, and all
-    /// representations of the node have at most 1024 triangles in at most `max_parts` parts, so that all are estimated alike.
-    /// Else false, and of_part is undefined. Samples are too coarse there: most visible pixels lie next to the eye.
-    /// 22 to 35 ns a triangle.
+    /// Pixels by part, every triangle clipped to the view. Samples are too coarse near the eye, where most visible pixels lie.
+    /// True if the eye is nearer than 1.5 half diagonals of the box, and the node is small enough. Else false, and of_part is
+    /// undefined. Small enough: each of its representations has at most 1024 triangles in at most `max_parts` parts. So all
+    /// representations of a node are estimated in the same way. 22 to 35 ns a triangle.
     bool part_pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale,
                      std::span<float> of_part) const;
     /// Pixels from triangles clipped to the view and samples inside it; culled back faces do not count.

@@ -8,6 +8,7 @@
 
 namespace surefoot::model {
 
+/// Size of the picture in pixels, and the window of an off-axis projection.
 struct Viewport {
     std::uint32_t width = 1280, height = 720;
     /// Off-axis projection, for a screen that is not straight before the eye (a simulator channel). The image centre lies

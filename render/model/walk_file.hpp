@@ -9,6 +9,7 @@
 
 namespace surefoot::model {
 
+/// Sizes of a `.walk` file.
 struct WalkFileInfo {
     std::uint64_t bytes = 0;          ///< on disk
     std::uint64_t payload_bytes = 0;  ///< geometry and texels, unpacked

@@ -68,7 +68,7 @@ inline float cost_metric(const model::FrameCombine& combine, const model::ItemCo
     return combine.frame_us(cost.submit_us, cost.raster_us) - combine.fixed_us;
 }
 
-/// Factor 0..1 by which an expensive step loses benefit: a half at 2 ms, which is 1/16 of a 30 Hz frame, the limit of an item.
+/// Factor 0..1 by which an expensive step loses benefit. It is a half at 2 ms: 1/16 of a 30 Hz frame, the limit of an item.
 /// Of two equally wrong representations the cheaper step goes first. Otherwise one expensive step that does not fit would end
 /// the search before dozens of cheap ones.
 inline float cost_penalty(float step_us) {
@@ -76,12 +76,14 @@ inline float cost_penalty(float step_us) {
     return half_us / (half_us + std::max(step_us, 0.0F));
 }
 
+/// Fills the choices of a candidate with cost, error and benefit. Constant after it is made; any thread may use it.
 class Evaluator {
 public:
     Evaluator(const model::Model& model, const model::CostModel& costs);
 
     /// Fills `candidate.pixels` and the choices, at most `rep_count` of the node; returns their number. Requires candidate.node.
-    /// The choices have benefit = weight x accuracy. Cost is not in it yet, and it is not yet monotone down the tree.
+    /// The choices have benefit = 0.5 weight x gain + 0.5 unusable (see README.md). Cost is not in it yet, and it is not yet
+    /// monotone down the tree.
     std::uint32_t evaluate(const RegionView& view, float nearest_m, Candidate& candidate, Choice* choices, Weight& weight) const;
 
     [[nodiscard]] const model::ItemCosts& item_costs() const { return item_costs_; }

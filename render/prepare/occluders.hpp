@@ -21,6 +21,7 @@ struct Occluder {
     bool two_sided = false;
 };
 
+/// The occluders of a model. Constant after they are collected.
 struct Occluders {
     std::vector<dvec3> corners;  ///< world; corners within one 0.1 mm cell are merged
     std::vector<Occluder> triangles;

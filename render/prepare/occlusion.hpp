@@ -19,6 +19,7 @@
 
 namespace surefoot::prepare {
 
+/// The occlusion test of one region. One thread calls draw(); then any thread may call hides().
 class Occlusion {
 public:
     /// `occluders` must outlive this. Allocates all memory here.

@@ -21,7 +21,7 @@ using model::none;
 /// cost rises and error falls, both strictly. The first is the cheapest legal one.
 struct Choice {
     Index rep = 0;
-    model::ItemCost cost;  ///< us, at the region's most expensive eye position
+    model::ItemCost cost;  ///< us, at the region's eye that is nearest to the box, where it is most expensive
     float error_rad = 0;   ///< largest angular error over the region: error_m / max(distance, near)
     /// 0..1, of replacing this choice by the next finer one, or by the children. From the node alone; limited to the benefits of
     /// coarser choices and ancestors, so monotone down the tree. The key of best-first search.
@@ -49,10 +49,11 @@ struct Candidate {
 /// Poses that the eye may have when the set is used.
 struct Region {
     Pose centre;
-    double radius_m = 0;
-    double angle_rad = 0;
+    double radius_m = 0;   ///< largest distance of an eye from the centre's
+    double angle_rad = 0;  ///< largest turn away from the centre's view
 };
 
+/// The candidates of a region. Filled by the prepare thread, then read by the frame thread only.
 struct PreparedFrame {
     std::uint64_t frame = 0;  ///< the frame whose pose was newest when preparation began
     Region region;

@@ -43,7 +43,7 @@ private:
     int missing_ GUARDED_BY(mutex_);
 };
 
-/// Threads outlive arenas: each is told of once to each observer, however often it comes back.
+/// Numbers observers, so that each thread is announced once to each observer. Threads outlive arenas and may come back.
 std::uint64_t next_id() {
     static std::atomic<std::uint64_t> last{0};
     return ++last;

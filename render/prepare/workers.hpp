@@ -13,6 +13,7 @@
 
 namespace surefoot::prepare {
 
+/// Owns the arena and its threads. Made, used and destroyed by one thread.
 class Workers {
 public:
     /// `count`: workers with the caller; 1: no threads. With hooks all threads start here, else at first use.

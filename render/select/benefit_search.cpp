@@ -1,8 +1,13 @@
-// Best-first and two-stage best-first (Maciel 3.5), corrected: each step priced as what it changes, in the order of its benefit.
-// Benefits fall monotonely down the tree, so that this order needs no queue: the steps' costs are summed by benefit, the sums say
-// at which benefit the budget ends, and only the steps of that one bucket are tried in turn (by candidate, then by form), to the
-// first that does not fit. What the first walk sees of a candidate is kept, so that the second reads little more than that. A
-// bucket is 1/128 octave wide: what lies closer counts as equal.
+// Best-first and two-stage best-first search. Source: Maciel 1994, 3.5; here a step costs what it changes in the frame.
+//
+// A step replaces a choice by the next finer one, or by the children. Steps are taken in the order of their benefit, highest
+// first, until the budget ends. Benefits fall down the tree, so this order needs no queue. Three walks over the candidates:
+//   1. Sum the costs of all steps by bucket of their benefit. A bucket is 1/128 octave wide; benefits in it count as equal.
+//      Adding the buckets up from the highest benefit tells in which one the budget ends: the edge.
+//   2. Take all steps before the edge. Try those in its bucket in turn, by candidate and then by form, until one does not fit.
+//   3. With hysteresis, steps of the last frame may use all of the budget, new steps only a share of it. So try steps of the last
+//      frame behind the edge, in the same way, with what is left.
+// The first walk notes what it computed for each candidate, so that the second reads little more than the notes.
 #include <algorithm>
 
 #include "render/select/bucket_queue.hpp"
@@ -38,10 +43,11 @@ private:
 Sum operator+(const Sum& a, const Sum& b) { return {a.submit_us + b.submit_us, a.raster_us + b.raster_us}; }
 bool nothing(const Sum& sum) { return sum.submit_us == 0.0 && sum.raster_us == 0.0; }
 
-/// Up to where steps of one kind are taken: below `bucket` all, in it those that fit in their turn, above it none.
+/// Where the budget ends. All steps of buckets before `bucket` are taken. In it, steps are tried in turn. Behind it, none is
+/// taken.
 struct Edge {
     std::uint32_t bucket = buckets;
-    Sum before;  ///< predicted sums of all that is taken below the bucket
+    Sum before;  ///< predicted sums of all that is taken before the bucket
 };
 
 /// One selection: three walks over the candidates, which stand parents before children.
@@ -121,7 +127,7 @@ private:
         }
         return edge;
     }
-    /// The same for what was shown before alone, beyond the common edge.
+    /// The same behind the common edge, for steps of the last frame only.
     [[nodiscard]] Edge refined_edge(const Edge& common) const {
         Edge edge{common.bucket + 1, sum_};
         for (; edge.bucket < buckets; ++edge.bucket) {
@@ -137,7 +143,7 @@ private:
         bool fresh_closed = edge.bucket == buckets;
         for (Index c = 0; c < builder_.size(); ++c) {
             if (builder_.chosen(c) == SelectState::opened) continue;
-            if (builder_.chosen(c) == none) {  // below what is taken; what it was refined to may still come in
+            if (builder_.chosen(c) == none) {  // its parent is not opened; the third walk may still do that
                 if ((scan_state_[c] & refined_before) != 0) deferred_[deferred_count_++] = c;
                 continue;
             }
@@ -158,7 +164,7 @@ private:
         }
     }
 
-    /// Where a candidate's last step lies below the edge, so do all: taken without a look at each.
+    /// If a candidate's last step lies before the edge, all its steps do: takes them at once. False: it does not.
     bool take_all(Index c, const Edge& edge) {
         if (steps_.has_target()) return false;
         const prepare::Candidate& candidate = builder_.candidate(c);
@@ -209,10 +215,11 @@ private:
         return true;
     }
 
-    /// What summing up finds of a candidate, so that taking need not look again.
-    static constexpr std::uint32_t last_bucket = buckets - 1;   ///< of its last step
-    static constexpr std::uint32_t opens_below = 1U << 16U;     ///< no target error keeps it shut
-    static constexpr std::uint32_t refined_before = 1U << 17U;  ///< from its first form on, in the last frame
+    /// Bits of scan_state_: what the first walk computed for a candidate.
+    static constexpr std::uint32_t last_bucket = buckets - 1;  ///< mask: the bucket of its last step
+    static constexpr std::uint32_t opens_below = 1U
+                                                 << 16U;  ///< its children may be opened: the target error allows all its steps
+    static constexpr std::uint32_t refined_before = 1U << 17U;  ///< its first step was taken in the last frame
 
     CutBuilder& builder_;
     const Budget& budget_;
@@ -220,7 +227,7 @@ private:
     StepSums sums_;
     std::span<std::uint32_t> scan_state_;
     double share_;
-    std::span<std::uint32_t> deferred_;  ///< candidates that were shown finer than the common edge allows, ascending
+    std::span<std::uint32_t> deferred_;  ///< candidates that the last frame showed finer than the common edge allows, ascending
     std::uint32_t deferred_count_ = 0;
     Sum sum_;
     bool closed_ = false;

@@ -22,7 +22,7 @@ public:
         : head_(heads.first(buckets)), tail_(heads.subspan(buckets, buckets)), next_(next) {
         std::fill(head_.begin(), head_.end(), model::none);
     }
-    static std::uint32_t bucket_of(float key) {  // without a branch: it is asked for every step
+    static std::uint32_t bucket_of(float key) {  // without a branch: it is called for every step
         const float at_least_zero = key > 0.0F ? key : 0.0F;
         constexpr auto top = static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(2.0F) >> 16U);
         const auto below = top - static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(at_least_zero) >> 16U);

@@ -7,7 +7,7 @@ namespace surefoot::select {
 
 namespace {
 
-constexpr double distance_threshold_px = 2.0;  // of `distance`, where no accuracy is asked for
+constexpr double distance_threshold_px = 2.0;  // of `distance`, if no accuracy is requested
 
 /// Walks from the root; opens what `stops` does not stop, and draws the rest in the form that it says.
 template <class Stops>

@@ -15,6 +15,7 @@ namespace surefoot::select {
 /// What limits the detail of a selector: nothing, an angular threshold, or the frame's budget.
 enum class GoesBy : std::uint8_t { nothing, threshold, budget };
 
+/// The registry entry of a selector.
 struct SelectorEntry {
     std::string_view name, help;
     GoesBy goes_by = GoesBy::budget;

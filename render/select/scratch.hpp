@@ -8,6 +8,7 @@
 
 namespace surefoot::select {
 
+/// Scratch memory of a search.
 struct SelectState::Scratch {
     std::vector<std::uint32_t> chosen;       ///< by candidate: CutBuilder's choices
     std::vector<std::uint32_t> list;         ///< by candidate: CutBuilder's walk, then the search's stack or scan state
@@ -16,6 +17,7 @@ struct SelectState::Scratch {
     std::vector<double> step_sums;           ///< two costs a bucket: of new steps, and of those shown before
 };
 
+/// Scratch memory of the slice plan.
 struct SlicePlan::Scratch {
     std::vector<float> below_us;       ///< by candidate: predicted time of the cut's items below it; -1: none
     std::vector<std::uint32_t> item;   ///< by candidate: its index in the cut's items, or none

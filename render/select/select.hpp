@@ -18,6 +18,7 @@ namespace surefoot::select {
 using model::Index;
 using model::none;
 
+/// An item of a cut: a node and the representation chosen for it.
 struct CutItem {
     Index candidate = 0;
     Index node = 0;
@@ -33,13 +34,14 @@ struct Cut {
     float floor_us = 0;          ///< of the cheapest legal cut
     bool floor_binds = false;    ///< floor_us > budget: the floor is drawn
     float worst_error_rad = 0;   ///< 1 / accuracy
-    double benefit = 0;          ///< sum of the items' benefit, 0..items
+    double benefit = 0;  ///< sum over items of 1 - benefit of the next finer step; 0..items, items: nothing is left to gain
     std::uint64_t triangles = 0;
     std::uint32_t switches = 0;     ///< representations that differ from the previous frame's
     std::uint64_t hash = 0;         ///< of (node, rep) in order
-    std::uint32_t refinements = 0;  ///< upgrades bought
+    std::uint32_t refinements = 0;  ///< steps taken
 };
 
+/// All that a selection depends on, besides SelectState.
 struct SelectInput {
     const model::Model* model = nullptr;
     const prepare::PreparedFrame* prepared = nullptr;
@@ -93,21 +95,22 @@ public:
 void reserve(Cut& cut, std::uint32_t max_candidates);
 
 /// Checks that the cut is legal over the prepared frame: no ancestor with its descendant, every visible leaf covered once.
-/// Returns an empty string, or the first problem. For tests and `--strict`.
+/// Returns an empty string, or the first problem. For tests and the self test.
 std::string check_legal(const prepare::PreparedFrame& prepared, const Cut& cut);
 
 // ---- slices: subtree by subtree, each with a coarser stand-in ----
 
-/// Draws items [first_item, +item_count) of SlicePlan::order, or items [first_stand_in, +stand_in_count) of
-/// SlicePlan::stand_ins. The stand-ins are the coarsest legal cover of the same leaves.
+/// Items that are submitted together: [first_item, +item_count) of SlicePlan::order. Or instead their stand-ins:
+/// [first_stand_in, +stand_in_count) of SlicePlan::stand_ins, the coarsest legal forms that show the same leaves.
 struct Slice {
     std::uint32_t first_item = 0, item_count = 0;
     std::uint32_t first_stand_in = 0, stand_in_count = 0;
     model::ItemCost cost, stand_in_cost;
 };
 
+/// The cut, grouped into slices.
 struct SlicePlan {
-    std::vector<Slice> slices;   ///< in submission order: nearest subtrees first
+    std::vector<Slice> slices;   ///< in submission order: most beneficial subtrees first
     std::vector<CutItem> order;  ///< the cut's items, grouped by slice
     std::vector<CutItem> stand_ins;
 
@@ -139,8 +142,8 @@ struct CheckInput {
     double margin = 1.0;             ///< factor on top of the headroom
 };
 /// True: draw the slice in full. False: draw this and all later slices as stand-ins. Pure.
-/// Predictions are scaled by the frame's error so far, 1..8. So that the first slices do not dominate, 1/20 of the
-/// limit counts as drawn without error. So does half of the rest; this half shrinks with the time left.
+/// Predictions are multiplied by a factor of 1..8: elapsed / predicted time of the frame so far. A few early slices must not
+/// decide alone. So a prior time is added to both: 1/20 of the limit, and half of the rest's cost times the share of time left.
 bool still_fits(const CheckInput& input);
 
 }  // namespace surefoot::select

@@ -33,8 +33,8 @@ private:
     bool subtree_;
 };
 
-/// With hysteresis the budget has two thresholds, as a Schmitt trigger: steps of the last frame may use all of it, new steps only
-/// this share. Smaller changes of cost switch nothing.
+/// With hysteresis the budget has two thresholds, as a Schmitt trigger has. Steps of the last frame may use all of it, new steps
+/// only this share. Smaller changes of cost switch nothing.
 inline double fresh_share(const SelectState& state) {
     constexpr double fresh_margin = 0.03;
     return state.hysteresis > 1.0F ? 1.0 - fresh_margin : 1.0;

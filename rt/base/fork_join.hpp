@@ -14,6 +14,7 @@ public:
     ForkJoin() { release(); }
     void joined() { acquire(); }
 
+    /// One task of the loop: made when it starts, destroyed when it ends.
     class Task {
     public:
         explicit Task(ForkJoin& loop) : loop_(loop) { loop_.acquire(); }

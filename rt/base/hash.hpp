@@ -17,7 +17,7 @@ inline std::uint64_t fnv1a(std::uint64_t hash, std::uint64_t value) {
     return hash;
 }
 
-/// Hash of bytes, eight at a time; the tail byte by byte. Not cryptographic: it finds accidents, not attacks.
+/// Hash of bytes, eight at a time; the tail byte by byte. Not cryptographic: it finds accidental changes, not attacks.
 std::uint64_t hash_bytes(std::span<const std::byte> bytes, std::uint64_t start = fnv_start);
 
 }  // namespace surefoot

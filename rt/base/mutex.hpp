@@ -18,6 +18,7 @@ private:
     std::mutex mutex_;
 };
 
+/// Locks a Mutex while it lives.
 class SCOPED_CAPABILITY MutexLock {
 public:
     explicit MutexLock(Mutex& mutex) ACQUIRE(mutex) : mutex_(mutex) { mutex_.lock(); }
@@ -29,7 +30,7 @@ private:
     Mutex& mutex_;
 };
 
-/// Waits without the mutex, returns with it. Wake-ups may be for nothing: ask again.
+/// Releases the mutex, waits, and locks it again. It may return without a cause, so test the condition again.
 class Condition {
 public:
     void notify_all() { condition_.notify_all(); }

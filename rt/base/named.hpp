@@ -9,6 +9,7 @@
 
 namespace surefoot {
 
+/// The name of a registry entry, with its help text.
 struct Named {
     std::string_view name, help;
 };

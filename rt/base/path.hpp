@@ -9,6 +9,7 @@
 
 namespace surefoot {
 
+/// One sample of a path.
 struct PathSample {
     double time_s = 0.0;
     Pose pose;
@@ -23,9 +24,9 @@ struct Path {
 /// Limits of a row, either side of 0: time in seconds (Unix time fits), coordinates in metres (the Earth fits), quaternion parts.
 constexpr double path_time_limit_s = 1e11, path_coordinate_limit_m = 1e9, path_quaternion_limit = 1e6;
 
-/// CSV `time_s,x,y,z,qx,qy,qz,qw,fov_y_deg`; '#' starts a comment; a header row is allowed. The last column is optional. It
-/// counts only if a comment or header names it fov_y_deg (in recorded drives it is the speed); else the field of view is 60
-/// degrees. Errors, with line number: not a number, not finite, beyond a limit, zero quaternion, time not increasing.
+/// CSV `time_s,x,y,z,qx,qy,qz,qw,fov_y_deg`; '#' starts a comment; a header row is allowed. The last column is optional.
+/// It counts only if a comment or header names it fov_y_deg; in recorded drives it is the speed. Otherwise the field of view is
+/// 60 degrees. Errors, with line number: not a number, not finite, beyond a limit, zero quaternion, time not increasing.
 Result<Path> read_path(const std::string& file);
 Result<void> write_path(const std::string& file, const Path& path);
 

@@ -11,6 +11,7 @@ double quantile_of(std::vector<double> values, double q);
 /// The middle value, or the mean of the two middle ones; 0 if there are none.
 double median_of(std::vector<double> values);
 
+/// Quantiles and extremes of a set of values, in its unit.
 struct Quantiles {
     double p50 = 0, p90 = 0, p99 = 0, p999 = 0, max = 0, mean = 0, min = 0;
 };
@@ -18,6 +19,7 @@ struct Quantiles {
 /// Non-finite values are ignored; all results are 0 if none is left.
 Quantiles quantiles(std::vector<double> values);
 
+/// One point of a series whose trend is fitted.
 struct TrendPoint {
     double time_s = 0, value = 0;
 };

@@ -1,4 +1,4 @@
-// Small work on text: blanks taken off, words, numbers read in full or from the start, the nearest of some known words.
+// Small functions on text: trims blanks, splits words, reads numbers, finds the nearest of known words.
 #pragma once
 
 #include <charconv>

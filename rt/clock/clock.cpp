@@ -1,4 +1,4 @@
-// Reading and waiting for time: the machine's, and time that moves only when told.
+// Reads time and waits for it: by the machine's clock, and by a clock that only the program moves.
 #include "rt/clock/clock.hpp"
 
 #include <time.h>

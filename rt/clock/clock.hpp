@@ -48,7 +48,7 @@ public:
     void steal(std::int64_t ns);
     /// Time passes without CPU time, and with an involuntary switch: another thread took the core.
     void preempt(std::int64_t ns);
-    /// Time passes without CPU time, by the thread's own wish (a fence).
+    /// Time passes without CPU time, because the thread waits (for a fence).
     void wait(std::int64_t ns);
     void fault(std::uint64_t minor, std::uint64_t major);
     /// Every sleep from now on ends this much late.

@@ -13,6 +13,7 @@
 
 namespace surefoot::rt {
 
+/// A bounded ring. One thread pushes and one thread pops; neither waits.
 template <class T>
 class SpscRing {  // NOLINT(clang-analyzer-optin.performance.Padding): each side has a cache line of its own
     static_assert(std::is_nothrow_copy_assignable_v<T>, "a record must be plain data");

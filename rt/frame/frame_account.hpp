@@ -15,8 +15,8 @@
 namespace surefoot::rt {
 
 /// The wait for n rasterisers lies between the CPU time of the busiest and the sum of all. Its ratio to the sum is learned: the
-/// 12th smallest of the last 15 ratios. So up to 3 disturbed frames in 15 have no effect, and a frame that waits a little longer
-/// than usual does not count as stolen.
+/// 12th smallest of the last 15 ratios. So up to 3 disturbed frames in 15 have no effect. A frame that waits a little longer than
+/// usual does not count as stolen.
 class WaitEstimate {
 public:
     /// The part of the observed wait (wall minus CPU in the driver's phases, ns) that the rasterisers' work explains.

@@ -26,13 +26,14 @@ public:
     virtual void select(FrameRecord& record) = 0;
     /// Hands the slices to the driver (driver tier of memory). submitted_ns is taken when it returns, unless it set it.
     virtual void submit(FrameRecord& record) = 0;
-    /// Waits for the last fence and presents (driver tier). When it returns, presented_ns is taken; rastered_ns too, unless
-    /// submit() or finish() set it.
+    /// Waits for what submit() left, and presents (driver tier). Stages may do both in submit(). When it returns, presented_ns is
+    /// taken; rastered_ns too, unless submit() or finish() set it.
     virtual void finish(FrameRecord& record) = 0;
     /// After the frame's end, with usage, missed, own_miss and cause filled in: corrects costs, fills the rest of the record.
     virtual void account(FrameRecord& record) = 0;
 };
 
+/// Settings of the loop. Pointers must outlive the run.
 struct FrameLoopOptions {
     std::int64_t period_ns = 16'666'667;
     std::int64_t t0_ns = 0;    ///< 0: the first slot is due one period after the call
@@ -49,6 +50,7 @@ struct FrameLoopOptions {
     bool wait_for_ring = false;                  ///< virtual clock only: yields to the recorder instead of dropping records
 };
 
+/// Counts of a finished loop.
 struct FrameLoopResult {
     std::uint64_t run = 0;      ///< frames, bare ones of the control included
     std::uint64_t skipped = 0;  ///< slots

@@ -10,6 +10,7 @@
 
 namespace surefoot::rt {
 
+/// Limits of the incident recorder.
 struct IncidentRecorderOptions {
     double keep_s = 60;              ///< length of the kept history
     std::uint32_t burst_misses = 3;  ///< late frames and skipped slots within burst_s that make a burst

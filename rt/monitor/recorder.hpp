@@ -13,6 +13,7 @@
 
 namespace surefoot::rt {
 
+/// Settings of the recorder.
 struct RecorderOptions {
     std::size_t reserve_records = 36000;  ///< more are kept too, but memory grows then
     bool keep = true;                     ///< false: records only go to on_record (a walk without end)

@@ -14,8 +14,8 @@
 
 namespace surefoot::rt {
 
-/// Upper edges of exact cumulative counts, ascending and distinct: round times from 10 us to 10 s, and T/4, T/2, 3T/4, 7T/8,
-/// 15T/16, T, 5T/4, 2T, which are dense near the deadline.
+/// Upper edges of exact cumulative counts, ascending and distinct. They are round times from 10 us to 10 s, and multiples
+/// of the period T that are dense near the deadline. These are 1/4, 1/2, 3/4, 7/8, 15/16, 1, 5/4 and 2.
 class Edges {
 public:
     static constexpr std::size_t max_edges = 27;
@@ -65,6 +65,7 @@ struct RecentFrame {
     Cause cause = Cause::none;
 };
 
+/// What the figures are counted against.
 struct TelemetrySetup {
     std::int64_t period_ns = 16'666'667;
     LatePolicy late = LatePolicy::lock;

@@ -5,6 +5,7 @@
 
 namespace surefoot::rt::detail {
 
+/// State of one thread.
 struct GuardState {
     Tier tier;
     GuardCounters counters;

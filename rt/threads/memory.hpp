@@ -1,4 +1,4 @@
-// Memory that never faults again: locked, the allocator kept from giving pages back, stack and heap touched beforehand.
+// Prevents page faults: locks memory, keeps the allocator from returning pages, and touches stack and heap beforehand.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 
 namespace surefoot::rt {
 
+/// What is locked and touched before the walk.
 struct MemoryOptions {
     bool lock = true;                        ///< mlockall, present and future
     std::size_t heap_bytes = 32U << 20U;     ///< touched and kept in the calling thread's heap

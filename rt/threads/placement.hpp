@@ -18,7 +18,7 @@ namespace surefoot::rt {
 enum class Policy : std::uint8_t { other, fifo, round_robin, batch, idle, deadline };
 std::string_view policy_name(Policy policy);
 
-/// A set of CPU numbers below 1024. Empty means "any" wherever a mask is asked for.
+/// A set of CPU numbers below 1024. As an argument, an empty mask means "any".
 class CpuMask {
 public:
     CpuMask() { CPU_ZERO(&set_); }
@@ -47,6 +47,7 @@ private:
 /// The CPUs that this process may use, by the affinity of its main thread.
 CpuMask allowed_cpus();
 
+/// Where a thread runs: policy, priority and cores.
 struct Placement {
     Policy policy = Policy::other;  ///< deadline is refused
     int priority = 0;               ///< 1 to 99 for fifo and round_robin, else 0

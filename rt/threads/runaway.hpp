@@ -19,6 +19,7 @@ std::int64_t runaway_limit_us(std::int64_t period_ns);
 /// it. The kernel counts in ticks of 1 to 10 ms. Error: the limit cannot be set.
 Result<void> guard_runaways(std::int64_t limit_us);
 
+/// A real-time thread that was demoted.
 struct Runaway {
     pid_t tid = 0;  ///< 0: unknown, and no thread was demoted
     std::string name;

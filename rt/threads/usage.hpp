@@ -46,6 +46,7 @@ public:
     [[nodiscard]] std::size_t size() const { return count_; }
     /// Starts a measurement.
     void start();
+    /// CPU time since start().
     struct Spent {
         std::int64_t sum_ns = 0;      ///< over all threads
         std::int64_t longest_ns = 0;  ///< of the busiest

@@ -11,6 +11,7 @@
 
 namespace surefoot::daemon {
 
+/// A configuration as it was read.
 struct Loaded {
     config::Configuration configuration{walk::settings_schema()};
     std::vector<Error> problems;  ///< empty: it can be used
@@ -20,7 +21,7 @@ struct Loaded {
 /// File, profile, then --set; the schema's rules and the daemon's own. Opens nothing but the settings file.
 Loaded load(const Options& options);
 
-/// The walk that is asked for: without end.
+/// The walk that the configuration describes: without end.
 walk::WalkRequest request_of(const config::Configuration& configuration, const std::string& config_file);
 
 /// "60 Hz, 1280x720, osmesa".

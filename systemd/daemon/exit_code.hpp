@@ -1,4 +1,5 @@
-// How surefootd ends: one number a kind of fault, named as sysexits.h names them, so that systemd shows the name too.
+// Exit codes of surefootd: one for each kind of fault. From 64 on they are those of sysexits.h, so that systemd
+// shows the name too.
 #pragma once
 
 #include "tools/walk/walk.hpp"

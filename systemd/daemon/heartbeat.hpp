@@ -1,4 +1,4 @@
-// When the watchdog may be fed: only while frames are being run. Pure: time and the count of frames are handed in.
+// Decides when the watchdog is fed: only while frames run. Pure: time and the count of frames are arguments.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@ struct Beat {
     bool resumed = false;  ///< frames again after a stall; true once
 };
 
+/// The rule, with the state that it needs. Also reports stalls. One thread calls all members.
 class Heartbeat {
 public:
     /// timeout_ns: systemd's watchdog timeout; 0: no pings, but stalls are still reported. period_ns: of a frame.

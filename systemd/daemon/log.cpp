@@ -107,7 +107,7 @@ bool Log::to_journal(std::string_view message) {
                     reinterpret_cast<const sockaddr*>(&address), length) == static_cast<ssize_t>(message.size());
 }
 
-/// stderr may be shared, so its flags are not touched: it is asked first whether it takes a line.
+/// stderr may be shared, so its flags are not touched: poll() tests first whether it takes a line.
 bool Log::to_stream(std::string_view line) const {
     pollfd ready{target_.fd, POLLOUT, 0};
     if (::poll(&ready, 1, 0) != 1 || (ready.revents & POLLOUT) == 0) return false;

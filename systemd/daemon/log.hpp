@@ -67,7 +67,7 @@ private:
     bool to_stream(std::string_view line) const REQUIRES(one_at_a_time_);
     LogTarget target_;
     int socket_ = -1;
-    Mutex one_at_a_time_;  // lines stay whole, and the count of dropped ones is told once
+    Mutex one_at_a_time_;  // lines stay whole, and each dropped line is reported once
     std::atomic<std::uint64_t> dropped_{0};
     std::uint64_t dropped_reported_ GUARDED_BY(one_at_a_time_) = 0;
 };

@@ -25,6 +25,7 @@ struct Burst {
     [[nodiscard]] rt::Cause main_cause() const;
 };
 
+/// The burst that is open, and the rule that ends it. One thread.
 class Bursts {
 public:
     static constexpr std::int64_t quiet_ns = 1'000'000'000;     ///< this long without a miss ends one

@@ -1,4 +1,4 @@
-// The monitor of the service, as the settings ask for it. A service that cannot be looked at walks all the same.
+// The monitor of the service, as the settings describe it. If it cannot be opened, the service walks without it.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,14 @@
 
 namespace surefoot::daemon {
 
-/// The setting `monitor` where nobody shall look.
+/// The value of the setting `monitor` for no monitor.
 constexpr std::string_view no_monitor = "none";
 
-/// Where the settings put it: as they say, else surefoot.sock in the service's run-time folder if it has one, else nowhere
+/// The monitor's address: that of the settings, else surefoot.sock in the service's run-time folder if it has one, else nowhere
 /// (empty).
 std::string monitor_address(const config::Settings& settings, bool has_runtime_directory);
 
-/// Null where nothing is asked for, or where it cannot be had, which is logged. Call it from a neutral thread, before the first
+/// Null if the settings have none, or if it cannot be opened, which is logged. Call it from a neutral thread, before the first
 /// walk: it stays for all of them, so a reload does not move it.
 std::unique_ptr<monitor::Monitor> open_monitor(const config::Configuration& configuration, Log& log);
 

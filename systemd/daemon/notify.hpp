@@ -1,4 +1,4 @@
-// What systemd is told (sd_notify(3)), without libsystemd: one datagram a message to $NOTIFY_SOCKET.
+// Notifies systemd as sd_notify(3) does, without libsystemd: one datagram a message to $NOTIFY_SOCKET.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 
 namespace surefoot::daemon {
 
+/// Sends messages to systemd (sd_notify). Never blocks.
 class Notifier {
 public:
     /// `socket`: a path, or '@' and an abstract name; empty: nobody listens, and every message succeeds.

@@ -7,6 +7,7 @@
 
 namespace surefoot::daemon {
 
+/// The command line of surefootd.
 struct Options {
     std::string config_file = "/etc/surefoot/surefoot.toml";
     std::string profile;

@@ -1,4 +1,4 @@
-// The service thread: signals, what systemd is told, the watchdog, and the ends that cannot wait for the walk.
+// The service thread: signals, notifications of systemd, the watchdog, and exits that cannot wait for the walk.
 #pragma once
 
 #include <atomic>
@@ -18,6 +18,7 @@ namespace surefoot::daemon {
 /// Call before any thread is made.
 void block_service_signals();
 
+/// The running service: starts, reloads and ends walks.
 class Service {
 public:
     /// Make it on a neutral thread, after block_service_signals(). All must outlive it. Once a stop has taken longer than it may,
@@ -45,7 +46,7 @@ private:
     int signals_ = -1;
     Phase notified_phase_ = Phase::stopping;  ///< the phase that systemd and the log know of
     bool ready_ = false;                      ///< of this walk
-    std::string status_;                      ///< as told last
+    std::string status_;                      ///< the last one that systemd was notified of
     std::int64_t notified_ns_ = 0, opening_since_ns_ = 0, leaving_since_ns_ = 0;
     std::atomic<bool> ending_{false};
     std::thread thread_;

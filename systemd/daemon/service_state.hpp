@@ -21,7 +21,7 @@ enum class Phase : std::uint8_t { opening, walking, stopping };
 struct Facts {
     Phase phase = Phase::opening;
     std::string model, in_short;  ///< in_short: rate, size, backend
-    std::int64_t period_ns = 0;   ///< of the walk that runs or was asked for
+    std::int64_t period_ns = 0;   ///< of the walk that runs or starts
     std::int64_t open_limit_ns = 0;
     std::uint64_t walk_frames = 0;                      ///< of this walk
     std::uint64_t frames = 0, misses = 0, skipped = 0;  ///< since the daemon's start

@@ -32,9 +32,9 @@ inline const std::string& file_with(std::span<const std::byte> bytes) {
 /// An answer is a model that holds what the draw code relies on; a refusal says what is wrong. Checksums are put right first,
 /// or nothing would come past them.
 inline void walk_file(std::span<const std::byte> bytes) {
-    selftest::Bytes mended(bytes.begin(), bytes.end());
-    selftest::reseal_walk(mended);
-    const auto read = model::read_walk(file_with(mended));
+    selftest::Bytes resealed(bytes.begin(), bytes.end());
+    selftest::reseal_walk(resealed);
+    const auto read = model::read_walk(file_with(resealed));
     if (!read) return require(!read.error().what.empty());
     require(model::validate(*read).ok());
 }

@@ -1,4 +1,4 @@
-// Reads every include line of the project and fails on an arrow that the house plan does not allow.
+// Reads every include line of the project and fails on an arrow that the table of rooms does not allow.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ void for_each_line(const std::string& file, const std::function<void(std::size_t
     for (std::string line; std::getline(stream, line);) use(++number, line);
 }
 
-TEST(House, EveryIncludeIsAnArrowOfThePlan) {
+TEST(House, EveryIncludeIsAnArrowOfTheTable) {
     const auto files = sources();
     EXPECT_GT(files.size(), 50U) << "the sources were not found";
     for (const auto& file : files)
@@ -141,7 +141,7 @@ TEST(House, IncludeLinesAreReadHoweverTheyAreSpaced) {
 
 TEST(House, TopLevelHoldsOnlyWhatIsPlanned) {
     for (const auto& entry : fs::directory_iterator(root))
-        EXPECT_TRUE(top_level_allowed(entry.path().filename().string())) << entry.path() << " is not in the house plan";
+        EXPECT_TRUE(top_level_allowed(entry.path().filename().string())) << entry.path() << " is not in the table of rooms";
     EXPECT_TRUE(top_level_allowed(".clang-format"));
     EXPECT_FALSE(top_level_allowed("src"));
     EXPECT_FALSE(top_level_allowed("notes.txt"));

@@ -11,7 +11,7 @@ if [[ -z "$tool" ]]; then echo "SKIPPED: clang-format 14 is not installed: apt-g
 mapfile -d '' -t sources < <(find rt render input config systemd tests tools \( -name '*.cpp' -o -name '*.hpp' \) -print0)
 if (( ${#sources[@]} < 100 )); then echo "only ${#sources[@]} sources found below $PWD" >&2; exit 1; fi
 if ! "$tool" --dry-run -Werror "${sources[@]}"; then
-  echo "mend with: git ls-files '*.cpp' '*.hpp' | xargs $tool -i" >&2
+  echo "format with: git ls-files '*.cpp' '*.hpp' | xargs $tool -i" >&2
   exit 1
 fi
 echo "${#sources[@]} sources"

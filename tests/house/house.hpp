@@ -1,4 +1,4 @@
-// The house plan as a table: which room may include which, and where a file belongs. Pure functions of paths.
+// The table of rooms: which room may include which, and where a file belongs. Pure functions of paths.
 #pragma once
 
 #include <algorithm>

@@ -35,7 +35,7 @@ function name_sources(text,    name) {
 
 function name_calls(text) {
   while (match(text, /[A-Za-z_][A-Za-z0-9_]*\(/)) {
-    print "word " FILENAME ":" FNR " " substr(text, RSTART, RLENGTH - 1)
+    print "word " FILENAME ":" FNR " " substr(text, RSTART, RLENGTH) ")"
     text = substr(text, RSTART + RLENGTH)
   }
 }
@@ -134,11 +134,13 @@ is_there() {
 
 sources() { git ls-files --cached --others --exclude-standard 2>/dev/null || find . -type f ! -path './build*' -printf '%P\n'; }
 
-# Every name in the sources, outside of comments that begin with two slashes; tests as Suite.Case and Suite.*.
+# Every name in the sources, outside of comments that begin with two slashes; what is called as NAME( too; tests as Suite.Case and
+# Suite.*.
 source_words() {
   local list
   list=$(sources | grep -vE '\.(md|csv|png|svg|glb|walk)$|^tests/house/(banned_names_test\.cpp|prose\.sh)$')
-  xargs -d '\n' sed -E 's#(^|[[:space:]])//.*##' <<<"$list" 2>/dev/null | grep -aoE '[A-Za-z_][A-Za-z0-9_]*'
+  xargs -d '\n' sed -E 's#(^|[[:space:]])//.*##' <<<"$list" 2>/dev/null |
+    grep -aoE '[A-Za-z_][A-Za-z0-9_]*(<[A-Za-z0-9_:, ]*>)?\(?' | sed -E 's/<.*>//; s/^(\w+)\($/\1\n\1(/'
   grep -E '_test\.cpp$' <<<"$list" | xargs -r -d '\n' cat | tr '\n' ' ' | grep -oE 'TEST(_[FP])?\([A-Za-z0-9_]+, *[A-Za-z0-9_]+\)' |
     sed -E 's/.*\((\w+), *(\w+)\)/\1.\2\n\1.*/'
 }
@@ -157,6 +159,7 @@ read_sources() {
 is_known() { # NAME of code
   local name=${1%"()"} part
   [[ -v "files[$name]" ]] && return 0
+  if [[ $1 == *"()" && ! -v "words[${name##*[:.]}(]" ]]; then return 1; fi
   if [[ $name =~ ^[A-Z][A-Za-z0-9]*\.([A-Z][A-Za-z0-9]*|\*)$ ]]; then
     [[ -v "words[$name]" ]]
     return
@@ -233,8 +236,9 @@ ${thirty_one:80}." "a sentence of 31 words"
     refused dead_source_of_folder "See \`hall/code_test.cpp\`." "which no source has"
     refused dead_source_in_words "See \`no.hpp: also()\`." "no.hpp, which no source has"
     refused dead_source_in_fence "$(printf '```\nno.cpp\n```')" "no.cpp, which no source has"
-    refused dead_call_in_fence "$(printf '```\nno()\n```')" "no, which no source has"
+    refused dead_call_in_fence "$(printf '```\nno()\n```')" "no(), which no source has"
     refused dead_name "It is \`gone\`." "gone, which no source has"
+    refused dead_call "It is \`there()\`." "there(), which no source has"
     refused dead_member "It is \`there::no()\`." "no(), which no source has"
     refused dead_case "See \`Suite.Also\`." "Suite.Also, which no source has"
     refused dead_suite "See \`Also.*\`." "which no source has"

@@ -251,10 +251,10 @@ TEST(Select, PublishedAccountingLeavesMoreOfTheBudgetUnused) {
     region.centre.position = dvec3(0, 3, 100);
     s.look(region);
     const double full = static_cast<double>(s.run("flat", infinity).predicted_us);
-    for (const auto& [mended, published] :
+    for (const auto& [corrected, published] :
          {std::pair{"best-first", "best-first-1994"}, std::pair{"two-stage", "two-stage-1994"}}) {
         s.forget();
-        const float used = s.run(mended, 0.5 * full).predicted_us;
+        const float used = s.run(corrected, 0.5 * full).predicted_us;
         s.forget();
         EXPECT_LT(s.run(published, 0.5 * full).predicted_us, used);
     }

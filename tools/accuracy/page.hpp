@@ -1,4 +1,4 @@
-// Everything that a sweep of budgets leaves for people: CSV, JSON, charts and the one-page report.
+// The outputs of a sweep of budgets: CSV, JSON, charts and the one-page report.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,14 @@
 
 namespace surefoot::accuracy {
 
+/// Figures of one selector at one budget.
 struct AccuracyPoint {
     std::string selector;
     double budget_ms = 0, frame_ms_p50 = 0, frame_ms_p90 = 0, accuracy_mean = 0, snr_db = 0, ssim = 0, triangles = 0, cost_us = 0;
     std::uint32_t snr_undefined = 0, snr_infinite = 0, frames = 0;
     std::uint32_t exact = 0;  ///< frames drawn exactly: left out of accuracy_mean, which is infinite where all are
 };
+/// All points of a sweep, and what they were measured with.
 struct AccuracyRun {
     std::string model, path, renderer, machine;
     std::string uncalibrated;  ///< where this machine's cost table is missing: what, and the remedy
@@ -27,7 +29,7 @@ struct AccuracyRun {
 std::string accuracy_svg(const AccuracyRun& run, bool dark);
 std::string accuracy_csv(const AccuracyRun& run);
 std::string accuracy_json(const AccuracyRun& run);
-/// Whether the page could be written to `dir` now; to be asked before the sweep.
+/// Whether the page could be written to `dir` now. Call it before the sweep.
 Result<void> probe_accuracy_page(const std::string& dir);
 Result<void> write_accuracy_page(const std::string& dir, const AccuracyRun& run);
 

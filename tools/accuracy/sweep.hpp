@@ -1,4 +1,4 @@
-// What accuracy costs in time: budgets swept over poses of a path, a line a selector, against full detail.
+// Measures what accuracy costs in time: draws poses of a path at several budgets, and compares with full detail.
 #pragma once
 
 #include <string>
@@ -15,6 +15,7 @@ namespace surefoot::accuracy {
 /// The selectors that are compared by default.
 std::vector<std::string> compared_selectors();
 
+/// Settings of a sweep.
 struct AccuracyRequest {
     std::string model_file, path_file, state_dir;
     std::string backend{gl::usual_backend};

@@ -27,8 +27,8 @@ using FlagsAndKeys = std::initializer_list<std::pair<const char*, const char*>>;
 /// An option that is checked and stored by the settings' schema under `key`. help: whole sentences, instead of the key's own.
 void add_setting(CLI::App* command, const std::shared_ptr<SettingArguments>& arguments, const std::string& flag,
                  const std::string& key, std::string help = {});
-/// --config, --profile, --size, --no-fifo, an option for each setting that every walk has, and for those that only this command
-/// offers: `more` stands in --help behind the budget, `last` at the end.
+/// Adds --config, --profile, --size, --no-fifo, and an option for each setting that every walk has. `more` and `last` are options
+/// of this command alone: `more` stands in --help behind the budget, `last` at the end.
 void add_settings(CLI::App* command, const std::shared_ptr<SettingArguments>& arguments, FlagsAndKeys more = {},
                   FlagsAndKeys last = {});
 /// The file, then the command line; what is refused is named as the user wrote it.

@@ -15,6 +15,7 @@ namespace surefoot::doctor {
 enum class Status : unsigned char { pass, fail, unknown };
 std::string_view status_name(Status status);
 
+/// The result of one check.
 struct Finding {
     Status status = Status::unknown;
     std::string evidence;  ///< what was read, and where
@@ -48,18 +49,20 @@ std::span<const Check> service_checks();
 std::span<const Check> wake_up_checks();
 std::vector<Check> all_checks();
 
+/// A check together with its result.
 struct Examined {
     Check check;
     Finding finding;
 };
 std::vector<Examined> examine(const Machine& machine);
 
+/// Counts of results by status.
 struct Summary {
     int pass = 0, fail = 0, unknown = 0;
 };
 Summary summarise(std::span<const Examined> examined);
 
-/// The findings for people, grouped by topic. Evidence is wrapped at the look's width; remedies are not, so that they can be
+/// The findings for people, grouped by topic. Evidence is wrapped at the style's width; remedies are not, so that they can be
 /// copied.
 std::string table(const Machine& machine, std::span<const Examined> examined, const report::TerminalStyle& style);
 

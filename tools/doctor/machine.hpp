@@ -24,6 +24,7 @@ struct WakeFigures {
     double steal_ms = -1;  ///< taken by the host from this core meanwhile; -1: not known
 };
 
+/// A renderer that a back end opened.
 struct RendererFound {
     std::string name;     ///< GL_RENDERER; empty: none opened
     std::string error;    ///< why not
@@ -32,6 +33,7 @@ struct RendererFound {
     bool software = false;
 };
 
+/// The cost table of this machine, if there is one.
 struct CostTableFound {
     std::string file;
     bool there = false;
@@ -51,7 +53,7 @@ struct Probed {
     std::optional<WakeFigures> wake_up, cyclictest;
 };
 
-/// What the service will ask for.
+/// What the service will request.
 struct Wanted {
     int frame_priority = 80;
     std::optional<int> frame_core;  ///< absent: chosen as below
@@ -64,6 +66,7 @@ struct Node {
     std::uint32_t mode = 0;  ///< the nine permission bits
 };
 
+/// The machine as the checks see it: files below a root, and results of system calls.
 class Machine {
 public:
     /// root: a directory that stands for "/"; empty: this machine itself.
@@ -97,7 +100,7 @@ public:
     /// The group's number in /etc/group.
     [[nodiscard]] std::optional<std::uint32_t> group(std::string_view name) const;
 
-    /// The core that the frame thread would have: the one asked for, else rt::default_frame_core(), as in a walk.
+    /// The core that the frame thread would have: the requested one, else rt::default_frame_core(), as in a walk.
     [[nodiscard]] std::optional<int> frame_core() const { return frame_core_; }
     [[nodiscard]] rt::CpuMask isolated() const;
     [[nodiscard]] const Wanted& wanted() const { return wanted_; }
@@ -111,8 +114,8 @@ private:
     std::optional<std::string> build_configuration_;
 };
 
-/// What only this machine itself can tell, by trying: FIFO, locking, the renderer, the cost table, disk space; everything but the
-/// wake-up run. Leaves limits, threads and files as they were; opens GL once (a few tenths of a second).
+/// What can only be found by trying it on this machine: FIFO, locking, the renderer, the cost table, disk space; everything but
+/// the wake-up run. Leaves limits, threads and files as they were; opens GL once (a few tenths of a second).
 Probed probe_machine(const Wanted& wanted);
 
 }  // namespace surefoot::doctor

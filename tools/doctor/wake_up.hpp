@@ -1,5 +1,5 @@
-// The wake-up run: a bare FIFO loop on the frame core, counted by our own grid and histogram so that no late slot is
-// lost; and the same run by cyclictest (Debian's rt-tests), read into that histogram.
+// The wake-up run: a bare FIFO loop on the frame core. Our own grid and histogram count it, so that no late slot is lost.
+// The same run by cyclictest (Debian's rt-tests) is read into that histogram.
 #pragma once
 
 #include <atomic>
@@ -16,6 +16,7 @@
 
 namespace surefoot::doctor {
 
+/// Settings of the wake-up run.
 struct WakeOptions {
     double seconds = 10;
     std::int64_t period_ns = 1'000'000;
@@ -23,8 +24,8 @@ struct WakeOptions {
     int priority = 80;  ///< SCHED_FIFO; 0: ordinary scheduling
 };
 
-/// How late each slot's start was. A stall of many periods counts every slot that it ran over, each with its own lateness, so
-/// the histogram's count is always run + skipped = elapsed (cyclictest and jitterdebugger lose them).
+/// How late each slot's start was. A stall of many periods counts every slot that it ran over, each with its own lateness.
+/// So the histogram's count is always run + skipped = elapsed. cyclictest and jitterdebugger lose these slots.
 struct WakeCount {
     rt::Histogram late;  ///< nanoseconds
     std::uint64_t run = 0, skipped = 0, elapsed = 0;

@@ -1,4 +1,4 @@
-// Text as the kernel writes it: masks, and the word in force of several.
+// Reads text in the kernel's formats: masks, and the chosen word of several.
 #pragma once
 
 #include <fmt/format.h>

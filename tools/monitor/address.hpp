@@ -1,5 +1,5 @@
 // Where a monitor is found: a Unix socket, or a port on loopback. Written unix:/PATH (or /PATH), 127.0.0.1:9464, [::1]:9464.
-// And a page asked for there.
+// Also fetches a page from there.
 #pragma once
 
 #include <sys/socket.h>
@@ -12,6 +12,7 @@
 
 namespace surefoot::monitor {
 
+/// Where the monitor listens: a Unix socket, or TCP on loopback.
 struct Address {
     std::string socket_path;  ///< empty: TCP
     std::string host;         ///< a numeric address on loopback
@@ -19,14 +20,15 @@ struct Address {
     [[nodiscard]] std::string text() const;
 };
 
-/// Errors: neither of the two forms; a socket's path that is too long; a host that others than this machine could reach.
+/// Errors: not an address of these forms; a socket's path that is too long; a host that is not on loopback.
 Result<Address> parse_address(const std::string& text);
 
-/// Where the service listens unless it is told otherwise: surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot.
+/// Where the service listens by default: surefoot.sock in $RUNTIME_DIRECTORY, else in /run/surefoot.
 std::string default_address();
 
-/// Whether a request's Host field names this machine: localhost or an address on loopback, with or without a port. A web page of
-/// another site can make a browser ask a name of that site which resolves to loopback (DNS rebinding); its Host gives it away.
+/// Whether a request's Host field names this machine: localhost or an address on loopback, with or without a port. Protects
+/// from DNS rebinding: a foreign web page makes a browser send requests to a name of its own that resolves to loopback. Such a
+/// request carries that name as its Host.
 bool host_is_loopback(std::string_view host);
 
 /// As the system calls want it.

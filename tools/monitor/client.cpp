@@ -1,4 +1,4 @@
-// Connect, ask, read to the end; one deadline for all of it.
+// Connects, sends the request and reads to the end, with one deadline for all of it.
 #include "tools/monitor/address.hpp"
 
 #include <fmt/format.h>

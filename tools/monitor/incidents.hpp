@@ -16,6 +16,7 @@
 
 namespace surefoot::monitor {
 
+/// Limits of the stored incidents.
 struct IncidentLimits {
     std::size_t folders = 20;             ///< the oldest is removed for a new one
     std::uint64_t bytes = 256ULL << 20U;  ///< of all of them together; an incident that alone is larger is not kept

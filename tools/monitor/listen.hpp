@@ -1,4 +1,4 @@
-// Inside this room: a listening socket, or why there is none.
+// Opens the listening socket. For this room only.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,13 @@
 
 namespace surefoot::monitor {
 
+/// A listening socket.
 struct Listener {
     int fd = -1;
     Address address;                 ///< with the port that was given
     std::uint64_t socket_inode = 0;  ///< of the socket's file
 };
-/// A socket that a dead process left is replaced; one that somebody answers on is an Error.
+/// A socket that a dead process left is replaced; one that a process answers on is an Error.
 Result<Listener> open_listener(const Address& address);
 /// The inode of a path; 0 where there is none.
 std::uint64_t inode_of(const std::string& path);

@@ -1,4 +1,4 @@
-// Records in, pages out; a page is made at most a few times a second, however many ask for it.
+// Takes records and makes pages. A page is made at most a few times a second, however many readers there are.
 #include "tools/monitor/monitor.hpp"
 
 #include <unistd.h>
@@ -114,8 +114,8 @@ void Monitor::set_input(const rt::InputState& input) {
 
 void Monitor::add_note(std::string_view text) {
     const MutexLock lock(facts_mutex_);
-    notes_.push_back({rt::monotonic_ns(), std::string(text.substr(0, max_note_bytes))});
-    if (notes_.size() > max_notes) notes_.pop_front();
+    recent_notes_.push_back({rt::monotonic_ns(), std::string(text.substr(0, max_note_bytes))});
+    if (recent_notes_.size() > max_notes) recent_notes_.pop_front();
 }
 
 void Monitor::take_walk() {
@@ -148,7 +148,7 @@ const MonitorPage& Monitor::fill_page(bool with_threads) {
     {
         const MutexLock lock(facts_mutex_);
         p = facts_;
-        for (const Note& n : notes_) p.notes.push_back({static_cast<double>(now_ns - n.at_ns) * 1e-9, n.text});
+        for (const Note& n : recent_notes_) p.notes.push_back({static_cast<double>(now_ns - n.at_ns) * 1e-9, n.text});
     }
     p.process = process;
     if (cached_->process_ns == 0 || now_ns - cached_->process_ns >= process_age_ns) {

@@ -1,5 +1,5 @@
 // The monitor of a service: takes every record on the monitor thread, keeps the live figures, serves them, and writes incidents
-// down. What the daemon and `walk --monitor` construct.
+// down. The daemon and `walk --monitor` make one.
 //
 //   monitor thread ──► figures ──► (latest copy) ──► sf-console: /metrics, /status.json   ordinary threads;
 //                 └──► IncidentRecorder ──► (hand-over) ──► sf-incidents: folders on disk        the first waits for none
@@ -29,8 +29,9 @@ struct WalkObserver;
 
 namespace surefoot::monitor {
 
+/// Settings of the monitor.
 struct MonitorOptions {
-    std::string address;        ///< see parse_address(); empty: nobody can look
+    std::string address;        ///< see parse_address(); empty: it listens nowhere
     std::string incidents_dir;  ///< empty: incidents are counted, and not written
     std::string version;
     rt::IncidentRecorderOptions incident_recorder;
@@ -39,14 +40,14 @@ struct MonitorOptions {
     std::function<void(std::string_view)> notify;  ///< gets what the user should know, once; on sf-incidents
 };
 
-/// Wired to a walk by attach_monitor(). Lives as long as the service, over many walks; counters go on from
-/// walk to walk (with another rate they start anew, as after a restart). Open it from a neutral thread, before memory is locked:
-/// its threads inherit the caller's place.
+/// Wired to a walk by attach_monitor(). Lives as long as the service, over many walks. Counters go on from walk to walk; with
+/// another frame rate they start anew, as after a restart. Open it from a neutral thread, before memory is locked: its threads
+/// inherit the caller's place.
 class Monitor {
 public:
-    /// Errors: an address that is none, is in use or may not be had; a folder that cannot be written.
+    /// Errors: an address that is invalid, in use or not permitted; a folder that cannot be written.
     static Result<std::unique_ptr<Monitor>> open(MonitorOptions options);
-    ~Monitor();  ///< after the last record; what waits to be written is
+    ~Monitor();  ///< call it after the last record; writes waiting incidents first
     Monitor(const Monitor&) = delete;
     Monitor& operator=(const Monitor&) = delete;
 
@@ -65,7 +66,7 @@ public:
     /// The monitor thread: every record, in order. Never waits for a reader or for a disk.
     void on_record(const rt::FrameRecord& record);
 
-    /// Where it listens, the port that was given included; empty where it does not.
+    /// Where it listens, with the actual port; empty if it does not listen.
     [[nodiscard]] std::string address() const;
     [[nodiscard]] bool writes_incidents() const { return writer_ != nullptr; }
     /// The pages, as a reader gets them; one caller at a time.
@@ -86,14 +87,14 @@ private:
     std::int64_t cpu_read_ns_ GUARDED_BY(monitor_thread_) = 0;  ///< record time
     std::int64_t cpu_seen_ns_ GUARDED_BY(monitor_thread_) = 0;
 
-    Mutex facts_mutex_;  ///< of what callers set and readers copy; never taken for a record, but for a walk's first
+    Mutex facts_mutex_;  ///< of data that callers set and readers copy; of all records, only a walk's first takes it
     rt::TelemetrySetup setup_ GUARDED_BY(facts_mutex_);
     MonitorPage facts_ GUARDED_BY(facts_mutex_);
     struct Note {
         std::int64_t at_ns = 0;
         std::string text;
     };
-    std::deque<Note> notes_ GUARDED_BY(facts_mutex_);
+    std::deque<Note> recent_notes_ GUARDED_BY(facts_mutex_);
 
     // The readers'.
     struct Cached;
@@ -101,7 +102,7 @@ private:
     std::int64_t started_ns_ = 0;
 
     std::unique_ptr<IncidentWriter> writer_;
-    /// The same for its own thread, which may ask before the pointer below is set and while it is being taken back.
+    /// The same for its own thread, which may call it before the pointer below is set and while it is being taken back.
     std::atomic<const Server*> serving_{nullptr};
     std::unique_ptr<Server> server_;  ///< last: its thread uses all the others
 };

@@ -1,5 +1,5 @@
-// What is shown of a running service: the figures, what is known of the walk, the process and the monitor itself; as Prometheus
-// text, and as JSON for `surefoot status` and `surefoot top`. Pure functions of one struct.
+// The pages of a running service, as Prometheus text, and as JSON for `surefoot status` and `surefoot top`. They show the walk's
+// figures and settings, the process, and the monitor itself. Pure functions of one struct.
 #pragma once
 
 #include <cstdint>
@@ -59,7 +59,7 @@ struct MonitorPage {
     rt::ProcessFigures process;
     std::vector<rt::BusyThread> threads;  ///< only in the JSON
     MonitorCounts counts;
-    std::vector<RareCheck> rare_checks;  ///< of this process: what "cannot happen", and did
+    std::vector<RareCheck> rare_checks;  ///< of this process: counts of failed CHECK_RARE
 };
 
 /// What a lack is about, as a label's value: fifo, memory_lock, isolated_core, throttled, placing, cost_table, switched_off,

@@ -17,6 +17,7 @@
 
 namespace surefoot::monitor {
 
+/// Limits of the server.
 struct ServerLimits {
     std::size_t readers = 32;          ///< at once; one more, and the oldest is dropped
     std::size_t request_bytes = 4096;  ///< longer ones are refused
@@ -25,12 +26,15 @@ struct ServerLimits {
     double accepts_per_s = 200;        ///< more wait in the system's queue, which is short
 };
 
+/// Counts of requests and readers.
 struct ServerCounts {
     std::uint64_t answered = 0, refused = 0, dropped_slow = 0, dropped_full = 0, open = 0;
 };
 
+/// The server and its thread. It ends with this object.
 class Server {
 public:
+    /// A page, ready to be sent.
     struct Page {
         std::string_view content_type;
         std::shared_ptr<const std::string> body;

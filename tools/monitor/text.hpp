@@ -1,4 +1,4 @@
-// Inside this room: numbers out of JSON, their words, and the chart of frames.
+// For this room only: numbers from JSON, their words, and the chart of frames.
 #pragma once
 
 #include <cstddef>

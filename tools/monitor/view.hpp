@@ -1,4 +1,4 @@
-// A running service for people: a page of a screen (`surefoot status`), a live screen and a line a second (`surefoot top`). Pure
+// The screens of a running service: one page (`surefoot status`), and a live screen or a line a second (`surefoot top`). Pure
 // functions of /status.json.
 #pragma once
 

@@ -15,11 +15,13 @@ struct TimeChart {
     std::string label;  ///< read aloud, and the start of tooltips
     std::string unit;
     std::vector<double> time_s, value;
+    /// A horizontal line with its text.
     struct Line {
         double value;
         std::string text, css;
     };
     std::vector<Line> lines;  ///< budgets and deadlines
+    /// A mark at one point of the chart.
     struct Marker {
         double time_s, value;
         std::string tip;

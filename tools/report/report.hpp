@@ -1,4 +1,4 @@
-// Everything that a walk leaves for people: ledger, trace, table, JSON, and the one-page report.
+// The outputs of a walk: ledger, trace, table, JSON, and the one-page report.
 #pragma once
 
 #include <array>
@@ -22,12 +22,14 @@ class AtomicFile;
 
 namespace surefoot::report {
 
+/// Counts of one block of the control.
 struct ControlBlock {
     bool walk = false;  ///< else the bare loop
     std::uint32_t frames = 0, misses = 0, own_misses = 0;
     double steal_ms = 0;
 };
 
+/// The control of a walk, with its verdict.
 struct ControlSummary {
     bool ran = false;
     rt::DeadlineVerdict verdict;
@@ -36,15 +38,15 @@ struct ControlSummary {
     std::vector<ControlBlock> blocks;
 };
 
-/// What steered the walk, and how soon its reports were seen.
+/// The input that steered the walk, and the age of its reports.
 struct InputSummary {
     bool given = false;  ///< false: a path was followed
     std::string source;  ///< the recording
     std::vector<rt::SteeringDevice> devices;
-    std::uint64_t reports = 0;        ///< accepted
-    std::uint64_t reports_shown = 0;  ///< of them, those that some frame's pose holds; the others came after the last frame
-    std::uint64_t refused = 0;        ///< short, long, undeclared: they changed nothing
-    std::uint64_t illegal_encoder_steps = 0;  ///< of wired encoders: they went unseen, in an unknown direction
+    std::uint64_t reports = 0;                ///< accepted
+    std::uint64_t reports_shown = 0;          ///< of them, those in the pose of some frame; the others came after the last frame
+    std::uint64_t refused = 0;                ///< short, long, undeclared: they changed nothing
+    std::uint64_t illegal_encoder_steps = 0;  ///< of wired encoders: missed steps, whose direction is unknown
     Quantiles age_ms;                         ///< a report's, from its stamp until the first frame that holds it was submitted
     std::uint64_t stops = 0;                  ///< emergency stops
     std::uint64_t stopped_frames = 0;         ///< that stood still by order: emergency stop or dead-man

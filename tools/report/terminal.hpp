@@ -1,4 +1,4 @@
-// What the tool shows on a terminal is made of this: colours, wrapped text, labelled rows, columns, bars. Pure functions of a
+// Parts of what the tool shows on a terminal: colours, wrapped text, labelled rows, columns, bars. Pure functions of a
 // TerminalStyle.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the times of one frame record mean, in one place: the ledger, the summary, the trace and the page agree by construction.
+// Times derived from one frame record. Ledger, summary, trace and page all use these, so they agree.
 #pragma once
 
 #include <cstdint>

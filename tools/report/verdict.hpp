@@ -16,7 +16,7 @@ Verdict verdict_of(const WalkSummary& summary);
 bool rule_broken(const ControlSummary& control);
 /// "1800 frames, 0 missed: the slowest took 31.2 of 33.3 ms."
 std::string headline(const WalkSummary& summary);
-/// The control's part of the rule in words; empty where no control ran.
+/// The verdict of the control in words; empty where no control ran.
 std::string control_words(const ControlSummary& control);
 /// ", off axis by 0.5 halves right, 0 up,"; empty for a symmetric projection.
 std::string off_axis_words(const WalkSummary& summary);

@@ -19,6 +19,7 @@ struct WallStyle {
     Colour outer_colour{255, 255, 255, 255}, inner_colour{255, 255, 255, 255}, reveal_colour{255, 255, 255, 255};
 };
 
+/// A straight wall.
 struct WallRun {
     dvec2 from{0}, to{1, 0};  ///< centre line in x, z; its outside lies to the right (from +x looking: +z)
     double base = 0, height = 2.6, thickness = 0.2;

@@ -1,5 +1,5 @@
 // Furniture and household things, each a mesh of its own to be placed again and again. Metres; stands on y = 0 and looks
-// to +z unless said otherwise.
+// to +z unless the comment has another rule.
 #pragma once
 
 #include "tools/scenes/scene_maker.hpp"

@@ -38,6 +38,7 @@ struct Brush {
     double uv_per_m = 1.0;  ///< repeats of the texture a metre
 };
 
+/// Collects the triangles of a mesh, a primitive for each material.
 class MeshMaker {
 public:
     explicit MeshMaker(std::string name) { mesh_.name = std::move(name); }

@@ -8,6 +8,7 @@
 
 namespace surefoot::scenes {
 
+/// A point that the path goes through.
 struct Waypoint {
     dvec3 eye{0.0};
     dvec3 look{0.0};       ///< the point looked at when there; unused when `ahead`

@@ -1,4 +1,4 @@
-// Trees, bushes and undergrowth, grown from a few numbers to an asked number of triangles.
+// Trees, bushes and undergrowth, grown from a few numbers to a wanted number of triangles.
 #include "tools/scenes/plants.hpp"
 
 #include <algorithm>

@@ -10,6 +10,7 @@
 
 namespace surefoot::scenes {
 
+/// Places on a plane, in metres.
 class Scatter {
 public:
     explicit Scatter(double cell_m) : cell_(cell_m) {}

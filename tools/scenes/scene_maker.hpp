@@ -7,6 +7,7 @@
 
 namespace surefoot::scenes {
 
+/// A scene under construction.
 struct SceneMaker {
     importer::Scene scene;
 

@@ -14,6 +14,7 @@
 
 namespace surefoot::scenes {
 
+/// A generated scene, with a path through it.
 struct GeneratedScene {
     importer::Scene scene;  ///< metres, +Y up, ground about y = 0; instances share meshes
     Path path;              ///< 60 s at scale 1, at walking height but for its overlook; smooth

@@ -22,6 +22,7 @@ struct TownStuff {
 /// One kind of house, its furniture included: a group of meshes to be placed again and again. Its front is the plane
 /// z = 0 looking to +z, its west corner x = 0; door at house_door_m; ground floor at y = 0.
 struct House {
+    /// One mesh of the house, and where it stands in it.
     struct HousePart {
         const char* name;
         Index mesh;
@@ -41,8 +42,8 @@ House make_house(SceneMaker& maker, const TownStuff& stuff, const Detail& detail
                  FurnitureMade& made);
 
 constexpr double balcony_m = 4.5;  ///< height of the town hall's balcony
-/// Front in the plane z = 0 looking to +z; x -13..13; outer stair from x = 11 down at the ground to x = 3 up on the balcony
-/// (x -7..3, z 0..2.4).
+/// Its front is the plane z = 0, looking to +z, with x from -13 to 13. An outer stair climbs from x = 11 on the ground to x = 3
+/// on the balcony. The balcony has x from -7 to 3, and z from 0 to 2.4.
 importer::Mesh town_hall(const TownStuff& stuff, const Detail& detail);
 importer::Mesh fountain(const TownStuff& stuff, const Detail& detail);     ///< basin of 4 m radius
 importer::Mesh street_lamp(const TownStuff& stuff, const Detail& detail);  ///< arm towards +z

@@ -10,6 +10,7 @@
 
 namespace surefoot::selftest {
 
+/// A model with one prepared frame, for rows about cuts.
 class CutFixture {
 public:
     explicit CutFixture(model::Model model, prepare::PrepareOptions options = {});

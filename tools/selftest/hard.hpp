@@ -56,6 +56,7 @@ struct Outcome {
     void digest_of(std::string_view text);
 };
 
+/// One row of the matrix of hard cases.
 struct Row {
     std::string_view id;      ///< N1 ... as the matrix of cases numbers them, with a letter where a case has several rows
     std::string_view family;  ///< the file that holds it
@@ -69,6 +70,7 @@ std::span<const Row> rows();
 
 enum class Verdict : std::uint8_t { holds, broken, not_run };
 
+/// A row with its outcome.
 struct RowResult {
     const Row* row = nullptr;
     Outcome outcome;

@@ -112,7 +112,7 @@ void improper(const Effort&, Outcome& out) {
     const double nan = std::nan("");
     struct Case {
         std::vector<dvec3> polygon;
-        double area;  ///< even-odd; negative: not asked
+        double area;  ///< even-odd; negative: not checked
     };
     const std::vector<Case> cases{
         {holed(1), 84},

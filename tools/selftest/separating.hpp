@@ -19,8 +19,8 @@ struct Pyramid {
 };
 Pyramid pyramid_of(const Pose& pose, model::Viewport viewport);
 
-/// How far the two reach into each other along the axis that parts them best, relative to the box's distance and size: > 0 they
-/// overlap, < 0 they are apart. Sure to about 1e-7: the matrix is float.
+/// Overlap of the two along the axis that separates them best, relative to the box's distance and size. > 0: they overlap;
+/// < 0: they are apart. Accurate to about 1e-7, because the matrix is float.
 double overlap(const Pyramid& pyramid, const Box& box);
 
 }  // namespace surefoot::selftest

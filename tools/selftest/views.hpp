@@ -1,5 +1,4 @@
-// Any view and any box: poses, sizes and places as hard as the numbers allow, and what must hold of each, for the rows that
-// compare them with an oracle.
+// Random views and boxes, as extreme as the numbers allow, and what must hold for each. For the rows that compare with an oracle.
 #pragma once
 
 #include <array>
@@ -22,6 +21,7 @@ Pose any_pose(Random& random, double reach_m);
 /// From crumbs to boxes that hold the whole frustum, flat ones and points among them.
 Box any_box(Random& random);
 
+/// A view and a box in it.
 struct Placed {
     Pose pose;
     model::Viewport viewport;

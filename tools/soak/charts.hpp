@@ -1,4 +1,4 @@
-// Inside the report room: the charts of a soak's page.
+// The charts of a soak's page. For this room only.
 #pragma once
 
 #include <string>

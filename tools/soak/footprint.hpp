@@ -1,4 +1,4 @@
-// What this process holds over the hours: memory, descriptors, threads; read from /proc by a thread that does nothing else.
+// Samples memory, descriptors and threads of this process over hours. A thread of its own reads them from /proc.
 #pragma once
 
 #include <atomic>

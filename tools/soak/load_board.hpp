@@ -1,4 +1,4 @@
-// What the soak and the processes that load the machine share: one page of counters, and the words start and stop.
+// Shared memory of the soak and the processes that load the machine: one page of counters, and the words start and stop.
 #pragma once
 
 #include <array>
@@ -38,6 +38,7 @@ struct LoadBoard {
     [[nodiscard]] const LoadCounters& of(LoadKind kind) const { return counters[static_cast<std::size_t>(kind)]; }
 };
 
+/// Sizes of the loads.
 struct LoadSettings {
     int cores = 1;                               ///< processes that burn CPU time
     std::uint64_t memory_bytes = 128ULL << 20U;  ///< that one memory process writes over and over

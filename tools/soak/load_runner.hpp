@@ -1,5 +1,5 @@
 // The process that keeps the timetable of loads, and the processes that it makes for them. They end with the soak, however it
-// ends: each asks the kernel for a signal when its parent dies, and has an alarm set for when it should long be over.
+// ends. Each has the kernel signal it when its parent dies, and sets an alarm for a time when it must have ended.
 #pragma once
 
 #include <sys/types.h>
@@ -10,6 +10,7 @@
 
 namespace surefoot::soak {
 
+/// The process of the loads. One thread calls all members.
 class LoadRunner {
 public:
     /// Forks: call it while this process has one thread. Nothing is loaded until begin().
@@ -20,8 +21,8 @@ public:
     LoadRunner& operator=(const LoadRunner&) = delete;
     ~LoadRunner();
 
-    /// The plan's time 0, monotonic. After its end the CPU load goes on (all of the mix where it has none), for the proof that
-    /// the load is real, until stop().
+    /// The plan's time 0, monotonic. After the plan's end the CPU load goes on until stop(), for the proof that the load is real.
+    /// A mix without CPU load goes on as a whole.
     void begin(std::int64_t start_ns) { board_->start_ns.store(start_ns); }
     /// Ends all of it and waits; then the counters stand still.
     void stop();

@@ -1,4 +1,5 @@
-// What the machine was, and what the kernel counted while the soak ran: kept with the figures, so that they can be judged later.
+// Facts about the machine, and the kernel's counters while the soak ran. Kept with the figures, so that these can be judged
+// later.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@ struct MachineCounters {
     double steal_ms = 0, context_switches = 0, processes = 0;
     double time_s = 0;  ///< monotonic
 };
-/// root: where /proc lies, for tests. What the kernel does not tell is left out.
+/// root: where /proc lies, for tests. Facts that the kernel does not give are left out.
 MachineCounters read_counters(const std::string& root = "");
 
 /// The machine and what it counted between the two. Interrupts: the busiest twenty, the rest as one.

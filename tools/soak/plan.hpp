@@ -1,4 +1,4 @@
-// What loads a soak when: a seeded timetable of phases, known beforehand and the same for every process that reads it.
+// The timetable of a soak's loads: phases in an order given by a seed, so the same for every process that reads it.
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@ constexpr std::array<std::string_view, load_kinds> load_names = {"cpu",     "mem
 using LoadSet = std::uint32_t;
 constexpr LoadSet load_bit(LoadKind kind) { return 1U << static_cast<unsigned>(kind); }
 constexpr bool has_load(LoadSet set, LoadKind kind) { return (set & load_bit(kind)) != 0; }
-/// All but clock, which steps the time of day for the whole machine: only who asks for it gets it.
+/// All but clock, which steps the time of day for the whole machine: it runs only if it is named.
 constexpr LoadSet usual_loads = (1U << load_kinds) - 1U - load_bit(LoadKind::clock);
-/// Those that a virtual clock leaves a meaning: work in this process, rather than contention for a core.
+/// Loads that make sense on a virtual clock: those that make work in this process, not contention for a core.
 constexpr LoadSet virtual_loads = load_bit(LoadKind::reloads);
 
 /// "cpu,io": names apart by commas. Error: an unknown name, with what is allowed; nothing at all.
@@ -35,6 +35,7 @@ struct LoadPhase {
     LoadSet loads = 0;
 };
 
+/// The order of the loads over the soak.
 struct LoadPlan {
     LoadSet mix = usual_loads;
     double seconds = 0;
@@ -46,9 +47,9 @@ struct LoadPlan {
     [[nodiscard]] std::size_t phase_at(double time_s) const;
 };
 
-/// Rounds: in each, every kind leads one phase, in an order by `seed`, and takes one or two others along; then one phase of all
-/// at once. Phases last 30 s, less where two rounds would not fit, and are whole multiples of pair_s (a pair of control blocks):
-/// no pair sees two loads.
+/// The plan consists of rounds. In a round each kind leads one phase, with one or two other kinds, in an order by `seed`. The
+/// last phase of a round has all kinds at once. Phases last 30 s, or less where two rounds would not fit. They are whole
+/// multiples of pair_s, the length of a pair of control blocks, so that no pair sees two loads.
 LoadPlan plan_loads(LoadSet mix, double seconds, double pair_s, std::uint64_t seed);
 
 }  // namespace surefoot::soak

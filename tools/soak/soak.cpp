@@ -30,7 +30,7 @@ constexpr double after_the_end_s = 120;  // how long load may outlive its plan: 
 constexpr double max_samples = 7200;
 constexpr double virtual_sample_s = 10;
 
-/// What a service does when it is told to read its settings anew: all of them, on a thread that is none of the frame's.
+/// Does what a service does when it reloads its settings: reads all of them, on an ordinary thread.
 bool reload_once(const walk::WalkRequest& r) {
     config::Configuration c(walk::settings_schema());
     const auto read = r.config_file.empty() ? config::load_text(c, config::commented_defaults(*c.schema), "defaults")

@@ -1,5 +1,5 @@
-// Hours of a walk under a rotating mix of load, with a verdict. The walk is the session of walk.hpp, the load is processes of its
-// own, and nothing of the frames is kept but what they come to.
+// Hours of a walk under a rotating mix of load, with a verdict. The walk is the session of walk.hpp. The load is processes of its
+// own. Of the frames only sums, histograms and misses are kept.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 
 namespace surefoot::soak {
 
+/// Settings of a soak.
 struct SoakRequest {
     walk::WalkRequest walk;  ///< how it walks; frames, seconds, control and outputs are the soak's to set
     double seconds = 1200;   ///< with a control: whole pairs of blocks of it
@@ -21,6 +22,7 @@ struct SoakRequest {
     std::string report_dir;      ///< empty: no page
 };
 
+/// Result of a soak.
 struct SoakOutcome {
     SoakSummary summary;
     std::vector<std::string> notes;

@@ -9,7 +9,7 @@ namespace surefoot::soak {
 /// How long a process settles before its growth counts: a fifth of the soak, at most five minutes.
 double warm_up_of(double seconds);
 
-/// What the counters of a kind of load come to: whether it was real, and the proof in words. other_miss_share: of the bare loop
+/// Judges the counters of a kind of load: whether it was real, and the proof in words. other_miss_share: of the bare loop
 /// under SCHED_OTHER beside the CPU load; negative: not measured.
 struct LoadFigures {
     LoadKind kind = LoadKind::cpu;

@@ -1,4 +1,4 @@
-// Everything that a soak leaves for people: verdict, JSON, table, and the one-page report.
+// The outputs of a soak: verdict, JSON, table, and the one-page report.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct SoakCheck {
     std::string words;  ///< what was seen and what is allowed
 };
 
-/// What ran on the machine beside the walk, for how long, and how it is known that it was real.
+/// One load that ran beside the walk: for how long, and the proof that it was real.
 struct SoakLoad {
     std::string name;
     double seconds = 0;  ///< for which it was on
@@ -50,6 +50,7 @@ struct SoakColumn {
     float accuracy_min = 0;  ///< rad^-1; 0: none had an error
 };
 
+/// One miss of the soak.
 struct SoakMiss {
     double time_s = 0, frame_ms = 0;
     std::string_view cause;  ///< one of rt::cause_names
@@ -60,7 +61,7 @@ struct SoakMiss {
 /// The process at one time.
 struct SoakSample {
     double time_s = 0;
-    double memory_kib = 0;  ///< anonymous memory in core: what the process has taken, not the files that it shows
+    double memory_kib = 0;  ///< anonymous memory in RAM, without mapped files
     double resident_kib = 0;
     std::uint32_t descriptors = 0, threads = 0;
 };
@@ -71,6 +72,7 @@ struct SoakCount {
     double count = 0;
 };
 
+/// The machine that the soak ran on.
 struct SoakMachine {
     std::string kernel, kernel_command_line, processor;
     int cores = 0;
@@ -80,6 +82,7 @@ struct SoakMachine {
     double context_switches = 0, processes = 0;
 };
 
+/// All figures of a soak.
 struct SoakSummary {
     report::WalkSummary walk;  ///< counts are of the walk's own frames, without the control's
     std::string command_line;

@@ -1,4 +1,4 @@
-// A soak's figures, record by record: hours of frames are not kept, what they come to is.
+// Sums the figures of a soak, record by record. The frames of hours are not kept.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ public:
     void begin(std::int64_t t0_ns) { t0_ns_ = t0_ns; }
     /// Every record in order, the control's too.
     void add(const rt::FrameRecord& record);
-    /// Everything but what others know (machine, loads, samples, checks); `summary.walk` holds the walk's figures afterwards.
+    /// Fills `summary`, except for machine, loads, samples and checks. `summary.walk` holds the walk's figures afterwards.
     void fill(SoakSummary& summary) const;
     [[nodiscard]] const std::vector<rt::BlockTally>& blocks() const { return blocks_.blocks(); }
     /// Seconds from the first slot to the end of the last.

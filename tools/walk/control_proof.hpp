@@ -1,4 +1,4 @@
-// The control's side of a walk: steal a block, the proof that the load is real, and the verdict.
+// The control of a walk: steal time of each block, the proof that the load is real, and the verdict.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace surefoot::walk {
 /// Of all cores since boot, ms; 0 where the kernel does not say.
 double total_steal_ms();
 
-/// The blocks' counts as they come, and the steal of each, read at the blocks' borders by the monitor thread.
+/// Counts of the blocks, and the steal time of each. The monitor thread calls it, and reads steal at the blocks' borders.
 class ControlBlocks {
 public:
     void on_record(const rt::FrameRecord& record);
@@ -28,9 +28,9 @@ private:
     double at_start_ms_ = -1;
 };
 
-/// Fills outcome.summary.control: takes the blocks, runs 10 s of the bare loop under SCHED_OTHER on the frame core with
-/// the same CPU time (the load counts only if that misses a fifth), and applies the permutation test.
-/// burn_ns: what the control's bare frames burned.
+/// Fills outcome.summary.control from the blocks, by the permutation test. First runs the bare loop for 10 s under SCHED_OTHER,
+/// on the frame core and with the same CPU time. The load counts only if that loop misses a fifth of its frames. burn_ns: the
+/// CPU time of a bare frame.
 void judge_control(const PlacingPlan& plan, std::int64_t period_ns, std::int64_t burn_ns, ControlBlocks& blocks,
                    WalkOutcome& outcome, const Progress& progress);
 

@@ -1,4 +1,4 @@
-// What steers a walk: opened and checked at the start, wired to its thread, and summed up at the end.
+// The input of a walk, a recording or live devices: opened at the start, run on the input thread, summed up at the end.
 #pragma once
 
 #include <memory>
@@ -18,14 +18,14 @@
 
 namespace surefoot::walk {
 
-/// How long a walk goes on after its recording has ended: the visitor comes to rest, and is seen to.
+/// How long a walk goes on after the end of its recording: enough for the eye to come to rest.
 constexpr double after_recording_s = 1.0;
 
-/// The source is a recording, or live devices.
+/// The input of one walk. The session's main thread calls all members, except those of poses() and jump_poses().
 class InputSession {
 public:
-    /// Reads the steering file and the recording, or looks for devices from now on; errors name file and line. `notes`: what else
-    /// the user should know.
+    /// Reads the steering file, then the recording; without a recording, starts to look for devices. Errors name file and line.
+    /// Adds warnings for the user to `notes`.
     static Result<std::unique_ptr<InputSession>> open(const WalkRequest& request, std::int64_t period_ns,
                                                       std::vector<std::string>& notes);
 
@@ -47,7 +47,7 @@ public:
     [[nodiscard]] rt::InputState now() const {
         return live_ ? rt::InputState{true, live_->steering_now(), live_->stop_latched()} : rt::InputState{};
     }
-    /// The thread ends. What kept it from its place, if anything did.
+    /// Ends the input thread. Returns the error if the thread could not be placed.
     std::optional<Error> end(const Progress& progress, std::vector<std::string>& notes);
 
     /// After end().
@@ -72,8 +72,8 @@ private:
     std::uint64_t guard_violations_ = 0;
 };
 
-/// Pure: of every report that a frame's pose holds, from its stamp until the first such frame was submitted; ms. stamps[i] is the
-/// (i+1)th report's. Reports that no frame holds (they came after the last one) are not in it.
+/// Ages of reports, ms: from a report's stamp until the first frame whose pose includes it was submitted. Pure. stamps_ns[i] is
+/// that of report i + 1. Reports that no frame includes, because they came after the last one, are left out.
 std::vector<double> report_ages_ms(std::span<const rt::FrameRecord> records, std::span<const std::int64_t> stamps_ns);
 
 }  // namespace surefoot::walk

@@ -1,4 +1,4 @@
-// One step of the input: read what there is, steer, act on buttons, publish. Real time runs it on a thread of its own
+// One step of the input: read waiting reports, steer, act on buttons, publish. Real time runs it on a thread of its own
 // (input_thread.hpp); the virtual clock runs it inline up to each frame's start. Both run this body.
 //
 //   ReportSource ─drain─► Steering ─tick─► TourController ─follow─► SteeredSample ─► triple buffer ─► steered_poses.hpp
@@ -15,7 +15,7 @@
 
 namespace surefoot::walk {
 
-/// Longest time between two steps: every report makes one, and where none comes, filters and limits run on.
+/// Longest time between two steps. Every report causes a step. Without reports, steps go on for filters and limits.
 constexpr std::int64_t input_tick_ns = 2'000'000;
 
 /// What the frame thread reads, newest wins.
@@ -27,6 +27,7 @@ struct SteeredSample {
     bool touring = false;
 };
 
+/// One step of the input: drains the source, steps the walker, publishes the sample. One thread calls all members.
 class InputStepper {
 public:
     /// All of them must outlive this; `steering` is placed at the tour's start.

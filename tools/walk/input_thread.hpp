@@ -13,6 +13,7 @@
 
 namespace surefoot::walk {
 
+/// Runs an InputStepper on a thread of its own.
 class InputThread {
 public:
     /// Start from a neutral thread, after stepper.begin(). When this returns, the thread has applied `placement`.
@@ -24,7 +25,7 @@ public:
     void stop();
     /// After stop(): allocations, frees inside its loop; must be 0.
     [[nodiscard]] std::uint64_t guard_violations() const { return guard_violations_; }
-    /// What kept it from its place.
+    /// The error if it could not be placed.
     [[nodiscard]] const std::optional<Error>& misplaced() const { return misplaced_; }
 
 private:

@@ -13,6 +13,7 @@
 
 namespace surefoot::walk {
 
+/// Live devices of a walk, with their messages and the stored stop.
 class LiveInput {
 public:
     /// Starts to look for devices, and loads the stored stop if one is configured. Errors: no udev; a state folder in which

@@ -11,6 +11,7 @@
 
 namespace surefoot::walk {
 
+/// Settings of a fit.
 struct ModelFitOptions {
     gl::DeviceOptions device;
     double frame_us = 1e6 / 30;  ///< budgets are drawn from a tenth of it up to 85 %
@@ -25,9 +26,10 @@ struct FrameErrors {
     double p50 = 0, p90 = 0, p99 = 0;
 };
 
+/// A cost table fitted to one model.
 struct ModelFit {
     model::CostModel costs;     ///< the table with `combine` and `headroom` of this model
-    FrameErrors before, after;  ///< on the half of the frames that taught nothing
+    FrameErrors before, after;  ///< on the half of the frames that were not used for the fit
     std::string machine;        ///< that drew it, as a table names its own
     std::uint32_t frames = 0;
     std::size_t repeated = 0;  ///< of them, drawn alike in at least two rounds
@@ -35,9 +37,9 @@ struct ModelFit {
     double seconds = 0;
 };
 
-/// Draws random views near the path at random budgets, in several rounds (measure::robust_frame_times); every other one teaches
-/// the weights, the rest judge them. The table itself stays: its cells are of single items, and what differs between models is
-/// how these overlap and what hides what.
+/// Draws random views near the path at random budgets, in several rounds (measure::robust_frame_times). Every other view is used
+/// for the fit, the rest to measure its error. The table's cells do not change, as they are of single items. Models differ in how
+/// items overlap and hide each other.
 Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
                               const Progress& progress);
 

@@ -1,4 +1,4 @@
-// Where a walk's path comes from: the file asked for, the one beside the model, or a tour made from the model's box.
+// Where a walk's path comes from: the requested file, the one beside the model, or a tour made from the model's box.
 #include "tools/walk/path_source.hpp"
 
 #include <cmath>

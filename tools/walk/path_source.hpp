@@ -10,6 +10,7 @@
 
 namespace surefoot::walk {
 
+/// The path of a walk, and where it comes from.
 struct ChosenPath {
     Path path;
     std::string source;  ///< the file, or "generated tour"
@@ -19,7 +20,7 @@ struct ChosenPath {
 Result<ChosenPath> choose_path(const std::string& requested, const std::string& model_file, const model::Model& model,
                                double lift_m);
 
-/// A place on the path, moved by up to 3 m, looking anywhere about the horizon: for judging what is predicted of any view.
+/// A random pose: up to 3 m from the path, in any direction about the horizon. For measuring predictions.
 Pose random_pose(const Path& path, Random& random);
 
 /// 40 s: from above one corner, round the model once, closing in to its middle. For models that bring no path.

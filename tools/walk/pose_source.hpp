@@ -12,14 +12,14 @@ namespace surefoot::walk {
 struct FramePose {
     Pose pose;
     Pose before;                ///< one period earlier by the same motion; used if no frame has shown it
-    PredictedRegion predicted;  ///< possible poses of the next frames, if the source knows more than two poses tell
+    PredictedRegion predicted;  ///< possible poses of the next frames, if the source knows more than its last two poses
     bool jumped = false;        ///< a jump since the last frame: the last pose says nothing about this motion
     bool stopped = false;       ///< stands still: emergency stop or dead-man
     std::int64_t stamp_ns = 0;  ///< of the newest report in it; 0: none
     std::uint64_t reports = 0;  ///< in it, since the walk began
 };
 
-/// What a source may go by.
+/// The time of a frame, for a source.
 struct FrameTime {
     std::uint64_t path_slot = 0;  ///< periods since the start of the walk
     std::int64_t due_ns = 0, now_ns = 0;
@@ -31,11 +31,11 @@ public:
     virtual ~PoseSource() = default;
     /// At the frame's start.
     virtual FramePose sample(const FrameTime& time) = 0;
-    /// Just before the first slice: the newest there is by now. False: none newer than the last.
+    /// Just before the first slice: the newest pose. False: none is newer than the last.
     virtual bool latch(const FrameTime& time, FramePose& newest) = 0;
 };
 
-/// Poses of a recorded path, forth and back.
+/// Poses of a recorded path, forwards and backwards in turn.
 class PathPoses final : public PoseSource {
 public:
     PathPoses(const Path& path, std::int64_t period_ns) : path_(path), period_s_(static_cast<double>(period_ns) * 1e-9) {}

@@ -17,7 +17,7 @@
 
 namespace surefoot::walk {
 
-/// Where the eye can be until `horizon_periods` from now, where that is known from what steers it.
+/// Where the eye can be until `horizon_periods` from now, if its input knows that.
 struct PredictedRegion {
     bool known = false;
     prepare::Region region;  ///< the pose if the hand stays as it is, and how far from it the limits of motion allow
@@ -43,6 +43,7 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
 /// Poses that the eye jumps to (buttons), from the input thread. Only poses and times are used.
 using JumpBuffer = rt::TripleBuffer<PoseSample>;
 
+/// Runs preparation on a thread of its own, once a frame.
 class PrepareThread {
 public:
     /// Start from a neutral thread; the thread is in its place when this returns. The buffers must outlive it. `jump_poses`: null
@@ -53,7 +54,7 @@ public:
     PrepareThread(const PrepareThread&) = delete;
     PrepareThread& operator=(const PrepareThread&) = delete;
     void stop();
-    /// What kept it from its place.
+    /// The error if it could not be placed.
     [[nodiscard]] const std::optional<Error>& misplaced() const { return misplaced_; }
 
 private:

@@ -1,4 +1,4 @@
-// What the machine grants of real time and what it lacks. With --strict nothing starts if something lacks.
+// Finds what the machine grants of real time, and what is missing. With --strict nothing starts if anything is missing.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 namespace surefoot::walk {
 
 /// Fills in what is granted and what is lacking (facts.degraded), locks memory, and works out the placing. real_clock false:
-/// nothing is asked of the machine. An Error only where the request itself cannot be met.
+/// nothing is requested from the machine. An Error only where the request itself cannot be met.
 Result<PlacingPlan> claim_real_time(const WalkRequest& request, bool real_clock, WalkFacts& facts);
 
 /// --strict: success, or one Error that names every lack with its remedy.

@@ -1,4 +1,4 @@
-// From settings to a request; what it may not ask for.
+// Makes a request from settings, and checks it.
 #include "tools/walk/settings_request.hpp"
 
 #include <fmt/format.h>

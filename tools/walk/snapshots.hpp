@@ -1,5 +1,4 @@
-// Snapshots of frames: remembered during a walk without allocating, and drawn again after it: the walk's picture beside full
-// detail.
+// Snapshots of frames. A walk stores them without allocating. After the walk they are drawn again, beside full detail.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace surefoot::walk {
 
-/// What one frame drew, exactly: enough to draw it again.
+/// The exact items of one frame, enough to draw it again.
 struct FrameSnapshot {
     std::uint64_t frame = 0;
     double time_s = 0;
@@ -24,7 +23,7 @@ struct FrameSnapshot {
     std::vector<gl::DrawItem> items;
 };
 
-/// What all snapshots of a walk may take. 512 of them on the largest models.
+/// Memory limit of all snapshots of a walk, in bytes. 512 of them on the largest models.
 constexpr std::size_t snapshot_memory_bytes = 256U << 20U;
 /// At least one.
 std::size_t snapshots_that_fit(std::size_t max_items);

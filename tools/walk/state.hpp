@@ -1,4 +1,4 @@
-// Where this machine's figures live: the state folder and the calibrated cost table in it.
+// The state folder of this machine, and the calibrated cost table in it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Poses that an input steers: the newest sample, moved to the frame's own time, with the bounds of what may follow.
+// Poses that an input steers: the newest sample, moved to the frame's due time, with bounds of the next poses.
 #pragma once
 
 #include "input/motion/motion.hpp"
@@ -8,10 +8,11 @@
 
 namespace surefoot::walk {
 
-/// A sample is taken on by at most this much, towards the frame's due time and back: that evens out the phase between steps and
-/// frames. An input thread that stalls for longer leaves the eye where it was last seen.
+/// A sample's pose is carried forward or back to the frame's due time, by at most this much. So the phase between input steps and
+/// frames does not show. If the input thread stalls for longer, the eye stays where it was.
 constexpr std::int64_t carry_limit_ns = 2 * input_tick_ns;
 
+/// Poses of a walk that devices steer. For the frame thread.
 class SteeredPoses final : public PoseSource {
 public:
     /// `inline_stepper`: on the virtual clock, stepped here up to the frame's time; null: a thread of its own steps it.

@@ -1,4 +1,4 @@
-// What the visitor's buttons do: next viewpoint, reset, tour, pause; and what becomes of a tick's sample.
+// Acts on the visitor's buttons: next viewpoint, reset, tour and pause.
 //
 //   steered ──tour──► touring (follows the path from where the tour was left) ──the hand moves, or a stop──► steered
 //   pause: stands still until pressed again; the other three go on from a pause. A stop lets nothing through but pause.
@@ -17,14 +17,15 @@ constexpr int viewpoint_count = 8;  ///< along the path, at equal times
 /// The pose at a time: the path forth and back again for as long as the walk lasts (a jump back would be a teleport).
 Pose pose_at(const Path& path, double time_s);
 
+/// Follows the buttons: next viewpoint, reset, tour and pause.
 class TourController {
 public:
     /// Starts where the path does. The path must outlive this.
     explicit TourController(const Path& path);
 
     [[nodiscard]] const Pose& start() const { return viewpoints_.front(); }
-    /// After every tick of `steering`, on its thread: puts the eye elsewhere where a button asks for it, and writes what the
-    /// frame thread is to see into `sample`. Edges are taken from the tick, so none is lost and none is taken twice.
+    /// Call it after every tick of `steering`, on its thread. Moves the eye where a button demands it, and puts the result into
+    /// `sample` for the frame thread. Edges are taken from the tick, so none is lost and none is taken twice.
     void follow(input::NavigationSample& sample, input::Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers);
 
     [[nodiscard]] bool touring() const { return touring_; }

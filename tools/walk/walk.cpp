@@ -66,7 +66,7 @@ double share_done(const Session& s, double slots_ran) {
     return s.frames == 0 ? 0.0 : std::clamp(slots_ran / static_cast<double>(s.frames), 0.0, 1.0);
 }
 
-/// After the frames: what kept the input thread from its place must be said.
+/// After the frames: an input thread that could not be placed must be reported.
 void end_input(Session& s, const Progress& progress) {
     if (!s.input) return;
     if (const auto misplaced = s.input->end(progress, s.notes))

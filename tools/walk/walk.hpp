@@ -44,6 +44,7 @@ struct WalkRequest : config::Settings {
     std::uint64_t capture_frame = 0;
 };
 
+/// Result of a walk.
 struct WalkOutcome {
     report::WalkSummary summary;
     std::vector<rt::FrameRecord> records;
@@ -51,7 +52,7 @@ struct WalkOutcome {
     std::vector<std::string> notes;  ///< messages for the user, one line each
     bool stopped = false;            ///< ended before its last frame, by progress.stop
     bool lost = false;               ///< ended because the graphics context was lost; failures has the error
-    std::string report_page;         ///< the report's index.html, where asked for
+    std::string report_page;         ///< the report's index.html, if requested
 };
 
 /// The step of a walk. An Error of run_walk() belongs to the last notified step.

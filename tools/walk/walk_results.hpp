@@ -1,4 +1,4 @@
-// What a walk leaves: its summary, and the files that were asked for.
+// The results of a walk: its summary, and the requested files.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What one walk holds while it lasts, and how it is opened: in the order in which it must be made, and (backwards) taken down.
+// All that one walk holds while it lasts, and how it is opened. Members are made in their order and destroyed backwards.
 #pragma once
 
 #include <atomic>
@@ -24,9 +24,10 @@
 
 namespace surefoot::walk {
 
-/// Of the period: what a frame may cost where no budget is asked for.
+/// Share of the period that a frame may cost if no budget is set.
 constexpr double budget_share = 0.80;
 
+/// What the parts of a session share while it runs.
 struct Session {
     const WalkRequest& request;
     const WalkObserver& observer;

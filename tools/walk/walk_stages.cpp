@@ -51,12 +51,13 @@ void WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
 void WalkStages::sample(rt::FrameRecord& record) {
     inject(FramePhase::sample, record);
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
-    // Beside a control the walk goes on where its last block ended: slots of the bare loop are no time of the path.
+    // With a control, the walk goes on where its last block ended: slots of the bare loop do not advance the path.
     path_slot_ = request_.control ? walked_ : record.slot;
     const FramePose newest = pose_source_.sample(frame_time(record));
     const bool unseen = !now_.valid || newest.jumped;  // no frame has seen where this one's motion comes from
     if (virtual_clock_) {
-        // From what was known one frame ago, as the workers would; where the eye is put elsewhere, the input has told them.
+        // Prepares from the pose of one frame ago, as the workers would. A jump of the eye is known to them, so it is used at
+        // once.
         if (unseen) {
             now_.pose = newest.pose;
             now_.before = newest.before;
@@ -133,7 +134,7 @@ void WalkStages::select(rt::FrameRecord& record) {
 }
 
 /// After the frame, when it is known whether it was late. Copying takes a tenth of a millisecond for a few thousand candidates;
-/// of larger sets only the frame that was asked for is kept, so that one miss does not make the next.
+/// of larger sets only the requested frame is kept, because the copy itself could make the next frame late.
 void WalkStages::keep(const rt::FrameRecord& record) {
     constexpr std::size_t max_candidates = 16'384;
     const prepare::PreparedFrame& set = prepared_.front();

@@ -18,8 +18,8 @@
 
 namespace surefoot::walk {
 
-/// One frame kept for `surefoot replay`: copied by the frame thread into memory that was sized before, put together by another.
-/// The frame thread writes while `kept` is false. The reader may read while it is true.
+/// One frame, kept for `surefoot replay`. The frame thread copies it into reserved memory while `kept` is false, then sets
+/// `kept`. Another thread makes the file from it while `kept` is true.
 struct KeptFrame {
     std::atomic<bool> kept{false};
     std::uint64_t frame = 0;  ///< of the walk
@@ -29,25 +29,27 @@ struct KeptFrame {
     double budget_us = 0, target_error_rad = 0;
     Correction correction;
 
-    /// For all that `engine` may select.
+    /// Reserves memory for any cut that `engine` may select.
     void reserve(const Engine& engine);
 };
 
-/// As a file holds it. Allocates.
+/// The kept frame in the form that is written to a file. Allocates; not for the frame thread.
 capture::Capture capture_of(const KeptFrame& kept, const WalkRequest& request, const Engine& engine);
 
+/// Settings of the stages. References must outlive them.
 struct WalkStagesOptions {
     const WalkRequest& request;
     std::int64_t period_ns = 0;
     double budget_us = 0;  ///< of the whole frame, from its due time
     double limit_us = 0;   ///< of the in-frame check, from the due time
     double target_error_rad = 0;
-    std::uint64_t capture_frame = ~0ULL;  ///< kept, or else (capture_missed) the first missed one that nobody has taken yet
-    bool capture_missed = false;
-    const FaultHook* inject = nullptr;  ///< null: no faults
-    std::atomic<bool>* lost = nullptr;  ///< set when the device is; may be null
+    std::uint64_t capture_frame = ~0ULL;  ///< number of the frame to keep
+    bool capture_missed = false;          ///< also keep missed frames, one at a time
+    const FaultHook* inject = nullptr;    ///< injects faults, for tests; null: none
+    std::atomic<bool>* lost = nullptr;    ///< set when the graphics device is lost; may be null
 };
 
+/// The stages of a walk. The frame thread calls all members.
 class WalkStages final : public rt::FrameStages {
 public:
     /// `clock` is the loop's; where the request's is virtual, a rt::VirtualClock. Everything must outlive this.
@@ -77,15 +79,16 @@ private:
     SnapshotStore& snapshots_;
     KeptFrame& kept_;
     WalkStagesOptions options_;
-    const WalkRequest& request_;  ///< control: bare blocks lie between, the path's time is counted in walked frames
-    const bool virtual_clock_;    ///< prepare inline, charge the device's virtual time
+    const WalkRequest& request_;
+    const bool virtual_clock_;  ///< prepare on this thread, and add the device's virtual time to the clock
     rt::CostController controller_;
     PoseSample now_;
     SubmitReport report_;
-    std::uint64_t walked_ = 0, path_slot_ = 0;
-    bool coarse_ = false;
-    const select::Cut* cut_ = nullptr;  ///< the last selection's, and what it was asked
-    double requested_budget_us_ = 0;
+    std::uint64_t walked_ = 0;          ///< frames so far, without the control's bare ones
+    std::uint64_t path_slot_ = 0;       ///< position on the path, in periods; with a control it does not advance in bare blocks
+    bool coarse_ = false;               ///< the last selection was Engine::select_coarse()
+    const select::Cut* cut_ = nullptr;  ///< of the last selection
+    double requested_budget_us_ = 0;    ///< what that selection was given
     Correction requested_correction_;
 };
 

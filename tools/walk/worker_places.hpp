@@ -1,4 +1,4 @@
-// The preparation's workers in their places: put there as each starts, before its first task, and looked at within that task.
+// Places the workers of preparation (core, policy, priority). Each is placed when it starts, and checked within its first task.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@
 
 namespace surefoot::walk {
 
-/// The calling thread among the workers, at their priority, while this lives. Whoever hands them work or ends them and stood
-/// below them would wait for his core while they look for work, which on a machine of few cores is long.
+/// Gives the calling thread the workers' place and priority while this lives. A thread of lower priority that starts or ends the
+/// workers may lose its core to them. Idle workers spin, so on few cores it would wait long.
 class ScopedWorkerPriority {
 public:
     explicit ScopedWorkerPriority(const PlacingPlan& plan);
@@ -22,15 +22,15 @@ private:
     const rt::PlacementScope back_;
 };
 
-/// Must outlive the engine that its hooks are given to.
+/// The workers' places, as they start. Must outlive the engine that its hooks are given to. Any thread may call it.
 class WorkerPlaces {
 public:
     explicit WorkerPlaces(PlacingPlan plan) : plan_(std::move(plan)) {}
     [[nodiscard]] prepare::WorkerHooks hooks();
 
-    /// What kept a worker from its place: the first refusal.
+    /// The first error of placing a worker.
     [[nodiscard]] std::optional<Error> refused() const EXCLUDES(mutex_);
-    /// Workers that were not in their places within their first tasks; in the census's words.
+    /// Workers that were not in their places within their first tasks: a line for each, as the census writes it.
     [[nodiscard]] std::vector<std::string> problems() const EXCLUDES(mutex_);
 
 private:
