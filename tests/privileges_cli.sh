@@ -4,14 +4,14 @@
 set -u
 surefoot=$(realpath "$1")
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/contract.sh"
-[ "$(id -u)" = 0 ] || { echo "needs root: privileges are taken away from it"; exit 77; }
-for tool in setpriv prlimit taskset; do command -v $tool >/dev/null || { echo "$tool is absent (util-linux)"; exit 77; }; done
+[ "$(id -u)" = 0 ] || { echo "SKIPPED: needs root: privileges are taken away from it"; exit 77; }
+for tool in setpriv prlimit taskset; do command -v $tool >/dev/null || { echo "SKIPPED: $tool is absent (util-linux)"; exit 77; }; done
 
 "$surefoot" scene forest --scale 0.3 -o f.glb >/dev/null && "$surefoot" bake f.glb -o f.walk >/dev/null 2>&1 || complain "no model"
 chmod -R a+rX "$work"
 walk="$surefoot walk f.walk --backend null --frames 20"
-grep -q '"fifo": true' <($walk --json 2>full) || { echo "SCHED_FIFO is refused even to root here"; exit 77; }
-grep -q 'Memory cannot be locked' full && { echo "memory cannot be locked even by root here"; exit 77; }
+grep -q '"fifo": true' <($walk --json 2>full) || { echo "SKIPPED: SCHED_FIFO is refused even to root here"; exit 77; }
+grep -q 'Memory cannot be locked' full && { echo "SKIPPED: memory cannot be locked even by root here"; exit 77; }
 $walk --strict >out 2>full-strict && grep -q 'isolated' full && complain "--strict starts without an isolated core"
 
 # lacks MARK WHAT COMMAND...: run by COMMAND, the walk lacks WHAT (a pattern) and says so once, its JSON has MARK, and --strict refuses it

@@ -12,7 +12,7 @@ namespace surefoot::bake {
 
 namespace {
 
-constexpr double across = 0.5;  // the cosine of 60 degrees
+constexpr double min_aligned_cosine = 0.5;  // of 60 degrees: a normal that is farther from its triangle is across it
 
 /// Of the triangle that begins at `i`; no length where it has no area.
 dvec3 facing_of(const Geometry& g, const GeometryPart& part, std::size_t i) {
@@ -51,7 +51,7 @@ CoincidentVertices::CoincidentVertices(const Geometry& g) {
             const dvec3 facing = facing_of(g, p, i);
             if (facing == dvec3(0.0)) continue;
             for (std::size_t k = 0; k < 3; ++k)
-                if (std::abs(turn_of(g, p.indices[i + k], facing)) < across) custom_normal_[p.indices[i + k]] = true;
+                if (std::abs(turn_of(g, p.indices[i + k], facing)) < min_aligned_cosine) custom_normal_[p.indices[i + k]] = true;
         }
     }
     for (std::uint32_t begin = 0, end = 1; begin < order_.size(); begin = end++) {
@@ -67,12 +67,12 @@ void repair_corners(Geometry& g, const CoincidentVertices& coincident, GeometryP
         if (facing == dvec3(0.0)) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             std::uint32_t& index = part.indices[i + k];
-            if (std::abs(turn_of(g, index, facing)) >= across || coincident.custom_normal(index)) continue;
+            if (std::abs(turn_of(g, index, facing)) >= min_aligned_cosine || coincident.custom_normal(index)) continue;
             // Of two that fit as well, front and back of a sheet, the front.
             const auto fit = [&](std::uint32_t v) { return std::pair(std::abs(turn_of(g, v, facing)), turn_of(g, v, facing)); };
             for (const std::uint32_t other : coincident.with(index))
                 if (fit(other) > fit(index)) index = other;
-            if (std::abs(turn_of(g, index, facing)) >= across) continue;
+            if (std::abs(turn_of(g, index, facing)) >= min_aligned_cosine) continue;
             std::array<std::int8_t, 3> normal{};
             for (int c = 0; c < 3; ++c)
                 normal[static_cast<std::size_t>(c)] = static_cast<std::int8_t>(std::lround(127.0 * facing[c]));

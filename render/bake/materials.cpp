@@ -251,10 +251,10 @@ std::array<std::uint8_t, 4> baked_colour(const model::Model& model, const model:
     // the whole picture's mean, weighted by alpha: a leaf's corners lie where there is no leaf, and are black in most
     // pictures.
     const bool opaque = material.alpha == model::AlphaMode::opaque;
-    const std::uint32_t across = opaque ? 8 : 1;
+    const std::uint32_t max_texels = opaque ? 8 : 1;
     std::uint32_t level = 0, w = t.width, h = t.height;
     std::uint64_t at = t.first_byte;
-    while (level + 1 < t.levels && std::max(w, h) > across) {
+    while (level + 1 < t.levels && std::max(w, h) > max_texels) {
         at += static_cast<std::uint64_t>(w) * h * 4;
         w = std::max(1U, w / 2);
         h = std::max(1U, h / 2);

@@ -3,7 +3,7 @@
 # usage: frame_instructions.sh PROGRAM   prints one JSON object; exit 77 (skipped) where valgrind is missing.
 set -euo pipefail
 program=$1
-command -v valgrind >/dev/null || { echo "skipped: valgrind is not installed"; exit 77; }
+command -v valgrind >/dev/null || { echo "SKIPPED: valgrind is not installed"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export LP_NUM_THREADS=0 MESA_SHADER_CACHE_DISABLE=true

@@ -60,13 +60,21 @@ int percent_given_back(bool as_in_a_walk) {
     });
 }
 
+#ifdef SUREFOOT_WATCHES_THREADS
+constexpr bool memory_counts = false;
+#else
+constexpr bool memory_counts = true;
+#endif
+
 TEST(EngineMemory, GivesTheTexelsBackOnceTheDeviceHasThem) {
+    if (!memory_counts) GTEST_SKIP() << "the thread sanitizer's allocator changes what a process keeps";
     const int percent = percent_given_back(false);
     EXPECT_GE(percent, 85);  // the engine's own arrays take some of it
     EXPECT_LE(percent, 105);
 }
 
 TEST(EngineMemory, GivesTheTexelsBackWhereTheHeapIsKeptAndLocked) {
+    if (!memory_counts) GTEST_SKIP() << "the thread sanitizer's allocator changes what a process keeps";
     const int percent = percent_given_back(true);
     EXPECT_GE(percent, 85);
     EXPECT_LE(percent, 105);
