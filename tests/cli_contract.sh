@@ -124,6 +124,9 @@ for option in --ledger --trace --capture; do
   expect 1 "^surefoot: $option .*nonexistent" walk f.walk $virtual --frames 4000000 $option /nonexistent/file
   expect 1 "^surefoot: $option .*reads" walk f.walk $virtual --frames 4000000 $option f.walk
 done
+expect 2 'seconds and --frames both' compare f.walk --frames 3 --seconds 2
+expect 2 'null: The value draws nothing' compare f.walk --backend null
+expect 1 "pictures 2: The null backend draws no pictures. Remove --pictures" walk f.walk --backend null --pictures 2
 expect 1 '^surefoot: --report .*f.glb is a file' walk f.walk $virtual --frames 4000000 --report f.glb
 expect 1 '^surefoot: --snap .*f.glb is a file' walk f.walk --snap f.glb
 expect 1 '--capture-frame 9.*5 frames' walk f.walk $virtual --frames 5 --capture n.cap --capture-frame 9

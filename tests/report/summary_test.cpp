@@ -169,7 +169,7 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                     "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age", "budget_ms",
                     "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
                     "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated",
-                    "input"}));
+                    "input",       "picture",    "unused_ms", "coarse_frames"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
     EXPECT_EQ(keys_of(json["prepared_age"]), (Keys{"p50", "p99", "max"}));
@@ -180,9 +180,55 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     EXPECT_EQ(keys_of(json["rt"]),
               (Keys{"fifo", "pinned", "isolated", "locked", "page_faults", "guard_violations", "driver_allocations_per_frame"}));
     EXPECT_EQ(keys_of(json["control"]), (Keys{"misses", "p_value", "blocks"}));
+    EXPECT_EQ(keys_of(json["unused_ms"]), (Keys{"mean", "p50", "p99"}));
+    EXPECT_TRUE(json["picture"].is_null()) << "no picture was compared";
     EXPECT_EQ(json["miss_causes"]["raster"], 1);
     EXPECT_TRUE(json["control"]["p_value"].is_null()) << "no control ran";
     EXPECT_EQ(json["control"]["blocks"].size(), 1U);
+}
+
+TEST(Summary, UnusedTimeIsOfFramesThatDetailCouldImprove) {
+    std::vector<rt::FrameRecord> frames = good_frames(3);
+    for (rt::FrameRecord& f : frames) f.rastered_ns = f.deadline_ns - 8'000'000;
+    frames[0].benefit = 1;  // all of its detail is there
+    frames[1].benefit = 0.5F;
+    frames[2].benefit = 0.98F;
+    frames[2].rastered_ns = frames[2].deadline_ns + 1;  // late: nothing was left
+    frames[2].downgraded_slices = 3;
+    WalkSummary s;
+    summarize(frames, period_ns, s);
+    EXPECT_DOUBLE_EQ(s.unused_ms.mean, 4);
+    EXPECT_DOUBLE_EQ(s.unused_ms.max, 8);
+    EXPECT_EQ(s.coarse_frames, 1U);
+    summarize(frames, period_ns, s);
+    EXPECT_EQ(s.coarse_frames, 1U) << "a summary is made anew";
+}
+
+TEST(Pictures, PsnrIsPooledAndTheWorstFrameIsNamed) {
+    EXPECT_EQ(compare_pictures({}).frames, 0U);
+    std::vector<ReportSnapshot> snapshots(4);
+    for (std::size_t i = 1; i < 4; ++i) {  // the first has no picture: a walk without a device
+        snapshots[i].walk = {0, 0, 0, 255};
+        snapshots[i].frame = 10 * i;
+        snapshots[i].ssim = 0.9;
+        snapshots[i].flip = 0.1 * static_cast<double>(i);
+    }
+    snapshots[2].mse = 195.075;  // 65025 / 195.075 = 1000 / 3
+    const PictureSummary p = compare_pictures(snapshots);
+    EXPECT_EQ(p.frames, 3U);
+    EXPECT_NEAR(p.psnr_db, 30, 1e-9) << "of the mean error, not the mean of decibels";
+    EXPECT_NEAR(p.worst_psnr_db, 10 * std::log10(1000.0 / 3), 1e-9);
+    EXPECT_EQ(p.worst_frame, 20U);
+    EXPECT_NEAR(p.ssim, 0.9, 1e-12);
+    EXPECT_NEAR(p.flip, 0.2, 1e-12);
+    for (ReportSnapshot& snapshot : snapshots) snapshot.mse = 0;
+    EXPECT_EQ(compare_pictures(snapshots).psnr_db, max_psnr_db) << "equal pictures, no infinity in JSON";
+    WalkSummary s;
+    s.picture = p;
+    const auto json = nlohmann::json::parse(to_json(s));
+    EXPECT_EQ(keys_of(json["picture"]),
+              (std::set<std::string>{"frames", "psnr_db", "worst_psnr_db", "worst_frame", "ssim", "flip"}));
+    EXPECT_NE(to_table(s, false).find("PSNR 30.0 dB (worst 25.2, frame 20)"), std::string::npos) << to_table(s, false);
 }
 
 TEST(Verdict, MissesOfTheHostAreNotTheWalksOwn) {

@@ -59,6 +59,7 @@ void add_calibrate(CLI::App& app, Context& context);
 void add_walk(CLI::App& app, Context& context);
 void add_soak(CLI::App& app, Context& context);
 void add_accuracy(CLI::App& app, Context& context);
+void add_compare(CLI::App& app, Context& context);
 void add_replay(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);

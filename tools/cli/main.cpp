@@ -88,6 +88,7 @@ int main(int argc, char** argv) {
     cli::add_walk(app, context);
     cli::add_soak(app, context);
     cli::add_accuracy(app, context);
+    cli::add_compare(app, context);
     cli::add_replay(app, context);
     cli::add_devices(app, context);
     cli::add_config(app, context);

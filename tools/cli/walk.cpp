@@ -182,6 +182,11 @@ void add_walk(CLI::App& app, Context& context) {
     c->add_option("--trace", r.trace_file, "Trace file for ui.perfetto.dev")->check(names_something());
     c->add_option("--report", r.report_dir, "Folder for a report: index.html")->check(names_something());
     c->add_option(
+         "--pictures", r.pictures,
+         "Number of frames that are compared with full detail after the walk, evenly spread. They give PSNR, SSIM and FLIP "
+         "[7 with --report, else 0]")
+        ->check(whole_number_within(1, 100));
+    c->add_option(
         "--monitor", a->watch.address,
         "Address for live figures: unix:PATH, or 127.0.0.1:PORT (port 0: any free port). `surefoot status`, `surefoot top` "
         "and Prometheus (/metrics) read them");

@@ -81,6 +81,13 @@ Json input_of(const InputSummary& in) {
     };
 }
 
+/// Null where no picture was compared.
+Json picture_of(const PictureSummary& p) {
+    if (p.frames == 0) return nullptr;
+    return {{"frames", p.frames},           {"psnr_db", rounded(p.psnr_db)}, {"worst_psnr_db", rounded(p.worst_psnr_db)},
+            {"worst_frame", p.worst_frame}, {"ssim", rounded(p.ssim)},       {"flip", rounded(p.flip)}};
+}
+
 }  // namespace
 
 std::string to_json(const WalkSummary& s) {
@@ -106,6 +113,9 @@ std::string to_json(const WalkSummary& s) {
         {"accuracy", {{"min", rounded(s.accuracy_min)}, {"mean", rounded(s.accuracy_mean)}}},
         {"triangles", {{"mean", rounded(s.triangles_mean)}, {"max", s.triangles_max}}},
         {"downgrades", s.downgrades},
+        {"coarse_frames", s.coarse_frames},
+        {"unused_ms",
+         {{"mean", rounded(s.unused_ms.mean)}, {"p50", rounded(s.unused_ms.p50)}, {"p99", rounded(s.unused_ms.p99)}}},
         {"switches_per_frame", rounded(s.switches_per_frame)},
         {"cut_hash", s.cut_hash},
         {"steal_ms", rounded(s.steal_ms)},
@@ -121,6 +131,7 @@ std::string to_json(const WalkSummary& s) {
         {"calibrated", s.uncalibrated.empty()},
         {"control", control_of(s.control)},
         {"input", input_of(s.input)},
+        {"picture", picture_of(s.picture)},
     };
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

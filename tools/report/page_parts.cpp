@@ -55,7 +55,8 @@ std::string snapshot_card(const ReportSnapshot& snapshot, std::size_t number, do
     out += chip("triangles", fmt::format("{} of {} ({})", short_number(static_cast<double>(snapshot.triangles)),
                                          short_number(static_cast<double>(snapshot.full_triangles)), percent(share)));
     if (!snapshot.difference.empty())
-        out += chip("SNR", decibels(snapshot.snr_db)) + chip("SSIM", fmt::format("{:.3f}", snapshot.ssim));
+        out += chip("SNR", decibels(snapshot.snr_db)) + chip("SSIM", fmt::format("{:.3f}", snapshot.ssim)) +
+               chip("FLIP", fmt::format("{:.3f}", snapshot.flip));
     out += chip("accuracy", fmt::format("{} rad⁻¹", short_number(double{snapshot.accuracy}))) +
            "</div></div>\n<div class=\"views\">\n";
     const auto uri = [&](const std::vector<std::uint8_t>& rgba) {

@@ -58,6 +58,17 @@ struct InputSummary {
     std::uint64_t guard_violations = 0;                                ///< of the input thread
 };
 
+/// Pictures of the walk against full detail, drawn after the walk.
+struct PictureSummary {
+    std::uint32_t frames = 0;       ///< compared; 0: none, and no figure holds
+    double psnr_db = 0;             ///< of the mean squared error over all of them; at most max_psnr_db
+    double worst_psnr_db = 0;       ///< of one frame
+    std::uint64_t worst_frame = 0;  ///< its number
+    double ssim = 0, flip = 0;      ///< means
+};
+/// PSNR of equal pictures: no other pair of 8-bit pictures below 4000 x 4000 pixels reaches it.
+constexpr double max_psnr_db = 130;
+
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
@@ -70,6 +81,8 @@ struct WalkSummary {
     Quantiles frame_ms, wake_us, select_us, prepare_cpu_us, prepared_age, cost_error, submit_ms, raster_ms, visits, hidden;
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
+    std::uint64_t coarse_frames = 0;  ///< with a slice that the in-frame check drew coarser
+    Quantiles unused_ms;              ///< time between the end of drawing and the deadline, of frames with a benefit below 0.99
     std::uint64_t triangles_max = 0, downgrades = 0, floor_bound_frames = 0, model_triangles = 0;
     std::string cut_hash;  ///< 16 hex digits over all frames
     double steal_ms = 0;   ///< as the host says, set before summarize; at least what the frames lost
@@ -82,6 +95,7 @@ struct WalkSummary {
     std::vector<rt::Lack> degraded;      ///< what is not real-time here, and how to grant it
     ControlSummary control;
     InputSummary input;
+    PictureSummary picture;
 };
 
 /// Pure: quantiles and sums over the records (control blocks' bare frames excluded from the walk's figures).
@@ -102,7 +116,8 @@ struct ReportSnapshot {
     double time_s = 0;
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> walk, full, difference;  ///< RGBA8; may be empty (null backend)
-    double snr_db = 0, ssim = 0;
+    double snr_db = 0, ssim = 0, flip = 0;
+    double mse = 0;  ///< mean squared error of R, G and B bytes
     std::uint64_t triangles = 0, full_triangles = 0;
     float accuracy = 0;
     /// Top view (Maciel's 't' view): rectangles of the drawn nodes in the XZ plane, world metres.
@@ -116,6 +131,9 @@ struct ReportSnapshot {
     double left_rad = -0.5, right_rad = 0.5;  ///< of forward: the sides of the view
     std::array<double, 4> world_xz{};         ///< min x, min z, max x, max z
 };
+
+/// Of snapshots with pictures; those without are passed over.
+PictureSummary compare_pictures(std::span<const ReportSnapshot> snapshots);
 
 /// DIR/index.html, self-contained (SVG and data-URI pictures, light and dark, no network), and DIR/ledger.csv, DIR/walk.json.
 Result<void> write_report(const std::string& dir, const WalkSummary& summary, std::span<const rt::FrameRecord> records,

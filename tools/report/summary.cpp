@@ -35,6 +35,7 @@ void count_frames(std::span<const FrameRecord* const> frames, WalkSummary& s) {
         s.own_misses += f->own_miss ? 1 : 0;
         if (f->missed) ++s.miss_causes[std::string(rt::cause_of(*f))];
         s.downgrades += f->downgraded_slices;
+        s.coarse_frames += f->downgraded_slices > 0 ? 1 : 0;
         s.floor_bound_frames += f->floor_binds ? 1 : 0;
         s.page_faults += f->minor_faults + f->major_faults;
         s.guard_violations += f->guard_violations;
@@ -82,11 +83,22 @@ void budget_figures(std::span<const FrameRecord* const> frames, std::int64_t per
     s.cost_error = quantiles(std::move(errors));
 }
 
+/// Time that could have bought detail. A frame beyond its deadline left none.
+void unused_time(std::span<const FrameRecord* const> frames, WalkSummary& s) {
+    constexpr float whole_benefit = 0.99F;
+    std::vector<double> left_ms;
+    for (const FrameRecord* f : frames)
+        if (f->benefit < whole_benefit)
+            left_ms.push_back(static_cast<double>(std::max<std::int64_t>(0, f->deadline_ns - f->rastered_ns)) * 1e-6);
+    s.unused_ms = quantiles(std::move(left_ms));
+}
+
 /// Everything that is counted up starts from zero, so that a summary can be made anew from longer records.
 void clear_counts(WalkSummary& s) {
     s.frames = s.slots = s.skipped = s.misses = s.own_misses = 0;
     s.miss_causes.clear();
-    s.downgrades = s.floor_bound_frames = s.page_faults = s.guard_violations = s.driver_faults = s.driver_allocations = 0;
+    s.downgrades = s.coarse_frames = s.floor_bound_frames = s.page_faults = s.guard_violations = s.driver_faults =
+        s.driver_allocations = 0;
     s.triangles_max = 0;
 }
 
@@ -103,6 +115,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     count_frames(frames, summary);
     accuracy_figures(frames, summary);
     budget_figures(frames, period_ns, summary);
+    unused_time(frames, summary);
     summary.rate_hz = 1e9 / static_cast<double>(period_ns);
     summary.seconds = static_cast<double>(summary.slots) * static_cast<double>(period_ns) * 1e-9;
     summary.frame_ms = quantiles_of(frames, frame_ms);
@@ -116,6 +129,31 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     summary.hidden = quantiles_of(frames, [](const FrameRecord& f) { return double(f.hidden); });
     summary.triangles_mean = quantiles_of(frames, [](const FrameRecord& f) { return static_cast<double>(f.triangles); }).mean;
     summary.switches_per_frame = quantiles_of(frames, [](const FrameRecord& f) { return double(f.switches); }).mean;
+}
+
+PictureSummary compare_pictures(std::span<const ReportSnapshot> snapshots) {
+    constexpr double white = 255;
+    const auto psnr_db = [](double mse) {
+        return mse > 0 ? std::min(max_psnr_db, 10 * std::log10(white * white / mse)) : max_psnr_db;
+    };
+    PictureSummary p;
+    double mse = 0, worst_mse = -1;
+    for (const ReportSnapshot& snapshot : snapshots) {
+        if (snapshot.walk.empty()) continue;
+        ++p.frames;
+        mse += snapshot.mse;
+        p.ssim += snapshot.ssim;
+        p.flip += snapshot.flip;
+        if (snapshot.mse <= worst_mse) continue;
+        worst_mse = snapshot.mse;
+        p.worst_frame = snapshot.frame;
+    }
+    if (p.frames == 0) return p;
+    p.psnr_db = psnr_db(mse / p.frames);
+    p.worst_psnr_db = psnr_db(worst_mse);
+    p.ssim /= p.frames;
+    p.flip /= p.frames;
+    return p;
 }
 
 }  // namespace surefoot::report

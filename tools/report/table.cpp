@@ -43,14 +43,19 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
     table.row("accuracy",
               fmt::format("mean {} /rad ({}), worst {} /rad ({})", short_number(s.accuracy_mean), accuracy_words(s.accuracy_mean),
                           short_number(s.accuracy_min), accuracy_words(s.accuracy_min)));
+    if (s.picture.frames > 0) table.row("picture", picture_words(s.picture));
+    if (s.unused_ms.max > 0)
+        table.row("unused", fmt::format("{:.1f} ms of the period (mean), {:.1f} (p99), where the benefit is below 0.99",
+                                        s.unused_ms.mean, s.unused_ms.p99));
     std::string triangles =
         fmt::format("mean {}, most {}", short_number(s.triangles_mean), short_number(static_cast<double>(s.triangles_max)));
     if (s.model_triangles > 0)
         triangles += fmt::format(" of the model's {}", short_number(static_cast<double>(s.model_triangles)));
     if (s.hidden.max > 0) triangles += fmt::format("; {:.0f} occluded nodes a frame left out", s.hidden.mean);
     table.row("triangles", triangles);
-    table.row("stability", fmt::format("{:.2f} switches a frame, {} slices drawn coarser, floor reached in {} frames",
-                                       s.switches_per_frame, s.downgrades, s.floor_bound_frames));
+    table.row("stability",
+              fmt::format("{:.2f} switches a frame, {} slices drawn coarser in {} frames, floor reached in {} frames",
+                          s.switches_per_frame, s.downgrades, s.coarse_frames, s.floor_bound_frames));
 }
 
 void real_time_rows(LabelledText& table, const WalkSummary& s) {

@@ -99,6 +99,11 @@ std::string accuracy_words(double accuracy) {
     return degrees >= 0.1 ? fmt::format("{:.2g}°", degrees) : fmt::format("{:.2g}′", degrees * 60);
 }
 
+std::string picture_words(const PictureSummary& picture) {
+    return fmt::format("PSNR {:.1f} dB (worst {:.1f}, frame {}), SSIM {:.3f}, FLIP {:.3f}; {} frames against full detail",
+                       picture.psnr_db, picture.worst_psnr_db, picture.worst_frame, picture.ssim, picture.flip, picture.frames);
+}
+
 std::string decibels(double db) {
     if (std::isfinite(db)) return fmt::format("{:.1f} dB", db);
     return db > 0 ? "∞ dB" : "undefined";

@@ -26,6 +26,8 @@ std::string input_words(const InputSummary& input);
 std::string threads_words(std::span<const rt::CensusRow> threads);
 /// The largest angular error of an accuracy: "0.24°", "3.1′"; "exact" where no error was drawn.
 std::string accuracy_words(double accuracy);
+/// Pictures against full detail; some must have been compared.
+std::string picture_words(const PictureSummary& picture);
 /// "14.2 dB", "∞ dB" for equal pictures, "undefined" where there is no signal.
 std::string decibels(double db);
 /// "2.5 %" of a share.

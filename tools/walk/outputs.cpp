@@ -52,6 +52,11 @@ Result<void> check_outputs(const WalkRequest& request) {
         return Error{"--snap " + request.snap_dir, fmt::format("The {} backend draws no pictures", request.backend),
                      fmt::format("Remove --snap or --backend {}", request.backend), ErrorKind::misuse};
     }
+    if (request.pictures > 0 && !(*backend)->draws()) {
+        return Error{fmt::format("--pictures {}", request.pictures),
+                     fmt::format("The {} backend draws no pictures", request.backend),
+                     fmt::format("Remove --pictures or --backend {}", request.backend), ErrorKind::misuse};
+    }
     const std::vector<Output> outputs = outputs_of(request);
     const std::string beside = std::filesystem::path(request.model_file).replace_extension(".path.csv").string();
     const std::string costs = cost_table_file(state_directory(request.state_dir));

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "render/image/image.hpp"
+#include "render/measure/flip.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "rt/base/check.hpp"
 
@@ -90,7 +91,10 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     if (!reference) return reference.error();
     out.width = walk->width;
     out.height = walk->height;
-    out.snr_db = measure::snr(walk->rgba, reference->rgba).db;
+    const measure::Snr snr = measure::snr(walk->rgba, reference->rgba);
+    out.snr_db = snr.db;
+    out.mse = snr.mse;
+    out.flip = measure::flip(walk->rgba, reference->rgba, walk->width, walk->height);
     out.ssim = measure::ssim(walk->rgba, reference->rgba, walk->width, walk->height);
     out.difference = measure::difference_image(walk->rgba, reference->rgba);
     out.walk = std::move(walk->rgba);

@@ -40,6 +40,8 @@ struct WalkRequest : config::Settings {
     double control_block_s = 2.0;
     std::string ledger_file, trace_file, report_dir, snap_dir;
     std::uint64_t snap_every = 0;
+    std::uint32_t pictures =
+        0;  ///< frames to compare with full detail after the walk; 0: as many as a report shows, if there is one
     std::string capture_file;  ///< one frame's prepared arrays and cut, for `surefoot replay`
     std::uint64_t capture_frame = 0;
 };

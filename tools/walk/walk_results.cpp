@@ -55,22 +55,27 @@ Result<void> write_capture(const WalkRequest& request, const KeptFrame& kept, co
     return capture::write_capture(request.capture_file, capture_of(kept, request, engine));
 }
 
-Result<void> write_report_pages(const WalkRequest& request, Engine& engine, const SnapshotStore& snapshots, WalkOutcome& outcome,
-                                const Progress& progress) {
+/// How many pictures are compared with full detail.
+std::uint64_t pictures_wanted(const WalkRequest& request) {
+    constexpr std::uint64_t on_a_page = 7;
+    return request.pictures > 0 ? request.pictures : request.report_dir.empty() ? 0 : on_a_page;
+}
+
+/// Draws the wanted snapshots and full detail, and compares. Stopped: fewer are better than none.
+Result<std::vector<report::ReportSnapshot>> render_snapshots(const WalkRequest& request, Engine& engine,
+                                                             const SnapshotStore& snapshots, const Progress& progress) {
     std::vector<report::ReportSnapshot> rendered;
-    // Snapshots may be many: the page shows at most seven of them, evenly spread.
-    const std::size_t step = std::max<std::size_t>(1, (snapshots.used() + 6) / 7);
-    for (std::size_t i = 0; i < snapshots.used(); i += step) {
-        if (progress.stopped() || outcome.lost) break;  // a shorter page is better than none
+    const std::uint64_t wanted = pictures_wanted(request);
+    if (wanted == 0) return rendered;
+    // Snapshots may be many: those that are used are evenly spread.
+    const std::size_t step = std::max<std::size_t>(1, (snapshots.used() + wanted - 1) / wanted);
+    for (std::size_t i = 0; i < snapshots.used() && !progress.stopped(); i += step) {
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(snapshots.used()));
         auto snapshot = render_snapshot(engine, snapshots.snapshots()[i]);
         if (!snapshot) return snapshot.error();
         rendered.push_back(std::move(*snapshot));
     }
-    auto written = report::write_report(request.report_dir, outcome.summary, outcome.records, rendered);
-    if (!written) return written;
-    outcome.report_page = request.report_dir + "/index.html";
-    return {};
+    return rendered;
 }
 
 }  // namespace
@@ -90,15 +95,18 @@ void take_census(const PlacingPlan& plan, WalkFacts& facts) {
 
 SnapshotStore make_snapshot_store(const WalkRequest& request, std::uint64_t frames, std::size_t max_items,
                                   std::vector<std::string>& notes) {
-    const bool page_only = request.snap_every == 0;
-    if (page_only && request.report_dir.empty()) return {0, 0, 0};
-    const std::uint64_t every = page_only ? std::max<std::uint64_t>(1, frames / 6) : request.snap_every;
-    const std::uint64_t wanted = page_only ? 7 : (frames - 1) / every + 1;
+    const bool for_pictures = request.snap_every == 0;
+    const std::uint64_t pictures = pictures_wanted(request);
+    if (for_pictures && pictures == 0) return {0, 0, 0};
+    const std::uint64_t spread = std::max<std::uint64_t>(1, (frames - 1) / std::max<std::uint64_t>(1, pictures - 1));
+    const std::uint64_t every = for_pictures ? spread : request.snap_every;
+    const std::uint64_t wanted = for_pictures ? pictures : (frames - 1) / every + 1;
     const std::uint64_t fit = snapshots_that_fit(max_items);
     if (wanted > fit) {
         notes.push_back(
-            fmt::format("--snap: {} of {} pictures are kept, because no more fit in {} MiB of memory. Take fewer with --every {}",
-                        fit, wanted, snapshot_memory_bytes >> 20U, (frames - 1) / fit + 1));
+            fmt::format("{}: {} of {} pictures are kept, because no more fit in {} MiB of memory. Take fewer with {}",
+                        for_pictures ? "--pictures" : "--snap", fit, wanted, snapshot_memory_bytes >> 20U,
+                        for_pictures ? fmt::format("--pictures {}", fit) : fmt::format("--every {}", (frames - 1) / fit + 1)));
     }
     return {every, static_cast<std::size_t>(std::min(wanted, fit)), max_items};
 }
@@ -113,7 +121,20 @@ void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& en
     put(request.trace_file, [&] { return report::write_trace(request.trace_file, outcome.records); });
     put(request.capture_file, [&] { return write_capture(request, kept, engine); });
     if (!outcome.lost) put(request.snap_dir, [&] { return write_snaps(engine, snapshots, request.snap_dir, progress); });
-    put(request.report_dir, [&] { return write_report_pages(request, engine, snapshots, outcome, progress); });
+    std::vector<report::ReportSnapshot> rendered;
+    if (!outcome.lost) {
+        if (auto drawn = render_snapshots(request, engine, snapshots, progress); drawn)
+            rendered = std::move(*drawn);
+        else
+            outcome.failures.push_back(drawn.error());
+    }
+    outcome.summary.picture = report::compare_pictures(rendered);
+    put(request.report_dir, [&]() -> Result<void> {
+        if (auto written = report::write_report(request.report_dir, outcome.summary, outcome.records, rendered); !written)
+            return written;
+        outcome.report_page = request.report_dir + "/index.html";
+        return {};
+    });
 }
 
 }  // namespace surefoot::walk

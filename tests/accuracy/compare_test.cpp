@@ -1,0 +1,103 @@
+// Comparing selectors: who walks when, medians and sums, and what JSON and table print.
+#include "tools/accuracy/compare.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace surefoot::accuracy {
+namespace {
+
+/// Walks that never ran: each has a PSNR of its number.
+struct FakeWalks {
+    std::vector<std::string> walked;
+    std::vector<double> psnr_db;
+    std::uint32_t pictures = 7;
+
+    [[nodiscard]] Result<walk::WalkOutcome> operator()(const walk::WalkRequest& request) {
+        const std::size_t number = walked.size();
+        walked.push_back(request.selector);
+        walk::WalkOutcome outcome;
+        report::WalkSummary& s = outcome.summary;
+        s.model = "m.walk";
+        s.frames = 100;
+        s.misses = number;
+        s.accuracy_mean = request.selector == "flat" ? std::numeric_limits<double>::infinity() : 5;
+        s.frame_ms.p99 = 10 + static_cast<double>(number);
+        s.picture.frames = pictures;
+        s.picture.psnr_db = psnr_db.at(number);
+        return outcome;
+    }
+};
+
+CompareRequest request_of(std::vector<std::string> selectors, std::uint32_t rounds) {
+    CompareRequest request;
+    request.walk.model_file = "m.walk";
+    request.selectors = std::move(selectors);
+    request.rounds = rounds;
+    return request;
+}
+
+Result<Comparison> compare(FakeWalks& walks, const CompareRequest& request, const Progress& progress = {}) {
+    return compare_selectors(
+        request, [&](const walk::WalkRequest& one, const Progress&) { return walks(one); }, progress);
+}
+
+TEST(Compare, SelectorsWalkInTurnsAndMediansAreOfTheRounds) {
+    FakeWalks walks{{}, {20, 40, 30, 41, 22, 90}};
+    const auto c = compare(walks, request_of({"two-stage", "flat"}, 3));
+    ASSERT_TRUE(c.ok());
+    EXPECT_EQ(walks.walked, (std::vector<std::string>{"two-stage", "flat", "two-stage", "flat", "two-stage", "flat"}));
+    ASSERT_EQ(c->selectors.size(), 2U);
+    EXPECT_EQ(c->selectors[0].selector, "two-stage");
+    EXPECT_EQ(c->selectors[0].psnr_db, 22);
+    EXPECT_EQ(c->selectors[0].min_psnr_db, 20);
+    EXPECT_EQ(c->selectors[0].max_psnr_db, 30);
+    EXPECT_EQ(c->selectors[0].frames, 300U);
+    EXPECT_EQ(c->selectors[0].misses, 0U + 2U + 4U);
+    EXPECT_EQ(c->selectors[1].psnr_db, 41);
+    EXPECT_TRUE(std::isinf(c->selectors[1].accuracy_mean)) << "exact in every round";
+}
+
+TEST(Compare, AnEvenNumberOfRoundsHasTheMeanOfTheMiddles) {
+    FakeWalks walks{{}, {20, 30}};
+    const auto c = compare(walks, request_of({"two-stage"}, 2));
+    ASSERT_TRUE(c.ok());
+    EXPECT_EQ(c->selectors[0].psnr_db, 25);
+    EXPECT_EQ(c->selectors[0].frame_ms_p99, 10.5);
+}
+
+TEST(Compare, JsonIsValidWhereAFigureIsInfiniteAndTheTableSaysExact) {
+    FakeWalks walks{{}, {20}};
+    const auto c = compare(walks, request_of({"flat"}, 1));
+    ASSERT_TRUE(c.ok());
+    const auto json = nlohmann::json::parse(compare_json(*c));
+    EXPECT_EQ(json["selectors"][0]["selector"], "flat");
+    EXPECT_EQ(json["selectors"][0]["psnr_db"], 20);
+    EXPECT_TRUE(json["selectors"][0]["accuracy"]["mean"].is_null());
+    const std::string table = compare_table(*c);
+    EXPECT_NE(table.find("exact"), std::string::npos) << table;
+    for (std::size_t begin = 0; begin < table.size(); begin = table.find('\n', begin) + 1)
+        EXPECT_LE(table.find('\n', begin) - begin, 100U) << table;
+}
+
+TEST(Compare, AWalkWithoutPicturesAndAStopAreErrors) {
+    FakeWalks walks{{}, {20, 20}};
+    walks.pictures = 0;
+    const auto none = compare(walks, request_of({"flat"}, 1));
+    ASSERT_FALSE(none.ok());
+    EXPECT_NE(none.error().text().find("--seconds"), std::string::npos) << none.error().text();
+    walks.pictures = 1;
+    const std::atomic<bool> stop{true};
+    const auto stopped = compare(walks, request_of({"flat", "two-stage"}, 1), {.report = {}, .stop = &stop, .notify = {}});
+    ASSERT_FALSE(stopped.ok());
+    EXPECT_EQ(stopped.error().kind, ErrorKind::stopped);
+    EXPECT_EQ(walks.walked.size(), 2U) << "nothing walks after a stop";
+}
+
+}  // namespace
+}  // namespace surefoot::accuracy

@@ -1,0 +1,167 @@
+// Selectors side by side: the same walk by each in turn, its pictures against full detail, and its times.
+#include "tools/accuracy/compare.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/report/rounded.hpp"
+#include "tools/report/terminal.hpp"
+
+namespace surefoot::accuracy {
+
+namespace {
+
+using Summaries = std::vector<report::WalkSummary>;  // of one selector, a round each
+
+template <class Figure>
+std::vector<double> all_of(const Summaries& rounds, Figure figure) {
+    std::vector<double> values;
+    for (const report::WalkSummary& s : rounds) values.push_back(figure(s));
+    return values;
+}
+
+/// The middle; of an even number the mean of the two middles, or the lower one where the upper is infinite.
+double median_of(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const double lower = values[(values.size() - 1) / 2], upper = values[values.size() / 2];
+    return std::isfinite(upper) ? (lower + upper) / 2 : lower;
+}
+
+ComparedSelector medians(const std::string& selector, const Summaries& rounds) {
+    const auto median = [&](auto figure) { return median_of(all_of(rounds, figure)); };
+    ComparedSelector c;
+    c.selector = selector;
+    const auto psnr = [](const report::WalkSummary& s) { return s.picture.psnr_db; };
+    c.psnr_db = median(psnr);
+    const std::vector<double> of_rounds = all_of(rounds, psnr);
+    c.min_psnr_db = *std::min_element(of_rounds.begin(), of_rounds.end());
+    c.max_psnr_db = *std::max_element(of_rounds.begin(), of_rounds.end());
+    c.worst_psnr_db = median([](const auto& s) { return s.picture.worst_psnr_db; });
+    c.ssim = median([](const auto& s) { return s.picture.ssim; });
+    c.flip = median([](const auto& s) { return s.picture.flip; });
+    c.accuracy_mean = median([](const auto& s) { return s.accuracy_mean; });
+    c.accuracy_min = median([](const auto& s) { return s.accuracy_min; });
+    c.frame_ms_p50 = median([](const auto& s) { return s.frame_ms.p50; });
+    c.frame_ms_p99 = median([](const auto& s) { return s.frame_ms.p99; });
+    c.unused_ms = median([](const auto& s) { return s.unused_ms.mean; });
+    c.switches_per_frame = median([](const auto& s) { return s.switches_per_frame; });
+    for (const report::WalkSummary& s : rounds) {
+        c.frames += s.frames;
+        c.misses += s.misses;
+        c.coarse_frames += s.coarse_frames;
+    }
+    return c;
+}
+
+/// Where walk `number` of `count` stands in the whole.
+Progress part_of(const Progress& progress, const std::string& selector, double number, double count) {
+    Progress part = progress;
+    if (progress.report)
+        part.report = [&progress, selector, number, count](std::string_view, double share) {
+            progress.update(selector, (number + share) / count);
+        };
+    return part;
+}
+
+}  // namespace
+
+Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const Progress& progress) {
+    std::vector<Summaries> rounds(request.selectors.size());
+    const auto count = static_cast<double>(request.selectors.size() * request.rounds);
+    double number = 0;
+    for (std::uint32_t round = 0; round < request.rounds; ++round) {
+        for (std::size_t i = 0; i < request.selectors.size(); ++i) {
+            walk::WalkRequest one = request.walk;
+            one.selector = request.selectors[i];
+            auto outcome = run_walk(one, part_of(progress, one.selector, number++, count));
+            if (!outcome) return outcome.error();
+            if (outcome->stopped || progress.stopped())
+                return Error{one.model_file, "The comparison was stopped by the user", "", ErrorKind::stopped};
+            if (!outcome->failures.empty()) return outcome->failures.front();
+            if (outcome->summary.picture.frames == 0)
+                return Error{one.model_file, "The walk is too short: no frame was compared", "Walk longer with --seconds",
+                             ErrorKind::misuse};
+            rounds[i].push_back(std::move(outcome->summary));
+        }
+    }
+    Comparison c;
+    const report::WalkSummary& first = rounds.front().front();
+    c.model = first.model;
+    c.path = first.path;
+    c.renderer = first.renderer;
+    c.machine = first.machine;
+    c.uncalibrated = first.uncalibrated;
+    c.width = first.width;
+    c.height = first.height;
+    c.rate_hz = first.rate_hz;
+    c.budget_ms = first.budget_ms;
+    c.rounds = request.rounds;
+    c.pictures = first.picture.frames;
+    for (std::size_t i = 0; i < rounds.size(); ++i) c.selectors.push_back(medians(request.selectors[i], rounds[i]));
+    return c;
+}
+
+std::string compare_json(const Comparison& c) {
+    using report::rounded;
+    using Json = nlohmann::ordered_json;
+    Json selectors = Json::array();
+    for (const ComparedSelector& s : c.selectors)
+        selectors.push_back({{"selector", s.selector},
+                             {"psnr_db", rounded(s.psnr_db)},
+                             {"psnr_db_rounds", {{"min", rounded(s.min_psnr_db)}, {"max", rounded(s.max_psnr_db)}}},
+                             {"worst_psnr_db", rounded(s.worst_psnr_db)},
+                             {"ssim", rounded(s.ssim)},
+                             {"flip", rounded(s.flip)},
+                             {"accuracy", {{"mean", rounded(s.accuracy_mean)}, {"min", rounded(s.accuracy_min)}}},
+                             {"frame_ms", {{"p50", rounded(s.frame_ms_p50)}, {"p99", rounded(s.frame_ms_p99)}}},
+                             {"unused_ms", rounded(s.unused_ms)},
+                             {"switches_per_frame", rounded(s.switches_per_frame)},
+                             {"frames", s.frames},
+                             {"misses", s.misses},
+                             {"coarse_frames", s.coarse_frames}});
+    const Json json = {{"model", c.model},
+                       {"path", c.path},
+                       {"renderer", c.renderer},
+                       {"machine", c.machine},
+                       {"calibrated", c.uncalibrated.empty()},
+                       {"width", c.width},
+                       {"height", c.height},
+                       {"rate_hz", rounded(c.rate_hz)},
+                       {"budget_ms", rounded(c.budget_ms)},
+                       {"rounds", c.rounds},
+                       {"pictures", c.pictures},
+                       {"selectors", selectors}};
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string compare_table(const Comparison& c) {
+    std::string out =
+        fmt::format("{}, {}x{} at {:.4g} Hz, budget {:.1f} ms: {} pictures of a walk, {} {}\n", c.model, c.width, c.height,
+                    c.rate_hz, c.budget_ms, c.pictures, c.rounds, c.rounds == 1 ? "round" : "rounds, medians");
+    const report::Columns columns({{"selector", 18},
+                                   {"PSNR dB", -8},
+                                   {"worst", -6},
+                                   {"SSIM", -6},
+                                   {"FLIP", -6},
+                                   {"accuracy", -9},
+                                   {"p50 ms", -7},
+                                   {"p99 ms", -7},
+                                   {"unused", -7},
+                                   {"switches", -9},
+                                   {"misses", -7}});
+    out += columns.heading() + "\n";
+    const auto text = [](double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); };
+    for (const ComparedSelector& s : c.selectors)
+        out += columns.row({s.selector, text(s.psnr_db, 2), text(s.worst_psnr_db, 1), text(s.ssim, 3), text(s.flip, 3),
+                            std::isfinite(s.accuracy_mean) ? text(s.accuracy_mean, 1) : "exact", text(s.frame_ms_p50, 1),
+                            text(s.frame_ms_p99, 1), text(s.unused_ms, 1), text(s.switches_per_frame, 2),
+                            std::to_string(s.misses)}) +
+               "\n";
+    return out;
+}
+
+}  // namespace surefoot::accuracy

@@ -1,0 +1,48 @@
+// Selectors side by side: the same walk by each in turn, its pictures against full detail, and its times.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "rt/base/progress.hpp"
+#include "rt/base/result.hpp"
+#include "tools/walk/walk.hpp"
+
+namespace surefoot::accuracy {
+
+struct CompareRequest {
+    walk::WalkRequest walk;              ///< its selector is replaced; pictures > 0
+    std::vector<std::string> selectors;  ///< names of the registry; at least one
+    std::uint32_t rounds = 1;            ///< all selectors walk in turns, so often
+};
+
+/// Medians over the rounds, and sums where said.
+struct ComparedSelector {
+    std::string selector;
+    double psnr_db = 0, worst_psnr_db = 0, ssim = 0, flip = 0;
+    double min_psnr_db = 0, max_psnr_db = 0;     ///< of the rounds: the spread
+    double accuracy_mean = 0, accuracy_min = 0;  ///< rad^-1; infinite: exact
+    double frame_ms_p50 = 0, frame_ms_p99 = 0, unused_ms = 0, switches_per_frame = 0;
+    std::uint64_t frames = 0, misses = 0, coarse_frames = 0;  ///< sums
+};
+
+struct Comparison {
+    std::string model, path, renderer, machine, uncalibrated;
+    std::uint32_t width = 0, height = 0, rounds = 0, pictures = 0;
+    double rate_hz = 0, budget_ms = 0;
+    std::vector<ComparedSelector> selectors;  ///< in the order of the request
+};
+
+/// How a walk is run: walk::run_walk, or a test's stand-in.
+using RunWalk = std::function<Result<walk::WalkOutcome>(const walk::WalkRequest&, const Progress&)>;
+
+/// Errors: of a walk; stopped by the user; a walk that compared no picture.
+Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const Progress& progress);
+
+std::string compare_json(const Comparison& comparison);
+/// At most 100 columns; a line a selector, after a line that says what was walked.
+std::string compare_table(const Comparison& comparison);
+
+}  // namespace surefoot::accuracy

@@ -1,0 +1,92 @@
+// surefoot compare: the same walk by every selector, with pictures against full detail and times, as a table.
+#include <fmt/format.h>
+
+#include "render/gl/backends.hpp"
+#include "render/select/registry.hpp"
+#include "tools/accuracy/compare.hpp"
+#include "tools/accuracy/sweep.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
+#include "tools/cli/walk_settings.hpp"
+#include "tools/walk/settings_request.hpp"
+
+namespace surefoot::cli {
+
+namespace {
+
+struct CompareArguments {
+    accuracy::CompareRequest request;
+    std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
+    bool json = false;
+};
+
+int run_compare_command(CompareArguments& a, const Context& context) {
+    auto read = read_settings(*a.settings);
+    if (!read) return misuse(read.error());
+    if (auto ok = config::check(*read); !ok) return misuse(ok.error());
+    walk::WalkRequest& r = a.request.walk;
+    walk::apply_settings(*read, r);
+    if (r.frames > 0 && r.seconds > 0)
+        return misuse({"--seconds", "--seconds and --frames both set the length", "Remove one of them", ErrorKind::misuse});
+    if (auto ok = walk::check_request(r); !ok) return misuse(ok.error());
+    walk::prepare_process(r);
+    auto comparison = accuracy::compare_selectors(
+        a.request, [](const walk::WalkRequest& one, const Progress& progress) { return walk::run_walk(one, progress, {}); },
+        terminal_progress(context));
+    end_progress(context);
+    if (!comparison) return fail(comparison.error());
+    if (!comparison->uncalibrated.empty()) notify("uncalibrated: " + comparison->uncalibrated);
+    fmt::print("{}", a.json ? accuracy::compare_json(*comparison) : accuracy::compare_table(*comparison));
+    return exit_success;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Context& context) {
+    auto a = std::make_shared<CompareArguments>();
+    CLI::App* c =
+        add_command(app, "compare", "Compare selectors by the pictures and times of one walk",
+                    "surefoot compare town.walk --seconds 20 --rounds 3\n\n"
+                    "Selectors walk in turns. After each walk, frames are drawn again and in full detail: PSNR is pooled over\n"
+                    "them, SSIM and FLIP are means. `unused` is the mean time left, in ms, where the benefit is below 0.99.",
+                    a->json);
+    walk::WalkRequest& r = a->request.walk;
+    r.pictures = 7;
+    a->request.selectors = accuracy::compared_selectors();
+    c->add_option("model", r.model_file, "The .walk model")->required();
+    c->add_option("--path", r.path_file, "CSV file of poses over time (else MODEL.path.csv, else a tour)");
+    c->add_option("--selector", a->request.selectors, "Selectors to compare")
+        ->check(one_of(select::selector_names()))
+        ->capture_default_str();
+    c->add_option("--seconds", r.seconds, "Length of each walk in seconds (else as the path is long)")
+        ->check(number_within(0.001, 1e6, "s"));
+    c->add_option("--frames", r.frames, "Length of each walk in frames, instead of --seconds")
+        ->check(whole_number_within(1, 4'000'000));
+    c->add_option("--pictures", r.pictures, "Number of frames of a walk that are compared with full detail, evenly spread")
+        ->check(whole_number_within(1, 100))
+        ->capture_default_str();
+    c->add_option("--rounds", a->request.rounds, "Number of walks by each selector, in turns; medians are printed")
+        ->check(whole_number_within(1, 100))
+        ->capture_default_str();
+    c->add_option("--size", a->settings->size, "Size of the picture in pixels [1280x720]");
+    for (const auto& [flag, key] : std::initializer_list<std::pair<const char*, const char*>>{{"--lift", "lift_m"},
+                                                                                              {"--rate", "rate_hz"},
+                                                                                              {"--budget", "budget_ms"},
+                                                                                              {"--late", "late"},
+                                                                                              {"--clock", "clock"},
+                                                                                              {"--workers", "workers"},
+                                                                                              {"--rasterisers", "rasterisers"}})
+        add_setting(c, a->settings, flag, key);
+    c->add_flag("--no-fifo", a->settings->no_fifo, "Ordinary scheduling (the figures are marked)");
+    c->add_option_function<std::string>(
+         "--backend",
+         [settings = a->settings](const std::string& text) {
+             settings->values.push_back({"--backend", "backend", text});
+         },
+         "Backend that draws: " + gl::drawing_backends() + " [" + std::string(gl::usual_backend) + "]")
+        ->check(drawing_backend());
+    c->add_option("--state", r.state_dir, "Folder of the calibrated cost table");
+    c->callback([&context, a] { context.run = [a, &context] { return run_compare_command(*a, context); }; });
+}
+
+}  // namespace surefoot::cli
