@@ -101,7 +101,7 @@ std::string check_legal(const prepare::PreparedFrame& prepared, const Cut& cut);
 // ---- slices: subtree by subtree, each with a coarser stand-in ----
 
 /// Items that are submitted together: [first_item, +item_count) of SlicePlan::order. Or instead their stand-ins:
-/// [first_stand_in, +stand_in_count) of SlicePlan::stand_ins, the coarsest legal forms that show the same leaves.
+/// [first_stand_in, +stand_in_count) of SlicePlan::stand_ins, the cheapest forms of the same leaves that are no finer.
 struct Slice {
     std::uint32_t first_item = 0, item_count = 0;
     std::uint32_t first_stand_in = 0, stand_in_count = 0;
