@@ -12,6 +12,7 @@
 
 namespace surefoot::accuracy {
 
+/// What is walked, by whom, and how often.
 struct CompareRequest {
     walk::WalkRequest walk;              ///< its selector is replaced; pictures > 0
     std::vector<std::string> selectors;  ///< names of the registry; at least one
@@ -28,6 +29,7 @@ struct ComparedSelector {
     std::uint64_t frames = 0, misses = 0, coarse_frames = 0;  ///< sums
 };
 
+/// All that `surefoot compare` prints.
 struct Comparison {
     std::string model, path, renderer, machine, uncalibrated;
     std::uint32_t width = 0, height = 0, rounds = 0, pictures = 0;
