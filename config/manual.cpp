@@ -87,9 +87,8 @@ ManualPage settings_manual(const Schema& schema) {
                              {}});
     ManualSection keys{"KEYS", "", {}};
     for (const Entry& entry : schema.entries()) {
-        std::string text =
-            fmt::format("{}\n{}{}. Default: {}.", sentence(entry.help),
-                        entry.kind == Kind::flag ? "" : "Allowed: ", allowed(entry), value_text(schema.defaults(), entry));
+        std::string text = fmt::format("{}\nAllowed: {}. Default: {}.", sentence(entry.help), allowed(entry),
+                                       value_text(schema.defaults(), entry));
         for (const Named& choice : entry.choices) text += fmt::format("\n  {:<17} {}", choice.name, choice.help);
         keys.items.push_back({std::string(entry.key), std::move(text)});
     }

@@ -38,7 +38,8 @@ constexpr Entry file_name(string_view key, string_view help, std::string S::*mem
 
 std::vector<Entry> make_entries(const Registry& selectors, const Registry& backends) {
     std::vector<Entry> entries = {
-        file_name("model", "The .walk model. Relative file names are relative to this file's folder.", &S::model_file),
+        file_name("model", "The .walk model, relative to this file's folder; \"\": none, so the command line must name one.",
+                  &S::model_file),
         file_name(
             "path",
             "CSV file of poses over time; \"\": MODEL.path.csv, else a tour. An input starts there and uses its viewpoints.",

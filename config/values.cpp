@@ -231,7 +231,7 @@ std::string value_text(const Settings& settings, const Entry& entry) {
 std::string commented_defaults(const Schema& schema) {
     std::string text = "# Surefoot settings. Every line shows a default; take away the '#' to change it.\n";
     for (const Entry& entry : schema.entries()) {
-        text += fmt::format("\n# {} {}{}.\n", entry.help, entry.kind == Kind::flag ? "" : "Allowed: ", allowed(entry));
+        text += fmt::format("\n# {} Allowed: {}.\n", entry.help, allowed(entry));
         for (const Named& choice : entry.choices) text += fmt::format("#   {:<17} {}\n", choice.name, choice.help);
         text += fmt::format("# {} = {}\n", entry.key, value_text(schema.defaults(), entry));
     }

@@ -72,16 +72,17 @@ inline Error unknown_command(const CLI::App& program, const Command& command, st
             nearest.empty() ? see_help(program, command) : fmt::format("Did you mean '{}'?", nearest), ErrorKind::misuse};
 }
 
-/// The first word that no command takes, if there is one.
+/// The first word that no command takes, if there is one. After "--", the outer commands keep what the innermost does not take.
 inline std::optional<Error> superfluous_word(const CLI::App& program, const std::vector<Command>& commands,
                                              std::string_view hidden_group) {
     for (const Command& command : commands) {
         for (const std::string& word : command.app->remaining()) {
             if (word == "--") continue;
             if (is_option(word)) return unknown_option(program, command, word, hidden_group);
-            if (!commands_of(*command.app).empty()) return unknown_command(program, command, word);
-            return Error{command.words, fmt::format("The argument '{}' is superfluous", word),
-                         "Remove it, or s" + see_help(program, command).substr(1), ErrorKind::misuse};
+            const Command& innermost = commands.back();
+            if (&command == &innermost && !commands_of(*command.app).empty()) return unknown_command(program, command, word);
+            return Error{innermost.words, fmt::format("The argument '{}' is superfluous", word),
+                         "Remove it, or s" + see_help(program, innermost).substr(1), ErrorKind::misuse};
         }
     }
     return std::nullopt;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "render/drawn_items.hpp"
 #include "render/effects/effects.hpp"
 #include "render/model/pixels.hpp"
 #include "render/model/view.hpp"
@@ -189,12 +190,11 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
     const std::size_t first = drawn.size();
     model::ItemCost cost;
     for (const select::CutItem& item : items) {
-        if (!CHECK_RARE(drawn.size() < drawn.capacity(), "A cut and its stand-ins are at most twice the candidates")) break;
         if (!model::visible(frustum, model.nodes[item.node].box)) {
             ++report.culled;
             continue;
         }
-        drawn.push_back({item.node, item.rep});
+        if (!push_within(drawn, {item.node, item.rep})) break;
         const prepare::Choice& choice = prepared->choices[item.choice];
         cost += choice.cost;
         report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);

@@ -32,6 +32,11 @@ expect 2 '--scale.*0.* 0.001 to' selftest --hard --scale 0
 expect 2 "The option '--no-such-option' is unknown" --no-such-option
 expect 2 "no command 'wlak'. Did you mean 'walk'" wlak f.walk
 expect 2 "There is no command 'xyzzy'" xyzzy
+expect 2 "^surefoot: walk: The argument 'g.walk' is superfluous" walk f.walk -- g.walk
+expect 2 "^surefoot: devices: There is no command 'lst'. Did you mean 'list'" devices lst
+expect 2 '^surefoot: --rate: .*value is missing' walk f.walk --rate
+expect 2 '^surefoot: --json: .*takes no value' walk f.walk --json=maybe
+expect 2 '^surefoot: --rate: .*given 2 times' walk f.walk --rate 30 --rate 60
 expect 2 'Required|required' bake f.glb
 expect 2 'one of|selector' walk f.walk --selector best
 expect 2 'size' walk f.walk --size big
@@ -173,6 +178,9 @@ if command -v groff >/dev/null; then
   done
 fi
 expect 1 '/dev/null/man: The folder cannot be made' manual -o /dev/null/man
+expect 1 "-o '': The folder cannot be made" manual -o ''
+grep -nE '[a-z")]\.\.( |$)' man/* && complain "a sentence of the manual ends with two full stops"
+grep -qx 'surefoot devices list \[OPTION\]\.\.\.' man/surefoot-devices-list.1 || complain "the synopsis of devices list is not what a user types"
 
 # Figures and forms.
 json inspect f.walk --tree

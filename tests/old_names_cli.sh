@@ -5,7 +5,8 @@
 set -u
 surefoot=$(realpath "$1") sources=$(realpath "$2")
 source "$sources/tests/contract.sh"
-by_name='is called .* now|is no longer there'
+# What follows a refused name: the new one or what to do instead, and a remedy. tests/config/wrong_use_test.cpp holds it against the messages.
+by_name="(is now '[^']+'|was removed)[.] [A-Z]"
 
 # What the tool takes today, in the list's form.
 options_of() { "$surefoot" $1 --help | grep -oE '^ +(-[a-z],)?--[a-z][a-z-]*' | grep -oE -e '--[a-z-]+' | grep -vx -e --help | sed "s/^/$1 /"; }
@@ -26,19 +27,30 @@ while read -r name; do
   case $name in
     'key '*)
       printf '%s = 1\n' "${name#key }" >old.toml
-      expect 1 "old.toml:1: '${name#key }' ($by_name)" config old.toml --check
-      expect 2 "old.toml:1: '${name#key }' ($by_name)" walk f.walk --config old.toml ;;
+      expect 1 "old.toml:1: The name '${name#key }' $by_name" config old.toml --check
+      expect 2 "old.toml:1: The name '${name#key }' $by_name" walk f.walk --config old.toml ;;
     *' hidden') # taken, and not shown
-      timeout 100 "$surefoot" ${name% hidden} 1 >out 2>err
-      grep -q 'not expected' err && complain "'${name% hidden}' is not taken, and not refused by name: $(cat err)" ;;
-    *) expect 2 "'--[a-z-]+' ($by_name)" $name 1 ;;
+      expect 2 . ${name% hidden} 1
+      grep -q 'is unknown' err && complain "'${name% hidden}' is not taken, and not refused by name: $(cat err)" ;;
+    *) expect 2 "The name '--[a-z-]+' $by_name" $name 1 ;;
   esac
 done <known
 
-# The script for the tests has options of its own.
-for old in --matrix --release-only; do
-  "$sources/tools/test" $old >out 2>err; got=$?
-  [ $got -eq 2 ] || complain "exit $got, not 2: tools/test $old"
-  grep -qE "'$old' is called '--[a-z -]+' now" err || complain "tools/test $old says '$(head -c 300 err)'"
+# The script for the tests has options of its own. A wrong word is named, with those that it may be.
+# refused PATTERN WORD...: exit 2, and one line that matches PATTERN
+refused() {
+  local pattern=$1; shift
+  timeout 100 "$sources/tools/test" "$@" >out 2>err; local got=$?
+  [ $got -eq 2 ] || complain "exit $got, not 2: tools/test $*"
+  [ "$(wc -l <err)" -eq 1 ] && grep -qE "$pattern" err || complain "tools/test $* says '$(head -c 300 err)'"
+}
+for old in --matrix --release-only; do refused "'$old' is called '--[a-z -]+' now" $old; done
+refused "'--nihgtly' is no option.*--nightly" --nihgtly
+refused "'extra' is superfluous" --quick extra
+refused "no part of the night is named 'fuzers'.* fuzzers " --nightly slow fuzers
+for words in --help '--nightly --help' '--nightly slow -h'; do
+  timeout 100 "$sources/tools/test" $words >out 2>err; got=$?
+  [ $got -eq 0 ] || complain "exit $got of tools/test $words"
+  grep -q '^Usage: tools/test' out || complain "tools/test $words shows no help"
 done
 verdict "old names"

@@ -73,8 +73,10 @@ Cause blame(const FrameRecord& record, const BlameLimits& limits) {
 
 bool is_own_miss(const FrameRecord& record, const BlameLimits& limits) {
     if (!record.missed) return false;
-    const bool not_our_wake = limits.fifo || record.continued > 0;
-    const std::int64_t taken_ns = record.stolen_ns + (not_our_wake ? wake_lateness_ns(record) : 0);
+    // A stop is a gap. If the thread was also switched out against its will, the whole gap counts as preempted.
+    const bool stopped = record.continued > 0;
+    const std::int64_t gap_ns = record.stolen_ns + (stopped ? record.preempted_ns : 0);
+    const std::int64_t taken_ns = gap_ns + (limits.fifo || stopped ? wake_lateness_ns(record) : 0);
     return record.presented_ns - taken_ns > record.deadline_ns;
 }
 

@@ -28,7 +28,8 @@ struct BlameLimits {
 /// furthest over its share. If no single cause qualifies: the largest excess over a share.
 Cause blame(const FrameRecord& record, const BlameLimits& limits);
 
-/// Whether the frame is late even without stolen time: stolen_ns, and a late wake-up under FIFO.
+/// Whether the frame is late even without stolen time: stolen_ns, and a late wake-up under FIFO. After a stop of the process:
+/// every gap, and a late wake-up under any policy.
 bool is_own_miss(const FrameRecord& record, const BlameLimits& limits);
 
 }  // namespace surefoot::rt

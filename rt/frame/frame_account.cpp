@@ -58,7 +58,15 @@ void FrameAccount::own_done(FrameRecord& record) {
 }
 
 void FrameAccount::driver_done(FrameRecord& record) {
-    record.presented_ns = clock_.now_ns();
+    // Read until no stop falls between the two: a stop is counted in the frame that it makes late. One that comes later makes the
+    // next frame wake late, and is counted there.
+    std::uint32_t continued = 0;
+    do {
+        continued = continues();
+        record.presented_ns = clock_.now_ns();
+    } while (continues() != continued);
+    record.continued = continued - continued_before_;
+    continued_before_ = continued;
     ended_ = clock_.usage();
     if (record.submitted_ns == 0) record.submitted_ns = record.presented_ns;
     if (record.rastered_ns == 0) record.rastered_ns = record.presented_ns;
@@ -97,10 +105,6 @@ void FrameAccount::close(FrameRecord& record) {
     record.major_faults = small(between.major_faults + own.major_faults);
     record.driver_faults = small(driver.minor_faults + driver.major_faults);
     before_ = ended_;
-
-    const std::uint32_t continued = continues();
-    record.continued = continued - continued_before_;
-    continued_before_ = continued;
 
     record.missed = record.presented_ns > record.deadline_ns;
     record.own_miss = is_own_miss(record, limits_);

@@ -41,6 +41,9 @@ TEST(Settings, KeysAreUniqueAndExplained) {
         EXPECT_TRUE(keys.insert(entry.key).second) << entry.key;
         EXPECT_GT(entry.help.size(), 10U) << entry.key;
         EXPECT_TRUE(entry.help.ends_with('.')) << entry.key;
+        if (value_text(toy_schema().defaults(), entry) == "\"\"") {
+            EXPECT_NE(entry.help.find("\"\""), std::string_view::npos) << entry.key << ": what does the empty default mean?";
+        }
     }
 }
 
@@ -137,7 +140,7 @@ TEST(Settings, RenamedKeysAreRefusedByNameWithTheNewOne) {
         EXPECT_NE(set.error().what.find("'rate_hz'"), std::string::npos) << set.error().text();
         EXPECT_EQ(c.values.rate_hz, 30);
     }
-    refused("smoothing = 1\n", 1, "The name 'smoothing' was removed", "take it out");
+    refused("smoothing = 1\n", 1, "The name 'smoothing' was removed", "Take it out");
     refused("[profile.kiosk]\nframe_rate = 60\n", 2, "is now 'rate_hz'");
     const auto problems = problems_in_text(toy_schema(), "frame_rate = 60\nrate_hz = 60\n", "s.toml");
     ASSERT_EQ(problems.size(), 1U) << "the new key beside the old one does not hide it";

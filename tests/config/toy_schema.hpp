@@ -9,7 +9,7 @@ namespace surefoot::config::test {
 
 inline constexpr std::array renamed = {
     Renamed{"frame_rate", "rate_hz"},
-    Renamed{"smoothing", "", "it smoothed nothing; take it out"},
+    Renamed{"smoothing", "", "It smoothed nothing. Take it out"},
 };
 
 inline const Schema& toy_schema() {

@@ -72,6 +72,10 @@ TEST(Lifetime, CheckReadsTheConfigurationOnly) {
     daemon.write_config();
     daemon.start({"--check", "--set", "rate_hz"});
     EXPECT_EQ(daemon.wait_exit(start_s), exit_usage) << daemon.log_text();
+    std::filesystem::remove(daemon.config_file);
+    daemon.start({"--set", "x=3"});
+    EXPECT_EQ(daemon.wait_exit(start_s), exit_usage) << "a wrong key is wrong use, with a settings file or without";
+    EXPECT_EQ(daemon.lines_with("--set x=3: The key 'x' is unknown"), 1) << daemon.log_text();
     daemon.start({"--help"});
     EXPECT_EQ(daemon.wait_exit(start_s), exit_success);
     EXPECT_NE(daemon.printed().find("Exit status:"), std::string::npos);

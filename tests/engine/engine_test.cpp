@@ -4,12 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "render/bake/bake.hpp"
+#include "render/drawn_items.hpp"
+#include "rt/base/check.hpp"
 #include "rt/threads/memory.hpp"
 #include "tests/gl/small_models.hpp"
 #include "tests/rt/in_child.hpp"
@@ -78,6 +82,26 @@ TEST(EngineMemory, GivesTheTexelsBackWhereTheHeapIsKeptAndLocked) {
     const int percent = percent_given_back(true);
     EXPECT_GE(percent, 85);
     EXPECT_LE(percent, 105);
+}
+
+TEST(DrawnItems, AnItemBeyondTheReservedMemoryIsLeftOutAndCounted) {
+    std::vector<gl::DrawItem> drawn;
+    drawn.reserve(3);
+    const std::size_t room = drawn.capacity();
+    const gl::DrawItem* const memory = drawn.data();
+    const std::uint64_t before = rare_check_count();
+    for (std::size_t i = 0; i < room; ++i) EXPECT_TRUE(push_within(drawn, {static_cast<model::Index>(i), 0}));
+    EXPECT_EQ(rare_check_count(), before);
+    EXPECT_FALSE(push_within(drawn, {99, 0}));
+    EXPECT_FALSE(push_within(drawn, {99, 0}));
+    EXPECT_EQ(rare_check_count(), before + 2);
+    EXPECT_EQ(drawn.size(), room);
+    EXPECT_EQ(drawn.data(), memory) << "it allocated";
+    EXPECT_EQ(drawn.back().node, room - 1);
+    const auto checks = rare_checks();
+    EXPECT_TRUE(std::any_of(checks.begin(), checks.end(), [](const RareCheck& check) {
+        return check.place.starts_with("render/drawn_items.hpp:") && check.count >= 2;
+    }));
 }
 
 using Nodes = std::set<model::Index>;

@@ -20,7 +20,7 @@ struct Room {
 inline const std::vector<Room>& rooms() {
     // All rooms below the tools, and what a tool includes beside them.
     const auto below_tools_and = [](std::initializer_list<std::string_view> tools) {
-        std::vector<std::string_view> folders = {"rt/", "config", "input", "render/", "render"};
+        std::vector<std::string_view> folders = {"rt/", "config", "input", "input/", "render/", "render"};
         folders.insert(folders.end(), tools);
         return folders;
     };
@@ -32,7 +32,14 @@ inline const std::vector<Room>& rooms() {
         {"rt/frame", {"rt/"}},
         {"rt/monitor", {"rt/"}},
         {"config", {}},
-        {"input", {"rt/"}},
+        {"input", {"rt/", "input/"}},
+        {"input/devices", {"rt/", "input", "input/"}},
+        {"input/gpio", {"rt/", "input", "input/"}},
+        {"input/hid", {"rt/", "input", "input/"}},
+        {"input/map", {"rt/", "input", "input/"}},
+        {"input/motion", {"rt/", "input", "input/"}},
+        {"input/replay", {"rt/", "input", "input/"}},
+        {"input/safety", {"rt/", "input", "input/"}},
         {"render/model", {}},
         {"render/image", {}},
         {"render/import", {"render/model", "render/image"}},
@@ -42,7 +49,7 @@ inline const std::vector<Room>& rooms() {
         {"render/draw", {"render/model"}},
         {"render/gl", {"render/model", "render/draw"}},
         {"render/prepare", {"render/model", "rt/clock"}},
-        {"render/select", {"render/model", "render/prepare", "rt/clock"}},
+        {"render/select", {"render/model", "render/prepare"}},
         {"render/effects", {"render/model", "render/gl"}},
         {"render/capture", {"render/model", "render/prepare", "render/select"}},
         {"render", {"render/"}},  // the door, engine.hpp, and what stands right behind it
@@ -63,12 +70,15 @@ inline const std::vector<Room>& rooms() {
 }
 
 /// The room that a file (path from the root) is in: the longest folder that matches; null for none.
-/// Below "render" only files right in it count: an unknown sub-folder is no room.
+/// Below "render" and "input" only files right in them count: an unknown sub-folder is no room. A way back ("..") is none either.
 inline const Room* room_of(std::string_view path) {
+    if (path.find("./") != std::string_view::npos) return nullptr;
     const Room* best = nullptr;
     for (const Room& room : rooms()) {
         if (path.size() <= room.folder.size() || !path.starts_with(room.folder) || path[room.folder.size()] != '/') continue;
-        if (room.folder == "render" && path.find('/', room.folder.size() + 1) != std::string_view::npos) continue;
+        if ((room.folder == "render" || room.folder == "input") &&
+            path.find('/', room.folder.size() + 1) != std::string_view::npos)
+            continue;
         if (best == nullptr || room.folder.size() > best->folder.size()) best = &room;
     }
     return best;

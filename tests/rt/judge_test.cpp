@@ -107,6 +107,20 @@ TEST(Blame, AMissIsOwnWhenTheStolenTimeDoesNotExplainIt) {
     EXPECT_TRUE(is_own_miss(r, limits));
 }
 
+TEST(Blame, AStopIsNotOwnThoughTheThreadWasAlsoSwitchedOut) {
+    Random random(3);
+    BlameLimits limits;
+    limits.period_ns = period;
+    FrameRecord r = ordinary(random);
+    delay_from(r, 2, period);
+    r.preempted_ns = period, r.involuntary = 1;
+    EXPECT_TRUE(is_own_miss(r, limits)) << "a thread that another one preempts has too low a priority";
+    r.continued = 1;
+    EXPECT_FALSE(is_own_miss(r, limits));
+    r.preempted_ns = period / 10;
+    EXPECT_TRUE(is_own_miss(r, limits)) << "a stop excuses no longer than it took";
+}
+
 TEST(Control, TheDeadlineRuleWantsAllOfItsParts) {
     std::vector<BlockTally> blocks;
     for (std::uint32_t b = 0; b < 180; ++b) {

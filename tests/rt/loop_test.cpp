@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <utility>
@@ -146,6 +148,61 @@ TEST(LoopBlame, AStopAndContinueIsNeitherTheHostsNorOurs) {
     walk.stages.in_select = [&] { walk.clock.steal(500 * ms), ++continued; };
     walk.expect_miss(Cause::stopped, false);
     EXPECT_EQ(walk.result.skipped, 50U);
+}
+
+/// The process is stopped for half a second where this clock is read: once, as soon as it is armed.
+class StoppedWhileRead final : public Clock {
+public:
+    enum class Where : std::uint8_t { after_the_time, at_the_usage };
+    StoppedWhileRead(VirtualClock& time, Where where) : time_(time), where_(where) {}
+
+    [[nodiscard]] std::int64_t now_ns() const override {
+        const std::int64_t now = time_.now_ns();
+        if (where_ == Where::after_the_time) stop();
+        return now;
+    }
+    [[nodiscard]] ThreadUsage usage() const override {
+        if (where_ == Where::at_the_usage) stop();
+        return time_.usage();
+    }
+    void sleep_until_ns(std::int64_t time_ns) override { time_.sleep_until_ns(time_ns); }
+    void burn_ns(std::int64_t cpu_ns) override { time_.burn_ns(cpu_ns); }
+
+    bool armed = false;
+    mutable std::atomic<std::uint32_t> continued{0};
+
+private:
+    void stop() const {
+        if (!armed || continued > 0) return;
+        time_.steal(500 * ms);
+        ++continued;
+    }
+    VirtualClock& time_;
+    Where where_;
+};
+
+TEST(LoopBlame, AStopIsCountedInTheFrameThatItMakesLateWhereverItFalls) {
+    using Where = StoppedWhileRead::Where;
+    for (const Where where : {Where::after_the_time, Where::at_the_usage}) {
+        VirtualClock time;
+        StoppedWhileRead clock(time, where);
+        Stages stages(time);
+        stages.in_finish = [&] { clock.armed = true; };  // next the loop reads when the frame was presented, then the usage
+        FrameLoopOptions options;
+        options.period_ns = options.t0_ns = 10 * ms;
+        options.frames = 8;
+        options.continued = &clock.continued;
+        SpscRing<FrameRecord> ring(64);
+        run_frame_loop(options, clock, stages, ring);
+        const std::uint64_t late = where == Where::after_the_time ? disturbed_frame : disturbed_frame + 1;
+        FrameRecord r;
+        while (ring.try_pop(r)) {
+            EXPECT_EQ(r.missed, r.frame == late) << r.frame;
+            EXPECT_EQ(r.continued, r.frame == late ? 1U : 0U) << r.frame;
+            EXPECT_EQ(r.cause, r.frame == late ? Cause::stopped : Cause::none) << cause_of(r);
+            EXPECT_FALSE(r.own_miss) << r.frame;
+        }
+    }
 }
 
 TEST(LoopBlame, ALateWakeUpIsOursOnlyWithoutFifo) {

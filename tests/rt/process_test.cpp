@@ -163,7 +163,7 @@ TEST(Stopped, AProcessStoppedForThreeTenthsOfASecondCountsItsSlotsAndNamesTheCau
                        [&](pid_t child) {
                            under_way.wait();
                            ::kill(child, SIGSTOP);
-                           std::this_thread::sleep_for(std::chrono::milliseconds(300));
+                           std::this_thread::sleep_for(std::chrono::milliseconds(300));  // how long it is stopped
                            ::kill(child, SIGCONT);
                        }),
               passed);

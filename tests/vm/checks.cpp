@@ -11,6 +11,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/eventually.hpp"
+
 namespace surefoot::vm {
 
 namespace {
@@ -80,9 +82,7 @@ std::string get(const std::string& file) {
 }
 
 bool wait_for_file(const std::string& file, int within_ms) {
-    for (const std::int64_t from = now_ns(); ms_since(from) < within_ms; sleep_ms(1))
-        if (std::filesystem::exists(file)) return true;
-    return false;
+    return test::eventually(within_ms * 1e-3, [&] { return std::filesystem::exists(file); });
 }
 
 }  // namespace surefoot::vm

@@ -33,6 +33,8 @@ private:
 
 /// CLOCK_MONOTONIC.
 std::int64_t now_ns();
+/// For a device's pace, and between the turns of a loop that serves what is tested. Where a test only waits:
+/// tests/eventually.hpp.
 void sleep_ms(double ms);
 inline double ms_since(std::int64_t from_ns) { return static_cast<double>(now_ns() - from_ns) * 1e-6; }
 

@@ -16,6 +16,7 @@
 #include "input/safety/safety.hpp"
 #include "input/safety/stop_memory.hpp"
 #include "rt/base/random.hpp"
+#include "tests/eventually.hpp"
 #include "tests/vm/checks.hpp"
 #include "tests/vm/gpio_sim.hpp"
 
@@ -374,7 +375,7 @@ void check_restart(Checks& checks, SimulatedChip& chip, const std::string& folde
     sleep_ms(400);
     const bool before = load_stop(file).latched;
     chip.pull(estop, false);
-    for (const std::int64_t from = now_ns(); !load_stop(file).latched && ms_since(from) < 2000;) sleep_ms(5);
+    (void)test::eventually(2, [&] { return load_stop(file).latched; });
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     chip.pull(estop, true);

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "tests/eventually.hpp"
 #include "tests/vm/checks.hpp"
 
 namespace surefoot::vm {
@@ -93,14 +94,18 @@ void UhidDevice::unplug() {
 }
 
 std::string UhidDevice::node(int within_ms) const {
-    for (const std::int64_t from = now_ns(); ms_since(from) < within_ms; sleep_ms(1)) {
+    std::string found;
+    (void)test::eventually(within_ms * 1e-3, [&] {
         std::error_code problem;
-        for (const auto& entry : std::filesystem::directory_iterator("/sys/class/hidraw", problem))
+        for (const auto& entry : std::filesystem::directory_iterator("/sys/class/hidraw", problem)) {
+            const std::string name = entry.path().filename().string();
             if (get(entry.path() / "device/uevent").find("HID_UNIQ=" + serial_) != std::string::npos &&
-                std::filesystem::exists("/dev/" + entry.path().filename().string()))
-                return entry.path().filename().string();
-    }
-    return {};
+                std::filesystem::exists("/dev/" + name))
+                found = name;
+        }
+        return !found.empty();
+    });
+    return found;
 }
 
 }  // namespace surefoot::vm

@@ -57,7 +57,7 @@ HoldUps::HoldUps()
     : beat_ns_(now_ns()), thread_([this] {
           while (!stopping_.load()) {
               beat_ns_.store(now_ns());
-              usleep(nap_ns / 1000);
+              usleep(nap_ns / 1000);  // how much longer than asked this takes is what is measured
               ns_ += held_up_since(beat_ns_.load());
           }
       }) {}
@@ -143,7 +143,7 @@ bool Testbed::send(Plug& plug, std::span<const std::byte> report) {
 
 bool Testbed::taken(const Plug& plug, int within_ms) {
     // Past the preloaded library: it takes a descriptor's number for the device that had it before, and waits for an answer for
-    // ever.
+    // ever. Looks every 0.5 ms: reports follow each other within 4 ms.
     int waiting = 0;
     for (Patience patience(within_ms); syscall(SYS_ioctl, plug.tail, FIONREAD, &waiting) == 0 && waiting > 0; usleep(500))
         if (patience.over()) return false;

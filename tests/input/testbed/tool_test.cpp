@@ -74,7 +74,7 @@ TEST_P(Record, EndsWithAValidFileHoweverItEnds) {
     ASSERT_TRUE(tool.until("recording /dev/hidraw0")) << tool.err();
     for (std::size_t i = 0; i < r.reports.size(); ++i) {
         ASSERT_TRUE(Testbed::send(plug, r.report(i)));
-        usleep(30'000);
+        usleep(30'000);  // a device's pace
         ASSERT_TRUE(Testbed::taken(plug, 5000));
     }
     EXPECT_FALSE(std::filesystem::exists(file)) << "it shows before it is whole";
@@ -138,7 +138,7 @@ TEST(DevicesTool, MapAsksAndWritesASteeringFile) {
     ASSERT_TRUE(tool.until("walks forward")) << tool.err();
     const auto send = [&](const char* text) {
         ASSERT_TRUE(Testbed::send(plug, hex(text)));
-        usleep(30'000);
+        usleep(30'000);  // a hand's pace
     };
     send("01 00 00 00 00 00 00");
     send("01 00 00 a2 fe 00 00");  // the cap is pushed away: y = -350

@@ -147,7 +147,7 @@ TEST(NothingHidden, AStopOfHalfASecondCostsThirtySlotsAndLeavesThePhase) {
                                  under_way.wait();
                                  const std::int64_t from_ns = monotonic_ns();
                                  ::kill(child, SIGSTOP);
-                                 std::this_thread::sleep_for(std::chrono::milliseconds(500));
+                                 std::this_thread::sleep_for(std::chrono::milliseconds(500));  // how long it is stopped
                                  ::kill(child, SIGCONT);
                                  stopped_for_ms = static_cast<double>(monotonic_ns() - from_ns) * 1e-6;
                              }),
@@ -183,7 +183,7 @@ TEST(NothingHidden, RunAndSkippedAreElapsedExactly) {
     {
         Recorder recorder(ring, recording);
         std::thread loop([&] { result = run_frame_loop(options, clock, stages, ring); });
-        std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+        std::this_thread::sleep_for(std::chrono::duration<double>(seconds));  // how long the loop runs
         stop = true;
         loop.join();
         ended_ns = clock.now_ns();  // before the recorder's end, which may take one more look at the ring

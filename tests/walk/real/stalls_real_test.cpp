@@ -27,7 +27,7 @@ TEST(MonitoredWalk, TwentyInjectedStallsOfFiftyMillisecondsAreThereInFull) {
     observer.inject = [&](walk::FramePhase phase, const rt::FrameRecord& frame) {
         if (phase == walk::FramePhase::select && frame.frame >= 30 && frame.frame % 12 == 0 && injected < stalls) {
             const timespec stall{0, stall_ns};
-            (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &stall, nullptr);
+            (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &stall, nullptr);  // the stall that is injected
             ++injected;
         }
         return walk::Fault::none;
