@@ -39,6 +39,14 @@ void complain(Reading& into, const std::string& name, const toml::node& node, Pr
     into.problems.push_back(std::move(problem));
 }
 
+/// Not a misspelt key: in TOML all that follows a table's name belongs to it.
+Error unknown_table(std::string_view key) {
+    return {{},
+            fmt::format("The table '{}' is unknown", key),
+            "Write keys above all tables, or below [profile.NAME]",
+            ErrorKind::misuse};
+}
+
 void read_key(Reading& into, std::string_view key, const toml::node& node, const std::string& name, std::string_view profile) {
     Problem problem;
     problem.key = std::string(key);
@@ -47,16 +55,16 @@ void read_key(Reading& into, std::string_view key, const toml::node& node, const
     const auto value = value_of(node);
     if (value) problem.found = text_of(*value);
     if (entry == nullptr) {
-        problem.error = unknown_key(schema, {}, key);
+        problem.error = node.is_table() ? unknown_table(key) : unknown_key(schema, {}, key);
         problem.nearest = std::string(schema.nearest(key));
         return complain(into, name, node, std::move(problem));
     }
     problem.allowed = allowed(*entry);
-    auto refused = value ? assign(into.configuration.values, *entry, *value)
-                         : fmt::format("The value of {} is not {}", key, problem.allowed);
+    auto refused =
+        value ? assign(into.configuration.values, *entry, *value)
+              : Error{{}, fmt::format("The value of {} is not allowed", key), "Use " + problem.allowed, ErrorKind::misuse};
     if (refused) {
-        problem.error.what = *refused;
-        problem.error.kind = ErrorKind::misuse;
+        problem.error = *refused;
         return complain(into, name, node, std::move(problem));
     }
     into.configuration.origins[std::string(entry->key)] = {name, node.source().begin.line, false, std::string(profile)};

@@ -101,8 +101,11 @@ void put_choice(Settings& settings, const Entry& entry, const Named& chosen) {
 
 }  // namespace
 
-std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value) {
-    const auto refusal = [&] { return fmt::format("The value {} = {} is not {}", entry.key, text_of(value), allowed(entry)); };
+std::optional<Error> assign(Settings& settings, const Entry& entry, const Value& value) {
+    const auto refusal = [&](std::string_view why = "is not allowed") {
+        return Error{
+            {}, fmt::format("The value {} = {} {}", entry.key, text_of(value), why), "Use " + allowed(entry), ErrorKind::misuse};
+    };
     if (const auto* number = std::get_if<double>(&value)) {
         const bool numeric = entry.kind == Kind::number || entry.kind == Kind::integer;
         const bool whole = entry.kind != Kind::integer || std::floor(*number) == *number;
@@ -119,8 +122,7 @@ std::optional<std::string> assign(Settings& settings, const Entry& entry, const 
     if (entry.kind == Kind::choice) {
         const Named* chosen = find_named(entry.choices, text);
         const std::string_view absent = absent_because(entry, text);
-        if (chosen == nullptr && !absent.empty())
-            return fmt::format("The value {} = {} {}; choose {}", entry.key, text_of(value), absent, allowed(entry));
+        if (chosen == nullptr && !absent.empty()) return refusal(absent);
         if (chosen == nullptr) return refusal();
         put_choice(settings, entry, *chosen);
         return std::nullopt;
@@ -162,7 +164,10 @@ Result<void> set_value(Configuration& configuration, std::string_view key, std::
         if (text == "true" || text == "on" || text == "yes" || text == "1") value = true;
         if (text == "false" || text == "off" || text == "no" || text == "0") value = false;
     }
-    if (auto problem = assign(configuration.values, *entry, value)) return Error{"command line", *problem, {}, ErrorKind::misuse};
+    if (auto refused = assign(configuration.values, *entry, value)) {
+        refused->place = "command line";
+        return *refused;
+    }
     configuration.origins[std::string(entry->key)] = {{}, 0, true, {}};
     return {};
 }

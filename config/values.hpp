@@ -15,8 +15,8 @@ using Value = std::variant<double, bool, std::string>;
 std::string allowed(const Entry& entry);
 /// A value as TOML would write it.
 std::string text_of(const Value& value);
-/// Sets the value. If it is refused, returns the reason and changes nothing.
-std::optional<std::string> assign(Settings& settings, const Entry& entry, const Value& value);
+/// Sets the value. If it is refused, changes nothing and returns an error without a place.
+std::optional<Error> assign(Settings& settings, const Entry& entry, const Value& value);
 /// Why a known name cannot be chosen; empty for other names.
 std::string_view absent_because(const Entry& entry, std::string_view name);
 Error unknown_key(const Schema& schema, std::string place, std::string_view key);

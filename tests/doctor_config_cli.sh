@@ -42,8 +42,8 @@ sed 's/^# \([a-z_]* = \)/\1/' defaults.toml > live.toml; expect 0 '' config live
 [ "$(grep -c '^[a-z_]* = ' live.toml)" -ge 20 ] || complain "the defaults lack keys"
 printf 'widht = 640\nrate_hz = 0\n[profile.kiosk]\nfifo = 3\n' > wrong.toml
 expect 1 "wrong.toml:1: The key 'widht' is unknown.*width" config wrong.toml --check
-grep -q 'wrong.toml:2: The value rate_hz = 0 is not a number from 1 to 1000' err || complain "line 2 is not told: $(cat err)"
-grep -q 'wrong.toml:4: The value fifo = 3 is not true or false' err || complain "line 4 is not told: $(cat err)"
+grep -q 'wrong.toml:2: The value rate_hz = 0 is not allowed. Use a number from 1 to 1000 (Hz).' err || complain "line 2 is not told: $(cat err)"
+grep -q 'wrong.toml:4: The value fifo = 3 is not allowed. Use true or false.' err || complain "line 4 is not told: $(cat err)"
 expect 1 'wrong.toml:1' config wrong.toml --check --json; valid_json out || complain "config --check --json is not JSON"
 grep -q '"nearest": "width"' out || complain "the nearest key is not in the JSON"
 grep -q '"allowed": "true or false"' out || complain "what is allowed is not in the JSON"

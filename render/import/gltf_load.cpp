@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 
 #include <fmt/format.h>
@@ -23,6 +24,7 @@ using nlohmann::json;
 /// tinygltf copies extras by recursion: deeper files would run out of stack. Real ones stay below 20.
 constexpr int deepest_json = 100;
 constexpr std::uint32_t glb_magic = 0x46546c67, json_chunk = 0x4e4f534a, bin_chunk = 0x004e4942;
+constexpr std::size_t glb_json_at = 20;  ///< behind the header and the head of the first chunk
 
 struct Text {
     std::span<const std::byte> json;
@@ -58,8 +60,9 @@ Result<Text> split_glb(std::span<const std::byte> bytes, const std::string& file
     text.bin_bytes = reader.read<std::uint32_t>();
     const auto bin_kind = reader.read<std::uint32_t>();
     if (reader.failed() || reader.at() + text.bin_bytes > length) {
-        return Error{file, fmt::format("The file is truncated: the GLB chunk at byte {} reaches beyond the end", 20 + json_bytes),
-                     export_again, ErrorKind::damaged};
+        return Error{
+            file, fmt::format("The file is truncated: the GLB chunk at byte {} reaches beyond the end", glb_json_at + json_bytes),
+            export_again, ErrorKind::damaged};
     }
     if (bin_kind != bin_chunk) return Error{file, "The second GLB chunk is not binary data", export_again, ErrorKind::damaged};
     return text;
@@ -180,7 +183,18 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
     return true;
 }
 
+/// Where the first buffer that is missing should be; none: tinygltf complains of something else.
+std::optional<std::string> missing_buffer(Files& files) {
+    for (const auto& [name, bytes] : files.wanted_bytes) {
+        const std::string path = files.folder.empty() ? name : files.folder + "/" + name;
+        if (!wanted_file(path, &files)) return path;
+    }
+    return std::nullopt;
+}
+
+/// At most 160 bytes: tinygltf quotes whole data URIs.
 std::string one_line(std::string text) {
+    if (text.size() > 160) text = text.substr(0, 157) + "...";
     while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
     std::replace(text.begin(), text.end(), '\n', ';');
     return text;
@@ -204,12 +218,32 @@ Result<tinygltf::Model> run_tinygltf(std::span<const std::byte> bytes, bool bina
                                                         reinterpret_cast<const unsigned char*>(bytes.data()), size, files.folder)
                           : reader.LoadASCIIFromString(&model, &errors, &notes, reinterpret_cast<const char*>(bytes.data()), size,
                                                        files.folder);
+    const std::optional<std::string> missing = good ? std::nullopt : missing_buffer(files);
+    if (missing)
+        return Error{file, fmt::format("The buffer '{}' is missing", *missing), "Put it there, or export the model again",
+                     ErrorKind::damaged};
     if (!good)
         return Error{file,
                      errors.empty() ? "The file is not a glTF file" : "The glTF reader refuses the file: " + one_line(errors),
                      export_again, ErrorKind::damaged};
     if (!errors.empty()) warnings.push_back("The glTF reader dropped something: " + one_line(errors));
     return model;
+}
+
+/// at: the byte of the JSON, counted from 1, where its grammar ends. In a glTF file the place is a line, in a GLB the byte.
+Error wrong_json(const std::string& file, const Text& text, std::size_t at) {
+    const std::string_view written(reinterpret_cast<const char*>(text.json.data()), text.json.size());
+    const std::size_t first = written.find_first_not_of("\xef\xbb\xbf \t\r\n");
+    if (!text.binary && (first == std::string_view::npos || written[first] != '{'))
+        return {file, "The file is not a glTF file: it begins neither with 'glTF' nor with '{'", "Export the model as glTF 2.0",
+                ErrorKind::damaged};
+    if (text.binary)
+        return {file, fmt::format("The JSON is truncated or wrong at byte {} of the file", glb_json_at + at), export_again,
+                ErrorKind::damaged};
+    const auto line =
+        1 + std::count(written.begin(), written.begin() + static_cast<std::ptrdiff_t>(std::min(at, written.size())), '\n');
+    return {fmt::format("{}:{}", file, line), fmt::format("The JSON is truncated or wrong at byte {} of the file", at),
+            export_again, ErrorKind::damaged};
 }
 
 Result<tinygltf::Model> load_checked(const std::string& file, std::vector<std::string>& warnings) {
@@ -227,7 +261,12 @@ Result<tinygltf::Model> load_checked(const std::string& file, std::vector<std::s
         return Error{file, fmt::format("The JSON is nested deeper than {}", deepest_json), export_again,
                      ErrorKind::out_of_limits};
     const auto* first = reinterpret_cast<const char*>(text.json.data());
-    const json root = json::parse(first, first + text.json.size());
+    json root;
+    try {
+        root = json::parse(first, first + text.json.size());
+    } catch (const json::parse_error& trouble) {
+        return wrong_json(file, text, trouble.byte);
+    }
     if (!root.is_object())
         return Error{file, "The file is not a glTF file: its JSON is no object", export_again, ErrorKind::damaged};
     if (auto readable = check_extensions(root, file, warnings); !readable) return readable.error();

@@ -154,8 +154,9 @@ struct Reading {
     std::array<std::optional<std::span<const std::byte>>, section_count> sections;  ///< those that the file has
     std::uint64_t model_hash = fnv_start;
 
-    [[nodiscard]] Error error(std::string_view where, std::string what, ErrorKind kind = ErrorKind::damaged) const {
-        return {fmt::format("{}: {}", file, where), std::move(what), "Copy the file again, or bake the model again", kind};
+    [[nodiscard]] Error error(std::string_view where, std::string what) const {
+        return {fmt::format("{}: {}", file, where), std::move(what), "Copy the file again, or bake the model again",
+                ErrorKind::damaged};
     }
 };
 
@@ -199,8 +200,9 @@ Result<void> open_header(Reading& in) {
     std::uint64_t file_size = 0, pages_size = 0, table_hash = 0, spare = 0, header_hash = 0;
     take(file_version), take(sections), take(file_size), take(pages_size), take(table_hash), take(spare), take(header_hash);
     if (file_version != version) {
-        return in.error("header", fmt::format("The format has version {}; this program reads version {}", file_version, version),
-                        ErrorKind::unsupported);
+        return Error{in.file + ": header",
+                     fmt::format("The format has version {}; this program reads version {}", file_version, version),
+                     "Bake the model again with this program", ErrorKind::unsupported};
     }
     if (header_hash != hash_bytes(in.bytes.first(header_bytes - 8)))
         return in.error("header", "The checksum does not match: the file is damaged");

@@ -121,8 +121,8 @@ inline void TableReader::wrong(std::string_view key, const toml::node& node, con
     if (error_) return;
     wrong_key_ = full(key);
     error_ = Error{toml_place(file_, node.source()),
-                   fmt::format("The value {} = {} is not {}", full(key), toml_detail::shown(node), allowed), std::move(remedy),
-                   ErrorKind::misuse};
+                   fmt::format("The value {} = {} is not allowed", full(key), toml_detail::shown(node)),
+                   fmt::format("Use {}{}{}", allowed, remedy.empty() ? "" : ". ", remedy), ErrorKind::misuse};
 }
 
 inline void TableReader::refuse(std::string_view key, std::string what, std::string remedy) {

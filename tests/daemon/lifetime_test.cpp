@@ -40,7 +40,8 @@ TEST(Lifetime, WhatIsWrongInTheFileIsSaidWithLineAndKey) {
     daemon.start();
     EXPECT_EQ(daemon.wait_exit(start_s), exit_config);
     EXPECT_EQ(daemon.lines_with("surefoot.toml:5: The key 'widht' is unknown. Did you mean 'width'?"), 1) << daemon.log_text();
-    EXPECT_EQ(daemon.lines_with("surefoot.toml:6: The value height = 0 is not a whole number from 16 to 16384 (px)"), 1)
+    EXPECT_EQ(
+        daemon.lines_with("surefoot.toml:6: The value height = 0 is not allowed. Use a whole number from 16 to 16384 (px)."), 1)
         << daemon.log_text();
     daemon.socket.take_all();
     EXPECT_EQ(daemon.socket.count("READY=1"), 0U);

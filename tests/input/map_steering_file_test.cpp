@@ -104,23 +104,24 @@ TEST(SteeringFile, DefaultsOfEveryClassSurviveTheFile) {
 TEST(SteeringFile, SlipsAreNamedWithLineKeyAndRemedy) {
     refused("[motoin]\n", 1, "The key 'motoin' is unknown", "'motion'");
     refused("[motion]\nwalk = 1\n", 2, "The key 'motion.walk' is unknown", "'walk_m_s'");
-    refused("[motion]\nwalk_m_s = -1\n", 2, "motion.walk_m_s = -1 is not a number from 0.01 to 100 (m/s)");
+    refused("[motion]\nwalk_m_s = -1\n", 2, "motion.walk_m_s = -1 is not allowed", "a number from 0.01 to 100 (m/s)");
     refused("[motion]\nwalk_m_s = nan\n", 2, "motion.walk_m_s");
     refused("[motion]\nwalk_m_s = \"fast\"\n", 2, "motion.walk_m_s");
-    refused("device = 3\n", 1, "is not a list of tables", "[[device]]");
+    refused("device = 3\n", 1, "device = 3 is not allowed", "Use a list of tables. Write [[device]]");
     refused("[[device]]\n[[device.axis]]\naction = \"turn\"\n", 2, "device.axis.control is missing");
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\n", 2, "device.axis.action is missing");
-    refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"tunr\"\n", 4, "one of \"none\", \"forward\"", "\"turn\"");
+    refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"tunr\"\n", 4, "tunr", "Did you mean \"turn\"?");
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"reset\"\n", 4, "no action for an axis", "forward");
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"turn\"\ndeadzone = 0.1\n", 5,
             "The key 'device.axis.deadzone' is unknown", "'dead_zone'");
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"turn\"\ndead_zone = 0.01\n", 5,
             "narrower than the hysteresis");
     refused("[[device]]\n[[device.axis]]\ncontrol = \"x\"\naction = \"turn\"\nsaturation = 0.12\n", 5, "leaves nothing");
-    refused("[[device]]\n[[device.stick]]\ncontrols = [\"x\"]\nactions = [\"side\", \"up\"]\n", 3, "an array of two texts");
+    refused("[[device]]\n[[device.stick]]\ncontrols = [\"x\"]\nactions = [\"side\", \"up\"]\n", 3, "is not allowed",
+            "an array of two texts");
     refused("[[device]]\n[[device.stick]]\ncontrols = [\"x\", \"y\"]\nactions = [\"side\", \"stop\"]\n", 4, "stop");
-    refused("[[device]]\nvendor = 70000\n", 2, "a whole number from 0 to 65535");
-    refused("[[device]]\nclass = \"joystick\"\n", 2, "\"navigation\"");
+    refused("[[device]]\nvendor = 70000\n", 2, "70000 is not allowed", "a whole number from 0 to 65535");
+    refused("[[device]]\nclass = \"joystick\"\n", 2, "joystick", "\"navigation\"");
     refused("[[gpio]]\nname = \"s\"\nchip = \"c\"\nline = \"l\"\nrole = \"stop\"\nnormally_closed = false\n", 6,
             "not allowed for a stop", "normally closed");
     refused("[[gpio]]\nname = \"s\"\nchip = \"c\"\n", 1, "gpio.line is missing");
