@@ -1,7 +1,7 @@
 // udev's list of hidraw nodes, and sysfs beside it. Not hid_enumerate(): hidapi 0.13 (Debian 12) takes the length of no text
-// where a device goes while the list is made (mended in 0.14, libusb/hidapi#580), so that a pulled cable would end the walk; and
-// it gives no report descriptor, which sysfs gives without opening the device: keyboards and mice are left alone, and a device
-// without permission is still known.
+// where a device goes while the list is made (corrected in 0.14, libusb/hidapi#580), so that a pulled cable would end the walk;
+// and it gives no report descriptor, which sysfs gives without opening the device: keyboards and mice are left alone, and a
+// device without permission is still known.
 #include "input/devices/hid_list.hpp"
 
 #include <fmt/format.h>

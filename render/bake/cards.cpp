@@ -1,4 +1,4 @@
-// Cards by their edges, those first that lie farthest from all before (cards.hpp).
+// Finds cards by their edges, and orders them: always the farthest from all before it (cards.hpp).
 #include "render/bake/cards.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Each level: the grid's mesh of what is solid, and some of the cards (cluster_cards.hpp).
+// Each level has the clustered mesh of the solid parts, and some of the cards (cluster_cards.hpp).
 #include "render/bake/cluster_cards.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void to_baked_colours(Geometry& g, GeometryPart&& part, model::Index material) {
         same->indices.insert(same->indices.end(), part.indices.begin(), part.indices.end());
 }
 
-/// What all levels of the cards are made and judged from.
+/// Input of all levels of the cards, and the reference for their errors.
 struct Thinning {
     Thinning(const Geometry& geometry, const std::vector<GeometryPart>& parts, const CardLimits& wanted) : g(geometry) {
         limits.relative = wanted.slack;
@@ -86,7 +86,7 @@ Geometry some_of(const Thinning& from, double budget) {
     return out;
 }
 
-/// Upper bound of the two-sided distance: of all cards to what is left of them, and of that to all there was.
+/// Upper bound of the two-sided distance between all cards and those that are left.
 float bound_of(const Thinning& from, const Geometry& some) {
     const MeshSurface coarse(some.vertices, some.parts);
     const measure::DistanceBounds there =
@@ -107,8 +107,8 @@ void add_to(Geometry& to, Level& level, Geometry&& cards) {
     }
 }
 
-/// What is solid beside cards of that error: the coarsest level that is no worse, or the finest there is. The level's error is of
-/// both.
+/// The solid part for cards of that error: the coarsest level that is no worse, or else the finest. The level's error is the
+/// larger of both.
 Level solid_within(const std::vector<Level>& solid, float error_m) {
     Level level;
     if (!solid.empty()) {

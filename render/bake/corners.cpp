@@ -1,4 +1,4 @@
-// Corners by their normals (corners.hpp).
+// Chooses the vertex of each corner by its normal (corners.hpp).
 #include "render/bake/corners.hpp"
 
 #include <algorithm>
@@ -68,7 +68,7 @@ void repair_corners(Geometry& g, const CoincidentVertices& coincident, GeometryP
         for (std::size_t k = 0; k < 3; ++k) {
             std::uint32_t& index = part.indices[i + k];
             if (std::abs(turn_of(g, index, facing)) >= min_aligned_cosine || coincident.custom_normal(index)) continue;
-            // Of two that fit as well, front and back of a sheet, the front.
+            // If front and back of a sheet fit equally well, the front.
             const auto fit = [&](std::uint32_t v) { return std::pair(std::abs(turn_of(g, v, facing)), turn_of(g, v, facing)); };
             for (const std::uint32_t other : coincident.with(index))
                 if (fit(other) > fit(index)) index = other;

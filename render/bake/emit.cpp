@@ -42,7 +42,7 @@ void emit_representations(const EmittedChain& emitted, const dmat4& world, model
     for (const EmittedChain::Level& level : emitted.levels) {
         model::Representation rep;
         rep.error_m = static_cast<float>(level.error_m * stretch);
-        // Rounding may make two errors one: then the finer of the two buys nothing.
+        // Rounding may make two errors equal: then the finer level gains nothing.
         if (!first && rep.error_m >= model.reps.back().error_m) continue;
         first = false;
         rep.placement = index;

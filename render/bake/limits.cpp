@@ -1,4 +1,4 @@
-// Counting beforehand what emitting makes (limits.hpp).
+// Counts in advance what emit.cpp will add to the model (limits.hpp).
 #include "render/bake/limits.hpp"
 
 namespace surefoot::bake {

@@ -1,4 +1,4 @@
-// Levels of detail of one geometry: meshoptimizer proposes, our own distance bounds.
+// Levels of detail of one geometry: meshoptimizer proposes them, mesh_distance bounds their errors.
 #include <meshoptimizer.h>
 
 #include <algorithm>
@@ -51,8 +51,8 @@ void optimise(Geometry& geometry) {
 
 namespace {
 
-/// One material's triangles at about `share` of their number. The simplifier sees a mesh that was recentred in double, and of its
-/// vertices the full detail's alone: it takes any.
+/// Simplifies one material's triangles to about `share` of their number. The simplifier gets a mesh that was recentred in double,
+/// with the vertices of full detail.
 std::vector<std::uint32_t> simplify_part(const Geometry& g, std::size_t vertices, const GeometryPart& part, double share,
                                          bool lock, bool sloppy) {
     const std::size_t triangles = part.indices.size() / 3;
@@ -76,8 +76,8 @@ constexpr double squeezed_picture_error = 1.0 / 4;
 /// What is thinned out.
 struct Thinned {
     std::map<model::Index, Cards> cards;  ///< by material
-    /// Half or more of the whole, by area: it is seen through (a box of plain colours would be a dark solid), and its pixels cost
-    /// most.
+    /// Cards are half or more of the whole, by area. One sees through such an object: a box of plain colours would be a dark
+    /// solid. Its pixels cost most.
     bool mostly = false;
     [[nodiscard]] bool contains(model::Index material) const { return cards.contains(material); }
 };
@@ -257,7 +257,7 @@ struct Reference {
     }
 };
 
-/// A plate simplifies without error, and would then be a plate without its picture at any distance.
+/// A plate simplifies without geometric error. Without a minimum error it would lose its texture at any distance.
 bool may_lose_pictures(const Level& level, const ChainOptions& options, double diagonal_m) {
     if (static_cast<double>(level.error_m) >= min_proxy_error * diagonal_m) return true;
     return std::none_of(level.parts.begin(), level.parts.end(), [&](const GeometryPart& part) {
@@ -265,7 +265,7 @@ bool may_lose_pictures(const Level& level, const ChainOptions& options, double d
     });
 }
 
-/// A level that is hardly better than the next coarser one is a step that is paid for and shows nothing. The full detail stays.
+/// Drops levels that are hardly better than the next coarser one: such a step costs time and shows nothing. Keeps full detail.
 void drop_little_gains(std::vector<Level>& levels) {
     constexpr float gain = 0.9F;
     std::vector<Level> kept;
@@ -334,8 +334,8 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
             const float shift_m = torn && may_colour ? without : pictures.shift_m(next);
             squeezed = squeezed || shift_m > std::max(without, next.error_m);
             if (may_colour && (torn || squeezed)) {
-                // Vertices from far apart in the picture are one now, or the picture is squeezed: in baked colours it looks like
-                // the thing, in the picture like anything.
+                // Vertices from distant places of the texture were merged, or the texture is squeezed. Baked colours still look
+                // like the object; the texture does not.
                 to_proxy(full, thinned, next, options.proxy_material);
                 next.error_m = std::max(next.error_m, without);
             } else {

@@ -127,7 +127,8 @@ std::vector<std::optional<std::uint8_t>> hidden_alphas(const importer::Scene& sc
     return out;
 }
 
-/// Of the same image, and a mask if this is one: rather a fringe than another copy.
+/// A texture of the same image that this material can share, a mask for a mask. A small colour fringe is better than another
+/// copy.
 Shown nearest_way(const ShownTextures& textures, const Shown& shown) {
     auto found = textures.end();
     for (auto at = textures.lower_bound({shown.image, std::nullopt, false});
@@ -137,8 +138,8 @@ Shown nearest_way(const ShownTextures& textures, const Shown& shown) {
     return found->first;
 }
 
-/// A material's texture. What one does not show another may: an image that is shown in several ways becomes as many textures,
-/// the first of which has the image's own index.
+/// A material's texture. Materials may show different texels of one image. Then the image becomes several textures, and the first
+/// has the image's own index.
 std::vector<model::Index> add_images(const importer::Scene& scene, model::Model& model) {
     ShownTextures textures;
     std::vector<Shown> wanted;

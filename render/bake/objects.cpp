@@ -1,4 +1,4 @@
-// Conceptual objects with their geometry.
+// Objects with their geometry (objects.hpp).
 #include "render/bake/objects.hpp"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ struct Loose {
     vec3 area;  ///< seen along each axis
 };
 
-/// Of triangles with this box and these areas: what is behind a part of them, and is not the far side of the same wall.
+/// Whether triangles with this box and these areas hide each other in layers. The far side of a wall does not count as a layer.
 bool hides_itself(const dvec3& size, const dvec3& area) {
     constexpr double layers = 1.25;
     for (int axis = 0; axis < 3; ++axis) {
@@ -85,8 +85,8 @@ bool hides_itself(const dvec3& size, const dvec3& area) {
     return false;
 }
 
-/// Whether drawing all of it for a part that is seen is a waste: too many triangles, too long for them, or long and mostly behind
-/// itself, if the whole is made of few.
+/// Whether the geometry must be cut, since drawing the whole for a visible part wastes time. It has too many triangles, or it is
+/// too long, or it is long, has few triangles, and mostly hides itself.
 bool is_cut(std::span<const Loose> triangles, const Geometry& whole, bool few, const CutLimits& limits, dvec3& size) {
     Box box;
     dvec3 area(0.0);

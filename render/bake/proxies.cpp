@@ -139,14 +139,14 @@ std::vector<ColouredTriangle> coloured(const Geometry& g, const ProxyInput& inpu
     return out;
 }
 
-/// Several objects in one frame, and what is owed to having taken coarse forms of them.
+/// Several objects merged into one frame, with the error of their coarse forms.
 struct Merged {
     Geometry geometry;
     std::vector<std::uint32_t> owners;  ///< a vertex
     float error_m = 0;
 };
 
-/// Cards keep their material, in which alone they are cards.
+/// Cards keep their material, because its alpha test makes their shape.
 void append(Merged& to, const LodChain& chain, const Level& level, const dmat4& world, std::uint32_t owner,
             const ProxyInput& input) {
     std::vector<const GeometryPart*> solid, cards;
@@ -221,7 +221,7 @@ BoxForm make_box(const Merged& merged, const Box& box, std::uint32_t pixels, con
     return form;
 }
 
-/// What is solid by a grid; cards, where there are, thinned out, with their share of the triangles.
+/// Clusters the solid parts by a grid, and thins cards out to their share of the triangles.
 LodChain cluster_chain(Merged& merged, const ProxyInput& input, const ClusteringLimits& limits) {
     Geometry& g = merged.geometry;
     const auto all = static_cast<double>(g.triangles());

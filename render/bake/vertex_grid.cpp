@@ -224,7 +224,8 @@ private:
         std::sort(edges_.begin(), edges_.end());
     }
 
-    /// Poles, wires, edges of thin things: two crossed blades each, unless a triangle runs there or both ends are near others.
+    /// Poles, wires and edges of thin objects become two crossed blades each, unless a triangle is there or both ends have
+    /// neighbours.
     void make_strips() {
         std::map<Edge, Strip> strips;
         for (const auto& [edge, i] : collapsed_) {
@@ -273,7 +274,7 @@ private:
         add_triangle(t.part, emit(cb, b - w), emit(cb, b + w), emit(ca, a), bound);
     }
 
-    /// What lies in one cell that nothing else reaches: a tetrahedron of its size.
+    /// Geometry inside one cell that no other triangle reaches becomes a tetrahedron of its size.
     void make_solids() {
         std::map<std::uint32_t, std::uint32_t> alone;
         for (const std::uint32_t i : points_) {

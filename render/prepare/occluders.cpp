@@ -62,8 +62,8 @@ void offer_leaf(const model::Model& model, const model::Representation& rep, std
     });
 }
 
-/// Gives corners that fall into one cell of a fine grid one number. What a cell's border parts is not joined: less hides, no
-/// more.
+/// Gives corners in the same cell of a fine grid the same number. Corners on both sides of a cell's border are not joined. Then
+/// less is hidden than possible, which is safe.
 class Corners {
 public:
     Corners(double cell_m, std::vector<dvec3>& corners) : cell_m_(cell_m), corners_(corners) {}

@@ -1,4 +1,4 @@
-// Which occluders are drawn, as which joined surfaces, and what boxes they hide; pixels are filled in occlusion_pixels.cpp.
+// Chooses the occluders to draw, joins them to surfaces, and tests boxes against them. occlusion_pixels.cpp fills the pixels.
 #include "render/prepare/occlusion.hpp"
 
 #include <algorithm>
@@ -80,11 +80,11 @@ bool Occlusion::aim(const Region& region, model::Viewport viewport) {
     return true;
 }
 
-/// Those that face every eye of the region and fill most of the view; what they share is entered.
+/// Chooses occluders that face every eye of the region, largest in the view first, and notes their shared edges.
 void Occlusion::choose() {
     facing_.clear();
     drawn_.clear();
-    // Nearer than the near plane an occluder would not be drawn: it must be farther off than that from every eye.
+    // The near plane would cut off a nearer occluder, so it must be farther than that from every eye.
     const double wide = wide_, high = high_;
     const double least = static_cast<double>(radius_m_) + model::near_plane_m * std::sqrt(1.0 + wide * wide + high * high);
     const double side_x = std::sqrt(1.0 + wide * wide), side_y = std::sqrt(1.0 + high * high);

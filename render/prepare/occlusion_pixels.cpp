@@ -1,4 +1,4 @@
-// The pixels that a surface fills, and those that its borders take away: the loops that occlusion spends its time in.
+// The pixel loops of occlusion, where most of its time goes: fills the pixels of a surface, and erodes them along its borders.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -77,7 +77,7 @@ void Occlusion::begin_surface(const Rect& rect) {
     }
 }
 
-/// What is covered and not near a border hides; of several surfaces in a pixel, the nearest does.
+/// A pixel hides if the surface covers it and no border is near. Of several surfaces in a pixel, the nearest counts.
 void Occlusion::end_surface(const Rect& rect) {
     for (int y = rect.y0; y <= rect.y1; ++y) {
         const std::size_t row = static_cast<std::size_t>(y) * columns;

@@ -1,5 +1,5 @@
-// The Preparer: breadth-first by levels, then evaluation, then the passes up and down the tree. Whatever runs on workers runs
-// in chunks of fixed size that write to places of their own, so that the arrays do not depend on the number of workers.
+// The Preparer: breadth-first by levels, then evaluation, then the passes up and down the tree. Work for
+// workers is cut into chunks of fixed size that write to separate places. So the arrays do not depend on the number of workers.
 #include <pthread.h>
 
 #include <algorithm>

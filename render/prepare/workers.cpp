@@ -1,4 +1,4 @@
-// Starting the workers, telling of them, ending them.
+// Starts the workers, announces them, and ends them.
 #include "render/prepare/workers.hpp"
 
 #include <chrono>
@@ -17,7 +17,8 @@ namespace {
 
 constexpr auto start_within = std::chrono::seconds(2);  // threads that are not there by then are refused by the system
 
-/// Where a known number of workers wait for each other, and one that is no worker for all of them; at most until a deadline.
+/// A barrier: a known number of workers wait for each other, and one other thread waits for all of them. Until a deadline at
+/// most.
 class Meeting {
 public:
     explicit Meeting(int workers) : missing_(workers) {}

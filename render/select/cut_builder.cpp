@@ -1,4 +1,4 @@
-// From choices a candidate to the cut: floor, list, sums, hash, switches, memory.
+// Makes the cut from the choice of each candidate: floor, list of items, sums, hash, switches, memory.
 #include "render/select/cut_builder.hpp"
 
 #include <algorithm>
@@ -107,7 +107,7 @@ void CutBuilder::take_root(std::uint32_t offset) {
     choose(0, offset);
 }
 
-// A thing that came into view is no switch; a thing that was shown by another form, an ancestor or descendants is.
+// A node that came into view is no switch. A node that was shown by another form, an ancestor or descendants is one.
 bool CutBuilder::switched(Index c, Index rep) const {
     const Index before = state_.shown[prepared_.candidates[c].node];
     if (before != none) return before != rep;

@@ -1,4 +1,4 @@
-// The selectors that know no budget.
+// The selectors without a budget: `flat` and `distance`.
 #include "render/model/view.hpp"
 #include "render/select/cut_builder.hpp"
 #include "render/select/entries.hpp"

@@ -1,6 +1,6 @@
-// The slice plan: subtrees of the cut, most beneficial first, in groups of about one slice's time, each with a coarser stand-in
-// that covers exactly the same leaves; and the in-frame check, whether the next one still fits in full, judged by how wrong the
-// frame has been so far.
+// The slice plan and the in-frame check. The plan groups subtrees of the cut, most beneficial first, into slices of about equal
+// time. Each slice has a coarser stand-in for exactly the same leaves. The check tests whether the next slice still fits in full,
+// from the error of the frame's prediction so far.
 #include <algorithm>
 #include <cmath>
 
@@ -89,7 +89,7 @@ std::span<std::uint32_t> find_units(const CutTree& tree, float slice_us, std::sp
     return found;
 }
 
-/// Appends the items below `unit`, and the cheapest cover of their leaves that is no finer than they are.
+/// Appends the items below `unit`, and as their stand-ins the cheapest forms of the same leaves that are no finer.
 void append_unit(const CutTree& tree, Index unit, std::span<std::uint32_t> stack, Slice& slice, SlicePlan& plan) {
     std::size_t top = 0;
     stack[top++] = unit;

@@ -1,4 +1,4 @@
-// Blame: every cause's excess is worked out from the record; a cause counts first of all when it suffices alone.
+// Blame: computes the excess of every cause from the record. A cause that alone explains the miss goes first.
 #include "rt/frame/blame.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::int64_t wake_lateness_ns(const FrameRecord& r) {
     return std::max<std::int64_t>(r.woken_ns - std::max(r.ready_ns, r.due_ns), 0);
 }
 
-/// What came from outside our own code's decisions, most specific evidence first.
+/// Causes from outside the frame's own code, most specific evidence first.
 std::array<Excess, 4> outside_causes(const FrameRecord& r, const BlameLimits& l) {
     const std::int64_t gap = r.stolen_ns + r.preempted_ns;
     const std::int64_t wake = over_share(wake_lateness_ns(r), l.wake_share, l.period_ns);
@@ -34,8 +34,8 @@ std::array<Excess, 4> outside_causes(const FrameRecord& r, const BlameLimits& l)
              {Cause::woken_late, wake}}};
 }
 
-/// The phases, each over its share. What was lost in the frame lies within some phase, most likely the longest over: it is
-/// not that phase's doing.
+/// The excess of each phase over its share. Time that was lost (stolen, preempted) lies in some phase, most likely the one with
+/// the largest excess. It is taken off there, because that phase did not cause it.
 std::array<Excess, 5> phase_causes(const FrameRecord& r, const BlameLimits& l) {
     const std::int64_t t = l.period_ns;
     std::array<Excess, 5> phases = {{{Cause::select, over_share(r.selected_ns - r.woken_ns, l.select_share, t)},

@@ -13,7 +13,7 @@ void CostController::update(double predicted_us, double actual_us) {
     ratios_[next_] = std::clamp(ratio, lowest, highest);
     next_ = (next_ + 1) % window;
     count_ = std::min(count_ + 1, window);
-    // Before the window is full, the ratios that are missing count as 1: a first outlier moves nothing.
+    // Before the window is full, missing ratios count as 1, so that a first outlier has no effect.
     std::array<double, window> sorted = ratios_;
     std::fill(sorted.begin() + static_cast<std::ptrdiff_t>(count_), sorted.end(), 1.0);
     std::nth_element(sorted.begin(), sorted.begin() + window / 2, sorted.end());
@@ -24,7 +24,7 @@ void CostController::update_headroom(double error) {
     errors_[errors_next_] = std::min(error, highest);
     errors_next_ = (errors_next_ + 1) % headroom_window;
     errors_count_ = std::min(errors_count_ + 1, headroom_window);
-    // Before the window is full, what is missing counts as the worst: the table's factor is spent until there is a record.
+    // Before the window is full, missing values count as the worst, so that the headroom is the table's.
     std::array<double, headroom_window> sorted = errors_;
     std::fill(sorted.begin() + static_cast<std::ptrdiff_t>(errors_count_), sorted.end(), highest);
     constexpr std::size_t rank = headroom_window * 9 / 10;

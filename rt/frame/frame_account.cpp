@@ -72,9 +72,9 @@ void FrameAccount::driver_done(FrameRecord& record) {
     if (record.rastered_ns == 0) record.rastered_ns = record.presented_ns;
 }
 
-/// Of a wait that the rasterisers' work does not explain, in a thread that slept of its own will: what presenting took beyond its
-/// share. After the last fence nobody is waited for but the display. A host that steals just there is wronged, and the frame's
-/// miss its own; that part of a frame is short.
+/// The wait for the display: that part of an unexplained voluntary wait by which presenting exceeded its share. After the last
+/// fence the thread waits only for the display. If the host steals time just there, it counts as a wait too, and the miss as own.
+/// That part of a frame is short.
 std::int64_t FrameAccount::display_wait_ns(const FrameRecord& record, std::int64_t unexplained_ns) const {
     const auto share_ns = static_cast<std::int64_t>(limits_.present_share * static_cast<double>(limits_.period_ns));
     return std::clamp<std::int64_t>(record.presented_ns - record.rastered_ns - share_ns, 0,
@@ -90,7 +90,8 @@ void FrameAccount::close(FrameRecord& record) {
     record.voluntary = small(frame.voluntary);
     record.involuntary = small(frame.involuntary);
 
-    // Own code never waits: all of its gap was lost. The driver's phases wait for the rasterisers: beyond that, lost too.
+    // Own code never waits, so all of its gap was lost. The driver's phases wait for the rasterisers; the rest of their gap was
+    // lost.
     const std::int64_t own_gap = std::max<std::int64_t>(record.selected_ns - begun_ns_ - own.cpu_ns, 0);
     const std::int64_t wait = std::max<std::int64_t>(record.presented_ns - record.selected_ns - driver.cpu_ns, 0);
     record.waited_ns = estimate_.known_ns(wait, raster, driver.voluntary > 0);

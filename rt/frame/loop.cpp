@@ -1,4 +1,4 @@
-// The loop itself.
+// The frame loop (loop.hpp).
 #include "rt/frame/loop.hpp"
 
 #include <sched.h>

@@ -1,4 +1,4 @@
-// The census: each thread found is given its row, then threads are checked against rows and rows against counts.
+// The census: finds the row of each thread, then checks threads against their rows, and the counts of the rows.
 #include "rt/threads/census.hpp"
 
 #include <fmt/format.h>

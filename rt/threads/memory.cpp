@@ -1,4 +1,4 @@
-// Memory made ready before the first frame: the allocator keeps what it has, pages are touched, then locked.
+// Prepares memory before the first frame: the allocator keeps its pages, then pages are touched and locked.
 #include "rt/threads/memory.hpp"
 
 #include <alloca.h>

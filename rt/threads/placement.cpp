@@ -65,7 +65,7 @@ Error refused(pid_t tid, const std::string& what, int error, const std::string& 
 std::string comm_file(pid_t tid) { return fmt::format("/proc/self/task/{}/comm", tid); }
 
 Result<void> name_thread(pid_t tid, const std::string& name) {
-    // Not through write_text(): that replaces files, and this one is a door into the kernel.
+    // Not through write_text(), which replaces files: this one belongs to the kernel.
     const int file = ::open(comm_file(tid).c_str(), O_WRONLY | O_CLOEXEC);
     const std::string kept = name.substr(0, longest_name);
     const bool written = file >= 0 && ::write(file, kept.data(), kept.size()) == static_cast<ssize_t>(kept.size());

@@ -1,4 +1,4 @@
-// The SIGXCPU handler, and what it leaves for whoever asks.
+// The SIGXCPU handler, and what it stores for runaway_seen().
 #include "rt/threads/runaway.hpp"
 
 #include <sched.h>

@@ -55,7 +55,7 @@ TEST(AccuracyPage, AndItsFiles) {
     for (const bool dark : {false, true}) {
         const auto svg = accuracy_svg(run, dark);
         EXPECT_EQ(svg.rfind("<svg xmlns=", 0), 0U);
-        // 9 points in three panels, the exact one in none but the last; a dot each for two mended selectors in the legend.
+        // 9 points in three panels, the exact one in none but the last; a dot each for two corrected selectors in the legend.
         EXPECT_EQ(test::count_of(svg, "<title>two-stage"), 18U);
         EXPECT_EQ(test::count_of(svg, "<title>flat"), 7U);
         EXPECT_EQ(svg.find("nan"), std::string::npos);

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # The public headers as doxygen reads them (.doxyfile): not one warning, and a comment before each class and struct.
-# usage: headers.sh SOURCE_DIR FOLDER    FOLDER: for the pages; exit status 77: not looked at, with the reason
+# usage: headers.sh SOURCE_DIR FOLDER    FOLDER: for temporary pages; exit status 77: not looked at, with the reason
 # tools/cli declares what the program alone uses: its types need no comment of their own.
 set -u
 source_dir=${1:?SOURCE_DIR} folder=$(realpath -m "${2:?FOLDER}")
 if ! command -v doxygen >/dev/null; then echo "SKIPPED: doxygen is not installed: apt-get install doxygen"; exit 77; fi
-mkdir -p "$folder" || exit 1
+mkdir -p "$folder" && folder=$(mktemp -d "$folder/run.XXXXXX") || exit 1  # of this run alone
+trap 'rm -rf "$folder"' EXIT
 
 # check_headers SETTING...: prints what is wrong; fails where something is, or where doxygen has seen no header.
 check_headers() {

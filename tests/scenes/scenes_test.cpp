@@ -1,4 +1,4 @@
-// Generated scenes: counts, the same bits each time, nothing to mend, paths that one could walk, and there and back.
+// Generated scenes: counts, the same bits each time, nothing to repair, paths that one could walk, and there and back.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -39,7 +39,7 @@ constexpr std::array<Panel, 3> panels = {{
 struct Series {
     std::string name;
     std::size_t colour = 0;
-    bool published = false;  ///< accounting as in 1994: the same colour as the mended one, dashed
+    bool published = false;  ///< accounting as in 1994: the colour of the corrected one, dashed
     std::vector<const AccuracyPoint*> points;
 };
 

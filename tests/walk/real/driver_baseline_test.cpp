@@ -1,4 +1,4 @@
-// What the graphics driver allocates in a frame is not ours to mend, but ours to know: it may not grow.
+// What the graphics driver allocates in a frame cannot be changed here, but is recorded: it may not grow.
 #include <gtest/gtest.h>
 
 #include <algorithm>
