@@ -127,8 +127,8 @@ TEST(Settings, ChoicesOfTheCoreAreEnums) {
     EXPECT_EQ(c.values.clock, rt::ClockKind::virtual_time);
     EXPECT_EQ(choice_of(c.values, *toy_schema().find("late")), "float");
     EXPECT_EQ(value_text(c.values, *toy_schema().find("clock")), "\"virtual\"");
-    refused("late = \"loose\"\n", 1, "one of lock, float");
-    refused("clock = 1\n", 1, "one of real, virtual");
+    refused("late = \"loose\"\n", 1, "late = \"loose\" is not allowed", "one of lock, float");
+    refused("clock = 1\n", 1, "clock = 1 is not allowed", "one of real, virtual");
 }
 
 TEST(Settings, RenamedKeysAreRefusedByNameWithTheNewOne) {
