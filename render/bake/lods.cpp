@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "render/bake/cards.hpp"
 #include "render/bake/corners.hpp"
@@ -206,10 +207,10 @@ void to_proxy(Geometry& g, const Thinned& thinned, Level& level, model::Index ma
 
 /// Twelve triangles round everything: valid from everywhere, whatever the shape.
 Level box_level(Geometry& g, const Box& box, model::Index proxy_material) {
-    const auto most = std::max_element(g.parts.begin(), g.parts.end(), [](const GeometryPart& a, const GeometryPart& b) {
+    const auto largest = std::max_element(g.parts.begin(), g.parts.end(), [](const GeometryPart& a, const GeometryPart& b) {
         return a.indices.size() < b.indices.size();
     });
-    const model::Index material = proxy_material != model::none ? proxy_material : most->material;
+    const model::Index material = proxy_material != model::none ? proxy_material : largest->material;
     const auto colours = face_colours(g);
     Level level;
     GeometryPart part{material, {}};
@@ -274,99 +275,142 @@ void drop_little_gains(std::vector<Level>& levels) {
     levels = std::move(kept);
 }
 
+/// What the steps of a chain share: full detail as measured, and the levels from fine to coarse.
+struct ChainWork {
+    Geometry& full;
+    const ChainOptions& options;
+    Box box = full.box();
+    Reference reference{full, options.slack};
+    Thinned thinned = find_cards(full, options);
+    std::vector<Picture> laid_on = pictures_laid_on(options, thinned);
+    PictureReference pictures{full, laid_on};
+    CoincidentVertices coincident{full};
+    std::size_t own_vertices = full.vertices.size();
+    std::map<model::Index, double> card_area_m2 = {};  ///< by material
+    std::vector<Level> levels = {};
+    std::vector<GeometryPart> parts = full.parts;  ///< of the coarsest level so far, as the simplifier left them
+    bool torn = false, squeezed = false;           ///< the pictures, from then on
+
+    static std::vector<Picture> pictures_laid_on(const ChainOptions& options, const Thinned& thinned) {
+        std::vector<Picture> laid_on = options.pictures;  // cards keep theirs, and miss it where they are left out
+        laid_on.resize(std::max(laid_on.size(), options.cut_out.size()), Picture::none);
+        for (const auto& [material, cards] : thinned.cards) laid_on[material] = Picture::none;
+        return laid_on;
+    }
+    ChainWork(Geometry& geometry, const ChainOptions& chosen) : full(geometry), options(chosen) {
+        for (const GeometryPart& part : full.parts)
+            if (thinned.contains(part.material)) card_area_m2[part.material] = area_of(full, part.indices);
+        levels.push_back({full.parts, static_cast<std::uint32_t>(full.triangles()), 0});
+    }
+    [[nodiscard]] bool may_colour() const { return options.proxy_material != model::none; }
+    [[nodiscard]] float share_of_size(double share) const { return static_cast<float>(share * box.diagonal()); }
+};
+
+/// The simplifier's proposal for the next coarser level, in up to three tries; nothing if the chain ends here.
+/// Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives way.
+std::optional<Level> next_level(ChainWork& work) {
+    const bool lock_border = work.options.lock_border;
+    const double ratio = work.options.ratio, before = work.levels.back().triangles;
+    const auto propose = [&](bool lock, bool sloppy) {
+        return simplify(work.full, work.own_vertices, work.thinned, work.parts, ratio, lock, sloppy);
+    };
+    const double wanted = before * expected_share(work.thinned, work.parts, ratio);
+    const double max_triangles = 0.8 * before;  // above this it is no level of its own
+    Level next = propose(true, false);
+    if (!lock_border && next.triangles > std::min(wanted * 1.4, max_triangles)) next = propose(false, false);
+    if (next.triangles == 0 || next.triangles > std::min(std::max(wanted * 1.5, wanted + 0.02 * before), max_triangles)) {
+        if (lock_border) return std::nullopt;
+        next = propose(false, true);
+        work.torn = true;
+    }
+    if (next.triangles == 0 || next.triangles > max_triangles) return std::nullopt;
+    return next;
+}
+
+/// Gives corners the best of their coincident vertices, and enlarges the cards that are left.
+void finish_parts(ChainWork& work, Level& level) {
+    for (GeometryPart& part : level.parts) {
+        const auto cards = work.thinned.cards.find(part.material);
+        if (cards == work.thinned.cards.end()) {
+            repair_corners(work.full, work.coincident, part);
+            continue;
+        }
+        enlarge_cards(work.full, part, cards->second, work.card_area_m2[part.material]);
+        optimise_order(part, work.full);
+    }
+}
+
+/// Sets the level's error: the larger of its geometry's and its picture's. A torn or squeezed picture gives way to baked colours:
+/// vertices from distant places of the texture were merged, and the colours still look like the object.
+void bound_level(ChainWork& work, Level& level) {
+    level.error_m = work.reference.bound(work.full, level);
+    const bool pictured = std::any_of(level.parts.begin(), level.parts.end(), [&](const GeometryPart& part) {
+        return part.material < work.laid_on.size() && work.laid_on[part.material] != Picture::none;
+    });
+    if (!pictured) return;
+    const float without_m = work.share_of_size(work.torn ? min_proxy_error : squeezed_picture_error);
+    const float shift_m = work.torn && work.may_colour() ? without_m : work.pictures.shift_m(level);
+    work.squeezed = work.squeezed || shift_m > std::max(without_m, level.error_m);
+    if (!work.may_colour() || (!work.torn && !work.squeezed)) {
+        level.error_m = std::max(level.error_m, shift_m);
+        return;
+    }
+    to_proxy(work.full, work.thinned, level, work.options.proxy_material);
+    level.error_m = std::max(level.error_m, without_m);
+}
+
+/// Appends the level. Errors must rise: a finer level that is no better than this one has no use and goes, full detail stays.
+void append_level(ChainWork& work, Level&& level) {
+    const float before_m = work.levels.back().error_m;
+    if (level.error_m <= before_m && work.levels.size() == 1) {
+        const float floor_m = static_cast<float>(work.box.diagonal()) * 0.002F;
+        level.error_m = std::nextafter(before_m, 1.0F) + floor_m * 1e-3F;
+    } else if (level.error_m <= before_m) {
+        level.error_m = before_m;
+        work.levels.pop_back();
+    }
+    work.levels.push_back(std::move(level));
+}
+
+/// Ends the chain with the twelve triangles of a box if its coarsest level is still large.
+void add_box_level(ChainWork& work) {
+    if (work.levels.back().triangles <= 48 || work.options.lock_border || work.thinned.mostly) return;
+    Level round = box_level(work.full, work.box, work.options.proxy_material);
+    round.error_m = std::max({work.reference.bound(work.full, round), work.pictures.shift_m(round),
+                              std::nextafter(work.levels.back().error_m, 1e30F)});
+    if (work.may_colour()) round.error_m = std::max(round.error_m, work.share_of_size(min_proxy_error));
+    work.levels.push_back(std::move(round));
+}
+
+/// Gives coarse levels the baked colours in one part; never the full detail.
+void colour_coarse_levels(ChainWork& work) {
+    if (!work.may_colour()) return;
+    for (std::size_t i = 1; i < work.levels.size(); ++i) {
+        Level& level = work.levels[i];
+        if (level.triangles < work.options.proxy_below && may_lose_pictures(level, work.options, work.box.diagonal()))
+            to_proxy(work.full, work.thinned, level, work.options.proxy_material);
+    }
+}
+
 }  // namespace
 
 LodChain make_chain(Geometry full, const ChainOptions& options) {
+    ChainWork work(full, options);
+    while (work.levels.back().triangles > options.smallest) {
+        std::optional<Level> next = next_level(work);
+        if (!next) break;
+        work.parts = next->parts;
+        finish_parts(work, *next);
+        bound_level(work, *next);
+        append_level(work, std::move(*next));
+    }
+    add_box_level(work);
+    colour_coarse_levels(work);
     LodChain chain;
-    const auto total = static_cast<std::uint32_t>(full.triangles());
-    Level finest;
-    finest.parts = full.parts;
-    finest.triangles = total;
-    std::vector<Level> levels{finest};
-    const Reference reference(full, options.slack);
-    const Thinned thinned = find_cards(full, options);
-    std::vector<Picture> laid_on = options.pictures;  // cards keep theirs, and miss it where they are left out
-    laid_on.resize(std::max(laid_on.size(), options.cut_out.size()), Picture::none);
-    for (const auto& [material, cards] : thinned.cards) laid_on[material] = Picture::none;
-    const PictureReference pictures(full, laid_on);
-    const CoincidentVertices coincident(full);
-    const std::size_t own_vertices = full.vertices.size();
-    std::map<model::Index, double> card_area_m2;
-    for (const GeometryPart& part : full.parts)
-        if (thinned.contains(part.material)) card_area_m2[part.material] = area_of(full, part.indices);
-    const Box box = full.box();
-    const float floor_m = static_cast<float>(box.diagonal()) * 0.002F;
-    const auto bound = [&](const Level& level) { return std::max(reference.bound(full, level), pictures.shift_m(level)); };
-    std::vector<GeometryPart> parts = finest.parts;  // of the coarsest level so far, as the simplifier left them
-    bool torn = false, squeezed = false;             // from then on
-    while (levels.back().triangles > options.smallest) {
-        const Level& before = levels.back();
-        // Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives
-        // way.
-        const double wanted = before.triangles * expected_share(thinned, parts, options.ratio);
-        Level next = simplify(full, own_vertices, thinned, parts, options.ratio, true, false);
-        const double most = 0.8 * before.triangles;  // else it is no level of its own
-        if (!options.lock_border && next.triangles > std::min(wanted * 1.4, most))
-            next = simplify(full, own_vertices, thinned, parts, options.ratio, false, false);
-        if (next.triangles == 0 || next.triangles > std::min(std::max(wanted * 1.5, wanted + 0.02 * before.triangles), most)) {
-            if (options.lock_border) break;
-            next = simplify(full, own_vertices, thinned, parts, options.ratio, false, true);
-            torn = true;
-        }
-        if (next.triangles == 0 || next.triangles > most) break;
-        parts = next.parts;
-        for (GeometryPart& part : next.parts) {
-            const auto cards = thinned.cards.find(part.material);
-            if (cards == thinned.cards.end()) {
-                repair_corners(full, coincident, part);
-                continue;
-            }
-            enlarge_cards(full, part, cards->second, card_area_m2[part.material]);
-            optimise_order(part, full);
-        }
-        const bool pictured = std::any_of(next.parts.begin(), next.parts.end(), [&](const GeometryPart& part) {
-            return part.material < laid_on.size() && laid_on[part.material] != Picture::none;
-        });
-        next.error_m = reference.bound(full, next);
-        if (pictured) {
-            const auto without = static_cast<float>((torn ? min_proxy_error : squeezed_picture_error) * box.diagonal());
-            const bool may_colour = options.proxy_material != model::none;
-            const float shift_m = torn && may_colour ? without : pictures.shift_m(next);
-            squeezed = squeezed || shift_m > std::max(without, next.error_m);
-            if (may_colour && (torn || squeezed)) {
-                // Vertices from distant places of the texture were merged, or the texture is squeezed. Baked colours still look
-                // like the object; the texture does not.
-                to_proxy(full, thinned, next, options.proxy_material);
-                next.error_m = std::max(next.error_m, without);
-            } else {
-                next.error_m = std::max(next.error_m, shift_m);
-            }
-        }
-        if (next.error_m <= before.error_m) {  // coarser for nothing lost: the finer one has no use
-            if (levels.size() == 1)
-                next.error_m = std::nextafter(before.error_m, 1.0F) + floor_m * 1e-3F;
-            else {
-                next.error_m = before.error_m;
-                levels.pop_back();
-            }
-        }
-        levels.push_back(std::move(next));
-    }
-    if (levels.back().triangles > 48 && !options.lock_border && !thinned.mostly) {
-        Level round = box_level(full, box, options.proxy_material);
-        round.error_m = std::max(bound(round), std::nextafter(levels.back().error_m, 1e30F));
-        if (options.proxy_material != model::none)
-            round.error_m = std::max(round.error_m, static_cast<float>(min_proxy_error * box.diagonal()));
-        levels.push_back(std::move(round));
-    }
-    for (std::size_t i = 1; i < levels.size(); ++i) {  // never the full detail
-        if (options.proxy_material == model::none || levels[i].triangles >= options.proxy_below) continue;
-        if (may_lose_pictures(levels[i], options, box.diagonal())) to_proxy(full, thinned, levels[i], options.proxy_material);
-    }
-    std::reverse(levels.begin(), levels.end());
-    drop_little_gains(levels);
+    chain.levels = std::move(work.levels);
+    std::reverse(chain.levels.begin(), chain.levels.end());
+    drop_little_gains(chain.levels);
     chain.full = std::move(full);
-    chain.levels = std::move(levels);
     return chain;
 }
 

@@ -51,16 +51,42 @@ int run(const surefoot::cli::Context& context) {
     return cli::finish_output(code, output_error);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    using namespace surefoot;
-    keep_standard_files();
+void handle_signals() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
     if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);  // a file limit is an error of that file, not the end of the program
+}
+
+/// In the order of the help.
+void add_commands(CLI::App& app, surefoot::cli::Context& context) {
+    using namespace surefoot;
+    cli::add_scene(app, context);
+    cli::add_bake(app, context);
+    cli::add_inspect(app, context);
+    cli::add_effects(app, context);
+    cli::add_calibrate(app, context);
+    cli::add_walk(app, context);
+    cli::add_soak(app, context);
+    cli::add_accuracy(app, context);
+    cli::add_compare(app, context);
+    cli::add_replay(app, context);
+    cli::add_devices(app, context);
+    cli::add_config(app, context);
+    cli::add_doctor(app, context);
+    cli::add_selftest(app, context);
+    cli::add_status(app, context);
+    cli::add_top(app, context);
+    cli::add_manual(app, context);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    using namespace surefoot;
+    keep_standard_files();
+    handle_signals();
 
     cli::Context context;
     context.stop = &stop_requested;
@@ -80,23 +106,7 @@ int main(int argc, char** argv) {
     app.formatter(cli::help_formatter());  // before the commands, which take it over
     app.require_subcommand(1);
     app.set_version_flag("--version", SUREFOOT_VERSION);
-    cli::add_scene(app, context);
-    cli::add_bake(app, context);
-    cli::add_inspect(app, context);
-    cli::add_effects(app, context);
-    cli::add_calibrate(app, context);
-    cli::add_walk(app, context);
-    cli::add_soak(app, context);
-    cli::add_accuracy(app, context);
-    cli::add_compare(app, context);
-    cli::add_replay(app, context);
-    cli::add_devices(app, context);
-    cli::add_config(app, context);
-    cli::add_doctor(app, context);
-    cli::add_selftest(app, context);
-    cli::add_status(app, context);
-    cli::add_top(app, context);
-    cli::add_manual(app, context);
+    add_commands(app, context);
     app.failure_message([argc, argv](const CLI::App* of, const CLI::Error& error) {
         const std::vector<std::string_view> arguments(argv + 1, argv + argc);
         const Error wrong = config::wrong_use(*of, error, arguments, cli::renamed_options(), cli::hidden_group);

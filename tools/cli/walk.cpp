@@ -81,7 +81,8 @@ Result<std::unique_ptr<monitor::Monitor>> open_monitor(const MonitorArguments& a
     options.version = SUREFOOT_VERSION;
     options.notify = [](std::string_view text) { notify(std::string(text)); };
     auto monitor = monitor::Monitor::open(std::move(options));
-    if (monitor && !a.address.empty()) notify(fmt::format("watch it live with: surefoot top --socket {}", (*monitor)->address()));
+    if (monitor && !a.address.empty())
+        notify(fmt::format("Watch the walk live: run `surefoot top --socket {}`.", (*monitor)->address()));
     return monitor;
 }
 
@@ -111,19 +112,86 @@ int run_walk_command(WalkArguments& a, const Context& context) {
     if (a.json) {
         fmt::print("{}\n", report::to_json(outcome->summary));
         // The table says these itself.
-        if (!outcome->summary.uncalibrated.empty()) notify("uncalibrated: " + outcome->summary.uncalibrated);
-        for (const rt::Lack& d : outcome->summary.degraded) notify("not fully real-time: " + d.text());
-        for (const std::string& problem : outcome->summary.census_problems) notify("thread census: " + problem);
+        if (!outcome->summary.uncalibrated.empty())
+            notify("The figures are uncalibrated: " + outcome->summary.uncalibrated + ".");
+        for (const rt::Lack& d : outcome->summary.degraded) notify("The walk was not fully real-time: " + d.text());
+        for (const std::string& problem : outcome->summary.census_problems)
+            notify("The thread census found a difference: " + problem + ".");
     } else {
         fmt::print("{}", report::to_table(outcome->summary, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
     }
     for (const Error& error : outcome->failures) fail(error);
     if (outcome->stopped)
-        notify(fmt::format("stopped by the user after {} frames. The figures cover these", outcome->summary.frames));
+        notify(
+            fmt::format("The walk was stopped by the user after {} frames. The figures cover these.", outcome->summary.frames));
     const bool broken = report::rule_broken(outcome->summary.control);
-    if (broken) notify("the deadline rule is broken. See the control's figures");
+    if (broken) notify("The deadline rule is broken. See the control's figures.");
     return outcome->failures.empty() && !outcome->stopped && !broken ? exit_success : exit_failure;
+}
+
+/// What the walk follows: a path, devices or a recording.
+void add_sources(CLI::App* c, walk::WalkRequest& r) {
+    c->add_option("--path", r.path_file,
+                  "CSV file of poses over time (else MODEL.path.csv, else a tour). With --input the path is not followed: "
+                  "its first pose is the start, poses at equal times are viewpoints, and the action `tour` follows it");
+    c->add_option(
+         "--input", r.input_file,
+         "Source of steering, instead of the path: `devices` or a recording. `devices` uses all devices, plugged now or later. "
+         "It needs the real clock, and ends with --seconds, --frames, or the path's length. "
+         "A recording is in hid-recorder's text format, and ends a second after its last report. "
+         "Check it with `surefoot devices describe`. A file named devices is ./devices")
+        ->check(names_something());
+    c->add_option(
+        "--steering", r.steering_file,
+        "TOML file with [motion], [safety], [[device]] and [[gpio]] for --input (else the default of the device's class)");
+    c->add_flag("--clear-stop", r.clear_stop,
+                "With --input devices: release an emergency stop that an earlier walk left latched");
+}
+
+/// What real time must have, and what is switched off or measured for comparison.
+void add_comparisons(CLI::App* c, WalkArguments& a) {
+    c->add_flag("--strict", a.request.strict,
+                "Do not start if real time lacks anything: SCHED_FIFO, locked memory, an isolated core, thread placement or a "
+                "cost table");
+    c->add_flag("--no-check", a.settings->no_check, "Disable the in-frame check (for comparison)");
+    c->add_flag("--no-occlusion", a.settings->no_occlusion, "Disable occlusion culling (for comparison)");
+    c->add_flag("--no-correction", a.no_correction, "Disable the online correction of predicted costs (for comparison)");
+    c->add_flag("--control", a.request.control,
+                "Alternate blocks of the walk with blocks of a bare loop, and apply the deadline rule");
+    a.control_pairs =
+        c->add_option("--control-pairs", a.request.control_pairs, "Number of pairs of blocks; the deadline rule needs 90")
+            ->check(whole_number_within(1, 100000))
+            ->capture_default_str();
+}
+
+/// What the walk reads from the state folder, and every file that it writes.
+void add_outputs(CLI::App* c, WalkArguments& a) {
+    walk::WalkRequest& r = a.request;
+    c->add_option("--state", r.state_dir, "Folder of the calibrated cost table");
+    c->add_option("--ledger", r.ledger_file, "CSV file with one row per frame")->check(names_something());
+    c->add_option("--trace", r.trace_file, "Trace file for ui.perfetto.dev")->check(names_something());
+    c->add_option("--report", r.report_dir, "Folder for a report: index.html")->check(names_something());
+    c->add_option(
+         "--pictures", r.pictures,
+         "Number of frames that are compared with full detail after the walk, evenly spread. They give PSNR, SSIM and FLIP "
+         "[7 with --report, else 0]")
+        ->check(whole_number_within(1, 100));
+    c->add_option(
+        "--monitor", a.watch.address,
+        "Address for live figures: unix:PATH, or 127.0.0.1:PORT (port 0: any free port). `surefoot status`, `surefoot top` "
+        "and Prometheus (/metrics) read them");
+    c->add_option("--incidents", a.watch.incidents_dir,
+                  "Folder for bursts of misses: the ledger and trace of the last minute. The newest 20 are kept, at most 256 MiB")
+        ->check(names_something());
+    c->add_option("--snap", r.snap_dir,
+                  "Folder for pictures of the walk: 00000.png and so on, as many as fit in 256 MiB of memory")
+        ->check(names_something());
+    c->add_option("--every", r.snap_every, "Take a picture every N frames [30]")->check(whole_number_within(1, 1'000'000'000));
+    c->add_option("--capture", r.capture_file, "File for the prepared arrays and cut of one frame, for `surefoot replay`")
+        ->check(names_something());
+    c->add_option("--capture-frame", r.capture_frame, "Number of the frame to capture [0]")
+        ->check(whole_number_within(0, 4'000'000));
 }
 
 }  // namespace
@@ -142,22 +210,7 @@ void add_walk(CLI::App& app, Context& context) {
                     "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
                     a->json);
     c->add_option("model", r.model_file, "The .walk model (else `model` in the --config file)");
-    c->add_option("--path", r.path_file,
-                  "CSV file of poses over time (else MODEL.path.csv, else a tour). With --input the path is not followed: "
-                  "its first pose is the start, poses at equal times are viewpoints, and the action `tour` follows it");
-    c->add_option(
-         "--input", r.input_file,
-         "Source of steering, instead of the path: `devices` or a recording. `devices` uses all devices, plugged now or later. "
-         "It "
-         "needs the real clock, and ends with --seconds, --frames, or the path's length. A recording is in hid-recorder's text "
-         "format, and ends a second after its last report. Check it with `surefoot devices describe`. A file named devices is "
-         "./devices")
-        ->check(names_something());
-    c->add_option(
-        "--steering", r.steering_file,
-        "TOML file with [motion], [safety], [[device]] and [[gpio]] for --input (else the default of the device's class)");
-    c->add_flag("--clear-stop", r.clear_stop,
-                "With --input devices: release an emergency stop that an earlier walk left latched");
+    add_sources(c, r);
     c->add_option("--frames", r.frames,
                   "Frames to walk (else --seconds, else the recording and one second, else the path's length)")
         ->check(whole_number_within(1, 4'000'000));
@@ -167,40 +220,8 @@ void add_walk(CLI::App& app, Context& context) {
                  {{"--slice", "slice_us"}, {"--hysteresis", "hysteresis"}});
     c->add_option("--cost-noise", r.cost_noise, "With --clock virtual: relative noise of the costs")->check(number_within(0, 10));
     for (const char* experiment : {"--slice", "--hysteresis", "--cost-noise"}) c->get_option(experiment)->group(hidden_group);
-    c->add_flag("--strict", r.strict,
-                "Do not start if real time lacks anything: SCHED_FIFO, locked memory, an isolated core, thread placement or a "
-                "cost table");
-    c->add_flag("--no-check", a->settings->no_check, "Disable the in-frame check (for comparison)");
-    c->add_flag("--no-occlusion", a->settings->no_occlusion, "Disable occlusion culling (for comparison)");
-    c->add_flag("--no-correction", a->no_correction, "Disable the online correction of predicted costs (for comparison)");
-    c->add_flag("--control", r.control, "Alternate blocks of the walk with blocks of a bare loop, and apply the deadline rule");
-    a->control_pairs = c->add_option("--control-pairs", r.control_pairs, "Number of pairs of blocks; the deadline rule needs 90")
-                           ->check(whole_number_within(1, 100000))
-                           ->capture_default_str();
-    c->add_option("--state", r.state_dir, "Folder of the calibrated cost table");
-    c->add_option("--ledger", r.ledger_file, "CSV file with one row per frame")->check(names_something());
-    c->add_option("--trace", r.trace_file, "Trace file for ui.perfetto.dev")->check(names_something());
-    c->add_option("--report", r.report_dir, "Folder for a report: index.html")->check(names_something());
-    c->add_option(
-         "--pictures", r.pictures,
-         "Number of frames that are compared with full detail after the walk, evenly spread. They give PSNR, SSIM and FLIP "
-         "[7 with --report, else 0]")
-        ->check(whole_number_within(1, 100));
-    c->add_option(
-        "--monitor", a->watch.address,
-        "Address for live figures: unix:PATH, or 127.0.0.1:PORT (port 0: any free port). `surefoot status`, `surefoot top` "
-        "and Prometheus (/metrics) read them");
-    c->add_option("--incidents", a->watch.incidents_dir,
-                  "Folder for bursts of misses: the ledger and trace of the last minute. The newest 20 are kept, at most 256 MiB")
-        ->check(names_something());
-    c->add_option("--snap", r.snap_dir,
-                  "Folder for pictures of the walk: 00000.png and so on, as many as fit in 256 MiB of memory")
-        ->check(names_something());
-    c->add_option("--every", r.snap_every, "Take a picture every N frames [30]")->check(whole_number_within(1, 1'000'000'000));
-    c->add_option("--capture", r.capture_file, "File for the prepared arrays and cut of one frame, for `surefoot replay`")
-        ->check(names_something());
-    c->add_option("--capture-frame", r.capture_frame, "Number of the frame to capture [0]")
-        ->check(whole_number_within(0, 4'000'000));
+    add_comparisons(c, *a);
+    add_outputs(c, *a);
     c->callback([&context, a] { context.run = [a, &context] { return run_walk_command(*a, context); }; });
 }
 

@@ -102,68 +102,82 @@ struct Kind {
     double clearance_m = 1.5;  ///< between trunk and footpath: low boughs stay out of the walker's face
 };
 
+TreeShape oak() {
+    return {.height = 12,
+            .crown_base = 3.6,
+            .crown_radius = 4.0,
+            .trunk_radius = 0.30,
+            .branches = 10,
+            .leaf_length = 1.25,
+            .leaf_width = 0.40,
+            .clump_radius = 1.45};
+}
+
+TreeShape old_oak() {
+    TreeShape shape = oak();
+    shape.height = 10;
+    shape.crown_base = 3.2;
+    shape.crown_radius = 4.4;
+    shape.dark = rgb(62, 92, 28);
+    shape.light = rgb(150, 168, 58);
+    return shape;
+}
+
+TreeShape birch() {
+    return {.height = 13,
+            .crown_base = 4.4,
+            .crown_radius = 2.5,
+            .trunk_radius = 0.15,
+            .branches = 10,
+            .leaf_length = 0.95,
+            .leaf_width = 0.30,
+            .clump_radius = 1.1,
+            .bark = rgb(222, 218, 206),
+            .dark = rgb(84, 122, 44),
+            .light = rgb(178, 196, 84),
+            .bark_marks = true};
+}
+
+TreeShape beech() {
+    return {.height = 15,
+            .crown_base = 4.6,
+            .crown_radius = 3.6,
+            .trunk_radius = 0.27,
+            .branches = 9,
+            .leaf_length = 1.2,
+            .leaf_width = 0.38,
+            .clump_radius = 1.5,
+            .bark = rgb(132, 126, 116),
+            .dark = rgb(112, 68, 30),
+            .light = rgb(206, 138, 56)};
+}
+
+TreeShape pine() {
+    return {.height = 16,
+            .crown_base = 8.5,
+            .crown_radius = 2.6,
+            .trunk_radius = 0.22,
+            .branches = 8,
+            .leaf_length = 1.05,
+            .leaf_width = 0.17,
+            .clump_radius = 0.9,
+            .needles = true,
+            .bark = rgb(150, 92, 58),
+            .dark = rgb(30, 62, 40),
+            .light = rgb(92, 128, 74)};
+}
+
 std::vector<Kind> tree_kinds(SceneMaker& maker, const PlantMaterials& plants, std::uint64_t seed) {
     std::vector<Kind> kinds;
     const auto broad = [&](const char* name, const TreeShape& shape, double clearance) {
         kinds.push_back(
             {maker.mesh(broad_tree(name, plants, shape, triangles_a_tree, seed + kinds.size() * 77)), name, clearance});
     };
-    TreeShape oak{.height = 12,
-                  .crown_base = 3.6,
-                  .crown_radius = 4.0,
-                  .trunk_radius = 0.30,
-                  .branches = 10,
-                  .leaf_length = 1.25,
-                  .leaf_width = 0.40,
-                  .clump_radius = 1.45};
-    broad("oak", oak, 1.6);
-    oak.height = 10;
-    oak.crown_base = 3.2;
-    oak.crown_radius = 4.4;
-    oak.dark = rgb(62, 92, 28);
-    oak.light = rgb(150, 168, 58);
-    broad("old oak", oak, 1.7);
-    broad("birch",
-          {.height = 13,
-           .crown_base = 4.4,
-           .crown_radius = 2.5,
-           .trunk_radius = 0.15,
-           .branches = 10,
-           .leaf_length = 0.95,
-           .leaf_width = 0.30,
-           .clump_radius = 1.1,
-           .bark = rgb(222, 218, 206),
-           .dark = rgb(84, 122, 44),
-           .light = rgb(178, 196, 84),
-           .bark_marks = true},
-          1.4);
-    broad("beech",
-          {.height = 15,
-           .crown_base = 4.6,
-           .crown_radius = 3.6,
-           .trunk_radius = 0.27,
-           .branches = 9,
-           .leaf_length = 1.2,
-           .leaf_width = 0.38,
-           .clump_radius = 1.5,
-           .bark = rgb(132, 126, 116),
-           .dark = rgb(112, 68, 30),
-           .light = rgb(206, 138, 56)},
-          1.6);
-    broad("pine",
-          {.height = 16,
-           .crown_base = 8.5,
-           .crown_radius = 2.6,
-           .trunk_radius = 0.22,
-           .branches = 8,
-           .leaf_length = 1.05,
-           .leaf_width = 0.17,
-           .clump_radius = 0.9,
-           .needles = true,
-           .bark = rgb(150, 92, 58),
-           .dark = rgb(30, 62, 40),
-           .light = rgb(92, 128, 74)},
-          1.4);
+    broad("oak", oak(), 1.6);
+    broad("old oak", old_oak(), 1.7);
+    broad("birch", birch(), 1.4);
+    broad("beech", beech(), 1.6);
+    broad("pine", pine(), 1.4);
     kinds.push_back({maker.mesh(spruce("spruce", plants, 14.0, 2.7, triangles_a_tree, seed + 900)), "spruce", 3.6});
     kinds.push_back({maker.mesh(spruce("young spruce", plants, 8.0, 2.0, triangles_a_tree, seed + 901)), "young spruce", 3.0});
     return kinds;

@@ -67,6 +67,31 @@ bool seen(const std::vector<Leaf>& leaves, const dvec3& eye, const dvec3& at, co
     return true;
 }
 
+/// A wall, floor or ceiling, of `planks` strips.
+importer::Primitive room_face(std::uint32_t planks, const dvec3& from, const dvec3& right, const dvec3& up,
+                              std::uint32_t material) {
+    importer::Primitive p = surface(3, planks, [&](double u, double v) { return vec3(from + u * right + v * up); });
+    p.material = material;
+    return p;
+}
+
+/// A box of six such faces.
+importer::Primitive room_body(std::uint32_t planks, const dvec3& low, const dvec3& size) {
+    importer::Primitive all;
+    for (int axis = 0; axis < 3; ++axis) {
+        dvec3 a(0), b(0), n(0);
+        n[axis] = size[axis];
+        a[(axis + 1) % 3] = size[(axis + 1) % 3];
+        b[(axis + 2) % 3] = size[(axis + 2) % 3];
+        for (const auto& side : {room_face(planks, low + n, a, b, 0), room_face(planks, low, b, a, 0)}) {
+            const auto base = static_cast<std::uint32_t>(all.positions.size());
+            all.positions.insert(all.positions.end(), side.positions.begin(), side.positions.end());
+            for (const std::uint32_t i : side.indices) all.indices.push_back(base + i);
+        }
+    }
+    return all;
+}
+
 /// Two storeys of rooms with doors and gaps of every width, boxes in them; walls of one face, of two, and of a box's six.
 importer::Scene rooms(Random& random, const dvec3& at, const dquat& turn, std::uint32_t planks) {
     constexpr int across = 5, storeys = 2;
@@ -76,25 +101,9 @@ importer::Scene rooms(Random& random, const dvec3& at, const dquat& turn, std::u
     scene.materials.resize(2);
     scene.materials[1].two_sided = true;
     const auto face = [&](const dvec3& from, const dvec3& right, const dvec3& up, std::uint32_t material) {
-        importer::Primitive p = surface(3, planks, [&](double u, double v) { return vec3(from + u * right + v * up); });
-        p.material = material;
-        return p;
+        return room_face(planks, from, right, up, material);
     };
-    const auto body = [&](const dvec3& low, const dvec3& size) {
-        importer::Primitive all;
-        for (int axis = 0; axis < 3; ++axis) {
-            dvec3 a(0), b(0), n(0);
-            n[axis] = size[axis];
-            a[(axis + 1) % 3] = size[(axis + 1) % 3];
-            b[(axis + 2) % 3] = size[(axis + 2) % 3];
-            for (const auto& side : {face(low + n, a, b, 0), face(low, b, a, 0)}) {
-                const auto base = static_cast<std::uint32_t>(all.positions.size());
-                all.positions.insert(all.positions.end(), side.positions.begin(), side.positions.end());
-                for (const std::uint32_t i : side.indices) all.indices.push_back(base + i);
-            }
-        }
-        return all;
-    };
+    const auto body = [&](const dvec3& low, const dvec3& size) { return room_body(planks, low, size); };
     const auto wall = [&](const dvec3& from, const dvec3& along) {
         const double length = glm::length(along), door = random.below(3) == 0 ? random.range(0.01, 0.2) : random.range(0.8, 1.2);
         const dvec3 unit = along / length;
