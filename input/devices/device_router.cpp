@@ -113,7 +113,7 @@ void DeviceRouter::added(const DeviceEvent& e) {
                                        : steering_.attach(std::move(attachment->mapper), p.device.controls.size(),
                                                           attachment->reporting, number_before(attachment->identity));
     if (number < 0) return emit(sink_, "{} ({}): {} devices steer already. Unplug one.", p.node, p.name, max_devices);
-    emit(sink_, "{} ({}): The device steers by the mapping \"{}\"", p.node, p.name, attachment->mapping);
+    emit(sink_, "{} ({}): The device steers by the mapping \"{}\".", p.node, p.name, attachment->mapping);
     CHECK(static_cast<std::size_t>(number) < identities_.size(), "A number of the steering fits the table of identities");
     slot->device = e.device;
     slot->steering = number;
@@ -135,7 +135,7 @@ void DeviceRouter::removed(const DeviceEvent& e) {
     Slot* s = e.device < 0 ? nullptr : find(e.device);
     if (s == nullptr) return;
     steering_.detach(s->steering);
-    emit(sink_, "{} ({}): {}", s->plugged->node, s->plugged->name, e.why->what);
+    emit(sink_, "{} ({}): {}.", s->plugged->node, s->plugged->name, e.why->what);
     *s = {};
 }
 

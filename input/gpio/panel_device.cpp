@@ -59,7 +59,7 @@ void PanelDevice::service(std::int64_t now_ns) {
     if (panel_.problem() == last_problem_.view()) return;
     last_problem_ = format_message("{}", panel_.problem());
     if (last_problem_.size == 0)
-        emit(sink_, "{}: The lines are open", panel_name);
+        emit(sink_, "{}: The lines are open.", panel_name);
     else
         emit(sink_, "{}: {} The lines are tried again. A stop among them is asserted until then.", panel_name,
              last_problem_.view());

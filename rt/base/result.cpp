@@ -42,8 +42,8 @@ std::string Error::text() const {
     std::string line = place;
     if (!line.empty() && !what.empty()) line += ": ";
     line += what;
-    if (remedy.empty()) return line;
     line += full_stop_after(line);
+    if (remedy.empty()) return line;
     line += ' ' + remedy;
     line += full_stop_after(line);
     return line;

@@ -36,7 +36,7 @@ struct Ending {
 
 void log_lack(Log& log, ServiceState& state, const rt::Lack& lack) {
     if (!state.lacks(lack)) return;
-    log.write(Priority::warning, event::degraded, "not fully real-time: " + lack.text(),
+    log.write(Priority::warning, event::degraded, "The walk is not fully real-time: " + lack.text(),
               {{"SUREFOOT_LACK", lack.what}, {"SUREFOOT_REMEDY", lack.remedy}});
 }
 
@@ -57,7 +57,7 @@ walk::WalkObserver observer_of(Log& log, ServiceState& state, Bursts& bursts, co
     observer.on_started = [&](const walk::WalkStart& start) {
         for (const rt::Lack& lack : start.degraded) log_lack(log, state, lack);
         if (!start.uncalibrated.empty() && state.uncalibrated(start.uncalibrated))
-            log.write(Priority::warning, event::uncalibrated, start.uncalibrated);
+            log.write(Priority::warning, event::uncalibrated, "The budget is uncalibrated: " + start.uncalibrated + ".");
         // After the session has raised its limits.
         if (auto ok = rt::guard_runaways(rt::runaway_limit_us(start.period_ns)); !ok)
             log_lack(log, state, {rt::LackKind::other, ok.error().place + ": " + ok.error().what, ok.error().remedy});
@@ -137,13 +137,14 @@ ExitCode walk_on(config::Configuration current, const Options& options, Log& log
         if (state.walk_frames() > 0) good = current;
         if (!ending.failed) {
             if (state.stop_walk.load()) continue;  // a reload
-            log.write(Priority::error, event::fault, "the walk ended by itself");
+            log.write(Priority::error, event::fault, "The walk ended by itself, so the service ends and is restarted.");
             return exit_failure;
         }
         const bool newer = state.stop_walk.load();  // a reload came while this one failed
         if (state.walk_frames() == 0 && (good || newer)) {
             const std::string why = ending.error.text();
-            log.write(Priority::error, event::refused, "the new configuration cannot start a walk, another one is used: " + why);
+            log.write(Priority::error, event::refused,
+                      "The new configuration cannot start a walk, so another one is used. " + why);
             if (newer) continue;
             state.refuse(why);
             current = *std::exchange(good, std::nullopt);
@@ -183,7 +184,7 @@ int run(const Options& options, const walk::FaultHook& inject) {
     ServiceState state;
     state.open(loaded.configuration.values);
     log.write(Priority::info, event::starting,
-              fmt::format("{}: {}, {}", options.config_file, loaded.configuration.values.model_file,
+              fmt::format("{}: The service starts with {} at {}.", options.config_file, loaded.configuration.values.model_file,
                           in_short(loaded.configuration.values)));
     const std::unique_ptr<monitor::Monitor> monitor = open_monitor(loaded.configuration, log);
     const Service service(options, log, state, notifier, watchdog_timeout_ns());

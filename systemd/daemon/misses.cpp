@@ -40,8 +40,8 @@ std::optional<Burst> Bursts::finish() {
 }
 
 rt::Cause Burst::main_cause() const {
-    const auto most = std::max_element(causes.begin(), causes.end());
-    return *most == 0 ? rt::Cause::none : static_cast<rt::Cause>(most - causes.begin());
+    const auto largest = std::max_element(causes.begin(), causes.end());
+    return *largest == 0 ? rt::Cause::none : static_cast<rt::Cause>(largest - causes.begin());
 }
 
 std::string Burst::text() const {

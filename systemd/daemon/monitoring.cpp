@@ -22,7 +22,8 @@ std::unique_ptr<monitor::Monitor> open_monitor(const config::Configuration& conf
     if (options.address.empty() && options.incidents_dir.empty()) return nullptr;
     auto monitor = monitor::Monitor::open(std::move(options));
     if (monitor) return std::move(*monitor);
-    log.write(Priority::error, event::fault, "the monitor cannot start, the walk goes on: " + monitor.error().text());
+    log.write(Priority::error, event::fault,
+              "The monitor cannot start, and the walk goes on without it. " + monitor.error().text());
     return nullptr;
 }
 

@@ -84,7 +84,7 @@ void Service::reload() {
     notifier_.send(fmt::format("RELOADING=1\nMONOTONIC_USEC={}", clock.now_ns() / 1000));
     Loaded loaded = load(options_);
     if (loaded.problems.empty()) {
-        log_.write(Priority::notice, event::reloading, "the configuration is read again, and the walk restarts with it",
+        log_.write(Priority::notice, event::reloading, "The configuration was read again, and the walk restarts with it.",
                    {{"SUREFOOT_CONFIG", options_.config_file}});
         state_.refuse({});
         state_.put_next(std::move(loaded.configuration));
@@ -93,8 +93,8 @@ void Service::reload() {
         return;
     }
     std::string why;
-    for (const Error& problem : loaded.problems) why += (why.empty() ? "" : "; ") + problem.text();
-    log_.write(Priority::error, event::refused, "the configuration is refused, the last good one stays in use: " + why,
+    for (const Error& problem : loaded.problems) why += (why.empty() ? "" : " ") + problem.text();
+    log_.write(Priority::error, event::refused, "The configuration is refused, and the last good one stays in use. " + why,
                {{"SUREFOOT_CONFIG", options_.config_file}});
     state_.refuse(why);
     // Still opening: READY=1 comes with the first frame, as ever.
@@ -109,7 +109,8 @@ void Service::leave(int signal) {
     state_.stop_walk.store(true);
     send_status("STOPPING=1\n");
     notified_phase_ = Phase::stopping;
-    log_.write(Priority::info, event::stopping, fmt::format("ends, as {} asks", signal == SIGTERM ? "SIGTERM" : "SIGINT"));
+    log_.write(Priority::info, event::stopping,
+               fmt::format("The service ends, because {} arrived.", signal == SIGTERM ? "SIGTERM" : "SIGINT"));
 }
 
 void Service::send_status(const std::string& first) {
@@ -139,7 +140,7 @@ void Service::notify_systemd(std::int64_t now_ns) {
     if (!ready_ && facts.walk_frames > 0 && !state_.stop_walk.load()) {
         ready_ = true;
         send_status("READY=1\n");
-        log_.write(Priority::notice, event::walking, fmt::format("walking {} at {}", facts.model, facts.in_short),
+        log_.write(Priority::notice, event::walking, fmt::format("The walk through {} began at {}.", facts.model, facts.in_short),
                    {{"SUREFOOT_MODEL", facts.model}});
     } else if (ready_ && now_ns - notified_ns_ >= status_every_ns) {
         send_status({});
@@ -154,27 +155,27 @@ void Service::feed(std::int64_t now_ns) {
     state_.stalled.store(beat.stalled);
     if (beat.stalled) {
         log_.write(Priority::error, event::stalled,
-                   fmt::format("no frame for {:.1f} s: the watchdog is no longer notified",
+                   fmt::format("No frame was presented for {:.1f} s, so the watchdog is no longer notified.",
                                static_cast<double>(heartbeat_.stall_ns()) * 1e-9));
     } else {
-        log_.write(Priority::notice, event::resumed, "frames are presented again");
+        log_.write(Priority::notice, event::resumed, "Frames are presented again.");
     }
     send_status({});
 }
 
 void Service::guard(std::int64_t now_ns) {
     if (const auto runaway = rt::runaway_seen()) {
-        const std::string who = runaway->tid != 0 ? fmt::format("thread {} ({})", runaway->name, runaway->tid) : "a thread";
+        const std::string who = runaway->tid != 0 ? fmt::format("The thread {} ({})", runaway->name, runaway->tid) : "A thread";
         log_.write(Priority::error, event::fault,
-                   fmt::format("{} ran without sleeping for too long; {}. The service ends and is restarted", who,
-                               runaway->demoted ? "its real-time priority was taken" : "it could not be stopped"),
+                   fmt::format("{} ran without sleeping for too long. {} The service ends and is restarted.", who,
+                               runaway->demoted ? "Its real-time priority was taken." : "It could not be stopped."),
                    {{"SUREFOOT_FAULT", "runaway"}});
         _exit(exit_runaway);
     }
     if (leaving_since_ns_ == 0 || now_ns - leaving_since_ns_ < stop_limit_ns) return;
     // What must be kept is on the disk already: a stop is written as it happens.
     log_.write(Priority::warning, event::stopping,
-               "the walk does not end in time (a model is being opened, or the driver hangs): the service ends without it");
+               "The walk did not end in time: a model is being opened, or the driver hangs. The service ends without it.");
     _exit(exit_success);
 }
 

@@ -36,12 +36,12 @@ TEST(Faults, TheWatchdogStarvesWhileTheFrameThreadAloneIsFrozen) {
     daemon.socket.listen(1.0);  // longer than systemd waits
     EXPECT_EQ(daemon.socket.count("WATCHDOG=1", stalled_from), 0U) << daemon.socket.text();
     EXPECT_EQ(daemon.socket.count("STATUS=NO FRAMES COME"), 1U) << daemon.socket.text();
-    EXPECT_EQ(daemon.lines_with("no frame for"), 1) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("No frame was presented for"), 1) << daemon.log_text();
 
     ASSERT_EQ(::ptrace(PTRACE_DETACH, frame, nullptr, nullptr), 0);
     EXPECT_TRUE(daemon.socket.wait_for("WATCHDOG=1", 5)) << "recovery does not resume the pings: " << daemon.socket.text();
     EXPECT_TRUE(daemon.socket.wait_for("STATUS=walking", 5)) << "the status still says that none come: " << daemon.socket.text();
-    EXPECT_EQ(daemon.lines_with("frames are presented again"), 1) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("Frames are presented again."), 1) << daemon.log_text();
     EXPECT_TRUE(daemon.wait_line("missed", missed_before, 20)) << "a burst is told once it is over: " << daemon.log_text();
     ::kill(daemon.pid, SIGTERM);
     EXPECT_EQ(daemon.wait_exit(20), exit_success);

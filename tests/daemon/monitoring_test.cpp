@@ -16,7 +16,7 @@ std::string page(const std::string& socket_file, std::string_view path) {
     return body ? *body : std::string();
 }
 
-TEST(Monitoring, IsWhereTheSettingsSayElseInTheRunTimeFolder) {
+TEST(Monitoring, IsWhereTheSettingsNameItElseInTheRunTimeFolder) {
     config::Settings settings;
     EXPECT_EQ(monitor_address(settings, false), "");
     EXPECT_EQ(monitor_address(settings, true), monitor::default_address());
@@ -47,7 +47,7 @@ TEST(Monitoring, AnAddressThatCannotBeHadCostsTheFiguresAndNotTheWalk) {
     daemon.write_config("monitor = \"unix:" + daemon.dir + "/absent/s.sock\"\n");
     daemon.start();
     ASSERT_TRUE(daemon.socket.wait_for("READY=1", start_s)) << daemon.log_text();
-    EXPECT_EQ(daemon.lines_with("the monitor cannot start, the walk goes on"), 1) << daemon.log_text();
+    EXPECT_EQ(daemon.lines_with("The monitor cannot start, and the walk goes on without it. "), 1) << daemon.log_text();
 }
 
 TEST(Monitoring, AnAddressThatIsNoneIsRefusedByLine) {

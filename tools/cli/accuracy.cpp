@@ -60,7 +60,7 @@ int run_accuracy_command(AccuracyArguments& a, const Context& context) {
     auto run = accuracy::run_accuracy(a.request, terminal_progress(context));
     end_progress(context);
     if (!run) return fail(run.error());
-    if (!run->uncalibrated.empty()) notify("uncalibrated: " + run->uncalibrated);
+    if (!run->uncalibrated.empty()) notify("The figures are uncalibrated: " + run->uncalibrated + ".");
     if (auto w = accuracy::write_accuracy_page(a.out, *run); !w) return fail(w.error());
     if (a.json) {
         fmt::print("{}\n", accuracy::accuracy_json(*run));

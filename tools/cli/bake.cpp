@@ -62,14 +62,15 @@ private:
 
 /// Each once with its number, the first dozen of them: the rest is in the model.
 void print_warnings(const std::vector<std::string>& warnings) {
-    constexpr std::size_t most = 12;
+    constexpr std::size_t max_kinds = 12;
     std::map<std::string_view, std::size_t> times;
     std::vector<std::string_view> kinds;
     for (const std::string& warning : warnings)
         if (++times[warning] == 1) kinds.push_back(warning);
-    for (std::size_t i = 0; i < std::min(kinds.size(), most); ++i)
+    for (std::size_t i = 0; i < std::min(kinds.size(), max_kinds); ++i)
         notify(times[kinds[i]] > 1 ? fmt::format("{} ({} times)", kinds[i], times[kinds[i]]) : std::string(kinds[i]));
-    if (kinds.size() > most) notify(fmt::format("and {} more: `surefoot inspect` lists all", kinds.size() - most));
+    if (kinds.size() > max_kinds)
+        notify(fmt::format("{} more kinds of warnings are not shown. `surefoot inspect` lists all.", kinds.size() - max_kinds));
 }
 
 int run_bake(const BakeArguments& a, const Context& context) {
@@ -126,8 +127,8 @@ int run_bake(const BakeArguments& a, const Context& context) {
                     {"quality", a.quality},
                     {"warnings", model->provenance.warnings}});
     } else {
-        fmt::print("{}: {} objects, {} triangles, {} nodes, {} representations; {:.1f} MiB; {:.1f} s, {:.0f} MiB of memory\n",
-                   a.out, model->object_count, model->triangles(), model->nodes.size(), model->reps.size(),
+        fmt::print("{}: {} objects, {} triangles, {} nodes, {} forms; {:.1f} MiB; {:.1f} s, {:.0f} MiB of memory\n", a.out,
+                   model->object_count, model->triangles(), model->nodes.size(), model->reps.size(),
                    static_cast<double>(written->bytes) / 1048576.0, seconds, peak_memory_mib());
     }
     return exit_success;

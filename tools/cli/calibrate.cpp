@@ -62,7 +62,8 @@ Result<std::function<void()>> placed_as_walked() {
     const rt::Capabilities capable = rt::probe_capabilities(walk::WalkRequest{}.frame_priority);
     auto plan = walk::plan_placing({}, capable.fifo_priority >= walk::WalkRequest{}.frame_priority);
     if (!plan) return plan.error();
-    if (!plan->fifo) notify("not fully real-time: SCHED_FIFO is refused. The figures are measured with ordinary scheduling");
+    if (!plan->fifo)
+        notify("This run is not fully real-time: SCHED_FIFO is refused. The figures are measured with ordinary scheduling.");
     if (rt::guard_active()) (void)rt::prepare_memory({});
     return std::function<void()>([plan = *plan]() mutable {
         if (auto placed = walk::place_rasterisers(plan); !placed) notify(placed.error().text());
@@ -123,8 +124,8 @@ int run_fit(const CalibrateArguments& a, const config::Settings& s, const Contex
     }
     if (fit->after.p50 + fit->after.p90 >= fit->before.p50 + fit->before.p90) {
         notify(
-            fmt::format("the fit (held-out p50 {:.0f} %, p90 {:.0f} %) is no better than the table (p50 {:.0f} %, p90 {:.0f} %), "
-                        "so the table is kept",
+            fmt::format("The fit (held-out p50 {:.0f} %, p90 {:.0f} %) is no better than the table (p50 {:.0f} %, p90 {:.0f} %), "
+                        "so the table is kept.",
                         100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->before.p50, 100 * fit->before.p90));
         fit->costs = *table;
     }
@@ -188,8 +189,8 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (auto made = make_folder(dir); !made) return fail(made.error());
     if (auto written = measure::write_costs(file, c->costs); !written) return fail(written.error());
     if (const std::size_t old = walk::drop_old_fits(dir, c->costs); old > 0) {
-        notify(fmt::format("{} to the old table {} removed. Fit again with `surefoot calibrate MODEL.walk`",
-                           old == 1 ? "the fit" : fmt::format("{} fits", old), old == 1 ? "is" : "are"));
+        notify(fmt::format("{} to the old table {} removed. Fit again with `surefoot calibrate MODEL.walk`.",
+                           old == 1 ? "The fit" : fmt::format("{} fits", old), old == 1 ? "is" : "are"));
     }
     std::vector<report::CostPoint> points;
     for (const measure::CalibrationPoint& p : c->points) {

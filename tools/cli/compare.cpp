@@ -35,7 +35,7 @@ int run_compare_command(CompareArguments& a, const Context& context) {
         terminal_progress(context));
     end_progress(context);
     if (!comparison) return fail(comparison.error());
-    if (!comparison->uncalibrated.empty()) notify("uncalibrated: " + comparison->uncalibrated);
+    if (!comparison->uncalibrated.empty()) notify("The figures are uncalibrated: " + comparison->uncalibrated + ".");
     fmt::print("{}", a.json ? accuracy::compare_json(*comparison) : accuracy::compare_table(*comparison));
     return exit_success;
 }

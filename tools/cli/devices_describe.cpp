@@ -76,7 +76,7 @@ Result<Material> gather(const DescribeArguments& a) {
             return Error{a.reports, "The recording holds no reports (E: lines)", "Record it again while you move the device",
                          ErrorKind::damaged};
         if (!recording->descriptor.empty() && recording->descriptor != m.descriptor) {
-            notify(a.reports + ": the recording is of a device with another descriptor");
+            notify(a.reports + ": The recording is of a device with another descriptor. Its values may be decoded wrongly.");
         }
         m.recording = std::move(*recording);
         have_recording = true;

@@ -164,12 +164,14 @@ int run_map(const MapArguments& a, const Context& context) {
     if (!source) return fail(source.error());
     Session session(a, context, **source);
     if (!session.run()) {
-        if (context.stop->load()) return fail({"map", "The mapping was stopped: nothing is written", "", ErrorKind::stopped});
-        return fail({"map", "There is no device: nothing is written",
+        if (context.stop->load()) return fail({"map", "The mapping was stopped, and nothing is written", "", ErrorKind::stopped});
+        return fail({"map", "There is no device, so nothing is written",
                      "Plug one in. `surefoot devices` shows why a device is refused", ErrorKind::no_device});
     }
     const auto shown = session.teach().mappings();
-    if (shown.empty()) return fail({"map", "No control was moved: nothing is written", "Move each control when it is asked for"});
+    if (shown.empty())
+        return fail({"map", "No control was moved, so nothing is written", "Move each control when its name is shown",
+                     ErrorKind::misuse});
     auto steering = merged(a.file, shown);
     if (!steering) return fail(steering.error());
     const std::string text = input::steering_text(*steering);

@@ -72,7 +72,8 @@ private:
             case DeviceEvent::Kind::added:
                 if (device_ < 0) {
                     device_ = e.device;
-                    notify(fmt::format("recording {} ({}) to {}. Ctrl-C ends it", e.plugged->node, e.plugged->name, a_.file));
+                    notify(fmt::format("The reports of {} ({}) are recorded to {}. Press Ctrl-C to end.", e.plugged->node,
+                                       e.plugged->name, a_.file));
                 }
                 return {};
             case DeviceEvent::Kind::refused:
@@ -116,10 +117,11 @@ int run_record(const RecordArguments& a, const Context& context) {
     Recorder recorder(context, a, *file);
     if (auto recorded = recorder.run(**source); !recorded) return fail(recorded.error());
     if (auto done = file->commit(); !done) return fail(done.error());
-    if (recorder.ended() == "unplugged") notify(fmt::format("{}: the device was unplugged", (*device)->node));
-    if (recorder.ended() == "full") notify(fmt::format("{}: the recording has reached its maximum size and ends", a.file));
+    if (recorder.ended() == "unplugged")
+        notify(fmt::format("{}: The device was unplugged, so the recording ends.", (*device)->node));
+    if (recorder.ended() == "full") notify(fmt::format("{}: The recording has reached its maximum size and ends.", a.file));
     if (recorder.overflows() > 0)
-        notify(fmt::format("reports were lost {} times: this machine did not read them in time", recorder.overflows()));
+        notify(fmt::format("Reports were lost {} times, because this machine did not read them in time.", recorder.overflows()));
     if (a.json) {
         print_json({{"file", a.file},
                     {"device", device_json(**device)},

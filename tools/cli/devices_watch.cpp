@@ -116,9 +116,9 @@ std::vector<std::string> screen(LiveStates& states, const std::vector<std::strin
         for (std::string& line : control_lines(d->plugged->device.controls, d->state, width)) lines.push_back(std::move(line));
         lines.emplace_back();
     }
-    if (states.devices().empty()) lines.emplace_back("No device that steers is plugged in: waiting for one.");
+    if (states.devices().empty()) lines.emplace_back("No device that steers is plugged in. The command waits for one.");
     for (const std::string& note : notes) lines.push_back(note);
-    lines.emplace_back("Ctrl-C ends it.");
+    lines.emplace_back("Press Ctrl-C to end.");
     return lines;
 }
 
@@ -134,13 +134,13 @@ public:
         std::int64_t due = start;
         bool going = true;
         for (const DeviceEvent& e : source_.take()) going = take(e, start) && going;
-        if (!bars_ && states_.devices().empty()) notify("no such device is plugged in: waiting for one");
+        if (!bars_ && states_.devices().empty()) notify("No such device is plugged in. The command waits for one.");
         while (going && !context_.stop->load() && rt::monotonic_ns() < end) {
             for (const DeviceEvent& e : input::poll(source_, std::min(end, due))) going = take(e, start) && going;
             if (rt::monotonic_ns() < due) continue;
             due = rt::monotonic_ns() + (bars_ ? bars_ns : plain_ns);
             if (bars_)
-                redraw->draw(screen(states_, notes_));
+                redraw->draw(screen(states_, messages_));
             else if (!a_.json)
                 going = print_plain(start) && going;
         }
@@ -157,8 +157,8 @@ private:
         std::string text = e.why != nullptr ? e.why->text() : "plugged in";
         if (e.why == nullptr || e.why->place.empty()) text = device_line(*e.plugged) + ": " + text;
         if (bars_) {
-            notes_.push_back(text);
-            if (notes_.size() > 4) notes_.erase(notes_.begin());
+            messages_.push_back(text);
+            if (messages_.size() > 4) messages_.erase(messages_.begin());
             return true;
         }
         return std::fputs((text + "\n").c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
@@ -179,7 +179,7 @@ private:
     input::LiveDevices& source_;
     bool bars_;
     LiveStates states_;
-    std::vector<std::string> notes_;
+    std::vector<std::string> messages_;
 };
 
 }  // namespace

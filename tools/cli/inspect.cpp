@@ -121,10 +121,9 @@ void add_inspect(CLI::App& app, Context& context) {
     CLI::App* c =
         add_command(app, "inspect", "Print the contents of a .walk model as JSON", "surefoot inspect town.walk", a->json);
     c->add_option("model", a->file, "The .walk model")->required();
-    c->add_flag(
-        "--tree", a->tree,
-        "Print the hierarchy instead: one line per node, with its representations as kind:triangles@error. With --json: a list "
-        "with parents");
+    c->add_flag("--tree", a->tree,
+                "Print the hierarchy instead: one line per node, with its forms as kind:triangles@error. With --json: a list "
+                "with parents");
     c->callback([&context, a] { context.run = [a] { return run_inspect(*a); }; });
 }
 

@@ -49,8 +49,8 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
     if (!request) return misuse(request.error());
     walk::prepare_process(request->walk);
     if (request->seconds < judged_from_s) {
-        notify(fmt::format("a verdict needs at least {:.1f} minutes: in {:.0f} s some rules cannot be judged", judged_from_s / 60,
-                           request->seconds));
+        notify(fmt::format("A verdict needs at least {:.1f} minutes. In {:.0f} s some rules cannot be judged.",
+                           judged_from_s / 60, request->seconds));
     }
     auto outcome = soak::run_soak(*request, terminal_progress(context));
     end_progress(context);
@@ -59,15 +59,16 @@ int run_soak_command(const SoakArguments& a, const Context& context) {
     for (const std::string& text : outcome->notes) notify(text);
     if (a.json) {
         fmt::print("{}", soak::soak_json(s));
-        if (!s.walk.uncalibrated.empty()) notify("uncalibrated: " + s.walk.uncalibrated);
-        for (const rt::Lack& d : s.walk.degraded) notify("not fully real-time: " + d.text());
+        if (!s.walk.uncalibrated.empty()) notify("The figures are uncalibrated: " + s.walk.uncalibrated + ".");
+        for (const rt::Lack& d : s.walk.degraded) notify("The soak was not fully real-time: " + d.text());
     } else {
         fmt::print("{}", soak::soak_table(s, context.colour));
         if (!outcome->report_page.empty()) fmt::print("report: {}\n", outcome->report_page);
     }
     for (const Error& error : outcome->failures) fail(error);
     if (s.stopped)
-        notify(fmt::format("stopped by the user after {:.0f} of {:.0f} s. The figures cover this time", s.ran_s, s.requested_s));
+        notify(fmt::format("The soak was stopped by the user after {:.0f} of {:.0f} s. The figures cover this time.", s.ran_s,
+                           s.requested_s));
     const bool holds = soak::verdict_of(s) == soak::Judged::holds;
     return holds && outcome->failures.empty() && !s.stopped ? exit_success : exit_failure;
 }

@@ -191,11 +191,11 @@ bool IncidentWriter::write(const rt::IncidentRecorder::Incident& incident) {
     const auto folder =
         write_incident(dir_, incident, limits_, std::chrono::duration_cast<std::chrono::seconds>(now).count(), &missed);
     if (folder) {
-        if (notify_) notify_(fmt::format("a burst of misses from frame {} on was recorded: {}", incident.first_frame, *folder));
+        if (notify_) notify_(fmt::format("A burst of misses from frame {} on was recorded: {}.", incident.first_frame, *folder));
         failing_ = false;
         return true;
     }
-    if (!failing_ && notify_) notify_("a burst of misses could not be recorded: " + folder.error().text());
+    if (!failing_ && notify_) notify_("A burst of misses could not be recorded. " + folder.error().text());
     failing_ = true;
     return false;
 }

@@ -15,12 +15,12 @@ namespace {
 void warn_of_ignored_input(const input::SteeringFile& steering, const input::RecordedDevice& recorded, const WalkRequest& request,
                            std::vector<std::string>& notes) {
     if (!steering.lines.empty()) {
-        notes.push_back(
-            fmt::format("{}: its {} GPIO lines are not read: a recording steers", request.steering_file, steering.lines.size()));
+        notes.push_back(fmt::format("{}: Its {} GPIO lines are not read, because a recording steers.", request.steering_file,
+                                    steering.lines.size()));
     }
     if (recorded.recording.other_devices > 0) {
-        notes.push_back(fmt::format("{}: {} reports of other devices are ignored: only one device steers", request.input_file,
-                                    recorded.recording.other_devices));
+        notes.push_back(fmt::format("{}: {} reports of other devices are ignored, because only one device steers.",
+                                    request.input_file, recorded.recording.other_devices));
     }
     for (const std::string& left_out : recorded.mapper.messages) notes.push_back(request.input_file + ": " + left_out);
 }

@@ -43,10 +43,10 @@ Result<LiveInput> LiveInput::open(const WalkRequest& request, const input::Steer
         if (live.stop_latched_)
             notes.push_back(
                 file +
-                ": the emergency stop of an earlier walk is still latched. Press the control for `stop_reset`, or start "
-                "with --clear-stop");
+                ": The emergency stop of an earlier walk is still latched. Press the control for `stop_reset`, or start "
+                "with --clear-stop.");
         else if (remembered.latched)
-            notes.push_back(file + ": the emergency stop of an earlier walk is released by --clear-stop");
+            notes.push_back(file + ": The emergency stop of an earlier walk is released by --clear-stop.");
     } else if (request.clear_stop) {
         return Error{"--clear-stop", "This option releases a latched stop, and no control can stop this walk",
                      "Name a stop in the --steering file, or remove --clear-stop", ErrorKind::misuse};
@@ -67,12 +67,12 @@ void LiveInput::poll_live(const Progress& progress, std::vector<std::string>& no
     if (const bool latched = keeper_->latched(); latched != stop_latched_) {
         stop_latched_ = latched;
         notify(progress, notes,
-               latched ? "emergency stop: the walk stands still until the control for `stop_reset` is pressed"
-                       : "emergency stop: released");
+               latched ? "Emergency stop: the walk stands still until the control for `stop_reset` is pressed."
+                       : "Emergency stop: released.");
     }
     const auto written = keeper_->flush();
     const std::string why = written ? std::string() : written.error().text();
-    if (why != unwritten_ && !why.empty()) notify(progress, notes, "the emergency stop cannot be stored: " + why);
+    if (why != unwritten_ && !why.empty()) notify(progress, notes, "The emergency stop cannot be stored. " + why);
     unwritten_ = why;
 }
 
@@ -81,7 +81,7 @@ void LiveInput::finish(bool latched, const Progress& progress, std::vector<std::
     poll_live(progress, notes);
     if (live_->lost_messages() > 0)
         notify(progress, notes,
-               fmt::format("{} more messages about devices came too fast and are not shown", live_->lost_messages()));
+               fmt::format("{} more messages about devices came too fast and are not shown.", live_->lost_messages()));
 }
 
 }  // namespace surefoot::walk

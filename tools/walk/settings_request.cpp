@@ -97,7 +97,8 @@ std::string keep_process(const WalkRequest& first, WalkRequest& request) {
     const int wanted = gl::effective_rasterisers(request.rasterisers), have = gl::effective_rasterisers(first.rasterisers);
     request.rasterisers = first.rasterisers;
     if (wanted == have) return {};
-    return fmt::format("rasterisers: {} take effect at the next start of the process; until then it draws with {}", wanted, have);
+    return fmt::format("rasterisers: {} take effect at the next start of the process. Until then it draws with {}.", wanted,
+                       have);
 }
 
 }  // namespace surefoot::walk

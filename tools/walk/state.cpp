@@ -36,14 +36,14 @@ Result<model::CostModel> load_costs(const std::string& state_dir, const std::str
     const std::string file = cost_table_file(state_dir);
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) {
-        note = "no cost table in " + state_dir + ": built-in figures are used. Run `surefoot calibrate`";
+        note = "no cost table in " + state_dir + ", so built-in figures are used. Run `surefoot calibrate`";
         return model::default_costs();
     }
     auto costs = measure::read_costs(file, "");
     if (!costs) return costs.error();
     if (!machine.empty() && costs->machine != machine) {
-        note = "the cost table " + file + " was measured on \"" + costs->machine + "\", this is \"" + machine +
-               "\": built-in figures are used. Run `surefoot calibrate`";
+        note = "the cost table " + file + " was measured on \"" + costs->machine + "\", but this is \"" + machine +
+               "\", so built-in figures are used. Run `surefoot calibrate`";
         return model::default_costs();
     }
     return costs;

@@ -108,7 +108,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     s.facts.renderer = s.engine->device().renderer();
     s.facts.machine = measure::machine_identity(s.facts.renderer, r.rasterisers);
     if (s.costs.calibrated && options->device.kind != gl::BackendKind::null && s.costs.machine != s.facts.machine) {
-        s.facts.uncalibrated = "the cost table was measured on \"" + s.costs.machine + "\", this is \"" + s.facts.machine +
+        s.facts.uncalibrated = "the cost table was measured on \"" + s.costs.machine + "\", but this is \"" + s.facts.machine +
                                "\". Run `surefoot calibrate` here";
         if (r.strict) {
             notify_step(s, WalkStep::real_time);

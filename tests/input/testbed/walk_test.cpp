@@ -211,7 +211,7 @@ TEST(WalkTool, APadSteersIsPulledAndSteersAgainOnceSeenNeutral) {
     EXPECT_EQ(rest, 0) << "m/s, 50 ms after the cable was pulled";
 }
 
-TEST(WalkTool, WithoutADeviceItRestsAndSaysSoOnce) {
+TEST(WalkTool, WithoutADeviceItRestsAndReportsItOnce) {
     Testbed bed;
     bed.plug(recorded("boot-mouse"));
     Tool tool(Place::get().walk("2"), false, "walk");
@@ -267,7 +267,7 @@ action = "stop_reset"
     };
     walk({}, [&](Tool& tool, test::Plug& plug) {
         push(tool, plug);
-        hold_until(tool, "emergency stop: the walk stands still", plug, 16);
+        hold_until(tool, "Emergency stop: the walk stands still", plug, 16);
         hold(plug, 0, 50);
     });
     EXPECT_TRUE(moved());
@@ -278,7 +278,7 @@ action = "stop_reset"
     EXPECT_NE(errors.find("still latched"), std::string::npos) << errors;
     const auto [third, reset] = walk({}, [&](Tool& tool, test::Plug& plug) {
         hold(plug, 0, 100);
-        hold_until(tool, "emergency stop: released", plug, 32);
+        hold_until(tool, "Emergency stop: released.", plug, 32);
         push(tool, plug);
     });
     EXPECT_TRUE(moved()) << "reset by its control";
