@@ -93,7 +93,7 @@ void Finder::scan(std::vector<Discovery>& out, std::int64_t now_ns) {
             d.kind = Discovery::Kind::lost;
             d.device = i->second.device;
             d.plugged = i->second.plugged;
-            d.why = {place_text(*d.plugged), "The device was unplugged", "", ErrorKind::no_device};
+            d.why = {place_text(*d.plugged), "The device was unplugged", "Plug it in again", ErrorKind::no_device};
             out.push_back(std::move(d));
         }
         i = entries_.erase(i);

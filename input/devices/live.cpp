@@ -19,7 +19,7 @@ constexpr std::size_t max_events = max_reports + 4 * max_open_devices;  // each 
 LiveDevices::LiveDevices(std::unique_ptr<Discoverer> discoverer, std::optional<Error> trouble)
     : discoverer_(std::move(discoverer)),
       bytes_(bytes_per_take + largest_report),
-      unplugged_{"", "The device was unplugged, or cannot be read any more", "", ErrorKind::no_device},
+      unplugged_{"", "The device was unplugged, or cannot be read any more", "Plug it in again", ErrorKind::no_device},
       trouble_(std::move(trouble)) {
     open_.reserve(max_open_devices);
     retired_.reserve(2 * max_open_devices);

@@ -205,7 +205,7 @@ Result<void> write_png(const std::string& file, std::uint32_t width, std::uint32
     if (png.empty())
         return Error{
             file, fmt::format("The {} bytes cannot be encoded as a picture of {} x {} RGBA texels", rgba.size(), width, height),
-            "", ErrorKind::failed};
+            "Choose a smaller picture", ErrorKind::failed};
     return write_file(file, std::as_bytes(std::span(png)));
 }
 

@@ -118,7 +118,8 @@ private:
 
 Result<std::vector<OstfVertex>> read_ostf_leaf(const OstfIndex& index, Index object) {
     if (object >= index.objects.size() || index.objects[object].triangles == 0)
-        return Error{index.file, fmt::format("Object {} is no leaf", object), "", ErrorKind::failed};
+        return Error{index.file, fmt::format("Object {} is no leaf", object), "Name an object that has triangles",
+                     ErrorKind::not_found};
     const OstfObject& leaf = index.objects[object];
     NumberStream numbers(index.file, leaf.offset);
     std::vector<OstfVertex> vertices;

@@ -16,6 +16,8 @@ namespace surefoot {
 
 namespace {
 
+constexpr const char* surefoot_bug = "This is an error of surefoot. Report it with the command that you gave";
+
 /// What a system error means to the person at the keyboard.
 std::string remedy_for(int error) {
     switch (error) {
@@ -189,7 +191,7 @@ void AtomicFile::discard() noexcept {
 }
 
 Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
-    if (fd_ < 0) return Error{path_, "The file was written to after it was closed", {}, ErrorKind::unwritable};
+    if (fd_ < 0) return Error{path_, "The file was written to after it was closed", surefoot_bug, ErrorKind::unwritable};
     std::size_t done = 0;
     while (done < bytes.size()) {
         const ssize_t put = ::write(fd_, bytes.data() + done, bytes.size() - done);
@@ -203,7 +205,7 @@ Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
 Result<void> AtomicFile::write(std::string_view text) { return write(std::as_bytes(std::span(text.data(), text.size()))); }
 
 Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
-    if (fd_ < 0) return Error{path_, "The file was written to after it was closed", {}, ErrorKind::unwritable};
+    if (fd_ < 0) return Error{path_, "The file was written to after it was closed", surefoot_bug, ErrorKind::unwritable};
     std::size_t done = 0;
     while (done < bytes.size()) {
         const ssize_t put = ::pwrite(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
@@ -215,13 +217,13 @@ Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byt
 }
 
 Result<void> AtomicFile::sync() {
-    if (fd_ < 0) return Error{path_, "The file was committed after it was closed", {}, ErrorKind::unwritable};
+    if (fd_ < 0) return Error{path_, "The file was committed after it was closed", surefoot_bug, ErrorKind::unwritable};
     if (::fsync(fd_) != 0) return system_error(path_, "The file cannot be completed", errno, ErrorKind::unwritable);
     return {};
 }
 
 Result<void> AtomicFile::take_place() {
-    if (fd_ < 0) return Error{path_, "The file was committed after it was closed", {}, ErrorKind::unwritable};
+    if (fd_ < 0) return Error{path_, "The file was committed after it was closed", surefoot_bug, ErrorKind::unwritable};
     int error = ::close(std::exchange(fd_, -1)) != 0 ? errno : 0;
     if (error == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) error = errno;
     if (error != 0) {

@@ -71,7 +71,9 @@ Result<void> name_thread(pid_t tid, const std::string& name) {
     const bool written = file >= 0 && ::write(file, kept.data(), kept.size()) == static_cast<ssize_t>(kept.size());
     const int error = errno;
     if (file >= 0) ::close(file);
-    if (!written) return refused(tid, fmt::format("The thread cannot be named '{}'", kept), error, {}, ErrorKind::failed);
+    if (!written)
+        return refused(tid, fmt::format("The thread cannot be named '{}'", kept), error,
+                       "Check that this process may write to /proc", ErrorKind::failed);
     return {};
 }
 
@@ -190,7 +192,8 @@ Result<ThreadInfo> read_thread(pid_t tid) {
     cpu_set_t set;
     CPU_ZERO(&set);
     if (policy < 0 || sched_getparam(tid, &parameters) != 0 || sched_getaffinity(tid, sizeof(set), &set) != 0)
-        return refused(tid, "The thread cannot be examined", errno, {}, ErrorKind::failed);
+        return refused(tid, "The thread cannot be examined", errno, "Check the system-call filter of this process",
+                       ErrorKind::failed);
     info.policy = policy_of(policy & ~SCHED_RESET_ON_FORK);
     info.reset_on_fork = (policy & SCHED_RESET_ON_FORK) != 0;
     info.priority = parameters.sched_priority;

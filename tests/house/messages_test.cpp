@@ -1,10 +1,12 @@
-// Sentences that people read in errors and help have at most 25 words: read from the string literals of the source.
+// Sentences that people read have at most 25 words: read from every string literal of the product with three words or more.
+// Errors and help are read once more with what is joined to them, and every error names a remedy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -148,9 +150,88 @@ std::size_t word_count(std::string_view sentence) {
 }
 
 struct FoundTexts {
-    std::vector<std::string> too_long;
+    std::set<std::string> too_long;  ///< each once: a literal of an error is read alone, and with what is joined to it
     std::size_t texts = 0;
+    std::vector<std::string> without_remedy;  ///< what happened
 };
+
+/// The start of a literal that is no message: bytes as hex digits.
+constexpr std::array<std::string_view, 1> no_messages = {"R: 44 05"};
+
+/// A word of prose: two letters or more, no digit or sign inside of it.
+bool is_prose(std::string_view word) {
+    while (!word.empty() && std::string_view("(\"'`").find(word.front()) != std::string_view::npos) word.remove_prefix(1);
+    while (!word.empty() && std::string_view(".,;:?!)\"'`").find(word.back()) != std::string_view::npos) word.remove_suffix(1);
+    const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '\'' || c == '-'; };
+    return word.size() >= 2 && std::all_of(word.begin(), word.end(), is_letter);
+}
+
+bool is_text(std::string_view literal) {
+    std::size_t words = 0, from = 0;
+    for (std::size_t end = 0; end != std::string_view::npos; from = end + 1) {
+        end = literal.find(' ', from);
+        words += is_prose(literal.substr(from, end == std::string_view::npos ? end : end - from)) ? 1 : 0;
+    }
+    const bool allowed =
+        std::any_of(no_messages.begin(), no_messages.end(), [&](auto start) { return literal.starts_with(start); });
+    return words >= 3 && !allowed;
+}
+
+/// Every literal, with those that follow it across blanks and lines only. Raw strings are programs and pages, no sentences.
+std::vector<std::string> literals_of(std::string_view source) {
+    std::vector<std::string> literals;
+    bool joined = false;
+    for (std::size_t i = 0; i < source.size();) {
+        const char c = source[i];
+        if (source.substr(i, 2) == "R\"" && (i == 0 || !is_word(source[i - 1]))) {
+            const auto open = source.find('(', i);
+            const std::string close = ")" + std::string(source.substr(i + 2, open - i - 2)) + "\"";
+            i = std::min(source.find(close, open), source.size() - close.size()) + close.size();
+            joined = false;
+        } else if (opens_literal(source, i)) {
+            const std::size_t end = end_of_literal(source, i);
+            if (c == '"') {
+                if (!joined) literals.emplace_back();
+                literals.back() += source.substr(i + 1, end - i - 2);
+            }
+            joined = c == '"';
+            i = end;
+        } else {
+            joined = joined && (c == ' ' || c == '\n');
+            ++i;
+        }
+    }
+    return literals;
+}
+
+void find_long_literals(std::string_view source, FoundTexts& found) {
+    for (const std::string& literal : literals_of(source)) {
+        if (!is_text(literal)) continue;
+        ++found.texts;
+        for (const std::string& sentence : sentences_of(literal))
+            if (word_count(sentence) > max_words) found.too_long.insert(sentence);
+    }
+}
+
+std::string_view trimmed(std::string_view text) {
+    const auto from = text.find_first_not_of(" \n");
+    if (from == std::string_view::npos) return {};
+    return text.substr(from, text.find_last_not_of(" \n") - from + 1);
+}
+
+/// Errors without a remedy. Two may have none: work that the user stopped, and a text that holds all three parts already.
+void find_missing_remedies(std::string_view source, FoundTexts& found) {
+    for (const std::string_view opener : {"Error{", "fail({", "misuse({"}) {
+        for (auto at = source.find(opener); at != std::string_view::npos; at = source.find(opener, at + 1)) {
+            if (at > 0 && is_word(source[at - 1])) continue;
+            const auto arguments = arguments_at(source, at + opener.size());
+            if (arguments.size() < 3) continue;
+            const std::string_view what = trimmed(arguments[1]), remedy = trimmed(arguments[2]);
+            const bool stopped = arguments.size() > 3 && arguments[3].find("ErrorKind::stopped") != std::string_view::npos;
+            if ((remedy == "\"\"" || remedy == "{}") && what != "\"\"" && !stopped) found.without_remedy.emplace_back(what);
+        }
+    }
+}
 
 template <class Openers>
 void find_texts(std::string_view source, const Openers& of, FoundTexts& found) {
@@ -162,7 +243,7 @@ void find_texts(std::string_view source, const Openers& of, FoundTexts& found) {
                 for (const std::string& text : texts_in(arguments[i])) {
                     ++found.texts;
                     for (const std::string& sentence : sentences_of(text))
-                        if (word_count(sentence) > max_words) found.too_long.push_back(sentence);
+                        if (word_count(sentence) > max_words) found.too_long.insert(sentence);
                 }
             }
         }
@@ -172,8 +253,10 @@ void find_texts(std::string_view source, const Openers& of, FoundTexts& found) {
 FoundTexts texts_of(const std::string& file, std::string source) {
     source = without_comments(std::move(source));
     FoundTexts found;
+    find_long_literals(source, found);
     find_texts(source, openers, found);
     if (file == "config/schema.cpp") find_texts(source, schema_openers, found);
+    find_missing_remedies(source, found);
     return found;
 }
 
@@ -196,9 +279,10 @@ TEST(Messages, HaveSentencesOfAtMost25Words) {
             texts += found.texts;
             for (const std::string& sentence : found.too_long)
                 ADD_FAILURE() << file << ": " << word_count(sentence) << " words: " << sentence;
+            for (const std::string& what : found.without_remedy) ADD_FAILURE() << file << ": names no remedy: " << what;
         }
     }
-    EXPECT_GT(texts, 500U) << "texts are no longer found: have their helpers got other names?";
+    EXPECT_GT(texts, 2000U) << "texts are no longer found: have their helpers got other names?";
 }
 
 TEST(Messages, ALongSentenceIsFoundWhereverItStands) {
@@ -220,8 +304,19 @@ TEST(Messages, ALongSentenceIsFoundWhereverItStands) {
     EXPECT_EQ(count("Error{\"p\", \"" + words(20) + ". " + words(20) + "\", \"\"}"), 0U) << "two sentences";
     EXPECT_EQ(count("Error{\"p\", a ? \"" + words(20) + "\" : \"" + words(20) + "\", \"\"}"), 0U) << "one or the other";
     EXPECT_EQ(count("// Error{\"p\", \"" + bad + "\"}"), 0U) << "in a comment";
-    EXPECT_EQ(count("note(\"" + bad + "\")"), 0U) << "no error and no help";
+    EXPECT_EQ(count("log(\"" + bad + "\")"), 1U) << "in any literal";
+    EXPECT_EQ(count("log(\"" + words(20) + " \"\n    \"" + words(6) + "\")"), 1U) << "of any literal in two lines";
+    EXPECT_EQ(count("log(R\"(" + bad + ")\", \"" + good + "\")"), 0U) << "in a raw string";
     EXPECT_EQ(count("number(\"key\", \"ms\", 0, 1, \"" + bad + "\", &S::a)", "config/schema.cpp"), 1U) << "a setting";
+}
+
+TEST(Messages, AnErrorWithoutARemedyIsFound) {
+    const auto count = [](const std::string& source) { return texts_of("x.cpp", source).without_remedy.size(); };
+    EXPECT_EQ(count("Error{\"p\", \"It is bad\", \"\", ErrorKind::failed}"), 1U);
+    EXPECT_EQ(count("fail({\"p\", fmt::format(\"It is {}\", a), {}})"), 1U);
+    EXPECT_EQ(count("Error{\"p\", \"It is bad\", \"Do it\", ErrorKind::failed}"), 0U);
+    EXPECT_EQ(count("Error{\"p\", \"It was stopped\", \"\", ErrorKind::stopped}"), 0U);
+    EXPECT_EQ(count("Error{text, \"\", \"\", ErrorKind::misuse}"), 0U) << "all three parts in one text";
 }
 
 }  // namespace

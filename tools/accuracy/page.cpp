@@ -53,13 +53,10 @@ std::string body_of(const AccuracyRun& run) {
     out += fmt::format("<div class=\"card wide\">{}</div>\n", accuracy_chart(run));
     out +=
         "<p class=\"sub\">Each line is one way to choose what to draw, each point a budget. <b>Accuracy</b>: one over the "
-        "largest angular error on "
-        "screen, the mean over the places; places drawn exactly have no finite accuracy: they are left out of the mean and "
-        "counted "
-        "under <b>exact</b>. <b>SNR</b> and <b>SSIM</b>: against full detail from the same place. Up and to the left is better. "
-        "Points where "
-        "every picture "
-        "equals full detail have no finite SNR and are left out of that panel.</p>\n<h2>Figures</h2>\n";
+        "largest angular error on screen, the mean over the places. Places drawn exactly have no finite accuracy: they are "
+        "left out of the mean and counted under <b>exact</b>. <b>SNR</b> and <b>SSIM</b>: against full detail from the same "
+        "place. Up and to the left is better. Points where every picture equals full detail have no finite SNR and are left "
+        "out of that panel.</p>\n<h2>Figures</h2>\n";
     out += table_of(run);
     return out + fmt::format(
                      "<footer><p>{}</p><p>Beside this page: <a href=\"accuracy.csv\">accuracy.csv</a>, <a "

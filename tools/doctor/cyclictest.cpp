@@ -44,7 +44,7 @@ Result<Child> start(const std::string& program, std::vector<std::string> words) 
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0)
         return Error{program, fmt::format("No pipe to the program can be opened: {}", std::strerror(errno)),
-                     "Close other programs"};
+                     "Close other programs", ErrorKind::out_of_limits};
     std::vector<char*> arguments;
     arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());

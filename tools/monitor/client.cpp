@@ -69,7 +69,7 @@ Result<std::string> body_of(const Address& address, std::string_view path, const
                      "Check the address: an older surefoot or another program serves there", ErrorKind::not_found};
     if (code != 200)
         return Error{address.text(), fmt::format("The server answers {} to {}", answer.substr(9, answer.find('\r') - 9), path),
-                     "", ErrorKind::unreadable};
+                     "Check that a surefoot monitor serves there, and try again", ErrorKind::unreadable};
     const std::string_view head = std::string_view(answer).substr(0, head_end);
     constexpr std::string_view length_is = "Content-Length: ";
     const std::size_t at = head.find(length_is);

@@ -193,11 +193,9 @@ std::string page_footer() {
            "href=\"walk.json\">walk.json</a>, "
            "the figures above.</p><p><b>Own miss</b>: late even without the time that the host stole. <b>Budget</b>: the time "
            "that a frame may spend. "
-           "<b>Cluster</b>: a node that stands for several objects. <b>Switch</b>: a node's representation changed between two "
-           "frames. "
+           "<b>Cluster</b>: a node that stands for several objects. <b>Switch</b>: a node's form changed between two frames. "
            "<b>SNR</b>: variance of the walk's picture over its mean square difference from full detail (Pasman and Jansen "
-           "2002); "
-           "<b>SSIM</b>: structural similarity of luma, 1 for equal pictures.</p></footer>\n";
+           "2002). <b>SSIM</b>: structural similarity of luma, 1 for equal pictures.</p></footer>\n";
 }
 
 }  // namespace surefoot::report

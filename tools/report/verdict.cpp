@@ -46,8 +46,7 @@ std::string control_words(const ControlSummary& c) {
     if (!c.ran) return {};
     const rt::DeadlineVerdict& v = c.verdict;
     std::string text = fmt::format(
-        "Over {} pairs of blocks the walk missed {} of {} frames, {} by its own doing, and a bare loop of the "
-        "same cost missed {}",
+        "Over {} pairs of blocks the walk missed {} of {} frames, {} by its own doing. A bare loop of the same cost missed {}",
         v.pairs, v.walk_misses, v.walk_frames, v.own_misses, v.control_misses);
     text += v.control_holds ? fmt::format(": no more than the machine itself (p = {:.2f}).", v.p_value)
                             : fmt::format(": the walk misses more (p = {:.2g}).", v.p_value);

@@ -252,9 +252,8 @@ void shared_pictures(const Effort& effort, Outcome& out) {
 std::span<const Row> alpha_edge_rows() {
     static constexpr std::array<Row, 3> table = {{
         {"N25a", "alpha_edges",
-         "cards whose cut-out texels are magenta, white, black or red, by alpha 0 or below the cutoff, or faded; a disc, a "
-         "grating, "
-         "dots, up to the border; 16 pixels a texel to 16 texels a pixel, head-on and aslant",
+         "cards whose cut-out texels are magenta, white, black or red. They are cut by alpha 0 or below the cutoff, or faded. "
+         "Shapes are a disc, a grating and dots, up to the border; 16 pixels a texel to 16 texels a pixel, head-on and aslant",
          "no pixel takes on the colour of what is cut out", cards},
         {"N25b", "alpha_edges", "bushes of such cards in every coarser form: fewer cards, mean colours, boxes with pictures",
          "no pixel takes on the colour of what is cut out", coarse_forms},

@@ -87,8 +87,8 @@ void in_one_place(const Effort& effort, Outcome& out) {
         const model::Model model = squares.finish();
         if (!load(*device, model, out)) return;
         std::vector<std::uint8_t> first;
-        const std::uint64_t most = effort.count(200, 10);
-        for (std::uint64_t i = 0; i < most && !effort.stopped(); ++i, ++frames) {
+        const std::uint64_t max_frames = effort.count(200, 10);
+        for (std::uint64_t i = 0; i < max_frames && !effort.stopped(); ++i, ++frames) {
             Pose pose = oblique();
             pose.position = {1e-3 * static_cast<double>(i), 3e-4 * static_cast<double>(i), 0};
             const auto order = i % 2 == 0 ? std::array{a, b} : std::array{b, a};
@@ -175,8 +175,8 @@ void through_each_other(const Effort& effort, Outcome& out) {
 std::span<const Row> depth_rows() {
     static constexpr std::array<Row, 4> table = {{
         {"N17a", "depth",
-         "parallel planes 0.01 mm apart at 1 m, 1 mm at 1 km, 1 cm at 10 km, 1 m at 100 km; the second and third as with a near "
-         "plane of 1 mm, fifty times as large; any numbers, either order",
+         "parallel planes 0.01 mm apart at 1 m, 1 mm at 1 km, 1 cm at 10 km, 1 m at 100 km. The second and third stand as with "
+         "a near plane of 1 mm, fifty times as large; any numbers, either order",
          "the nearer one at every pixel", planes_apart},
         {"N17b", "depth", "two sheets in one place at 1 m to 10 km, drawn in turns, the eye moving by millimetres",
          "the same one at every pixel of every frame", in_one_place},

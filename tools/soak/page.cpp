@@ -78,10 +78,9 @@ std::string half_card(std::string_view title, std::string_view words, const std:
 
 std::string hours_section(const SoakSummary& s) {
     std::string out =
-        "<h2>The soak from begin to end</h2>\n<p class=\"sub\">From the fastest to the slowest frame of each moment, every miss "
-        "a "
-        "dot (a large one is the walk's own doing; point at it for its cause), and under it what loaded the machine at that time."
-        "</p>\n";
+        "<h2>The soak from begin to end</h2>\n<p class=\"sub\">Each moment shows its fastest to its slowest frame, and every "
+        "miss as a dot. A large dot is the walk's own doing; point at it for its cause. Below stands what loaded the machine at "
+        "that time.</p>\n";
     out += fmt::format("<div class=\"card wide\">{}</div>\n", soak_time_chart(s));
     if (s.misses_unlisted > 0)
         out += fmt::format("<p class=\"sub\">The first {} misses are marked; {} more are in the figures alone.</p>\n",
@@ -147,10 +146,10 @@ std::string kernel_section(const SoakSummary& s) {
 
 constexpr std::string_view soak_footer =
     "<footer><p>Beside this page: <a href=\"soak.json\">soak.json</a>, all of the figures.</p><p><b>Own miss</b>: late even with "
-    "the "
-    "time taken out that the host stole. <b>Trend</b>: the median of the slopes between all pairs of samples after the warm-up, "
-    "which a few odd samples cannot move. <b>Bare loop</b>: blocks of a loop that does nothing but burn the walk's CPU time, in "
-    "turn with the walk, on the same core under the same load. <b>Pressure</b>: the share of the time in which some (or all) "
+    "the time taken out that the host stole. <b>Trend</b>: the median of the slopes between all pairs of samples after the "
+    "warm-up, which a few odd samples cannot move. <b>Bare loop</b>: blocks of a loop that only burns the walk's CPU time. It "
+    "runs in turn with the walk, on the same core under the same load. <b>Pressure</b>: the share of the time in which some (or "
+    "all) "
     "work "
     "waited for that resource.</p></footer>\n";
 
