@@ -45,9 +45,9 @@ Result<void> check_limits(const Counts& counts, const std::string& place, const 
     constexpr std::array all = {
         Limited{"vertices", &Counts::vertices},   Limited{"indices", &Counts::indices},
         Limited{"parts", &Counts::parts},         Limited{"placements", &Counts::placements},
-        Limited{"materials", &Counts::materials}, Limited{"representations", &Counts::representations},
+        Limited{"materials", &Counts::materials}, Limited{"forms", &Counts::representations},
         Limited{"nodes", &Counts::nodes},         Limited{"bytes of names", &Counts::name_bytes},
-        Limited{"textures", &Counts::textures},   Limited{"parts of representations", &Counts::drawn_parts},
+        Limited{"textures", &Counts::textures},   Limited{"parts of forms", &Counts::drawn_parts},
     };
     for (const Limited& one : all) {
         if (counts.*one.count <= max.*one.count) continue;

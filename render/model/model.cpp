@@ -97,7 +97,7 @@ Check check_reps(const Model& m) {
         if (!std::isfinite(r.min_distance_m) || r.min_distance_m < 0)
             return wrong("reps", i, "The range is negative or not finite");
         if (r.everywhere && r.min_distance_m > 0)
-            return wrong("reps", i, "The representation is valid everywhere, yet only from a distance");
+            return wrong("reps", i, "The form is valid everywhere, yet only from a distance");
         if (r.placement >= m.placements.size()) return wrong("reps", i, "The placement is out of range");
         if (r.part_count == 0 || !in_range(r.first_part, r.part_count, m.parts.size()))
             return wrong("reps", i, "The parts are out of range");
@@ -119,17 +119,17 @@ Check check_reps(const Model& m) {
 Check check_node_reps(const Model& m, std::size_t i) {
     const Node& node = m.nodes[i];
     if (node.rep_count == 0 || !in_range(node.first_rep, node.rep_count, m.reps.size()))
-        return wrong("nodes", i, "The representations are out of range");
+        return wrong("nodes", i, "The forms are out of range");
     bool everywhere = false;
     for (std::uint32_t k = 0; k < node.rep_count; ++k) {
         const Representation& rep = m.reps[node.first_rep + k];
         everywhere = everywhere || rep.everywhere;
         if (k == 0) continue;
         const Representation& coarser = m.reps[node.first_rep + k - 1];
-        if (!(rep.error_m < coarser.error_m)) return wrong("nodes", i, "The errors of the representations do not fall");
-        if (rep.triangles < coarser.triangles) return wrong("nodes", i, "The triangle counts of the representations fall");
+        if (!(rep.error_m < coarser.error_m)) return wrong("nodes", i, "The errors of the forms do not fall");
+        if (rep.triangles < coarser.triangles) return wrong("nodes", i, "The triangle counts of the forms fall");
     }
-    if (!everywhere) return wrong("nodes", i, "No representation is valid from everywhere");
+    if (!everywhere) return wrong("nodes", i, "No form is valid from everywhere");
     if (node.child_count == 0 && !m.reps[node.first_rep + node.rep_count - 1].everywhere) {
         return wrong("nodes", i, "The full detail of the leaf is not valid from everywhere");
     }

@@ -19,12 +19,11 @@ TEST(Limits, TheMostOfEachIsAllowedAndOneMoreIsRefusedByName) {
         const char* name;
     };
     constexpr std::uint64_t signed_max = 0x7fffffff, most = 0xffffffff;
-    for (const Case& c :
-         {Case{&Counts::vertices, signed_max, "vertices"}, Case{&Counts::indices, most, "indices"},
-          Case{&Counts::parts, most, "parts"}, Case{&Counts::placements, most, "placements"},
-          Case{&Counts::materials, most, "materials"}, Case{&Counts::representations, most, "representations"},
-          Case{&Counts::nodes, most, "nodes"}, Case{&Counts::name_bytes, most, "bytes of names"},
-          Case{&Counts::textures, most, "textures"}, Case{&Counts::drawn_parts, most, "parts of representations"}}) {
+    for (const Case& c : {Case{&Counts::vertices, signed_max, "vertices"}, Case{&Counts::indices, most, "indices"},
+                          Case{&Counts::parts, most, "parts"}, Case{&Counts::placements, most, "placements"},
+                          Case{&Counts::materials, most, "materials"}, Case{&Counts::representations, most, "forms"},
+                          Case{&Counts::nodes, most, "nodes"}, Case{&Counts::name_bytes, most, "bytes of names"},
+                          Case{&Counts::textures, most, "textures"}, Case{&Counts::drawn_parts, most, "parts of forms"}}) {
         Counts counts;
         counts.*c.count = c.most;
         EXPECT_TRUE(check_limits(counts, "town.glb").ok()) << c.name;
