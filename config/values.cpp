@@ -27,9 +27,9 @@ std::string toml_string(std::string_view text) {
     return out + "\"";
 }
 
-bool is_file_name(std::string_view text, double most) {
+bool is_file_name(std::string_view text, double max_length) {
     const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-    return static_cast<double>(text.size()) <= most && std::none_of(text.begin(), text.end(), control);
+    return static_cast<double>(text.size()) <= max_length && std::none_of(text.begin(), text.end(), control);
 }
 
 bool is_colour(std::string_view text) {

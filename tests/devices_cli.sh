@@ -4,8 +4,8 @@
 set -u
 surefoot=$(realpath "$1") devices=$(realpath "$2")
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/contract.sh"
-# says PATTERN COMMAND...: success, and stdout that matches
-says() {
+# prints PATTERN COMMAND...: success, and stdout that matches
+prints() {
   local pattern=$1; shift
   "$surefoot" "$@" >out 2>err || complain "exit $?: surefoot $*: $(head -c 300 err)"
   tr -d '\n' <out | grep -qE "$pattern" || complain "stdout has no /$pattern/: surefoot $*"
@@ -18,18 +18,18 @@ for file in "$devices"/*.hid; do
 done
 
 nav=$devices/spacenavigator-like.hid
-says '"class": "navigation"' devices describe "$nav" --json
-says '"counts": \{ *"accepted": 8, *"short": 0, *"long": 0, *"unknown": 1' devices describe "$nav" --json
-says '"relative": false' devices describe "$nav" --json
+prints '"class": "navigation"' devices describe "$nav" --json
+prints '"counts": \{ *"accepted": 8, *"short": 0, *"long": 0, *"unknown": 1' devices describe "$nav" --json
+prints '"relative": false' devices describe "$nav" --json
 printf '\x05\x01\x09\x04\xa1\x01\x15\x81\x25\x7f\x75\x08\x95\x01\x09\x30\x81\x02\xc0' >stick.bin
 printf 'E: 0.0 1 81\nE: 0.1 2 00 00\nE: 0.2 1 7f\n' >stick.hid
-says '"status": "accepted", *"values": \{ *"x": -127 *\}.*"long": 1' devices describe stick.bin --reports stick.hid --json
-says 'x=127.*2 accepted, 0 short, 1 long, 0 unknown' devices describe stick.bin --reports stick.hid
-says 'quirk|deflect' devices describe "$nav" --vid-pid 256f:c635
-says 'Example:' devices describe --help
+prints '"status": "accepted", *"values": \{ *"x": -127 *\}.*"long": 1' devices describe stick.bin --reports stick.hid --json
+prints 'x=127.*2 accepted, 0 short, 1 long, 0 unknown' devices describe stick.bin --reports stick.hid
+prints 'quirk|deflect' devices describe "$nav" --vid-pid 256f:c635
+prints 'Example:' devices describe --help
 expect 2 'Use ids such as' devices describe stick.bin --vid-pid rubbish
 expect 2 '.' devices describe
-says . devices
+prints . devices
 expect 1 'nothing.bin' devices describe nothing.bin
 expect 1 'nothing.hid' devices describe stick.bin --reports nothing.hid
 head -c 9 stick.bin >cut.bin
@@ -47,8 +47,8 @@ expect 1 'long.bin: byte 4096: ' devices describe long.bin
 printf '# nothing moved\n' >still.hid
 expect 1 'still.hid: The recording holds no reports' devices describe stick.bin --reports still.hid
 printf '\xef\xbb\xbfE: 0.5 1 81\nE: 0.1 1 7f\n' >marked.hid
-says '2 accepted.*1 of them have a time before' devices describe stick.bin --reports marked.hid
-says '"before_the_last": 1' devices describe stick.bin --reports marked.hid --json
+prints '2 accepted.*1 of them have a time before' devices describe stick.bin --reports marked.hid
+prints '"before_the_last": 1' devices describe stick.bin --reports marked.hid --json
 seq -f 'E: %.0f.0 1 11' 400000 >long.hid
 # The sanitizers' own memory is larger than any such limit: there only the answer is checked.
 limit=500000
@@ -59,10 +59,10 @@ tail -9 out | grep -q '"accepted": 400000' || complain "the object of 400 000 re
 expect 0 'another descriptor' devices describe stick.bin --reports "$nav"
 
 # Live devices: what holds whatever is plugged in. With devices: tests/input/testbed.
-for command in list watch record map; do says 'Example:.*surefoot devices' devices $command --help; done
-says '"devices": \[' devices --json
-says '"devices": \[' devices list --json
-says '.' devices list
+for command in list watch record map; do prints 'Example:.*surefoot devices' devices $command --help; done
+prints '"devices": \[' devices --json
+prints '"devices": \[' devices list --json
+prints '.' devices list
 expect 0 'waiting for one' devices watch no-such-device --seconds 0.2 --json
 expect 0 'waiting for one' devices watch no-such-device --seconds 0.2
 expect 2 'seconds' devices watch --seconds -1

@@ -9,7 +9,7 @@ build_packages=(
 # Opened at run time, or used by single tests only: their absence is told, and is no failure.
 optional_packages=(libosmesa6 libgpiod-dev)
 
-say() { printf '\n\033[1m%s\033[0m\n' "$*" | if [[ -t 1 ]]; then cat; else sed 's/\x1b\[[0-9;]*m//g'; fi; }
+print_title() { printf '\n\033[1m%s\033[0m\n' "$*" | if [[ -t 1 ]]; then cat; else sed 's/\x1b\[[0-9;]*m//g'; fi; }
 fail() { printf 'surefoot: %s\n' "$*" >&2; exit 1; }
 
 installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }
@@ -36,7 +36,7 @@ install_missing() {
   mapfile -t missing < <(missing_of "${build_packages[@]}")
   mapfile -t optional < <(missing_of "${optional_packages[@]}")
   if (( ${#missing[@]} + ${#optional[@]} == 0 )); then return; fi
-  say "Missing Debian packages: ${missing[*]} ${optional[*]}"
+  print_title "Missing Debian packages: ${missing[*]} ${optional[*]}"
   if [[ "$(id -u)" != 0 ]]; then
     echo "They are installed with apt-get, which writes to the system: it needs root, so sudo may ask for your password."
   fi

@@ -14,10 +14,10 @@ namespace {
 constexpr double two_pi = 2 * std::numbers::pi, two_pi_low = 2.4492935982947064e-16;  // their sum is 2 pi to 32 digits
 
 template <class V>
-V towards(const V& from, const V& to, double most) {
+V towards(const V& from, const V& to, double max_step) {
     const V way = to - from;
     const double length = glm::length(way);
-    return length <= most ? to : from + way * (most / length);
+    return length <= max_step ? to : from + way * (max_step / length);
 }
 
 bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }

@@ -33,8 +33,8 @@ Prediction predict(const NavigationSample& sample, const MotionLimits& limits, d
     const double accel = limits.accel_m_s2 + speed * (turning + 0.5 * limits.accel_rad_s2 * t);
     ahead.uncertainty_m = strayed(accel, speed, t) + stair_m;
     // Heading and pitch turn one after the other, the prediction about one axis: they differ by half their product.
-    const double most = turning + limits.accel_rad_s2 * t;
-    ahead.uncertainty_rad = strayed(limits.accel_rad_s2, turning, t) + 0.5 * most * most * t * t;
+    const double max_turning = turning + limits.accel_rad_s2 * t;
+    ahead.uncertainty_rad = strayed(limits.accel_rad_s2, turning, t) + 0.5 * max_turning * max_turning * t * t;
     return ahead;
 }
 

@@ -21,11 +21,11 @@ MotionRequest without_edges(MotionRequest request) {
 }
 
 /// Both vectors move along the straight way, so what is bounded stays bounded.
-void slew(MotionRequest& at, const MotionRequest& to, double most) {
+void slew(MotionRequest& at, const MotionRequest& to, double max_step) {
     const auto part = [&](dvec3 from, const dvec3& target) {
         const dvec3 way = target - from;
         const double length = glm::length(way);
-        return length <= most ? target : from + way * (most / length);
+        return length <= max_step ? target : from + way * (max_step / length);
     };
     const dvec3 walk = part({at.forward, at.side, at.up}, {to.forward, to.side, to.up});
     const dvec3 turning = part({at.turn, at.look, 0}, {to.turn, to.look, 0});

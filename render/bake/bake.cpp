@@ -118,13 +118,13 @@ std::uint32_t max_triangles(const BakeOptions& options) {
     const model::CostModel& costs = options.costs != nullptr && !options.costs->grids.empty() ? *options.costs : fallback;
     const double limit_us = options.frame_us / 16.0;
     const model::CostGrid& grid = costs.grid_for(model::effect_texture | model::effect_sun);
-    std::uint32_t most = 256;
+    std::uint32_t max_found = 256;
     for (std::uint32_t n = 512; n <= 65536; n *= 2) {
         const model::ItemCost cost = costs.item(static_cast<float>(n), 60000.0F, grid);
         if (cost.submit_us + cost.raster_us > limit_us) break;
-        most = n;
+        max_found = n;
     }
-    return most;
+    return max_found;
 }
 
 ProxyInput BakeContext::proxy_input() const {
@@ -172,7 +172,7 @@ bool BakeContext::make_forms() {
     }
     const dvec3 extent = world.max - world.min;
     const double longest_m = std::max({extent.x, extent.y, extent.z}) / 8.0;
-    const std::uint32_t most = max_triangles(options);
+    const std::uint32_t max_item_triangles = max_triangles(options);
     Stage stage(progress, "levels of detail", scene.meshes.size());
     std::atomic<bool> go{true};
     ChainOptions chain = chain_options(options, proxy_or_none);
@@ -186,7 +186,7 @@ bool BakeContext::make_forms() {
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
         CutLimits limits;
-        limits.max_triangles = most;
+        limits.max_triangles = max_item_triangles;
         limits.longest_m = longest_m / stretch[m];
         by_mesh[m] = bake::make_forms(mesh_geometry(scene.meshes[m], model), limits, chain);
         if (!stage.step()) go = false;

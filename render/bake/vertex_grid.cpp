@@ -284,8 +284,8 @@ private:
             mesh_.source_bound[i] = static_cast<float>(cells_[cell].box.diagonal());
         }
         for (const auto& [cell, i] : alone) {
-            const vec3 least(0.5e-3F * cell_m_);
-            const vec3 low = vec3(cells_[cell].box.min) - least, high = vec3(cells_[cell].box.max) + least;
+            const vec3 min_half(0.5e-3F * cell_m_);
+            const vec3 low = vec3(cells_[cell].box.min) - min_half, high = vec3(cells_[cell].box.max) + min_half;
             const SourceTriangle& t = source_.triangles[i];
             const Corner& corner = corners_[corner_of_[t.vertex[0]]];
             const std::array<std::uint32_t, 4> v{emit(corner, low), emit(corner, {high.x, high.y, low.z}),

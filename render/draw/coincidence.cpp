@@ -13,7 +13,7 @@ namespace {
 
 using model::Index;
 
-constexpr std::uint8_t most = 31;
+constexpr std::uint8_t max_rank = 31;
 /// Thinner than this share of its size is flat.
 constexpr double flat_share = 0x1p-21;
 /// Boxes are compared in cells of this share of their size: what is a millimetre apart at a kilometre is not in one place.
@@ -88,7 +88,7 @@ void rank_group(std::vector<Entry>& entries, std::size_t begin, std::size_t end,
             if (overlap(entries[o], now)) taken |= 1ULL << ranks[entries[o].rank_at];
         }
         std::uint8_t rank = 0;
-        while (rank < most && (taken >> rank & 1U) != 0) ++rank;
+        while (rank < max_rank && (taken >> rank & 1U) != 0) ++rank;
         ranks[now.rank_at] = rank;
         if (open.size() < 512) open.push_back(i);  // a heap of thousands in one place: the first ones decide
     }

@@ -32,7 +32,7 @@ std::vector<std::size_t> shuffled(std::size_t n, Random& random) {
     return order;
 }
 
-double least(const std::vector<double>& values) { return *std::min_element(values.begin(), values.end()); }
+double min_of(const std::vector<double>& values) { return *std::min_element(values.begin(), values.end()); }
 
 class Run {
 public:
@@ -103,8 +103,8 @@ void Run::slices(Calibration& out) {
         empty_wall.push_back(empty.wall_us);
     }
     out.costs.slice_us =
-        static_cast<float>(std::clamp((least(sliced) - least(whole)) / static_cast<double>(parts - 1), 0.0, 500.0));
-    empty_ = {least(empty_submit), least(empty_raster), least(empty_wall)};
+        static_cast<float>(std::clamp((min_of(sliced) - min_of(whole)) / static_cast<double>(parts - 1), 0.0, 500.0));
+    empty_ = {min_of(empty_submit), min_of(empty_raster), min_of(empty_wall)};
 }
 
 Result<void> Run::cells(Calibration& out) {
@@ -128,7 +128,7 @@ Result<void> Run::cells(Calibration& out) {
             raster.push_back(std::max(0.0, t.raster_us - empty_.raster_us) / count);
             wall.push_back(std::max(0.0, t.wall_us - empty_.wall_us) / count);
         }
-        CalibrationPoint point{cell.effects, cell.triangles, cell.pixels, least(submit), least(raster), least(wall), 0};
+        CalibrationPoint point{cell.effects, cell.triangles, cell.pixels, min_of(submit), min_of(raster), min_of(wall), 0};
         point.spread = (quantile_of(wall, 0.9) - quantile_of(wall, 0.1)) / std::max(1e-3, quantile_of(wall, 0.5));
         out.points.push_back(point);
     }

@@ -74,7 +74,7 @@ Row non_negative(std::span<const FrameSample> samples, std::span<const double> w
         normal[i][i] *= 1 + prior_share;
     }
     Row best{};
-    double least = std::numeric_limits<double>::infinity();
+    double min_residual = std::numeric_limits<double>::infinity();
     for (unsigned active = 1; active < 1U << terms; ++active) {
         Row w{};
         if (!solve(normal, right, active, w) || std::any_of(w.begin(), w.end(), [](double v) { return !(v >= 0); })) continue;
@@ -83,8 +83,8 @@ Row non_negative(std::span<const FrameSample> samples, std::span<const double> w
             residual += weights[s] * std::pow(samples[s].actual_us - predicted(samples[s], w), 2);
         }
         for (std::size_t i = 0; i < terms; ++i) residual += prior_share * normal[i][i] * std::pow(w[i] - prior[i], 2);
-        if (residual < least) {
-            least = residual;
+        if (residual < min_residual) {
+            min_residual = residual;
             best = w;
         }
     }
@@ -146,11 +146,11 @@ FrameTimes robust_frame_times(std::span<const std::vector<FrameSample>> rounds) 
         std::vector<double> times;
         for (const FrameSample& s : of_frame)
             if (s.submit_us == last.submit_us && s.raster_us == last.raster_us) times.push_back(s.actual_us);
-        const double least = *std::min_element(times.begin(), times.end());
-        frame_times.frames.push_back({last.submit_us, last.raster_us, least});
+        const double min_time = *std::min_element(times.begin(), times.end());
+        frame_times.frames.push_back({last.submit_us, last.raster_us, min_time});
         if (times.size() < 2) continue;
         ++frame_times.repeated;
-        longer.push_back(median_of(std::move(times)) / std::max(1.0, least));
+        longer.push_back(median_of(std::move(times)) / std::max(1.0, min_time));
     }
     if (!longer.empty()) frame_times.slowdown = std::max(1.0, quantile_of(std::move(longer), 0.5));
     for (FrameSample& frame : frame_times.frames) frame.actual_us *= frame_times.slowdown;

@@ -15,7 +15,7 @@ namespace surefoot::model {
 
 namespace {
 
-constexpr std::size_t most = 128;  // triangles, and samples, of a surface
+constexpr std::size_t max_samples = 128;  // triangles, and samples, of a surface
 constexpr float near_half_diagonals = 3.0F, close_half_diagonals = 1.5F;
 constexpr std::uint32_t max_each = 1024;  // triangles that are looked at one by one
 constexpr float surface_share = 2.0F / 3.0F;
@@ -142,9 +142,9 @@ void PixelEstimator::measure(const Model& model, const Representation& rep, std:
     if (!std::isfinite(total)) return;  // beyond all measure: the box decides
     // Whole: what is larger than a sample's share. Equal ones beyond `most` are sampled.
     surface.whole_m2 = 0;
-    if (areas.size() > most) {
-        std::nth_element(areas.begin(), areas.begin() + most, areas.end(), std::greater<>());
-        surface.whole_m2 = std::max(areas[most], static_cast<float>(total / most));
+    if (areas.size() > max_samples) {
+        std::nth_element(areas.begin(), areas.begin() + max_samples, areas.end(), std::greater<>());
+        surface.whole_m2 = std::max(areas[max_samples], static_cast<float>(total / max_samples));
     }
     double rest = 0;
     for (const float area : areas) {
@@ -154,8 +154,8 @@ void PixelEstimator::measure(const Model& model, const Representation& rep, std:
             rest += static_cast<double>(area);
     }
     if (rest > 0) {
-        const double share = std::ceil(static_cast<double>(most) * rest / total);
-        surface.samples = static_cast<std::uint32_t>(std::clamp(share, 4.0, static_cast<double>(most)));
+        const double share = std::ceil(static_cast<double>(max_samples) * rest / total);
+        surface.samples = static_cast<std::uint32_t>(std::clamp(share, 4.0, static_cast<double>(max_samples)));
     }
     surface.sample_m2 = surface.samples > 0 ? static_cast<float>(rest / surface.samples) : 0.0F;
 }

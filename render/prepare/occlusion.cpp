@@ -86,7 +86,7 @@ void Occlusion::choose() {
     drawn_.clear();
     // The near plane would cut off a nearer occluder, so it must be farther than that from every eye.
     const double wide = wide_, high = high_;
-    const double least = static_cast<double>(radius_m_) + model::near_plane_m * std::sqrt(1.0 + wide * wide + high * high);
+    const double min_away = static_cast<double>(radius_m_) + model::near_plane_m * std::sqrt(1.0 + wide * wide + high * high);
     const double side_x = std::sqrt(1.0 + wide * wide), side_y = std::sqrt(1.0 + high * high);
     const auto beside = [&](const vec3& at, double radius) {
         return static_cast<double>(std::abs(at.x) - wide_ * at.z) > radius * side_x ||
@@ -96,7 +96,7 @@ void Occlusion::choose() {
         const Occluder& o = occluders_.triangles[i];
         const double away = glm::dot(o.normal, eye_) - o.offset;
         const bool from_behind = away < 0;
-        if (!(std::abs(away) > least) || (from_behind && !o.two_sided)) continue;
+        if (!(std::abs(away) > min_away) || (from_behind && !o.two_sided)) continue;
         const dvec3 d = o.centre - eye_;
         const double square = glm::dot(d, d);
         const auto solid_angle = static_cast<float>(o.area_m2 * std::abs(away) / (square * std::sqrt(square)));
@@ -131,10 +131,10 @@ void Occlusion::place(const Facing& facing) {
         return;
     const double away = glm::dot(o.normal, eye_) - o.offset;
     d.inverse_depth = vec3(dvec3(glm::dot(o.normal, right_), glm::dot(o.normal, up_), glm::dot(o.normal, forward_)) / -away);
-    const float least = std::min({d.at[0].z, d.at[1].z, d.at[2].z}), most = std::max({d.at[0].z, d.at[1].z, d.at[2].z});
-    if (!(most > behind_m)) return;
-    d.nearest = 1.0F / std::max(least, behind_m);
-    d.farthest = 1.0F / most;
+    const float min_z = std::min({d.at[0].z, d.at[1].z, d.at[2].z}), max_z = std::max({d.at[0].z, d.at[1].z, d.at[2].z});
+    if (!(max_z > behind_m)) return;
+    d.nearest = 1.0F / std::max(min_z, behind_m);
+    d.farthest = 1.0F / max_z;
     d.surface = static_cast<std::uint32_t>(drawn_.size());
     for (std::size_t k = 0; k < 3; ++k) edge_sides_[d.edge[k]] |= side_of(d.corner[k], d.corner[(k + 1) % 3]);
     drawn_.push_back(d);

@@ -92,13 +92,13 @@ void Occlusion::end_surface(const Rect& rect) {
     }
     for (int ty = rect.y0 / tile; ty <= rect.y1 / tile; ++ty) {
         for (int tx = rect.x0 / tile; tx <= rect.x1 / tile; ++tx) {
-            std::array<float, tile> least;
-            least.fill(beyond);
+            std::array<float, tile> tile_min;
+            tile_min.fill(beyond);
             for (int y = ty * tile; y < (ty + 1) * tile; ++y) {
                 const float* row = &depth_[pixel(tx * tile, y)];
-                for (std::size_t x = 0; x < tile; ++x) least[x] = std::min(least[x], row[x]);
+                for (std::size_t x = 0; x < tile; ++x) tile_min[x] = std::min(tile_min[x], row[x]);
             }
-            tiles_[tile_at(tx, ty)] = *std::min_element(least.begin(), least.end());
+            tiles_[tile_at(tx, ty)] = *std::min_element(tile_min.begin(), tile_min.end());
         }
     }
 }

@@ -105,19 +105,19 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
         max_reps = std::max(max_reps, node.rep_count);
     }
     options.max_choices = std::max(options.max_choices, max_reps);
-    const std::size_t most = std::min<std::size_t>(options.max_candidates, std::max<std::size_t>(m.nodes.size(), 1));
-    visits.reserve(most);
+    const std::size_t max_nodes = std::min<std::size_t>(options.max_candidates, std::max<std::size_t>(m.nodes.size(), 1));
+    visits.reserve(max_nodes);
     slots.resize(std::max<std::size_t>(std::min<std::size_t>(min_slots, m.nodes.size()), max_children));
     block.reserve(slots.size());
     slot_first.resize(slots.size());
     slot_count.resize(slots.size());
     slot_hidden.resize(slots.size());
-    candidate_of.resize(most);
-    const std::size_t chunks = most / visits_a_chunk + 2;
+    candidate_of.resize(max_nodes);
+    const std::size_t chunks = max_nodes / visits_a_chunk + 2;
     chunk_choice.resize(chunks);
     chunk_candidate.resize(chunks);
     chunk_count.resize(chunks);
-    weights.resize(most);
+    weights.resize(max_nodes);
 }
 
 template <class Body>

@@ -45,11 +45,11 @@ void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std
             return cost_penalty(cost_metric(combine, next) - cost_metric(combine, choices[c].cost));
         };
         if (candidate.child_count == 0) {
-            float least = 0;  // of the finest there is no leaving
+            float min_benefit = 0;  // of the finest there is no leaving
             for (std::size_t c = choices.size(); c-- > 0;) {
                 if (c + 1 < choices.size()) choices[c].benefit *= penalty_of(c);
-                least = std::max(least, choices[c].benefit);
-                choices[c].subtree_benefit = least;
+                min_benefit = std::max(min_benefit, choices[c].benefit);
+                choices[c].subtree_benefit = min_benefit;
             }
             full_submit_us += static_cast<double>(choices.back().cost.submit_us);
             full_raster_us += static_cast<double>(choices.back().cost.raster_us);
@@ -60,7 +60,7 @@ void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std
             candidate.floor_cost = sum.floor;  // no dearer and finer
             candidate.floor_open = true;
         }
-        float least = sum.benefit;
+        float min_benefit = sum.benefit;
         for (std::size_t c = choices.size(); c-- > 0;) {
             const float error_m = choices[c].error_rad * weights[i].distance_m;
             const float gain =
@@ -68,8 +68,8 @@ void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std
                            unusable_penalty(weights[i].size, choices[c].error_rad));  // its own: round the eye, not below
             const float share = penalty_of(c);
             choices[c].benefit *= share;
-            least = std::max(least, gain * share);
-            choices[c].subtree_benefit = least;
+            min_benefit = std::max(min_benefit, gain * share);
+            choices[c].subtree_benefit = min_benefit;
         }
         weights[i] = sum.weight;
     }
@@ -78,15 +78,15 @@ void propagate_up(const model::FrameCombine& combine, float pixel_angle_rad, std
 
 void enforce_monotone_benefit(PreparedFrame& frame) {
     for (Candidate& candidate : frame.candidates) {
-        float most = 1.0F;
+        float max_benefit = 1.0F;
         if (candidate.parent != none) {
             const Candidate& parent = frame.candidates[candidate.parent];
-            most = frame.choices[parent.first_choice + parent.choice_count - 1].benefit;
+            max_benefit = frame.choices[parent.first_choice + parent.choice_count - 1].benefit;
         }
         for (std::uint32_t c = 0; c < candidate.choice_count; ++c) {
             float& benefit = frame.choices[candidate.first_choice + c].benefit;
-            most = std::min(most, benefit);
-            benefit = most;
+            max_benefit = std::min(max_benefit, benefit);
+            benefit = max_benefit;
         }
     }
 }

@@ -61,14 +61,14 @@ Cause blame(const FrameRecord& record, const BlameLimits& limits) {
         if (e.over_ns >= late_ns) return e.cause;
     }
     const auto phases = phase_causes(record, limits);
-    Excess most = *std::ranges::max_element(phases, {}, &Excess::over_ns);
-    if (most.over_ns < late_ns) {
+    Excess largest = *std::ranges::max_element(phases, {}, &Excess::over_ns);
+    if (largest.over_ns < late_ns) {
         const Excess& other = *std::ranges::max_element(outside, {}, &Excess::over_ns);
-        if (other.over_ns > most.over_ns) most = other;
+        if (other.over_ns > largest.over_ns) largest = other;
     }
     // The coarse levels of the last complete set were drawn: nobody had chosen them for this frame's budget.
-    if (record.prepared_age > limits.oldest_prepared && was_drawing(most.cause)) return Cause::prepared_too_old;
-    return most.cause;
+    if (record.prepared_age > limits.oldest_prepared && was_drawing(largest.cause)) return Cause::prepared_too_old;
+    return largest.cause;
 }
 
 bool is_own_miss(const FrameRecord& record, const BlameLimits& limits) {

@@ -9,7 +9,7 @@ function refuse_line(what) { refuse(named ":" FNR ": " what) }
 function width(text) { gsub(/[\200-\277]/, "", text); return length(text) }
 
 BEGIN {
-  most_lines = 150; most_width = 160
+  max_lines = 150; max_width = 160
   wrong = read_promises(promises_file)
   if (wrong != "") refuse(wrong)
   split("time commit host.cpu host.kernel host.mesa promise scene unit target bound command", texts, " ")
@@ -63,7 +63,7 @@ function column(name,    text) {
 # ---- RESULTS.md ----
 
 function line(text) {
-  if (width(text) > most_width) refuse("RESULTS.md would have a line of " width(text) " characters: " text)
+  if (width(text) > max_width) refuse("RESULTS.md would have a line of " width(text) " characters: " text)
   page[++lines] = text
 }
 
@@ -72,7 +72,7 @@ function paragraph(text, indent,    words, count, w, now) {
   count = split(text, words, " ")
   now = words[1]
   for (w = 2; w <= count; ++w) {
-    if (width(now " " words[w]) > most_width - 10) { line(now); now = indent words[w] } else now = now " " words[w]
+    if (width(now " " words[w]) > max_width - 10) { line(now); now = indent words[w] } else now = now " " words[w]
   }
   line(now)
 }
@@ -118,7 +118,7 @@ function promise_rows(promise,    scenes, count, i, j, n, m, used, list, more, h
       m = newest[promise, scenes[j]]
       if ((m in used) || commit_of[m] != commit_of[n] || host_of[m] != host_of[n] || substr(time_of[m], 1, 10) != substr(time_of[n], 1, 10)) continue
       more = list (list == "" ? "" : ", ") shown(m)
-      if (list != "" && width(row(promise, first, more, 10, 11, n)) > most_width) {
+      if (list != "" && width(row(promise, first, more, 10, 11, n)) > max_width) {
         line(row(promise, first, list, held, all, n))
         first = held = all = 0
         more = shown(m)
@@ -194,7 +194,7 @@ function write_page(    p, g, groups, group_list, has_figures, count, with, whol
   text = ""
   for (i = 1; i <= hosts; ++i) text = text (i == 1 ? "Hosts: " : "; ") letter[host_named[i]] " is " host_named[i]
   if (hosts > 0) { line(""); paragraph(text ".", "") }
-  if (lines > most_lines) refuse("RESULTS.md would have " lines " lines, " most_lines " at most: put promises together in " promises_file)
+  if (lines > max_lines) refuse("RESULTS.md would have " lines " lines, " max_lines " at most: put promises together in " promises_file)
 }
 
 function write_file(name, count, texts,    i) {

@@ -9,9 +9,9 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 failures=0
 fault() { echo "FAILED: $1"; failures=$((failures + 1)); }
-report() { "$bench/report" --promises promises.tsv --from figures.jsonl --to made "$@" >said 2>&1; }
-says() { grep -qF -- "$2" "$1" || { fault "$3: $1 does not say: $2"; cat "$1"; }; }
-says_not() { ! grep -qF -- "$2" "$1" || fault "$3: $1 says: $2"; }
+report() { "$bench/report" --promises promises.tsv --from figures.jsonl --to made "$@" >output 2>&1; }
+has_text() { grep -qF -- "$2" "$1" || { fault "$3: $1 does not say: $2"; cat "$1"; }; }
+lacks_text() { ! grep -qF -- "$2" "$1" || fault "$3: $1 says: $2"; }
 
 printf '%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\n' promise group unit target bound trend command meaning \
   late Frames misses '≤ 2' '<=2' yes 'run late' 'Late frames.' \
@@ -31,25 +31,25 @@ figure() { # TIME PROMISE SCENE FIGURE BOUND HOLDS [MORE]
   figure 2026-01-01T00:00:00Z used '' 80 '>=75' true ', "note": "a, b"'
   figure 2026-01-01T00:00:00Z beside '' 5 - null ''
 } >figures.jsonl
-report || { fault "good figures are refused"; cat said; }
-says made/RESULTS.md "| town: 1 | yes |" "the newest"
-says_not made/RESULTS.md "town: 9" "the newest"
-says made/RESULTS.md "| **wood: 4.5** | **no** |" "a missed target"
-says made/RESULTS.md '* late (≤ 2) wood: 4.5. Why: a | slow disk Next: a "fast" one' "a missed target keeps its last reason"
-says made/RESULTS.md "**1 of 2 promises hold** in every scene; 2 of 3 newest figures hold." "the count"
-says made/RESULTS.md "No figure yet: never." "a promise without a figure"
-says_not made/RESULTS.md "beside" "a figure without a target"
-says made/history.csv '"a, b"' "CSV"
-says made/history.csv 'late,wood,3,' "old figures stay in the CSV"
+report || { fault "good figures are refused"; cat output; }
+has_text made/RESULTS.md "| town: 1 | yes |" "the newest"
+lacks_text made/RESULTS.md "town: 9" "the newest"
+has_text made/RESULTS.md "| **wood: 4.5** | **no** |" "a missed target"
+has_text made/RESULTS.md '* late (≤ 2) wood: 4.5. Why: a | slow disk Next: a "fast" one' "a missed target keeps its last reason"
+has_text made/RESULTS.md "**1 of 2 promises hold** in every scene; 2 of 3 newest figures hold." "the count"
+has_text made/RESULTS.md "No figure yet: never." "a promise without a figure"
+lacks_text made/RESULTS.md "beside" "a figure without a target"
+has_text made/history.csv '"a, b"' "CSV"
+has_text made/history.csv 'late,wood,3,' "old figures stay in the CSV"
 (( $(wc -l <made/history.csv) == 7 )) || fault "the CSV has a row for each figure"
-says made/trend.svg "late, target" "the trend"
-says made/trend.svg "2 of 3, 67 %" "the trend"
+has_text made/trend.svg "late, target" "the trend"
+has_text made/trend.svg "2 of 3, 67 %" "the trend"
 
 # ---- --check ----
-report --check || { fault "--check refuses what was just made"; cat said; }
+report --check || { fault "--check refuses what was just made"; cat output; }
 echo >>made/RESULTS.md
 if report --check; then fault "--check passes a page that was edited"; fi
-says said "RESULTS.md" "--check"
+has_text output "RESULTS.md" "--check"
 report || fault "making it again"
 figure 2026-01-04T00:00:00Z late town 2 '<=2' true '' >>figures.jsonl
 if report --check; then fault "--check passes although a figure was added"; fi
@@ -61,8 +61,8 @@ cp figures.jsonl good.jsonl
 refused() { # WHAT LINE WORDS
   { cat good.jsonl; printf '%s\n' "$2"; } >figures.jsonl
   if report; then fault "$1 is not refused"; return; fi
-  says said "figures.jsonl:8: " "$1"
-  says said "$3" "$1"
+  has_text output "figures.jsonl:8: " "$1"
+  has_text output "$3" "$1"
   diff -r made kept >/dev/null || fault "$1: the files were changed"
 }
 good=$(figure 2026-01-05T00:00:00Z late town 2 '<=2' true '')
@@ -84,18 +84,18 @@ refused "a bound that is none" "${good/<=2/about 2}" "bound"
 
 # ---- no figures, no file, a broken table of promises, wrong use ----
 : >figures.jsonl
-report || { fault "an empty file is refused"; cat said; }
-says made/RESULTS.md "**0 of 0 promises hold**" "an empty file"
-says made/RESULTS.md "No figure yet: late, used, never." "an empty file"
-says made/trend.svg "no figure yet" "an empty file"
+report || { fault "an empty file is refused"; cat output; }
+has_text made/RESULTS.md "**0 of 0 promises hold**" "an empty file"
+has_text made/RESULTS.md "No figure yet: late, used, never." "an empty file"
+has_text made/trend.svg "no figure yet" "an empty file"
 rm figures.jsonl
 if report; then fault "a missing file is not refused"; fi
-says said "cannot be read" "a missing file"
+has_text output "cannot be read" "a missing file"
 cp good.jsonl figures.jsonl
 cp promises.tsv promises.good
 printf 'late\tFrames\tms\t1\t<=1\t-\tc\tm\n' >>promises.tsv
 if report; then fault "a promise that is there twice is not refused"; fi
-says said "promises.tsv:6: the promise late is there twice" "a promise twice"
+has_text output "promises.tsv:6: the promise late is there twice" "a promise twice"
 cp promises.good promises.tsv
 report --nonsense; (( $? == 2 )) || fault "a wrong argument is not wrong use"
 report --from; (( $? == 2 )) || fault "an option without its value is not wrong use"
@@ -105,19 +105,19 @@ report --from; (( $? == 2 )) || fault "an option without its value is not wrong 
 awk 'BEGIN { for (i = 1; i <= 160; ++i) printf "p%d\tFrames\tms\t1\t<=1\t-\tc\tm\n", i }' >>promises.tsv
 for i in {1..160}; do figure 2026-01-01T00:00:00Z "p$i" '' 1 '<=1' true ''; done >figures.jsonl
 if report; then fault "a page of more than 150 lines is not refused"; fi
-says said "150 at most" "a long page"
+has_text output "150 at most" "a long page"
 
 # ---- record ----
-record() { "$bench/run" record "$@" --out recorded.jsonl >said 2>&1; }
-record gate_minutes 11.4 --scene 'a "scene"' --note 'back\slash and	tab' || { fault "record fails"; cat said; }
-record gate_minutes 13 --why 'a reason' || { fault "record of a missed target fails"; cat said; }
-"$bench/report" --from recorded.jsonl --to recorded >said 2>&1 || { fault "what record wrote is refused"; cat said; }
-says recorded/RESULTS.md 'a "scene": 11.4' "record"
-says recorded/history.csv 'back\slash and tab' "record"
-says recorded/RESULTS.md '* gate_minutes (≤ 12 min) 13. Why: a reason' "record"
-says recorded.jsonl '"holds": true' "record"
-says recorded.jsonl '"holds": false' "record"
-says_not recorded.jsonl "$(hostname)" "record names the host"
+record() { "$bench/run" record "$@" --out recorded.jsonl >output 2>&1; }
+record gate_minutes 11.4 --scene 'a "scene"' --note 'back\slash and	tab' || { fault "record fails"; cat output; }
+record gate_minutes 13 --why 'a reason' || { fault "record of a missed target fails"; cat output; }
+"$bench/report" --from recorded.jsonl --to recorded >output 2>&1 || { fault "what record wrote is refused"; cat output; }
+has_text recorded/RESULTS.md 'a "scene": 11.4' "record"
+has_text recorded/history.csv 'back\slash and tab' "record"
+has_text recorded/RESULTS.md '* gate_minutes (≤ 12 min) 13. Why: a reason' "record"
+has_text recorded.jsonl '"holds": true' "record"
+has_text recorded.jsonl '"holds": false' "record"
+lacks_text recorded.jsonl "$(hostname)" "record names the host"
 before=$(cksum <recorded.jsonl)
 wrong() { record "$@"; (( $? == 2 )) || fault "record $* is not wrong use"; }
 wrong no_such_promise 1
@@ -127,7 +127,7 @@ wrong gate_minutes 1 2
 wrong gate_minutes 1 --nonsense x
 wrong gate_minutes 1 --note
 [[ "$(cksum <recorded.jsonl)" == "$before" ]] || fault "a refused figure was written"
-"$bench/run" nonsense >said 2>&1; (( $? == 2 )) || fault "an unknown group is not wrong use"
+"$bench/run" nonsense >output 2>&1; (( $? == 2 )) || fault "an unknown group is not wrong use"
 "$bench/run" --help | grep -q '^Usage' || fault "--help of run"
 
 echo "$failures failures"

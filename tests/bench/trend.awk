@@ -15,12 +15,12 @@ function x_of(time) { return left + (last_day > first_day ? (days_of(time) - fir
 function y_of(figure) { return top + inner_height * (1 - figure / highest) }
 
 # A frame of a panel at x, y; sets left, top, inner_width, inner_height and highest for what is drawn into it.
-function panel(x, y, wide, high, title, most,    step, value) {
+function panel(x, y, wide, high, title, max_value,    step, value) {
   left = x + 44; top = y + 46; inner_width = wide - 60; inner_height = high - 70
   step = 1
-  while (most / step > 5) step *= (substr(sprintf("%e", step), 1, 1) == "2") ? 2.5 : 2
-  while (most / step < 2) step /= 2
-  highest = step * (int(most / step) + 1)
+  while (max_value / step > 5) step *= (substr(sprintf("%e", step), 1, 1) == "2") ? 2.5 : 2
+  while (max_value / step < 2) step /= 2
+  highest = step * (int(max_value / step) + 1)
   label(x + 8, y + 16, "title", title)
   for (value = 0; value <= highest * 1.0001; value += step) {
     put(sprintf("<path class=\"grid\" d=\"M%.1f %.1fh%.1f\"/>", left, y_of(value), inner_width))
@@ -57,12 +57,12 @@ function share_panel(sorted,    i, n, key, latest, held, all, path, y) {
   } else label(left + 8, top + 20, "note", "no figure yet")
 }
 
-function promise_panel(promise, x, y, sorted,    i, n, most, limit, scenes, count, of, path, s, names, wide) {
+function promise_panel(promise, x, y, sorted,    i, n, max_value, limit, scenes, count, of, path, s, names, wide) {
   wide = page_width / 3
   limit = bound_of[promise]; gsub(/[<>=]/, "", limit)
-  most = limit + 0
-  for (i = 1; i <= figures; ++i) if (promise_of[i] == promise && figure_of[i] + 0 > most) most = figure_of[i] + 0
-  panel(x, y, wide, 200, promise ", target " target_of[promise], most)
+  max_value = limit + 0
+  for (i = 1; i <= figures; ++i) if (promise_of[i] == promise && figure_of[i] + 0 > max_value) max_value = figure_of[i] + 0
+  panel(x, y, wide, 200, promise ", target " target_of[promise], max_value)
   put(sprintf("<path class=\"bound\" d=\"M%.1f %.1fh%.1f\"/>", left, y_of(limit), inner_width))
   count = scenes_of(promise, scenes)
   for (s = 1; s <= count; ++s) {

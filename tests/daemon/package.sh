@@ -44,17 +44,17 @@ done
 
 # What is in it works: the settings are taken, every key is shown, and the room can be walked through.
 dpkg-deb -x "$deb" "$work/files"
-"$work/files/usr/sbin/surefootd" --config "$work/files/etc/surefoot/surefoot.toml" --check >"$work/said" 2>&1 || complain "the settings: $(cat "$work/said")"
+"$work/files/usr/sbin/surefootd" --config "$work/files/etc/surefoot/surefoot.toml" --check >"$work/output" 2>&1 || complain "the settings: $(cat "$work/output")"
 [ "$(grep -cE '^#? ?[a-z_]+ = ' "$work/files/etc/surefoot/surefoot.toml")" -ge 25 ] || complain "the settings lack keys"
-"$work/files/usr/bin/surefoot" walk "$work/files/usr/share/surefoot/room.walk" --clock virtual --backend null --frames 30 >"$work/said" 2>&1 ||
-  complain "the room: $(cat "$work/said")"
+"$work/files/usr/bin/surefoot" walk "$work/files/usr/share/surefoot/room.walk" --clock virtual --backend null --frames 30 >"$work/output" 2>&1 ||
+  complain "the room: $(cat "$work/output")"
 readelf -S "$work/files/usr/sbin/surefootd" | grep -q '\.debug_info' && complain "not stripped"
 
 # Installed, upgraded, purged. The dependencies are not there, and nothing is started.
 root=$work/root
 mkdir -p "$root/var/lib/dpkg/info" "$root/var/lib/dpkg/updates" "$root/etc"
 touch "$root/var/lib/dpkg/status" "$root/var/lib/dpkg/available"
-package() { "${as_root[@]}" dpkg --root="$root" --log=/dev/null --force-depends --force-not-root --force-script-chrootless --force-confold "$@" >"$work/said" 2>&1 || complain "dpkg $*: $(cat "$work/said")"; }
+package() { "${as_root[@]}" dpkg --root="$root" --log=/dev/null --force-depends --force-not-root --force-script-chrootless --force-confold "$@" >"$work/output" 2>&1 || complain "dpkg $*: $(cat "$work/output")"; }
 package -i "$deb"
 [ -x "$root/usr/sbin/surefootd" ] || complain "nothing was installed"
 grep -q '^surefoot:' "$root/etc/passwd" 2>/dev/null || complain "no user surefoot"

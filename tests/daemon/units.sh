@@ -14,9 +14,9 @@ complain() { echo "FAIL: $*"; failures=$((failures + 1)); }
 put() { sed "s|/usr/sbin/surefootd|$surefootd|" "$units/$1" >"$2"; }
 # judge NAME LIMIT: the unit in $work/NAME
 judge() {
-  local said score
-  said=$(systemd-analyze verify --man=no "$work/$1" 2>&1) || complain "verify of $1 fails: $said"
-  [ -z "$said" ] || complain "verify of $1 says: $said"
+  local output score
+  output=$(systemd-analyze verify --man=no "$work/$1" 2>&1) || complain "verify of $1 fails: $output"
+  [ -z "$output" ] || complain "verify of $1 says: $output"
   score=$(systemd-analyze security --offline=true "$work/$1" 2>/dev/null | sed -n 's/.*exposure level for .*: \([0-9.]*\) .*/\1/p')
   echo "$1${2:+ with $2}: ${score:-no score}"
   awk -v s="${score:-99}" 'BEGIN { exit !(s <= 1.0) }' || complain "$1${2:+ with $2}: exposure ${score:-unknown}, above 1.0"
@@ -56,11 +56,11 @@ mkdir -p "$work/root/etc" "$work/root/usr/lib/sysusers.d" "$work/root/usr/lib/tm
 cp "$units/surefoot.sysusers" "$work/root/usr/lib/sysusers.d/surefoot.conf"
 cp "$units/surefoot.tmpfiles" "$work/root/usr/lib/tmpfiles.d/surefoot.conf"
 if [ "$(id -u)" -eq 0 ]; then
-  systemd-sysusers --root="$work/root" surefoot.conf 2>"$work/said" || complain "sysusers: $(cat "$work/said")"
+  systemd-sysusers --root="$work/root" surefoot.conf 2>"$work/output" || complain "sysusers: $(cat "$work/output")"
   for group in surefoot-input render video; do
     grep -qE "^$group:.*:(.*,)?surefoot(,|\$)" "$work/root/etc/group" || complain "surefoot is not in $group"
   done
-  systemd-tmpfiles --root="$work/root" --create surefoot.conf 2>"$work/said" || complain "tmpfiles: $(cat "$work/said")"
+  systemd-tmpfiles --root="$work/root" --create surefoot.conf 2>"$work/output" || complain "tmpfiles: $(cat "$work/output")"
   [ -d "$work/root/var/lib/surefoot" ] || complain "no /var/lib/surefoot"
 else
   echo "not root: sysusers.d and tmpfiles.d are not tried out"

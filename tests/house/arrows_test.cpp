@@ -155,7 +155,7 @@ TEST(House, TopLevelHoldsOnlyWhatIsPlanned) {
     EXPECT_FALSE(top_level_allowed("notes.txt"));
 }
 
-TEST(House, EveryFileFitsInAHeadAndSaysItsJobFirst) {
+TEST(House, EveryFileFitsInAHeadAndNamesItsJobFirst) {
     const std::string unfinished = std::string("TO") + "DO";
     for (const auto& file : sources()) {
         std::size_t lines = 0;

@@ -1,9 +1,10 @@
 // Names that were replaced by the field's standard words do not come back: as identifiers in code, as words of identifiers and
-// of comments where no other meaning is possible, and as names of files.
-// String literals are not looked at: keys and messages are contracts.
+// of comments where no other meaning is possible, and as names of files. Scripts are read too: shell, awk, Python and CMake.
+// String literals are not looked at: keys and messages are contracts. Neither are comments and here-documents of scripts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -152,11 +153,20 @@ const std::vector<Banned>& banned_names() {
 /// Identifiers that begin so.
 const std::vector<Banned>& banned_prefixes() {
     static const std::vector<Banned> prefixes = {
-        {"most_", "max_"},    {"least_", "min_"},     {"say_", "log_ or warn_ or print_"},
-        {"tell_", "notify_"}, {"told_", "reported_"}, {"said_", "reported_"},
+        {"most_", "max_"},      {"least_", "min_"},     {"say_", "log_ or warn_ or print_"}, {"tell_", "notify_"},
+        {"told_", "reported_"}, {"said_", "reported_"}, {"note_", "message_ or record_"},
     };
     return prefixes;
 }
+
+/// Names of the product and of scripts alone: tests may call a smallest value the least.
+const std::vector<Banned>& banned_in_product() {
+    static const std::vector<Banned> names = {{"most", "max_..."}, {"least", "min_..."}, {"notes_", "messages_"}};
+    return names;
+}
+
+/// Names with a prefix that stay, for they are keys of a contract.
+constexpr std::array<std::string_view, 1> contracts = {"note_count"};
 
 /// Words in a row that stand nowhere in an identifier, however it is written: put_off is found in take_put_off and TakePutOff.
 const std::vector<Banned>& banned_words() {
@@ -183,7 +193,7 @@ const std::vector<Banned>& banned_words() {
 /// Those of them that a comment may not use either: the others are plain English too.
 bool banned_in_comments(std::string_view words) { return words != "put_off"; }
 
-/// Sources by path without ending.
+/// Sources by path without ending. No file of another folder may have the name either.
 const std::vector<Banned>& banned_files() {
     static const std::vector<Banned> files = {
         {"input/devices/attendant", "device_router"},
@@ -238,6 +248,7 @@ bool has_words(std::string_view words, std::string_view banned) {
 /// What to say instead of an identifier; empty where it may stay.
 std::string_view instead_of(std::string_view identifier) {
     const std::string words = words_of(identifier);
+    if (std::find(contracts.begin(), contracts.end(), identifier) != contracts.end()) return {};
     for (const Banned& banned : banned_names())
         if (identifier == banned.name) return banned.instead;
     for (const Banned& banned : banned_prefixes())
@@ -245,6 +256,15 @@ std::string_view instead_of(std::string_view identifier) {
     for (const Banned& banned : banned_words())
         if (has_words(words, banned.name)) return banned.instead;
     return {};
+}
+
+/// The same with the names that are banned in the product only.
+std::string_view instead_in(std::string_view identifier, bool product) {
+    if (product) {
+        for (const Banned& banned : banned_in_product())
+            if (identifier == banned.name) return banned.instead;
+    }
+    return instead_of(identifier);
 }
 
 struct Found {
@@ -258,7 +278,8 @@ bool is_part(char c) { return begins_identifier(c) || std::isdigit(static_cast<u
 /// Walks over C++ text and collects the banned identifiers of its code and the banned words of its comments.
 class Reader {
 public:
-    explicit Reader(std::string_view text) : text_(text) {}
+    /// `product`: the names of banned_in_product() count too.
+    explicit Reader(std::string_view text, bool product = false) : text_(text), product_(product) {}
 
     std::vector<Found> run() {
         while (at_ < text_.size()) {
@@ -322,11 +343,12 @@ private:
             advance(close.size());
             return;
         }
-        if (!instead_of(identifier).empty()) found_.push_back({line_, std::string(identifier)});
+        if (!instead_in(identifier, product_).empty()) found_.push_back({line_, std::string(identifier)});
         advance(identifier.size());
     }
 
     std::string_view text_;
+    bool product_;
     std::size_t at_ = 0, line_ = 1;
     std::vector<Found> found_;
 };
@@ -336,29 +358,114 @@ std::string text_of(const fs::path& path) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// The banned names that a script uses: as commands, functions and variables, also inside of double quotes ($name).
+std::vector<Found> script_names(std::string_view text) {
+    std::vector<Found> found;
+    std::size_t line = 1;
+    bool quoted = false, after_sign = false;
+    std::string here_end, before;  // the word that ends a here-document; the name before
+    for (std::size_t i = 0; i < text.size();) {
+        const char c = text[i];
+        const std::string_view rest = text.substr(i);
+        if (c == '\n') {
+            ++line;
+            for (++i; !here_end.empty() && i < text.size(); ++line) {
+                const std::string_view now = text.substr(i, std::min(text.find('\n', i), text.size()) - i);
+                i = std::min(i + now.size() + 1, text.size());
+                if (now.substr(std::min(now.find_first_not_of('\t'), now.size())) == here_end) here_end.clear();
+            }
+            continue;
+        }
+        const bool begins_word = i == 0 || std::string_view(" \t\n;").find(text[i - 1]) != std::string_view::npos;
+        if (c == '\\') {
+            line += text.substr(i, 2).ends_with('\n') ? 1 : 0;
+            i += 2;
+        } else if (c == '"') {
+            quoted = !quoted;
+            ++i;
+        } else if (c == '\'' && !quoted) {
+            const std::size_t end = std::min(text.find('\'', i + 1), text.size());
+            line += static_cast<std::size_t>(std::count(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(end - i), '\n'));
+            i = std::min(end + 1, text.size());
+        } else if (c == '#' && !quoted && begins_word) {
+            i = std::min(text.find('\n', i), text.size());
+        } else if (rest.starts_with("<<") && !rest.starts_with("<<<") && !quoted && (i == 0 || text[i - 1] != '<')) {
+            for (i += 2; i < text.size() && std::string_view("-'\" ").find(text[i]) != std::string_view::npos; ++i) continue;
+            while (i < text.size() && is_part(text[i])) here_end += text[i++];
+            for (; i < text.size() && (text[i] == '\'' || text[i] == '"'); ++i) continue;
+        } else if (begins_identifier(c)) {
+            std::size_t end = i;
+            while (end < text.size() && is_part(text[end])) ++end;
+            const std::string name(text.substr(i, end - i));
+            const bool of_udev = before == "udevadm";  // `udevadm settle` is another program's word
+            if ((!quoted || after_sign) && !of_udev && !instead_in(name, true).empty()) found.push_back({line, name});
+            before = name;
+            i = end;
+        } else {
+            after_sign = c == '$' || (after_sign && c == '{') || (after_sign && c == '(');
+            ++i;
+            continue;
+        }
+        after_sign = false;
+    }
+    return found;
+}
+
+/// Shell, awk, Python and CMake: by ending, or by the first line of a file without one.
+bool is_script(const fs::path& path) {
+    const auto kind = path.extension();
+    if (kind == ".sh" || kind == ".awk" || kind == ".cmake" || path.filename() == "CMakeLists.txt") return true;
+    if (!kind.empty()) return false;
+    std::ifstream stream(path, std::ios::binary);
+    std::string first;
+    return std::getline(stream, first) && (first.starts_with("#!") || first.starts_with("# "));
+}
+
 /// What a file should be called; empty where its name may stay. `file`: from the root, with '/'.
 std::string_view other_name(std::string_view file) {
+    const auto base = [](std::string_view path) { return path.substr(path.rfind('/') + 1); };
+    const std::string_view name = base(file);
     for (const Banned& banned : banned_files())
-        if (file == std::string(banned.name) + ".cpp" || file == std::string(banned.name) + ".hpp") return banned.instead;
+        for (const std::string_view ending : {".cpp", ".hpp", ".sh", ".awk"})
+            if (name == std::string(base(banned.name)) + std::string(ending)) return banned.instead;
     return {};
 }
 
 TEST(BannedNames, StandNowhereInTheSources) {
-    std::size_t files = 0;
+    std::size_t files = 0, scripts = 0;
     for (const auto* top : {"rt", "render", "input", "config", "systemd", "tools", "tests"}) {
         for (const auto& entry : fs::recursive_directory_iterator(top_folder / top)) {
             const auto kind = entry.path().extension();
-            if (!entry.is_regular_file() || (kind != ".cpp" && kind != ".hpp")) continue;
-            ++files;
+            if (!entry.is_regular_file()) continue;
+            const bool code = kind == ".cpp" || kind == ".hpp", script = !code && is_script(entry.path());
+            files += code ? 1 : 0;
+            scripts += script ? 1 : 0;
             const std::string file = fs::relative(entry.path(), top_folder).generic_string();
             EXPECT_EQ(other_name(file), "") << file << " has another name now";
+            if (!code && !script) continue;
             const std::string text = text_of(entry.path());
-            for (const Found& found : Reader(text).run())
+            const bool product = std::string_view(top) != "tests";
+            for (const Found& found : code ? Reader(text, product).run() : script_names(text))
                 ADD_FAILURE() << file << ":" << found.line << ": " << found.identifier << " is called "
-                              << instead_of(found.identifier);
+                              << instead_in(found.identifier, product || script);
         }
     }
     EXPECT_GT(files, 500U) << "the sources were not found";
+    EXPECT_GT(scripts, 40U) << "the scripts were not found";
+}
+
+TEST(BannedNames, AreFoundInScripts) {
+    const auto found = [](std::string_view text) {
+        std::string all;
+        for (const Found& f : script_names(text)) all += (all.empty() ? "" : " ") + std::to_string(f.line) + ":" + f.identifier;
+        return all;
+    };
+    EXPECT_EQ(found("#!/bin/sh\nsays() { echo 1; }\nsays a b\n"), "2:says 3:says");
+    EXPECT_EQ(found("x=1 # says\necho \"it says $said ${told}\" 'says' \"$(says x)\"\n"), "2:said 2:told 2:says");
+    EXPECT_EQ(found("cat <<'END' | grep x\nshe says\nEND\nsay\n"), "4:say");
+    EXPECT_EQ(found("grep x <<<\"$most_lines\"\nmost_lines = 1; most = 2\n"), "1:most_lines 2:most_lines 2:most");
+    EXPECT_EQ(found("udevadm settle\nsettle\nat_most=1\n"), "2:settle");
+    EXPECT_EQ(found("a='one\ntwo'\nsay\n"), "3:say");
 }
 
 TEST(BannedNames, AreFoundInCodeAndNowhereElse) {
@@ -375,6 +482,8 @@ TEST(BannedNames, AreFoundInCodeAndNowhereElse) {
     EXPECT_EQ(found("f(R\"x(\n\" say )\" )x\", said);"), "2:said");
     EXPECT_EQ(found("a = 1'000'000; b = 'x'; thrift(1'0);"), "1:thrift");
     EXPECT_EQ(found("#include \"input/devices/attendant.hpp\"\n"), "");
+    EXPECT_EQ(found("note_loss(); note_count; notes_; most;"), "1:note_loss");
+    EXPECT_EQ(Reader("most + least_m + notes_", true).run().size(), 3U) << "in the product";
 }
 
 TEST(BannedNames, AreFoundAsWordsOfIdentifiersAndComments) {
@@ -397,6 +506,7 @@ TEST(BannedNames, AreFoundAsWordsOfIdentifiersAndComments) {
 TEST(BannedNames, OfFilesAreFound) {
     EXPECT_EQ(other_name("input/devices/attendant.hpp"), "device_router");
     EXPECT_EQ(other_name("render/select/queue.hpp"), "bucket_queue");
+    EXPECT_EQ(other_name("tools/soak/queue.hpp"), "bucket_queue") << "in another folder";
     EXPECT_EQ(other_name("render/select/bucket_queue.hpp"), "");
     EXPECT_EQ(other_name("tools/walk/visit.md"), "");
 }

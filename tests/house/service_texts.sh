@@ -7,9 +7,9 @@ while IFS= read -r line; do
   text=${line#*=\'} text=${text%\'}
   seen=$((seen + 1))
   if ! grep -rqF --include='*.cpp' -- "$text" systemd tools/walk tools/monitor input rt; then
-    echo "tests/vm/service-texts: no source file says '$text'"
+    echo "tests/vm/service-texts: no source file has '$text'"
     bad=1
   fi
-done < <(grep '^says_' tests/vm/service-texts)
+done < <(grep '^text_' tests/vm/service-texts)
 echo "$seen texts"
 (( seen > 0 && bad == 0 ))

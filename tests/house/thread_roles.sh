@@ -25,9 +25,9 @@ for call in 'steering.tick({}, 1)' 'source.drain(steering, 1)' 'source.begin(ste
   warns "(void)$call"
 done
 
-said=$(printf '%s\n' "$code" | "$compiler" -std=c++20 -I. -fsyntax-only -Wthread-safety -x c++ - 2>&1)
-if grep -q 'error:' <<<"$said"; then complain "it does not compile: $said"; fi
-warned=$(grep -oP '^<stdin>:\K[0-9]+(?=:.*thread role .*-Wthread-safety)' <<<"$said" | sort -nu)
+diagnostics=$(printf '%s\n' "$code" | "$compiler" -std=c++20 -I. -fsyntax-only -Wthread-safety -x c++ - 2>&1)
+if grep -q 'error:' <<<"$diagnostics"; then complain "it does not compile: $diagnostics"; fi
+warned=$(grep -oP '^<stdin>:\K[0-9]+(?=:.*thread role .*-Wthread-safety)' <<<"$diagnostics" | sort -nu)
 for at in $(comm -23 <(printf '%s\n' "${wanted[@]}" | sort) <(sort <<<"$warned")); do complain "no warning: $(sed -n "${at}p" <<<"$code")"; done
 for at in $(comm -13 <(printf '%s\n' "${wanted[@]}" | sort) <(sort <<<"$warned")); do complain "a warning: $(sed -n "${at}p" <<<"$code")"; done
 if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi

@@ -21,17 +21,17 @@ expect 1 'nonexistent' walk f.walk --clock virtual --backend null --frames 5 --m
 expect 1 'incidents|proc' walk f.walk --clock virtual --backend null --frames 5 --incidents /proc/nowhere
 
 # A walk in real time without GL, looked at while it runs.
-mkfifo said
-"$surefoot" walk f.walk --backend null --no-fifo --seconds 60 --monitor "$socket" --incidents incidents --json >walk.out 2>said &
+mkfifo messages
+"$surefoot" walk f.walk --backend null --no-fifo --seconds 60 --monitor "$socket" --incidents incidents --json >walk.out 2>messages &
 walk=$!
-exec 3<said
-# says WORDS: waits until the walk says them, for half a minute at most; what it says goes on to walk.err.
-says() {
-  local said
-  while IFS= read -r -t 30 said <&3; do printf '%s\n' "$said" >>walk.err; case $said in *"$1"*) return ;; esac; done
-  complain "the walk never says '$1': $(cat walk.err)"
+exec 3<messages
+# wait_for WORDS: waits until the walk prints them, for half a minute at most; its messages go on to walk.err.
+wait_for() {
+  local message
+  while IFS= read -r -t 30 message <&3; do printf '%s\n' "$message" >>walk.err; case $message in *"$1"*) return ;; esac; done
+  complain "the walk never prints '$1': $(cat walk.err)"
 }
-says 'watch it live with'
+wait_for 'Watch the walk live'
 "$surefoot" top --socket "$socket" --every 0.2 --seconds 30 --json </dev/null 2>/dev/null |
   grep -qm 1 '"state":"walking".*"totals":{"frames":[1-9][0-9]' || complain "no frames are seen: $(cat walk.err)"
 grep -q "surefoot top --socket $socket" walk.err || complain "the walk does not say how to look at it: $(cat walk.err)"
@@ -63,7 +63,7 @@ fi
 
 # A burst of misses is written down, with a frame of it that can be replayed.
 kill -STOP $walk; sleep 0.3; kill -CONT $walk
-says 'a burst of misses'
+wait_for 'burst of misses'
 [ -s "$(ls incidents/incident-*/ledger.csv | head -1)" ] || complain "a stop of 0.3 s left no incident"
 "$surefoot" replay incidents/incident-*/frame.capture >out 2>err || complain "its frame cannot be replayed: $(cat err)"
 

@@ -27,7 +27,7 @@ open_guest() {
   local missing
   mapfile -t missing < <(missing_of qemu-system-x86 debootstrap kmod e2fsprogs cpio busybox-static make gcc "$@")
   if (( ${#missing[@]} > 0 )); then
-    say "Missing Debian packages: ${missing[*]}"
+    print_title "Missing Debian packages: ${missing[*]}"
     apt-get update -q >/dev/null 2>&1 || skip "packages are missing and there is no network: ${missing[*]}"
     apt_install "${missing[@]}" || skip "these packages could not be installed: ${missing[*]}"
   fi
@@ -75,7 +75,7 @@ boot() {
   if kvm_works 2>/dev/null; then accelerator=(-accel kvm -cpu host) accelerated=kvm; fi
   echo "$accelerated" >"$share/in/accelerated"
   built_s=$((SECONDS - start - image_s))
-  say "Booting $(cat "$cache/kernel/release") ($accelerated)"
+  print_title "Booting $(cat "$cache/kernel/release") ($accelerated)"
   timeout -k 10 "$limit_s" qemu-system-x86_64 -machine q35 "${accelerator[@]}" -smp 2 -m 2048 -display none -no-reboot -nic none \
     -kernel "$cache/kernel/boot/vmlinuz-$(cat "$cache/kernel/release")" -initrd "$cache/initrd.gz" \
     -append "console=ttyS0 quiet panic=-1 loglevel=3 $parameters" \
@@ -109,7 +109,7 @@ sum_up() {
   } >"$keep/summary.json"
   if (( json )); then cat "$keep/summary.json" >&3; fi
 
-  say "Summary"
+  print_title "Summary"
   grep -hE '^\[ (FAIL|not run)' "$keep/guest.log" || true
   [[ "$ended" == true ]] || echo "the guest did not end by itself (QEMU's status $qemu_status): see $keep/console.log"
   echo "image $image_was in $image_s s, built in $built_s s, guest $guest_s s; all in $((SECONDS - start)) s"

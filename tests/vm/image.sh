@@ -166,7 +166,7 @@ make_image() {
   if [[ "$missing" == ' ' ]]; then return; fi
   # shellcheck disable=SC2034  # for who reads this file
   image_was=made
-  say "Making of the guest's image, in $cache:$missing(once; 400 MB to download and 4 GB of disk for all of it)"
+  print_title "Making of the guest's image, in $cache:$missing(once; 400 MB to download and 4 GB of disk for all of it)"
   local trixie='' made=1
   if [[ "$missing" == *' trixie '* ]]; then make_part trixie none & trixie=$!; fi
   for name in kernel root initrd; do

@@ -37,8 +37,9 @@ ordered_json few_json(std::vector<double> values) {
 /// The last seconds, for live views: figures of them, and the frames themselves.
 ordered_json recent_json(const Figures& f) {
     constexpr double look_back_s = 10;
-    const auto most = static_cast<std::uint64_t>(std::ceil(look_back_s * 1e9 / static_cast<double>(f.setup.period_ns)));
-    const std::uint64_t n = std::min({f.recent_count, std::max<std::uint64_t>(most, 30), std::uint64_t{Figures::max_recent}});
+    const auto max_frames = static_cast<std::uint64_t>(std::ceil(look_back_s * 1e9 / static_cast<double>(f.setup.period_ns)));
+    const std::uint64_t n =
+        std::min({f.recent_count, std::max<std::uint64_t>(max_frames, 30), std::uint64_t{Figures::max_recent}});
     std::vector<double> frame, wake, slack, used, accuracy;
     ordered_json frames = ordered_json::array(), causes = ordered_json::object();
     std::uint64_t misses = 0, skipped = 0;

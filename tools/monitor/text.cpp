@@ -25,16 +25,16 @@ struct Column {
 };
 
 /// A column a slot, the last `most` of them.
-std::vector<Column> columns_of(const json& frames, std::size_t most) {
+std::vector<Column> columns_of(const json& frames, std::size_t max_columns) {
     std::vector<Column> columns;
     if (!frames.is_array()) return columns;
     for (const json& f : frames) {
         if (!f.is_array() || f.size() != 3 || !f[0].is_number() || !f[1].is_number_unsigned() || !f[2].is_boolean()) continue;
-        const auto gap = std::min<std::uint64_t>(f[1].get<std::uint64_t>(), most);
+        const auto gap = std::min<std::uint64_t>(f[1].get<std::uint64_t>(), max_columns);
         for (std::uint64_t i = 0; i < gap; ++i) columns.push_back({0, false, true});
         columns.push_back({f[0].get<double>(), f[2].get<bool>(), false});
     }
-    if (columns.size() > most) columns.erase(columns.begin(), columns.end() - static_cast<std::ptrdiff_t>(most));
+    if (columns.size() > max_columns) columns.erase(columns.begin(), columns.end() - static_cast<std::ptrdiff_t>(max_columns));
     return columns;
 }
 

@@ -84,10 +84,10 @@ void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::stri
     if (!(number_at(s, "/recent/frames") > 0)) return;
     const double period_ms = number_at(s, "/walk/period_ms");
     const std::size_t width = std::clamp<std::size_t>(style.width > 60 ? style.width - 52 : 8, 8, 40);
-    const double slack = number_at(s, "/recent/slack_ms/p50"), least = number_at(s, "/recent/slack_ms/min");
+    const double slack = number_at(s, "/recent/slack_ms/p50"), min_slack = number_at(s, "/recent/slack_ms/min");
     lines.push_back(fmt::format("slack    {} {:>6} ms   least {}", share_bar(style, slack / period_ms, width),
                                 short_number(slack),
-                                inked(style, least < 0 ? Ink::bad : Ink::plain, short_number(least) + " ms")));
+                                inked(style, min_slack < 0 ? Ink::bad : Ink::plain, short_number(min_slack) + " ms")));
     const double used = number_at(s, "/recent/budget_used/mean");
     lines.push_back(fmt::format("used     {} {:>6.0f} %    p99 {:.0f} % of the period", share_bar(style, used, width), 100 * used,
                                 100 * number_at(s, "/recent/budget_used/p99")));

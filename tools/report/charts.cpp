@@ -68,9 +68,9 @@ std::string frame_histogram(const WalkFrames& walk, double budget_ms) {
     std::array<std::uint64_t, bins + 1> counts{};
     for (const FrameRecord* f : walk.frames)
         ++counts[std::min(bins, static_cast<std::size_t>(std::max(0.0, frame_ms(*f) / top * static_cast<double>(bins))))];
-    const double most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
+    const double max_count = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
     const Scale x{0, top, area.left, area.right, false};
-    const Scale y{0.5, std::max(10.0, most * 1.3), area.bottom, area.top, true};
+    const Scale y{0.5, std::max(10.0, max_count * 1.3), area.bottom, area.top, true};
 
     std::string out = open_chart(small_width, 250, "Frame times: how many frames took how long");
     out += y_axis(area, y, log_ticks(1, y.to), "frames");
@@ -169,10 +169,10 @@ std::string accuracy_chart_over_time(const WalkFrames& walk) {
 
 std::string triangles_chart(const WalkFrames& walk, std::uint64_t model_triangles) {
     auto chart = over_time(walk, "Triangles drawn", "", [](const FrameRecord& f) { return static_cast<double>(f.triangles); });
-    double most = 0;
-    for (const double v : chart.value) most = std::max(most, v);
+    double max_value = 0;
+    for (const double v : chart.value) max_value = std::max(max_value, v);
     const double model = static_cast<double>(model_triangles);
-    if (model > 0 && model < most * 4) chart.lines = {{model, "the whole model", "budget"}};
+    if (model > 0 && model < max_value * 4) chart.lines = {{model, "the whole model", "budget"}};
     chart.width = small_width;
     chart.height = small_height;
     chart.snapshots_s = walk.snapshots_s;
@@ -190,11 +190,11 @@ std::string cause_chart(const WalkSummary& s) {
     std::vector<std::pair<std::string, std::uint64_t>> causes(s.miss_causes.begin(), s.miss_causes.end());
     std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
     const double height = 14 + 30 * static_cast<double>(causes.size());
-    const double most = causes.empty() ? 1 : static_cast<double>(causes.front().second);
+    const double max_count = causes.empty() ? 1 : static_cast<double>(causes.front().second);
     std::string out = open_chart(small_width, height, "Misses by cause");
     for (std::size_t i = 0; i < causes.size(); ++i) {
         const double at = 8 + 30 * static_cast<double>(i);
-        const double length = 270 * static_cast<double>(causes[i].second) / most;
+        const double length = 270 * static_cast<double>(causes[i].second) / max_count;
         out += text_at(124, at + 15, "end", causes[i].first);
         out += fmt::format("<rect x=\"134\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"20\" rx=\"3\" class=\"bar late\"/>", at,
                            std::max(2.0, length));
@@ -205,9 +205,9 @@ std::string cause_chart(const WalkSummary& s) {
 
 std::string control_chart(const ControlSummary& control) {
     const PlotArea area{52, 24, 950, 130};
-    double most = 1;
-    for (const ControlBlock& b : control.blocks) most = std::max(most, static_cast<double>(b.misses));
-    const Scale y{0, nice_ceiling(most), area.bottom, area.top, false};
+    double max_misses = 1;
+    for (const ControlBlock& b : control.blocks) max_misses = std::max(max_misses, static_cast<double>(b.misses));
+    const Scale y{0, nice_ceiling(max_misses), area.bottom, area.top, false};
     std::string out = open_chart(960, 150, "Misses in each block of the walk and of the bare loop");
     std::vector<double> ticks = nice_ticks(0, y.to, 3);
     std::erase_if(ticks, [](double t) { return t != std::floor(t); });

@@ -36,9 +36,9 @@ struct Ground {
 
 Projection fit(Ground g, double width, double height, double margin) {
     if (g.empty()) g = {-1, -1, 1, 1};
-    const double least = 1e-3;
-    const double across = std::max(g.x1 - g.x0, least);
-    const double down = std::max(g.z1 - g.z0, least);
+    const double min_size = 1e-3;
+    const double across = std::max(g.x1 - g.x0, min_size);
+    const double down = std::max(g.z1 - g.z0, min_size);
     const double scale = std::min((width - 2 * margin) / across, (height - 2 * margin) / down);
     return {scale, width / 2 - scale * (g.x0 + g.x1) / 2, height / 2 - scale * (g.z0 + g.z1) / 2};
 }

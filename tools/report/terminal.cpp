@@ -29,9 +29,9 @@ bool speaks_utf8() {
 bool continues_a_code_point(char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; }
 
 /// The last places of a word longer than a line: of a path, its end says more than its middle.
-std::string end_of(const std::string& text, std::size_t most) {
+std::string end_of(const std::string& text, std::size_t max_width) {
     std::size_t at = text.size();
-    for (std::size_t kept = 0; at > 0 && kept + 1 < most; --at) kept += continues_a_code_point(text[at - 1]) ? 0 : 1;
+    for (std::size_t kept = 0; at > 0 && kept + 1 < max_width; --at) kept += continues_a_code_point(text[at - 1]) ? 0 : 1;
     return "…" + text.substr(at);
 }
 

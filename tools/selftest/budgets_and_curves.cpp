@@ -76,15 +76,15 @@ void many_children(const Effort& effort, Outcome& out) {
     pose.fov_y_rad = 2.5;
     const prepare::PreparedFrame& frame = fixture.prepare({pose, 0, 0}, {1280, 720});
     std::uint64_t bad = unsound(frame, fixture.costs());
-    std::size_t most = 0;
+    std::size_t max_items = 0;
     for (const double budget_us : {0.0, 20000.0, infinity}) {
         const select::Cut& cut = fixture.select(select::usual_selector, budget_us);
         bad += illegal(frame, cut);
-        most = std::max(most, cut.items.size());
+        max_items = std::max(max_items, cut.items.size());
         out.digest_of(cut.hash);
     }
     out.none_of("numbers and cuts that are not finite, out of order or illegal", bad);
-    out.at_least("items of the largest cut", static_cast<double>(most), 0.3 * count);
+    out.at_least("items of the largest cut", static_cast<double>(max_items), 0.3 * count);
     if (count < 1'000'000) out.scaled = std::to_string(count) + " children of 1000000";
 }
 
@@ -143,8 +143,8 @@ void equal_benefits(const Effort&, Outcome& out) {
 void odd_costs(const Effort&, Outcome& out) {
     rt::CostController controller;
     std::uint64_t bad = 0;
-    const double most = 18446744073709551615.0;  // a 64-bit counter that went below zero
-    for (const double actual : {0.0, -1.0, nan, infinity, -infinity, most * 1e9, 1e-300, -most}) {
+    const double max_counter = 18446744073709551615.0;  // a 64-bit counter that went below zero
+    for (const double actual : {0.0, -1.0, nan, infinity, -infinity, max_counter * 1e9, 1e-300, -max_counter}) {
         for (const double predicted : {0.0, -1.0, nan, infinity, 1000.0, 1e-300}) {
             controller.update(predicted, actual);
             const double f = controller.factor(), u = controller.headroom(1.5);

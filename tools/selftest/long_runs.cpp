@@ -35,8 +35,10 @@ void grid_books(const Effort& effort, Outcome& out) {
     while (slot < thousand_million || run < steps) {
         if (effort.stopped()) break;
         const auto late = random.below(2) == 0 ? rt::LatePolicy::lock : rt::LatePolicy::floating;
-        const std::int64_t most = slot < thousand_million && random.below(1000) == 0 ? 2'592'000'000'000'000 : 3 * period_ns;
-        const std::int64_t finished = grid.due_ns(slot) + static_cast<std::int64_t>(random.unit() * static_cast<double>(most));
+        const std::int64_t max_work_ns =
+            slot < thousand_million && random.below(1000) == 0 ? 2'592'000'000'000'000 : 3 * period_ns;
+        const std::int64_t finished =
+            grid.due_ns(slot) + static_cast<std::int64_t>(random.unit() * static_cast<double>(max_work_ns));
         const rt::NextSlot next = rt::next_slot(grid, late, slot, finished);
         ++run;
         early += next.start_ns < finished ? 1 : 0;
@@ -112,7 +114,7 @@ void walking(const Effort& effort, Outcome& out) {
 
 /// Counts beyond 2^63, sums over the bins, and stalls at the end of time.
 void histograms(const Effort&, Outcome& out) {
-    constexpr auto most = std::numeric_limits<std::int64_t>::max();
+    constexpr auto max_time = std::numeric_limits<std::int64_t>::max();
     constexpr auto full = std::numeric_limits<std::uint64_t>::max();
     rt::Histogram h;
     Random random(33);
@@ -147,11 +149,11 @@ void histograms(const Effort&, Outcome& out) {
     out.exactly("the median of a full count", static_cast<double>(s.quantile(0.5)), 5);
 
     rt::Histogram e;
-    e.add(most, 3);
-    e.add(-most, 2);
-    e.add_progression(most - 10, 100, 4);
+    e.add(max_time, 3);
+    e.add(-max_time, 2);
+    e.add_progression(max_time - 10, 100, 4);
     out.exactly("stalls at the end of time are counted", static_cast<double>(e.count()), 9);
-    out.exactly("and none comes out before it", e.max() == most && e.bin_count(0) == 2 ? 1 : 0, 1);
+    out.exactly("and none comes out before it", e.max() == max_time && e.bin_count(0) == 2 ? 1 : 0, 1);
 }
 
 /// Live figures over stalls of years: every slot is in exactly one place.
@@ -171,9 +173,9 @@ void telemetry_books(const Effort& effort, Outcome& out) {
         skipped += skipped_before;
         f.due_ns = f.ready_ns = grid.due_ns(slot);
         f.deadline_ns = grid.deadline_ns(slot);
-        const std::int64_t most = random.below(200) == 0 ? 8'000'000'000'000'000 : 2 * period_ns;
+        const std::int64_t max_work_ns = random.below(200) == 0 ? 8'000'000'000'000'000 : 2 * period_ns;
         f.woken_ns = f.selected_ns = f.submitted_ns = f.rastered_ns = f.due_ns;
-        f.presented_ns = f.due_ns + static_cast<std::int64_t>(random.unit() * static_cast<double>(most));
+        f.presented_ns = f.due_ns + static_cast<std::int64_t>(random.unit() * static_cast<double>(max_work_ns));
         f.missed = f.presented_ns > f.deadline_ns;
         telemetry->add(f);
         const rt::NextSlot next = rt::next_slot(grid, rt::LatePolicy::lock, slot, f.presented_ns);

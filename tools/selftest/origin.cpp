@@ -147,8 +147,8 @@ void creeping(const Effort& effort, Outcome& out) {
         const model::Model model = squares.finish();
         if (!load(*device, model, out)) return;
         const std::array<gl::DrawItem, 1> item{{{node, model.nodes[node].first_rep}}};
-        const std::uint64_t most = effort.count(1000, 60);
-        for (std::uint64_t i = 0; i < most && !effort.stopped(); ++i, ++frames) {
+        const std::uint64_t max_frames = effort.count(1000, 60);
+        for (std::uint64_t i = 0; i < max_frames && !effort.stopped(); ++i, ++frames) {
             const dvec3 eye(0.5 + 1e-3 * static_cast<double>(i), 20, 10 + 3e-4 * static_cast<double>(i));
             Pose pose;
             pose.position = at + eye;

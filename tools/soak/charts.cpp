@@ -117,11 +117,11 @@ std::string soak_time_chart(const SoakSummary& s) {
 std::string soak_memory_chart(const SoakSummary& s) {
     const report::PlotArea area{64, 24, half_px - 10, 182};
     const std::vector<SoakSample> samples = thinned(s.samples);
-    double least = 1e300, most = 0;
-    for (const SoakSample& p : samples) least = std::min(least, p.memory_kib), most = std::max(most, p.memory_kib);
-    if (samples.empty()) least = most = 0;
+    double min_kib = 1e300, max_kib = 0;
+    for (const SoakSample& p : samples) min_kib = std::min(min_kib, p.memory_kib), max_kib = std::max(max_kib, p.memory_kib);
+    if (samples.empty()) min_kib = max_kib = 0;
     // A quarter of a MiB is the least that fills the chart: noise of single pages must not look like a mountain.
-    const double room = std::max(256.0, (most - least) * 1.3), middle = (most + least) / 2;
+    const double room = std::max(256.0, (max_kib - min_kib) * 1.3), middle = (max_kib + min_kib) / 2;
     const report::Scale x{0, length_of(s), area.left, area.right, false};
     const report::Scale y{(middle - room / 2) / 1024, (middle + room / 2) / 1024, area.bottom, area.top, false};
     std::string out = report::open_chart(half_px, 210, "Memory over the soak, with its trend");
@@ -150,11 +150,11 @@ std::string soak_memory_chart(const SoakSummary& s) {
 std::string soak_count_chart(const SoakSummary& s) {
     const report::PlotArea area{64, 24, half_px - 10, 182};
     const std::vector<SoakSample> samples = thinned(s.samples);
-    double most = 4;
+    double max_count = 4;
     std::vector<report::Point> descriptors, threads;
-    for (const SoakSample& p : samples) most = std::max({most, double{1.0 * p.descriptors}, double{1.0 * p.threads}});
+    for (const SoakSample& p : samples) max_count = std::max({max_count, double{1.0 * p.descriptors}, double{1.0 * p.threads}});
     const report::Scale x{0, length_of(s), area.left, area.right, false};
-    const report::Scale y{0, report::nice_ceiling(most * 1.15), area.bottom, area.top, false};
+    const report::Scale y{0, report::nice_ceiling(max_count * 1.15), area.bottom, area.top, false};
     for (const SoakSample& p : samples) {
         descriptors.push_back({x(p.time_s), y(p.descriptors)});
         threads.push_back({x(p.time_s), y(p.threads)});
@@ -171,14 +171,16 @@ std::string soak_count_chart(const SoakSummary& s) {
 
 std::string soak_accuracy_chart(const SoakSummary& s) {
     const report::PlotArea area{64, 24, half_px - 10, 182};
-    double least = 1e300, most = 0;
+    double min_accuracy = 1e300, max_accuracy = 0;
     for (const SoakColumn& c : s.columns) {
         if (c.accuracy_min <= 0) continue;
-        least = std::min<double>(least, c.accuracy_min), most = std::max<double>(most, c.accuracy_min);
+        min_accuracy = std::min<double>(min_accuracy, c.accuracy_min),
+        max_accuracy = std::max<double>(max_accuracy, c.accuracy_min);
     }
-    if (most <= 0) least = most = 1;
+    if (max_accuracy <= 0) min_accuracy = max_accuracy = 1;
     const report::Scale x{0, length_of(s), area.left, area.right, false};
-    const double bottom = std::pow(10.0, std::floor(std::log10(least))), top = std::pow(10.0, std::ceil(std::log10(most) + 1e-9));
+    const double bottom = std::pow(10.0, std::floor(std::log10(min_accuracy))),
+                 top = std::pow(10.0, std::ceil(std::log10(max_accuracy) + 1e-9));
     const report::Scale y{bottom, std::max(top, bottom * 10), area.bottom, area.top, true};
     std::string out = report::open_chart(half_px, 210, "Worst accuracy over the soak");
     out += report::y_axis(area, y, report::log_ticks(y.from, y.to), "rad⁻¹") + time_axis(area, x, 5);
@@ -206,11 +208,11 @@ std::string soak_load_chart(const SoakSummary& s) {
         if (load.ran && row.frames > 0) rows.push_back(row);
     }
     const auto rate = [](const Row& r) { return 1000.0 * static_cast<double>(r.misses) / static_cast<double>(r.frames); };
-    double most = 1;
-    for (const Row& r : rows) most = std::max(most, rate(r));
+    double max_rate = 1;
+    for (const Row& r : rows) max_rate = std::max(max_rate, rate(r));
     std::string out = report::open_chart(half_px, 14 + 26 * static_cast<double>(rows.size()), "Misses a thousand frames by load");
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const double at = 8 + 26 * static_cast<double>(i), length = std::max(2.0, 220 * rate(rows[i]) / most);
+        const double at = 8 + 26 * static_cast<double>(i), length = std::max(2.0, 220 * rate(rows[i]) / max_rate);
         out += report::text_at(84, at + 13, "end", rows[i].name);
         out += fmt::format("<rect x=\"94\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"17\" rx=\"3\" class=\"bar{}\"/>", at, length,
                            rows[i].misses > 0 ? " late" : "");

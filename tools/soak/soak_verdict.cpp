@@ -117,15 +117,15 @@ SoakCheck judge_flat(const std::string& name, const std::vector<SoakSample>& sam
     const std::size_t quarter = samples.size() / 4;
     if (quarter == 0) return check;
     const auto lowest = [&](std::size_t from) {
-        std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
-        for (std::size_t i = from; i < from + quarter; ++i) least = std::min(least, samples[i].*count);
-        return least;
+        std::uint32_t min_count = std::numeric_limits<std::uint32_t>::max();
+        for (std::size_t i = from; i < from + quarter; ++i) min_count = std::min(min_count, samples[i].*count);
+        return min_count;
     };
-    std::uint32_t most = 0;
-    for (const SoakSample& sample : samples) most = std::max(most, sample.*count);
+    std::uint32_t max_count = 0;
+    for (const SoakSample& sample : samples) max_count = std::max(max_count, sample.*count);
     const std::uint32_t first = lowest(0), last = lowest(samples.size() - quarter);
     check.judged = judged(last <= first);
-    check.words = fmt::format("first {}, last {}, max {}", first, last, most);
+    check.words = fmt::format("first {}, last {}, max {}", first, last, max_count);
     return check;
 }
 
