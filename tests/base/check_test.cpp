@@ -64,7 +64,7 @@ TEST(CheckRare, ManyThreadsAtAPlaceAreCountedEachTime) {
     EXPECT_EQ(count_of("nobody comes"), 4000U);
 }
 
-TEST(AnnotatedMutex, ConditionWaitsUntilToldOrUntilItsDeadline) {
+TEST(AnnotatedMutex, ConditionWaitsUntilNotifiedOrUntilItsDeadline) {
     Mutex mutex;
     Condition changed;
     bool notified = false;

@@ -130,7 +130,7 @@ TEST_F(FileTest, UnwritablePlacesAreNamed) {
     EXPECT_NE(nowhere.error().text().find(in("no/such")), std::string::npos);
 }
 
-TEST_F(FileTest, ProbingSaysWhatWritingWouldAndLeavesNothing) {
+TEST_F(FileTest, ProbingReportsWhatWritingWouldAndLeavesNothing) {
     const std::string good = folder_ / "new";
     EXPECT_TRUE(probe_writable(good).ok());
     EXPECT_FALSE(probe_writable(folder_ / "no/such/file").ok());

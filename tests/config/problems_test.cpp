@@ -12,7 +12,7 @@ namespace {
 
 using test::toy_schema;
 
-TEST(Problems, AreAllToldByLineWithTheirParts) {
+TEST(Problems, AreAllReportedByLineWithTheirParts) {
     const auto problems = problems_in_text(
         toy_schema(), "width = \"wide\"\n[profile.kiosk]\nrate_hz = 0\nselektor = \"flat\"\n[profile.lab]\nfifo = [1]\n",
         "s.toml");
@@ -74,7 +74,7 @@ TEST(Problems, DefaultsWrittenOutAreTakenCommentedOrNot) {
         EXPECT_EQ(value_text(c.values, entry), value_text(toy_schema().defaults(), entry)) << entry.key;
 }
 
-TEST(Problems, ExplainSaysLimitsAndOrigins) {
+TEST(Problems, ExplainNamesLimitsAndOrigins) {
     Configuration c(toy_schema());
     ASSERT_TRUE(load_text(c, "width = 640\n[profile.kiosk]\nrate_hz = 60\n", "s.toml", "kiosk").ok());
     ASSERT_TRUE(set_value(c, "height", "480").ok());

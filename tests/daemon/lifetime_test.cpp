@@ -34,7 +34,7 @@ TEST(Lifetime, AStopWhileAModelOpensIsNoFailure) {
     EXPECT_EQ(daemon.socket.count("READY=1"), 0U);
 }
 
-TEST(Lifetime, WhatIsWrongInTheFileIsSaidWithLineAndKey) {
+TEST(Lifetime, WhatIsWrongInTheFileIsReportedWithLineAndKey) {
     Running daemon("unknown-key");
     daemon.write_config("widht = 640\nheight = 0\n");
     daemon.start();
@@ -93,7 +93,7 @@ void PrintTo(const Lacking& lacking, std::ostream* out) { *out << lacking.name; 
 
 class Degraded : public testing::TestWithParam<Lacking> {};
 
-TEST_P(Degraded, IsSaidOnceAndInTheStatus) {
+TEST_P(Degraded, IsReportedOnceAndInTheStatus) {
     Running daemon(std::string("degraded-") + GetParam().name);
     daemon.write_config(GetParam().more);
     daemon.start({}, GetParam().taken);

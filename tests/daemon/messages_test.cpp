@@ -90,7 +90,7 @@ TEST(Journal, FieldsAreInItsNativeFormat) {
     EXPECT_TRUE(broken.ends_with("SUREFOOT_DROPPED_LINES=7\n")) << broken;
 }
 
-TEST(Journal, AFullSocketDropsAndTheNextLineSaysHowMany) {
+TEST(Journal, AFullSocketDropsAndTheNextLineNamesTheirNumber) {
     const std::string name = place("journal");
     NotifySocket journal(name);
     LogTarget target;

@@ -65,7 +65,7 @@ TEST(Heartbeat, OpeningIsTrustedForAsLongAsItMayTake) {
     EXPECT_GE(t.pings, 1);
 }
 
-TEST(Heartbeat, WithoutAWatchdogStallsAreToldAllTheSame) {
+TEST(Heartbeat, WithoutAWatchdogStallsAreReportedAllTheSame) {
     Time t{Heartbeat(0, period)};
     t.heartbeat.frames_begin(0, period);
     t.pass(5, true);
@@ -134,7 +134,7 @@ TEST(Bursts, AFrameThatTookSecondsAndTheSlotsItCostAreOne) {
     EXPECT_EQ(burst->text(), "1 frame missed, 151 slots skipped, at worst 3000.0 ms late: stopped 1");
 }
 
-TEST(Bursts, EveryMissIsInExactlyOneLineAndALongOneIsToldByTheMinute) {
+TEST(Bursts, EveryMissIsInExactlyOneLineAndALongBurstIsReportedByTheMinute) {
     Bursts bursts;
     std::uint64_t reported = 0, lines = 0, skipped = 0;
     for (std::uint64_t slot = 0; slot < 50 * 300; ++slot) {
@@ -154,7 +154,7 @@ TEST(Bursts, EveryMissIsInExactlyOneLineAndALongOneIsToldByTheMinute) {
     EXPECT_EQ(skipped + rest->skipped, 300U);
 }
 
-TEST(Status, SaysTheMostImportantFirst) {
+TEST(Status, NamesTheMostImportantFirst) {
     Facts f;
     f.phase = Phase::walking;
     f.model = "lobby.walk";

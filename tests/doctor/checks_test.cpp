@@ -62,7 +62,7 @@ TEST(Doctor, EveryCheckHasAMachineThatPassesAndOneThatFails) {
     for (const Check& check : all_checks()) EXPECT_EQ(seen[check.name].size(), 2U) << check.name;
 }
 
-TEST(Doctor, WhatCannotBeSeenIsUnknownAndSaysWhatToDo) {
+TEST(Doctor, WhatCannotBeSeenIsUnknownAndHasARemedy) {
     const FakeRoot empty;
     const FakeRoot folders({{"/proc/", ""}, {"/sys/", ""}, {"/etc/", ""}, {"/dev/", ""}});
     for (const FakeRoot* root : {&empty, &folders}) {

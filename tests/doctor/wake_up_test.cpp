@@ -54,7 +54,7 @@ TEST(WakeUp, AStallCountsEverySlotThatItRanOver) {
                 2.0 * clock.stalls());
 }
 
-TEST(WakeUp, StopsWhenAsked) {
+TEST(WakeUp, StopsOnRequest) {
     StallingClock clock(0);
     const std::atomic<bool> stop{true};
     WakeCount count;
@@ -95,7 +95,7 @@ TEST(Cyclictest, WhatIsNoHistogramIsRefused) {
     }
 }
 
-TEST(Cyclictest, AProgramThatFailsOrSaysNothingIsAnError) {
+TEST(Cyclictest, AProgramThatFailsOrPrintsNothingIsAnError) {
     EXPECT_FALSE(run_cyclictest("/bin/false", {.seconds = 1}, {}).ok());
     EXPECT_FALSE(run_cyclictest("/bin/true", {.seconds = 1}, {}).ok());
     EXPECT_FALSE(run_cyclictest("/nonexistent/cyclictest", {.seconds = 1}, {}).ok());
@@ -103,7 +103,7 @@ TEST(Cyclictest, AProgramThatFailsOrSaysNothingIsAnError) {
     EXPECT_TRUE(find_program("sh").has_value());
 }
 
-TEST(Table, SaysWhatFailsWithItsRemedyAndIsPlainWithoutColour) {
+TEST(Table, NamesWhatFailsWithItsRemedyAndIsPlainWithoutColour) {
     const Machine machine("/nonexistent", {}, {});
     const std::vector<Examined> examined = {
         {{"a.one", "should be so", nullptr}, pass("it is so")},

@@ -167,7 +167,7 @@ TEST_F(SelectorSwitch, FromFlatToAnotherAndBack) {
     EXPECT_EQ(cut_of(*engine), leaves);
 }
 
-TEST_F(SelectorSwitch, FullDepthThatWasAskedForStays) {
+TEST_F(SelectorSwitch, FullDepthThatWasRequestedStays) {
     EngineOptions deep = options("flat");
     deep.prepare.full_depth = true;
     auto engine = open(deep);

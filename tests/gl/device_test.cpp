@@ -389,7 +389,7 @@ TEST(Backends, every_kind_has_its_entry_and_a_line_of_help) {
     EXPECT_EQ(gl::backends().size(), 5U);
 }
 
-TEST(Backends, a_window_without_a_display_says_what_to_do) {
+TEST(Backends, a_window_without_a_display_names_the_remedy) {
 #ifdef SUREFOOT_WATCHES_THREADS
     GTEST_SKIP() << "nothing is opened where the thread sanitizer watches";
 #endif

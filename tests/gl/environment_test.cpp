@@ -30,7 +30,7 @@ TEST(Environment, opening_a_device_changes_nothing_in_it) {
     }
 }
 
-TEST(Environment, preparing_the_process_says_how_many_rasterisers) {
+TEST(Environment, preparing_the_process_returns_how_many_rasterisers) {
     const char* before = std::getenv("LP_NUM_THREADS");
     const std::string was = before != nullptr ? before : "";
     gl::prepare_process(3);

@@ -28,7 +28,7 @@ dvec3 outline_area(std::span<const dvec3> p) {
     return sum;
 }
 
-TEST(Orientation, IsExactWhereRoundingSaysZero) {
+TEST(Orientation, IsExactWhereRoundingGivesZero) {
     const double e = std::ldexp(1.0, -52);
     EXPECT_EQ(orientation({0.5, 0.5}, {12, 12}, {24, 24}), 0);
     EXPECT_EQ(orientation({0.5 + e, 0.5}, {12, 12}, {24, 24}), -orientation({0.5, 0.5 + e}, {12, 12}, {24, 24}));

@@ -96,7 +96,7 @@ TEST(DeviceRouter, RefusedReportsChangeNothingAndAreCounted) {
     EXPECT_EQ(h.router.accepted_reports(), 210U);
 }
 
-TEST(DeviceRouter, TheConfigurationComesBeforeTheClassAndAsksForMice) {
+TEST(DeviceRouter, TheConfigurationComesBeforeTheClassAndAcceptsMice) {
     DeviceMapping mouse;
     mouse.name = "my mouse";
     mouse.match.product_name = "mouse";
@@ -121,7 +121,7 @@ TEST(DeviceRouter, TheConfigurationComesBeforeTheClassAndAsksForMice) {
     EXPECT_EQ(h.router.known_devices()[0].mapping, "my mouse");
 }
 
-TEST(DeviceRouter, WhatAMappingNamesInVainIsSaid) {
+TEST(DeviceRouter, WhatAMappingNamesInVainIsReported) {
     DeviceMapping m;
     m.name = "shown";
     AxisMapping a;
@@ -135,7 +135,7 @@ TEST(DeviceRouter, WhatAMappingNamesInVainIsSaid) {
     EXPECT_NE(h.messages[0].find("throttle"), std::string::npos) << h.messages[0];
 }
 
-TEST(DeviceRouter, TheSeventeenthDeviceIsToldSo) {
+TEST(DeviceRouter, TheSeventeenthDeviceIsRefused) {
     Hands h;
     for (int i = 0; i < 17; ++i) h.source.plug(stick(), std::to_string(i));
     h.tick();

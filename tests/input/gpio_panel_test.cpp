@@ -210,7 +210,7 @@ TEST(Panel, BurstsEndAtTheLineLevelWithTheLossCounted) {
     }
 }
 
-TEST(Panel, NumberedEdgesTellExactlyHowManyWereLost) {
+TEST(Panel, NumberedEdgesCountExactlyHowManyWereLost) {
     Rig rig;
     rig.chip.set(next_line, true, 1);
     rig.serve();
@@ -269,7 +269,7 @@ TEST(Panel, AnEncoderWhoseTwoLinesChangeUnseenTurnsByNothingAndIsCounted) {
     EXPECT_EQ(rig.panel.illegal_encoder_steps(), 1U);
 }
 
-TEST(Panel, TheBackEndSaysWhatItIsAndRefusesWhatIsNotThere) {
+TEST(Panel, TheBackEndNamesItselfAndRefusesWhatIsNotThere) {
     const std::string back_end = gpio_back_end();
     EXPECT_FALSE(back_end.empty());
     std::printf("GPIO back end: %s\n", back_end.c_str());

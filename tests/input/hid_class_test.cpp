@@ -74,7 +74,7 @@ TEST(HidClass, AButtonBoxMayLeaveItsApplicationUndefined) {
     EXPECT_EQ(of("06 00 ff 09 01 a1 01 " + buttons + "c0").device_class, DeviceClass::reject) << "a vendor's own";
 }
 
-TEST(HidClass, TrackballsAreTold) {
+TEST(HidClass, TrackballsAreRecognised) {
     const Recording mouse = recorded("boot-mouse"), shaped = recorded("trackball-constant-buttons");
     const auto of = [](const Recording& r, DeviceId id) { return describe_device(layout_of(r.descriptor), id).device_class; };
     EXPECT_EQ(of(mouse, {}), DeviceClass::reject);

@@ -129,7 +129,7 @@ TEST(HidDescriptor, BeyondTheFieldLimitBitsAreStillCounted) {
     EXPECT_EQ(l.notes.size(), max_notes);
 }
 
-TEST(HidDescriptor, ARangeBeyond31BitsIsNoted) {
+TEST(HidDescriptor, ARangeBeyond31BitsIsCounted) {
     const auto l = layout_of(hex("05 01 09 04 a1 01 09 30 15 00 27 ff ff ff ff 75 20 95 01 81 02 09 31 27 ff ff ff 7f 81 02 c0"));
     ASSERT_EQ(l.notes.size(), 1U);
     EXPECT_EQ(l.notes[0].offset, 19U);

@@ -89,7 +89,7 @@ TEST(HidMalformed, EachSeedAtItsByteOrForItsReason) {
     }
 }
 
-TEST(HidMalformed, WhatIsOddIsNoted) {
+TEST(HidMalformed, WhatIsOddIsCounted) {
     const auto notes = [](const char* text) { return layout_of(bytes_of(text)).note_count; };
     EXPECT_EQ(notes("00"), 1U);
     EXPECT_EQ(notes("0c 05 01"), 1U);

@@ -137,7 +137,7 @@ TEST(LiveSource, ManyDevicesComeAndGoWithoutMemory) {
     EXPECT_EQ(rig.source->devices().size(), 40U);
 }
 
-TEST(LiveSource, NobodyToSteerIsRestAndSaidOnce) {
+TEST(LiveSource, NobodyToSteerIsRestAndReportedOnce) {
     Rig rig;
     rig.run(2000);
     EXPECT_EQ(rig.count_messages("No connected device steers"), 1);
@@ -151,7 +151,7 @@ TEST(LiveSource, NobodyToSteerIsRestAndSaidOnce) {
     EXPECT_EQ(steered.count_messages("No connected device"), 0) << "it was, and its going is said";
 }
 
-TEST(LiveSource, WhatTheDevicesHaveToDoWithoutIsSaidOnce) {
+TEST(LiveSource, WhatTheDevicesHaveToDoWithoutIsReportedOnce) {
     auto fake = std::make_unique<FakeDevices>();
     fake->without = Error{"udev", "Events cannot be received", "Allow netlink sockets"};
     LiveSource source(LiveOptions{}, std::move(fake));
@@ -184,7 +184,7 @@ TEST(LiveDevices, KnowWhyNoEventsCome) {
     EXPECT_FALSE((*blind)->trouble()->remedy.empty());
 }
 
-TEST(LiveSource, AMappingThatFitsNothingIsSaidOnceAndTheOthersAreNot) {
+TEST(LiveSource, AMappingThatFitsNothingIsReportedOnceAndTheOthersAreNot) {
     const auto named = [](const char* name, const char* product) {
         DeviceMapping m;
         m.name = name;
@@ -205,7 +205,7 @@ TEST(LiveSource, AMappingThatFitsNothingIsSaidOnceAndTheOthersAreNot) {
     EXPECT_EQ(rig.violations, 0U);
 }
 
-TEST(LiveSource, ARefusedDeviceIsSaidWithItsRemedy) {
+TEST(LiveSource, ARefusedDeviceIsReportedWithItsRemedy) {
     Rig rig;
     Error why{"/dev/hidraw7 (pad)", "The device cannot be opened: Permission denied", "Install the rules"};
     DeviceEvent e;
@@ -284,7 +284,7 @@ TEST(LivePanel, ButtonsAndEncodersSteerAsADeviceOfTheirOwn) {
     EXPECT_EQ(rig.violations, 0U);
 }
 
-TEST(LivePanel, AVanishedChipIsAStopSaidOnceAndTheNextOneServesAgain) {
+TEST(LivePanel, AVanishedChipIsAStopReportedOnceAndTheNextOneServesAgain) {
     Rig rig(lines());
     const int device = rig.devices->plug(stick());
     rig.hold(device, 0, 0, 10);

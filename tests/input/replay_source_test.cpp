@@ -85,7 +85,7 @@ TEST(ReplaySource, AHandThatIsHeldWhenTheRecordingEndsComesToRestThoughItsPadRep
     EXPECT_EQ(steering.safety().losses, 0U) << "an end is no pulled cable";
 }
 
-TEST(ReplaySource, ADeviceOfARejectedClassSteersWhereTheConfigurationAsks) {
+TEST(ReplaySource, ADeviceOfARejectedClassSteersWhereTheConfigurationNamesIt) {
     const std::string keyboard = std::string(SUREFOOT_SOURCE_DIR) + "/tests/input/devices/boot-keyboard.hid";
     const auto refused = open_recorded(keyboard, {}, "");
     ASSERT_FALSE(refused.ok());

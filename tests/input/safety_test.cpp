@@ -401,7 +401,7 @@ TEST(DeadManSwitch, StopsAtTheFirstReleaseAndCountsAPressAfterTwentyMilliseconds
     }
 }
 
-TEST(DeadManSwitch, AsksToBePressedAnewWhenHeldLongWithoutAWalk) {
+TEST(DeadManSwitch, MustBePressedAnewWhenHeldLongWithoutAWalk) {
     Walk walk;
     walk.lines.has_dead_man = walk.lines.dead_man = true;
     const int device = walk.plug();

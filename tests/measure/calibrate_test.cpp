@@ -313,7 +313,7 @@ private:
     double drawn_ms_ = 0;
 };
 
-TEST(TimerQuery, that_says_almost_nothing_is_called_dishonest) {
+TEST(TimerQuery, that_reports_almost_nothing_is_called_dishonest) {
     MockDevice liar(0.001);
     liar.draws.plays();
     const auto check = measure::check_timer(liar, Pose{}, {});

@@ -191,7 +191,7 @@ TEST_F(WalkFile, ForgedRecordCountsDoNotAllocate) {
     }
 }
 
-TEST_F(WalkFile, WhatIsNoModelIsSaid) {
+TEST_F(WalkFile, WhatIsNoModelIsRefused) {
     put(std::as_bytes(std::span("glTF but surely not a walk file, and longer than any header would ever need to be .......")));
     const auto read = read_walk(file);
     ASSERT_FALSE(read.ok());

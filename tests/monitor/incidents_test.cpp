@@ -115,7 +115,7 @@ TEST(Incidents, KeepTheMissedFrameThatIsTheirs) {
     }
 }
 
-TEST(Incidents, AFullDiskIsSaidOnceAndSurvived) {
+TEST(Incidents, AFullDiskIsReportedOnceAndSurvived) {
     const TemporaryFolder folder;
     const std::string dir = folder / "incidents";
     rt::IncidentRecorderOptions box_options;

@@ -148,7 +148,7 @@ TEST_F(MonitorPages, CountersNeverGoBackAndNoSeriesVanishes) {
     }
 }
 
-TEST_F(MonitorPages, SayWhatHappened) {
+TEST_F(MonitorPages, ReportWhatHappened) {
     run(100, 10);
     const auto e = scrape();
     EXPECT_EQ(e.at("surefoot_frames_total"), 100);

@@ -87,7 +87,7 @@ TEST(Server, ServesOnASocketAndOnAPort) {
     EXPECT_FALSE(std::filesystem::exists(folder / "s.sock")) << "its socket goes with it";
 }
 
-TEST(Server, SaysWhatItMakesOfARequest) {
+TEST(Server, AnswersEveryRequest) {
     const auto server = serving(any_port(), hello_pages());
     const auto answer_to = [&](std::string_view request) {
         RawReader r(server->address());
@@ -133,7 +133,7 @@ TEST(Server, APortAnswersOnlyRequestsThatNameThisMachine) {
     EXPECT_EQ(answer_to("HTTP/1.0"), "200") << "HTTP/1.0 does not ask for it, and no browser speaks it";
 }
 
-TEST(Server, ASocketAsksForNoHost) {
+TEST(Server, ASocketNeedsNoHost) {
     const TemporaryFolder folder;
     const auto server = serving(at_socket(folder), hello_pages());
     RawReader r(server->address());

@@ -122,7 +122,7 @@ TEST(Summary, FramesWithoutAPredictionHaveNoErrorOfIt) {
     EXPECT_EQ(with.cost_error.max, without.cost_error.max);
 }
 
-TEST(Summary, DriversAllocationsAreSaidAFrame) {
+TEST(Summary, DriversAllocationsAreReportedPerFrame) {
     auto records = good_frames(4);
     for (auto& r : records) r.driver_allocations = 42;
     WalkSummary s;
@@ -131,7 +131,7 @@ TEST(Summary, DriversAllocationsAreSaidAFrame) {
     EXPECT_NE(to_table(s, false).find("42.0 allocations"), std::string::npos);
 }
 
-TEST(Summary, MissingCostTableIsSaidOnceAndNotAsALackOfRealTime) {
+TEST(Summary, MissingCostTableIsReportedOnceAndNotAsALackOfRealTime) {
     WalkSummary s;
     summarize(good_frames(2), period_ns, s);
     EXPECT_TRUE(nlohmann::json::parse(to_json(s))["calibrated"]);
@@ -263,7 +263,7 @@ std::size_t columns_of(const std::string& line) {
     return columns;
 }
 
-TEST(Table, KeepsWithinAHundredColumnsAndColoursOnlyWhenAsked) {
+TEST(Table, KeepsWithinAHundredColumnsAndColoursOnlyOnRequest) {
     WalkSummary s;
     summarize(frames_with_a_miss(), period_ns, s);
     s.model = "/a/very/long/path/" + std::string(150, 'm') + "/forest.walk";

@@ -121,7 +121,7 @@ TEST(LoopBlame, AThiefOfHalfAMillisecondDoesNotExcuseTwentyOfWork) {
     walk.expect_miss(Cause::select, true);
 }
 
-TEST(LoopBlame, AnUploadIsToldFromTheSubmissionAroundIt) {
+TEST(LoopBlame, AnUploadIsSeparatedFromTheSubmissionAroundIt) {
     Walk walk;
     walk.stages.in_submit = [&] { walk.clock.advance(20 * ms); };
     walk.stages.upload_ns = 20 * ms;
@@ -261,7 +261,7 @@ TEST(Loop, TheDriversFaultsAndAllocationsAreCountedApart) {
     EXPECT_EQ(records[3].guard_violations, 0U);
 }
 
-TEST(Loop, StopsWhenAskedAndDropsRatherThanWaits) {
+TEST(Loop, StopsOnRequestAndDropsRatherThanWaits) {
     VirtualClock clock;
     Stages stages(clock);
     std::atomic<bool> stop{false};

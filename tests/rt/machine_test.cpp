@@ -135,7 +135,7 @@ TEST(Placement, WhatDoesNotExistIsRefusedByName) {
     EXPECT_FALSE(refused.error().remedy.empty());
 }
 
-TEST(Capability, SaysWhatIsMissingAndHowToGrantIt) {
+TEST(Capability, NamesWhatIsMissingAndHowToGrantIt) {
     Capabilities c;
     c.fifo_priority = 80;
     c.can_lock = true;

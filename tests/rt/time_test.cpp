@@ -116,7 +116,7 @@ TEST(Loop, ControlBlocksAlternateAndTheBareLoopBurnsTheSame) {
     EXPECT_EQ(bare, 20);
 }
 
-TEST(Controller, SpendsTheTablesUpperFactorUntilFramesSayBetter) {
+TEST(Controller, SpendsTheTablesHeadroomUntilFramesAreMeasured) {
     CostController c;
     EXPECT_EQ(c.headroom(1.4), 1.4);
     for (int i = 0; i < 57; ++i) c.update(100, 101);

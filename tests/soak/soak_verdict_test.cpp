@@ -182,7 +182,7 @@ TEST(SoakVerdict, TheGridIsExactOrBroken) {
     EXPECT_EQ(of(s, "grid"), Judged::not_judged);
 }
 
-TEST(SoakVerdict, ALoadThatIsTooLightIsNoLoadAndARefusedOneIsSaid) {
+TEST(SoakVerdict, ALoadThatIsTooLightIsNoLoadAndARefusedOneIsReported) {
     auto s = good_soak();
     s.loads[0].real = false;
     EXPECT_EQ(of(s, "load"), Judged::not_judged);

@@ -77,7 +77,7 @@ TEST(EndlessWalk, RefusesWhatNeedsItsFrames) {
     EXPECT_NE(outcome.error().what.find("An endless walk cannot have"), std::string::npos) << outcome.error().text();
 }
 
-TEST(WatchedWalk, AnErrorBelongsToTheStepToldLast) {
+TEST(WatchedWalk, AnErrorBelongsToTheStepReportedLast) {
     WalkRequest request = Forest::get().virtual_request(10);
     request.model_file = Forest::get().dir + "/absent.walk";
     WalkStep last = WalkStep::request;
@@ -135,7 +135,7 @@ TEST(WatchedWalk, SeesWhatIsKeptAndFaultsComeStageByStage) {
     EXPECT_EQ(phases, in_order);
 }
 
-TEST(WatchedWalk, ALostContextEndsItAndIsSaid) {
+TEST(WatchedWalk, ALostContextEndsItAndIsReported) {
     const WalkRequest request = Forest::get().virtual_request(40);
     WalkStep last = WalkStep::request;
     WalkObserver observer;

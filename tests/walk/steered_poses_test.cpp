@@ -93,7 +93,7 @@ TEST(Covers, ZoomingOutUsesUpWhatIsLeftOfTurning) {
     EXPECT_FALSE(holds(0.06, 0, {3840, 720}));
 }
 
-TEST_F(SteeredPosesTest, JumpsAndStopsAreSaidAndATourIsNotForeseenByTheLimits) {
+TEST_F(SteeredPosesTest, JumpsAndStopsAreReportedAndATourIsNotPredictedByTheLimits) {
     publish(10 * ms, 1, 1);
     EXPECT_FALSE(poses.sample({0, 10 * ms, 10 * ms}).jumped);
     SteeredSample next = samples.front();

@@ -38,7 +38,7 @@ TEST(SteeredWalk, IsTheSameAtAnyWorkerCountAndAcrossRuns) {
     }
 }
 
-TEST(SteeredWalk, GoesWhereTheHandSays) {
+TEST(SteeredWalk, FollowsTheDevice) {
     const walk::WalkOutcome outcome = walk(steered_request(input::test::walk_and_turn(), "way"));
     ASSERT_GT(outcome.records.size(), 250U);
     const Pose start = start_of_path();
@@ -148,7 +148,7 @@ TEST(SteeredWalk, ButtonsLeadToViewpointsTourAndBack) {
         EXPECT_GT(r.candidates, 0U) << "frame " << r.frame << " was drawn coarse: nothing was prepared for where it is";
 }
 
-TEST(SteeredWalk, AnEmergencyStopStandsStillAndIsSaid) {
+TEST(SteeredWalk, AnEmergencyStopStandsStillAndIsReported) {
     walk::WalkRequest request = test::Forest::get().virtual_request(0);
     GamepadSession session;
     session.report({})

@@ -31,7 +31,7 @@ std::string refusal(const walk::WalkRequest& request) {
     return outcome.ok() ? std::string() : outcome.error().text();
 }
 
-TEST(WalkOutputs, AreAskedForTheirPlacesBeforeTheWalk) {
+TEST(WalkOutputs, HaveTheirPlacesCheckedBeforeTheWalk) {
     const walk::WalkRequest good = test::Forest::get().virtual_request(5);
     ASSERT_TRUE(write_text(in_forest("plain"), "kept").ok());
     const auto refused = [&](const std::function<void(walk::WalkRequest&)>& change) {
@@ -122,7 +122,7 @@ TEST(WalkOutputs, MoreFramesThanAreKeptAndFramesThatAreNotThereAreRefused) {
     EXPECT_FALSE(fs::exists(request.capture_file));
 }
 
-TEST(Snaps, AreCappedByMemoryAndTheCapIsSaid) {
+TEST(Snaps, AreCappedByMemoryAndTheCapIsReported) {
     walk::WalkRequest request;
     request.snap_dir = "pictures";
     request.snap_every = 1;
@@ -182,7 +182,7 @@ TEST(VirtualWalk, PreparedAgeIsTheTrueOne) {
     for (std::size_t i = 1; i < outcome->records.size(); ++i) EXPECT_EQ(outcome->records[i].prepared_age, 1U) << i;
 }
 
-TEST(VirtualWalk, FramesDrawnWhollyCoarseSayWhatTheyDrewAndWereToCost) {
+TEST(VirtualWalk, FramesDrawnWhollyCoarseReportWhatTheyDrewAndWereToCost) {
     walk::WalkRequest request = test::Forest::get().virtual_request(60);
     auto path = read_path(request.path_file);
     ASSERT_TRUE(path.ok());

@@ -58,7 +58,7 @@ TEST(Discovery, WhatTheListRepeatsIsOneDevice) {
     EXPECT_EQ(source->devices(), 1U);
 }
 
-TEST(Discovery, AMouseSteersOnlyWhenAsked) {
+TEST(Discovery, AMouseSteersOnlyWhereConfigured) {
     Testbed bed;
     bed.plug(recorded("boot-mouse"));
     {
@@ -92,7 +92,7 @@ TEST(Discovery, AMalformedDescriptorIsRefusedWithItsByte) {
 
 class LatePermission : public ::testing::TestWithParam<Wire> {};
 
-TEST_P(LatePermission, IsSaidOnceAndTakenAtTheChangeEvent) {
+TEST_P(LatePermission, IsReportedOnceAndTakenAtTheChangeEvent) {
     Testbed bed;
     const auto plug = bed.plug(recorded("dualshock4-like"), {.wire = GetParam(), .readable = false});
     const test::NoOverride plain_user;
@@ -117,7 +117,7 @@ TEST_P(LatePermission, IsSaidOnceAndTakenAtTheChangeEvent) {
 
 INSTANTIATE_TEST_SUITE_P(Both, LatePermission, ::testing::Values(Wire::pipe, Wire::terminal));
 
-TEST(Permission, IsTakenOnTheScheduleWhereNoEventTells) {
+TEST(Permission, IsTakenOnTheScheduleWhereNoEventComes) {
     Testbed bed;
     const auto plug = bed.plug(recorded("dualshock4-like"), {.readable = false});
     const test::NoOverride plain_user;

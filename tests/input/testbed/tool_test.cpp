@@ -47,7 +47,7 @@ TEST(DevicesTool, ListsWhatIsThereOncePerDevice) {
     EXPECT_NE(plain.out().find("3Dconnexion SpaceNavigator"), std::string::npos);
 }
 
-TEST(DevicesTool, SaysThatNothingIsThere) {
+TEST(DevicesTool, ReportsThatNothingIsThere) {
     Testbed bed;
     Tool list({"list"});
     EXPECT_EQ(list.wait(), 0);
@@ -125,7 +125,7 @@ TEST(DevicesTool, WatchPrintsLinesElsewhere) {
     EXPECT_GE(n, 1U);
 }
 
-TEST(DevicesTool, MapAsksAndWritesASteeringFile) {
+TEST(DevicesTool, MapPromptsAndWritesASteeringFile) {
     Testbed bed;
     const auto r = recorded("spacenavigator-like");
     auto plug = bed.plug(r);

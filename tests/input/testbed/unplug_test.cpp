@@ -116,7 +116,7 @@ TEST_P(Unplug, RestsWithinFiftyMillisecondsThoughDeflected) {
     std::printf("[ figure   ] hang-up to rest: %.1f ms\n", ms);
 }
 
-TEST_P(Unplug, WhereOnlyUdevTellsItRestsAsWell) {
+TEST_P(Unplug, WhereOnlyUdevReportsItRestsAsWell) {
     const double ms = best_of_three([&] { return pulled_to_rest_ms(GetParam(), Wire::pipe); }, 50);
     EXPECT_GE(ms, 0);
     EXPECT_LE(ms, 50);
@@ -190,7 +190,7 @@ TEST(Replug, TwoHundredTimesLeavesNoDescriptorBehind) {
 
 // The kernel's ring holds 63 reports and drops the newest: what a stalled reader finds ends in deflection, and the release is
 // lost.
-TEST(Stall, AfterAnOverflowItRestsThoughTheLastReportSaysFullDeflection) {
+TEST(Stall, AfterAnOverflowItRestsThoughTheLastReportHasFullDeflection) {
     Testbed bed;
     auto plug = bed.plug(stick());
     Walk walk;
