@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The documents read at the first reading: sentences are short, lines fit, and every page, file and name of code is there.
 # usage: prose.sh SOURCE_DIR
-# Read are README.md, ARCHITECTURE.md, CONTRIBUTING.md and every page beside the code. Not read: CHANGELOG.md, RESULTS.md.
+# Read are README.md, ARCHITECTURE.md, CONTRIBUTING.md, CHANGELOG.md and every page beside the code. Not read: RESULTS.md.
+# README.md has at most 110 lines and ARCHITECTURE.md at most 130. No source and no page refers to what is outside of the repository.
 #   mean sentence of a page    at most 15 words
 #   any sentence               at most 30 words
 #   a line                     at most 160 characters
@@ -16,6 +17,9 @@ set -u
 export LC_ALL=C
 
 max_mean=15 max_words=30 max_line=160
+declare -A max_lines=([README.md]=110 [ARCHITECTURE.md]=130)
+# Pages of plans and of findings, and their numbered items.
+outside='DESIGN|[a-z]+\.md F?[0-9]|research[ /]|\bR[0-9]+\b'
 
 # Names that pages may use and no source has: samples, a family of GL, and what is not built.
 exceptions="snake_case PascalCase bench_NAME glMultiDrawElementsIndirect reactive greedy oracle"
@@ -196,6 +200,20 @@ check_pages() {
   (( problems == 0 ))
 }
 
+# has_length PAGE: fails where it has more lines than it may.
+has_length() {
+  local lines
+  lines=$(wc -l <"$1")
+  (( lines <= max_lines[$1] )) && return 0
+  echo "$1: $lines lines, at most ${max_lines[$1]}"
+  return 1
+}
+
+# stays_inside: fails where a source or a page below this folder refers to what is outside of it.
+stays_inside() {
+  ! grep -rnE "$outside" --include='*.hpp' --include='*.cpp' --include='*.md' --exclude-dir='build*' --exclude-dir='.git' .
+}
+
 # The check itself: a good sample passes, and each bad one fails for its own reason.
 check_itself() {
   local folder
@@ -246,18 +264,32 @@ ${thirty_one:80}." "a sentence of 31 words"
     wide=$(printf 'µ%.0s' {1..160})
     printf '%s\n' "$wide" >wide.md
     check_pages wide.md >wide.log || { echo "160 wide characters are refused:"; cat wide.log; exit 1; }
+    seq 110 >README.md
+    has_length README.md || { echo "110 lines are refused"; exit 1; }
+    seq 111 >README.md
+    has_length README.md >/dev/null && { echo "not refused: 111 lines"; exit 1; }
+    mkdir inside && cd inside || exit 1
+    printf '// An answer (Maciel 1994, section 3.4), and RGB8.\n' >good.hpp
+    stays_inside || { echo "a source that stays inside is refused"; exit 1; }
+    for reference in 'See plan.md 4.' 'See audit.md F12.' 'As research/peers has it.' 'Finding R7.'; do
+      printf '// %s\n' "$reference" >bad.cpp
+      stays_inside >/dev/null && { echo "not refused: $reference"; exit 1; }
+    done
+    exit 0
   )
 }
 
 cd "${1:?SOURCE_DIR}" || exit 1
 check_itself || exit 1
 read_sources
-for page in README.md ARCHITECTURE.md CONTRIBUTING.md; do
+for page in README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md; do
   [[ -f "$page" ]] || { echo "$page is not there"; exit 1; }
 done
 mapfile -t pages < <(
-  printf '%s\n' README.md ARCHITECTURE.md CONTRIBUTING.md
+  printf '%s\n' README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md
   find rt render input config systemd tools tests -name '*.md' ! -path tests/bench/RESULTS.md | sort
 )
 check_pages "${pages[@]}" || exit 1
+has_length README.md && has_length ARCHITECTURE.md || exit 1
+stays_inside || exit 1
 echo "${#pages[@]} pages"
