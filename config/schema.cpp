@@ -73,7 +73,10 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         integer("workers", "threads", 0, 256, "Threads that prepare frames; 0: chosen for the machine.", &S::workers),
         integer("rasterisers", "threads", 0, 256, "Threads of a software renderer; 0: chosen for the machine.", &S::rasterisers),
         flag("fifo", "Real-time scheduling (SCHED_FIFO) for the frame thread, rasterisers and workers.", &S::fifo),
-        flag("strict", "Do not start where real-time scheduling or locked memory is refused.", &S::strict),
+        flag("strict",
+             "Do not start if real time lacks anything: SCHED_FIFO, locked memory, an isolated core, thread placement or a cost "
+             "table.",
+             &S::strict),
         flag("in_frame_check", "Between slices, draw stand-ins when the rest no longer fits the frame.", &S::in_frame_check),
         flag("occlusion", "Occlusion culling: leave out objects that are hidden from every possible pose of a frame.",
              &S::occlusion),

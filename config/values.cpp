@@ -17,10 +17,16 @@ namespace surefoot::config {
 
 namespace {
 
-/// As a basic string of TOML.
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+/// As a basic string of TOML: control characters are escaped.
 std::string toml_string(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
+        if (is_control(c)) {
+            out += fmt::format("\\u{:04X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+            continue;
+        }
         if (c == '"' || c == '\\') out += '\\';
         out += c;
     }
@@ -28,8 +34,7 @@ std::string toml_string(std::string_view text) {
 }
 
 bool is_file_name(std::string_view text, double max_length) {
-    const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-    return static_cast<double>(text.size()) <= max_length && std::none_of(text.begin(), text.end(), control);
+    return static_cast<double>(text.size()) <= max_length && std::none_of(text.begin(), text.end(), is_control);
 }
 
 bool is_colour(std::string_view text) {
@@ -53,7 +58,7 @@ std::string limits_of(const Entry& entry) {
         case Kind::colour:
             return "a colour as \"#rrggbb\"";
         case Kind::file:
-            return fmt::format("a file name of at most {} bytes", number_text(entry.max));
+            return fmt::format("a file name of at most {} bytes without control characters", number_text(entry.max));
     }
     return {};
 }

@@ -70,6 +70,10 @@ bool all_well(std::span<const selftest::RowResult> results) {
 }
 
 int run_selftest(const SelftestArguments& a, const Context& context) {
+    if (!a.hard && !a.rows.empty()) {
+        return misuse({a.rows.front(), "Rows are tested only with --hard", "Run: surefoot selftest --hard " + a.rows.front(),
+                       ErrorKind::misuse});
+    }
     if (!a.hard) return misuse({"selftest", "Nothing to test is named", "Run: surefoot selftest --hard", ErrorKind::misuse});
     const auto selection = selftest::select_rows(a.rows);
     if (!selection) return misuse(selection.error());

@@ -105,7 +105,9 @@ void add_soak(CLI::App& app, Context& context) {
     add_settings(c, a->settings);
     c->add_flag("--no-control", a->no_control,
                 "Run the walk without its control: twice the frames, judged by the own misses only");
-    c->add_flag("--strict", a->strict, "Do not start if the machine refuses anything that real time needs");
+    c->add_flag("--strict", a->strict,
+                "Do not start if real time lacks anything: SCHED_FIFO, locked memory, an isolated core, thread placement or a "
+                "cost table");
     c->add_option("--state", r.walk.state_dir, "Folder of the calibrated cost table");
     c->callback([&context, a] { context.run = [a, &context] { return run_soak_command(*a, context); }; });
 }
