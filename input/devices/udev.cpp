@@ -18,7 +18,7 @@ Result<UdevMonitor> UdevMonitor::listen(udev* context) {
         udev_monitor_enable_receiving(m.monitor_.get()) < 0) {
         return Error{
             "udev",
-            std::string("Events cannot be received; devices are looked for four times a second instead: ") + std::strerror(errno),
+            std::string("Events cannot be received, so devices are looked for five times a second: ") + std::strerror(errno),
             "Allow netlink sockets (AF_NETLINK) to this service", ErrorKind::no_device};
     }
     return m;
