@@ -1,7 +1,8 @@
 // Sentences in the comments of headers have at most 25 words.
-// Diagrams and tables, which are indented by three blanks or more, hold no sentences.
+// Diagrams and tables hold no sentences: lines indented by three blanks or more, with signs of a diagram or columns in them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <sstream>
@@ -24,6 +25,18 @@ struct Sentence {
     std::string text;
 };
 
+bool is_indented(std::string_view text) { return text.starts_with("   "); }
+
+/// A line of a diagram or of a table. `text`: behind the slashes.
+bool is_diagram(std::string_view text) {
+    if (!is_indented(text)) return false;
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    if (text.find("  ") != std::string_view::npos) return true;
+    for (const std::string_view sign : {"─", "│", "┌", "┐", "└", "┘", "├", "┤", "►", "▲", "▼"})
+        if (text.find(sign) != std::string_view::npos) return true;
+    return false;
+}
+
 /// Collects the sentences of comments, fed line by line.
 class Sentences {
 public:
@@ -40,8 +53,10 @@ public:
         was_behind_code_ = behind_code || source.starts_with("/<");
         if (source.starts_with('/')) source.remove_prefix(1);
         if (source.starts_with('<')) source.remove_prefix(1);
-        if (source.find_first_not_of(' ') == std::string_view::npos || source.starts_with("   ") || source.starts_with(" ---"))
+        if (source.find_first_not_of(' ') == std::string_view::npos || is_diagram(source) || source.starts_with(" ---"))
             return end();
+        if (is_indented(source) != was_indented_) end();
+        was_indented_ = is_indented(source);
         std::istringstream words{std::string(source)};
         for (std::string word; words >> word;) add_word(word);
     }
@@ -69,7 +84,7 @@ private:
     std::vector<Sentence> all_;
     Sentence now_;
     std::size_t line_ = 0;
-    bool was_behind_code_ = false;
+    bool was_behind_code_ = false, was_indented_ = false;
 };
 
 std::vector<Sentence> comment_sentences(const std::string& header) {
@@ -109,7 +124,8 @@ TEST(Comments, AreReadAsSentences) {
     EXPECT_EQ(counts("int a;  ///< one two\n        ///< three\n"), Counts{3}) << "over two lines behind code";
     EXPECT_EQ(counts("int a;  ///< one two\n/// three\nint b;\n"), (Counts{2, 1})) << "of two members";
     EXPECT_EQ(counts("/// One two\n///\n/// three\n"), (Counts{2, 1})) << "paragraphs";
-    EXPECT_EQ(counts("// One\n//   a ──► b c d\n//   e\n// two\n"), (Counts{1, 1})) << "a diagram";
+    EXPECT_EQ(counts("// One\n//   a ──► b c d\n//   e    f\n// two\n"), (Counts{1, 1})) << "a diagram";
+    EXPECT_EQ(counts("// One\n//   - two three\n//     four.\n// five\n"), (Counts{1, 3, 1})) << "an indented list";
     EXPECT_EQ(counts("const char* a = \"http://one two\";\nint b;\n"), Counts{}) << "no comment";
     EXPECT_EQ(counts("/// One 1.5 two - three\n"), Counts{4}) << "a point inside a number, a dash";
 }
