@@ -1,4 +1,4 @@
-// Clusters by Maciel's growing grid (3.4.3), from the actual objects' boxes.
+// Clusters by the growing grid of Maciel 1994, section 3.4.3, from the actual objects' boxes.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Image quality against full detail: SNR (Pasman & Jansen 2002) with its zero cases defined, and SSIM.
+// Image quality against full detail: SNR (Pasman and Jansen 2002, section 4.2) with its zero cases defined, and SSIM.
 #pragma once
 
 #include <cstdint>

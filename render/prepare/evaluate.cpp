@@ -70,7 +70,8 @@ Seen look(const RegionView& view, const Box& box, const dvec3& eye) {
     return seen;
 }
 
-/// What moves fast across the view is blurred (Maciel 3.3.2): down to a half, since walking towards a thing does not blur it.
+/// What moves fast across the view is blurred (Maciel 1994, section 3.3.2): down to a half, since walking towards a thing does
+/// not blur it.
 float motion_factor(const RegionView& view, float distance_m) {
     const float omega = view.speed_mps / distance_m + view.turn_rps;
     return 1.0F - 0.5F * omega / (omega + 4.0F);

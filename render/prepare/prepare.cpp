@@ -234,7 +234,7 @@ void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& 
     }
 }
 
-// Upwards: an opened node is visible if one of its children is (Maciel 3.5.3). Then places for the live ones.
+// Upwards: an opened node is visible if one of its children is (Maciel 1994, section 3.5.3). Then places for the live ones.
 void Preparer::Impl::drop_false_positives(PreparedFrame& out) {
     for (std::size_t i = visits.size(); i-- > 0;) {
         NodeVisit& visit = visits[i];

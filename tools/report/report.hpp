@@ -120,7 +120,8 @@ struct ReportSnapshot {
     double mse = 0;  ///< mean squared error of R, G and B bytes
     std::uint64_t triangles = 0, full_triangles = 0;
     float accuracy = 0;
-    /// Top view (Maciel's 't' view): rectangles of the drawn nodes in the XZ plane, world metres.
+    /// Top view (key 't' of the walkthrough program in Maciel 1994, figure 3.20): rectangles of the drawn nodes in the XZ plane,
+    /// world metres.
     struct Rect {
         float x0, z0, x1, z1;
         int kind;
@@ -139,7 +140,7 @@ PictureSummary compare_pictures(std::span<const ReportSnapshot> snapshots);
 Result<void> write_report(const std::string& dir, const WalkSummary& summary, std::span<const rt::FrameRecord> records,
                           std::span<const ReportSnapshot> snapshots);
 
-/// Maciel's figure 3.4 for this machine: cost against pixels, a line a triangle count, a panel a state class.
+/// Figure 3.4 of Maciel 1994 for this machine: cost against pixels, a line a triangle count, a panel a state class.
 struct CostPoint {
     std::string state;
     double triangles, pixels, cost_us;
