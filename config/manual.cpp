@@ -57,11 +57,12 @@ std::string sentence(std::string_view text) {
     return whole;
 }
 
-std::string troff(const ManualPage& page) {
+std::string troff(const ManualPage& page, std::string_view version) {
     std::string title;
     for (const char c : page.name) title += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
     const char* const manual = page.section == 1 ? "User commands" : page.section == 5 ? "File formats" : "System administration";
-    std::string out = fmt::format(".TH \"{}\" {} \"\" \"Surefoot\" \"{}\"\n", escaped(title), page.section, manual);
+    std::string out = fmt::format(".TH \"{}\" {} \"\" \"Surefoot{}{}\" \"{}\"\n", escaped(title), page.section,
+                                  version.empty() ? "" : " ", escaped(version), manual);
     out += fmt::format(".SH NAME\n{} \\- {}\n", escaped(page.name), escaped(page.summary));
     if (!page.synopsis.empty()) out += ".SH SYNOPSIS\n" + paragraphs(page.synopsis);
     for (const ManualSection& section : page.sections) {

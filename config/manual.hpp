@@ -34,7 +34,8 @@ struct ManualPage {
 std::string sentence(std::string_view text);
 
 /// The page for `man`. Text is escaped, so that nothing in it is a troff request.
-std::string troff(const ManualPage& page);
+/// version: shown in the footer; may be empty.
+std::string troff(const ManualPage& page, std::string_view version = {});
 
 /// surefoot.toml(5): every key of the schema with its meaning, limits, choices and default.
 ManualPage settings_manual(const Schema& schema);

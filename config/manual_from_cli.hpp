@@ -59,7 +59,15 @@ inline ManualPage manual_from_cli(const CLI::App& app, const std::string& words,
             commands.items.push_back({command->get_name(), sentence(command->get_description())});
     for (ManualSection* list : {&commands, &arguments, &options})
         if (!list->items.empty()) page.sections.push_back(std::move(*list));
-    if (!app.get_footer().empty()) page.sections.push_back({"NOTES", app.get_footer(), {}});
+    // A footer begins with its example; after an empty line come the notes.
+    std::string notes = app.get_footer();
+    constexpr std::string_view example = "Example:\n";
+    if (notes.starts_with(example)) {
+        const std::size_t end = std::min(notes.find("\n\n"), notes.size());
+        page.sections.push_back({"EXAMPLES", notes.substr(example.size(), end - example.size()), {}});
+        notes.erase(0, std::min(end + 2, notes.size()));
+    }
+    if (!notes.empty()) page.sections.push_back({"NOTES", notes, {}});
     return page;
 }
 

@@ -191,7 +191,8 @@ Result<void> write_capture(const std::string& file, const Capture& capture) {
 Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::string& place) {
     ByteReader header(bytes);
     if (header.read<std::uint32_t>() != magic)
-        return Error{place, "The file is no captured frame", "Name a file that a capture wrote", ErrorKind::damaged};
+        return Error{place, "The file is no captured frame", "Name a file that `surefoot walk --capture` wrote",
+                     ErrorKind::damaged};
     if (header.read<std::uint32_t>() != version)
         return Error{place, "The file is of another version", remedy, ErrorKind::unsupported};
     const auto unpacked = header.read<std::uint64_t>(), packed = header.read<std::uint64_t>(), sum = header.read<std::uint64_t>();

@@ -290,20 +290,25 @@ private:
     }
 
     void warn_skipped() {
-        const auto text = [](const Skipped& skipped, const char* what) {
-            return fmt::format("{} {} (first in line {})", skipped.count, what, skipped.first_line);
+        const auto text = [](const Skipped& skipped, const char* one, const char* more) {
+            return fmt::format("{} {} (first in line {})", skipped.count, skipped.count == 1 ? one : more, skipped.first_line);
         };
-        const auto warn = [&](const Skipped& skipped, const char* what) {
-            if (skipped.count > 0) scene_.warnings.push_back(text(skipped, what));
+        const auto warn = [&](const Skipped& skipped, const char* one, const char* more) {
+            if (skipped.count > 0) scene_.warnings.push_back(text(skipped, one, more));
         };
-        warn(bad_faces_, "faces are dropped: index out of range, or fewer than three corners");
+        warn(bad_faces_, "face is dropped: index out of range, or fewer than three corners",
+             "faces are dropped: index out of range, or fewer than three corners");
         // Loose edges are useless, not broken.
-        if (lost_.count > 0) scene_.damage.push_back({file_, text(lost_, "faces are dropped: index out of range")});
+        if (lost_.count > 0)
+            scene_.damage.push_back(
+                {file_, text(lost_, "face is dropped: index out of range", "faces are dropped: index out of range")});
         if (bad_corners_.count > 0)
-            scene_.damaged(text(bad_corners_, "faces name a texture coordinate or normal that does not exist"));
-        warn(crossing_, "polygons cross themselves, so triangles may overlap");
-        warn(points_and_lines_, "points or lines are dropped");
-        warn(unknown_, "statements are not understood");
+            scene_.damaged(text(bad_corners_, "face names a texture coordinate or normal that does not exist",
+                                "faces name a texture coordinate or normal that does not exist"));
+        warn(crossing_, "polygon crosses itself, so triangles may overlap",
+             "polygons cross themselves, so triangles may overlap");
+        warn(points_and_lines_, "point or line is dropped", "points or lines are dropped");
+        warn(unknown_, "statement is not understood", "statements are not understood");
     }
 
     const std::string& file_;

@@ -47,7 +47,7 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> words) {
     if (word.size() > 64) return {};
     std::string_view nearest;
-    std::size_t fewest = std::max<std::size_t>(2, word.size() / 2);  // further than that is another word
+    std::size_t fewest = std::max<std::size_t>(2, word.size() / 3);  // further than that is another word
     for (const std::string_view known : words) {
         const bool part = word.size() >= 3 && known.find(word) != std::string_view::npos;
         const std::size_t edits = part ? 1 : edits_between(word, known);

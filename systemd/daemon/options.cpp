@@ -87,7 +87,7 @@ std::string manual(const CLI::App& app) {
     add("FILES", files);
     page.sections.push_back({"EXAMPLES", std::string_view(examples).substr(std::string_view("Examples:\n").size()).data(), {}});
     page.sections.push_back({"SEE ALSO", "surefoot(1), surefoot.toml(5), surefoot-doctor(1), systemctl(1)", {}});
-    return config::troff(page);
+    return config::troff(page, SUREFOOT_VERSION);
 }
 
 }  // namespace

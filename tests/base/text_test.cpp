@@ -21,6 +21,9 @@ TEST(NearestWord, IsProposedForASlip) {
     EXPECT_EQ(nearest_word("tpo", words), "top");
     EXPECT_EQ(nearest_word("calibrat", words), "calibrate");
     EXPECT_EQ(nearest_word("walk", words), "walk");
+    EXPECT_EQ(nearest_word("calibrtae", words), "calibrate");
+    constexpr std::array<std::string_view, 2> keys = {"cost_scale", "frames"};
+    EXPECT_EQ(nearest_word("most_scenes", keys), "") << "more than a third of the letters differ";
 }
 
 TEST(NearestWord, HasALetterInCommonInItsPlace) {

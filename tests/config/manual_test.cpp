@@ -16,6 +16,11 @@ TEST(Manual, NoWordIsTakenForARequest) {
     EXPECT_NE(page.find("\n\\&.SH is text\n\\&'so is this\nback\\eslash\n"), std::string::npos) << page;
 }
 
+TEST(Manual, NamesTheVersion) {
+    EXPECT_NE(troff({"toy", 1, "x", "", {}}, "1.2").find("\"Surefoot 1.2\""), std::string::npos);
+    EXPECT_NE(troff({"toy", 1, "x", "", {}}).find("\"Surefoot\""), std::string::npos);
+}
+
 TEST(Manual, IndentedLinesStayLines) {
     const std::string page = troff({"toy", 1, "x", "", {{"EXAMPLES", "first\n  a b\n  c d\nlast", {}}}});
     EXPECT_NE(page.find("first\n.PP\n.nf\n  a b\n  c d\n.fi\n.PP\nlast\n"), std::string::npos) << page;

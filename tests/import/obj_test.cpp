@@ -140,7 +140,7 @@ TEST(Obj, FacesOutOfRangeAreDroppedWithTheFirstLine) {
     EXPECT_TRUE(import_text(square + "f 1 2 3\nf 1 2\nusemtl any\nf 1 3 4\n").damage.empty()) << "no library was named";
     EXPECT_TRUE(lacks(import_text(square + "vt 0 0\nf 1/1 2/1 3/2\n"), "texture coordinate or normal that does not exist"));
     EXPECT_TRUE(warns(scene, "first in line 6"));
-    EXPECT_TRUE(warns(scene, "1 points or lines are dropped"));
+    EXPECT_TRUE(warns(scene, "1 point or line is dropped"));
 }
 
 TEST(Obj, NothingDrawableIsAnError) {

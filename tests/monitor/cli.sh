@@ -11,7 +11,7 @@ socket=unix:$work/s.sock
 
 # Nobody there: the place, the remedy, and exit 1; wrong use is 2.
 for command in status top "status --json"; do
-  expect 1 's.sock.*Nobody serves there.*surefootd' $command --socket "$socket"
+  expect 1 's.sock.*No program serves this address.*surefootd' $command --socket "$socket"
   expect 2 'loopback' $command --socket 192.168.0.1:9464
   expect 2 'not an address' $command --socket nonsense
 done

@@ -63,7 +63,7 @@ Result<Material> gather(const DescribeArguments& a) {
             return Error{a.file, "The recording has no R: line with the report descriptor",
                          "Record it again, or name the descriptor's file", ErrorKind::damaged};
         m.descriptor = recording->descriptor;
-        m.descriptor_place += ": R:";
+        m.descriptor_place += ", R: line";
         m.recording = std::move(*recording);
         have_recording = true;
     } else {

@@ -58,7 +58,7 @@ int run_manual(const CLI::App& app, const std::string& folder, bool json) {
     nlohmann::ordered_json files = nlohmann::ordered_json::array();
     for (const ManualPage& page : pages_of(app)) {
         const std::string file = fmt::format("{}/{}.{}", folder, page.name, page.section);
-        const std::string text = config::troff(page);
+        const std::string text = config::troff(page, SUREFOOT_VERSION);
         if (auto written = write_file(file, std::as_bytes(std::span(text))); !written) return fail(written.error());
         files.push_back(file);
     }

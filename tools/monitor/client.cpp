@@ -35,7 +35,7 @@ constexpr std::string_view start_one =
 Error unreachable(const Address& address, int error) {
     std::string remedy(start_one);
     if (error == EACCES || error == EPERM) remedy = "This user may not read there: join the group of its folder, or use sudo";
-    return {address.text(), fmt::format("Nobody serves there: {}", std::strerror(error)), remedy,
+    return {address.text(), fmt::format("No program serves this address: {}", std::strerror(error)), remedy,
             ErrorKind::not_found};  // NOLINT(concurrency-mt-unsafe)
 }
 
