@@ -91,6 +91,8 @@ message 'output folder that cannot be made' 1 '--report /dev/null/report/index.h
 message 'file that cannot be read' 1 'absent.csv' 'Check the path' walk m.walk $virtual --path absent.csv
 message 'flag with a value' 2 '--strict' 'Write --strict alone' walk m.walk $virtual --strict=perhaps
 
+message 'rows without --hard' 2 'N9' 'Rows are tested only with --hard. Run: surefoot selftest --hard N9' selftest N9
+
 # ---- models ----
 head -c 300 whole.glb >truncated.glb
 message 'GLB truncated' 1 'truncated.glb' '300 bytes of 500. Export the model again' bake truncated.glb -o n.walk
@@ -121,5 +123,5 @@ overwrite checksum.walk 60 '\245\132\245'
 message '.walk with a wrong checksum' 1 'checksum.walk: page 0' 'checksum.*Copy the file again, or bake the model again' inspect checksum.walk
 [ -e n.walk ] && complain "a broken model was baked"
 
-[ $cases -eq 34 ] || complain "$cases messages were looked at, not 34"
+[ $cases -eq 35 ] || complain "$cases messages were looked at, not 35"
 verdict "$cases messages"

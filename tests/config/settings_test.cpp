@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "config/values.hpp"
 #include "tests/config/toy_schema.hpp"
 
 namespace surefoot::config {
@@ -22,6 +23,10 @@ void refused(std::string_view text, int line, std::string_view what, std::string
     EXPECT_NE(loaded.error().what.find(what), std::string::npos) << loaded.error().text();
     EXPECT_NE(loaded.error().remedy.find(remedy), std::string::npos) << loaded.error().text();
     EXPECT_EQ(explain(c), explain(Configuration(toy_schema()))) << "a refused file changed something";
+}
+
+TEST(Values, ControlCharactersAreEscaped) {
+    EXPECT_EQ(text_of(Value{std::string("a\nb\x7f \"c\"\\")}), R"("a\u000Ab\u007F \"c\"\\")");
 }
 
 TEST(Settings, DefaultsLieWithinTheirOwnLimits) {
