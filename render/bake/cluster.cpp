@@ -1,4 +1,4 @@
-// Clusters by Maciel's growing grid.
+// Clusters by the growing grid of Maciel 1994, section 3.4.3.
 #include "render/bake/cluster.hpp"
 
 #include <algorithm>

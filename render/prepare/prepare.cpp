@@ -33,7 +33,7 @@ struct NodeVisit {
     float nearest_m = 0;
     PlaneMask mask = all_planes;
     bool open = false;  ///< worth refining and has children
-    bool live = true;   ///< false: none of its children is visible (Maciel figure 3.16)
+    bool live = true;   ///< false: none of its children is visible (Maciel 1994, figure 3.16)
 };
 
 constexpr std::uint32_t parents_a_chunk = 64, visits_a_chunk = 512;

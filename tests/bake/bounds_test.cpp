@@ -123,7 +123,7 @@ TEST(BakeByHand, ClustersOfColoursAreNeverCalledNearlyExact) {
     }
 }
 
-// Maciel 3.1: drawing the parent costs less than drawing its children at their coarsest.
+// Maciel 1994, section 3.1: drawing the parent costs less than drawing its children at their coarsest.
 TEST(BakeByHand, ParentsAreCheaperThanTheirChildren) {
     const model::Model& m = town();
     for (std::size_t n = 0; n < m.nodes.size(); ++n) {

@@ -1,4 +1,4 @@
-// Cost against pixels, a line a triangle count, a panel a state class: Maciel's figure 3.4 for this machine.
+// Cost against pixels, a line a triangle count, a panel a state class: figure 3.4 of Maciel 1994 for this machine.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Views from above: the whole path, and which nodes were drawn at one place (Maciel's 't' view, chapter 5).
+// Views from above: the whole path, and which nodes were drawn at one place (Maciel 1994, figure 3.20, key 't').
 #include <fmt/format.h>
 
 #include <algorithm>
