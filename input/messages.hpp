@@ -34,8 +34,8 @@ MessageLine format_message(fmt::format_string<T...> format, T&&... what) {
 /// The words of Error::text(), which allocates: the input thread may not.
 inline MessageLine format_message(const Error& error) {
     const std::string_view colon = error.place.empty() || error.what.empty() ? "" : ": ";
-    if (error.remedy.empty()) return format_message("{}{}{}", error.place, colon, error.what);
     const std::string_view before = error.what.empty() ? error.place : error.what;
+    if (error.remedy.empty()) return format_message("{}{}{}{}", error.place, colon, error.what, full_stop_after(before));
     return format_message("{}{}{}{} {}{}", error.place, colon, error.what, full_stop_after(before), error.remedy,
                           full_stop_after(error.remedy));
 }

@@ -28,8 +28,8 @@ protected:
 TEST_F(FileTest, ErrorReadsAsPlaceWhatRemedy) {
     EXPECT_EQ((Error{"a.csv:3", "Row 3 has two columns", "Add the third one"}).text(),
               "a.csv:3: Row 3 has two columns. Add the third one.");
-    EXPECT_EQ((Error{"a", "b", ""}).text(), "a: b");
-    EXPECT_EQ((Error{"", "b", ""}).text(), "b");
+    EXPECT_EQ((Error{"a", "b", ""}).text(), "a: b.");
+    EXPECT_EQ((Error{"", "b", ""}).text(), "b.");
     EXPECT_EQ((Error{"", "b", "Did you mean c?"}).text(), "b. Did you mean c?");
 }
 

@@ -151,7 +151,7 @@ TEST(Capability, NamesWhatIsMissingAndHowToGrantIt) {
     EXPECT_EQ(find_lacking(poor, 80).size(), 4U);
     for (const Lack& lack : find_lacking(poor, 80)) EXPECT_FALSE(lack.remedy.empty()) << lack.what;
     EXPECT_EQ((Lack{LackKind::fifo, "SCHED_FIFO is refused", "Run it as root"}).text(), "SCHED_FIFO is refused. Run it as root.");
-    EXPECT_EQ((Lack{LackKind::census, "A thread is missing", ""}).text(), "A thread is missing");
+    EXPECT_EQ((Lack{LackKind::census, "A thread is missing", ""}).text(), "A thread is missing.");
     c.fifo_priority = 20;
     EXPECT_EQ(find_lacking(c, 80).size(), 1U);
     c.rt_runtime_us = -1;
