@@ -155,8 +155,8 @@ struct FoundTexts {
     std::vector<std::string> without_remedy;  ///< what happened
 };
 
-/// The start of a literal that is no message: bytes as hex digits.
-constexpr std::array<std::string_view, 1> no_messages = {"R: 44 05"};
+/// The start of a literal that is no message: a recording of bytes.
+constexpr std::array<std::string_view, 1> no_messages = {"# by hand"};
 
 /// A word of prose: two letters or more, no digit or sign inside of it.
 bool is_prose(std::string_view word) {
