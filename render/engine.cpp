@@ -8,6 +8,7 @@
 
 #include "render/drawn_items.hpp"
 #include "render/effects/effects.hpp"
+#include "render/floor_watch.hpp"
 #include "render/model/pixels.hpp"
 #include "render/model/view.hpp"
 #include "rt/base/check.hpp"
@@ -17,6 +18,7 @@ namespace surefoot {
 
 namespace {
 
+constexpr float most_of_the_picture = 0.5F;
 constexpr std::uint32_t coarse_nodes = 256;  // of select_coarse: a few hundred small meshes, whatever the model's size
 
 /// The coarsest representation that is valid with the eye anywhere; validate() has made sure that there is one.
@@ -69,7 +71,8 @@ struct Engine::Impl {
     select::SelectState state GUARDED_BY(draws);
     select::Cut cut GUARDED_BY(draws);
     select::SlicePlan plan GUARDED_BY(draws);
-    std::vector<gl::DrawItem> drawn GUARDED_BY(draws);
+    std::vector<gl::DrawItem> drawn GUARDED_BY(draws), culled GUARDED_BY(draws);
+    FloorWatch floor GUARDED_BY(draws);
     std::vector<gl::DrawItem> coarse;
     bool use_coarse GUARDED_BY(draws) = false;
     const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
@@ -118,7 +121,10 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     select::reserve(impl->cut, candidates);
     impl->plan.reserve(candidates);
     impl->coarse = coarse_cover(impl->model);
-    impl->drawn.reserve(std::max<std::size_t>(candidates, impl->coarse.size()) * 2);
+    const std::size_t most_drawn = std::max<std::size_t>(candidates, impl->coarse.size()) * 2;
+    impl->drawn.reserve(most_drawn);
+    impl->culled.reserve(most_drawn);
+    impl->floor.reserve(impl->model.nodes.size(), most_drawn);
     return std::unique_ptr<Engine>(new Engine(std::move(impl)));
 }
 
@@ -139,6 +145,10 @@ const EngineOptions& Engine::options() const { return impl_->options; }
 std::span<const gl::DrawItem> Engine::drawn() const {
     impl_->draws.plays();
     return impl_->drawn;
+}
+std::span<const gl::DrawItem> Engine::culled() const {
+    impl_->draws.plays();
+    return impl_->culled;
 }
 std::size_t Engine::drawn_capacity() const {
     impl_->draws.plays();
@@ -192,10 +202,14 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
     for (const select::CutItem& item : items) {
         if (!model::visible(frustum, model.nodes[item.node].box)) {
             ++report.culled;
+            if (culled.size() < culled.capacity()) culled.push_back({item.node, item.rep});
             continue;
         }
         if (!push_within(drawn, {item.node, item.rep})) break;
         const prepare::Choice& choice = prepared->choices[item.choice];
+        const prepare::Candidate& candidate = prepared->candidates[item.candidate];
+        const bool finer = candidate.choice_count > 1 || candidate.child_count > 0;
+        floor.add(drawn.back(), candidate.pixels, finer && item.choice == candidate.first_choice);
         cost += choice.cost;
         report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
         report.benefit_mean += 1.0 - choice.benefit;
@@ -257,8 +271,12 @@ void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
     const model::ViewScale scale = model::make_view_scale(pose, options.device.viewport);
     model::ItemCost sum{.submit_us = costs.slice_us, .raster_us = 0};
     for (const gl::DrawItem& item : coarse) {
-        sum += preparer->item_costs().of(item.rep, model.nodes[item.node].box, pose.position, scale);
-        report.triangles += model.reps[item.rep].triangles;
+        const model::Node& node = model.nodes[item.node];
+        const model::Representation& rep = model.reps[item.rep];
+        sum += preparer->item_costs().of(item.rep, node.box, pose.position, scale);
+        report.triangles += rep.triangles;
+        const float pixels = std::min(model::rasterised_pixels(rep, node.box, pose.position, scale), scale.viewport_pixels);
+        floor.add(item, pixels, node.child_count > 0 || item.rep + 1 < node.first_rep + node.rep_count);
     }
     report.predicted = sum;
     report.predicted_us = costs.combine.frame_us(sum.submit_us, sum.raster_us);
@@ -275,6 +293,8 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     SubmitReport report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();
+    e.culled.clear();
+    e.floor.begin();
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
     e.device->begin_frame(pose);
     if (e.use_coarse) {
@@ -290,7 +310,26 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.items = stats.items;
     report.draws = stats.draws;
     if (!e.drawn.empty()) report.benefit_mean /= static_cast<double>(e.drawn.size());
+    report.floor_share = e.floor.floor_share();
     return report;
+}
+
+bool Engine::fell_to_floor(const Pose& pose, double time_us, double correction) {
+    Impl& e = *impl_;
+    e.draws.plays();
+    if (!(e.floor.floor_share() > most_of_the_picture)) return false;
+    const std::vector<select::Shown>& last = e.use_coarse ? e.state.touched : e.state.before;
+    if (!(e.floor.fallen_share(last) > most_of_the_picture)) return false;
+    const model::ViewScale scale = model::make_view_scale(pose, e.options.device.viewport);
+    model::ItemCost sum;
+    for (const select::Shown& shown : last) {
+        if (shown.form == select::SelectState::opened) continue;
+        const Box& box = e.model.nodes[shown.node].box;
+        if (!model::visible(e.frustum, box)) continue;
+        sum += e.preparer->item_costs().of(shown.form, box, pose.position, scale);
+        if (e.costs.combine.frame_us(sum.submit_us, sum.raster_us) * correction > time_us) return false;
+    }
+    return true;
 }
 
 void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items) {

@@ -56,6 +56,7 @@ struct SubmitReport {
     std::uint64_t triangles = 0;
     float worst_error_rad = 0;  ///< of the drawn items, stand-ins included
     double benefit_mean = 0;
+    float floor_share = 0;  ///< of the drawn pixels, as estimated: those in the cheapest forms of nodes that have finer ones
 };
 
 /// A model, a device and the arrays between them. prepare() may run on any one thread at a time; all other calls belong to the
@@ -93,7 +94,13 @@ public:
 
     /// (node, representation) in drawing order of the last submit(); valid until the next.
     [[nodiscard]] std::span<const gl::DrawItem> drawn() const;
-    /// Maximum number of items in drawn().
+    /// Items of that cut, or their stand-ins, that were outside the pose's view; valid as long.
+    [[nodiscard]] std::span<const gl::DrawItem> culled() const;
+    /// Whether the last submit() fell to the floor without need. Over half of its picture shows floor forms where the cut before
+    /// had finer ones. And what of that cut is in view now would have been done within `time_us` from the call, by `correction`.
+    /// Takes a microsecond, or up to a millisecond where much of the picture is at the floor: call it after the frame.
+    [[nodiscard]] bool fell_to_floor(const Pose& pose, double time_us, double correction);
+    /// Maximum number of items in drawn() and culled() together.
     [[nodiscard]] std::size_t drawn_capacity() const;
 
     /// Draws items without a budget, for images of reports: full_detail(), or a remembered set.
