@@ -87,10 +87,11 @@ public:
                               double target_error_rad);
     /// State of the selector between frames. For a capture, copy it before select().
     [[nodiscard]] const select::SelectState& selection_memory() const;
-    /// Draws the cut of the last select(), or the coarse levels of the last select_coarse().
+    /// Draws the cut of the last select(), or after select_last() that cut's forms at this pose.
     SubmitReport submit(const Pose& pose, const SubmitLimits& limits);
-    /// Replaces select() if no prepared frame may be used: meshes of the top levels, valid from everywhere, without culling.
-    void select_coarse();
+    /// Replaces select() if no prepared frame may be used. What the last cut showed keeps its forms, where they are legal at the
+    /// pose. All else shows coarse levels, valid from everywhere. The in-frame check holds here too.
+    void select_last();
 
     /// (node, representation) in drawing order of the last submit(); valid until the next.
     [[nodiscard]] std::span<const gl::DrawItem> drawn() const;
@@ -118,6 +119,7 @@ private:
 bool covers(const prepare::Region& region, const Pose& pose, model::Viewport viewport);
 
 /// The region for the next frames, from the last two samples: extrapolated by `horizon_s`, widened by possible changes.
-prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s);
+/// turn_ahead_rps: the largest turn rate until then, where the input knows it.
+prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s, double turn_ahead_rps = 0);
 
 }  // namespace surefoot

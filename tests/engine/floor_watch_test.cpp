@@ -1,4 +1,4 @@
-// Falls to the floor: what counts as fallen, and that an engine's coarse levels count where the cut before would have fitted.
+// Falls to the floor: what counts as fallen, and that coarse levels count where the cut before would have fitted.
 #include "render/floor_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -58,9 +58,10 @@ struct FallToFloor : testing::Test {
         engine->select(prepared, budget_us, {}, 0);
         return engine->submit(pose, {.elapsed_us = 0, .limit_us = ample_us});
     }
+    /// No prepared set and no time: the coarse levels.
     SubmitReport draw_coarse() {
-        engine->select_coarse();
-        return engine->submit(pose, {.elapsed_us = 0, .limit_us = ample_us});
+        engine->select_last();
+        return engine->submit(pose, {});
     }
 };
 

@@ -62,6 +62,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
             now_.pose = newest.pose;
             now_.before = newest.before;
             now_.predicted = newest.predicted;
+            now_.turn_ahead_rad_s = newest.turn_ahead_rad_s;
             now_.dt_s = period_s;
         }
         prepare_inline();
@@ -69,6 +70,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.before = unseen ? newest.before : now_.pose;
     now_.dt_s = period_s * (1.0 + (request_.control || unseen ? 0 : record.skipped_before));
     now_.predicted = newest.predicted;
+    now_.turn_ahead_rad_s = newest.turn_ahead_rad_s;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
     now_.valid = true;
@@ -112,7 +114,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.budget_us = static_cast<float>(options_.budget_us);
     coarse_ = age > rt::oldest_prepared || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
-        engine_.select_coarse();
+        engine_.select_last();
         return;
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;

@@ -88,7 +88,7 @@ private:
     double time_left_us_ = 0;           ///< until the limit, as the last submission began
     std::uint64_t walked_ = 0;          ///< frames so far, without the control's bare ones
     std::uint64_t path_slot_ = 0;       ///< position on the path, in periods; with a control it does not advance in bare blocks
-    bool coarse_ = false;               ///< the last selection was Engine::select_coarse()
+    bool coarse_ = false;               ///< the last selection was Engine::select_last()
     const select::Cut* cut_ = nullptr;  ///< of the last selection
     double requested_budget_us_ = 0;    ///< what that selection was given
     Correction requested_correction_;
