@@ -18,7 +18,7 @@ namespace surefoot {
 
 namespace {
 
-constexpr float most_of_the_picture = 0.5F;
+constexpr float floor_picture_share = 0.5F;
 
 }  // namespace
 
@@ -85,8 +85,8 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     select::reserve(impl->cut, candidates);
     impl->plan.reserve(candidates);
     impl->unprepared.reserve(impl->model);
-    const std::size_t most_drawn = std::max<std::size_t>(candidates * 2, impl->unprepared.capacity());
-    impl->drawn.reserve(most_drawn);
+    const std::size_t max_drawn = std::max<std::size_t>(candidates * 2, impl->unprepared.capacity());
+    impl->drawn.reserve(max_drawn);
     impl->culled.reserve(candidates);
     impl->floor.reserve(impl->model.nodes.size(), std::max<std::size_t>(candidates, impl->unprepared.capacity()));
     return std::unique_ptr<Engine>(new Engine(std::move(impl)));
@@ -255,7 +255,7 @@ void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, dou
             const double scale = correction.factor * headroom;
             select::CheckInput check;
             check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us +
-                               static_cast<double>(in_flight_us + slice.raster_us) * correction.factor;
+                               static_cast<double>(in_flight_us + slice.submit_us + slice.raster_us) * correction.factor;
             check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction.factor;
             check.next_us = with(group.cost) * scale;
             check.next_stand_in_us = with(group.stand_in.cost) * scale;
@@ -273,7 +273,7 @@ void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, dou
         so_far += cost;
         slice += cost;
         const bool last = &group == &groups.back();
-        if (!last && combine.frame_us(slice.submit_us, slice.raster_us) < options.slice_us) continue;
+        if (!last && slice.submit_us + slice.raster_us < options.slice_us) continue;
         device->draw(std::span<const gl::DrawItem>(drawn).subspan(slice_begin));
         device->end_slice();
         device->wait_slices(1);
@@ -321,9 +321,9 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
 bool Engine::fell_to_floor(const Pose& pose, double time_us, double correction) {
     Impl& e = *impl_;
     e.draws.plays();
-    if (!(e.floor.floor_share() > most_of_the_picture)) return false;
+    if (!(e.floor.floor_share() > floor_picture_share)) return false;
     const std::vector<select::Shown>& last = e.use_last ? e.state.touched : e.state.before;
-    if (!(e.floor.fallen_share(last) > most_of_the_picture)) return false;
+    if (!(e.floor.fallen_share(last) > floor_picture_share)) return false;
     const model::ViewScale scale = model::make_view_scale(pose, e.options.device.viewport);
     model::ItemCost sum;
     for (const select::Shown& shown : last) {

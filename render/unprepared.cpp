@@ -110,24 +110,24 @@ bool Unprepared::walk(std::span<const model::Index> shown, const View& view) {
     items_.clear();
     stack_.push_back({0, no_group});
     while (!stack_.empty()) {
-        Visit visit = stack_.back();
+        Step step = stack_.back();
         stack_.pop_back();
-        const model::Node& node = model_->nodes[visit.node];
+        const model::Node& node = model_->nodes[step.node];
         if (!model::visible(view.frustum, node.box)) continue;
-        const model::Index form = shown.empty() ? model::none : shown[visit.node];
-        const bool opened = form == select::SelectState::opened || (form == model::none && level_[visit.node] == Level::above);
+        const model::Index form = shown.empty() ? model::none : shown[step.node];
+        const bool opened = form == select::SelectState::opened || (form == model::none && level_[step.node] == Level::above);
         if (!opened) {
             const auto nearest_m = static_cast<float>(node.box.distance(view.eye));
             const bool keeps = form != model::none && prepare::legal(model_->reps[form], nearest_m);
-            if (!add(visit.node, keeps ? form : everywhere_rep(*model_, visit.node), visit.group, view)) return false;
+            if (!add(step.node, keeps ? form : everywhere_rep(*model_, step.node), step.group, view)) return false;
             continue;
         }
-        if (level_[visit.node] == Level::coarse) {
-            visit.group = begin_group(visit.node, view);
-            if (visit.group == no_group) return false;
+        if (level_[step.node] == Level::coarse) {
+            step.group = begin_group(step.node, view);
+            if (step.group == no_group) return false;
         }
         if (stack_.size() + node.child_count > stack_.capacity()) return false;
-        for (std::uint32_t c = 0; c < node.child_count; ++c) stack_.push_back({node.first_child + c, visit.group});
+        for (std::uint32_t c = 0; c < node.child_count; ++c) stack_.push_back({node.first_child + c, step.group});
     }
     return true;
 }

@@ -46,7 +46,7 @@ public:
 
 private:
     enum class Level : std::uint8_t { below, coarse, above };  ///< where a node is, seen from the coarse levels
-    struct Visit {
+    struct Step {
         model::Index node = 0;
         std::uint32_t group = 0;
     };
@@ -58,7 +58,7 @@ private:
 
     const model::Model* model_ = nullptr;
     std::vector<Level> level_;  ///< by node
-    std::vector<Visit> stack_;
+    std::vector<Step> stack_;
     std::vector<UnpreparedGroup> groups_;
     std::vector<UnpreparedItem> items_;
 };

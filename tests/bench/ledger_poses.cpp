@@ -1,10 +1,12 @@
 // Bench tool: the poses of a walk's pictures, as a path that stands at each, so that another selector can draw them.
-// A ledger counts frames, not slots: after a miss, picture N is not of the path's N-th place. Its slots say where each was, and the
-// path itself gives the exact pose. The ledger's rounded pose must agree.
-// bench_ledger_poses PATH.csv LIFT_M RATE_HZ LEDGER.csv EVERY OUT.csv -> one JSON object. Walk OUT.csv at 30 Hz with `--every 4`.
+// A ledger counts frames, not slots: after a miss, picture N is not of the path's N-th place. Its slots say where each was, and
+// the path itself gives the exact pose. The ledger's rounded pose must agree. bench_ledger_poses PATH.csv LIFT_M RATE_HZ
+// LEDGER.csv EVERY OUT.csv -> one JSON object. Walk OUT.csv at 30 Hz with `--every 4`.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -19,7 +21,7 @@ namespace {
 
 using namespace surefoot;
 
-constexpr int stand_frames = 4;      // the region has settled on the pose before its picture is taken
+constexpr int stand_frames = 4;  // the region has settled on the pose before its picture is taken
 constexpr double stand_rate_hz = 30;
 constexpr double rounding_m = 2e-4, rounding_part = 2e-6;  // of a ledger
 
@@ -54,7 +56,8 @@ std::vector<Row> rows_of(std::string_view ledger) {
         Row& row = rows.emplace_back();
         for (std::size_t i = 0; i < std::min(names.size(), cells.size()); ++i) {
             double value = 0;
-            if (std::from_chars(cells[i].data(), cells[i].data() + cells[i].size(), value).ec == std::errc{}) row[names[i]] = value;
+            if (std::from_chars(cells[i].data(), cells[i].data() + cells[i].size(), value).ec == std::errc{})
+                row[names[i]] = value;
         }
     }
     return rows;
@@ -66,10 +69,10 @@ struct Off {
 };
 Off off(const Pose& pose, const Row& row) {
     const dvec3 eye(row.at("x"), row.at("y"), row.at("z"));
-    const dquat said(row.at("qw"), row.at("qx"), row.at("qy"), row.at("qz"));
-    const double sign = glm::dot(said, pose.orientation) < 0 ? -1 : 1;
+    const dquat reported(row.at("qw"), row.at("qx"), row.at("qy"), row.at("qz"));
+    const double sign = glm::dot(reported, pose.orientation) < 0 ? -1 : 1;
     Off o{glm::length(eye - pose.position), 0};
-    for (int i = 0; i < 4; ++i) o.part = std::max(o.part, std::abs(sign * said[i] - pose.orientation[i]));
+    for (int i = 0; i < 4; ++i) o.part = std::max(o.part, std::abs(sign * reported[i] - pose.orientation[i]));
     return o;
 }
 
@@ -86,7 +89,7 @@ int main(int argc, char** argv) {
     if (!text) return fail(text.error().text());
     const auto every = static_cast<std::uint64_t>(std::max(1, std::atoi(argv[5])));
     walk::PathPoses poses(*path, *period_ns);
-    Path standing;
+    Path held;
     Off most;
     int frame = 0, pictures = 0;
     for (const Row& row : rows_of(*text)) {
@@ -98,13 +101,13 @@ int main(int argc, char** argv) {
         most = {std::max(most.metres, o.metres), std::max(most.part, o.part)};
         // The first stands from half way, so that frame 4 N is well within the stand at pose N.
         for (const int end = stand_frames * pictures + stand_frames / 2; frame < end; ++frame)
-            standing.samples.push_back({frame / stand_rate_hz, pose});
+            held.samples.push_back({frame / stand_rate_hz, pose});
         ++pictures;
     }
     if (pictures == 0) return fail(fmt::format("{}: no frame of a picture", argv[4]));
     if (most.metres > rounding_m || most.part > rounding_part)
         return fail(fmt::format("{}: its poses are {} m and {} off those of {}", argv[4], most.metres, most.part, argv[1]));
-    if (auto written = write_path(argv[6], standing); !written) return fail(written.error().text());
+    if (auto written = write_path(argv[6], held); !written) return fail(written.error().text());
     fmt::print("{{\"pictures\": {}, \"frames\": {}, \"off_m\": {}, \"off_quaternion\": {}}}\n", pictures,
                stand_frames * (pictures - 1) + 1, most.metres, most.part);
     return 0;

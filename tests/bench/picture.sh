@@ -139,7 +139,7 @@ picture_scene() { # NAME SCENE PATH LIFT
 }
 
 picture_group() {
-  local name scene path lift program
+  local name scene path lift program scale
   for program in "$old/surefoot" "$new/surefoot" "$build/tests/bench_ledger_poses" "$build/tests/bench_picture_difference"; do
     [[ -x "$program" ]] || { echo "tests/bench/run: $program is not there: build it (the target benches has those of tests)" >&2; failed=1; return 0; }
   done

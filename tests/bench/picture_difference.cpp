@@ -56,7 +56,9 @@ int main(int argc, char** argv) {
         c.walk.resize(1);  // compare_pictures() passes over those without a picture; the pixels are not needed again
     }
     const report::PictureSummary p = report::compare_pictures(compared);
-    fmt::print("{{\"pictures\": {}, \"psnr_db\": {:.3f}, \"worst_psnr_db\": {:.3f}, \"worst\": \"{}\", \"ssim\": {:.4f}, \"flip\": {:.4f}}}\n",
-               p.frames, p.psnr_db, p.worst_psnr_db, names[p.worst_frame], p.ssim, p.flip);
+    fmt::print(
+        "{{\"pictures\": {}, \"psnr_db\": {:.3f}, \"worst_psnr_db\": {:.3f}, \"worst\": \"{}\", \"ssim\": {:.4f}, \"flip\": "
+        "{:.4f}}}\n",
+        p.frames, p.psnr_db, p.worst_psnr_db, names[p.worst_frame], p.ssim, p.flip);
     return 0;
 }
