@@ -8,8 +8,9 @@
 
 #include "render/drawn_items.hpp"
 #include "render/effects/effects.hpp"
-#include "render/model/pixels.hpp"
+#include "render/floor_watch.hpp"
 #include "render/model/view.hpp"
+#include "render/unprepared.hpp"
 #include "rt/base/check.hpp"
 #include "rt/base/thread_annotations.hpp"
 
@@ -17,43 +18,7 @@ namespace surefoot {
 
 namespace {
 
-constexpr std::uint32_t coarse_nodes = 256;  // of select_coarse: a few hundred small meshes, whatever the model's size
-
-/// The coarsest representation that is valid with the eye anywhere; validate() has made sure that there is one.
-model::Index everywhere_rep(const model::Model& model, model::Index node) {
-    const model::Node& n = model.nodes[node];
-    for (model::Index r = n.first_rep; r < n.first_rep + n.rep_count; ++r) {
-        if (model.reps[r].everywhere) return r;
-    }
-    return n.first_rep;
-}
-
-/// An antichain that covers the model with about coarse_nodes nodes: open the largest box first.
-std::vector<gl::DrawItem> coarse_cover(const model::Model& model) {
-    std::vector<model::Index> open{0};
-    const auto smaller = [&](model::Index a, model::Index b) {
-        const double da = model.nodes[a].child_count == 0 ? -1 : model.nodes[a].box.diagonal();
-        const double db = model.nodes[b].child_count == 0 ? -1 : model.nodes[b].box.diagonal();
-        return da != db ? da < db : a > b;
-    };
-    while (true) {
-        std::pop_heap(open.begin(), open.end(), smaller);
-        const model::Node& node = model.nodes[open.back()];
-        if (node.child_count == 0 || open.size() + node.child_count > coarse_nodes) {
-            break;  // the largest does not fit: stop rather than skip on
-        }
-        open.pop_back();
-        for (std::uint32_t c = 0; c < node.child_count; ++c) {
-            open.push_back(node.first_child + c);
-            std::push_heap(open.begin(), open.end(), smaller);
-        }
-    }
-    std::sort(open.begin(), open.end());
-    std::vector<gl::DrawItem> items;
-    items.reserve(open.size());
-    for (const model::Index n : open) items.push_back({n, everywhere_rep(model, n)});
-    return items;
-}
+constexpr float floor_picture_share = 0.5F;
 
 }  // namespace
 
@@ -69,9 +34,10 @@ struct Engine::Impl {
     select::SelectState state GUARDED_BY(draws);
     select::Cut cut GUARDED_BY(draws);
     select::SlicePlan plan GUARDED_BY(draws);
-    std::vector<gl::DrawItem> drawn GUARDED_BY(draws);
-    std::vector<gl::DrawItem> coarse;
-    bool use_coarse GUARDED_BY(draws) = false;
+    std::vector<gl::DrawItem> drawn GUARDED_BY(draws), culled GUARDED_BY(draws);
+    FloorWatch floor GUARDED_BY(draws);
+    Unprepared unprepared GUARDED_BY(draws);
+    bool use_last GUARDED_BY(draws) = false;  ///< the last cut's forms: no prepared set may be used
     const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
     Correction correction GUARDED_BY(draws);
     double headroom GUARDED_BY(draws) = 1;  ///< that the last select() spent
@@ -84,7 +50,8 @@ struct Engine::Impl {
     model::Frustum frustum GUARDED_BY(draws);  ///< of the pose that is drawn: narrower than the region that was prepared
     model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report) REQUIRES(draws);
     void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
-    void submit_coarse(const Pose& pose, SubmitReport& report) REQUIRES(draws);
+    void submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
+    void push(const UnpreparedItem& item, SubmitReport& report) REQUIRES(draws);
 };
 
 Engine::Engine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -117,8 +84,11 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->state.hysteresis = options.hysteresis;
     select::reserve(impl->cut, candidates);
     impl->plan.reserve(candidates);
-    impl->coarse = coarse_cover(impl->model);
-    impl->drawn.reserve(std::max<std::size_t>(candidates, impl->coarse.size()) * 2);
+    impl->unprepared.reserve(impl->model);
+    const std::size_t max_drawn = std::max<std::size_t>(candidates * 2, impl->unprepared.capacity());
+    impl->drawn.reserve(max_drawn);
+    impl->culled.reserve(candidates);
+    impl->floor.reserve(impl->model.nodes.size(), std::max<std::size_t>(candidates, impl->unprepared.capacity()));
     return std::unique_ptr<Engine>(new Engine(std::move(impl)));
 }
 
@@ -139,6 +109,10 @@ const EngineOptions& Engine::options() const { return impl_->options; }
 std::span<const gl::DrawItem> Engine::drawn() const {
     impl_->draws.plays();
     return impl_->drawn;
+}
+std::span<const gl::DrawItem> Engine::culled() const {
+    impl_->draws.plays();
+    return impl_->culled;
 }
 std::size_t Engine::drawn_capacity() const {
     impl_->draws.plays();
@@ -163,7 +137,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
                                   double target_error_rad) {
     Impl& e = *impl_;
     e.draws.plays();
-    e.use_coarse = false;
+    e.use_last = false;
     e.prepared = &prepared;
     e.correction = correction;
     const select::SelectInput input{&e.model,          &prepared,        &e.costs,           budget_us,
@@ -179,9 +153,9 @@ const select::SelectState& Engine::selection_memory() const {
     return impl_->state;
 }
 
-void Engine::select_coarse() {
+void Engine::select_last() {
     impl_->draws.plays();
-    impl_->use_coarse = true;
+    impl_->use_last = true;
 }
 
 /// Draws what of a slice the pose really sees; returns what that was predicted to cost.
@@ -192,10 +166,14 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
     for (const select::CutItem& item : items) {
         if (!model::visible(frustum, model.nodes[item.node].box)) {
             ++report.culled;
+            if (culled.size() < culled.capacity()) culled.push_back({item.node, item.rep});
             continue;
         }
         if (!push_within(drawn, {item.node, item.rep})) break;
         const prepare::Choice& choice = prepared->choices[item.choice];
+        const prepare::Candidate& candidate = prepared->candidates[item.candidate];
+        const bool finer = candidate.choice_count > 1 || candidate.child_count > 0;
+        floor.add(drawn.back(), candidate.pixels, finer && item.choice == candidate.first_choice);
         cost += choice.cost;
         report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
         report.benefit_mean += 1.0 - choice.benefit;
@@ -247,38 +225,84 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us);
 }
 
-/// Predicted as the items of a prepared frame are: no array holds these, and they are few.
-void Engine::Impl::submit_coarse(const Pose& pose, SubmitReport& report) {
+void Engine::Impl::push(const UnpreparedItem& item, SubmitReport& report) {
+    if (!push_within(drawn, item.item)) return;
+    floor.add(item.item, item.pixels, item.floor);
+    report.triangles += model.reps[item.item.rep].triangles;
+    report.worst_error_rad = std::max(report.worst_error_rad, item.error_rad);
+}
+
+/// As submit_cut(), with groups of the plan in place of slices. Several groups make a slice, since ending one has its price.
+void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) {
     device->draws.plays();
-    drawn.assign(coarse.begin(), coarse.end());
-    device->draw(drawn);
-    device->end_slice();
-    // What it was predicted to cost is worked out while the driver draws.
-    const model::ViewScale scale = model::make_view_scale(pose, options.device.viewport);
-    model::ItemCost sum{.submit_us = costs.slice_us, .raster_us = 0};
-    for (const gl::DrawItem& item : coarse) {
-        sum += preparer->item_costs().of(item.rep, model.nodes[item.node].box, pose.position, scale);
-        report.triangles += model.reps[item.rep].triangles;
+    const model::FrameCombine& combine = costs.combine;
+    unprepared.plan(state.shown, frustum, pose, model::make_view_scale(pose, options.device.viewport), preparer->item_costs());
+    const std::span<const UnpreparedGroup> groups = unprepared.groups();
+    model::ItemCost rest_stand_in, so_far, slice;
+    for (const UnpreparedGroup& group : groups) rest_stand_in += group.stand_in.cost;
+    bool full = true, slice_full = true;
+    float in_flight_us = 0;
+    std::size_t slice_begin = 0;
+    for (const UnpreparedGroup& group : groups) {
+        rest_stand_in.submit_us -= group.stand_in.cost.submit_us;
+        rest_stand_in.raster_us -= group.stand_in.cost.raster_us;
+        if (full && options.in_frame_check) {
+            const float predicted_so_far = combine.frame_us(so_far.submit_us, so_far.raster_us);
+            const auto with = [&](const model::ItemCost& more) {
+                return static_cast<double>(
+                    combine.frame_us(so_far.submit_us + more.submit_us, so_far.raster_us + more.raster_us) - predicted_so_far);
+            };
+            const double scale = correction.factor * headroom;
+            select::CheckInput check;
+            check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us +
+                               static_cast<double>(in_flight_us + slice.submit_us + slice.raster_us) * correction.factor;
+            check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction.factor;
+            check.next_us = with(group.cost) * scale;
+            check.next_stand_in_us = with(group.stand_in.cost) * scale;
+            check.rest_stand_in_us = with(rest_stand_in) * correction.factor;
+            check.limit_us = limits.limit_us;
+            full = select::still_fits(check);
+        }
+        if (full) {
+            for (const UnpreparedItem& item : unprepared.items().subspan(group.first, group.count)) push(item, report);
+        } else {
+            push(group.stand_in, report);
+            slice_full = false;
+        }
+        const model::ItemCost& cost = full ? group.cost : group.stand_in.cost;
+        so_far += cost;
+        slice += cost;
+        const bool last = &group == &groups.back();
+        if (!last && slice.submit_us + slice.raster_us < options.slice_us) continue;
+        device->draw(std::span<const gl::DrawItem>(drawn).subspan(slice_begin));
+        device->end_slice();
+        device->wait_slices(1);
+        slice_begin = drawn.size();
+        so_far.submit_us += costs.slice_us;
+        in_flight_us = slice.raster_us;
+        slice = {};
+        ++report.slices;
+        if (!slice_full) ++report.downgraded_slices;
+        slice_full = true;
     }
-    report.predicted = sum;
-    report.predicted_us = costs.combine.frame_us(sum.submit_us, sum.raster_us);
-    report.slices = 1;
-    report.downgraded_slices = 1;
-    report.worst_error_rad = std::numeric_limits<float>::infinity();  // the eye may be inside any of them
+    report.predicted = so_far;
+    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us);
 }
 
 SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     Impl& e = *impl_;
     e.draws.plays();
     e.device->draws.plays();
-    CHECK(e.use_coarse || e.prepared != nullptr, "A submitted frame was selected before");
+    CHECK(e.use_last || e.prepared != nullptr, "A submitted frame was selected before");
     SubmitReport report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();
+    e.culled.clear();
+    e.floor.begin();
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
     e.device->begin_frame(pose);
-    if (e.use_coarse) {
-        e.submit_coarse(pose, report);
+    if (e.use_last) {
+        e.submit_last(pose, limits, start_us, report);
     } else {
         e.submit_cut(limits, start_us, report);
     }
@@ -290,7 +314,26 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.items = stats.items;
     report.draws = stats.draws;
     if (!e.drawn.empty()) report.benefit_mean /= static_cast<double>(e.drawn.size());
+    report.floor_share = e.floor.floor_share();
     return report;
+}
+
+bool Engine::fell_to_floor(const Pose& pose, double time_us, double correction) {
+    Impl& e = *impl_;
+    e.draws.plays();
+    if (!(e.floor.floor_share() > floor_picture_share)) return false;
+    const std::vector<select::Shown>& last = e.use_last ? e.state.touched : e.state.before;
+    if (!(e.floor.fallen_share(last) > floor_picture_share)) return false;
+    const model::ViewScale scale = model::make_view_scale(pose, e.options.device.viewport);
+    model::ItemCost sum;
+    for (const select::Shown& shown : last) {
+        if (shown.form == select::SelectState::opened) continue;
+        const Box& box = e.model.nodes[shown.node].box;
+        if (!model::visible(e.frustum, box)) continue;
+        sum += e.preparer->item_costs().of(shown.form, box, pose.position, scale);
+        if (e.costs.combine.frame_us(sum.submit_us, sum.raster_us) * correction > time_us) return false;
+    }
+    return true;
 }
 
 void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items) {
@@ -334,7 +377,7 @@ bool covers(const prepare::Region& region, const Pose& pose, model::Viewport vie
     return moved <= region.radius_m + 1e-9 && turned + grown <= region.angle_rad + 1e-6;
 }
 
-prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s) {
+prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s, double turn_ahead_rps) {
     const double dt = std::max(dt_s, 1e-4);
     const dvec3 velocity = (now.position - before.position) / dt;
     const double w = std::min(1.0, std::abs(glm::dot(before.orientation, now.orientation)));
@@ -345,7 +388,7 @@ prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s,
     // Half the way on is the centre; the radius reaches both ends, and half as far again for a change of speed.
     const double travel = glm::length(velocity) * horizon_s;
     region.radius_m = 0.75 * travel + 0.25;
-    region.angle_rad = std::min(1.0, 1.5 * turn_rps * horizon_s + 0.06);
+    region.angle_rad = std::min(1.0, 1.5 * std::max(turn_rps, turn_ahead_rps) * horizon_s + 0.06);
     return region;
 }
 

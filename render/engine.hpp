@@ -56,6 +56,7 @@ struct SubmitReport {
     std::uint64_t triangles = 0;
     float worst_error_rad = 0;  ///< of the drawn items, stand-ins included
     double benefit_mean = 0;
+    float floor_share = 0;  ///< of the drawn pixels, as estimated: those in the cheapest forms of nodes that have finer ones
 };
 
 /// A model, a device and the arrays between them. prepare() may run on any one thread at a time; all other calls belong to the
@@ -86,14 +87,21 @@ public:
                               double target_error_rad);
     /// State of the selector between frames. For a capture, copy it before select().
     [[nodiscard]] const select::SelectState& selection_memory() const;
-    /// Draws the cut of the last select(), or the coarse levels of the last select_coarse().
+    /// Draws the cut of the last select(), or after select_last() that cut's forms at this pose.
     SubmitReport submit(const Pose& pose, const SubmitLimits& limits);
-    /// Replaces select() if no prepared frame may be used: meshes of the top levels, valid from everywhere, without culling.
-    void select_coarse();
+    /// Replaces select() if no prepared frame may be used. What the last cut showed keeps its forms, where they are legal at the
+    /// pose. All else shows coarse levels, valid from everywhere. The in-frame check holds here too.
+    void select_last();
 
     /// (node, representation) in drawing order of the last submit(); valid until the next.
     [[nodiscard]] std::span<const gl::DrawItem> drawn() const;
-    /// Maximum number of items in drawn().
+    /// Items of that cut, or their stand-ins, that were outside the pose's view; valid as long.
+    [[nodiscard]] std::span<const gl::DrawItem> culled() const;
+    /// Whether the last submit() fell to the floor without need. Over half of its picture shows floor forms where the cut before
+    /// had finer ones. And what of that cut is in view now would have been done within `time_us` from the call, by `correction`.
+    /// Takes a microsecond, or up to a millisecond where much of the picture is at the floor: call it after the frame.
+    [[nodiscard]] bool fell_to_floor(const Pose& pose, double time_us, double correction);
+    /// Maximum number of items in drawn() and culled() together.
     [[nodiscard]] std::size_t drawn_capacity() const;
 
     /// Draws items without a budget, for images of reports: full_detail(), or a remembered set.
@@ -111,6 +119,7 @@ private:
 bool covers(const prepare::Region& region, const Pose& pose, model::Viewport viewport);
 
 /// The region for the next frames, from the last two samples: extrapolated by `horizon_s`, widened by possible changes.
-prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s);
+/// turn_ahead_rps: the largest turn rate until then, where the input knows it.
+prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s, double turn_ahead_rps = 0);
 
 }  // namespace surefoot

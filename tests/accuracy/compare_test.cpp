@@ -30,6 +30,9 @@ struct FakeWalks {
         s.frame_ms.p99 = 10 + static_cast<double>(number);
         s.picture.frames = pictures;
         s.picture.psnr_db = psnr_db.at(number);
+        s.picture.pop_frames = pictures > 1 ? pictures - 1 : 0;
+        s.picture.popped_share = 0.001 * static_cast<double>(number);
+        s.floor_frames = number;
         return outcome;
     }
 };
@@ -59,6 +62,8 @@ TEST(Compare, SelectorsWalkInTurnsAndMediansAreOfTheRounds) {
     EXPECT_EQ(c->selectors[0].max_psnr_db, 30);
     EXPECT_EQ(c->selectors[0].frames, 300U);
     EXPECT_EQ(c->selectors[0].misses, 0U + 2U + 4U);
+    EXPECT_EQ(c->selectors[0].floor_frames, 0U + 2U + 4U);
+    EXPECT_DOUBLE_EQ(c->selectors[0].popped_share, 0.002);
     EXPECT_EQ(c->selectors[1].psnr_db, 41);
     EXPECT_TRUE(std::isinf(c->selectors[1].accuracy_mean)) << "exact in every round";
 }
@@ -79,10 +84,20 @@ TEST(Compare, JsonIsValidWhereAFigureIsInfiniteAndTheTableSaysExact) {
     EXPECT_EQ(json["selectors"][0]["selector"], "flat");
     EXPECT_EQ(json["selectors"][0]["psnr_db"], 20);
     EXPECT_TRUE(json["selectors"][0]["accuracy"]["mean"].is_null());
+    EXPECT_DOUBLE_EQ(json["selectors"][0]["popping"]["pixels"].get<double>(), 0);
+    EXPECT_EQ(json["selectors"][0]["floor_frames"], 0);
     const std::string table = compare_table(*c);
     EXPECT_NE(table.find("exact"), std::string::npos) << table;
     for (std::size_t begin = 0; begin < table.size(); begin = table.find('\n', begin) + 1)
         EXPECT_LE(table.find('\n', begin) - begin, 100U) << table;
+}
+
+TEST(Compare, OnePictureHasNoFrameBeforeToPopFrom) {
+    FakeWalks walks{{}, {20}};
+    walks.pictures = 1;
+    const auto c = compare(walks, request_of({"flat"}, 1));
+    ASSERT_TRUE(c.ok());
+    EXPECT_TRUE(nlohmann::json::parse(compare_json(*c))["selectors"][0]["popping"].is_null());
 }
 
 TEST(Compare, AWalkWithoutPicturesAndAStopAreErrors) {

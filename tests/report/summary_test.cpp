@@ -169,7 +169,7 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                     "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age", "budget_ms",
                     "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
                     "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated",
-                    "input",       "picture",    "unused_ms", "coarse_frames"}));
+                    "input",       "picture",    "unused_ms", "coarse_frames",  "floor_frames"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
     EXPECT_EQ(keys_of(json["prepared_age"]), (Keys{"p50", "p99", "max"}));
@@ -227,8 +227,37 @@ TEST(Pictures, PsnrIsPooledAndTheWorstFrameIsNamed) {
     s.picture = p;
     const auto json = nlohmann::json::parse(to_json(s));
     EXPECT_EQ(keys_of(json["picture"]),
-              (std::set<std::string>{"frames", "psnr_db", "worst_psnr_db", "worst_frame", "ssim", "flip"}));
+              (std::set<std::string>{"frames", "psnr_db", "worst_psnr_db", "worst_frame", "ssim", "flip", "popping"}));
+    EXPECT_TRUE(json["picture"]["popping"].is_null()) << "no frame before was kept";
     EXPECT_NE(to_table(s, false).find("PSNR 30.0 dB (worst 25.2, frame 20)"), std::string::npos) << to_table(s, false);
+}
+
+TEST(Pictures, PoppingIsOfThoseWithTheFrameBefore) {
+    std::vector<ReportSnapshot> snapshots(3);
+    for (ReportSnapshot& snapshot : snapshots) snapshot.walk = {0, 0, 0, 255};
+    snapshots[1].pops_compared = snapshots[2].pops_compared = true;
+    snapshots[1].popped_share = 0.0004;
+    snapshots[2].pop_mse = 130.05;  // 65025 / (130.05 / 2) = 1000
+    const PictureSummary p = compare_pictures(snapshots);
+    EXPECT_EQ(p.pop_frames, 2U);
+    EXPECT_DOUBLE_EQ(p.popped_share, 0.0002);
+    EXPECT_DOUBLE_EQ(p.worst_popped_share, 0.0004);
+    EXPECT_NEAR(p.pop_psnr_db, 30, 1e-9);
+    WalkSummary s;
+    s.picture = p;
+    const auto popping = nlohmann::json::parse(to_json(s))["picture"]["popping"];
+    EXPECT_EQ(keys_of(popping), (std::set<std::string>{"frames", "pixels", "worst_pixels", "psnr_db"}));
+    EXPECT_DOUBLE_EQ(popping["pixels"].get<double>(), 0.0002) << "not rounded away";
+}
+
+TEST(Summary, FloorFramesAreCountedAnew) {
+    std::vector<rt::FrameRecord> frames = good_frames(3);
+    frames[1].floor_frame = true;
+    WalkSummary s;
+    summarize(frames, period_ns, s);
+    summarize(frames, period_ns, s);
+    EXPECT_EQ(s.floor_frames, 1U);
+    EXPECT_NE(to_table(s, false).find("shown without need in 1"), std::string::npos) << to_table(s, false);
 }
 
 TEST(Verdict, MissesOfTheHostAreNotTheWalksOwn) {

@@ -128,7 +128,7 @@ TEST(Snaps, AreCappedByMemoryAndTheCapIsReported) {
     request.snap_every = 1;
     std::vector<std::string> notes;
     constexpr std::size_t items = 60'000;  // about half a megabyte a picture
-    const std::size_t fit = walk::snapshots_that_fit(items);
+    const std::size_t fit = walk::snapshots_that_fit(items, false);
     EXPECT_LE(fit * items * sizeof(gl::DrawItem), walk::snapshot_memory_bytes);
     const walk::SnapshotStore all = walk::make_snapshot_store(request, fit, items, notes);
     EXPECT_EQ(all.snapshots().size(), fit);
@@ -141,7 +141,7 @@ TEST(Snaps, AreCappedByMemoryAndTheCapIsReported) {
     notes.clear();
     EXPECT_EQ(walk::make_snapshot_store(request, 3 * fit, items, notes).snapshots().size(), fit);
     EXPECT_TRUE(notes.empty()) << "the remedy that was named must work";
-    EXPECT_EQ(walk::snapshots_that_fit(1U << 30U), 1U);
+    EXPECT_EQ(walk::snapshots_that_fit(1U << 30U, true), 1U);
 }
 
 TEST(Strict, NamesEveryLackWithItsRemedy) {

@@ -43,6 +43,11 @@ ComparedSelector medians(const std::string& selector, const Summaries& rounds) {
     c.worst_psnr_db = median([](const auto& s) { return s.picture.worst_psnr_db; });
     c.ssim = median([](const auto& s) { return s.picture.ssim; });
     c.flip = median([](const auto& s) { return s.picture.flip; });
+    c.pops_compared = std::all_of(rounds.begin(), rounds.end(), [](const auto& s) { return s.picture.pop_frames > 0; });
+    if (c.pops_compared) {
+        c.popped_share = median([](const auto& s) { return s.picture.popped_share; });
+        c.pop_psnr_db = median([](const auto& s) { return s.picture.pop_psnr_db; });
+    }
     c.accuracy_mean = median([](const auto& s) { return s.accuracy_mean; });
     c.accuracy_min = median([](const auto& s) { return s.accuracy_min; });
     c.frame_ms_p50 = median([](const auto& s) { return s.frame_ms.p50; });
@@ -53,6 +58,7 @@ ComparedSelector medians(const std::string& selector, const Summaries& rounds) {
         c.frames += s.frames;
         c.misses += s.misses;
         c.coarse_frames += s.coarse_frames;
+        c.floor_frames += s.floor_frames;
     }
     return c;
 }
@@ -116,13 +122,16 @@ std::string compare_json(const Comparison& c) {
                              {"worst_psnr_db", rounded(s.worst_psnr_db)},
                              {"ssim", rounded(s.ssim)},
                              {"flip", rounded(s.flip)},
+                             {"popping", s.pops_compared ? Json({{"pixels", s.popped_share}, {"psnr_db", rounded(s.pop_psnr_db)}})
+                                                         : Json(nullptr)},
                              {"accuracy", {{"mean", rounded(s.accuracy_mean)}, {"min", rounded(s.accuracy_min)}}},
                              {"frame_ms", {{"p50", rounded(s.frame_ms_p50)}, {"p99", rounded(s.frame_ms_p99)}}},
                              {"unused_ms", rounded(s.unused_ms)},
                              {"switches_per_frame", rounded(s.switches_per_frame)},
                              {"frames", s.frames},
                              {"misses", s.misses},
-                             {"coarse_frames", s.coarse_frames}});
+                             {"coarse_frames", s.coarse_frames},
+                             {"floor_frames", s.floor_frames}});
     const Json json = {{"model", c.model},
                        {"path", c.path},
                        {"renderer", c.renderer},
@@ -142,24 +151,38 @@ std::string compare_table(const Comparison& c) {
     std::string out =
         fmt::format("{}, {}x{} at {:.4g} Hz, budget {:.1f} ms: {} pictures of a walk, {} {}\n", c.model, c.width, c.height,
                     c.rate_hz, c.budget_ms, c.pictures, c.rounds, c.rounds == 1 ? "round" : "rounds, medians");
-    const report::Columns columns({{"selector", 18},
-                                   {"PSNR dB", -8},
-                                   {"worst", -6},
-                                   {"SSIM", -6},
-                                   {"FLIP", -6},
-                                   {"accuracy", -9},
-                                   {"p50 ms", -7},
-                                   {"p99 ms", -7},
-                                   {"unused", -7},
-                                   {"switches", -9},
-                                   {"misses", -7}});
-    out += columns.heading() + "\n";
     const auto text = [](double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); };
+    const auto accuracy = [&](double value) { return std::isfinite(value) ? text(value, 1) : "exact"; };
+    const report::Columns pictures({{"selector", 18},
+                                    {"PSNR dB", -8},
+                                    {"worst", -6},
+                                    {"SSIM", -6},
+                                    {"FLIP", -6},
+                                    {"popped %", -9},
+                                    {"pops dB", -8},
+                                    {"accuracy", -9},
+                                    {"least", -8}});
+    out += pictures.heading() + "\n";
     for (const ComparedSelector& s : c.selectors)
-        out += columns.row({s.selector, text(s.psnr_db, 2), text(s.worst_psnr_db, 1), text(s.ssim, 3), text(s.flip, 3),
-                            std::isfinite(s.accuracy_mean) ? text(s.accuracy_mean, 1) : "exact", text(s.frame_ms_p50, 1),
-                            text(s.frame_ms_p99, 1), text(s.unused_ms, 1), text(s.switches_per_frame, 2),
-                            std::to_string(s.misses)}) +
+        out +=
+            pictures.row({s.selector, text(s.psnr_db, 2), text(s.worst_psnr_db, 1), text(s.ssim, 3), text(s.flip, 3),
+                          s.pops_compared ? text(100 * s.popped_share, 2) : "-", s.pops_compared ? text(s.pop_psnr_db, 1) : "-",
+                          accuracy(s.accuracy_mean), accuracy(s.accuracy_min)}) +
+            "\n";
+    const report::Columns frames({{"selector", 18},
+                                  {"p50 ms", -8},
+                                  {"p99 ms", -8},
+                                  {"unused", -8},
+                                  {"switches", -9},
+                                  {"frames", -8},
+                                  {"misses", -7},
+                                  {"coarse", -7},
+                                  {"floor", -7}});
+    out += frames.heading() + "\n";
+    for (const ComparedSelector& s : c.selectors)
+        out += frames.row({s.selector, text(s.frame_ms_p50, 1), text(s.frame_ms_p99, 1), text(s.unused_ms, 1),
+                           text(s.switches_per_frame, 2), std::to_string(s.frames), std::to_string(s.misses),
+                           std::to_string(s.coarse_frames), std::to_string(s.floor_frames)}) +
                "\n";
     return out;
 }

@@ -25,8 +25,10 @@ struct ComparedSelector {
     double psnr_db = 0, worst_psnr_db = 0, ssim = 0, flip = 0;
     double min_psnr_db = 0, max_psnr_db = 0;     ///< of the rounds: the spread
     double accuracy_mean = 0, accuracy_min = 0;  ///< rad^-1; infinite: exact
+    bool pops_compared = false;                  ///< else the next two are 0
+    double popped_share = 0, pop_psnr_db = 0;    ///< of one pose by a frame's cut and by the cut before it
     double frame_ms_p50 = 0, frame_ms_p99 = 0, unused_ms = 0, switches_per_frame = 0;
-    std::uint64_t frames = 0, misses = 0, coarse_frames = 0;  ///< sums
+    std::uint64_t frames = 0, misses = 0, coarse_frames = 0, floor_frames = 0;  ///< sums
 };
 
 /// All that `surefoot compare` prints.
@@ -44,7 +46,7 @@ using RunWalk = std::function<Result<walk::WalkOutcome>(const walk::WalkRequest&
 Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const Progress& progress);
 
 std::string compare_json(const Comparison& comparison);
-/// At most 100 columns; a line a selector, after a line that says what was walked.
+/// At most 100 columns; after a line that says what was walked, a line a selector of the pictures, then one of the frames.
 std::string compare_table(const Comparison& comparison);
 
 }  // namespace surefoot::accuracy

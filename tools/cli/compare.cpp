@@ -44,12 +44,15 @@ int run_compare_command(CompareArguments& a, const Context& context) {
 
 void add_compare(CLI::App& app, Context& context) {
     auto a = std::make_shared<CompareArguments>();
-    CLI::App* c =
-        add_command(app, "compare", "Compare selectors by the pictures and times of one walk",
-                    "surefoot compare town.walk --seconds 20 --rounds 3\n\n"
-                    "Selectors walk in turns. After each walk, frames are drawn again and in full detail: PSNR is pooled over\n"
-                    "them, SSIM and FLIP are means. `unused` is the mean time left, in ms, where the benefit is below 0.99.",
-                    a->json);
+    CLI::App* c = add_command(
+        app, "compare", "Compare selectors by the pictures and times of one walk",
+        "surefoot compare town.walk --seconds 20 --rounds 3\n\n"
+        "Selectors walk in turns. After each walk, frames are drawn again and in full detail: PSNR is pooled over\n"
+        "them, SSIM and FLIP are means. `popped` and `pops` compare one pose by a frame's cut and by the cut before it:\n"
+        "the share of pixels that change visibly, and PSNR. `unused` is the mean time left, in ms, where the benefit\n"
+        "is below 0.99. `coarse` counts frames with coarser slices. `floor` counts frames that fell to the floor\n"
+        "although the cut before would have fitted.",
+        a->json);
     walk::WalkRequest& r = a->request.walk;
     r.pictures = 7;
     a->request.selectors = accuracy::compared_selectors();

@@ -84,8 +84,19 @@ Json input_of(const InputSummary& in) {
 /// Null where no picture was compared.
 Json picture_of(const PictureSummary& p) {
     if (p.frames == 0) return nullptr;
-    return {{"frames", p.frames},           {"psnr_db", rounded(p.psnr_db)}, {"worst_psnr_db", rounded(p.worst_psnr_db)},
-            {"worst_frame", p.worst_frame}, {"ssim", rounded(p.ssim)},       {"flip", rounded(p.flip)}};
+    // Shares of pixels keep their digits: a thousandth of a picture is seen.
+    const Json popping = p.pop_frames == 0 ? Json(nullptr)
+                                           : Json({{"frames", p.pop_frames},
+                                                   {"pixels", p.popped_share},
+                                                   {"worst_pixels", p.worst_popped_share},
+                                                   {"psnr_db", rounded(p.pop_psnr_db)}});
+    return {{"frames", p.frames},
+            {"psnr_db", rounded(p.psnr_db)},
+            {"worst_psnr_db", rounded(p.worst_psnr_db)},
+            {"worst_frame", p.worst_frame},
+            {"ssim", rounded(p.ssim)},
+            {"flip", rounded(p.flip)},
+            {"popping", popping}};
 }
 
 }  // namespace
@@ -114,6 +125,7 @@ std::string to_json(const WalkSummary& s) {
         {"triangles", {{"mean", rounded(s.triangles_mean)}, {"max", s.triangles_max}}},
         {"downgrades", s.downgrades},
         {"coarse_frames", s.coarse_frames},
+        {"floor_frames", s.floor_frames},
         {"unused_ms",
          {{"mean", rounded(s.unused_ms.mean)}, {"p50", rounded(s.unused_ms.p50)}, {"p99", rounded(s.unused_ms.p99)}}},
         {"switches_per_frame", rounded(s.switches_per_frame)},

@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 60> columns = {{
+constexpr std::array<Column, 62> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -73,6 +73,8 @@ constexpr std::array<Column, 60> columns = {{
     {"own_miss", [](auto& r, auto& f) { add(r, "{:d}", f.own_miss); }},
     {"cause", [](auto& r, auto& f) { add(r, "{}", rt::cause_of(f)); }},
     {"floor_binds", [](auto& r, auto& f) { add(r, "{:d}", f.floor_binds); }},
+    {"floor_share", [](auto& r, auto& f) { add(r, "{:.3f}", f.floor_share); }},
+    {"floor_frame", [](auto& r, auto& f) { add(r, "{:d}", f.floor_frame); }},
     {"control", [](auto& r, auto& f) { add(r, "{:d}", f.control); }},
     {"block", [](auto& r, auto& f) { add(r, "{}", f.block); }},
     {"input_age_us", [](auto& r, auto& f) { if (f.input_stamp_ns > 0) add(r, "{:.3f}", us_between(f.input_stamp_ns, f.submitted_ns)); }},

@@ -65,7 +65,14 @@ struct PictureSummary {
     double worst_psnr_db = 0;       ///< of one frame
     std::uint64_t worst_frame = 0;  ///< its number
     double ssim = 0, flip = 0;      ///< means
+    /// Popping: pictures of one pose by this frame's cut and by the cut of the frame before.
+    std::uint32_t pop_frames = 0;  ///< compared so; 0: none, and no figure holds
+    double popped_share = 0;       ///< mean share of pixels that change by over visible_steps
+    double worst_popped_share = 0;
+    double pop_psnr_db = 0;  ///< as psnr_db
 };
+/// A change of R, G or B by more is taken to be visible: 3 % of full scale.
+constexpr int visible_steps = 8;
 /// PSNR of equal pictures: no other pair of 8-bit pictures below 4000 x 4000 pixels reaches it.
 constexpr double max_psnr_db = 130;
 
@@ -82,6 +89,7 @@ struct WalkSummary {
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
     std::uint64_t coarse_frames = 0;  ///< with a slice that the in-frame check drew coarser
+    std::uint64_t floor_frames = 0;   ///< over half of the picture fell to floor forms, although the cut before would have fitted
     Quantiles unused_ms;              ///< time between the end of drawing and the deadline, of frames with a benefit below 0.99
     std::uint64_t triangles_max = 0, downgrades = 0, floor_bound_frames = 0, model_triangles = 0;
     std::string cut_hash;  ///< 16 hex digits over all frames
@@ -117,7 +125,9 @@ struct ReportSnapshot {
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> walk, full, difference;  ///< RGBA8; may be empty (null backend)
     double snr_db = 0, ssim = 0, flip = 0;
-    double mse = 0;  ///< mean squared error of R, G and B bytes
+    double mse = 0;              ///< mean squared error of R, G and B bytes
+    bool pops_compared = false;  ///< with the cut of the frame before, drawn at this pose; else the next two are 0
+    double popped_share = 0, pop_mse = 0;
     std::uint64_t triangles = 0, full_triangles = 0;
     float accuracy = 0;
     /// Top view (key 't' of the walkthrough program in Maciel 1994, figure 3.20): rectangles of the drawn nodes in the XZ plane,

@@ -36,6 +36,7 @@ void count_frames(std::span<const FrameRecord* const> frames, WalkSummary& s) {
         if (f->missed) ++s.miss_causes[std::string(rt::cause_of(*f))];
         s.downgrades += f->downgraded_slices;
         s.coarse_frames += f->downgraded_slices > 0 ? 1 : 0;
+        s.floor_frames += f->floor_frame ? 1 : 0;
         s.floor_bound_frames += f->floor_binds ? 1 : 0;
         s.page_faults += f->minor_faults + f->major_faults;
         s.guard_violations += f->guard_violations;
@@ -97,8 +98,8 @@ void unused_time(std::span<const FrameRecord* const> frames, WalkSummary& s) {
 void clear_counts(WalkSummary& s) {
     s.frames = s.slots = s.skipped = s.misses = s.own_misses = 0;
     s.miss_causes.clear();
-    s.downgrades = s.coarse_frames = s.floor_bound_frames = s.page_faults = s.guard_violations = s.driver_faults =
-        s.driver_allocations = 0;
+    s.downgrades = s.coarse_frames = s.floor_frames = s.floor_bound_frames = s.page_faults = s.guard_violations =
+        s.driver_faults = s.driver_allocations = 0;
     s.triangles_max = 0;
 }
 
@@ -137,13 +138,19 @@ PictureSummary compare_pictures(std::span<const ReportSnapshot> snapshots) {
         return mse > 0 ? std::min(max_psnr_db, 10 * std::log10(white * white / mse)) : max_psnr_db;
     };
     PictureSummary p;
-    double mse = 0, worst_mse = -1;
+    double mse = 0, worst_mse = -1, pop_mse = 0;
     for (const ReportSnapshot& snapshot : snapshots) {
         if (snapshot.walk.empty()) continue;
         ++p.frames;
         mse += snapshot.mse;
         p.ssim += snapshot.ssim;
         p.flip += snapshot.flip;
+        if (snapshot.pops_compared) {
+            ++p.pop_frames;
+            p.popped_share += snapshot.popped_share;
+            p.worst_popped_share = std::max(p.worst_popped_share, snapshot.popped_share);
+            pop_mse += snapshot.pop_mse;
+        }
         if (snapshot.mse <= worst_mse) continue;
         worst_mse = snapshot.mse;
         p.worst_frame = snapshot.frame;
@@ -153,6 +160,9 @@ PictureSummary compare_pictures(std::span<const ReportSnapshot> snapshots) {
     p.worst_psnr_db = psnr_db(worst_mse);
     p.ssim /= p.frames;
     p.flip /= p.frames;
+    if (p.pop_frames == 0) return p;
+    p.popped_share /= p.pop_frames;
+    p.pop_psnr_db = psnr_db(pop_mse / p.pop_frames);
     return p;
 }
 

@@ -53,9 +53,11 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
         triangles += fmt::format(" of the model's {}", short_number(static_cast<double>(s.model_triangles)));
     if (s.hidden.max > 0) triangles += fmt::format("; {:.0f} occluded nodes a frame left out", s.hidden.mean);
     table.row("triangles", triangles);
-    table.row("stability",
-              fmt::format("{:.2f} switches a frame, {} slices drawn coarser in {} frames, floor reached in {} frames",
-                          s.switches_per_frame, s.downgrades, s.coarse_frames, s.floor_bound_frames));
+    table.row(
+        "stability",
+        fmt::format(
+            "{:.2f} switches a frame, {} slices drawn coarser in {} frames, floor reached in {} frames, shown without need in {}",
+            s.switches_per_frame, s.downgrades, s.coarse_frames, s.floor_bound_frames, s.floor_frames));
 }
 
 void real_time_rows(LabelledText& table, const WalkSummary& s) {

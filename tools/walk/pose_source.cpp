@@ -1,6 +1,9 @@
 // Poses along a path.
 #include "tools/walk/pose_source.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "tools/walk/tour_controller.hpp"
 
 namespace surefoot::walk {
@@ -15,6 +18,10 @@ Pose mirrored(const Pose& pose, const Pose& about) {
     return out;
 }
 
+double angle_between(const Pose& a, const Pose& b) {
+    return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a.orientation, b.orientation))));
+}
+
 }  // namespace
 
 FramePose PathPoses::sample(const FrameTime& time) {
@@ -22,6 +29,13 @@ FramePose PathPoses::sample(const FrameTime& time) {
     const double now_s = static_cast<double>(time.path_slot) * period_s_;
     out.pose = pose_at(path_, now_s);
     out.before = time.path_slot > 0 ? pose_at(path_, now_s - period_s_) : mirrored(pose_at(path_, period_s_), out.pose);
+    // A set that is prepared now serves until the horizon, and is begun a frame before it is used.
+    Pose from = out.pose;
+    for (int i = 1; i <= static_cast<int>(horizon_periods) + 1; ++i) {
+        const Pose to = pose_at(path_, now_s + i * period_s_);
+        out.turn_ahead_rad_s = std::max(out.turn_ahead_rad_s, angle_between(from, to) / period_s_);
+        from = to;
+    }
     return out;
 }
 

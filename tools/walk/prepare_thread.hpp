@@ -30,7 +30,8 @@ struct PoseSample {
     std::int64_t time_ns = 0;  ///< when it was due
     Pose pose, before;         ///< now, and one frame ago
     double dt_s = 0;
-    PredictedRegion predicted;  ///< not known: the last two poses say where the walk goes
+    PredictedRegion predicted;    ///< not known: the last two poses say where the walk goes
+    double turn_ahead_rad_s = 0;  ///< largest turn rate until the horizon, if the source knows it
     bool valid = false;
 };
 

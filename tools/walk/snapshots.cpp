@@ -14,30 +14,65 @@
 
 namespace surefoot::walk {
 
-std::size_t snapshots_that_fit(std::size_t max_items) {
-    return std::max<std::size_t>(1, snapshot_memory_bytes / (sizeof(FrameSnapshot) + max_items * sizeof(gl::DrawItem)));
+std::size_t snapshots_that_fit(std::size_t max_items, bool with_last) {
+    const std::size_t items = max_items * (with_last ? 2 : 1);
+    return std::max<std::size_t>(1, snapshot_memory_bytes / (sizeof(FrameSnapshot) + items * sizeof(gl::DrawItem)));
 }
 
-SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items)
-    : every_(every), snapshots_(every == 0 ? 0 : max_snapshots) {
+SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items, bool with_last)
+    : every_(every), with_last_(with_last), snapshots_(every == 0 ? 0 : max_snapshots) {
+    const auto touch = [&](std::vector<gl::DrawItem>& items) {  // now, so that the copy later does not fault
+        items.resize(max_items);
+        items.clear();
+    };
     for (FrameSnapshot& snapshot : snapshots_) {
-        snapshot.items.resize(max_items);  // touched now, so that the copy later does not fault
-        snapshot.items.clear();
+        touch(snapshot.items);
+        if (with_last) touch(snapshot.last_items);
     }
 }
 
 void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, std::uint64_t triangles,
-                             std::span<const gl::DrawItem> items) {
-    if (every_ == 0 || frame % every_ != 0 || used_ == snapshots_.size()) return;
+                             std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled) {
+    if (every_ == 0 || used_ == snapshots_.size()) return;
+    if (frame % every_ != 0) {
+        if ((frame + 1) % every_ == 0) remember_last(drawn, culled);
+        return;
+    }
     FrameSnapshot& snapshot = snapshots_[used_];
-    if (!CHECK_RARE(items.size() <= snapshot.items.capacity(), "A snapshot has room for all that is drawn")) return;
+    if (!CHECK_RARE(drawn.size() <= snapshot.items.capacity(), "A snapshot has room for all that is drawn")) return;
     snapshot.frame = frame;
     snapshot.time_s = time_s;
     snapshot.pose = pose;
     snapshot.accuracy = accuracy;
     snapshot.triangles = triangles;
-    snapshot.items.assign(items.begin(), items.end());
+    snapshot.items.assign(drawn.begin(), drawn.end());
     ++used_;
+    if (every_ == 1 && used_ < snapshots_.size()) remember_last(drawn, culled);
+}
+
+void SnapshotStore::remember_last(std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled) {
+    if (!with_last_) return;
+    std::vector<gl::DrawItem>& last = snapshots_[used_].last_items;
+    if (!CHECK_RARE(drawn.size() + culled.size() <= last.capacity(), "A snapshot has room for a whole cut")) return;
+    last.assign(drawn.begin(), drawn.end());
+    last.insert(last.end(), culled.begin(), culled.end());
+}
+
+std::vector<gl::DrawItem> last_cut_at(const model::Model& model, const FrameSnapshot& snapshot) {
+    enum : std::uint8_t { nothing, above_shown, shown };  // what a node is in the last cut
+    std::vector<std::uint8_t> state(model.nodes.size(), nothing);
+    for (const gl::DrawItem& item : snapshot.last_items) {
+        state[item.node] = shown;
+        for (model::Index n = model.nodes[item.node].parent; n != model::none && state[n] == nothing; n = model.nodes[n].parent)
+            state[n] = above_shown;
+    }
+    std::vector<gl::DrawItem> items = snapshot.last_items;
+    for (const gl::DrawItem& item : snapshot.items) {
+        bool covered = state[item.node] != nothing;
+        for (model::Index n = item.node; n != model::none && !covered; n = model.nodes[n].parent) covered = state[n] == shown;
+        if (!covered) items.push_back(item);
+    }
+    return items;
 }
 
 namespace {
@@ -89,6 +124,14 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     engine.draw_unbudgeted(snapshot.pose, full);
     auto reference = engine.device().read_pixels();
     if (!reference) return reference.error();
+    if (!snapshot.last_items.empty()) {
+        engine.draw_unbudgeted(snapshot.pose, last_cut_at(engine.model(), snapshot));
+        auto before = engine.device().read_pixels();
+        if (!before) return before.error();
+        out.pops_compared = true;
+        out.popped_share = 1 - measure::share_within(walk->rgba, before->rgba, report::visible_steps);
+        out.pop_mse = measure::snr(walk->rgba, before->rgba).mse;
+    }
     out.width = walk->width;
     out.height = walk->height;
     const measure::Snr snr = measure::snr(walk->rgba, reference->rgba);

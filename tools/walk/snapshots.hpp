@@ -21,31 +21,41 @@ struct FrameSnapshot {
     float accuracy = 0;
     std::uint64_t triangles = 0;
     std::vector<gl::DrawItem> items;
+    std::vector<gl::DrawItem> last_items;  ///< the frame before's, those outside its view included; empty: none was kept
 };
 
 /// Memory limit of all snapshots of a walk, in bytes. 512 of them on the largest models.
 constexpr std::size_t snapshot_memory_bytes = 256U << 20U;
-/// At least one.
-std::size_t snapshots_that_fit(std::size_t max_items);
+/// At least one. with_last: each holds the items of two frames.
+std::size_t snapshots_that_fit(std::size_t max_items, bool with_last);
 
 /// Sized before the walk; remember() only copies.
 class SnapshotStore {
 public:
-    /// Every `every` frames, at most `max_snapshots` of them, each of at most `max_items` items.
-    SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items);
-    /// On the frame thread. Frames that are not due, or beyond the store, are passed over.
+    /// Every `every` frames, at most `max_snapshots` of them, each of at most `max_items` items. with_last: also the items of the
+    /// frame before each.
+    SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items, bool with_last = false);
+    /// On the frame thread, after each frame. Frames that are not due, or beyond the store, are passed over.
     void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, std::uint64_t triangles,
-                  std::span<const gl::DrawItem> items);
+                  std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled = {});
     [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
     [[nodiscard]] std::size_t used() const { return used_; }
 
 private:
+    void remember_last(std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled);
+
     std::uint64_t every_;
+    bool with_last_;
     std::vector<FrameSnapshot> snapshots_;
     std::size_t used_ = 0;
 };
 
-/// Draws a snapshot again, and full detail, and measures the difference; with the top view of what was drawn.
+/// What the frame before's cut shows at the snapshot's pose. Nodes that only came into view with this frame are drawn as it draws
+/// them: they are no pop. Allocates.
+std::vector<gl::DrawItem> last_cut_at(const model::Model& model, const FrameSnapshot& snapshot);
+
+/// Draws a snapshot again, and full detail, and measures the difference; with the top view of what was drawn. Where the items of
+/// the frame before were kept, draws them too: what changes is the popping.
 Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapshot& snapshot);
 
 /// DIR/00000.png, ... one a snapshot, named by frame number over `every`.

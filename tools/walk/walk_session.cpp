@@ -196,8 +196,9 @@ void warm_up(Session& s) {
         prepare_at_worker_priority(s, {pose, 0.1, 0.05}, set);
         engine.select(set, budget_share * period_us, {}, 0);
         engine.submit(pose, limits);
-        engine.select_coarse();
+        engine.select_last();
         engine.submit(pose, limits);
+        engine.submit(pose, {});  // no time: its stand-ins
     }
     engine.device().release();
     // Ready for the first frame: a complete set for where the path begins.

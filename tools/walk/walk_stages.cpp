@@ -62,6 +62,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
             now_.pose = newest.pose;
             now_.before = newest.before;
             now_.predicted = newest.predicted;
+            now_.turn_ahead_rad_s = newest.turn_ahead_rad_s;
             now_.dt_s = period_s;
         }
         prepare_inline();
@@ -69,6 +70,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.before = unseen ? newest.before : now_.pose;
     now_.dt_s = period_s * (1.0 + (request_.control || unseen ? 0 : record.skipped_before));
     now_.predicted = newest.predicted;
+    now_.turn_ahead_rad_s = newest.turn_ahead_rad_s;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
     now_.valid = true;
@@ -112,7 +114,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.budget_us = static_cast<float>(options_.budget_us);
     coarse_ = age > rt::oldest_prepared || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
-        engine_.select_coarse();
+        engine_.select_last();
         return;
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
@@ -162,6 +164,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
     }
+    time_left_us_ = limits.limit_us - limits.elapsed_us;
     report_ = engine_.submit(now_.pose, limits);
     engine_.device().draws.plays();
     if (engine_.device().lost() && options_.lost != nullptr) options_.lost->store(true);
@@ -173,6 +176,14 @@ void WalkStages::submit(rt::FrameRecord& record) {
     }
     record.submitted_ns = begun_ns + static_cast<std::int64_t>(report_.submitted_us * 1e3);
     record.rastered_ns = begun_ns + static_cast<std::int64_t>(report_.finished_us * 1e3);
+}
+
+/// What predictions of this frame's items are to be multiplied by. Where the in-frame check found them wrong, what it found
+/// counts.
+double WalkStages::cost_factor(const rt::FrameRecord& record, double actual_us) const {
+    const double expected = record.correction;
+    if (coarse_ || report_.downgraded_slices == 0 || !(report_.predicted_us > 0)) return expected;
+    return std::max(expected, actual_us / report_.predicted_us);
 }
 
 /// submit() has waited for the last fence and presented.
@@ -191,9 +202,11 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.actual_us = static_cast<float>(actual_us);
     if (!coarse_) controller_.update(report_.predicted_us, actual_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
+    record.floor_share = report_.floor_share;
+    record.floor_frame = engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
     keep(record);
     const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
-    snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn());
+    snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn(), engine_.culled());
 }
 
 }  // namespace surefoot::walk

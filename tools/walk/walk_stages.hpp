@@ -70,6 +70,7 @@ private:
     void latch(rt::FrameRecord& record);
     [[nodiscard]] FrameTime frame_time(const rt::FrameRecord& record) const;
     void keep(const rt::FrameRecord& record);
+    [[nodiscard]] double cost_factor(const rt::FrameRecord& record, double actual_us) const;
 
     Engine& engine_;
     PoseSource& pose_source_;
@@ -84,9 +85,10 @@ private:
     rt::CostController controller_;
     PoseSample now_;
     SubmitReport report_;
+    double time_left_us_ = 0;           ///< until the limit, as the last submission began
     std::uint64_t walked_ = 0;          ///< frames so far, without the control's bare ones
     std::uint64_t path_slot_ = 0;       ///< position on the path, in periods; with a control it does not advance in bare blocks
-    bool coarse_ = false;               ///< the last selection was Engine::select_coarse()
+    bool coarse_ = false;               ///< the last selection was Engine::select_last()
     const select::Cut* cut_ = nullptr;  ///< of the last selection
     double requested_budget_us_ = 0;    ///< what that selection was given
     Correction requested_correction_;

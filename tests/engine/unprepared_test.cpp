@@ -1,0 +1,137 @@
+// Frames without a prepared set: the last cut's forms where they are legal, coarse levels elsewhere, never a hole.
+#include "render/unprepared.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "render/bake/bake.hpp"
+#include "render/engine.hpp"
+#include "render/prepare/evaluate.hpp"
+#include "tools/scenes/scenes.hpp"
+
+namespace surefoot {
+namespace {
+
+struct WithoutPreparedSet : testing::Test {
+    static constexpr double ample_us = 1e9;
+    std::unique_ptr<Engine> engine;
+    prepare::PreparedFrame prepared;
+    Pose pose;
+
+    void SetUp() override {
+        auto scene = scenes::generate("forest", 0.05, 1);
+        ASSERT_TRUE(scene.ok());
+        auto model = bake::bake(scene->scene, {}, {});
+        ASSERT_TRUE(model.ok());
+        EngineOptions options;
+        options.device.kind = gl::BackendKind::null;
+        auto opened = Engine::open(std::move(*model), model::default_costs(), options);
+        ASSERT_TRUE(opened.ok());
+        engine = std::move(*opened);
+        engine->reserve(prepared);
+        pose.position = engine->model().nodes[0].box.centre() + dvec3(0, 2, 0);
+    }
+    const select::Cut& select_here() {
+        engine->prepare({pose, 0.1, 0.06}, 0, 0, 0, prepared);
+        return engine->select(prepared, ample_us, {}, 0);
+    }
+    SubmitReport draw_last(double limit_us) {
+        engine->select_last();
+        return engine->submit(pose, {.elapsed_us = 0, .limit_us = limit_us});
+    }
+    /// Every visible leaf is covered exactly once.
+    void expect_whole(const char* what) const {
+        const model::Model& m = engine->model();
+        const model::Frustum frustum =
+            model::make_frustum(pose, engine->options().device.viewport, model::far_corners_m(m.nodes[0].box));
+        std::vector<int> times(m.nodes.size(), 0);
+        for (const gl::DrawItem& item : engine->drawn()) ++times[item.node];
+        std::size_t leaves = 0;
+        for (model::Index leaf = 0; leaf < m.nodes.size(); ++leaf) {
+            if (m.nodes[leaf].child_count > 0) continue;
+            int covered = 0;
+            bool seen = true;
+            for (model::Index n = leaf; n != model::none; n = m.nodes[n].parent) {
+                covered += times[n];
+                seen = seen && model::visible(frustum, m.nodes[n].box);
+            }
+            if (seen) ++leaves;
+            if (seen)
+                EXPECT_EQ(covered, 1) << what << ": leaf " << leaf;
+            else
+                EXPECT_LE(covered, 1) << what << ": leaf " << leaf;
+        }
+        EXPECT_GT(leaves, 5U) << what << ": or the test shows nothing";
+    }
+    void turn(double angle_rad) { pose.orientation = glm::angleAxis(angle_rad, dvec3(0, 1, 0)) * pose.orientation; }
+};
+
+TEST_F(WithoutPreparedSet, NothingWasShownYetSoCoarseLevelsAre) {
+    const SubmitReport report = draw_last(ample_us);
+    expect_whole("at first");
+    EXPECT_LE(engine->drawn().size(), 256U);
+    EXPECT_GT(report.predicted_us, 0);
+    for (const gl::DrawItem& item : engine->drawn()) EXPECT_TRUE(engine->model().reps[item.rep].everywhere);
+}
+
+TEST_F(WithoutPreparedSet, TheLastCutKeepsItsFormsWhereTheyAreLegal) {
+    std::map<model::Index, model::Index> shown;
+    for (const select::CutItem& item : select_here().items) shown[item.node] = item.rep;
+    turn(0.3);
+    pose.position += dvec3(1.5, 0, -1.5);
+    const SubmitReport report = draw_last(ample_us);
+    expect_whole("turned");
+    std::size_t kept = 0;
+    const model::Model& m = engine->model();
+    for (const gl::DrawItem& item : engine->drawn()) {
+        const auto nearest_m = static_cast<float>(m.nodes[item.node].box.distance(pose.position));
+        EXPECT_TRUE(prepare::legal(m.reps[item.rep], nearest_m)) << "node " << item.node;
+        const auto before = shown.find(item.node);
+        if (before == shown.end()) continue;
+        if (prepare::legal(m.reps[before->second], nearest_m)) {
+            EXPECT_EQ(item.rep, before->second) << "node " << item.node;
+            ++kept;
+        }
+    }
+    EXPECT_GT(kept, 5U) << "or the test shows nothing";
+    EXPECT_EQ(report.downgraded_slices, 0U);
+    EXPECT_FALSE(engine->fell_to_floor(pose, ample_us, 1));
+}
+
+TEST_F(WithoutPreparedSet, OverloadDrawsStandInsAndNoHole) {
+    select_here();
+    const double full_us = draw_last(ample_us).predicted_us;
+    std::map<model::Index, model::Index> full;
+    for (const gl::DrawItem& item : engine->drawn()) full[item.node] = item.rep;
+    bool some_of_both = false;
+    for (const double share : {0.0, 0.2, 0.4, 0.6, 0.8}) {
+        const SubmitReport report = draw_last(full_us * share);
+        expect_whole("overload");
+        EXPECT_GT(report.downgraded_slices, 0U) << share;
+        EXPECT_LT(report.predicted_us, full_us) << share;
+        std::size_t kept = 0;
+        for (const gl::DrawItem& item : engine->drawn()) kept += full.contains(item.node) && full[item.node] == item.rep ? 1 : 0;
+        some_of_both |= kept > 0 && kept < engine->drawn().size();
+        if (share == 0.0) EXPECT_LE(engine->drawn().size(), 256U);
+    }
+    EXPECT_TRUE(some_of_both) << "what comes first keeps its detail";
+}
+
+TEST_F(WithoutPreparedSet, SeveralSuchFramesInARowKeepTheForms) {
+    select_here();
+    turn(0.2);
+    draw_last(ample_us);
+    std::vector<gl::DrawItem> first(engine->drawn().begin(), engine->drawn().end());
+    draw_last(ample_us);
+    ASSERT_EQ(engine->drawn().size(), first.size());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        EXPECT_EQ(engine->drawn()[i].node, first[i].node);
+        EXPECT_EQ(engine->drawn()[i].rep, first[i].rep);
+    }
+}
+
+}  // namespace
+}  // namespace surefoot

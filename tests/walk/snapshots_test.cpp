@@ -1,0 +1,67 @@
+// Snapshots: which frames are kept, what the frame before showed, and what of it is a pop.
+#include "tools/walk/snapshots.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <utility>
+
+namespace surefoot {
+namespace {
+
+using Items = std::vector<gl::DrawItem>;
+using Pairs = std::set<std::pair<model::Index, model::Index>>;
+
+Pairs pairs_of(const Items& items) {
+    Pairs pairs;
+    for (const gl::DrawItem& item : items) pairs.insert({item.node, item.rep});
+    return pairs;
+}
+
+TEST(Snapshots, HoldTheFrameBeforeWithWhatWasOutsideItsView) {
+    walk::SnapshotStore store(3, 2, 10, true);
+    for (model::Index frame = 0; frame < 9; ++frame) {
+        const Items drawn{{frame, 0}}, culled{{frame + 100, 0}};
+        store.remember(frame, 0, {}, 0, 0, drawn, culled);
+    }
+    ASSERT_EQ(store.used(), 2U);
+    EXPECT_TRUE(store.snapshots()[0].last_items.empty()) << "nothing comes before the first";
+    EXPECT_EQ(store.snapshots()[1].frame, 3U);
+    EXPECT_EQ(pairs_of(store.snapshots()[1].items), (Pairs{{3, 0}}));
+    EXPECT_EQ(pairs_of(store.snapshots()[1].last_items), (Pairs{{2, 0}, {102, 0}}));
+}
+
+TEST(Snapshots, OfEveryFrameHoldTheFrameBeforeToo) {
+    walk::SnapshotStore store(1, 2, 10, true);
+    for (model::Index frame = 0; frame < 4; ++frame) store.remember(frame, 0, {}, 0, 0, Items{{frame, 0}});
+    EXPECT_TRUE(store.snapshots()[0].last_items.empty());
+    EXPECT_EQ(pairs_of(store.snapshots()[1].last_items), (Pairs{{0, 0}}));
+    walk::SnapshotStore without(1, 2, 10);
+    for (model::Index frame = 0; frame < 4; ++frame) without.remember(frame, 0, {}, 0, 0, Items{{frame, 0}});
+    EXPECT_TRUE(without.snapshots()[1].last_items.empty());
+}
+
+/// Root 0 over 1 and 2; 1 over 3 and 4.
+model::Model small_tree() {
+    model::Model model;
+    model.nodes.resize(5);
+    for (const auto& [child, parent] : {std::pair{1U, 0U}, {2U, 0U}, {3U, 1U}, {4U, 1U}}) model.nodes[child].parent = parent;
+    return model;
+}
+
+TEST(Snapshots, WhatCameIntoViewIsNoPop) {
+    const model::Model model = small_tree();
+    walk::FrameSnapshot snapshot;
+    const auto last_cut = [&](Items last, Items now) {
+        snapshot.last_items = std::move(last);
+        snapshot.items = std::move(now);
+        return pairs_of(last_cut_at(model, snapshot));
+    };
+    EXPECT_EQ(last_cut({{3, 7}}, {{3, 8}, {2, 5}}), (Pairs{{3, 7}, {2, 5}})) << "2 is new, 3 was coarser";
+    EXPECT_EQ(last_cut({{1, 2}}, {{3, 8}, {4, 9}}), (Pairs{{1, 2}})) << "their ancestor was shown";
+    EXPECT_EQ(last_cut({{3, 7}, {4, 9}}, {{1, 2}}), (Pairs{{3, 7}, {4, 9}})) << "its descendants were shown";
+    EXPECT_EQ(last_cut({{0, 0}}, {{2, 5}, {3, 8}}), (Pairs{{0, 0}}));
+}
+
+}  // namespace
+}  // namespace surefoot
