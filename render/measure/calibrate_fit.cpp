@@ -147,7 +147,8 @@ FrameTimes robust_frame_times(std::span<const std::vector<FrameSample>> rounds) 
         for (const FrameSample& s : of_frame)
             if (s.submit_us == last.submit_us && s.raster_us == last.raster_us) times.push_back(s.actual_us);
         const double min_time = *std::min_element(times.begin(), times.end());
-        frame_times.frames.push_back({last.submit_us, last.raster_us, min_time});
+        frame_times.frames.push_back(last);
+        frame_times.frames.back().actual_us = min_time;
         if (times.size() < 2) continue;
         ++frame_times.repeated;
         longer.push_back(median_of(std::move(times)) / std::max(1.0, min_time));

@@ -13,10 +13,17 @@ namespace surefoot::measure {
 /// Linear between points, continued by the outermost slope beyond them, and monotone in triangles and pixels.
 model::CostGrid fill_grid(model::EffectMask effects, std::span<const CalibrationPoint> points);
 
+/// Sums over a frame's items by the cost table alone: no ends of slices, no fixed time.
+struct ItemSums {
+    double submit_us = 0, raster_us = 0;
+    double larger_us = 0;  ///< of each item the larger of the two
+};
+
 /// One measured frame: predicted sums and measured time.
 struct FrameSample {
     double submit_us = 0, raster_us = 0;  ///< predicted sums over items, slices included
     double actual_us = 0;
+    ItemSums items{};  ///< for published formulas; zeros where they are not asked for
 };
 
 /// Weights >= 0 of fixed, S, R and max(S, R) with the least relative error. Outliers count less (Huber 1964). If the samples

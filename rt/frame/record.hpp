@@ -59,6 +59,7 @@ struct FrameRecord {
     std::uint64_t triangles = 0;
     std::uint64_t cut_hash = 0;
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;
+    float cost_scale = 1;  ///< the setting's factor in predicted_us (real clock) or in actual_us (virtual clock)
     float prepare_cpu_us = 0;
     float accuracy = 0;        ///< rad^-1
     float benefit = 0;         ///< mean over items of 1 - benefit of the next finer step; 1: nothing is left to gain

@@ -169,7 +169,7 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                     "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age", "budget_ms",
                     "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
                     "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated",
-                    "input",       "picture",    "unused_ms", "coarse_frames",  "floor_frames"}));
+                    "input",       "picture",    "unused_ms", "coarse_frames",  "floor_frames", "cost_scale"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
     EXPECT_EQ(keys_of(json["prepared_age"]), (Keys{"p50", "p99", "max"}));

@@ -116,6 +116,41 @@ TEST(ModelCosts, a_fit_is_nearer_to_measured_frames_than_a_table_five_times_off)
     EXPECT_EQ(fit->costs.grids.size(), wrong.grids.size());
 }
 
+/// A fit on the null backend, which charges by `combine` alone.
+ModelFit fit_without_gl(const model::FrameCombine& combine) {
+    auto model = model::read_walk(model_file());
+    auto path = choose_path("", model_file(), *model, 0);
+    model::CostModel costs = table(1);
+    costs.combine = combine;
+    costs.slice_us = 0;
+    ModelFitOptions options;
+    options.device.kind = gl::BackendKind::null;
+    options.poses = 24;
+    options.rounds = 2;
+    auto fit = fit_to_model(std::move(*model), path->path, costs, options, {});
+    EXPECT_TRUE(fit.ok());
+    return fit ? std::move(*fit) : ModelFit{};
+}
+
+measure::CostErrors error_of(const ModelFit& fit, std::string_view formula) {
+    for (const measure::PublishedCost& p : fit.published)
+        if (p.name == formula) return p.as_published;
+    ADD_FAILURE() << formula << " is missing";
+    return {};
+}
+
+TEST(ModelCosts, a_published_formula_is_exact_on_a_machine_that_charges_by_it) {
+    const ModelFit pipeline = fit_without_gl({0, 0, 0, 1}), software = fit_without_gl({0, 1, 1, 0});
+    EXPECT_LT(error_of(pipeline, "max_of_sums").p99, 1e-3);
+    EXPECT_GT(error_of(pipeline, "sum_of_stages").p50, 0.05);
+    EXPECT_GT(error_of(pipeline, "max_of_sums").r2, 0.999);
+    EXPECT_GE(error_of(pipeline, "sum_of_max").bias, 0) << "a sum of larger ones is never below the larger sum";
+    EXPECT_LT(error_of(software, "sum_of_stages").p99, 1e-3);
+    EXPECT_GT(error_of(software, "max_of_sums").p50, 0.05);
+    EXPECT_LT(software.before.p99, 1e-3) << "the table is the machine";
+    EXPECT_LT(software.after.p99, 0.02);
+}
+
 TEST(ModelCosts, stopping_a_fit_is_an_error) {
     auto model = model::read_walk(model_file());
     ASSERT_TRUE(model.ok());

@@ -63,17 +63,16 @@ ComparedSelector medians(const std::string& selector, const Summaries& rounds) {
     return c;
 }
 
-/// Where walk `number` of `count` stands in the whole.
-Progress part_of(const Progress& progress, const std::string& selector, double number, double count) {
+}  // namespace
+
+Progress part_of(const Progress& progress, const std::string& stage, double number, double count) {
     Progress part = progress;
     if (progress.report)
-        part.report = [&progress, selector, number, count](std::string_view, double share) {
-            progress.update(selector, (number + share) / count);
+        part.report = [&progress, stage, number, count](std::string_view, double share) {
+            progress.update(stage, (number + share) / count);
         };
     return part;
 }
-
-}  // namespace
 
 Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const Progress& progress) {
     std::vector<Summaries> rounds(request.selectors.size());

@@ -42,6 +42,9 @@ struct Comparison {
 /// How a walk is run: walk::run_walk, or a test's stand-in.
 using RunWalk = std::function<Result<walk::WalkOutcome>(const walk::WalkRequest&, const Progress&)>;
 
+/// The progress of walk `number` of `count`, from 0, as part of the whole. `progress` must outlive it.
+Progress part_of(const Progress& progress, const std::string& stage, double number, double count);
+
 /// Errors: of a walk; stopped by the user; a walk that compared no picture.
 Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const Progress& progress);
 

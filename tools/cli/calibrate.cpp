@@ -1,5 +1,8 @@
 // surefoot calibrate: measures this machine's cost table, its plot, and whether a timer query is honest.
+#include <array>
 #include <filesystem>
+#include <future>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -11,10 +14,12 @@
 #include "rt/threads/capability.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/memory.hpp"
+#include "tools/accuracy/keep_costs.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
 #include "tools/report/report.hpp"
+#include "tools/report/terminal.hpp"
 #include "tools/walk/model_costs.hpp"
 #include "tools/walk/path_source.hpp"
 #include "tools/walk/placing.hpp"
@@ -25,10 +30,12 @@ namespace surefoot::cli {
 
 namespace {
 struct CalibrateArguments {
-    std::string model, path, state, backend{gl::usual_backend}, plot;
+    std::string model, path, state, backend{gl::usual_backend}, plot, keep{"better"};
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool quick = false, json = false;
 };
+
+constexpr std::array<std::string_view, 3> kept_costs{"better", "fit", "table"};
 
 nlohmann::ordered_json to_json(const model::CostModel& costs) {
     const model::FrameCombine& k = costs.combine;
@@ -80,10 +87,93 @@ Result<void> make_folder(const std::string& dir) {
     return {};
 }
 
-nlohmann::ordered_json to_json(const walk::FrameErrors& e) { return {{"p50", e.p50}, {"p90", e.p90}, {"p99", e.p99}}; }
+nlohmann::ordered_json to_json(const measure::CostErrors& e) {
+    return {{"p50", e.p50}, {"p90", e.p90}, {"p99", e.p99}, {"bias", e.bias}, {"r2", e.r2}};
+}
+
+nlohmann::ordered_json to_json(const std::vector<measure::PublishedCost>& published) {
+    auto json = nlohmann::ordered_json::object();
+    for (const measure::PublishedCost& p : published)
+        json[std::string(p.name)] = {{"formula", p.formula},
+                                     {"source", p.source},
+                                     {"frame_error", to_json(p.as_published)},
+                                     {"factor", p.factor},
+                                     {"frame_error_with_factor", to_json(p.with_factor)}};
+    return json;
+}
+
+/// Errors of held-out frames: the fit, the table, and published formulas as they are and with their factor.
+void print_errors(const walk::ModelFit& fit) {
+    const report::Columns columns(
+        {{"", 36}, {"p50 %", -6}, {"p90 %", -6}, {"p99 %", -6}, {"bias %", -7}, {"R2", -5}, {"source", 20, 2}});
+    const auto row = [&](const std::string& name, const measure::CostErrors& e, std::string_view source) {
+        const auto percent = [](double share) { return fmt::format("{:.0f}", 100 * share); };
+        fmt::print("  {}\n",
+                   columns.row({name, percent(e.p50), percent(e.p90), percent(e.p99), fmt::format("{:+.0f}", 100 * e.bias),
+                                fmt::format("{:.2f}", e.r2), std::string(source)}));
+    };
+    fmt::print("  {}\n", columns.heading());
+    row("fitted to this model", fit.after, "");
+    row("the machine's table", fit.before, "");
+    for (const measure::PublishedCost& p : fit.published) {
+        row(std::string(p.formula), p.as_published, p.source);
+        row(fmt::format("{:.2f} * {}", p.factor, p.formula), p.with_factor, "");
+    }
+}
+
+nlohmann::ordered_json to_json(const accuracy::CostTrial& t) {
+    return {{"psnr_db", t.psnr_db},
+            {"psnr_db_rounds", t.of_rounds},
+            {"worst_psnr_db", t.worst_psnr_db},
+            {"ssim", t.ssim},
+            {"unused_ms", t.unused_ms},
+            {"frames", t.frames},
+            {"own_misses", t.own_misses}};
+}
+
+nlohmann::ordered_json to_json(const accuracy::KeptCosts& kept) {
+    return {{"reason", accuracy::name_of(kept.reason)}, {"fit", to_json(kept.of_fit)}, {"table", to_json(kept.of_table)}};
+}
+
+void print_kept(const accuracy::KeptCosts& kept) {
+    fmt::print("  {} is kept, by {}: PSNR {:.1f} dB by the fit, {:.1f} dB by the table; own misses {} of {}, {} of {}\n",
+               kept.fit ? "the fit" : "the table", accuracy::name_of(kept.reason), kept.of_fit.psnr_db, kept.of_table.psnr_db,
+               kept.of_fit.own_misses, kept.of_fit.frames, kept.of_table.own_misses, kept.of_table.frames);
+}
+
+/// The caller's thread stays where it is: the walks' threads inherit from it.
+Result<walk::ModelFit> fit_on_own_thread(model::Model model, const Path& path, const model::CostModel& table,
+                                         const walk::ModelFitOptions& options, const Context& context) {
+    return std::async(std::launch::async,
+                      [&] { return walk::fit_to_model(std::move(model), path, table, options, terminal_progress(context)); })
+        .get();
+}
+
+/// Short walks by the fit and by the table, with the settings of later walks.
+Result<accuracy::KeptCosts> walk_both(const CalibrateArguments& a, const config::Configuration& settings,
+                                      const walk::ModelFit& fit, const model::CostModel& table, const Path& path,
+                                      const Context& context) {
+    accuracy::KeepRequest request;
+    walk::apply_settings(settings, request.walk);
+    request.walk.model_file = a.model;
+    request.walk.state_dir = a.state;
+    request.walk.backend = a.backend;
+    request.walk.pictures = 7;
+    request.walk.seconds = a.quick ? 4 : 8;
+    request.walk.given_path = std::make_shared<const Path>(accuracy::path_in_pieces(path, request.walk.seconds));
+    request.fit = std::make_shared<const model::CostModel>(fit.costs);
+    request.table = std::make_shared<const model::CostModel>(table);
+    request.fit_error = fit.after.p50 + fit.after.p90;
+    request.table_error = fit.before.p50 + fit.before.p90;
+    if (a.quick) request.rounds = 1;
+    return accuracy::keep_costs(
+        request, [](const walk::WalkRequest& one, const Progress& progress) { return walk::run_walk(one, progress); },
+        terminal_progress(context));
+}
 
 /// One model: the table stays, the weights of a frame's sums are fitted.
-int run_fit(const CalibrateArguments& a, const config::Settings& s, const Context& context) {
+int run_fit(const CalibrateArguments& a, const config::Configuration& settings, const Context& context) {
+    const config::Settings& s = settings.values;
     const auto backend = gl::backend_named(a.backend);
     if (!backend) return misuse(backend.error());
     if (!a.plot.empty())
@@ -114,7 +204,7 @@ int run_fit(const CalibrateArguments& a, const config::Settings& s, const Contex
     options.frame_us = 1e6 / s.rate_hz;
     if (a.quick) options.poses = 80;
     options.opened = *placed;
-    auto fit = walk::fit_to_model(std::move(*model), path->path, *table, options, terminal_progress(context));
+    auto fit = fit_on_own_thread(std::move(*model), path->path, *table, options, context);
     end_progress(context);
     if (!fit) return fail(fit.error());
     if (fit->machine != table->machine) {
@@ -122,13 +212,15 @@ int run_fit(const CalibrateArguments& a, const config::Settings& s, const Contex
                      "The model was drawn on \"" + fit->machine + "\", but the table was measured on \"" + table->machine + "\"",
                      "First run `surefoot calibrate` with the same backend and rasterisers", ErrorKind::misuse});
     }
-    if (fit->after.p50 + fit->after.p90 >= fit->before.p50 + fit->before.p90) {
-        notify(
-            fmt::format("The fit (held-out p50 {:.0f} %, p90 {:.0f} %) is no better than the table (p50 {:.0f} %, p90 {:.0f} %), "
-                        "so the table is kept.",
-                        100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->before.p50, 100 * fit->before.p90));
-        fit->costs = *table;
+    std::optional<accuracy::KeptCosts> kept;
+    if (a.keep == "better") {
+        auto decided = walk_both(a, settings, *fit, *table, path->path, context);
+        end_progress(context);
+        if (!decided) return fail(decided.error());
+        kept = std::move(*decided);
     }
+    const bool keeps_fit = kept ? kept->fit : a.keep == "fit";
+    if (!keeps_fit) fit->costs = *table;
     if (auto written = measure::write_costs(file, fit->costs); !written) return fail(written.error());
     const model::FrameCombine& k = fit->costs.combine;
     if (a.json) {
@@ -140,17 +232,20 @@ int run_fit(const CalibrateArguments& a, const config::Settings& s, const Contex
                     {"seconds", fit->seconds},
                     {"frame", to_json(fit->costs)},
                     {"frame_error_before", to_json(fit->before)},
-                    {"frame_error", to_json(fit->after)}});
+                    {"frame_error", to_json(fit->after)},
+                    {"published", to_json(fit->published)},
+                    {"kept", keeps_fit ? "fit" : "table"},
+                    {"trial", kept ? to_json(*kept) : nlohmann::ordered_json(nullptr)}});
         return exit_success;
     }
     fmt::print("{}: {} frames near {}, {:.0f} s\n  fit {}\n", a.model, fit->frames, path->source, fit->seconds, file);
     print_frame(k);
     fmt::print(
-        "  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; with the machine's table alone {:.0f} %, {:.0f} %, "
-        "{:.0f} %; the budget spends x{:.2f}\n  a frame's median time is {:.2f} of its best here ({} of {} frames were drawn "
-        "alike)\n",
-        100 * fit->after.p50, 100 * fit->after.p90, 100 * fit->after.p99, 100 * fit->before.p50, 100 * fit->before.p90,
-        100 * fit->before.p99, fit->costs.headroom, fit->slowdown, fit->repeated, fit->frames);
+        "  the budget spends x{:.2f}; a frame's median time is {:.2f} of its best here ({} of {} frames were drawn alike)\n",
+        fit->costs.headroom, fit->slowdown, fit->repeated, fit->frames);
+    fmt::print("  errors of the {} frames that were held out:\n", fit->frames / 2);
+    print_errors(*fit);
+    if (kept) print_kept(*kept);
     return exit_success;
 }
 
@@ -160,10 +255,11 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     const config::Settings& s = read->values;
     const config::Settings& defaults = walk::settings_schema().defaults();
     gl::prepare_process(s.rasterisers);
-    if (!a.model.empty()) return run_fit(a, s, context);
+    if (!a.model.empty()) return run_fit(a, *read, context);
     for (const auto& [given, option] : {std::pair{!a.path.empty(), "--path"},
                                         {s.lift_m != defaults.lift_m, "--lift"},
-                                        {s.rate_hz != defaults.rate_hz, "--rate"}}) {
+                                        {s.rate_hz != defaults.rate_hz, "--rate"},
+                                        {a.keep != "better", "--keep"}}) {
         if (given)
             return misuse(
                 {option, "This option needs a model", "Name the model: surefoot calibrate MODEL.walk ...", ErrorKind::misuse});
@@ -227,6 +323,12 @@ void add_calibrate(CLI::App& app, Context& context) {
     add_setting(c, a->settings, "--width", "width");
     add_setting(c, a->settings, "--height", "height");
     c->add_option("--plot", a->plot, "SVG file for the plot of costs (else costs.svg in the state folder)");
+    c->add_option(
+         "--keep", a->keep,
+         "With a model: what later walks use. `better` walks 4 * 8 s (--quick: 2 * 4 s) along the path by the fit and by\n"
+         "the table, and keeps the one with fewer misses, else with better pictures; this takes about a minute")
+        ->check(one_of(kept_costs))
+        ->capture_default_str();
     c->add_flag("--quick", a->quick, "Measure fewer frames and classes: faster, with larger errors");
     c->callback([&context, a] { context.run = [a, &context] { return run_calibrate(*a, context); }; });
 }

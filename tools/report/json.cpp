@@ -118,6 +118,7 @@ std::string to_json(const WalkSummary& s) {
         {"prepared_age",
          {{"p50", rounded(s.prepared_age.p50)}, {"p99", rounded(s.prepared_age.p99)}, {"max", rounded(s.prepared_age.max)}}},
         {"budget_ms", rounded(s.budget_ms)},
+        {"cost_scale", s.cost_scale},
         {"budget_used", {{"mean", rounded(s.budget_used_mean)}, {"p99", rounded(s.budget_used_p99)}}},
         {"cost_error",
          {{"p50", rounded(s.cost_error.p50)}, {"p90", rounded(s.cost_error.p90)}, {"p99", rounded(s.cost_error.p99)}}},

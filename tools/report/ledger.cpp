@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 62> columns = {{
+constexpr std::array<Column, 63> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -82,6 +82,7 @@ constexpr std::array<Column, 62> columns = {{
     {"stopped", [](auto& r, auto& f) { add(r, "{:d}", f.stopped); }},
     {"cut_hash", [](auto& r, auto& f) { add(r, "{:016x}", f.cut_hash); }},
     {"snapped", [](auto& r, auto& f) { add(r, "{:d}", f.snapped); }},
+    {"cost_scale", [](auto& r, auto& f) { add(r, "{:.4f}", f.cost_scale); }},
     {"x", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[0]); }},
     {"y", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[1]); }},
     {"z", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[2]); }},

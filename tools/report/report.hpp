@@ -86,6 +86,7 @@ struct WalkSummary {
     std::uint64_t frames = 0, slots = 0, skipped = 0, misses = 0, own_misses = 0;
     std::map<std::string, std::uint64_t> miss_causes;
     Quantiles frame_ms, wake_us, select_us, prepare_cpu_us, prepared_age, cost_error, submit_ms, raster_ms, visits, hidden;
+    double cost_scale = 1;  ///< the setting
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
     std::uint64_t coarse_frames = 0;  ///< with a slice that the in-frame check drew coarser

@@ -6,6 +6,8 @@
 
 #include "render/measure/calibrate.hpp"
 #include "render/measure/calibrate_fit.hpp"
+#include "render/model/item_costs.hpp"
+#include "render/model/pixels.hpp"
 #include "rt/base/random.hpp"
 #include "rt/clock/clock.hpp"
 #include "tools/walk/path_source.hpp"
@@ -16,19 +18,27 @@ namespace {
 
 constexpr std::uint32_t warm_up = 10;
 
-/// Drawn twice: the second finds warm caches, as a walk's frames do.
-measure::FrameSample measured(Engine& engine, const Pose& pose) {
-    SubmitLimits limits;
-    limits.limit_us = 1e12;
-    limits.now_ns = [](void*) { return rt::monotonic_ns(); };
-    engine.submit(pose, limits);
-    const SubmitReport report = engine.submit(pose, limits);
-    return {static_cast<double>(report.predicted.submit_us), static_cast<double>(report.predicted.raster_us), report.finished_us};
+measure::ItemSums sums_of(const Engine& engine, const model::ItemCosts& item_costs, const Pose& pose) {
+    const model::ViewScale scale = model::make_view_scale(pose, engine.options().device.viewport);
+    measure::ItemSums sums;
+    for (const gl::DrawItem& item : engine.drawn()) {
+        const model::ItemCost cost = item_costs.of(item.rep, engine.model().nodes[item.node].box, pose.position, scale);
+        sums.submit_us += static_cast<double>(cost.submit_us);
+        sums.raster_us += static_cast<double>(cost.raster_us);
+        sums.larger_us += static_cast<double>(std::max(cost.submit_us, cost.raster_us));
+    }
+    return sums;
 }
 
-FrameErrors errors_of(std::span<const measure::FrameSample> samples, const model::FrameCombine& combine) {
-    const auto at = [&](double q) { return measure::relative_error(samples, combine, q); };
-    return {at(0.5), at(0.9), at(0.99)};
+/// Drawn twice: the second finds warm caches, as a walk's frames do.
+measure::FrameSample measured(Engine& engine, const model::ItemCosts& item_costs, const Pose& pose) {
+    SubmitLimits limits;
+    limits.limit_us = 1e12;
+    if (engine.options().device.kind != gl::BackendKind::null) limits.now_ns = [](void*) { return rt::monotonic_ns(); };
+    engine.submit(pose, limits);
+    const SubmitReport report = engine.submit(pose, limits);
+    return {static_cast<double>(report.predicted.submit_us), static_cast<double>(report.predicted.raster_us), report.finished_us,
+            sums_of(engine, item_costs, pose)};
 }
 
 }  // namespace
@@ -44,6 +54,7 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     Engine& engine = **opened;
     if (options.opened) options.opened();
     engine.device().bind();
+    const model::ItemCosts item_costs(engine.model(), engine.costs());
     prepare::PreparedFrame prepared;
     engine.reserve(prepared);
     std::vector<std::vector<measure::FrameSample>> drawn(options.poses);
@@ -58,7 +69,7 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
             const double budget_us = random.range(0.1, 0.85) * options.frame_us;
             engine.prepare({pose, 0, 0}, 0, 0, 0, prepared);
             engine.select(prepared, budget_us, {}, 0);
-            const measure::FrameSample sample = measured(engine, pose);
+            const measure::FrameSample sample = measured(engine, item_costs, pose);
             if (i >= warm_up) drawn[i - warm_up].push_back(sample);
             progress.update("frames", (round + static_cast<double>(i) / a_round) / rounds);
         }
@@ -70,8 +81,9 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     fit.costs = table;
     fit.costs.combine = measure::fit_combine(taught, table.combine);
     fit.costs.headroom = static_cast<float>(std::max(1.0, measure::ratio(held_out, fit.costs.combine, 0.9)));
-    fit.before = errors_of(held_out, table.combine);
-    fit.after = errors_of(held_out, fit.costs.combine);
+    fit.before = measure::cost_errors(held_out, table.combine);
+    fit.after = measure::cost_errors(held_out, fit.costs.combine);
+    fit.published = measure::published_costs(taught, held_out);
     fit.frames = options.poses;
     fit.repeated = frame_times.repeated;
     fit.slowdown = frame_times.slowdown;

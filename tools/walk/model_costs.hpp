@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "render/engine.hpp"
+#include "render/measure/published_costs.hpp"
 #include "rt/base/path.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
@@ -21,16 +23,12 @@ struct ModelFitOptions {
     std::function<void()> opened;  ///< called once, when the driver's threads exist: place them as a walk does
 };
 
-/// Relative errors of predicted whole frames, 0..1.
-struct FrameErrors {
-    double p50 = 0, p90 = 0, p99 = 0;
-};
-
 /// A cost table fitted to one model.
 struct ModelFit {
-    model::CostModel costs;     ///< the table with `combine` and `headroom` of this model
-    FrameErrors before, after;  ///< on the half of the frames that were not used for the fit
-    std::string machine;        ///< that drew it, as a table names its own
+    model::CostModel costs;                         ///< the table with `combine` and `headroom` of this model
+    measure::CostErrors before, after;              ///< on the half of the frames that were not used for the fit
+    std::vector<measure::PublishedCost> published;  ///< published formulas on the same half
+    std::string machine;                            ///< that drew it, as a table names its own
     std::uint32_t frames = 0;
     std::size_t repeated = 0;  ///< of them, drawn alike in at least two rounds
     double slowdown = 1;       ///< measure::FrameTimes's
@@ -39,7 +37,7 @@ struct ModelFit {
 
 /// Draws random views near the path at random budgets, in several rounds (measure::robust_frame_times). Every other view is used
 /// for the fit, the rest to measure its error. The table's cells do not change, as they are of single items. Models differ in how
-/// items overlap and hide each other.
+/// items overlap and hide each other. The null backend charges what the table says: a fit without GL, for tests.
 Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
                               const Progress& progress);
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,8 +16,14 @@
 #include "rt/frame/record.hpp"
 #include "tools/report/report.hpp"
 
+namespace surefoot {
+struct Path;
+}
 namespace surefoot::capture {
 struct Capture;
+}
+namespace surefoot::model {
+struct CostModel;
 }
 
 namespace surefoot::walk {
@@ -38,6 +45,8 @@ struct WalkRequest : config::Settings {
     bool correct_costs = true;  ///< online correction of predictions; false: frozen at 1
     std::uint32_t control_pairs = 90;
     double control_block_s = 2.0;
+    std::shared_ptr<const model::CostModel> given_costs;  ///< in place of the state folder's and of the model's fit; null: those
+    std::shared_ptr<const Path> given_path;               ///< in place of path_file; null: that
     std::string ledger_file, trace_file, report_dir, snap_dir;
     std::uint64_t snap_every = 0;
     std::uint32_t pictures =

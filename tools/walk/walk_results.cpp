@@ -27,6 +27,7 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
     s.shift_x = request.shift_x;
     s.shift_y = request.shift_y;
     s.rate_hz = request.rate_hz;
+    s.cost_scale = request.cost_scale;
     s.model_triangles = engine.model().triangles();
     s.rasterisers = static_cast<std::uint32_t>(std::max(1, plan.rasterisers));
     s.fifo = plan.fifo;

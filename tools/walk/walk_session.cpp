@@ -48,9 +48,13 @@ Result<void> claim(Session& s) {
     s.plan.input = s.input != nullptr;
     s.plan.devices = s.input && s.input->live();
     notify_step(s, WalkStep::input);
-    auto costs = load_costs(state_directory(r.state_dir), "", s.facts.uncalibrated);
-    if (!costs) return costs.error();
-    s.costs = std::move(*costs);
+    if (r.given_costs) {
+        s.costs = *r.given_costs;
+    } else {
+        auto costs = load_costs(state_directory(r.state_dir), "", s.facts.uncalibrated);
+        if (!costs) return costs.error();
+        s.costs = std::move(*costs);
+    }
     if (!r.strict) return {};
     notify_step(s, WalkStep::real_time);
     std::vector<rt::Lack> lacks = s.facts.degraded;
@@ -85,12 +89,19 @@ Result<void> open_engine(Session& s, const Progress& progress) {
     model::WalkFileInfo file;
     auto model = model::read_walk(r.model_file, &file);
     if (!model) return model.error();
-    auto costs = fitted_costs(state_directory(r.state_dir), s.costs, {file.hash, r.width, r.height, r.backend});
-    if (!costs) return costs.error();
-    s.costs = std::move(*costs);
-    auto path = choose_path(r.path_file, r.model_file, *model, r.lift_m);
-    if (!path) return path.error();
-    s.path = std::move(*path);
+    if (!r.given_costs) {
+        auto costs = fitted_costs(state_directory(r.state_dir), s.costs, {file.hash, r.width, r.height, r.backend});
+        if (!costs) return costs.error();
+        s.costs = std::move(*costs);
+    }
+    if (!s.virtual_clock) s.costs = with_overhead(std::move(s.costs), r.cost_scale);
+    if (r.given_path) {
+        s.path = {*r.given_path, "parts of a path"};
+    } else {
+        auto path = choose_path(r.path_file, r.model_file, *model, r.lift_m);
+        if (!path) return path.error();
+        s.path = std::move(*path);
+    }
 
     const int others = s.plan.all.count() - (s.plan.all.has(s.plan.frame_core) ? 1 : 0);
     auto options = engine_options(r, others);
@@ -148,6 +159,15 @@ Result<std::uint64_t> frames_wanted(const Session& s) {
 }
 
 }  // namespace
+
+model::CostModel with_overhead(model::CostModel costs, double factor) {
+    const auto f = static_cast<float>(factor);
+    costs.combine.fixed_us *= f;
+    costs.combine.submit_weight *= f;
+    costs.combine.raster_weight *= f;
+    costs.combine.max_weight *= f;
+    return costs;
+}
 
 Session::~Session() {
     if (engine) {

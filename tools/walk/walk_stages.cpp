@@ -110,6 +110,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     const prepare::PreparedFrame& set = prepared_.front();
     const std::uint64_t age = now_.frame - std::min(set.frame, now_.frame);
     record.prepared_age = static_cast<std::uint32_t>(age);
+    record.cost_scale = static_cast<float>(request_.cost_scale);
     record.correction = static_cast<float>(request_.correct_costs ? controller_.factor() : 1.0);
     record.budget_us = static_cast<float>(options_.budget_us);
     coarse_ = age > rt::oldest_prepared || !covers(set.region, now_.pose, set.viewport);
@@ -200,7 +201,9 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);
     const double actual_us = report_.finished_us - static_cast<double>(record.stolen_ns) * 1e-3;
     record.actual_us = static_cast<float>(actual_us);
-    if (!coarse_) controller_.update(report_.predicted_us, actual_us);
+    // The correction is of the machine's own figures: it must not take back an overhead that the user asked for.
+    const double overhead = virtual_clock_ ? 1.0 : request_.cost_scale;
+    if (!coarse_) controller_.update(report_.predicted_us / overhead, actual_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     record.floor_share = report_.floor_share;
     record.floor_frame = engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
