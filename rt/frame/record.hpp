@@ -65,6 +65,7 @@ struct FrameRecord {
     float benefit = 0;         ///< mean over items of 1 - benefit of the next finer step; 1: nothing is left to gain
     float floor_share = 0;     ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones
     bool floor_frame = false;  ///< over half of the picture fell to floor forms, although the cut before would have fitted
+    float resolution = 1;      ///< share of the picture's sides at which it was drawn
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;

@@ -89,9 +89,10 @@ struct WalkSummary {
     double cost_scale = 1;  ///< the setting
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
-    std::uint64_t coarse_frames = 0;  ///< with a slice that the in-frame check drew coarser
-    std::uint64_t floor_frames = 0;   ///< over half of the picture fell to floor forms, although the cut before would have fitted
-    Quantiles unused_ms;              ///< time between the end of drawing and the deadline, of frames with a benefit below 0.99
+    double resolution_mean = 1, resolution_min = 1;  ///< share of the picture's sides at which frames were drawn
+    std::uint64_t coarse_frames = 0;                 ///< with a slice that the in-frame check drew coarser
+    std::uint64_t floor_frames = 0;  ///< over half of the picture fell to floor forms, although the cut before would have fitted
+    Quantiles unused_ms;             ///< time between the end of drawing and the deadline, of frames with a benefit below 0.99
     std::uint64_t triangles_max = 0, downgrades = 0, floor_bound_frames = 0, model_triangles = 0;
     std::string cut_hash;  ///< 16 hex digits over all frames
     double steal_ms = 0;   ///< as the host says, set before summarize; at least what the frames lost
@@ -130,7 +131,7 @@ struct ReportSnapshot {
     bool pops_compared = false;  ///< with the cut of the frame before, drawn at this pose; else the next two are 0
     double popped_share = 0, pop_mse = 0;
     std::uint64_t triangles = 0, full_triangles = 0;
-    float accuracy = 0;
+    float accuracy = 0, resolution = 1;
     /// Top view (key 't' of the walkthrough program in Maciel 1994, figure 3.20): rectangles of the drawn nodes in the XZ plane,
     /// world metres.
     struct Rect {

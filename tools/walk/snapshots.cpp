@@ -31,8 +31,8 @@ SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std
     }
 }
 
-void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, std::uint64_t triangles,
-                             std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled) {
+void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
+                             std::uint64_t triangles, std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled) {
     if (every_ == 0 || used_ == snapshots_.size()) return;
     if (frame % every_ != 0) {
         if ((frame + 1) % every_ == 0) remember_last(drawn, culled);
@@ -44,6 +44,7 @@ void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pos
     snapshot.time_s = time_s;
     snapshot.pose = pose;
     snapshot.accuracy = accuracy;
+    snapshot.resolution = resolution;
     snapshot.triangles = triangles;
     snapshot.items.assign(drawn.begin(), drawn.end());
     ++used_;
@@ -112,13 +113,14 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     out.time_s = snapshot.time_s;
     out.triangles = snapshot.triangles;
     out.accuracy = snapshot.accuracy;
+    out.resolution = snapshot.resolution;
     add_top_view(engine, snapshot, out);
     const std::vector<gl::DrawItem> full = engine.full_detail(snapshot.pose);
     for (const gl::DrawItem& item : full) out.full_triangles += engine.model().reps[item.rep].triangles;
     if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
 
     engine.device().draws.plays();
-    engine.draw_unbudgeted(snapshot.pose, snapshot.items);
+    engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
     engine.draw_unbudgeted(snapshot.pose, full);
@@ -161,7 +163,7 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         }
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const FrameSnapshot& snapshot = store.snapshots()[i];
-        engine.draw_unbudgeted(snapshot.pose, snapshot.items);
+        engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
         auto written = image::write_png(fmt::format("{}/{:05}.png", dir, i), image->width, image->height, image->rgba);
