@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "render/capture/capture.hpp"
+#include "render/prepare/value.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/hash.hpp"
 #include "rt/base/reader.hpp"
@@ -20,7 +21,7 @@ using model::Index;
 using model::none;
 
 constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
-constexpr std::uint32_t version = 3;
+constexpr std::uint32_t version = 4, version_without_values = 3;
 constexpr std::uint64_t max_bytes = 1ULL << 31U;  // unpacked
 constexpr std::uint32_t max_nodes = 1U << 26U;    // replay makes room for them
 constexpr std::size_t header_bytes = 40;
@@ -48,6 +49,7 @@ void each(Io& io, C& c) requires std::is_same_v<std::remove_const_t<C>, prepare:
 template <class Io, class C>
 void each(Io& io, C& c) requires std::is_same_v<std::remove_const_t<C>, prepare::Choice> {
     io(c.rep, c.cost.submit_us, c.cost.raster_us, c.error_rad, c.benefit, c.subtree_benefit, c.triangles);
+    if (io.has_values) io(c.value, c.rate);
 }
 template <class Io, class M>
 void each(Io& io, M& m) requires std::is_same_v<std::remove_const_t<M>, select::Shown> {
@@ -74,6 +76,7 @@ public:
         const auto bytes = std::as_bytes(std::span(s));
         out.insert(out.end(), bytes.begin(), bytes.end());
     }
+    static constexpr bool has_values = true;
     std::vector<std::byte> out;
 
 private:
@@ -87,7 +90,7 @@ private:
 
 class Reader {
 public:
-    explicit Reader(std::span<const std::byte> bytes) : in(bytes) {}
+    Reader(std::span<const std::byte> bytes, bool with_values) : in(bytes), has_values(with_values) {}
     template <class... T>
     void operator()(T&... values) {
         (get(values), ...);
@@ -108,6 +111,7 @@ public:
         s.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     }
     ByteReader in;
+    bool has_values;  ///< whether choices have values and rates
 
 private:
     void get(bool& value) { value = in.read<std::uint8_t>() != 0; }
@@ -193,7 +197,8 @@ Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::strin
     if (header.read<std::uint32_t>() != magic)
         return Error{place, "The file is no captured frame", "Name a file that `surefoot walk --capture` wrote",
                      ErrorKind::damaged};
-    if (header.read<std::uint32_t>() != version)
+    const auto file_version = header.read<std::uint32_t>();
+    if (file_version != version && file_version != version_without_values)
         return Error{place, "The file is of another version", remedy, ErrorKind::unsupported};
     const auto unpacked = header.read<std::uint64_t>(), packed = header.read<std::uint64_t>(), sum = header.read<std::uint64_t>();
     const auto header_sum = header.read<std::uint64_t>();
@@ -208,11 +213,12 @@ Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::strin
     const std::size_t got = ZSTD_decompress(body.data(), body.size(), payload.data(), payload.size());
     if (ZSTD_isError(got) != 0 || got != unpacked) return Error{place, "The frame does not unpack", remedy, ErrorKind::damaged};
     Capture capture;
-    Reader reader(body);
+    Reader reader(body, file_version == version);
     whole(reader, capture);
     if (reader.in.failed() || reader.in.left() != 0)
         return Error{place, "The lists do not add up to the size", remedy, ErrorKind::damaged};
     if (auto sound = check(capture, place); !sound) return sound.error();
+    if (!reader.has_values) prepare::estimate_values(capture.combine, capture.prepared);
     return capture;
 }
 

@@ -14,6 +14,7 @@
 #include "render/prepare/occlusion.hpp"
 #include "render/prepare/prepared.hpp"
 #include "render/prepare/tree_passes.hpp"
+#include "render/prepare/value.hpp"
 #include "render/prepare/workers.hpp"
 #include "rt/base/check.hpp"
 #include "rt/base/fork_join.hpp"
@@ -72,7 +73,8 @@ struct Preparer::Impl {
     std::vector<std::uint32_t> slot_first, slot_count, slot_hidden;
     std::vector<Index> candidate_of;  ///< a visit
     std::vector<std::uint32_t> chunk_choice, chunk_candidate, chunk_count;
-    std::vector<Weight> weights;     ///< a candidate
+    std::vector<Weight> weights;  ///< a candidate
+    ValuePass values;
     std::uint32_t choice_bound = 0;  ///< choices that the visits may need
     float target_factor = 1;         ///< of the error target, raised while frames look at too many nodes
     std::atomic<std::int64_t> worker_cpu_ns{0};
@@ -118,6 +120,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     chunk_candidate.resize(chunks);
     chunk_count.resize(chunks);
     weights.resize(max_nodes);
+    values.reserve(static_cast<std::uint32_t>(max_nodes));
 }
 
 template <class Body>
@@ -329,6 +332,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     out.choices.clear();
     out.truncated = false;
     out.full_cost = {};
+    out.full_value = 0;
     out.visits = out.hidden = 0;
     if (s.model.nodes.empty()) return;
 
@@ -352,6 +356,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     }
     s.drop_false_positives(out);
     s.evaluate_all(view, out);
+    s.values.run(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     propagate_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     enforce_monotone_benefit(out);
     s.adapt(out);

@@ -30,6 +30,11 @@ struct Choice {
     /// Monotone down the tree. The key of two-stage search (Maciel 1994, 3.5.3, figures 3.17 and 3.18).
     float subtree_benefit = 0;
     std::uint32_t triangles = 0;
+    /// What the choice shows, in weighted pixels; adds up over a cut, and rises along the choices. See value.hpp.
+    float value = 0;
+    /// Value per us of replacing this choice, and all that follows below at that rate. Monotone down the tree. The key of
+    /// `threshold`.
+    float rate = 0;
 };
 
 /// A visible node. Its visible children are contiguous candidates after it, in node order. Candidate 0 is the root.
@@ -61,6 +66,7 @@ struct PreparedFrame {
     std::vector<Candidate> candidates;  ///< reserved at start; never grows after; empty: nothing is visible
     std::vector<Choice> choices;
     model::ItemCost full_cost;   ///< of the finest choice of every visible leaf
+    double full_value = 0;       ///< sum of their values; 0: not computed
     std::uint32_t visits = 0;    ///< nodes tested, invisible ones included
     std::uint32_t hidden = 0;    ///< of these, nodes in the view that others hide; their subtrees were not tested
     bool truncated = false;      ///< capacity reached: deeper detail is missing, but the tree is complete and legal

@@ -28,6 +28,7 @@ public:
     explicit StepSums(std::span<double> room) : room_(room.first(std::size_t{4} * buckets)) {
         std::fill(room_.begin(), room_.end(), 0.0);
     }
+    void clear() { std::fill(room_.begin(), room_.end(), 0.0); }
     void add(std::uint32_t bucket, bool refined, const model::ItemCost& away, const model::ItemCost& in) {
         double* at = &room_[std::size_t{4} * bucket + (refined ? 2U : 0U)];
         at[0] += static_cast<double>(in.submit_us) - static_cast<double>(away.submit_us);
@@ -53,21 +54,23 @@ struct Edge {
 /// One selection: three walks over the candidates, which stand parents before children.
 class ThresholdSearch {
 public:
-    ThresholdSearch(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget, bool subtree)
+    ThresholdSearch(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget, Key key)
         : builder_(builder),
           budget_(budget),
-          steps_(input, state, subtree),
+          steps_(input, state, key),
           sums_(state.scratch().step_sums),
           scan_state_(builder.scratch()),
           share_(fresh_share(state)),
           deferred_(state.scratch().links) {}
 
     /// Returns the number of steps taken.
-    std::uint32_t run() {
+    std::uint32_t run(bool fill) {
         sum_up();
         const Edge both = common_edge();
         take_common(both);
         if (deferred_count_ > 0 && !closed_) take_deferred(refined_edge(both));
+        for (int round = 0; fill && round < fill_rounds && take_more(); ++round) {
+        }
         return taken_;
     }
 
@@ -92,6 +95,41 @@ private:
             if ((last && candidate.child_count == 0) || !steps_.wanted(choices[k]) || !use(k, last)) return false;
         }
         return true;
+    }
+
+    /// A step that does not fit has ended the search; others behind it may still fit. The same search among those that fit one by
+    /// one. Returns whether any was taken.
+    bool take_more() {
+        sums_.clear();
+        const auto each_left = [&](const auto& use) {
+            for (Index c = 0; c < builder_.size(); ++c) {
+                if (builder_.chosen(c) >= SelectState::opened) continue;
+                const auto choices = builder_.choices(c);
+                const Index shown = steps_.shown(builder_.candidate(c).node);
+                for_steps(c, [&](std::uint32_t k, bool opens) {
+                    if (k < builder_.chosen(c)) return true;
+                    const model::ItemCost& in = opens ? builder_.candidate(c).children_cost : choices[k + 1].cost;
+                    return use(c, k, opens, step_of(choices[k], shown), choices[k].cost, in);
+                });
+            }
+        };
+        each_left([&](Index, std::uint32_t, bool, const Step& step, const model::ItemCost& away, const model::ItemCost& in) {
+            if (!budget_.fits(sum_.changed(away, in), step.refined ? 1.0 : share_)) return false;
+            sums_.add(step.bucket, step.refined, away, in);
+            return true;
+        });
+        Edge edge{0, sum_};
+        for (; edge.bucket < buckets; ++edge.bucket) {
+            const Sum fresh = sums_.fresh(edge.bucket);
+            const Sum next = edge.before + fresh + sums_.refined(edge.bucket);
+            if (!budget_.fits(next, nothing(fresh) ? 1.0 : share_)) break;
+            edge.before = next;
+        }
+        const std::uint32_t before = taken_;
+        each_left([&](Index c, std::uint32_t k, bool opens, const Step& step, const model::ItemCost&, const model::ItemCost&) {
+            return step.bucket <= edge.bucket && try_step(c, k, opens, step.refined ? 1.0 : share_) && do_step(c, k, opens);
+        });
+        return taken_ > before;
     }
 
     void sum_up() {
@@ -221,6 +259,8 @@ private:
                                                  << 16U;  ///< its children may be opened: the target error allows all its steps
     static constexpr std::uint32_t refined_before = 1U << 17U;  ///< its first step was taken in the last frame
 
+    static constexpr int fill_rounds = 4;
+
     CutBuilder& builder_;
     const Budget& budget_;
     Steps steps_;
@@ -236,7 +276,7 @@ private:
 
 class BenefitSearch final : public Selector {
 public:
-    explicit BenefitSearch(bool subtree) : subtree_(subtree) {}
+    explicit BenefitSearch(Key key, bool fill) : key_(key), fill_(fill) {}
 
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         clear(cut);
@@ -246,19 +286,24 @@ public:
         builder.take_floor();
         if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
             return builder.finish(budget, builder.take_finest(), cut);
-        builder.finish(budget, ThresholdSearch(input, state, builder, budget, subtree_).run(), cut);
+        builder.finish(budget, ThresholdSearch(input, state, builder, budget, key_).run(fill_), cut);
     }
 
 private:
-    bool subtree_;
+    Key key_;
+    bool fill_;
 };
 
 const Selector& make_best_first() {
-    static const BenefitSearch selector(false);
+    static const BenefitSearch selector(Key::benefit, false);
+    return selector;
+}
+const Selector& make_threshold() {
+    static const BenefitSearch selector(Key::rate, true);
     return selector;
 }
 const Selector& make_two_stage() {
-    static const BenefitSearch selector(true);
+    static const BenefitSearch selector(Key::subtree_benefit, false);
     return selector;
 }
 
@@ -266,6 +311,8 @@ const Selector& make_two_stage() {
 
 const SelectorEntry best_first_entry{"best-first", "the node of the greatest own benefit next, within the budget", GoesBy::budget,
                                      true, make_best_first};
+const SelectorEntry threshold_entry{"threshold", "the step of the greatest value per cost next, within the budget",
+                                    GoesBy::budget, true, make_threshold};
 const SelectorEntry two_stage_entry{usual_selector, "the node of the greatest benefit in its subtree next, within the budget",
                                     GoesBy::budget, true, make_two_stage};
 

@@ -46,7 +46,7 @@ void clear(Cut& cut) {
     cut.sum = {};
     cut.predicted_us = cut.floor_us = cut.worst_error_rad = 0;
     cut.floor_binds = false;
-    cut.benefit = 0;
+    cut.benefit = cut.value = 0;
     cut.triangles = cut.hash = 0;
     cut.switches = cut.refinements = 0;
 }
@@ -131,6 +131,7 @@ void CutBuilder::list_items(const Budget& budget, Cut& cut) {
         sum.add(choice.cost);
         cut.worst_error_rad = std::max(cut.worst_error_rad, choice.error_rad);
         cut.benefit += 1.0 - static_cast<double>(choice.benefit);
+        cut.value += static_cast<double>(choice.value);
         cut.triangles += choice.triangles;
         cut.switches += switched(c, choice.rep) ? 1U : 0U;
         cut.hash = mixed(cut.hash, item);

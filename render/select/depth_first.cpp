@@ -62,7 +62,7 @@ public:
         if (!has_room(input, state, cut)) return;
         const Budget budget(input);
         CutBuilder builder(input, state);
-        const Steps steps(input, state, false);
+        const Steps steps(input, state, Key::benefit);
         const auto floor = builder.take_floor();
         if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
             return builder.finish(budget, builder.take_finest(), cut);

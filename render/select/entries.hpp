@@ -10,6 +10,7 @@ extern const SelectorEntry by_distance_entry;
 extern const SelectorEntry depth_first_entry;
 extern const SelectorEntry best_first_entry;
 extern const SelectorEntry two_stage_entry;
+extern const SelectorEntry threshold_entry;
 extern const SelectorEntry depth_first_1994_entry;
 extern const SelectorEntry best_first_1994_entry;
 extern const SelectorEntry two_stage_1994_entry;

@@ -35,6 +35,7 @@ struct Cut {
     bool floor_binds = false;    ///< floor_us > budget: the floor is drawn
     float worst_error_rad = 0;   ///< 1 / accuracy
     double benefit = 0;  ///< sum over items of 1 - benefit of the next finer step; 0..items, items: nothing is left to gain
+    double value = 0;    ///< sum over items, weighted pixels; PreparedFrame::full_value: nothing is left to gain
     std::uint64_t triangles = 0;
     std::uint32_t switches = 0;     ///< representations that differ from the previous frame's
     std::uint64_t hash = 0;         ///< of (node, rep) in order

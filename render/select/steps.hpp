@@ -6,20 +6,26 @@
 namespace surefoot::select {
 
 /// The key of a candidate's next step, and whether the step is wanted.
+/// What a search goes by.
+enum class Key : std::uint8_t { benefit, subtree_benefit, rate };
+
 class Steps {
 public:
-    Steps(const SelectInput& input, const SelectState& state, bool subtree)
+    Steps(const SelectInput& input, const SelectState& state, Key key)
         : shown_(state.shown),
           target_(static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : 0.0)),
           hysteresis_(state.hysteresis),
-          subtree_(subtree) {}
+          key_(key) {}
 
     /// Whether `now` has more error than the target.
     [[nodiscard]] bool wanted(const prepare::Choice& now) const { return target_ <= 0.0F || now.error_rad > target_; }
     [[nodiscard]] bool has_target() const { return target_ > 0.0F; }
     [[nodiscard]] float key(const prepare::Choice& now, bool refined) const {
-        const float benefit = subtree_ ? now.subtree_benefit : now.benefit;
-        return refined ? benefit * hysteresis_ : benefit;
+        constexpr float rate_scale = 0x1p-12F;  // the queue's keys end at 2: steps above 4096 px/us are equal
+        const float key = key_ == Key::rate              ? now.rate * rate_scale
+                          : key_ == Key::subtree_benefit ? now.subtree_benefit
+                                                         : now.benefit;
+        return refined ? key * hysteresis_ : key;
     }
     /// The node's state in the last frame, for was_refined().
     [[nodiscard]] Index shown(Index node) const { return hysteresis_ == 1.0F ? none : shown_[node]; }
@@ -30,7 +36,7 @@ public:
 private:
     std::span<const Index> shown_;
     float target_, hysteresis_;
-    bool subtree_;
+    Key key_;
 };
 
 /// With hysteresis the budget has two thresholds, as a Schmitt trigger has. Steps of the last frame may use all of it, new steps

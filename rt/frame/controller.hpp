@@ -6,14 +6,14 @@
 
 namespace surefoot::rt {
 
-/// factor: median of the last 15 ratios actual / predicted, within [0.5, 2], changing by at most 6 % a frame. Follows a step of 2
+/// factor: median of the last 15 ratios actual / predicted, within [0.25, 2], changing by at most 6 % a frame. Follows a step of 2
 /// within 8 + 12 frames. Up to 7 outliers in 15 frames change nothing.
 /// headroom: 90 % quantile of the last 64 ratios actual / (predicted x factor). The headroom of a cost table covers
 /// any view of any scene. The next frame of a walk resembles the last, so the table's headroom would leave much budget unspent.
 class CostController {
 public:
     static constexpr std::size_t window = 15, headroom_window = 64;
-    static constexpr double lowest = 0.5, highest = 2.0, slew = 1.06;
+    static constexpr double lowest = 0.25, highest = 2.0, slew = 1.06;
     static constexpr double min_headroom = 1.04;
 
     /// predicted_us: uncorrected (factor 1). Pairs that are not positive and finite are ignored.

@@ -1,0 +1,53 @@
+// The value of each choice, which adds up over a cut, and the rate at which its next step buys value.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/prepare/evaluate.hpp"
+#include "render/prepare/prepared.hpp"
+
+namespace surefoot::prepare {
+
+/// Fills Choice::value, Choice::rate and PreparedFrame::full_value.
+///
+/// value = W * (1 - g). W of a leaf: (its share of the view)^1.25 x pixels of the view x importance x focus x motion; W of a
+/// node: the sum of its leaves'. g, 0..1: how wrong the choice looks, from its error in pixels and unusable_penalty(). rate =
+/// value per us of the next step, where a step into the children counts all that follows below at that rate. It is the slope of
+/// the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a candidate and
+/// down the tree. So taking every step whose rate is at least r gives the cut of the greatest value - r * cost, to the resolution
+/// of the levels below. Source: Lagrange multipliers for choices under one budget, Everett 1963.
+class ValuePass {
+public:
+    /// Rates are told apart by octaves while they are summed up: from 2^20 down to 2^-19 px/us.
+    static constexpr std::uint32_t levels = 40;
+
+    /// Reserves for this many candidates. run() allocates nothing below that.
+    void reserve(std::uint32_t max_candidates);
+    /// weights: one a candidate, as Evaluator::evaluate made them. Call it before propagate_up(), which replaces them.
+    void run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights, PreparedFrame& frame);
+
+private:
+    struct Sums {
+        float weight = 0;         ///< W, px
+        float weight_per_m = 0;   ///< sum of W / distance of the leaves
+        std::uint32_t curve = 0;  ///< of the children, while they are summed up; none: not yet
+    };
+    /// Value and cost of the best cut of a subtree by level of the rate; while children are added, the change at that level.
+    struct Curve {
+        float value[levels];
+        float cost[levels];
+    };
+    std::uint32_t take_curve();
+    void add(Index parent, std::uint32_t level, float value, float cost);
+
+    std::vector<Sums> sums_;
+    std::vector<Curve> curves_;
+    std::vector<std::uint32_t> free_;
+};
+
+/// Weights for prepared frames that were stored without values: pixels and errors alone.
+void estimate_values(const model::FrameCombine& combine, PreparedFrame& frame);
+
+}  // namespace surefoot::prepare
