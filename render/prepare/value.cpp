@@ -15,11 +15,10 @@ namespace {
 constexpr float top_rate = 0x1p20F;      // px/us, of level 0
 constexpr std::size_t max_choices = 32;  // of one candidate on its hull; more are left out of it
 
-/// 0..1: how wrong a picture with this error looks. A fifth of it is for the first few pixels of error, the rest for hundreds:
-/// ground that is missing costs more than a coarse tree.
+/// 0..1: how wrong a picture with this error looks. Nearly linear up to a hundred pixels: twice the error is twice as wrong.
 float wrongness(float error_rad, float pixel_angle_rad) {
     const float error_px = error_rad / pixel_angle_rad;
-    return 0.2F * error_px / (error_px + 8.0F) + 0.8F * error_px / (error_px + 256.0F);
+    return error_px / (error_px + 256.0F);
 }
 
 /// Pixels of a leaf, weighted. Large things count for more than their pixels: they hide what stands behind them.
