@@ -10,6 +10,7 @@
 #include "render/effects/effects.hpp"
 #include "render/floor_watch.hpp"
 #include "render/model/view.hpp"
+#include "render/prepare/resolution.hpp"
 #include "render/unprepared.hpp"
 #include "rt/base/check.hpp"
 #include "rt/base/thread_annotations.hpp"
@@ -28,6 +29,8 @@ struct Engine::Impl {
     EngineOptions options;
     std::unique_ptr<gl::Device> device;
     std::unique_ptr<prepare::Preparer> preparer;
+    prepare::ResolutionChooser resolution;
+    [[nodiscard]] float fixed_resolution() const { return options.resolution > 0.0F ? options.resolution : 1.0F; }
     bool full_depth_always = false;  ///< requested by the options, for every selector
     const select::Selector* selector = nullptr;
     [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
@@ -66,6 +69,10 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     auto selector = select::selector_named(options.selector);
     if (!selector) return selector.error();
     impl->options.device.null.costs = &impl->costs;
+    const model::Viewport& picture = options.device.viewport;
+    impl->options.device.null.enlarge_us =
+        static_cast<double>(costs.enlarge_us(0.5F, std::uint64_t{picture.width} * picture.height));
+    impl->options.resolution = model::stepped(options.resolution);
     auto device = gl::open_device(impl->options.device);
     if (!device) return device.error();
     impl->device = std::move(*device);
@@ -122,8 +129,20 @@ std::size_t Engine::drawn_capacity() const {
 void Engine::reserve(prepare::PreparedFrame& frame) const { impl_->preparer->reserve(frame); }
 
 void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
-                     prepare::PreparedFrame& out) {
-    impl_->preparer->run(region, impl_->options.device.viewport, frame, speed_mps, turn_rps, out);
+                     prepare::PreparedFrame& out, double planned_us) {
+    Impl& e = *impl_;
+    const model::Viewport viewport = e.options.device.viewport;
+    const bool chosen = !(e.options.resolution > 0.0F);
+    out.resolution = chosen ? e.resolution.resolution() : e.options.resolution;
+    e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out, out.resolution);
+    if (!chosen || !(planned_us > 0.0) || e.options.prepare.full_depth) return;
+    const auto lost = [&](const prepare::ValueCurve& curve, float at) {
+        const float fixed_us = e.costs.combine.fixed_us + e.costs.enlarge_us(at, std::uint64_t{viewport.width} * viewport.height);
+        return prepare::lost_share(curve, planned_us - static_cast<double>(fixed_us)) +
+               static_cast<double>(e.costs.blur_loss_at(at));
+    };
+    const float other = e.resolution.trial();
+    if (other > 0.0F) e.resolution.judge(lost(out.curve, out.resolution), lost(e.preparer->value_at(other), other));
 }
 
 Result<void> Engine::set_selector(std::string_view name) {
@@ -191,6 +210,8 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     for (const select::Slice& slice : plan.slices) {
         rest_stand_in += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
     }
+    const float enlarge_us =
+        costs.enlarge_us(prepared->resolution, std::uint64_t{options.device.viewport.width} * options.device.viewport.height);
     bool full = true;
     float in_flight_us = 0;
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
@@ -209,7 +230,8 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
             check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction.factor;
             check.next_us = with(slice.cost) * scale;
             check.next_stand_in_us = with(slice.stand_in_cost) * scale;
-            check.rest_stand_in_us = with(rest_stand_in) * correction.factor;  // a sum of many: its own spread is small
+            check.rest_stand_in_us =
+                (with(rest_stand_in) + enlarge_us) * correction.factor;  // a sum of many: its own spread is small
             check.limit_us = limits.limit_us;
             full = select::still_fits(check);
         }
@@ -222,7 +244,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         if (!full) ++report.downgraded_slices;
     }
     report.predicted = so_far;
-    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us);
+    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us;
 }
 
 void Engine::Impl::push(const UnpreparedItem& item, SubmitReport& report) {
@@ -300,7 +322,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.culled.clear();
     e.floor.begin();
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
-    e.device->begin_frame(pose, limits.resolution);
+    e.device->begin_frame(pose, e.prepared != nullptr ? e.prepared->resolution : e.fixed_resolution());
     if (e.use_last) {
         e.submit_last(pose, limits, start_us, report);
     } else {

@@ -28,6 +28,8 @@ struct EngineOptions {
     std::string selector{select::usual_selector};
     double slice_us = 1000;  ///< predicted length of a slice
     float hysteresis = 1.25F;
+    /// Share of the picture's width and height that is drawn, then enlarged; 0: chosen frame by frame.
+    float resolution = 1;
     bool in_frame_check = true;  ///< checks slices against the time left; off only for comparison
 };
 
@@ -35,7 +37,6 @@ struct EngineOptions {
 struct SubmitLimits {
     double elapsed_us = 0;                            ///< already spent in this frame when submit is called
     double limit_us = 0;                              ///< when the frame must be done, from its start
-    float resolution = 1;                             ///< share of the picture's sides that is drawn, as Device::begin_frame
     std::int64_t (*now_ns)(void* context) = nullptr;  ///< null: the device's charged time (virtual)
     void* now_context = nullptr;
 };
@@ -78,8 +79,9 @@ public:
     [[nodiscard]] const EngineOptions& options() const;
 
     void reserve(prepare::PreparedFrame& frame) const;
+    /// planned_us: predicted time that a cut may take, without correction and headroom; 0: not known, and the resolution stays.
     void prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
-                 prepare::PreparedFrame& out);
+                 prepare::PreparedFrame& out, double planned_us = 0);
 
     /// Changes the selector, from the next prepare() on. No prepare() may be running, since `flat` changes its depth. Allocates.
     Result<void> set_selector(std::string_view name);

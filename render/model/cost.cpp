@@ -75,6 +75,8 @@ const CostGrid& CostModel::grid_for(EffectMask effects) const {
     return *best;
 }
 
+float CostModel::blur_loss_at(float resolution) const { return blur_loss[resolution_step(resolution)]; }
+
 CostModel default_costs() {
     // Orders of magnitude of llvmpipe on two cores at 1280x720; `surefoot calibrate` replaces them.
     constexpr std::array<ClassFigures, 12> classes = {{

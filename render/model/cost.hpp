@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/model/effects.hpp"
+#include "render/model/resolution.hpp"
 
 namespace surefoot::model {
 
@@ -47,9 +48,13 @@ struct FrameCombine {
 struct CostModel {
     std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
     FrameCombine combine;
-    float headroom = 1.25F;  ///< 90 % quantile of actual / predicted whole-frame cost at calibration
-    float slice_us = 30;     ///< cost of ending a slice (flush and fence)
-    std::string machine;     ///< CPU, renderer, rasteriser count; a table of another machine is refused
+    float headroom = 1.25F;          ///< 90 % quantile of actual / predicted whole-frame cost at calibration
+    float slice_us = 30;             ///< cost of ending a slice (flush and fence)
+    float enlarge_ns_per_pixel = 3;  ///< of the whole picture, where it is drawn at a lower resolution
+    /// What a lower resolution loses of the value, by resolution_steps: six times the mean squared error (0..1) of full detail
+    /// that is enlarged. Measured for a model; before, that of common scenes.
+    std::array<float, resolution_steps.size()> blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
+    std::string machine;  ///< CPU, renderer, rasteriser count; a table of another machine is refused
     bool timer_query_honest = false;
     bool calibrated = false;  ///< false: built-in defaults
 
@@ -57,6 +62,11 @@ struct CostModel {
     /// argument gives the largest cell.
     [[nodiscard]] ItemCost item(float triangles, float pixels, const CostGrid& grid) const;
     [[nodiscard]] const CostGrid& grid_for(EffectMask effects) const;
+    [[nodiscard]] float blur_loss_at(float resolution) const;  ///< of the step that is drawn for it
+    /// Time to enlarge a picture of `resolution` to this many pixels, us; 0 at full resolution.
+    [[nodiscard]] float enlarge_us(float resolution, std::uint64_t pixels) const {
+        return resolution < 1.0F ? 1e-3F * enlarge_ns_per_pixel * static_cast<float>(pixels) : 0.0F;
+    }
 };
 
 /// Conservative costs for an uncalibrated machine (llvmpipe on two cores).

@@ -22,6 +22,9 @@ inline std::size_t resolution_step(float wanted) {
     return step;
 }
 
+/// `wanted` as a step; 0 or less stays 0: to be chosen.
+inline float stepped(float wanted) { return wanted > 0 ? resolution_steps[resolution_step(wanted)] : 0.0F; }
+
 /// Size of what is drawn at a step, in pixels: at least one each way.
 inline Viewport viewport_of_step(Viewport viewport, std::size_t step) {
     const auto part = [&](std::uint32_t side) {

@@ -73,7 +73,9 @@ struct Preparer::Impl {
     std::vector<std::uint32_t> slot_first, slot_count, slot_hidden;
     std::vector<Index> candidate_of;  ///< a visit
     std::vector<std::uint32_t> chunk_choice, chunk_candidate, chunk_count;
-    std::vector<Weight> weights;  ///< a candidate
+    std::vector<Weight> weights;                   ///< a candidate
+    PreparedFrame tried;                           ///< of value_at()
+    double last_speed_mps = 0, last_turn_rps = 0;  ///< of the last run()
     ValuePass values;
     std::uint32_t choice_bound = 0;  ///< choices that the visits may need
     float target_factor = 1;         ///< of the error target, raised while frames look at too many nodes
@@ -82,12 +84,13 @@ struct Preparer::Impl {
     Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o);
     template <class Body>
     void for_chunks(std::uint32_t count, const Body& body);
-    RegionView view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps) const;
+    RegionView view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps, float resolution) const;
     NodeVisit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
     void visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
     void expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end, PreparedFrame& out);
     void close_up_block(PreparedFrame& out);
     void drop_false_positives(PreparedFrame& out);
+    void make_room(PreparedFrame& out);
     void evaluate_all(const RegionView& view, PreparedFrame& out);
     void adapt(const PreparedFrame& out);
 };
@@ -147,15 +150,18 @@ void Preparer::Impl::for_chunks(std::uint32_t count, const Body& body) {
     loop.joined();
 }
 
-RegionView Preparer::Impl::view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps) const {
+RegionView Preparer::Impl::view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps,
+                                   float resolution) const {
     const Pose& pose = region.centre;
     RegionView view;
     view.eye = pose.position;
     view.radius_m = region.radius_m;
     view.scale = model::make_view_scale(pose, viewport);
+    view.scale.pixels_per_radian *= resolution;
+    view.scale.viewport_pixels *= resolution * resolution;
     view.wide = model::make_view_scale(pose, viewport, region.angle_rad);
     view.pixel_angle_rad = static_cast<float>(model::pixel_angle(pose, viewport));
-    const double target = options.target_error_rad > 0.0 ? options.target_error_rad : 0.125 * view.pixel_angle_rad;
+    const double target = options.target_error_rad > 0.0 ? options.target_error_rad : 0.125 * view.pixel_angle_rad / resolution;
     view.target_error_rad = static_cast<float>(target) * target_factor;
     view.full_depth = options.full_depth;
     view.focus_strength = static_cast<float>(std::clamp(finite_or(options.focus_strength, 0.0), 0.0, 1.0));
@@ -245,6 +251,11 @@ void Preparer::Impl::drop_false_positives(PreparedFrame& out) {
         visit.live = false;
         for (std::uint32_t k = 0; k < visit.child_count && !visit.live; ++k) visit.live = visits[visit.first_child + k].live;
     }
+    make_room(out);
+}
+
+/// Places for the candidates and choices of the live visits.
+void Preparer::Impl::make_room(PreparedFrame& out) {
     CHECK(visits.size() <= candidate_of.size(), "No more nodes are visited than were reserved");
     Index candidate = 0;
     std::uint32_t choice = 0;
@@ -310,7 +321,9 @@ void Preparer::Impl::adapt(const PreparedFrame& out) {
 }
 
 Preparer::Preparer(const model::Model& model, const model::CostModel& costs, const PrepareOptions& options)
-    : impl_(std::make_unique<Impl>(model, costs, options)) {}
+    : impl_(std::make_unique<Impl>(model, costs, options)) {
+    reserve(impl_->tried);
+}
 Preparer::~Preparer() = default;
 
 const model::ItemCosts& Preparer::item_costs() const { return impl_->evaluator.item_costs(); }
@@ -321,7 +334,7 @@ void Preparer::reserve(PreparedFrame& frame) const {
 }
 
 void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
-                   PreparedFrame& out) {
+                   PreparedFrame& out, float resolution) {
     Impl& s = *impl_;
     const std::int64_t cpu_start = rt::own_cpu_ns(), wall_start = rt::monotonic_ns();
     s.worker_cpu_ns.store(0, std::memory_order_relaxed);
@@ -339,7 +352,10 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     const model::Node& root = s.model.nodes[0];
     out.region = cleaned(region, root.box);
     const Pose& pose = out.region.centre;
-    const RegionView view = s.view_of(out.region, viewport, speed_mps, turn_rps);
+    out.resolution = resolution > 0.0F && resolution < 1.0F ? resolution : 1.0F;
+    s.last_speed_mps = speed_mps;
+    s.last_turn_rps = turn_rps;
+    const RegionView view = s.view_of(out.region, viewport, speed_mps, turn_rps, out.resolution);
     out.target_error_rad = view.full_depth ? 0.0F : view.target_error_rad;
 
     const model::Frustum frustum =
@@ -356,12 +372,24 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     }
     s.drop_false_positives(out);
     s.evaluate_all(view, out);
+    s.tried.region = out.region;
+    s.tried.viewport = viewport;
     s.values.run(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     propagate_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     enforce_monotone_benefit(out);
     s.adapt(out);
     out.cpu_us = 1e-3 * static_cast<double>(rt::own_cpu_ns() - cpu_start + s.worker_cpu_ns.load());
     out.wall_us = 1e-3 * static_cast<double>(rt::monotonic_ns() - wall_start);
+}
+
+const ValueCurve& Preparer::value_at(float resolution) {
+    Impl& s = *impl_;
+    s.tried.resolution = resolution;
+    s.make_room(s.tried);
+    const RegionView view = s.view_of(s.tried.region, s.tried.viewport, s.last_speed_mps, s.last_turn_rps, resolution);
+    s.evaluate_all(view, s.tried);
+    s.values.run(s.costs.combine, view.pixel_angle_rad, s.weights, s.tried);
+    return s.tried.curve;
 }
 
 }  // namespace surefoot::prepare

@@ -1,6 +1,7 @@
 // The prepared frame: visible candidates with cost, error and benefit for a region of poses, in flat arrays.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -58,6 +59,17 @@ struct Region {
     double angle_rad = 0;  ///< largest turn away from the centre's view
 };
 
+constexpr std::uint32_t value_levels = 40;
+
+/// The best cuts of a whole frame by the rate at which they stop: value (weighted pixels) and cost (us, of the items alone). Both
+/// rise from level to level.
+struct ValueCurve {
+    std::array<float, value_levels> value{}, cost{};
+    float full_value = 0;  ///< of full detail at full resolution
+    /// The greatest value that this cost buys; between levels interpolated.
+    [[nodiscard]] float value_at(float cost_us) const;
+};
+
 /// The candidates of a region. Filled by the prepare thread, then read by the frame thread only.
 struct PreparedFrame {
     std::uint64_t frame = 0;  ///< the frame whose pose was newest when preparation began
@@ -67,6 +79,8 @@ struct PreparedFrame {
     std::vector<Choice> choices;
     model::ItemCost full_cost;   ///< of the finest choice of every visible leaf
     double full_value = 0;       ///< sum of their values; 0: not computed
+    ValueCurve curve;            ///< of the best cuts
+    float resolution = 1;        ///< of the picture that the costs are for, 0..1]: share of its width
     std::uint32_t visits = 0;    ///< nodes tested, invisible ones included
     std::uint32_t hidden = 0;    ///< of these, nodes in the view that others hide; their subtrees were not tested
     bool truncated = false;      ///< capacity reached: deeper detail is missing, but the tree is complete and legal
@@ -110,8 +124,11 @@ public:
     void reserve(PreparedFrame& frame) const;
     /// Fills `out` for `region`. Non-finite numbers of the region are replaced; a position becomes the model's centre.
     /// Independent of earlier frames, unless one exceeded max_visits. speed_mps, turn_rps: of the eye, for the motion factor.
+    /// resolution: of the picture that costs and detail are for, as a share of the viewport's width.
     void run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
-             PreparedFrame& out);
+             PreparedFrame& out, float resolution = 1);
+    /// The same frame's values and costs at another resolution, without a new search for what is visible.
+    const ValueCurve& value_at(float resolution);
 
     /// Predicts the costs of the choices.
     [[nodiscard]] const model::ItemCosts& item_costs() const;

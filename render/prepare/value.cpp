@@ -16,10 +16,7 @@ constexpr float top_rate = 0x1p20F;      // px/us, of level 0
 constexpr std::size_t max_choices = 32;  // of one candidate on its hull; more are left out of it
 
 /// 0..1: how wrong a picture with this error looks. Nearly linear up to a hundred pixels: twice the error is twice as wrong.
-float wrongness(float error_rad, float pixel_angle_rad) {
-    const float error_px = error_rad / pixel_angle_rad;
-    return error_px / (error_px + 256.0F);
-}
+float wrongness(float error_px) { return error_px / (error_px + 256.0F); }
 
 /// Pixels of a leaf, weighted. Large things count for more than their pixels: they hide what stands behind them.
 float weight_of(const Weight& weight, float pixels, float view_pixels) {
@@ -67,6 +64,16 @@ std::span<const std::uint32_t> hull_of(const model::FrameCombine& combine, std::
 
 }  // namespace
 
+float ValueCurve::value_at(float cost_us) const {
+    if (!(cost_us >= cost[0])) return value[0];  // the floor is always drawn
+    for (std::uint32_t level = 1; level < value_levels; ++level) {
+        if (cost_us >= cost[level]) continue;
+        const float step = cost[level] - cost[level - 1];
+        return value[level - 1] + (value[level] - value[level - 1]) * (step > 0.0F ? (cost_us - cost[level - 1]) / step : 1.0F);
+    }
+    return value.back();
+}
+
 void ValuePass::reserve(std::uint32_t max_candidates) {
     sums_.resize(max_candidates);
     // Curves are held for one level of the tree at a time, and only for nodes that have children in the frame.
@@ -94,6 +101,7 @@ void ValuePass::add(Index parent, std::uint32_t level, float value, float cost) 
 
 void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
                     PreparedFrame& frame) {
+    frame.curve = {};
     const std::size_t n = frame.candidates.size();
     if (n == 0) return;
     CHECK(n <= sums_.size(), "Values are made for no more candidates than were reserved");
@@ -102,7 +110,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
     for (std::uint32_t i = static_cast<std::uint32_t>(curves_.size()); i-- > 0;) free_.push_back(i);
     const float view_pixels =
         std::max(1.0F, static_cast<float>(frame.viewport.width) * static_cast<float>(frame.viewport.height));
-    double full_value = 0;
+    double full_value = 0, weight = 0;
     std::array<std::uint32_t, max_choices> room{};
     for (std::size_t i = n; i-- > 0;) {
         const Candidate& candidate = frame.candidates[i];
@@ -123,7 +131,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
         for (Choice& choice : choices) {
             const float error_rad = choice.error_rad * weights[i].distance_m * per_m;
             const float right =
-                (1.0F - wrongness(error_rad, pixel_angle_rad)) * (1.0F - unusable_penalty(weights[i].size, choice.error_rad));
+                (1.0F - wrongness(error_rad / pixel_angle_rad)) * (1.0F - unusable_penalty(weights[i].size, choice.error_rad));
             least = std::max(least, sums.weight * right);
             choice.value = least;
         }
@@ -131,6 +139,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
         const auto cost_of = [&](std::uint32_t k) { return cost_metric(combine, choices[k].cost); };
         if (leaf) {
             full_value += static_cast<double>(choices.back().value);
+            weight += static_cast<double>(sums.weight);
             add(candidate.parent, 0, choices[0].value, cost_of(0));
             for (std::size_t h = 0; h + 1 < hull.size(); ++h) {
                 const std::uint32_t a = hull[h], b = hull[h + 1];
@@ -173,12 +182,17 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
                 }
             }
             add(candidate.parent, level, best_value - now_value, best_cost - now_cost);
+            if (i == 0) {
+                frame.curve.value[level] = best_value;
+                frame.curve.cost[level] = best_cost;
+            }
             now_value = best_value;
             now_cost = best_cost;
         }
         free_.push_back(sums.curve);
     }
     frame.full_value = full_value;
+    frame.curve.full_value = static_cast<float>(weight);
     for (const Candidate& candidate : frame.candidates) {  // parents first
         float most = std::numeric_limits<float>::max();
         if (candidate.parent != none) {

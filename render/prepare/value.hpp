@@ -21,7 +21,7 @@ namespace surefoot::prepare {
 class ValuePass {
 public:
     /// Rates are told apart by octaves while they are summed up: from 2^20 down to 2^-19 px/us.
-    static constexpr std::uint32_t levels = 40;
+    static constexpr std::uint32_t levels = value_levels;
 
     /// Reserves for this many candidates. run() allocates nothing below that.
     void reserve(std::uint32_t max_candidates);

@@ -78,6 +78,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.selector = r.selector;
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
+    options.resolution = static_cast<float>(r.resolution_pct * 0.01);
     options.in_frame_check = r.in_frame_check;
     return options;
 }
@@ -209,7 +210,6 @@ void warm_up(Session& s) {
     engine.device().bind();
     SubmitLimits limits;
     limits.limit_us = 1e9;
-    limits.resolution = static_cast<float>(s.request.resolution_pct * 0.01);
     const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
     for (int i = 0; i < 12; ++i) {
         const Pose pose = pose_at(s.path.path, i * s.path.path.duration_s() / 12.0);

@@ -73,6 +73,9 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.turn_ahead_rad_s = newest.turn_ahead_rad_s;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
+    now_.planned_us =
+        options_.budget_us / (request_.correct_costs ? controller_.factor() * controller_.headroom(engine_.costs().headroom)
+                                                     : static_cast<double>(engine_.costs().headroom));
     now_.valid = true;
     take(newest, record);
     poses_.back() = now_;
@@ -161,7 +164,6 @@ void WalkStages::submit(rt::FrameRecord& record) {
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
     limits.limit_us = options_.limit_us;
-    limits.resolution = static_cast<float>(request_.resolution_pct * 0.01);
     if (!virtual_clock_) {
         limits.now_ns = clock_now;
         limits.now_context = &clock_;

@@ -1,0 +1,36 @@
+// The choice of the picture's resolution.
+#include "render/prepare/resolution.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::prepare {
+
+double lost_share(const ValueCurve& curve, double items_us) {
+    if (!(curve.full_value > 0.0F)) return 0.0;
+    const double lost =
+        1.0 - static_cast<double>(curve.value_at(static_cast<float>(items_us))) / static_cast<double>(curve.full_value);
+    return std::isfinite(lost) ? std::clamp(lost, 0.0, 1.0) : 0.0;
+}
+
+float ResolutionChooser::trial() {
+    if (++frame_ % every != 0) return 0.0F;
+    tried_ = (tried_ + 1) % model::resolution_steps.size();
+    if (tried_ == at_) tried_ = (tried_ + 1) % model::resolution_steps.size();
+    return model::resolution_steps[tried_];
+}
+
+void ResolutionChooser::judge(double lost_now, double lost_tried) {
+    constexpr double margin = 0.4;  // of what is lost now: a softer picture must win clearly
+    constexpr double least = 5e-4;  // what nobody sees
+    lost_[at_] = lost_now;
+    lost_[tried_] = lost_tried;
+    const std::size_t last = at_ + 1 == lost_.size() ? at_ - 1 : lost_.size() - 1;
+    if (tried_ != last) return;
+    const auto best = static_cast<std::uint32_t>(std::min_element(lost_.begin(), lost_.end()) - lost_.begin());
+    const bool wins = lost_[best] < lost_now * (1.0 - margin) - least;
+    if (wins && best == best_before_) at_ = best;
+    best_before_ = wins ? best : at_;
+}
+
+}  // namespace surefoot::prepare
