@@ -132,15 +132,17 @@ void add_walk(CLI::App& app, Context& context) {
     auto a = std::make_shared<WalkArguments>();
     walk::WalkRequest& r = a->request;
     r.capture_frame = unset;
-    CLI::App* c =
-        add_command(app, "walk", "Walk through a model in real time, and print the figures",
-                    "surefoot walk town.walk --seconds 30 --report report\n"
-                    "  surefoot walk town.walk --input devices --seconds 600             (a gamepad or 3D mouse steers)\n"
-                    "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
-                    "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
-                    "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
-                    "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
-                    a->json);
+    CLI::App* c = add_command(
+        app, "walk", "Walk through a model in real time, and print the figures",
+        "surefoot walk town.walk --seconds 30 --report report\n"
+        "  surefoot walk town.walk --input devices --seconds 600             (a gamepad or 3D mouse steers)\n"
+        "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
+        "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
+        "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
+        "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)\n\n"
+        "In --json, `coarse_frames` counts frames with coarser slices. `floor_frames` counts frames where over half of the\n"
+        "picture fell to the coarsest forms, although the forms of the frame before would have been drawn in time.",
+        a->json);
     c->add_option("model", r.model_file, "The .walk model (else `model` in the --config file)");
     c->add_option("--path", r.path_file,
                   "CSV file of poses over time (else MODEL.path.csv, else a tour). With --input the path is not followed: "
@@ -183,8 +185,8 @@ void add_walk(CLI::App& app, Context& context) {
     c->add_option("--report", r.report_dir, "Folder for a report: index.html")->check(names_something());
     c->add_option(
          "--pictures", r.pictures,
-         "Number of frames that are compared with full detail after the walk, evenly spread. They give PSNR, SSIM and FLIP "
-         "[7 with --report, else 0]")
+         "Number of frames that are compared with full detail after the walk, evenly spread. They give PSNR, SSIM and FLIP, "
+         "and popping against the frame before [7 with --report, else 0]")
         ->check(whole_number_within(1, 100));
     c->add_option(
         "--monitor", a->watch.address,
