@@ -200,15 +200,17 @@ void add_walk(CLI::App& app, Context& context) {
     auto a = std::make_shared<WalkArguments>();
     walk::WalkRequest& r = a->request;
     r.capture_frame = unset;
-    CLI::App* c =
-        add_command(app, "walk", "Walk through a model in real time, and print the figures",
-                    "surefoot walk town.walk --seconds 30 --report report\n"
-                    "  surefoot walk town.walk --input devices --seconds 600             (a gamepad or 3D mouse steers)\n"
-                    "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
-                    "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
-                    "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
-                    "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)",
-                    a->json);
+    CLI::App* c = add_command(
+        app, "walk", "Walk through a model in real time, and print the figures",
+        "surefoot walk town.walk --seconds 30 --report report\n"
+        "  surefoot walk town.walk --input devices --seconds 600             (a gamepad or 3D mouse steers)\n"
+        "  surefoot walk town.walk --input pad.hid --steering pad.toml       (a recorded visitor steers)\n"
+        "  surefoot walk town.walk --clock virtual --backend null --json     (deterministic, no GL)\n"
+        "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
+        "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)\n\n"
+        "In --json, `coarse_frames` counts frames with coarser slices. `floor_frames` counts frames where over half of the\n"
+        "picture fell to the coarsest forms, although the forms of the frame before would have been drawn in time.",
+        a->json);
     c->add_option("model", r.model_file, "The .walk model (else `model` in the --config file)");
     add_sources(c, r);
     c->add_option("--frames", r.frames,
