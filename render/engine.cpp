@@ -276,7 +276,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     const double start_us = e.now_us(limits);
     e.drawn.clear();
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
-    e.device->begin_frame(pose);
+    e.device->begin_frame(pose, limits.resolution);
     if (e.use_coarse) {
         e.submit_coarse(pose, report);
     } else {
@@ -289,14 +289,15 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     const gl::FrameStats stats = e.device->stats();
     report.items = stats.items;
     report.draws = stats.draws;
+    report.resolution = stats.resolution;
     if (!e.drawn.empty()) report.benefit_mean /= static_cast<double>(e.drawn.size());
     return report;
 }
 
-void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items) {
+void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution) {
     gl::Device& device = *impl_->device;
     device.draws.plays();
-    device.begin_frame(pose);
+    device.begin_frame(pose, resolution);
     constexpr std::size_t chunk = 4096;  // below the device's max_items, and bounded work a slice
     for (std::size_t at = 0; at < items.size(); at += chunk) {
         device.draw(items.subspan(at, std::min(chunk, items.size() - at)));

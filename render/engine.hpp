@@ -35,6 +35,7 @@ struct EngineOptions {
 struct SubmitLimits {
     double elapsed_us = 0;                            ///< already spent in this frame when submit is called
     double limit_us = 0;                              ///< when the frame must be done, from its start
+    float resolution = 1;                             ///< share of the picture's sides that is drawn, as Device::begin_frame
     std::int64_t (*now_ns)(void* context) = nullptr;  ///< null: the device's charged time (virtual)
     void* now_context = nullptr;
 };
@@ -54,6 +55,7 @@ struct SubmitReport {
     std::uint32_t slices = 0, downgraded_slices = 0, items = 0, draws = 0;
     std::uint32_t culled = 0;  ///< items of the cut outside this pose's view
     std::uint64_t triangles = 0;
+    float resolution = 1;       ///< that was drawn: a step of model::resolution_steps
     float worst_error_rad = 0;  ///< of the drawn items, stand-ins included
     double benefit_mean = 0;
 };
@@ -97,7 +99,7 @@ public:
     [[nodiscard]] std::size_t drawn_capacity() const;
 
     /// Draws items without a budget, for images of reports: full_detail(), or a remembered set.
-    void draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items);
+    void draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution = 1);
     /// Every visible leaf at full detail, for draw_unbudgeted; allocates.
     [[nodiscard]] std::vector<gl::DrawItem> full_detail(const Pose& pose) const;
 

@@ -46,6 +46,7 @@ namespace surefoot::gl {
     X(DepthFunc, PFNGLDEPTHFUNCPROC)                                 \
     X(DepthMask, PFNGLDEPTHMASKPROC)                                 \
     X(Disable, PFNGLDISABLEPROC)                                     \
+    X(DrawArrays, PFNGLDRAWARRAYSPROC)                               \
     X(Enable, PFNGLENABLEPROC)                                       \
     X(EnableVertexAttribArray, PFNGLENABLEVERTEXATTRIBARRAYPROC)     \
     X(EndQuery, PFNGLENDQUERYPROC)                                   \
@@ -53,6 +54,7 @@ namespace surefoot::gl {
     X(Finish, PFNGLFINISHPROC)                                       \
     X(Flush, PFNGLFLUSHPROC)                                         \
     X(FramebufferRenderbuffer, PFNGLFRAMEBUFFERRENDERBUFFERPROC)     \
+    X(FramebufferTexture2D, PFNGLFRAMEBUFFERTEXTURE2DPROC)           \
     X(FrontFace, PFNGLFRONTFACEPROC)                                 \
     X(GenBuffers, PFNGLGENBUFFERSPROC)                               \
     X(GenFramebuffers, PFNGLGENFRAMEBUFFERSPROC)                     \
@@ -78,6 +80,7 @@ namespace surefoot::gl {
     X(ReadPixels, PFNGLREADPIXELSPROC)                               \
     X(RenderbufferStorage, PFNGLRENDERBUFFERSTORAGEPROC)             \
     X(ShaderSource, PFNGLSHADERSOURCEPROC)                           \
+    X(TexImage2D, PFNGLTEXIMAGE2DPROC)                               \
     X(TexParameteri, PFNGLTEXPARAMETERIPROC)                         \
     X(TexStorage3D, PFNGLTEXSTORAGE3DPROC)                           \
     X(TexSubImage3D, PFNGLTEXSUBIMAGE3DPROC)                         \

@@ -13,6 +13,7 @@
 
 #include "render/model/cost.hpp"
 #include "render/model/model.hpp"
+#include "render/model/resolution.hpp"
 #include "render/model/view.hpp"
 #include "rt/base/result.hpp"
 #include "rt/base/thread_annotations.hpp"
@@ -40,6 +41,7 @@ struct NullOptions {
     double cost_scale = 1;
     double noise = 0;  ///< relative, seeded
     std::uint64_t seed = 1;
+    double enlarge_us = 0;  ///< charged for a frame below full resolution
 };
 
 /// Settings of a device.
@@ -57,6 +59,7 @@ struct DeviceOptions {
 struct FrameStats {
     std::uint32_t items = 0, draws = 0, batches = 0, state_changes = 0;
     std::uint64_t triangles = 0;
+    float resolution = 1;  ///< the step that is drawn, of model::resolution_steps
 };
 
 /// A picture in memory, RGBA8.
@@ -85,7 +88,10 @@ public:
     virtual void release() RELEASE(draws) = 0;
 
     // ---- the frame; no own allocation, no throw ----
-    virtual void begin_frame(const Pose& pose) REQUIRES(draws) = 0;
+    /// `resolution`: share of the picture's width and height at which it is drawn, then enlarged once by finish_frame(). The step
+    /// of model::resolution_steps that is not above it, or the least; NaN, zero and below mean 1.
+    virtual void begin_frame(const Pose& pose, float resolution) REQUIRES(draws) = 0;
+    void begin_frame(const Pose& pose) REQUIRES(draws) { begin_frame(pose, 1.0F); }
     /// Draws items sorted by state, as multi-draws. Blended items wait for end_items().
     virtual void draw(std::span<const DrawItem> items) REQUIRES(draws) = 0;
     /// Ends a slice: flush and fence. Returns its number, from 1.
@@ -94,13 +100,13 @@ public:
     virtual void wait_slices(std::uint32_t in_flight) REQUIRES(draws) = 0;
     /// Draws the kept blended items, back to front, as the last slice.
     virtual void end_items() REQUIRES(draws) = 0;
-    /// Waits for all slices; presents if there is a window.
+    /// Enlarges a frame below full resolution, waits for all slices; presents if there is a window.
     virtual void finish_frame() REQUIRES(draws) = 0;
     [[nodiscard]] virtual FrameStats stats() const REQUIRES(draws) = 0;
     /// The context is lost: the GPU was reset or removed, or does not finish. Later frames were not shown. All calls are safe
     /// then, and draw nothing.
     [[nodiscard]] virtual bool lost() const REQUIRES(draws) { return false; }
-    /// Pixels of the current frame; slow.
+    /// Pixels of the current frame, in full size; slow.
     virtual Result<PixelImage> read_pixels() REQUIRES(draws) = 0;
 
     /// A GL_TIME_ELAPSED query around the draws in between; slow (waits). False: no timer queries, and nothing to end.

@@ -51,9 +51,9 @@ Result<void> GlDevice::set_up() {
     const auto* name = reinterpret_cast<const char*>(gl_.GetString(GL_RENDERER));
     renderer_ = name != nullptr ? name : "unknown";
     software_ = is_software(renderer_);
-    auto target = make_target(gl_, options_.viewport);
-    if (!target) return target.error();
-    target_ = *target;
+    auto targets = make_targets(gl_, options_.viewport);
+    if (!targets) return targets.error();
+    targets_ = *targets;
     auto frame = make_frame_buffers(gl_, std::max(1U, options_.max_items));
     if (!frame) return frame.error();
     frame_ = *frame;
@@ -113,6 +113,11 @@ void GlDevice::warm_up() {
     }
     set_blending(false);
     finish_frame();
+    // A driver may compile the enlarging pass for each size.
+    for (const float resolution : model::resolution_steps) {
+        begin_frame(Pose{}, resolution);
+        finish_frame();
+    }
     stats_ = {};
 }
 
@@ -151,6 +156,7 @@ void GlDevice::wait_slices(std::uint32_t in_flight) {
 }
 
 void GlDevice::finish_frame() {
+    if (step_ > 0 && !lost_) enlarge(gl_, targets_, step_);
     end_slice();
     wait_slices(0);
     if (reset_status_ != nullptr && reset_status_() != GL_NO_ERROR) lost_ = true;
@@ -160,7 +166,7 @@ void GlDevice::finish_frame() {
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     gl_.BlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     context_->present();
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_.steps.front().framebuffer);
 }
 
 Result<PixelImage> GlDevice::read_pixels() {
@@ -170,7 +176,7 @@ Result<PixelImage> GlDevice::read_pixels() {
     image.height = options_.viewport.height;
     const std::size_t row = 4ULL * image.width;
     std::vector<std::uint8_t> upside_down(row * image.height);
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_.steps.front().framebuffer);
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl_.ReadPixels(0, 0, static_cast<GLsizei>(image.width), static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE,
                    upside_down.data());

@@ -10,6 +10,7 @@
 #include "render/draw/tables.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/resources.hpp"
+#include "render/gl/targets.hpp"
 
 namespace surefoot::gl {
 
@@ -29,7 +30,8 @@ public:
     void bind() override ASSERT_CAPABILITY(draws) { context_->make_current(); }
     void release() override RELEASE(draws) NO_THREAD_SAFETY_ANALYSIS { context_->release(); }
 
-    void begin_frame(const Pose& pose) override REQUIRES(draws);
+    using Device::begin_frame;
+    void begin_frame(const Pose& pose, float resolution) override REQUIRES(draws);
     void draw(std::span<const DrawItem> items) override REQUIRES(draws);
     std::uint32_t end_slice() override REQUIRES(draws);
     void wait_slices(std::uint32_t in_flight) override REQUIRES(draws);
@@ -71,7 +73,8 @@ private:
     Api gl_;
     std::string renderer_;
     bool software_ = false;
-    Target target_ GUARDED_BY(draws);
+    Targets targets_ GUARDED_BY(draws);
+    std::size_t step_ GUARDED_BY(draws) = 0;  ///< of this frame, in model::resolution_steps
     FrameBuffers frame_ GUARDED_BY(draws);
     Resources resources_;
     draw::DrawTables tables_;

@@ -30,20 +30,23 @@ void apply_depth_bias(std::uint8_t rank, std::array<float, 12>& rows) {
 
 }  // namespace
 
-void GlDevice::begin_frame(const Pose& pose) {
+void GlDevice::begin_frame(const Pose& pose, float resolution) {
     if (slices_ != slices_done_) wait_slices(0);  // an abandoned frame: its buffers may still be read
     ++frame_number_;
     pose_ = pose;
     view_projection_ = model::projection(pose, options_.viewport) * model::view_rotation(pose);
     stats_ = {};
+    step_ = model::resolution_step(resolution);
+    stats_.resolution = model::resolution_steps[step_];
     slices_ = slices_done_ = 0;
     blended_count_ = 0;
     used_instances_ = used_commands_ = 0;
     state_known_ = false;
     if (lost_) return;
 
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer);
-    gl_.Viewport(0, 0, static_cast<GLsizei>(options_.viewport.width), static_cast<GLsizei>(options_.viewport.height));
+    const Target& target = targets_.steps[step_];
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    gl_.Viewport(0, 0, target.width, target.height);
     gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // reversed-Z needs 0..1: -1..1 would round near 1
     gl_.Enable(GL_DEPTH_TEST);
     gl_.DepthFunc(GL_GREATER);

@@ -29,7 +29,8 @@ public:
     void bind() override ASSERT_CAPABILITY(draws) {}
     void release() override RELEASE(draws) NO_THREAD_SAFETY_ANALYSIS {}
 
-    void begin_frame(const Pose& pose) override REQUIRES(draws);
+    using Device::begin_frame;
+    void begin_frame(const Pose& pose, float resolution) override REQUIRES(draws);
     void draw(std::span<const DrawItem> items) override REQUIRES(draws);
     std::uint32_t end_slice() override REQUIRES(draws) {
         ++slices_;
@@ -41,7 +42,9 @@ public:
         if (blended_ > 0) end_slice();
         blended_ = 0;
     }
-    void finish_frame() override REQUIRES(draws) {}
+    void finish_frame() override REQUIRES(draws) {
+        if (stats_.resolution < 1) frame_us_ += null_.cost_scale * factor_ * null_.enlarge_us;
+    }
     [[nodiscard]] FrameStats stats() const override REQUIRES(draws) { return stats_; }
     Result<PixelImage> read_pixels() override REQUIRES(draws) {
         return Error{"backend 'null'", "The backend draws nothing, so there is no picture", "Use --backend egl for pictures",
@@ -94,11 +97,12 @@ std::string NullDevice::program_text(model::EffectMask mask) const {
     return {};
 }
 
-void NullDevice::begin_frame(const Pose& pose) {
+void NullDevice::begin_frame(const Pose& pose, float resolution) {
     before_us_ += frame_us_;
     eye_ = pose.position;
     scale_ = model::make_view_scale(pose, options_.viewport);
     stats_ = {};
+    stats_.resolution = model::resolution_steps[model::resolution_step(resolution)];
     submit_us_ = raster_us_ = 0;
     slices_ = blended_ = 0;
     // One factor a frame: what makes real predictions wrong is common to a frame's items. Drawn even without noise, so that

@@ -89,29 +89,34 @@ void make_vertex_array(const Api& gl, Program& program, const GeometryBuffers& b
 
 }  // namespace
 
-Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers) {
+Result<GLuint> link_program(const Api& gl, const ProgramSource& source) {
     const std::string place = "program '" + source.name + "'";
     const Shader vertex(gl, GL_VERTEX_SHADER), fragment(gl, GL_FRAGMENT_SHADER);
     if (auto ok = compile(gl, vertex, source.vertex, place); !ok) return ok.error();
     if (auto ok = compile(gl, fragment, source.fragment, place); !ok) return ok.error();
+    const GLuint id = gl.CreateProgram();
+    gl.AttachShader(id, vertex.id());
+    gl.AttachShader(id, fragment.id());
+    gl.LinkProgram(id);
+    GLint ok = GL_FALSE;
+    gl.GetProgramiv(id, GL_LINK_STATUS, &ok);
+    if (ok == GL_TRUE) return id;
+    std::string log(2048, ' ');
+    GLsizei length = 0;
+    gl.GetProgramInfoLog(id, static_cast<GLsizei>(log.size()), &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    gl.DeleteProgram(id);
+    return Error{place, "The program does not link: " + log, "Report this together with the driver's version",
+                 ErrorKind::unsupported};
+}
+
+Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers) {
+    auto id = link_program(gl, source);
+    if (!id) return id.error();
     Program program;
     program.mask = mask;
     program.source = source;
-    program.id = gl.CreateProgram();
-    gl.AttachShader(program.id, vertex.id());
-    gl.AttachShader(program.id, fragment.id());
-    gl.LinkProgram(program.id);
-    GLint ok = GL_FALSE;
-    gl.GetProgramiv(program.id, GL_LINK_STATUS, &ok);
-    if (ok != GL_TRUE) {
-        std::string log(2048, ' ');
-        GLsizei length = 0;
-        gl.GetProgramInfoLog(program.id, static_cast<GLsizei>(log.size()), &length, log.data());
-        log.resize(static_cast<std::size_t>(length));
-        gl.DeleteProgram(program.id);
-        return Error{place, "The program does not link: " + log, "Report this together with the driver's version",
-                     ErrorKind::unsupported};
-    }
+    program.id = *id;
     program.view_projection = gl.GetUniformLocation(program.id, "view_projection");
     program.sun_direction = gl.GetUniformLocation(program.id, "sun_direction");
     const GLint sampler = gl.GetUniformLocation(program.id, "base_colour");

@@ -36,7 +36,9 @@ struct GeometryBuffers {
     GLuint vertices = 0, indices = 0, instances = 0, commands = 0;
 };
 
-/// Compiles, links and builds the vertex array; the error carries the compiler's message.
+/// Compiles and links; the error carries the compiler's message.
+Result<GLuint> link_program(const Api& gl, const ProgramSource& source);
+/// link_program(), and the vertex array.
 Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers);
 void delete_program(const Api& gl, Program& program);
 

@@ -1,4 +1,4 @@
-// Uploading a model; the frame's target and mapped buffers (resources.hpp).
+// Uploading a model; the mapped buffers of a frame (resources.hpp).
 #include "render/gl/resources.hpp"
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "render/draw/texture_arrays.hpp"
+#include "render/gl/undone.hpp"
 
 namespace surefoot::gl {
 
@@ -49,32 +50,6 @@ Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw
 
 constexpr GLbitfield mapped_bits = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
 
-/// Something that is made step by step, and freed again unless every step succeeds: keep().
-template <class Objects>
-struct Undone {
-    using Free = void (*)(const Api& gl, Objects& objects);
-    Undone(const Api& api, Free with) : gl(api), free(with) {}
-    ~Undone() {
-        if (free != nullptr) free(gl, value);
-    }
-    Undone(const Undone&) = delete;
-    Undone& operator=(const Undone&) = delete;
-    Objects keep() {
-        free = nullptr;
-        return std::move(value);
-    }
-
-    const Api& gl;
-    Free free;
-    Objects value;
-};
-
-void free_target(const Api& gl, Target& target) {
-    const std::array<GLuint, 2> buffers{target.colour, target.depth};
-    gl.DeleteRenderbuffers(2, buffers.data());
-    gl.DeleteFramebuffers(1, &target.framebuffer);
-}
-
 /// A mapped buffer is unmapped as it is deleted.
 void free_frame_buffers(const Api& gl, FrameBuffers& frame) {
     const std::array<GLuint, 2> buffers{frame.instance_buffer, frame.command_buffer};
@@ -113,29 +88,6 @@ Result<void> check_errors(const Api& gl, const std::string& place, const std::st
     }
     if (error == GL_OUT_OF_MEMORY) return Error{place, "The device is out of memory", remedy, ErrorKind::no_memory};
     return Error{place, "The driver reports GL error " + std::to_string(error), remedy, ErrorKind::no_device};
-}
-
-Result<Target> make_target(const Api& gl, model::Viewport viewport) {
-    Undone<Target> made(gl, free_target);
-    Target& target = made.value;
-    const auto w = static_cast<GLsizei>(viewport.width);
-    const auto h = static_cast<GLsizei>(viewport.height);
-    gl.GenFramebuffers(1, &target.framebuffer);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-    gl.GenRenderbuffers(1, &target.colour);
-    gl.BindRenderbuffer(GL_RENDERBUFFER, target.colour);
-    gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, w, h);
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target.colour);
-    gl.GenRenderbuffers(1, &target.depth);
-    gl.BindRenderbuffer(GL_RENDERBUFFER, target.depth);
-    gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, w, h);
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth);
-    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-        return Error{"frame of " + std::to_string(viewport.width) + " x " + std::to_string(viewport.height),
-                     "The device cannot draw into this frame (RGBA8 with 32-bit float depth)", "Give a smaller --size",
-                     ErrorKind::unsupported};
-    }
-    return made.keep();
 }
 
 Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items) {

@@ -1,4 +1,4 @@
-// GL objects of a loaded model: buffers, textures, programs; and the frame's target. Made at load, freed together.
+// GL objects of a loaded model: buffers, textures, programs; and a frame's buffers. Made at load, freed together.
 // Each function makes all of it or nothing: if a step fails, what the earlier steps made is freed.
 #pragma once
 
@@ -21,12 +21,6 @@ struct DrawCommand {
     std::uint32_t first_instance;
 };
 static_assert(sizeof(DrawCommand) == 20);
-
-/// RGBA8 colour and 32-bit float depth of the viewport's size; bound for drawing.
-struct Target {
-    GLuint framebuffer = 0, colour = 0, depth = 0;
-};
-Result<Target> make_target(const Api& gl, model::Viewport viewport);
 
 /// Instance and command buffers, mapped for the device's life, so that the frame writes them without a GL call.
 struct FrameBuffers {

@@ -60,8 +60,9 @@ struct FrameRecord {
     std::uint64_t cut_hash = 0;
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;
     float prepare_cpu_us = 0;
-    float accuracy = 0;  ///< rad^-1
-    float benefit = 0;   ///< mean over items of 1 - benefit of the next finer step; 1: nothing is left to gain
+    float accuracy = 0;    ///< rad^-1
+    float benefit = 0;     ///< mean over items of 1 - benefit of the next finer step; 1: nothing is left to gain
+    float resolution = 1;  ///< share of the picture's sides at which it was drawn
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;

@@ -172,6 +172,7 @@ void Telemetry::add_recent(const FrameRecord& f) {
     r.wake_us = us_of(f.woken_ns - f.due_ns);
     r.slack_us = us_of(f.deadline_ns - f.presented_ns);
     r.used = static_cast<float>(busy_ns(f, figures_.setup.rasterisers) / static_cast<double>(figures_.setup.period_ns));
+    r.resolution = f.resolution;
     r.accuracy = f.accuracy;
     r.skipped_before = f.skipped_before;
     r.missed = f.missed;

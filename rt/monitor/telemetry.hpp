@@ -58,8 +58,9 @@ constexpr std::size_t series_count = 12;
 /// One of the last frames, for live views.
 struct RecentFrame {
     float frame_us = 0, wake_us = 0, slack_us = 0;
-    float used = 0;      ///< of the period, CPU time of frame thread and rasterisers
-    float accuracy = 0;  ///< rad^-1; infinite where all was exact
+    float used = 0;        ///< of the period, CPU time of frame thread and rasterisers
+    float resolution = 1;  ///< share of the picture's sides that was drawn
+    float accuracy = 0;    ///< rad^-1; infinite where all was exact
     std::uint32_t skipped_before = 0;
     bool missed = false;
     Cause cause = Cause::none;

@@ -54,11 +54,11 @@ Counted many_squares() {
     return counted_scene;
 }
 
-void frame(gl::Device& device, const std::vector<gl::DrawItem>& items) {
+void frame(gl::Device& device, const std::vector<gl::DrawItem>& items, float resolution = 1) {
     Pose pose;
     pose.position.z = 11;
     device.draws.plays();
-    device.begin_frame(pose);
+    device.begin_frame(pose, resolution);
     const std::span<const gl::DrawItem> all(items);
     for (std::size_t i = 0; i < items.size(); i += 100) {
         device.draw(all.subspan(i, std::min<std::size_t>(100, items.size() - i)));
@@ -119,11 +119,13 @@ TEST(Allocation, the_first_frame_after_load_compiles_nothing) {
     if (!device) GTEST_SKIP() << device.error().text();
     (*device)->draws.plays();
     ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
-    counted = 0;
-    counting = true;
-    frame(**device, scene.items);
-    counting = false;
-    EXPECT_EQ(counted, 0) << "a state combination was not warmed up: LLVM ran inside the frame";
+    for (const float resolution : model::resolution_steps) {
+        counted = 0;
+        counting = true;
+        frame(**device, scene.items, resolution);
+        counting = false;
+        EXPECT_EQ(counted, 0) << "a state combination was not warmed up: LLVM ran inside the frame, at " << resolution;
+    }
 }
 
 }  // namespace

@@ -305,31 +305,9 @@ TEST_F(DeviceTest, the_context_moves_between_threads) {
     device_->bind();
 }
 
-/// Squares of every effect, for comparisons between backends.
-model::Model mixed_scene(std::vector<gl::DrawItem>& items) {
-    SmallModel scene;
-    auto leaf = plain(1, 1, 1, 1, model::effect_texture | model::effect_alpha_mask | model::effect_sun);
-    leaf.texture = scene.texture({30, 200, 60, 255}, {30, 90, 200, 0}, 16);
-    leaf.two_sided = true;
-    auto glass = plain(0.9F, 0.4F, 0.1F, 0.4F, model::effect_blend);
-    const std::array<model::Index, 4> materials{
-        scene.material(leaf), scene.material(glass),
-        scene.material(plain(0.8F, 0.7F, 0.6F, 1, model::effect_sun | model::effect_vertex_colour)),
-        scene.material(plain(0.3F, 0.3F, 0.35F))};
-    for (int i = 0; i < 40; ++i) {
-        const float angle = 0.37F * static_cast<float>(i);
-        const mat3 turn(glm::mat3_cast(glm::angleAxis(angle, glm::normalize(vec3(0.3F, 1, 0.1F)))));
-        const double x = -2.0 + 0.45 * (i % 10), y = -1.5 + 1.0 * (i / 10.0);
-        const auto node =
-            scene.square(materials[static_cast<std::size_t>(i) % 4], at(x, y, -3.0 - 0.1 * i, turn), 0.5F, {200, 220, 255, 255});
-        items.push_back({node, node - 1});
-    }
-    return scene.finish();
-}
-
 TEST(Backends, osmesa_and_egl_agree_within_one_step) {
     std::vector<gl::DrawItem> items;
-    const auto model = mixed_scene(items);
+    const auto model = test::mixed_scene(items);
     std::vector<gl::PixelImage> images;
     for (const auto kind : {BackendKind::egl, BackendKind::osmesa}) {
         auto device = open(kind);

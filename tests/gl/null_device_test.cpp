@@ -143,6 +143,25 @@ TEST(NullDevice, the_charge_grows_within_the_frame) {
     EXPECT_GT(device->charged_us(), before);
 }
 
+TEST(NullDevice, enlarging_is_charged_once_a_frame_and_only_below_full_resolution) {
+    const auto scene = scene_of_squares(4);
+    gl::NullOptions options;
+    options.enlarge_us = 1300;
+    options.cost_scale = 2;
+    const auto device = null_device(scene, options);
+    device->draws.plays();
+    double before = 0;
+    for (const float resolution : {1.0F, 0.75F, 0.5F}) {
+        device->begin_frame(Pose{}, resolution);
+        const double drawn = device->charged_us();
+        EXPECT_EQ(device->stats().resolution, resolution);
+        device->finish_frame();
+        EXPECT_DOUBLE_EQ(device->charged_us() - drawn, resolution < 1 ? 2600.0 : 0.0);
+        EXPECT_GE(drawn, before);
+        before = device->charged_us();
+    }
+}
+
 TEST(NullDevice, counts_and_lists_but_has_no_picture) {
     const auto scene = scene_of_squares(4);
     const auto device = null_device(scene, {});

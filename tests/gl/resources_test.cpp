@@ -5,6 +5,7 @@
 
 #include "render/draw/tables.hpp"
 #include "render/effects/effects.hpp"
+#include "render/gl/targets.hpp"
 #include "tests/gl/fake_gl.hpp"
 #include "tests/gl/small_models.hpp"
 
@@ -74,7 +75,19 @@ TEST_F(ResourceObjects, nothing_is_left_where_a_later_program_does_not_compile) 
 
 TEST_F(ResourceObjects, nothing_is_left_of_a_target_that_cannot_be_drawn_into) {
     FakeGl::get().framebuffer_status = GL_FRAMEBUFFER_UNSUPPORTED;
-    EXPECT_FALSE(gl::make_target(test::fake_api(), {64, 64}).ok());
+    EXPECT_FALSE(gl::make_targets(test::fake_api(), {64, 64}).ok());
+    EXPECT_EQ(FakeGl::get().objects(), 0);
+}
+
+TEST_F(ResourceObjects, targets_are_freed_whole_also_where_the_enlarging_pass_does_not_link) {
+    FakeGl::get().links = false;
+    EXPECT_FALSE(gl::make_targets(test::fake_api(), {64, 64}).ok());
+    EXPECT_EQ(FakeGl::get().objects(), 0);
+    FakeGl::get().links = true;
+    auto targets = gl::make_targets(test::fake_api(), {64, 64});
+    ASSERT_TRUE(targets.ok());
+    EXPECT_EQ(FakeGl::get().framebuffers, static_cast<int>(model::resolution_steps.size()));
+    gl::free_targets(test::fake_api(), *targets);
     EXPECT_EQ(FakeGl::get().objects(), 0);
 }
 

@@ -291,7 +291,8 @@ public:
     std::string program_text(model::EffectMask) const override { return {}; }
     void bind() override {}
     void release() override {}
-    void begin_frame(const Pose&) override {}
+    using Device::begin_frame;
+    void begin_frame(const Pose&, float) override {}
     void draw(std::span<const gl::DrawItem>) override {
         const auto now = [] { return std::chrono::steady_clock::now(); };
         const auto start = now();

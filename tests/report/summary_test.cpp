@@ -169,13 +169,14 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                     "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age", "budget_ms",
                     "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
                     "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated",
-                    "input",       "picture",    "unused_ms", "coarse_frames"}));
+                    "input",       "picture",    "unused_ms", "coarse_frames",  "resolution"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
     EXPECT_EQ(keys_of(json["prepared_age"]), (Keys{"p50", "p99", "max"}));
     EXPECT_EQ(keys_of(json["budget_used"]), (Keys{"mean", "p99"}));
     EXPECT_EQ(keys_of(json["cost_error"]), (Keys{"p50", "p90", "p99"}));
     EXPECT_EQ(keys_of(json["accuracy"]), (Keys{"min", "mean"}));
+    EXPECT_EQ(keys_of(json["resolution"]), (Keys{"mean", "min"}));
     EXPECT_EQ(keys_of(json["triangles"]), (Keys{"mean", "max"}));
     EXPECT_EQ(keys_of(json["rt"]),
               (Keys{"fifo", "pinned", "isolated", "locked", "page_faults", "guard_violations", "driver_allocations_per_frame"}));
@@ -185,6 +186,20 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     EXPECT_EQ(json["miss_causes"]["raster"], 1);
     EXPECT_TRUE(json["control"]["p_value"].is_null()) << "no control ran";
     EXPECT_EQ(json["control"]["blocks"].size(), 1U);
+}
+
+TEST(Summary, ResolutionIsTheMeanAndTheLeastOfTheFrames) {
+    std::vector<rt::FrameRecord> frames = good_frames(4);
+    WalkSummary s;
+    summarize(frames, period_ns, s);
+    EXPECT_EQ(s.resolution_min, 1);
+    EXPECT_EQ(to_table(s, false).find("resolution"), std::string::npos) << "nothing to say at 100 %";
+    frames[1].resolution = 0.5F;
+    frames[2].resolution = 0.75F;
+    summarize(frames, period_ns, s);
+    EXPECT_DOUBLE_EQ(s.resolution_mean, 0.8125);
+    EXPECT_DOUBLE_EQ(s.resolution_min, 0.5);
+    EXPECT_NE(to_table(s, false).find("resolution"), std::string::npos);
 }
 
 TEST(Summary, UnusedTimeIsOfFramesThatDetailCouldImprove) {

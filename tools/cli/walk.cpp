@@ -163,7 +163,7 @@ void add_walk(CLI::App& app, Context& context) {
         ->check(whole_number_within(1, 4'000'000));
     c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked back and forth")
         ->check(number_within(0.001, 1e6, "s"));
-    add_settings(c, a->settings, {{"--accuracy", "accuracy"}, {"--cost-scale", "cost_scale"}},
+    add_settings(c, a->settings, {{"--accuracy", "accuracy"}, {"--resolution", "resolution"}, {"--cost-scale", "cost_scale"}},
                  {{"--slice", "slice_us"}, {"--hysteresis", "hysteresis"}});
     c->add_option("--cost-noise", r.cost_noise, "With --clock virtual: relative noise of the costs")->check(number_within(0, 10));
     for (const char* experiment : {"--slice", "--hysteresis", "--cost-noise"}) c->get_option(experiment)->group(hidden_group);

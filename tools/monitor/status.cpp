@@ -39,7 +39,7 @@ ordered_json recent_json(const Figures& f) {
     constexpr double look_back_s = 10;
     const auto most = static_cast<std::uint64_t>(std::ceil(look_back_s * 1e9 / static_cast<double>(f.setup.period_ns)));
     const std::uint64_t n = std::min({f.recent_count, std::max<std::uint64_t>(most, 30), std::uint64_t{Figures::max_recent}});
-    std::vector<double> frame, wake, slack, used, accuracy;
+    std::vector<double> frame, wake, slack, used, accuracy, resolution;
     ordered_json frames = ordered_json::array(), causes = ordered_json::object();
     std::uint64_t misses = 0, skipped = 0;
     for (std::uint64_t i = f.recent_count - n; i < f.recent_count; ++i) {
@@ -48,6 +48,7 @@ ordered_json recent_json(const Figures& f) {
         wake.push_back(double{r.wake_us});
         slack.push_back(double{r.slack_us} * 1e-3);
         used.push_back(double{r.used});
+        resolution.push_back(double{r.resolution});
         accuracy.push_back(double{r.accuracy});
         misses += r.missed ? 1 : 0;
         skipped += r.skipped_before;
@@ -69,6 +70,7 @@ ordered_json recent_json(const Figures& f) {
     // Frames that were exact have no error to give a figure of.
     const bool all_exact = std::none_of(accuracy.begin(), accuracy.end(), [](double a) { return std::isfinite(a); });
     j["accuracy"] = all_exact ? ordered_json(nullptr) : few_json(accuracy);
+    j["resolution"] = few_json(resolution);
     j["frame_ms_skipped_missed"] = frames;
     return j;
 }
@@ -185,6 +187,7 @@ std::string status_json(const MonitorPage& p) {
     j["now"] = {{"accuracy", f.frames > 0 ? known(double{f.last.accuracy}) : ordered_json(nullptr)},
                 {"exact", f.frames > 0 && std::isinf(f.last.accuracy)},
                 {"budget_ms", f.frames > 0 ? known(double{f.last.budget_us} * 1e-3) : ordered_json(nullptr)},
+                {"resolution", f.frames > 0 ? known(double{f.last.resolution}) : ordered_json(nullptr)},
                 {"triangles", f.last.triangles},
                 {"nodes", f.last.items},
                 {"standing_still", f.last.stopped}};

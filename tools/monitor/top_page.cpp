@@ -96,6 +96,10 @@ void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::stri
                                          : fmt::format("accuracy {} /rad, least {}, {} triangles", short_number(accuracy),
                                                        short_number(number_at(s, "/recent/accuracy/min")),
                                                        grouped(number_at(s, "/now/triangles"))));
+    const double drawn = number_at(s, "/recent/resolution/min");
+    if (drawn < 1)
+        lines.push_back(fmt::format("resolution {:.1f} % of the sides, least {:.1f} %",
+                                    100 * number_at(s, "/recent/resolution/mean"), 100 * drawn));
 }
 
 void add_events(const json& s, const json& before, double between_s, const TerminalStyle& style,

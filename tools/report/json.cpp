@@ -112,6 +112,7 @@ std::string to_json(const WalkSummary& s) {
          {{"p50", rounded(s.cost_error.p50)}, {"p90", rounded(s.cost_error.p90)}, {"p99", rounded(s.cost_error.p99)}}},
         {"accuracy", {{"min", rounded(s.accuracy_min)}, {"mean", rounded(s.accuracy_mean)}}},
         {"triangles", {{"mean", rounded(s.triangles_mean)}, {"max", s.triangles_max}}},
+        {"resolution", {{"mean", rounded(s.resolution_mean)}, {"min", rounded(s.resolution_min)}}},
         {"downgrades", s.downgrades},
         {"coarse_frames", s.coarse_frames},
         {"unused_ms",

@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 60> columns = {{
+constexpr std::array<Column, 61> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -47,6 +47,7 @@ constexpr std::array<Column, 60> columns = {{
     {"triangles", [](auto& r, auto& f) { add(r, "{}", f.triangles); }},
     {"accuracy", [](auto& r, auto& f) { add(r, "{:.3f}", f.accuracy); }},
     {"benefit", [](auto& r, auto& f) { add(r, "{:.5f}", f.benefit); }},
+    {"resolution", [](auto& r, auto& f) { add(r, "{:.3f}", f.resolution); }},
     {"switches", [](auto& r, auto& f) { add(r, "{}", f.switches); }},
     {"slices", [](auto& r, auto& f) { add(r, "{}", f.slices); }},
     {"downgraded_slices", [](auto& r, auto& f) { add(r, "{}", f.downgraded_slices); }},

@@ -57,6 +57,7 @@ std::string snapshot_card(const ReportSnapshot& snapshot, std::size_t number, do
     if (!snapshot.difference.empty())
         out += chip("SNR", decibels(snapshot.snr_db)) + chip("SSIM", fmt::format("{:.3f}", snapshot.ssim)) +
                chip("FLIP", fmt::format("{:.3f}", snapshot.flip));
+    if (snapshot.resolution < 1) out += chip("resolution", percent(double{snapshot.resolution}));
     out += chip("accuracy", fmt::format("{} rad⁻¹", short_number(double{snapshot.accuracy}))) +
            "</div></div>\n<div class=\"views\">\n";
     const auto uri = [&](const std::vector<std::uint8_t>& rgba) {
@@ -128,6 +129,9 @@ std::string tiles(const WalkSummary& s) {
                 s.model_triangles > 0
                     ? fmt::format("a frame, of {} in the model", short_number(static_cast<double>(s.model_triangles)))
                     : fmt::format("a frame, at most {}", short_number(static_cast<double>(s.triangles_max))));
+    if (s.resolution_min < 1)
+        out += tile("Resolution", fmt::format("{:.0f}", s.resolution_mean * 100), "%",
+                    fmt::format("of the sides on average, at least {:.0f}", s.resolution_min * 100));
     return out + "</div>\n";
 }
 

@@ -81,8 +81,9 @@ struct WalkSummary {
     Quantiles frame_ms, wake_us, select_us, prepare_cpu_us, prepared_age, cost_error, submit_ms, raster_ms, visits, hidden;
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
-    std::uint64_t coarse_frames = 0;  ///< with a slice that the in-frame check drew coarser
-    Quantiles unused_ms;              ///< time between the end of drawing and the deadline, of frames with a benefit below 0.99
+    double resolution_mean = 1, resolution_min = 1;  ///< share of the picture's sides at which frames were drawn
+    std::uint64_t coarse_frames = 0;                 ///< with a slice that the in-frame check drew coarser
+    Quantiles unused_ms;  ///< time between the end of drawing and the deadline, of frames with a benefit below 0.99
     std::uint64_t triangles_max = 0, downgrades = 0, floor_bound_frames = 0, model_triangles = 0;
     std::string cut_hash;  ///< 16 hex digits over all frames
     double steal_ms = 0;   ///< as the host says, set before summarize; at least what the frames lost
@@ -119,7 +120,7 @@ struct ReportSnapshot {
     double snr_db = 0, ssim = 0, flip = 0;
     double mse = 0;  ///< mean squared error of R, G and B bytes
     std::uint64_t triangles = 0, full_triangles = 0;
-    float accuracy = 0;
+    float accuracy = 0, resolution = 1;
     /// Top view (Maciel's 't' view): rectangles of the drawn nodes in the XZ plane, world metres.
     struct Rect {
         float x0, z0, x1, z1;

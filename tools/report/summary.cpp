@@ -93,6 +93,14 @@ void unused_time(std::span<const FrameRecord* const> frames, WalkSummary& s) {
     s.unused_ms = quantiles(std::move(left_ms));
 }
 
+void resolution_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
+    s.resolution_mean = s.resolution_min = 1;
+    if (frames.empty()) return;
+    const Quantiles q = quantiles_of(frames, [](const FrameRecord& f) { return double{f.resolution}; });
+    s.resolution_mean = q.mean;
+    s.resolution_min = q.min;
+}
+
 /// Everything that is counted up starts from zero, so that a summary can be made anew from longer records.
 void clear_counts(WalkSummary& s) {
     s.frames = s.slots = s.skipped = s.misses = s.own_misses = 0;
@@ -116,6 +124,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     accuracy_figures(frames, summary);
     budget_figures(frames, period_ns, summary);
     unused_time(frames, summary);
+    resolution_figures(frames, summary);
     summary.rate_hz = 1e9 / static_cast<double>(period_ns);
     summary.seconds = static_cast<double>(summary.slots) * static_cast<double>(period_ns) * 1e-9;
     summary.frame_ms = quantiles_of(frames, frame_ms);

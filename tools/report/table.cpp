@@ -43,6 +43,9 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
     table.row("accuracy",
               fmt::format("mean {} /rad ({}), worst {} /rad ({})", short_number(s.accuracy_mean), accuracy_words(s.accuracy_mean),
                           short_number(s.accuracy_min), accuracy_words(s.accuracy_min)));
+    if (s.resolution_min < 1)
+        table.row("resolution",
+                  fmt::format("mean {}, least {} of the sides", percent(s.resolution_mean), percent(s.resolution_min)));
     if (s.picture.frames > 0) table.row("picture", picture_words(s.picture));
     if (s.unused_ms.max > 0)
         table.row("unused", fmt::format("{:.1f} ms of the period (mean), {:.1f} (p99), where the benefit is below 0.99",

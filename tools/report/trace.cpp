@@ -110,6 +110,7 @@ void write_frame(TraceWriter& trace, const FrameRecord& f) {
     trace.slice(phases, "phase", "present", f.rastered_ns, f.presented_ns);
     trace.counter("budget spent, %", f.woken_ns, 100 * share_of_budget(f));
     trace.counter("accuracy, 1/rad", f.woken_ns, double{f.accuracy});
+    trace.counter("resolution, %", f.woken_ns, 100 * double{f.resolution});
     trace.counter("triangles", f.woken_ns, static_cast<double>(f.triangles));
 }
 

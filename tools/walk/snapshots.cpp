@@ -26,8 +26,8 @@ SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std
     }
 }
 
-void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, std::uint64_t triangles,
-                             std::span<const gl::DrawItem> items) {
+void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
+                             std::uint64_t triangles, std::span<const gl::DrawItem> items) {
     if (every_ == 0 || frame % every_ != 0 || used_ == snapshots_.size()) return;
     FrameSnapshot& snapshot = snapshots_[used_];
     if (!CHECK_RARE(items.size() <= snapshot.items.capacity(), "A snapshot has room for all that is drawn")) return;
@@ -35,6 +35,7 @@ void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pos
     snapshot.time_s = time_s;
     snapshot.pose = pose;
     snapshot.accuracy = accuracy;
+    snapshot.resolution = resolution;
     snapshot.triangles = triangles;
     snapshot.items.assign(items.begin(), items.end());
     ++used_;
@@ -77,13 +78,14 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     out.time_s = snapshot.time_s;
     out.triangles = snapshot.triangles;
     out.accuracy = snapshot.accuracy;
+    out.resolution = snapshot.resolution;
     add_top_view(engine, snapshot, out);
     const std::vector<gl::DrawItem> full = engine.full_detail(snapshot.pose);
     for (const gl::DrawItem& item : full) out.full_triangles += engine.model().reps[item.rep].triangles;
     if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
 
     engine.device().draws.plays();
-    engine.draw_unbudgeted(snapshot.pose, snapshot.items);
+    engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
     engine.draw_unbudgeted(snapshot.pose, full);
@@ -118,7 +120,7 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         }
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const FrameSnapshot& snapshot = store.snapshots()[i];
-        engine.draw_unbudgeted(snapshot.pose, snapshot.items);
+        engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
         auto written = image::write_png(fmt::format("{}/{:05}.png", dir, i), image->width, image->height, image->rgba);

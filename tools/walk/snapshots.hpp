@@ -18,7 +18,7 @@ struct FrameSnapshot {
     std::uint64_t frame = 0;
     double time_s = 0;
     Pose pose;
-    float accuracy = 0;
+    float accuracy = 0, resolution = 1;
     std::uint64_t triangles = 0;
     std::vector<gl::DrawItem> items;
 };
@@ -34,7 +34,7 @@ public:
     /// Every `every` frames, at most `max_snapshots` of them, each of at most `max_items` items.
     SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items);
     /// On the frame thread. Frames that are not due, or beyond the store, are passed over.
-    void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, std::uint64_t triangles,
+    void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution, std::uint64_t triangles,
                   std::span<const gl::DrawItem> items);
     [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
     [[nodiscard]] std::size_t used() const { return used_; }

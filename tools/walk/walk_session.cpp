@@ -189,6 +189,7 @@ void warm_up(Session& s) {
     engine.device().bind();
     SubmitLimits limits;
     limits.limit_us = 1e9;
+    limits.resolution = static_cast<float>(s.request.resolution_pct * 0.01);
     const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
     for (int i = 0; i < 12; ++i) {
         const Pose pose = pose_at(s.path.path, i * s.path.path.duration_s() / 12.0);

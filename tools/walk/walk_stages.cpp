@@ -158,6 +158,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
     limits.limit_us = options_.limit_us;
+    limits.resolution = static_cast<float>(request_.resolution_pct * 0.01);
     if (!virtual_clock_) {
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
@@ -184,6 +185,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.items = report_.items;
     record.draws = report_.draws;
     record.triangles = report_.triangles;
+    record.resolution = report_.resolution;
     record.accuracy = report_.worst_error_rad > 0 ? 1.0F / report_.worst_error_rad : std::numeric_limits<float>::infinity();
     record.benefit = static_cast<float>(report_.benefit_mean);
     record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);
@@ -193,7 +195,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     keep(record);
     const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
-    snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.triangles, engine_.drawn());
+    snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.resolution, record.triangles, engine_.drawn());
 }
 
 }  // namespace surefoot::walk
