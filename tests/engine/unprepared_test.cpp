@@ -115,7 +115,9 @@ TEST_F(WithoutPreparedSet, OverloadDrawsStandInsAndNoHole) {
         std::size_t kept = 0;
         for (const gl::DrawItem& item : engine->drawn()) kept += full.contains(item.node) && full[item.node] == item.rep ? 1 : 0;
         some_of_both |= kept > 0 && kept < engine->drawn().size();
-        if (share == 0.0) EXPECT_LE(engine->drawn().size(), 256U);
+        if (share == 0.0) {
+            EXPECT_LE(engine->drawn().size(), 256U);
+        }
     }
     EXPECT_TRUE(some_of_both) << "what comes first keeps its detail";
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "rt/base/modes.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/svg.hpp"
 #include "tools/report/terminal.hpp"
@@ -41,7 +42,7 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
     table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget in wall time", s.budget_ms,
                                     percent(s.budget_used_mean), percent(s.budget_used_p99), percent(s.budget_used_wall_mean)));
     if (s.cost_scale != 1)
-        table.row("cost scale", s.clock == rt::name_of(rt::ClockKind::real)
+        table.row("cost scale", s.clock == name_of(rt::ClockKind::real)
                                     ? fmt::format("predicted costs are multiplied by {:g}", s.cost_scale)
                                     : fmt::format("charged costs are {:g} of the predicted", s.cost_scale));
     table.row("accuracy",
