@@ -62,10 +62,10 @@ void Unprepared::reserve(const model::Model& model) {
         level_[node] = Level::coarse;
         for (model::Index n = model.nodes[node].parent; n != model::none; n = model.nodes[n].parent) level_[n] = Level::above;
     }
-    const std::size_t most = std::clamp<std::size_t>(2 * model.nodes.size(), 2 * coarse_nodes, max_items);
-    stack_.reserve(most);
-    groups_.reserve(most);
-    items_.reserve(most);
+    const std::size_t places = std::clamp<std::size_t>(2 * model.nodes.size(), 2 * coarse_nodes, max_items);
+    stack_.reserve(places);
+    groups_.reserve(places);
+    items_.reserve(places);
 }
 
 std::size_t Unprepared::capacity() const { return items_.capacity(); }

@@ -48,9 +48,9 @@ struct FrameCombine {
 struct CostModel {
     std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
     FrameCombine combine;
-    float headroom = 1.25F;          ///< 90 % quantile of actual / predicted whole-frame cost at calibration
-    float slice_us = 30;             ///< cost of ending a slice (flush and fence)
-    float enlarge_ns_per_pixel = 3;  ///< of the whole picture, where it is drawn at a lower resolution
+    float headroom = 1.25F;             ///< 90 % quantile of actual / predicted whole-frame cost at calibration
+    float slice_us = 30;                ///< cost of ending a slice (flush and fence)
+    float enlarge_ns_per_pixel = 1.6F;  ///< of the whole picture, where it is drawn at a lower resolution
     /// What a lower resolution loses of the value, by resolution_steps: six times the mean squared error (0..1) of full detail
     /// that is enlarged. Measured for a model; before, that of common scenes.
     std::array<float, resolution_steps.size()> blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};

@@ -15,8 +15,12 @@ namespace {
 constexpr float top_rate = 0x1p20F;      // px/us, of level 0
 constexpr std::size_t max_choices = 32;  // of one candidate on its hull; more are left out of it
 
-/// 0..1: how wrong a picture with this error looks. Nearly linear up to a hundred pixels: twice the error is twice as wrong.
-float wrongness(float error_px) { return error_px / (error_px + 256.0F); }
+/// 0..1, by the error in pixels. Nearly linear up to a hundred pixels: twice the error is twice as wrong.
+float looks_right(float error_px) { return 256.0F / (error_px + 256.0F); }
+
+float pixels_of(const model::Viewport& viewport) {
+    return std::max(1.0F, static_cast<float>(viewport.width) * static_cast<float>(viewport.height));
+}
 
 /// Pixels of a leaf, weighted. Large things count for more than their pixels: they hide what stands behind them.
 float weight_of(const Weight& weight, float pixels, float view_pixels) {
@@ -77,9 +81,9 @@ float ValueCurve::value_at(float cost_us) const {
 void ValuePass::reserve(std::uint32_t max_candidates) {
     sums_.resize(max_candidates);
     // Curves are held for one level of the tree at a time, and only for nodes that have children in the frame.
-    const std::uint32_t most = std::min(max_candidates / 2 + 1, 1U << 15U);
-    curves_.resize(most);
-    free_.reserve(most);
+    const std::uint32_t curves = std::min(max_candidates / 2 + 1, 1U << 15U);
+    curves_.resize(curves);
+    free_.reserve(curves);
 }
 
 std::uint32_t ValuePass::take_curve() {
@@ -99,120 +103,130 @@ void ValuePass::add(Index parent, std::uint32_t level, float value, float cost) 
     curves_[above.curve].cost[level] += cost;
 }
 
+/// What a leaf weighs, and the value of each choice of a candidate.
+void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, PreparedFrame& frame) {
+    const Candidate& candidate = frame.candidates[i];
+    Sums& sums = sums_[i];
+    if (candidate.child_count == 0) {
+        sums.weight = weight_of(seen, candidate.pixels, pixels_of(frame.viewport));
+        sums.weight_per_m = sums.weight / seen.distance_m;
+    }
+    if (candidate.parent != none) {
+        sums_[candidate.parent].weight += sums.weight;
+        sums_[candidate.parent].weight_per_m += sums.weight_per_m;
+    }
+    // A leaf is seen from its own distance; what stands for many leaves, from their mean one.
+    const float per_m = sums.weight > 0.0F ? sums.weight_per_m / sums.weight : 0.0F;
+    float value = 0.0F;
+    for (Choice& choice : std::span(&frame.choices[candidate.first_choice], candidate.choice_count)) {
+        const float error_px = choice.error_rad * seen.distance_m * per_m / pixel_angle_rad;
+        value = std::max(value, sums.weight * looks_right(error_px) * (1.0F - unusable_penalty(seen.size, choice.error_rad)));
+        choice.value = value;
+    }
+}
+
+/// A leaf gives its parent the steps of its hull.
+void ValuePass::add_leaf(const Candidate& candidate, const OwnChoices& own) {
+    add(candidate.parent, 0, own.choices[0].value, own.cost(0));
+    for (std::size_t h = 0; h + 1 < own.hull.size(); ++h) {
+        const std::uint32_t a = own.hull[h], b = own.hull[h + 1];
+        add(candidate.parent, level_of(own.choices[a].rate), own.choices[b].value - own.choices[a].value,
+            own.cost(b) - own.cost(a));
+    }
+}
+
+/// At each level the better of the node's own choices and of its children. Once the children are better, they stay so.
+void ValuePass::merge_curve(Index parent, Curve& curve, const OwnChoices& own) {
+    std::size_t at = 0;  // on the hull, at the current level's rate
+    float value = 0, cost = 0, given_value = 0, given_cost = 0;
+    bool open = false;
+    for (std::uint32_t level = 0; level < levels; ++level) {
+        value += curve.value[level];
+        cost += curve.cost[level];
+        const float rate = rate_of(level);
+        float best_value = value, best_cost = cost;
+        if (!open) {
+            while (at + 1 < own.hull.size() && own.choices[own.hull[at]].rate >= rate) ++at;
+            const std::uint32_t k = own.hull[at];
+            const float own_value = own.choices[k].value, own_cost = own.cost(k);
+            open = value - rate * cost >= own_value - rate * own_cost || level + 1 == levels;
+            if (open) {
+                set_opening_rate(level, value, cost, own);
+            } else {
+                best_value = own_value;
+                best_cost = own_cost;
+            }
+        }
+        add(parent, level, best_value - given_value, best_cost - given_cost);
+        given_value = curve.value[level] = best_value;
+        given_cost = curve.cost[level] = best_cost;
+    }
+}
+
+/// Where exactly in the level the children become better. Choices that would be left later are passed at that rate, all at once.
+void ValuePass::set_opening_rate(std::uint32_t level, float value, float cost, const OwnChoices& own) {
+    const float rate = rate_of(level);
+    std::size_t from = 0;  // the choice that is shown at twice the rate
+    while (level > 0 && from + 1 < own.hull.size() && own.choices[own.hull[from]].rate >= 2.0F * rate) ++from;
+    const float exact = slope(value - own.choices[own.hull[from]].value, cost - own.cost(own.hull[from]));
+    const float lowest = level + 1 == levels ? 0.0F : rate;
+    const float opening = level == 0 ? std::max(exact, rate) : std::clamp(exact, lowest, 2.0F * rate);
+    for (std::size_t c = 0; c < own.choices.size(); ++c) {
+        if (c + 1 == own.choices.size() || own.choices[c].rate < opening) own.choices[c].rate = opening;
+    }
+}
+
+/// Rates fall along the choices and down the tree.
+void ValuePass::enforce_falling_rates(PreparedFrame& frame) {
+    for (const Candidate& candidate : frame.candidates) {  // parents first
+        float limit = std::numeric_limits<float>::max();
+        if (candidate.parent != none) {
+            const Candidate& parent = frame.candidates[candidate.parent];
+            limit = frame.choices[parent.first_choice + parent.choice_count - 1].rate;
+        }
+        for (Choice& choice : std::span(&frame.choices[candidate.first_choice], candidate.choice_count))
+            limit = choice.rate = std::min(limit, choice.rate);
+    }
+}
+
 void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
                     PreparedFrame& frame) {
     frame.curve = {};
+    frame.full_value = 0;
     const std::size_t n = frame.candidates.size();
     if (n == 0) return;
     CHECK(n <= sums_.size(), "Values are made for no more candidates than were reserved");
     std::fill_n(sums_.begin(), n, Sums{0, 0, none});
     free_.clear();
     for (std::uint32_t i = static_cast<std::uint32_t>(curves_.size()); i-- > 0;) free_.push_back(i);
-    const float view_pixels =
-        std::max(1.0F, static_cast<float>(frame.viewport.width) * static_cast<float>(frame.viewport.height));
-    double full_value = 0, weight = 0;
     std::array<std::uint32_t, max_choices> room{};
+    double full_value = 0;
     for (std::size_t i = n; i-- > 0;) {
         const Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
-        Sums& sums = sums_[i];
-        const bool leaf = candidate.child_count == 0;
-        if (leaf) {
-            sums.weight = weight_of(weights[i], candidate.pixels, view_pixels);
-            sums.weight_per_m = sums.weight / weights[i].distance_m;
-        }
-        if (candidate.parent != none) {
-            sums_[candidate.parent].weight += sums.weight;
-            sums_[candidate.parent].weight_per_m += sums.weight_per_m;
-        }
-        // A leaf is seen from its own distance; what stands for many leaves, from their mean one.
-        const float per_m = sums.weight > 0.0F ? sums.weight_per_m / sums.weight : 0.0F;
-        float least = 0.0F;
-        for (Choice& choice : choices) {
-            const float error_rad = choice.error_rad * weights[i].distance_m * per_m;
-            const float right =
-                (1.0F - wrongness(error_rad / pixel_angle_rad)) * (1.0F - unusable_penalty(weights[i].size, choice.error_rad));
-            least = std::max(least, sums.weight * right);
-            choice.value = least;
-        }
-        const auto hull = hull_of(combine, choices, room);
-        const auto cost_of = [&](std::uint32_t k) { return cost_metric(combine, choices[k].cost); };
-        if (leaf) {
+        set_values(i, pixel_angle_rad, weights[i], frame);
+        const OwnChoices own{combine, choices, hull_of(combine, choices, room)};
+        if (candidate.child_count == 0) {
             full_value += static_cast<double>(choices.back().value);
-            weight += static_cast<double>(sums.weight);
-            add(candidate.parent, 0, choices[0].value, cost_of(0));
-            for (std::size_t h = 0; h + 1 < hull.size(); ++h) {
-                const std::uint32_t a = hull[h], b = hull[h + 1];
-                add(candidate.parent, level_of(choices[a].rate), choices[b].value - choices[a].value, cost_of(b) - cost_of(a));
-            }
-            continue;
+            add_leaf(candidate, own);
+        } else if (sums_[i].curve != none) {
+            Curve& curve = curves_[sums_[i].curve];
+            merge_curve(candidate.parent, curve, own);
+            if (i == 0) std::copy_n(curve.value.begin(), levels, frame.curve.value.begin());
+            if (i == 0) std::copy_n(curve.cost.begin(), levels, frame.curve.cost.begin());
+            free_.push_back(sums_[i].curve);
         }
-        if (sums.curve == none) continue;  // no room was left
-        Curve& below = curves_[sums.curve];
-        std::size_t at = 0;  // on the hull, at the current level's rate
-        float value = 0, cost = 0;
-        float now_value = 0, now_cost = 0;  // what the levels so far gave the parent
-        bool open = false;
-        for (std::uint32_t level = 0; level < levels; ++level) {
-            value += below.value[level];
-            cost += below.cost[level];
-            const float rate = rate_of(level);
-            float best_value = value, best_cost = cost;
-            if (!open) {
-                while (at + 1 < hull.size() && choices[hull[at]].rate >= rate) ++at;
-                const std::uint32_t k = hull[at];
-                const float own_value = choices[k].value, own_cost = cost_of(k);
-                open = value - rate * cost >= own_value - rate * own_cost || level + 1 == levels;
-                if (open) {
-                    // Where exactly it opens within the level: from the last choice before it, that the hull gives at twice the
-                    // rate.
-                    std::size_t from = 0;
-                    while (from + 1 < hull.size() && choices[hull[from]].rate >= 2.0F * rate && level > 0) ++from;
-                    const float exact = slope(value - choices[hull[from]].value, cost - cost_of(hull[from]));
-                    const float opening =
-                        level == 0 ? std::max(exact, rate) : std::clamp(exact, level + 1 == levels ? 0.0F : rate, 2.0F * rate);
-                    for (std::uint32_t c = 0; c < choices.size(); ++c) {
-                        const bool last = c + 1 == choices.size();
-                        if (last || choices[c].rate < opening) choices[c].rate = opening;
-                    }
-                    // Choices before the opening keep their own rate; behind it all are passed at once.
-                } else {
-                    best_value = own_value;
-                    best_cost = own_cost;
-                }
-            }
-            add(candidate.parent, level, best_value - now_value, best_cost - now_cost);
-            if (i == 0) {
-                frame.curve.value[level] = best_value;
-                frame.curve.cost[level] = best_cost;
-            }
-            now_value = best_value;
-            now_cost = best_cost;
-        }
-        free_.push_back(sums.curve);
     }
     frame.full_value = full_value;
-    frame.curve.full_value = static_cast<float>(weight);
-    for (const Candidate& candidate : frame.candidates) {  // parents first
-        float most = std::numeric_limits<float>::max();
-        if (candidate.parent != none) {
-            const Candidate& parent = frame.candidates[candidate.parent];
-            most = frame.choices[parent.first_choice + parent.choice_count - 1].rate;
-        }
-        for (std::uint32_t c = 0; c < candidate.choice_count; ++c) {
-            float& rate = frame.choices[candidate.first_choice + c].rate;
-            most = std::min(most, rate);
-            rate = most;
-        }
-    }
+    frame.curve.full_value = sums_[0].weight;
+    enforce_falling_rates(frame);
 }
 
 void estimate_values(const model::FrameCombine& combine, PreparedFrame& frame) {
-    const float view_pixels = static_cast<float>(frame.viewport.width) * static_cast<float>(frame.viewport.height);
     std::vector<Weight> weights;
     weights.reserve(frame.candidates.size());
     for (const Candidate& candidate : frame.candidates) {
-        const float size = std::sqrt(std::max(candidate.pixels, 0.0F) / std::max(view_pixels, 1.0F));
+        const float size = std::sqrt(std::max(candidate.pixels, 0.0F) / pixels_of(frame.viewport));
         weights.push_back({size, size, 1.0F});
     }
     ValuePass pass;

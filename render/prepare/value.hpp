@@ -1,6 +1,7 @@
 // The value of each choice, which adds up over a cut, and the rate at which its next step buys value.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,12 +13,12 @@ namespace surefoot::prepare {
 
 /// Fills Choice::value, Choice::rate and PreparedFrame::full_value.
 ///
-/// value = W * (1 - g). W of a leaf: (its share of the view)^1.25 x pixels of the view x importance x focus x motion; W of a
-/// node: the sum of its leaves'. g, 0..1: how wrong the choice looks, from its error in pixels and unusable_penalty(). rate =
-/// value per us of the next step, where a step into the children counts all that follows below at that rate. It is the slope of
-/// the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a candidate and
-/// down the tree. So taking every step whose rate is at least r gives the cut of the greatest value - r * cost, to the resolution
-/// of the levels below. Source: Lagrange multipliers for choices under one budget, Everett 1963.
+/// value = W * (1 - g). W of a leaf: (share of the view)^1.25 * pixels of the view * importance * focus * motion. W of a node:
+/// the sum of its leaves'. g, 0..1: how wrong the choice looks, from its error in pixels and unusable_penalty().
+/// rate = value per us of the next step, where a step into the children counts all that follows below at that rate. It is the
+/// slope of the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a
+/// candidate and down the tree. So all steps with a rate of at least r make the cut of the greatest value - r * cost. This holds
+/// to the resolution of the levels below. Source: Lagrange multipliers for choices under one budget, Everett 1963.
 class ValuePass {
 public:
     /// Rates are told apart by octaves while they are summed up: from 2^20 down to 2^-19 px/us.
@@ -34,13 +35,24 @@ private:
         float weight_per_m = 0;   ///< sum of W / distance of the leaves
         std::uint32_t curve = 0;  ///< of the children, while they are summed up; none: not yet
     };
-    /// Value and cost of the best cut of a subtree by level of the rate; while children are added, the change at that level.
+    /// By level of the rate. While children are added: the change of value and cost at that level. Then: the best cut's.
     struct Curve {
-        float value[levels];
-        float cost[levels];
+        std::array<float, levels> value, cost;
+    };
+    /// One candidate's choices, with the offsets of those on their hull.
+    struct OwnChoices {
+        const model::FrameCombine& combine;
+        std::span<Choice> choices;
+        std::span<const std::uint32_t> hull;
+        [[nodiscard]] float cost(std::uint32_t k) const { return cost_metric(combine, choices[k].cost); }
     };
     std::uint32_t take_curve();
     void add(Index parent, std::uint32_t level, float value, float cost);
+    void set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, PreparedFrame& frame);
+    void add_leaf(const Candidate& candidate, const OwnChoices& own);
+    void merge_curve(Index parent, Curve& curve, const OwnChoices& own);
+    static void set_opening_rate(std::uint32_t level, float value, float cost, const OwnChoices& own);
+    static void enforce_falling_rates(PreparedFrame& frame);
 
     std::vector<Sums> sums_;
     std::vector<Curve> curves_;

@@ -5,10 +5,10 @@
 
 namespace surefoot::select {
 
-/// The key of a candidate's next step, and whether the step is wanted.
 /// What a search goes by.
 enum class Key : std::uint8_t { benefit, subtree_benefit, rate };
 
+/// The key of a candidate's next step, and whether the step is wanted.
 class Steps {
 public:
     Steps(const SelectInput& input, const SelectState& state, Key key)

@@ -72,7 +72,7 @@ picture_walk() { # LABEL BUILD STATE RATE NAME PATH LIFT
 }
 
 middle_of() { printf '%s\n' "$@" | sort -g | sed -n "$((($# + 1) / 2))p"; }
-least_and_most() { printf '%s\n' "$@" | sort -g | sed -n '1p;$p' | paste -sd ' ' | sed 's/ / to /'; }
+min_and_max() { printf '%s\n' "$@" | sort -g | sed -n '1p;$p' | paste -sd ' ' | sed 's/ / to /'; }
 
 # Walks NAME in turns by every pass. Fills db, low and similar: [PASS] has a figure a turn. full_before and full_after are the machine's speed.
 picture_turns() { # NAME PATH LIFT
@@ -110,7 +110,7 @@ keep_difference() {
   note="$3 ${db[$3]# } dB (worst pictures ${low[$3]# }, SSIM ${similar[$3]# }, missed ${late[$3]# }), $4 ${db[$4]# } dB"
   note+=" (worst pictures ${low[$4]# }, SSIM ${similar[$4]# }, missed ${late[$4]# }); $(awk "BEGIN { printf \"%.2f\", 1000 / $picture_rate }") ms a frame${5:+ $5};"
   note+=" full detail of the forest $full_before ms before, $full_after after."
-  keep "$1" "$(middle_of "${gains[@]}")" --scene "$2" --spread "$(least_and_most "${gains[@]}")" --note "$note"
+  keep "$1" "$(middle_of "${gains[@]}")" --scene "$2" --spread "$(min_and_max "${gains[@]}")" --note "$note"
 }
 
 picture_scene() { # NAME SCENE PATH LIFT

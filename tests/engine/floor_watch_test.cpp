@@ -41,7 +41,7 @@ struct FallToFloor : testing::Test {
     Pose pose;
 
     void SetUp() override {
-        auto scene = scenes::generate("forest", 0.05, 1);
+        auto scene = scenes::generate("forest", 0.2, 1);
         ASSERT_TRUE(scene.ok());
         auto model = bake::bake(scene->scene, {}, {});
         ASSERT_TRUE(model.ok());

@@ -60,7 +60,7 @@ mutation N21a render/image/image.cpp 's/png_image_finish_read\(.*?\) == 0/false/
 mutation N21b render/image/image.cpp 's/if \(errors.truncated\) return/if (false) return/' "a JPEG that ends early is refused"
 mutation N21c render/image/image.cpp 's/ > max_jpeg_texels_a_byte \* bytes.size\(\)/ > UINT64_MAX - 1/' "a JPEG that is too small for its size is refused before memory is taken"
 mutation N13c render/prepare/prepare.cpp 's/begin < end;\)/begin < end && begin < 4096;)/' "levels walked to the last"
-mutation N13d render/select/steps.hpp 's/return refined \? benefit \* hysteresis_ : benefit;/return refined ? benefit \/ hysteresis_ : benefit;/' "what was shown is preferred (turned round)"
+mutation N13d render/select/steps.hpp 's/return refined \? key \* hysteresis_ : key;/return refined ? key \/ hysteresis_ : key;/' "what was shown is preferred (turned round)"
 mutation N25a render/bake/materials.cpp 's/bleed_colours\(bled, .*?\);//' "texels that are never shown take the nearest shown one's colour"
 mutation N25b render/bake/alpha_bleed.cpp 's/material.alpha == model::AlphaMode::mask \? material.alpha_cutoff \* 0.9999F : 1e-9F/1e-9F/' "never shown is all below a mask's cutoff, not only what is clear"
 mutation N25c render/bake/alpha_bleed.cpp 's/if \(material.alpha == model::AlphaMode::opaque\) return \{\};//' "an opaque material shows every texel"

@@ -30,7 +30,8 @@ std::string another_value(const config::Entry& entry) {
         case config::Kind::integer:
             break;
     }
-    return std::to_string(static_cast<long long>(entry.max));
+    const std::string max = std::to_string(static_cast<long long>(entry.max));
+    return config::value_text(defaults, entry) == max ? std::to_string(static_cast<long long>(entry.min)) : max;
 }
 
 TEST(SettingsRequest, EverySettingArrives) {

@@ -171,6 +171,34 @@ Result<accuracy::KeptCosts> walk_both(const CalibrateArguments& a, const config:
         terminal_progress(context));
 }
 
+void print_fit(const CalibrateArguments& a, const walk::ModelFit& fit, const std::optional<accuracy::KeptCosts>& kept,
+               bool keeps_fit, const std::string& file, const std::string& path_source) {
+    const model::FrameCombine& k = fit.costs.combine;
+    if (a.json) {
+        print_json({{"model", a.model},
+                    {"table", file},
+                    {"frames", fit.frames},
+                    {"repeated", fit.repeated},
+                    {"slowdown", fit.slowdown},
+                    {"seconds", fit.seconds},
+                    {"frame", to_json(fit.costs)},
+                    {"frame_error_before", to_json(fit.before)},
+                    {"frame_error", to_json(fit.after)},
+                    {"published", to_json(fit.published)},
+                    {"kept", keeps_fit ? "fit" : "table"},
+                    {"trial", kept ? to_json(*kept) : nlohmann::ordered_json(nullptr)}});
+        return;
+    }
+    fmt::print("{}: {} frames near {}, {:.0f} s\n  fit {}\n", a.model, fit.frames, path_source, fit.seconds, file);
+    print_frame(k);
+    fmt::print(
+        "  the budget spends x{:.2f}; a frame's median time is {:.2f} of its best here ({} of {} frames were drawn alike)\n",
+        fit.costs.headroom, fit.slowdown, fit.repeated, fit.frames);
+    fmt::print("  errors of the {} frames that were held out:\n", fit.frames / 2);
+    print_errors(fit);
+    if (kept) print_kept(*kept);
+}
+
 /// One model: the table stays, the weights of a frame's sums are fitted.
 int run_fit(const CalibrateArguments& a, const config::Configuration& settings, const Context& context) {
     const config::Settings& s = settings.values;
@@ -222,30 +250,7 @@ int run_fit(const CalibrateArguments& a, const config::Configuration& settings, 
     const bool keeps_fit = kept ? kept->fit : a.keep == "fit";
     if (!keeps_fit) fit->costs = *table;
     if (auto written = measure::write_costs(file, fit->costs); !written) return fail(written.error());
-    const model::FrameCombine& k = fit->costs.combine;
-    if (a.json) {
-        print_json({{"model", a.model},
-                    {"table", file},
-                    {"frames", fit->frames},
-                    {"repeated", fit->repeated},
-                    {"slowdown", fit->slowdown},
-                    {"seconds", fit->seconds},
-                    {"frame", to_json(fit->costs)},
-                    {"frame_error_before", to_json(fit->before)},
-                    {"frame_error", to_json(fit->after)},
-                    {"published", to_json(fit->published)},
-                    {"kept", keeps_fit ? "fit" : "table"},
-                    {"trial", kept ? to_json(*kept) : nlohmann::ordered_json(nullptr)}});
-        return exit_success;
-    }
-    fmt::print("{}: {} frames near {}, {:.0f} s\n  fit {}\n", a.model, fit->frames, path->source, fit->seconds, file);
-    print_frame(k);
-    fmt::print(
-        "  the budget spends x{:.2f}; a frame's median time is {:.2f} of its best here ({} of {} frames were drawn alike)\n",
-        fit->costs.headroom, fit->slowdown, fit->repeated, fit->frames);
-    fmt::print("  errors of the {} frames that were held out:\n", fit->frames / 2);
-    print_errors(*fit);
-    if (kept) print_kept(*kept);
+    print_fit(a, *fit, kept, keeps_fit, file, path->source);
     return exit_success;
 }
 
