@@ -41,9 +41,8 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
     table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget in wall time", s.budget_ms,
                                     percent(s.budget_used_mean), percent(s.budget_used_p99), percent(s.budget_used_wall_mean)));
     if (s.cost_scale != 1)
-        table.row("cost scale", s.clock == rt::name_of(rt::ClockKind::real)
-                                    ? fmt::format("predicted costs are multiplied by {:g}", s.cost_scale)
-                                    : fmt::format("charged costs are {:g} of the predicted", s.cost_scale));
+        table.row("cost scale", s.clock == "real" ? fmt::format("predicted costs are multiplied by {:g}", s.cost_scale)
+                                                  : fmt::format("charged costs are {:g} times the predicted", s.cost_scale));
     table.row("accuracy",
               fmt::format("mean {} /rad ({}), worst {} /rad ({})", short_number(s.accuracy_mean), accuracy_words(s.accuracy_mean),
                           short_number(s.accuracy_min), accuracy_words(s.accuracy_min)));

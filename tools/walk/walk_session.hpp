@@ -27,8 +27,8 @@ namespace surefoot::walk {
 /// Share of the period that a frame may cost if no budget is set.
 constexpr double budget_share = 0.80;
 
-/// The costs with Maciel's overhead factor on whatever they predict (Maciel 1994, sections 3.3.1 and 4): its user sets it by
-/// hand, for overheads that the table cannot know.
+/// The costs with an overhead factor on all that they predict: for what the table cannot know, set by hand.
+/// Source: Maciel 1994, sections 3.3.1 and 3.7.
 model::CostModel with_overhead(model::CostModel costs, double factor);
 
 /// What the parts of a session share while it runs.
