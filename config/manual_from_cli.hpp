@@ -20,7 +20,7 @@ inline std::string manual_term(const CLI::Option& option) {
 
 /// What an option does, its default, and whether it must be given. The lines of its choices come last.
 inline std::string manual_text(const CLI::Option& option) {
-    const std::string help = option.get_description();
+    const std::string& help = option.get_description();
     const auto choices = std::min(help.find('\n'), help.size());
     std::string text = sentence(help.substr(0, choices));
     if (const std::string usual = option.get_default_str(); !usual.empty()) text += " " + sentence("Default: " + usual);

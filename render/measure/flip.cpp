@@ -105,6 +105,7 @@ double sum_of(const std::vector<double>& weights) {
 
 std::vector<float> scaled(const std::vector<double>& weights, double factor) {
     std::vector<float> out;
+    out.reserve(weights.size());
     for (const double w : weights) out.push_back(static_cast<float>(w * factor));
     return out;
 }
@@ -114,11 +115,11 @@ void add_filtered(const Plane& in, const Size& size, const Filter& filter, Plane
     const int radius = static_cast<int>(filter.row.size() / 2);
     const int width = static_cast<int>(size.width), height = static_cast<int>(size.height);
     Plane rows(in.size());
-    std::vector<float> padded(static_cast<std::size_t>(width + 2 * radius));
+    std::vector<float> padded(size.width + 2 * static_cast<std::size_t>(radius));
     for (int y = 0; y < height; ++y) {
         const float* line = in.data() + static_cast<std::size_t>(y) * size.width;
         for (int x = -radius; x < width + radius; ++x)
-            padded[static_cast<std::size_t>(x + radius)] = line[std::clamp(x, 0, width - 1)];
+            padded[static_cast<std::size_t>(x) + static_cast<std::size_t>(radius)] = line[std::clamp(x, 0, width - 1)];
         float* to = rows.data() + static_cast<std::size_t>(y) * size.width;
         for (std::size_t k = 0; k < filter.row.size(); ++k)
             for (int x = 0; x < width; ++x) to[x] += filter.row[k] * padded[static_cast<std::size_t>(x) + k];
@@ -126,7 +127,7 @@ void add_filtered(const Plane& in, const Size& size, const Filter& filter, Plane
     for (int y = 0; y < height; ++y) {
         float* to = out.data() + static_cast<std::size_t>(y) * size.width;
         for (int k = -radius; k <= radius; ++k) {
-            const float weight = filter.column[static_cast<std::size_t>(k + radius)];
+            const float weight = filter.column[static_cast<std::size_t>(k) + static_cast<std::size_t>(radius)];
             const float* from = rows.data() + static_cast<std::size_t>(std::clamp(y + k, 0, height - 1)) * size.width;
             for (int x = 0; x < width; ++x) to[x] += weight * from[x];
         }
@@ -174,7 +175,7 @@ Detector detector(int order, double pixels_per_degree) {
     double above = 0, below = 0;
     for (int x = -radius; x <= radius; ++x) {
         const double factor = order == 1 ? -x : x * x / (sigma * sigma) - 1;
-        derivative.push_back(factor * smooth[static_cast<std::size_t>(x + radius)]);
+        derivative.push_back(factor * smooth[static_cast<std::size_t>(x) + static_cast<std::size_t>(radius)]);
         (derivative.back() > 0 ? above : below) += std::abs(derivative.back());
     }
     for (double& w : derivative) w /= w > 0 ? above : below;
