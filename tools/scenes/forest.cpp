@@ -102,7 +102,7 @@ struct Kind {
     double clearance_m = 1.5;  ///< between trunk and footpath: low boughs stay out of the walker's face
 };
 
-TreeShape oak() {
+TreeShape oak_shape() {
     return {.height = 12,
             .crown_base = 3.6,
             .crown_radius = 4.0,
@@ -113,8 +113,8 @@ TreeShape oak() {
             .clump_radius = 1.45};
 }
 
-TreeShape old_oak() {
-    TreeShape shape = oak();
+TreeShape old_oak_shape() {
+    TreeShape shape = oak_shape();
     shape.height = 10;
     shape.crown_base = 3.2;
     shape.crown_radius = 4.4;
@@ -123,7 +123,7 @@ TreeShape old_oak() {
     return shape;
 }
 
-TreeShape birch() {
+TreeShape birch_shape() {
     return {.height = 13,
             .crown_base = 4.4,
             .crown_radius = 2.5,
@@ -138,7 +138,7 @@ TreeShape birch() {
             .bark_marks = true};
 }
 
-TreeShape beech() {
+TreeShape beech_shape() {
     return {.height = 15,
             .crown_base = 4.6,
             .crown_radius = 3.6,
@@ -152,7 +152,7 @@ TreeShape beech() {
             .light = rgb(206, 138, 56)};
 }
 
-TreeShape pine() {
+TreeShape pine_shape() {
     return {.height = 16,
             .crown_base = 8.5,
             .crown_radius = 2.6,
@@ -173,11 +173,11 @@ std::vector<Kind> tree_kinds(SceneMaker& maker, const PlantMaterials& plants, st
         kinds.push_back(
             {maker.mesh(broad_tree(name, plants, shape, triangles_a_tree, seed + kinds.size() * 77)), name, clearance});
     };
-    broad("oak", oak(), 1.6);
-    broad("old oak", old_oak(), 1.7);
-    broad("birch", birch(), 1.4);
-    broad("beech", beech(), 1.6);
-    broad("pine", pine(), 1.4);
+    broad("oak", oak_shape(), 1.6);
+    broad("old oak", old_oak_shape(), 1.7);
+    broad("birch", birch_shape(), 1.4);
+    broad("beech", beech_shape(), 1.6);
+    broad("pine", pine_shape(), 1.4);
     kinds.push_back({maker.mesh(spruce("spruce", plants, 14.0, 2.7, triangles_a_tree, seed + 900)), "spruce", 3.6});
     kinds.push_back({maker.mesh(spruce("young spruce", plants, 8.0, 2.0, triangles_a_tree, seed + 901)), "young spruce", 3.0});
     return kinds;
