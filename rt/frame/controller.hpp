@@ -6,10 +6,10 @@
 
 namespace surefoot::rt {
 
-/// factor: median of the last 15 ratios actual / predicted, within [0.25, 2], changing by at most 6 % a frame. Follows a step of 2
-/// within 8 + 12 frames. Up to 7 outliers in 15 frames change nothing.
-/// headroom: 90 % quantile of the last 64 ratios actual / (predicted x factor). The headroom of a cost table covers
-/// any view of any scene. The next frame of a walk resembles the last, so the table's headroom would leave much budget unspent.
+/// factor: median of the last 15 ratios actual / predicted, within [0.25, 2], changing by at most 6 % a frame. Follows a step of
+/// 2 within 8 + 12 frames. Up to 7 outliers in 15 frames change nothing. headroom: 90 % quantile of the last 64 ratios actual /
+/// (predicted x factor). The headroom of a cost table covers any view of any scene. The next frame of a walk resembles the last,
+/// so the table's headroom would leave much budget unspent.
 class CostController {
 public:
     static constexpr std::size_t window = 15, headroom_window = 64;

@@ -114,6 +114,7 @@ Costs costs_times(float factor) {
 Result<KeptCosts> keep_on_virtual_clock(float fit_times, float table_times, bool in_frame_check) {
     KeepRequest request;
     request.walk = test::Forest::get().virtual_request(120);
+    request.walk.rate_hz = 60;  // full detail is late
     request.walk.correct_costs = false;
     request.walk.in_frame_check = in_frame_check;
     request.fit = costs_times(fit_times);

@@ -105,7 +105,7 @@ nlohmann::ordered_json to_json(const std::vector<measure::PublishedCost>& publis
 /// Errors of held-out frames: the fit, the table, and published formulas as they are and with their factor.
 void print_errors(const walk::ModelFit& fit) {
     const report::Columns columns(
-        {{"", 36}, {"p50 %", -6}, {"p90 %", -6}, {"p99 %", -6}, {"bias %", -7}, {"R2", -5}, {"source", 20, 2}});
+        {{"", 36}, {"p50 %", -6}, {"p90 %", -6}, {"p99 %", -6}, {"bias %", -7}, {"R²", -5}, {"source", 20, 2}});
     const auto row = [&](const std::string& name, const measure::CostErrors& e, std::string_view source) {
         const auto percent = [](double share) { return fmt::format("{:.0f}", 100 * share); };
         fmt::print("  {}\n",
