@@ -64,16 +64,11 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         number("shift_y", "half heights", -8, 8, "Off-axis projection: offset of the image centre upwards.", &S::shift_y),
         number("budget_ms", "ms", 0, 1000, "Time that a frame may spend; 0: what the rate allows.", &S::budget_ms),
         number("accuracy", "1/rad", 0, 1e6, "Stop refining at this accuracy; 0: refine as far as the budget goes.", &S::accuracy),
-<<<<<<< HEAD
         number(
             "resolution", "%", 0, 100,
             "Share of the picture's width and height that is drawn, then enlarged, in steps of 12.5 from 50; 0: what shows most.",
             &S::resolution_pct),
-        number("cost_scale", "", 0.01, 100,
-               "Overhead factor: real clock: on the predicted cost of all objects; virtual clock: on the charged cost.",
-=======
         number("cost_scale", "", 0.01, 100, "Factor on predicted costs (real clock), or on charged costs (virtual clock).",
->>>>>>> 75331f2e7fcbe48fa69158cde7213acb897a3e53
                &S::cost_scale),
         choice("selector", selectors.entries, "How the cut is chosen.", &S::selector),
         choice("late", rt::late_policies, "What happens to a late frame.", &S::late),
