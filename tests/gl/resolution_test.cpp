@@ -47,9 +47,9 @@ Pose looking() {
     return pose;
 }
 
-Result<std::unique_ptr<gl::Device>> open_at(model::Viewport viewport, std::array<float, 3> sky = {0, 0, 1}) {
+Result<std::unique_ptr<gl::Device>> open_at(model::Viewport size, std::array<float, 3> sky = {0, 0, 1}) {
     gl::DeviceOptions options;
-    options.viewport = viewport;
+    options.viewport = size;
     options.max_items = 4096;
     options.sky = sky;
     return gl::open_device(options);
@@ -102,7 +102,7 @@ int worst_difference(const gl::PixelImage& a, const gl::PixelImage& b) {
 
 double psnr_db(const gl::PixelImage& a, const gl::PixelImage& b) {
     double sum = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(double{a.rgba[i]} - double{b.rgba[i]}, 2);
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(int{a.rgba[i]} - int{b.rgba[i]}, 2);
     return 10 * std::log10(255.0 * 255.0 * static_cast<double>(a.rgba.size()) / std::max(sum, 1e-9));
 }
 
