@@ -102,8 +102,7 @@ int worst_difference(const gl::PixelImage& a, const gl::PixelImage& b) {
 
 double psnr_db(const gl::PixelImage& a, const gl::PixelImage& b) {
     double sum = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i)
-        sum += std::pow(static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]), 2);
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(int{a.rgba[i]} - int{b.rgba[i]}, 2);
     return 10 * std::log10(255.0 * 255.0 * static_cast<double>(a.rgba.size()) / std::max(sum, 1e-9));
 }
 
