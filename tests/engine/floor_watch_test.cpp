@@ -41,7 +41,7 @@ struct FallToFloor : testing::Test {
     Pose pose;
 
     void SetUp() override {
-        auto scene = scenes::generate("forest", 0.2, 1);
+        auto scene = scenes::generate("forest", 0.5, 1);
         ASSERT_TRUE(scene.ok());
         auto model = bake::bake(scene->scene, {}, {});
         ASSERT_TRUE(model.ok());
@@ -51,7 +51,8 @@ struct FallToFloor : testing::Test {
         ASSERT_TRUE(opened.ok());
         engine = std::move(*opened);
         engine->reserve(prepared);
-        pose.position = engine->model().nodes[0].box.centre() + dvec3(0, 2, 0);
+        const Box& box = engine->model().nodes[0].box;
+        pose.position = box.centre() + dvec3(0, 2, 0.8 * box.half().z);  // most of the forest lies ahead
         engine->prepare({pose, 0.1, 0.1}, 0, 0, 0, prepared);
     }
     SubmitReport draw(double budget_us) {

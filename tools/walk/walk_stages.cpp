@@ -210,7 +210,8 @@ void WalkStages::account(rt::FrameRecord& record) {
     if (!coarse_) controller_.update(report_.predicted_us / overhead, actual_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     record.floor_share = report_.floor_share;
-    record.floor_frame = engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
+    const bool follows = now_.frame > 0;  // the cut before the first frame is of the warm-up
+    record.floor_frame = follows && engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
     keep(record);
     const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
     snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.resolution, record.triangles, engine_.drawn(),
