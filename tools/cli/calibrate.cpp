@@ -117,7 +117,7 @@ void print_errors(const walk::ModelFit& fit) {
     row("the machine's table", fit.before, "");
     for (const measure::PublishedCost& p : fit.published) {
         row(std::string(p.formula), p.as_published, p.source);
-        row(fmt::format("{:.2f} * {}", p.factor, p.formula), p.with_factor, "");
+        row(fmt::format("{:.2f} * ({})", p.factor, p.formula), p.with_factor, "");
     }
 }
 
