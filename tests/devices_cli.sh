@@ -63,8 +63,8 @@ for command in list watch record map; do prints 'Example:.*surefoot devices' dev
 prints '"devices": \[' devices --json
 prints '"devices": \[' devices list --json
 prints '.' devices list
-expect 0 'waiting for one' devices watch no-such-device --seconds 0.2 --json
-expect 0 'waiting for one' devices watch no-such-device --seconds 0.2
+expect 0 'waits for one' devices watch no-such-device --seconds 0.2 --json
+expect 0 'waits for one' devices watch no-such-device --seconds 0.2
 expect 2 'seconds' devices watch --seconds -1
 expect 2 'seconds' devices record no-such-device -o x.hid --seconds 0
 expect 2 'output|required' devices record no-such-device
