@@ -1,4 +1,4 @@
-// The names that do not come back, and what stands for each: identifiers, prefixes, words, and names of files.
+// The lists of names that were replaced by the field's standard words, and what stands in their place.
 #pragma once
 
 #include <array>
@@ -179,7 +179,7 @@ inline const std::vector<Banned>& banned_words() {
 }
 
 /// Those of them that a comment may not use either: the others are plain English too.
-bool banned_in_comments(std::string_view words) { return words != "put_off"; }
+inline bool banned_in_comments(std::string_view words) { return words != "put_off"; }
 
 /// Sources by path without ending. No file of another folder may have the name either.
 inline const std::vector<Banned>& banned_files() {

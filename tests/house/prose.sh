@@ -142,7 +142,7 @@ sources() { git ls-files --cached --others --exclude-standard 2>/dev/null || fin
 # Suite.*.
 source_words() {
   local list
-  list=$(sources | grep -vE '\.(md|csv|png|svg|glb|walk)$|^tests/house/(banned_names_test\.cpp|prose\.sh)$')
+  list=$(sources | grep -vE '\.(md|csv|png|svg|glb|walk)$|^tests/house/(banned_names(_test\.cpp|\.hpp)|prose\.sh)$')
   xargs -d '\n' sed -E 's#(^|[[:space:]])//.*##' <<<"$list" 2>/dev/null |
     grep -aoE '[A-Za-z_][A-Za-z0-9_]*(<[A-Za-z0-9_:, ]*>)?\(?' | sed -E 's/<.*>//; s/^(\w+)\($/\1\n\1(/'
   grep -E '_test\.cpp$' <<<"$list" | xargs -r -d '\n' cat | tr '\n' ' ' | grep -oE 'TEST(_[FP])?\([A-Za-z0-9_]+, *[A-Za-z0-9_]+\)' |
