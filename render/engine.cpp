@@ -129,16 +129,20 @@ std::size_t Engine::drawn_capacity() const {
 void Engine::reserve(prepare::PreparedFrame& frame) const { impl_->preparer->reserve(frame); }
 
 void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
-                     prepare::PreparedFrame& out, double planned_us) {
+                     prepare::PreparedFrame& out, const PrepareHints& hints) {
     Impl& e = *impl_;
     const model::Viewport viewport = e.options.device.viewport;
     const bool chosen = !(e.options.resolution > 0.0F);
     out.resolution = chosen ? e.resolution.resolution() : e.options.resolution;
-    e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out, out.resolution);
-    if (!chosen || !(planned_us > 0.0) || e.options.prepare.full_depth) return;
+    // The common correction follows the product of both; here they only part.
+    const auto apart = static_cast<float>(std::sqrt(hints.form_ratio > 0.0 ? hints.form_ratio : 1.0));
+    out.full_factor = apart;
+    out.coarse_factor = 1.0F / apart;
+    e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out);
+    if (!chosen || !(hints.planned_us > 0.0) || e.options.prepare.full_depth) return;
     const auto lost = [&](const prepare::ValueCurve& curve, float at) {
         const float fixed_us = e.costs.combine.fixed_us + e.costs.enlarge_us(at, std::uint64_t{viewport.width} * viewport.height);
-        return prepare::lost_share(curve, planned_us - static_cast<double>(fixed_us)) +
+        return prepare::lost_share(curve, hints.planned_us - static_cast<double>(fixed_us)) +
                static_cast<double>(e.costs.blur_loss_at(at));
     };
     const float other = e.resolution.trial();
@@ -194,6 +198,12 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
         const bool finer = candidate.choice_count > 1 || candidate.child_count > 0;
         floor.add(drawn.back(), candidate.pixels, finer && item.choice == candidate.first_choice);
         cost += choice.cost;
+        const bool full = model::is_full_detail(model.nodes[item.node], item.rep);
+        const model::FrameCombine& combine = costs.combine;
+        const double item_us =
+            static_cast<double>(combine.frame_us(choice.cost.submit_us, choice.cost.raster_us) - combine.fixed_us);
+        (full ? report.full_us : report.coarse_us) +=
+            item_us / static_cast<double>(full ? prepared->full_factor : prepared->coarse_factor);
         report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
         report.benefit_mean += 1.0 - choice.benefit;
         report.triangles += model.reps[item.rep].triangles;
@@ -245,6 +255,8 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     }
     report.predicted = so_far;
     report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us;
+    report.other_us = report.predicted_us - report.full_us * static_cast<double>(prepared->full_factor) -
+                      report.coarse_us * static_cast<double>(prepared->coarse_factor);
 }
 
 void Engine::Impl::push(const UnpreparedItem& item, SubmitReport& report) {

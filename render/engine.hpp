@@ -47,12 +47,20 @@ struct Correction {
     double headroom = 0;  ///< 0: the cost table's
 };
 
+/// What the frame thread knows for the next preparation.
+struct PrepareHints {
+    double planned_us = 0;  ///< predicted time that a cut may take, without correction and headroom; 0: the resolution stays
+    double form_ratio = 1;  ///< how much more expensive full detail is against coarse forms than predicted
+};
+
 /// Results of a submission. Times in us from the call.
 struct SubmitReport {
-    double submitted_us = 0;    ///< last slice handed to the driver
-    double finished_us = 0;     ///< last fence passed
-    double predicted_us = 0;    ///< of the drawn items; uncorrected, without headroom
-    model::ItemCost predicted;  ///< the sums behind predicted_us, slices included
+    double submitted_us = 0;            ///< last slice handed to the driver
+    double finished_us = 0;             ///< last fence passed
+    double predicted_us = 0;            ///< of the drawn items; uncorrected, without headroom
+    model::ItemCost predicted;          ///< the sums behind predicted_us, slices included
+    double full_us = 0, coarse_us = 0;  ///< of predicted_us, before PrepareHints::form_ratio: items in full detail, and others
+    double other_us = 0;                ///< of predicted_us: all but the items
     std::uint32_t slices = 0, downgraded_slices = 0, items = 0, draws = 0;
     std::uint32_t culled = 0;  ///< items of the cut outside this pose's view
     std::uint64_t triangles = 0;
@@ -79,9 +87,8 @@ public:
     [[nodiscard]] const EngineOptions& options() const;
 
     void reserve(prepare::PreparedFrame& frame) const;
-    /// planned_us: predicted time that a cut may take, without correction and headroom; 0: not known, and the resolution stays.
     void prepare(const prepare::Region& region, std::uint64_t frame, double speed_mps, double turn_rps,
-                 prepare::PreparedFrame& out, double planned_us = 0);
+                 prepare::PreparedFrame& out, const PrepareHints& hints = {});
 
     /// Changes the selector, from the next prepare() on. No prepare() may be running, since `flat` changes its depth. Allocates.
     Result<void> set_selector(std::string_view name);

@@ -34,6 +34,7 @@ void each_field(Io& io, Frame& f) {
        f.region.centre.orientation.x, f.region.centre.orientation.y, f.region.centre.orientation.z, f.region.centre.fov_y_rad,
        f.region.radius_m, f.region.angle_rad, f.viewport.width, f.viewport.height, f.viewport.shift_x, f.viewport.shift_y,
        f.visits, f.truncated, f.full_cost.submit_us, f.full_cost.raster_us, f.target_error_rad, f.cpu_us, f.wall_us);
+    if (io.has_values) io(f.resolution, f.full_value);
 }
 template <class Io, class C>
 void each_setting(Io& io, C& c) {

@@ -17,6 +17,7 @@ namespace surefoot::model {
 struct ItemCost {
     float submit_us = 0;
     float raster_us = 0;
+    friend ItemCost operator*(const ItemCost& cost, float factor) { return {cost.submit_us * factor, cost.raster_us * factor}; }
     ItemCost& operator+=(const ItemCost& more) {
         submit_us += more.submit_us;
         raster_us += more.raster_us;

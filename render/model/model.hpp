@@ -95,6 +95,11 @@ struct Node {
     std::uint64_t triangles = 0;  ///< full detail below
 };
 
+/// Whether the representation is the node's full detail: the finest of a leaf.
+inline bool is_full_detail(const Node& node, Index rep) {
+    return node.child_count == 0 && rep + 1 == node.first_rep + node.rep_count;
+}
+
 /// Sources, warnings and quality of the bake. Shown by `inspect`.
 struct Provenance {
     std::vector<std::string> sources;

@@ -114,7 +114,8 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
 
     const auto fill = [&](Choice& choice, Index r, float error_rad) {
         choice.rep = r;
-        choice.cost = item_costs_.of(r, node.box, eye, view.scale);
+        choice.cost = item_costs_.of(r, node.box, eye, view.scale) *
+                      (model::is_full_detail(node, r) ? view.full_factor : view.coarse_factor);
         choice.error_rad = error_rad;
         choice.benefit =
             benefit_of(weight.weight, accuracy_gain(error_rad, view.pixel_angle_rad), unusable_penalty(weight.size, error_rad));

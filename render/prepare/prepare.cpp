@@ -84,7 +84,7 @@ struct Preparer::Impl {
     Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o);
     template <class Body>
     void for_chunks(std::uint32_t count, const Body& body);
-    RegionView view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps, float resolution) const;
+    RegionView view_of(const PreparedFrame& frame, double speed_mps, double turn_rps) const;
     NodeVisit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
     void visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
     void expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end, PreparedFrame& out);
@@ -150,8 +150,10 @@ void Preparer::Impl::for_chunks(std::uint32_t count, const Body& body) {
     loop.joined();
 }
 
-RegionView Preparer::Impl::view_of(const Region& region, model::Viewport viewport, double speed_mps, double turn_rps,
-                                   float resolution) const {
+RegionView Preparer::Impl::view_of(const PreparedFrame& frame, double speed_mps, double turn_rps) const {
+    const Region& region = frame.region;
+    const model::Viewport& viewport = frame.viewport;
+    const float resolution = frame.resolution;
     const Pose& pose = region.centre;
     RegionView view;
     view.eye = pose.position;
@@ -164,6 +166,8 @@ RegionView Preparer::Impl::view_of(const Region& region, model::Viewport viewpor
     const double target = options.target_error_rad > 0.0 ? options.target_error_rad : 0.125 * view.pixel_angle_rad / resolution;
     view.target_error_rad = static_cast<float>(target) * target_factor;
     view.full_depth = options.full_depth;
+    view.full_factor = frame.full_factor;
+    view.coarse_factor = frame.coarse_factor;
     view.focus_strength = static_cast<float>(std::clamp(finite_or(options.focus_strength, 0.0), 0.0, 1.0));
     view.speed_mps = static_cast<float>(std::clamp(finite_or(speed_mps, 0.0), 0.0, 1e4));
     view.turn_rps = static_cast<float>(std::clamp(finite_or(turn_rps, 0.0), 0.0, 1e3));
@@ -334,7 +338,7 @@ void Preparer::reserve(PreparedFrame& frame) const {
 }
 
 void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
-                   PreparedFrame& out, float resolution) {
+                   PreparedFrame& out) {
     Impl& s = *impl_;
     const std::int64_t cpu_start = rt::own_cpu_ns(), wall_start = rt::monotonic_ns();
     s.worker_cpu_ns.store(0, std::memory_order_relaxed);
@@ -352,10 +356,10 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     const model::Node& root = s.model.nodes[0];
     out.region = cleaned(region, root.box);
     const Pose& pose = out.region.centre;
-    out.resolution = resolution > 0.0F && resolution < 1.0F ? resolution : 1.0F;
+    out.resolution = out.resolution > 0.0F && out.resolution < 1.0F ? out.resolution : 1.0F;
     s.last_speed_mps = speed_mps;
     s.last_turn_rps = turn_rps;
-    const RegionView view = s.view_of(out.region, viewport, speed_mps, turn_rps, out.resolution);
+    const RegionView view = s.view_of(out, speed_mps, turn_rps);
     out.target_error_rad = view.full_depth ? 0.0F : view.target_error_rad;
 
     const model::Frustum frustum =
@@ -374,6 +378,8 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.evaluate_all(view, out);
     s.tried.region = out.region;
     s.tried.viewport = viewport;
+    s.tried.full_factor = out.full_factor;
+    s.tried.coarse_factor = out.coarse_factor;
     s.values.run(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     propagate_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     enforce_monotone_benefit(out);
@@ -386,7 +392,7 @@ const ValueCurve& Preparer::value_at(float resolution) {
     Impl& s = *impl_;
     s.tried.resolution = resolution;
     s.make_room(s.tried);
-    const RegionView view = s.view_of(s.tried.region, s.tried.viewport, s.last_speed_mps, s.last_turn_rps, resolution);
+    const RegionView view = s.view_of(s.tried, s.last_speed_mps, s.last_turn_rps);
     s.evaluate_all(view, s.tried);
     s.values.run(s.costs.combine, view.pixel_angle_rad, s.weights, s.tried);
     return s.tried.curve;

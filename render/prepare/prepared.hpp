@@ -77,15 +77,16 @@ struct PreparedFrame {
     model::Viewport viewport;
     std::vector<Candidate> candidates;  ///< reserved at start; never grows after; empty: nothing is visible
     std::vector<Choice> choices;
-    model::ItemCost full_cost;   ///< of the finest choice of every visible leaf
-    double full_value = 0;       ///< sum of their values; 0: not computed
-    ValueCurve curve;            ///< of the best cuts
-    float resolution = 1;        ///< of the picture that the costs are for, 0..1]: share of its width
-    std::uint32_t visits = 0;    ///< nodes tested, invisible ones included
-    std::uint32_t hidden = 0;    ///< of these, nodes in the view that others hide; their subtrees were not tested
-    bool truncated = false;      ///< capacity reached: deeper detail is missing, but the tree is complete and legal
-    float target_error_rad = 0;  ///< nodes with a smaller error were not opened, and finer choices not offered
-    double cpu_us = 0;           ///< all workers together
+    model::ItemCost full_cost;                 ///< of the finest choice of every visible leaf
+    double full_value = 0;                     ///< sum of their values; 0: not computed
+    ValueCurve curve;                          ///< of the best cuts
+    float full_factor = 1, coarse_factor = 1;  ///< in the costs of full detail and of all other forms
+    float resolution = 1;                      ///< of the picture that the costs are for, 0..1]: share of its width
+    std::uint32_t visits = 0;                  ///< nodes tested, invisible ones included
+    std::uint32_t hidden = 0;                  ///< of these, nodes in the view that others hide; their subtrees were not tested
+    bool truncated = false;                    ///< capacity reached: deeper detail is missing, but the tree is complete and legal
+    float target_error_rad = 0;                ///< nodes with a smaller error were not opened, and finer choices not offered
+    double cpu_us = 0;                         ///< all workers together
     double wall_us = 0;
 };
 
@@ -124,9 +125,10 @@ public:
     void reserve(PreparedFrame& frame) const;
     /// Fills `out` for `region`. Non-finite numbers of the region are replaced; a position becomes the model's centre.
     /// Independent of earlier frames, unless one exceeded max_visits. speed_mps, turn_rps: of the eye, for the motion factor.
-    /// resolution: of the picture that costs and detail are for, as a share of the viewport's width.
+    /// out.resolution: of the picture that costs and detail are for, as a share of the viewport's width.
+    /// out.full_factor, out.coarse_factor: on the costs of full detail and of all other forms.
     void run(const Region& region, model::Viewport viewport, std::uint64_t frame, double speed_mps, double turn_rps,
-             PreparedFrame& out, float resolution = 1);
+             PreparedFrame& out);
     /// The same frame's values and costs at another resolution, without a new search for what is visible.
     const ValueCurve& value_at(float resolution);
 

@@ -4,6 +4,7 @@
 #include "rt/base/random.hpp"
 #include "rt/clock/grid.hpp"
 #include "rt/frame/controller.hpp"
+#include "rt/frame/form_correction.hpp"
 #include "rt/frame/loop.hpp"
 #include "tests/time_units.hpp"
 
@@ -152,6 +153,46 @@ TEST(Controller, MeetsADoubledCostAndIsDeafToOutliers) {
     for (const double bad : {0.0, -5.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         deaf.update(bad, 100), deaf.update(100, bad);
     EXPECT_NEAR(deaf.factor(), 1.0, 1e-9);
+}
+
+double random_share(std::uint32_t& seed) {
+    seed = seed * 1664525U + 1013904223U;
+    return static_cast<double>(seed >> 8U) / static_cast<double>(1U << 24U);
+}
+
+/// Frames of 20 ms predicted, with any mix of full and coarse forms.
+FormCorrection learnt(double full, double coarse, int frames, int outlier_every) {
+    FormCorrection forms;
+    std::uint32_t seed = 7;
+    for (int i = 0; i < frames; ++i) {
+        const double full_us = 20000 * random_share(seed), coarse_us = 20000 - full_us;
+        const double actual_us = 500 + (full * full_us + coarse * coarse_us) * (0.95 + 0.1 * random_share(seed));
+        forms.update(full_us, coarse_us, 500, outlier_every > 0 && i % outlier_every == 0 ? 5 * actual_us : actual_us);
+    }
+    return forms;
+}
+
+TEST(FormCorrection, FindsWhichKindOfFormIsPredictedWrong) {
+    EXPECT_NEAR(learnt(0.7, 1.4, 200, 0).ratio(), 0.5, 0.05);
+    EXPECT_NEAR(learnt(1.2, 0.8, 200, 0).ratio(), 1.5, 0.15);
+    EXPECT_NEAR(learnt(1.0, 1.0, 200, 0).ratio(), 1.0, 0.05);
+    EXPECT_NEAR(learnt(2.0, 2.0, 200, 0).ratio(), 1.0, 0.05) << "a slower machine is slower for both";
+    EXPECT_EQ(learnt(0.5, 5.0, 600, 0).ratio(), 1 / FormCorrection::max_ratio);
+}
+
+TEST(FormCorrection, ForgivesOutliersAndFramesOfOneKind) {
+    EXPECT_NEAR(learnt(0.7, 1.4, 400, 10).ratio(), 0.5, 0.12);
+    FormCorrection same;
+    for (int i = 0; i < 500; ++i) same.update(10000, 10000, 500, 30000);
+    EXPECT_NEAR(same.ratio(), 1.0, 0.05) << "one mix says nothing about either";
+    const double before = same.ratio();
+    for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        same.update(bad, 1, 0, 100);
+        same.update(1, bad, 0, 100);
+        same.update(1, 1, 0, bad);
+    }
+    same.update(0, 0, 0, 100);
+    EXPECT_EQ(same.ratio(), before);
 }
 
 }  // namespace

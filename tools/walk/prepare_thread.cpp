@@ -10,7 +10,7 @@ namespace surefoot::walk {
 
 void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out) {
     if (const PredictedRegion& f = sample.predicted; f.known) {
-        engine.prepare(f.region, sample.frame, f.speed_m_s, f.turn_rad_s, out, sample.planned_us);
+        engine.prepare(f.region, sample.frame, f.speed_m_s, f.turn_rad_s, out, sample.hints);
         return;
     }
     const double dt_s = std::max(sample.dt_s, 1e-3);
@@ -18,7 +18,7 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
         predict_region(sample.before, sample.pose, dt_s, horizon_periods * period_s, sample.turn_ahead_rad_s);
     const double speed_mps = glm::length(sample.pose.position - sample.before.position) / dt_s;
     const double w = std::min(1.0, std::abs(glm::dot(sample.pose.orientation, sample.before.orientation)));
-    engine.prepare(region, sample.frame, speed_mps, 2.0 * std::acos(w) / dt_s, out, sample.planned_us);
+    engine.prepare(region, sample.frame, speed_mps, 2.0 * std::acos(w) / dt_s, out, sample.hints);
 }
 
 PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,

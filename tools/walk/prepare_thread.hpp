@@ -32,7 +32,7 @@ struct PoseSample {
     double dt_s = 0;
     PredictedRegion predicted;    ///< not known: the last two poses say where the walk goes
     double turn_ahead_rad_s = 0;  ///< largest turn rate until the horizon, if the source knows it
-    double planned_us = 0;        ///< predicted time that the next cut may take, without correction and headroom
+    PrepareHints hints;
     bool valid = false;
 };
 

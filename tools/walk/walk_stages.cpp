@@ -73,9 +73,11 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.turn_ahead_rad_s = newest.turn_ahead_rad_s;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
-    now_.planned_us =
-        options_.budget_us / (request_.correct_costs ? controller_.factor() * controller_.headroom(engine_.costs().headroom)
-                                                     : static_cast<double>(engine_.costs().headroom));
+    now_.hints = {};
+    const double headroom =
+        request_.correct_costs ? controller_.headroom(engine_.costs().headroom) : static_cast<double>(engine_.costs().headroom);
+    now_.hints.planned_us = options_.budget_us / (headroom * (request_.correct_costs ? controller_.factor() : 1.0));
+    if (request_.correct_costs) now_.hints.form_ratio = forms_.ratio();
     now_.valid = true;
     take(newest, record);
     poses_.back() = now_;
@@ -207,7 +209,10 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.actual_us = static_cast<float>(actual_us);
     // The correction is of the machine's own figures: it must not take back an overhead that the user asked for.
     const double overhead = virtual_clock_ ? 1.0 : request_.cost_scale;
-    if (!coarse_) controller_.update(report_.predicted_us / overhead, actual_us);
+    if (!coarse_) {
+        controller_.update(report_.predicted_us / overhead, actual_us);
+        forms_.update(report_.full_us / overhead, report_.coarse_us / overhead, report_.other_us / overhead, actual_us);
+    }
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     record.floor_share = report_.floor_share;
     const bool follows = now_.frame > 0;  // the cut before the first frame is of the warm-up

@@ -10,6 +10,7 @@
 #include "rt/clock/clock.hpp"
 #include "rt/exchange/triple_buffer.hpp"
 #include "rt/frame/controller.hpp"
+#include "rt/frame/form_correction.hpp"
 #include "rt/frame/loop.hpp"
 #include "tools/walk/pose_source.hpp"
 #include "tools/walk/prepare_thread.hpp"
@@ -83,6 +84,7 @@ private:
     const WalkRequest& request_;
     const bool virtual_clock_;  ///< prepare on this thread, and add the device's virtual time to the clock
     rt::CostController controller_;
+    rt::FormCorrection forms_;
     PoseSample now_;
     SubmitReport report_;
     double time_left_us_ = 0;           ///< until the limit, as the last submission began
