@@ -292,7 +292,7 @@ std::vector<model::EffectFinding> find_effects(const model::Model& model,
         for (const model::Representation& rep : model.reps) own += (rep.effects & f.bit) != 0 ? 1 : 0;
         f.called_for = materials > 0 || own > 0;
         f.reason = materials > 0 ? fmt::format("{} of {} materials {}", materials, triangles_of_material.size(), what[e])
-                   : own > 0     ? fmt::format("{}; {} baked forms need it", absent[e], own)
+                   : own > 0     ? fmt::format("{}; {} baked representations need it", absent[e], own)
                                  : absent[e];
         findings.push_back(std::move(f));
     }
