@@ -36,7 +36,7 @@ TEST(Findings, NameWhatOnlyStandInsNeed) {
     const auto findings = bake::find_effects(scene.finish(), {0});
     EXPECT_TRUE(findings[1].called_for);
     EXPECT_EQ(findings[1].triangles, 0U);
-    EXPECT_NE(findings[1].reason.find("baked forms need it"), std::string::npos) << findings[1].reason;
+    EXPECT_NE(findings[1].reason.find("baked representations need it"), std::string::npos) << findings[1].reason;
 }
 
 TEST(Findings, OfAnEmptyModelCallForNothing) {

@@ -1,0 +1,56 @@
+// The choice of the picture's resolution.
+#include <gtest/gtest.h>
+
+#include "render/prepare/resolution.hpp"
+
+namespace surefoot::prepare {
+namespace {
+
+/// Frames in which the resolutions lose these shares, by model::resolution_steps.
+template <class Lost>
+void walk(ResolutionChooser& chooser, int frames, const Lost& lost) {
+    for (int i = 0; i < frames; ++i) {
+        const float tried = chooser.trial();
+        if (tried > 0.0F) chooser.judge(lost(chooser.resolution()), lost(tried));
+    }
+}
+
+TEST(ResolutionChooser, TakesWhatLosesClearlyLessAndGoesBack) {
+    ResolutionChooser chooser;
+    walk(chooser, 60, [](float) { return 0.0; });
+    EXPECT_EQ(chooser.resolution(), 1.0F);
+    walk(chooser, 60, [](float r) { return r == 0.625F ? 0.02 : 0.1; });
+    EXPECT_EQ(chooser.resolution(), 0.625F);
+    walk(chooser, 60, [](float r) { return r == 1.0F ? 0.0 : 0.01; });
+    EXPECT_EQ(chooser.resolution(), 1.0F);
+}
+
+TEST(ResolutionChooser, NeitherASmallGainNorAShortOneChangesAnything) {
+    ResolutionChooser chooser;
+    walk(chooser, 200, [](float r) { return r == 0.5F ? 0.08 : 0.1; });
+    EXPECT_EQ(chooser.resolution(), 1.0F);
+    for (int i = 0; i < 20; ++i) {
+        walk(chooser, 12, [](float r) { return r == 0.5F ? 0.01 : 0.1; });  // all others once
+        walk(chooser, 12, [](float) { return 0.1; });
+    }
+    EXPECT_EQ(chooser.resolution(), 1.0F);
+}
+
+TEST(ValueCurve, IsReadBetweenItsLevels) {
+    ValueCurve curve;
+    for (std::uint32_t i = 0; i < value_levels; ++i) {
+        curve.cost[i] = 10.0F * static_cast<float>(i + 1);
+        curve.value[i] = static_cast<float>(i);
+    }
+    curve.full_value = value_levels - 1;
+    EXPECT_EQ(curve.value_at(0), 0);
+    EXPECT_EQ(curve.value_at(std::nanf("")), 0) << "the floor is drawn";
+    EXPECT_FLOAT_EQ(curve.value_at(25), 1.5F);
+    EXPECT_EQ(curve.value_at(1e9F), value_levels - 1);
+    EXPECT_EQ(lost_share(curve, 1e9), 0);
+    EXPECT_EQ(lost_share(curve, 0), 1);
+    EXPECT_EQ(lost_share({}, 100), 0) << "no value was computed";
+}
+
+}  // namespace
+}  // namespace surefoot::prepare

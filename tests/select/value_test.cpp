@@ -1,0 +1,151 @@
+// Values, rates and the selector that goes by them, against every cut of small trees.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "render/prepare/value.hpp"
+#include "tests/select/scene.hpp"
+
+namespace surefoot::select {
+namespace {
+
+using test::Scene;
+
+struct Point {
+    double cost = 0, value = 0;
+};
+
+/// Keeps the points that no other one beats in both cost and value.
+std::vector<Point> undominated(std::vector<Point> points) {
+    std::sort(points.begin(), points.end(),
+              [](const Point& a, const Point& b) { return a.cost != b.cost ? a.cost < b.cost : a.value > b.value; });
+    std::vector<Point> front;
+    for (const Point& p : points)
+        if (front.empty() || p.value > front.back().value) front.push_back(p);
+    return front;
+}
+
+/// All cuts of a candidate's subtree that are worth their cost. Only submission costs here, so costs add up.
+std::vector<Point> cuts_below(const prepare::PreparedFrame& frame, model::Index at) {
+    const prepare::Candidate& candidate = frame.candidates[at];
+    std::vector<Point> points;
+    for (std::uint32_t k = 0; k < candidate.choice_count; ++k) {
+        const prepare::Choice& choice = frame.choices[candidate.first_choice + k];
+        points.push_back({static_cast<double>(choice.cost.submit_us), static_cast<double>(choice.value)});
+    }
+    if (candidate.child_count > 0) {
+        std::vector<Point> sums{{0, 0}};
+        for (std::uint32_t k = 0; k < candidate.child_count; ++k) {
+            std::vector<Point> more;
+            for (const Point& below : cuts_below(frame, candidate.first_child + k))
+                for (const Point& sum : sums) more.push_back({sum.cost + below.cost, sum.value + below.value});
+            sums = undominated(std::move(more));
+        }
+        points.insert(points.end(), sums.begin(), sums.end());
+    }
+    return undominated(std::move(points));
+}
+
+/// Small random trees seen from random poses, where only submission costs.
+template <class Use>
+void for_small_trees(std::uint64_t trees, const Use& use) {
+    Random random(23);
+    for (std::uint64_t seed = 0; seed < trees; ++seed) {
+        Scene s(test::random_model(seed, 2 + random.below(24)));
+        s.costs.combine = {.fixed_us = 0, .submit_weight = 1, .raster_weight = 0, .max_weight = 0};
+        s.costs.slice_us = 0;
+        s.costs.headroom = 1;
+        s.state.hysteresis = 1;
+        prepare::Region region{test::random_pose(random), 0.1, 0.02};
+        region.centre.position *= 0.4;
+        s.look(region);
+        if (!s.frame.candidates.empty() && s.frame.full_value > 0) use(s, random);
+    }
+}
+
+TEST(Value, RatesFallAndValuesRise) {
+    for_small_trees(500, [](Scene& s, Random&) {
+        for (const prepare::Candidate& candidate : s.frame.candidates) {
+            float rate = std::numeric_limits<float>::infinity(), value = 0;
+            if (candidate.parent != model::none) {
+                const prepare::Candidate& parent = s.frame.candidates[candidate.parent];
+                rate = s.frame.choices[parent.first_choice + parent.choice_count - 1].rate;
+            }
+            for (std::uint32_t k = 0; k < candidate.choice_count; ++k) {
+                const prepare::Choice& choice = s.frame.choices[candidate.first_choice + k];
+                ASSERT_TRUE(std::isfinite(choice.value) && std::isfinite(choice.rate));
+                ASSERT_GE(choice.value, value);
+                ASSERT_LE(choice.rate, rate);
+                value = choice.value;
+                rate = choice.rate;
+            }
+        }
+    });
+}
+
+TEST(Value, TheCurveIsTheBestCutAtEachRate) {
+    int inner = 0;
+    for_small_trees(500, [&](Scene& s, Random&) {
+        if (s.frame.candidates[0].child_count == 0) return;  // the curve is of trees
+        ++inner;
+        const std::vector<Point> cuts = cuts_below(s.frame, 0);
+        for (std::uint32_t level = 0; level + 1 < prepare::value_levels; ++level) {
+            const double rate = std::ldexp(1.0, 20 - static_cast<int>(level));
+            double best = -std::numeric_limits<double>::infinity();
+            for (const Point& cut : cuts) best = std::max(best, cut.value - rate * cut.cost);
+            const double found =
+                static_cast<double>(s.frame.curve.value[level]) - rate * static_cast<double>(s.frame.curve.cost[level]);
+            ASSERT_LE(found, best + 1e-4 * std::abs(best) + 1e-3);
+            ASSERT_GE(found, best - 1e-2 * std::abs(best) - 1e-2 * static_cast<double>(s.frame.curve.full_value));
+        }
+        ASSERT_NEAR(static_cast<double>(s.frame.curve.value_at(1e9F)), s.frame.full_value, 1e-3 * s.frame.full_value);
+    });
+    EXPECT_GT(inner, 200);
+}
+
+TEST(Value, ThresholdIsNearTheOptimumOfSmallTrees) {
+    double sum = 0, sum_two_stage = 0, worst = 1;
+    int trees = 0;
+    for_small_trees(3000, [&](Scene& s, Random& random) {
+        const std::vector<Point> cuts = cuts_below(s.frame, 0);
+        const double floor = static_cast<double>(s.run("threshold", 0).sum.submit_us), full = cuts.back().cost;
+        if (!(full > 1.05 * floor)) return;
+        const double budget = floor + (full - floor) * random.unit();
+        double optimum = 0;
+        for (const Point& cut : cuts)
+            if (cut.cost <= budget) optimum = std::max(optimum, cut.value);
+        if (!(optimum > 0)) return;  // the floor shows nothing
+        s.forget();
+        const double share = s.run("threshold", budget).value / optimum;
+        ASSERT_LE(s.cut.sum.submit_us, budget * (1 + 1e-5));
+        ASSERT_LE(share, 1 + 1e-5);
+        s.forget();
+        sum_two_stage += s.run("two-stage", budget).value / optimum;
+        sum += share;
+        worst = std::min(worst, share);
+        ++trees;
+    });
+    std::printf("share of the optimum's value: threshold %.3f (least %.2f), two-stage %.3f, %d trees\n", sum / trees, worst,
+                sum_two_stage / trees, trees);
+    EXPECT_GT(trees, 1000);
+    EXPECT_GE(sum / trees, 0.95);
+    EXPECT_GT(sum, sum_two_stage);
+}
+
+TEST(Value, OddCostsAndValuesStayFinite) {
+    for (const float bad : {0.0F, std::nanf(""), std::numeric_limits<float>::infinity(), -1.0F}) {
+        for_small_trees(50, [&](Scene& s, Random&) {
+            for (prepare::Choice& choice : s.frame.choices) choice.value = choice.rate = bad;
+            const Cut& cut = s.run("threshold", 1000);
+            EXPECT_EQ(check_legal(s.frame, cut), "");
+            for (prepare::Choice& choice : s.frame.choices) choice.error_rad = bad;
+            prepare::estimate_values(s.costs.combine, s.frame);
+            EXPECT_EQ(check_legal(s.frame, s.run("threshold", 1000)), "");
+        });
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::select
