@@ -30,7 +30,13 @@ struct Engine::Impl {
     std::unique_ptr<gl::Device> device;
     std::unique_ptr<prepare::Preparer> preparer;
     prepare::ResolutionChooser resolution;
-    [[nodiscard]] float fixed_resolution() const { return options.resolution > 0.0F ? options.resolution : 1.0F; }
+    float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
+    [[nodiscard]] model::ViewScale drawn_scale(const Pose& pose) const REQUIRES(draws) {
+        return model::scaled(model::make_view_scale(pose, options.device.viewport), drawn_resolution);
+    }
+    [[nodiscard]] float enlarge_us() const REQUIRES(draws) {
+        return costs.enlarge_us(drawn_resolution, std::uint64_t{options.device.viewport.width} * options.device.viewport.height);
+    }
     bool full_depth_always = false;  ///< requested by the options, for every selector
     const select::Selector* selector = nullptr;
     [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
@@ -73,6 +79,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->options.device.null.enlarge_us =
         static_cast<double>(costs.enlarge_us(0.5F, std::uint64_t{picture.width} * picture.height));
     impl->options.resolution = model::stepped(options.resolution);
+    if (impl->options.resolution > 0.0F) impl->drawn_resolution = impl->options.resolution;
     auto device = gl::open_device(impl->options.device);
     if (!device) return device.error();
     impl->device = std::move(*device);
@@ -140,10 +147,14 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     out.coarse_factor = 1.0F / apart;
     e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out);
     if (!chosen || !(hints.planned_us > 0.0) || e.options.prepare.full_depth) return;
+    // As Budget counts it: the fixed time, and the ends of slices.
+    const double slice_end_us = static_cast<double>(e.costs.combine.submit_weight * e.costs.slice_us);
     const auto lost = [&](const prepare::ValueCurve& curve, float at) {
-        const float fixed_us = e.costs.combine.fixed_us + e.costs.enlarge_us(at, std::uint64_t{viewport.width} * viewport.height);
-        return prepare::lost_share(curve, hints.planned_us - static_cast<double>(fixed_us)) +
-               static_cast<double>(e.costs.blur_loss_at(at));
+        const double fixed_us = static_cast<double>(e.costs.combine.fixed_us +
+                                                    e.costs.enlarge_us(at, std::uint64_t{viewport.width} * viewport.height)) +
+                                slice_end_us;
+        const double items_us = (hints.planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us));
+        return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(at));
     };
     const float other = e.resolution.trial();
     if (other > 0.0F) e.resolution.judge(lost(out.curve, out.resolution), lost(e.preparer->value_at(other), other));
@@ -162,6 +173,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.draws.plays();
     e.use_last = false;
     e.prepared = &prepared;
+    e.drawn_resolution = prepared.resolution;
     e.correction = correction;
     const select::SelectInput input{&e.model,          &prepared,        &e.costs,           budget_us,
                                     correction.factor, target_error_rad, e.options.slice_us, correction.headroom};
@@ -220,8 +232,6 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     for (const select::Slice& slice : plan.slices) {
         rest_stand_in += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
     }
-    const float enlarge_us =
-        costs.enlarge_us(prepared->resolution, std::uint64_t{options.device.viewport.width} * options.device.viewport.height);
     bool full = true;
     float in_flight_us = 0;
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
@@ -241,7 +251,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
             check.next_us = with(slice.cost) * scale;
             check.next_stand_in_us = with(slice.stand_in_cost) * scale;
             check.rest_stand_in_us =
-                (with(rest_stand_in) + enlarge_us) * correction.factor;  // a sum of many: its own spread is small
+                (with(rest_stand_in) + enlarge_us()) * correction.factor;  // a sum of many: its own spread is small
             check.limit_us = limits.limit_us;
             full = select::still_fits(check);
         }
@@ -254,7 +264,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         if (!full) ++report.downgraded_slices;
     }
     report.predicted = so_far;
-    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us;
+    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us();
     report.other_us = report.predicted_us - report.full_us * static_cast<double>(prepared->full_factor) -
                       report.coarse_us * static_cast<double>(prepared->coarse_factor);
 }
@@ -270,7 +280,7 @@ void Engine::Impl::push(const UnpreparedItem& item, SubmitReport& report) {
 void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) {
     device->draws.plays();
     const model::FrameCombine& combine = costs.combine;
-    unprepared.plan(state.shown, frustum, pose, model::make_view_scale(pose, options.device.viewport), preparer->item_costs());
+    unprepared.plan(state.shown, frustum, pose, drawn_scale(pose), preparer->item_costs());
     const std::span<const UnpreparedGroup> groups = unprepared.groups();
     model::ItemCost rest_stand_in, so_far, slice;
     for (const UnpreparedGroup& group : groups) rest_stand_in += group.stand_in.cost;
@@ -293,7 +303,8 @@ void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, dou
             check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction.factor;
             check.next_us = with(group.cost) * scale;
             check.next_stand_in_us = with(group.stand_in.cost) * scale;
-            check.rest_stand_in_us = with(rest_stand_in) * correction.factor;
+            check.rest_stand_in_us =
+                (with(rest_stand_in) + static_cast<double>(enlarge_us() + costs.slice_us)) * correction.factor;
             check.limit_us = limits.limit_us;
             full = select::still_fits(check);
         }
@@ -320,7 +331,7 @@ void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, dou
         slice_full = true;
     }
     report.predicted = so_far;
-    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us);
+    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us();
 }
 
 SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
@@ -334,7 +345,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.culled.clear();
     e.floor.begin();
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
-    e.device->begin_frame(pose, e.prepared != nullptr ? e.prepared->resolution : e.fixed_resolution());
+    e.device->begin_frame(pose, e.drawn_resolution);
     if (e.use_last) {
         e.submit_last(pose, limits, start_us, report);
     } else {
@@ -359,14 +370,14 @@ bool Engine::fell_to_floor(const Pose& pose, double time_us, double correction) 
     if (!(e.floor.floor_share() > floor_picture_share)) return false;
     const std::vector<select::Shown>& last = e.use_last ? e.state.touched : e.state.before;
     if (!(e.floor.fallen_share(last) > floor_picture_share)) return false;
-    const model::ViewScale scale = model::make_view_scale(pose, e.options.device.viewport);
+    const model::ViewScale scale = e.drawn_scale(pose);
     model::ItemCost sum;
     for (const select::Shown& shown : last) {
         if (shown.form == select::SelectState::opened) continue;
         const Box& box = e.model.nodes[shown.node].box;
         if (!model::visible(e.frustum, box)) continue;
         sum += e.preparer->item_costs().of(shown.form, box, pose.position, scale);
-        if (e.costs.combine.frame_us(sum.submit_us, sum.raster_us) * correction > time_us) return false;
+        if ((e.costs.combine.frame_us(sum.submit_us, sum.raster_us) + e.enlarge_us()) * correction > time_us) return false;
     }
     return true;
 }

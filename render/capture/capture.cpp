@@ -21,6 +21,7 @@ Capture take(const select::SelectInput& input, std::string_view selector, float 
     c.combine = input.costs->combine;
     c.headroom = static_cast<float>(select::headroom_of(input));
     c.slice_end_us = input.costs->slice_us;
+    c.enlarge_ns_per_pixel = input.costs->enlarge_ns_per_pixel;
     c.hysteresis = hysteresis;
     c.node_count = static_cast<std::uint32_t>(input.model->nodes.size());
     c.memory = std::move(memory);
@@ -49,6 +50,7 @@ Result<select::Cut> replay(const Capture& capture, std::string_view selector_nam
     costs.combine = capture.combine;
     costs.headroom = capture.headroom;
     costs.slice_us = capture.slice_end_us;
+    costs.enlarge_ns_per_pixel = capture.enlarge_ns_per_pixel;
     select::SelectInput input{&nodes_only,        &capture.prepared,        &costs,          capture.budget_us,
                               capture.correction, capture.target_error_rad, capture.slice_us};
     select::Cut cut;

@@ -41,6 +41,7 @@ void each_setting(Io& io, C& c) {
     io(c.frame, c.budget_us, c.correction, c.target_error_rad, c.slice_us, c.combine.fixed_us, c.combine.submit_weight,
        c.combine.raster_weight, c.combine.max_weight, c.headroom, c.slice_end_us, c.hysteresis, c.node_count, c.hash,
        c.predicted_us);
+    if (io.has_values) io(c.enlarge_ns_per_pixel);
 }
 template <class Io, class C>
 void each(Io& io, C& c) requires std::is_same_v<std::remove_const_t<C>, prepare::Candidate> {

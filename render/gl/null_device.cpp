@@ -102,9 +102,7 @@ void NullDevice::begin_frame(const Pose& pose, float resolution) {
     eye_ = pose.position;
     stats_ = {};
     stats_.resolution = model::resolution_steps[model::resolution_step(resolution)];
-    scale_ = model::make_view_scale(pose, options_.viewport);
-    scale_.pixels_per_radian *= stats_.resolution;
-    scale_.viewport_pixels *= stats_.resolution * stats_.resolution;
+    scale_ = model::scaled(model::make_view_scale(pose, options_.viewport), stats_.resolution);
     submit_us_ = raster_us_ = 0;
     slices_ = blended_ = 0;
     // One factor a frame: what makes real predictions wrong is common to a frame's items. Drawn even without noise, so that

@@ -27,6 +27,13 @@ struct ViewScale {
 /// angle_rad widens the view on each side, for a region of poses. Half angles are capped below 89 degrees.
 ViewScale make_view_scale(const Pose& pose, Viewport viewport, double angle_rad = 0.0);
 
+/// The same view in a picture of a lower resolution: a share of the width and height.
+inline ViewScale scaled(ViewScale scale, float resolution) {
+    scale.pixels_per_radian *= resolution;
+    scale.viewport_pixels *= resolution * resolution;
+    return scale;
+}
+
 /// Rasterised pixels, overdraw included, of `rep` of a node with box `node_box`, seen from `eye`. 0 if the box is outside the
 /// view. Assumes that the areas of the representation are spread evenly over the box. Far and wholly in view: a closed form at
 /// the box's centre, about 15 ns. Otherwise: 16 rays through the visible part of the box, about 70 ns. Finite and >= 0 for all

@@ -78,6 +78,7 @@ struct Preparer::Impl {
     double last_speed_mps = 0, last_turn_rps = 0;  ///< of the last run()
     ValuePass values;
     std::uint32_t choice_bound = 0;  ///< choices that the visits may need
+    float used_factor = 1;           ///< of the last run(), for value_at() too
     float target_factor = 1;         ///< of the error target, raised while frames look at too many nodes
     std::atomic<std::int64_t> worker_cpu_ns{0};
 
@@ -158,13 +159,11 @@ RegionView Preparer::Impl::view_of(const PreparedFrame& frame, double speed_mps,
     RegionView view;
     view.eye = pose.position;
     view.radius_m = region.radius_m;
-    view.scale = model::make_view_scale(pose, viewport);
-    view.scale.pixels_per_radian *= resolution;
-    view.scale.viewport_pixels *= resolution * resolution;
+    view.scale = model::scaled(model::make_view_scale(pose, viewport), resolution);
     view.wide = model::make_view_scale(pose, viewport, region.angle_rad);
     view.pixel_angle_rad = static_cast<float>(model::pixel_angle(pose, viewport));
     const double target = options.target_error_rad > 0.0 ? options.target_error_rad : 0.125 * view.pixel_angle_rad / resolution;
-    view.target_error_rad = static_cast<float>(target) * target_factor;
+    view.target_error_rad = static_cast<float>(target) * used_factor;
     view.full_depth = options.full_depth;
     view.full_factor = frame.full_factor;
     view.coarse_factor = frame.coarse_factor;
@@ -359,6 +358,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     out.resolution = out.resolution > 0.0F && out.resolution < 1.0F ? out.resolution : 1.0F;
     s.last_speed_mps = speed_mps;
     s.last_turn_rps = turn_rps;
+    s.used_factor = s.target_factor;
     const RegionView view = s.view_of(out, speed_mps, turn_rps);
     out.target_error_rad = view.full_depth ? 0.0F : view.target_error_rad;
 

@@ -98,7 +98,7 @@ void ValuePass::add(Index parent, std::uint32_t level, float value, float cost) 
     if (parent == none || level >= levels) return;
     Sums& above = sums_[parent];
     if (above.curve == none) above.curve = take_curve();
-    if (above.curve == none) return;  // too many at once: the parent opens by its children's finest choices alone
+    if (above.curve == none) return;  // too many at once: the parent counts as a leaf
     curves_[above.curve].value[level] += value;
     curves_[above.curve].cost[level] += cost;
 }
@@ -125,13 +125,23 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
     }
 }
 
-/// A leaf gives its parent the steps of its hull.
-void ValuePass::add_leaf(const Candidate& candidate, const OwnChoices& own) {
+/// Gives the parent the steps of the candidate's own hull.
+void ValuePass::add_own(const Candidate& candidate, const OwnChoices& own) {
     add(candidate.parent, 0, own.choices[0].value, own.cost(0));
     for (std::size_t h = 0; h + 1 < own.hull.size(); ++h) {
         const std::uint32_t a = own.hull[h], b = own.hull[h + 1];
         add(candidate.parent, level_of(own.choices[a].rate), own.choices[b].value - own.choices[a].value,
             own.cost(b) - own.cost(a));
+    }
+}
+
+/// The curve of a root without children.
+void ValuePass::own_curve(const OwnChoices& own, ValueCurve& curve) {
+    std::size_t at = 0;
+    for (std::uint32_t level = 0; level < levels; ++level) {
+        while (at + 1 < own.hull.size() && own.choices[own.hull[at]].rate >= rate_of(level)) ++at;
+        curve.value[level] = own.choices[own.hull[at]].value;
+        curve.cost[level] = own.cost(own.hull[at]);
     }
 }
 
@@ -206,15 +216,17 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
         set_values(i, pixel_angle_rad, weights[i], frame);
         const OwnChoices own{combine, choices, hull_of(combine, choices, room)};
-        if (candidate.child_count == 0) {
-            full_value += static_cast<double>(choices.back().value);
-            add_leaf(candidate, own);
-        } else if (sums_[i].curve != none) {
+        if (candidate.child_count == 0) full_value += static_cast<double>(choices.back().value);
+        const bool inner = candidate.child_count > 0 && sums_[i].curve != none;
+        if (!inner) add_own(candidate, own);
+        if (inner) {
             Curve& curve = curves_[sums_[i].curve];
             merge_curve(candidate.parent, curve, own);
             if (i == 0) std::copy_n(curve.value.begin(), levels, frame.curve.value.begin());
             if (i == 0) std::copy_n(curve.cost.begin(), levels, frame.curve.cost.begin());
             free_.push_back(sums_[i].curve);
+        } else if (i == 0) {
+            own_curve(own, frame.curve);
         }
     }
     frame.full_value = full_value;

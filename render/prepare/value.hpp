@@ -49,7 +49,8 @@ private:
     std::uint32_t take_curve();
     void add(Index parent, std::uint32_t level, float value, float cost);
     void set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, PreparedFrame& frame);
-    void add_leaf(const Candidate& candidate, const OwnChoices& own);
+    void add_own(const Candidate& candidate, const OwnChoices& own);
+    static void own_curve(const OwnChoices& own, ValueCurve& curve);
     void merge_curve(Index parent, Curve& curve, const OwnChoices& own);
     static void set_opening_rate(std::uint32_t level, float value, float cost, const OwnChoices& own);
     static void enforce_falling_rates(PreparedFrame& frame);

@@ -22,6 +22,13 @@ void FormCorrection::update(double full_us, double coarse_us, double other_us, d
     const double away = 0.5 * reversion * (full_ - coarse_);
     full_ -= away;
     coarse_ += away;
+    // What is known of their difference fades alike, so that frames of one kind do not let it grow without end.
+    const double sum = 0.25 * (var_full_ + var_coarse_ + 2 * covariance_), stay = 1 - reversion;
+    const double difference = 0.25 * (var_full_ + var_coarse_ - 2 * covariance_) * stay * stay;
+    const double tilt = 0.5 * (var_full_ - var_coarse_) * stay;
+    var_full_ = sum + difference + tilt;
+    var_coarse_ = sum + difference - tilt;
+    covariance_ = sum - difference;
     const double both = common_drift * common_drift, apart = ratio_drift * ratio_drift;
     var_full_ += both + apart;
     var_coarse_ += both + apart;
