@@ -53,6 +53,27 @@ TEST(Capture, ReplaysToTheSameCutForEverySelector) {
     }
 }
 
+TEST(Capture, OfALowerResolutionKnowsWhatEnlargingCosts) {
+    const TempFile file;
+    Scene s(test::town(4));
+    s.costs.enlarge_ns_per_pixel = 3.7F;
+    prepare::Region region;
+    region.centre.position = dvec3(0, 3, 30);
+    s.frame.resolution = 0.5F;
+    s.look(region);
+    s.run("two-stage", 6500);
+    const Capture before = take(s.input(6500), "two-stage", s.state.hysteresis, s.state.before, s.cut);
+    ASSERT_TRUE(write_capture(file.path, before));
+    auto after = read_capture(file.path);
+    ASSERT_TRUE(after) << after.error().text();
+    EXPECT_EQ(after->prepared.resolution, 0.5F);
+    EXPECT_TRUE(verify(*after));
+    EXPECT_EQ(replay(*after)->predicted_us, before.predicted_us);
+    Capture cheap = *after;
+    cheap.enlarge_ns_per_pixel = 0;
+    EXPECT_NE(replay(cheap)->predicted_us, before.predicted_us);
+}
+
 TEST(Capture, MemoryIsPartOfTheDecision) {
     Capture c = captured("two-stage", 5);
     ASSERT_FALSE(c.memory.empty());

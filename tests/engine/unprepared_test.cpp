@@ -134,5 +134,31 @@ TEST_F(WithoutPreparedSet, SeveralSuchFramesInARowKeepTheForms) {
     }
 }
 
+TEST(WithoutPreparedSetAtHalfResolution, TheFrameKeepsTheResolutionAndPaysForEnlarging) {
+    auto scene = scenes::generate("forest", 0.5, 1);
+    ASSERT_TRUE(scene.ok());
+    auto model = bake::bake(scene->scene, {}, {});
+    ASSERT_TRUE(model.ok());
+    EngineOptions options;
+    options.device.kind = gl::BackendKind::null;
+    options.resolution = 0.5F;
+    auto opened = Engine::open(std::move(*model), model::default_costs(), options);
+    ASSERT_TRUE(opened.ok());
+    Engine& engine = **opened;
+    constexpr double ample_us = 1e9;
+    prepare::PreparedFrame prepared;
+    engine.reserve(prepared);
+    Pose pose;
+    pose.position = engine.model().nodes[0].box.centre() + dvec3(0, 2, 0);
+    engine.prepare({pose, 0.1, 0.06}, 0, 0, 0, prepared);
+    engine.select(prepared, ample_us, {}, 0);
+    EXPECT_EQ(engine.submit(pose, {.elapsed_us = 0, .limit_us = ample_us}).resolution, 0.5F);
+    engine.select_last();
+    const SubmitReport report = engine.submit(pose, {.elapsed_us = 0, .limit_us = ample_us});
+    EXPECT_EQ(report.resolution, 0.5F);
+    EXPECT_NEAR(report.predicted_us, report.finished_us, 0.02 * report.finished_us)
+        << "the null device charges what is predicted";
+}
+
 }  // namespace
 }  // namespace surefoot
