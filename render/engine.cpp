@@ -30,13 +30,6 @@ struct Engine::Impl {
     std::unique_ptr<gl::Device> device;
     std::unique_ptr<prepare::Preparer> preparer;
     prepare::ResolutionChooser resolution;
-    float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
-    [[nodiscard]] model::ViewScale drawn_scale(const Pose& pose) const REQUIRES(draws) {
-        return model::scaled(model::make_view_scale(pose, options.device.viewport), drawn_resolution);
-    }
-    [[nodiscard]] float enlarge_us() const REQUIRES(draws) {
-        return costs.enlarge_us(drawn_resolution, std::uint64_t{options.device.viewport.width} * options.device.viewport.height);
-    }
     bool full_depth_always = false;  ///< requested by the options, for every selector
     const select::Selector* selector = nullptr;
     [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
@@ -49,14 +42,26 @@ struct Engine::Impl {
     bool use_last GUARDED_BY(draws) = false;  ///< the last cut's forms: no prepared set may be used
     const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
     Correction correction GUARDED_BY(draws);
-    double headroom GUARDED_BY(draws) = 1;  ///< that the last select() spent
+    double headroom GUARDED_BY(draws) = 1;         ///< that the last select() spent
+    float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
 
     void use(const select::SelectorEntry& entry);
+    [[nodiscard]] model::ViewScale drawn_scale(const Pose& pose) const REQUIRES(draws) {
+        return model::scaled(model::make_view_scale(pose, options.device.viewport), drawn_resolution);
+    }
+    [[nodiscard]] float enlarge_us() const REQUIRES(draws) { return costs.enlarge_us(drawn_resolution, options.device.viewport); }
     double now_us(const SubmitLimits& limits) const REQUIRES(draws) {
         device->draws.plays();  // `draws` is the same thread
         return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
     }
     model::Frustum frustum GUARDED_BY(draws);  ///< of the pose that is drawn: narrower than the region that was prepared
+    /// Predicted costs within a frame: of what is drawn, of the next part in full and as its stand-in, and of all after it as
+    /// stand-ins.
+    struct Progression {
+        const model::ItemCost &so_far, &next, &stand_in, &rest;
+        float in_flight_us;  ///< of so_far: not finished yet
+    };
+    [[nodiscard]] bool in_time(const Progression& p, const SubmitLimits& limits, double start_us) const REQUIRES(draws);
     model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report) REQUIRES(draws);
     void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
     void submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
@@ -75,9 +80,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     auto selector = select::selector_named(options.selector);
     if (!selector) return selector.error();
     impl->options.device.null.costs = &impl->costs;
-    const model::Viewport& picture = options.device.viewport;
-    impl->options.device.null.enlarge_us =
-        static_cast<double>(costs.enlarge_us(0.5F, std::uint64_t{picture.width} * picture.height));
+    impl->options.device.null.enlarge_us = static_cast<double>(costs.enlarge_us(0.5F, options.device.viewport));
     impl->options.resolution = model::stepped(options.resolution);
     if (impl->options.resolution > 0.0F) impl->drawn_resolution = impl->options.resolution;
     auto device = gl::open_device(impl->options.device);
@@ -141,7 +144,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     const model::Viewport viewport = e.options.device.viewport;
     const bool chosen = !(e.options.resolution > 0.0F);
     out.resolution = chosen ? e.resolution.resolution() : e.options.resolution;
-    // The common correction follows the product of both; here they only part.
+    // Only their ratio: the common correction, which follows whole frames, finds their level.
     const auto apart = static_cast<float>(std::sqrt(hints.form_ratio > 0.0 ? hints.form_ratio : 1.0));
     out.full_factor = apart;
     out.coarse_factor = 1.0F / apart;
@@ -150,9 +153,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     // As Budget counts it: the fixed time, and the ends of slices.
     const double slice_end_us = static_cast<double>(e.costs.combine.submit_weight * e.costs.slice_us);
     const auto lost = [&](const prepare::ValueCurve& curve, float at) {
-        const double fixed_us = static_cast<double>(e.costs.combine.fixed_us +
-                                                    e.costs.enlarge_us(at, std::uint64_t{viewport.width} * viewport.height)) +
-                                slice_end_us;
+        const double fixed_us = static_cast<double>(e.costs.combine.fixed_us + e.costs.enlarge_us(at, viewport)) + slice_end_us;
         const double items_us = (hints.planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us));
         return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(at));
     };
@@ -226,6 +227,26 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
     return cost;
 }
 
+/// The in-frame check: whether the next part may be drawn in full.
+bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, double start_us) const {
+    if (!options.in_frame_check) return true;
+    const model::FrameCombine& combine = costs.combine;
+    const float so_far_us = combine.frame_us(p.so_far.submit_us, p.so_far.raster_us);
+    const auto with = [&](const model::ItemCost& more) {
+        return static_cast<double>(combine.frame_us(p.so_far.submit_us + more.submit_us, p.so_far.raster_us + more.raster_us) -
+                                   so_far_us);
+    };
+    const double scale = correction.factor * headroom;
+    select::CheckInput check;
+    check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + static_cast<double>(p.in_flight_us) * correction.factor;
+    check.predicted_so_far_us = limits.elapsed_us + static_cast<double>(so_far_us) * correction.factor;
+    check.next_us = with(p.next) * scale;
+    check.next_stand_in_us = with(p.stand_in) * scale;
+    check.rest_stand_in_us = (with(p.rest) + static_cast<double>(enlarge_us())) * correction.factor;  // of many: little spread
+    check.limit_us = limits.limit_us;
+    return select::still_fits(check);
+}
+
 void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) {
     const model::FrameCombine& combine = costs.combine;
     model::ItemCost rest_stand_in, so_far;
@@ -236,25 +257,9 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     float in_flight_us = 0;
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
     for (const select::Slice& slice : plan.slices) {
-        const float predicted_so_far = combine.frame_us(so_far.submit_us, so_far.raster_us);
-        const auto with = [&](const model::ItemCost& more) {
-            return static_cast<double>(combine.frame_us(so_far.submit_us + more.submit_us, so_far.raster_us + more.raster_us) -
-                                       predicted_so_far);
-        };
         rest_stand_in.submit_us -= slice.stand_in_cost.submit_us + costs.slice_us;
         rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
-        if (full && options.in_frame_check) {
-            const double scale = correction.factor * headroom;
-            select::CheckInput check;
-            check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + in_flight_us * correction.factor;
-            check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction.factor;
-            check.next_us = with(slice.cost) * scale;
-            check.next_stand_in_us = with(slice.stand_in_cost) * scale;
-            check.rest_stand_in_us =
-                (with(rest_stand_in) + enlarge_us()) * correction.factor;  // a sum of many: its own spread is small
-            check.limit_us = limits.limit_us;
-            full = select::still_fits(check);
-        }
+        full = full && in_time({so_far, slice.cost, slice.stand_in_cost, rest_stand_in, in_flight_us}, limits, start_us);
         const model::ItemCost cost = draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
                                                      : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count),
                                                 report);
@@ -290,24 +295,9 @@ void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, dou
     for (const UnpreparedGroup& group : groups) {
         rest_stand_in.submit_us -= group.stand_in.cost.submit_us;
         rest_stand_in.raster_us -= group.stand_in.cost.raster_us;
-        if (full && options.in_frame_check) {
-            const float predicted_so_far = combine.frame_us(so_far.submit_us, so_far.raster_us);
-            const auto with = [&](const model::ItemCost& more) {
-                return static_cast<double>(
-                    combine.frame_us(so_far.submit_us + more.submit_us, so_far.raster_us + more.raster_us) - predicted_so_far);
-            };
-            const double scale = correction.factor * headroom;
-            select::CheckInput check;
-            check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us +
-                               static_cast<double>(in_flight_us + slice.submit_us + slice.raster_us) * correction.factor;
-            check.predicted_so_far_us = limits.elapsed_us + predicted_so_far * correction.factor;
-            check.next_us = with(group.cost) * scale;
-            check.next_stand_in_us = with(group.stand_in.cost) * scale;
-            check.rest_stand_in_us =
-                (with(rest_stand_in) + static_cast<double>(enlarge_us() + costs.slice_us)) * correction.factor;
-            check.limit_us = limits.limit_us;
-            full = select::still_fits(check);
-        }
+        const model::ItemCost rest{rest_stand_in.submit_us + costs.slice_us, rest_stand_in.raster_us};
+        const float unfinished_us = in_flight_us + slice.submit_us + slice.raster_us;
+        full = full && in_time({so_far, group.cost, group.stand_in.cost, rest, unfinished_us}, limits, start_us);
         if (full) {
             for (const UnpreparedItem& item : unprepared.items().subspan(group.first, group.count)) push(item, report);
         } else {

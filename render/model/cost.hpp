@@ -53,7 +53,7 @@ struct CostModel {
     float slice_us = 30;                ///< cost of ending a slice (flush and fence)
     float enlarge_ns_per_pixel = 1.6F;  ///< of the whole picture, where it is drawn at a lower resolution
     /// What a lower resolution loses of the value, by resolution_steps: six times the mean squared error (0..1) of full detail
-    /// that is enlarged. Measured for a model; before, that of common scenes.
+    /// that is enlarged. Typical of five scenes; no calibration measures it.
     std::array<float, resolution_steps.size()> blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
     std::string machine;  ///< CPU, renderer, rasteriser count; a table of another machine is refused
     bool timer_query_honest = false;
@@ -64,9 +64,10 @@ struct CostModel {
     [[nodiscard]] ItemCost item(float triangles, float pixels, const CostGrid& grid) const;
     [[nodiscard]] const CostGrid& grid_for(EffectMask effects) const;
     [[nodiscard]] float blur_loss_at(float resolution) const;  ///< of the step that is drawn for it
-    /// Time to enlarge a picture of `resolution` to this many pixels, us; 0 at full resolution.
-    [[nodiscard]] float enlarge_us(float resolution, std::uint64_t pixels) const {
-        return resolution < 1.0F ? 1e-3F * enlarge_ns_per_pixel * static_cast<float>(pixels) : 0.0F;
+    /// Time to enlarge a picture of `resolution` to its full size, us; 0 at full resolution.
+    [[nodiscard]] float enlarge_us(float resolution, const Viewport& picture) const {
+        const float pixels = static_cast<float>(picture.width) * static_cast<float>(picture.height);
+        return resolution < 1.0F ? 1e-3F * enlarge_ns_per_pixel * pixels : 0.0F;
     }
 };
 

@@ -11,7 +11,7 @@ namespace surefoot::prepare {
 
 /// Compares what the budget buys at each resolution. Every third frame one other resolution is evaluated, in turns. When all have
 /// been, the best one is taken if it wins by a margin, and won the round before too. Deterministic.
-/// Source: dynamic video resolution, Montrym et al. 1997 (InfiniteReality), section 4; here it is priced like any form.
+/// Source: dynamic video resolution, Montrym et al. 1997 (InfiniteReality); here it is priced like any form.
 class ResolutionChooser {
 public:
     [[nodiscard]] float resolution() const { return model::resolution_steps[at_]; }

@@ -66,7 +66,7 @@ public:
     /// Returns the number of steps taken.
     std::uint32_t run(bool fill) {
         sum_up();
-        const Edge both = common_edge();
+        const Edge both = common_edge(builder_.floor_sum());
         take_common(both);
         if (deferred_count_ > 0 && !closed_) take_deferred(refined_edge(both));
         for (int round = 0; fill && round < fill_rounds && take_more(); ++round) {
@@ -118,13 +118,7 @@ private:
             sums_.add(step.bucket, step.refined, away, in);
             return true;
         });
-        Edge edge{0, sum_};
-        for (; edge.bucket < buckets; ++edge.bucket) {
-            const Sum fresh = sums_.fresh(edge.bucket);
-            const Sum next = edge.before + fresh + sums_.refined(edge.bucket);
-            if (!budget_.fits(next, nothing(fresh) ? 1.0 : share_)) break;
-            edge.before = next;
-        }
+        const Edge edge = common_edge(sum_);
         const std::uint32_t before = taken_;
         each_left([&](Index c, std::uint32_t k, bool opens, const Step& step, const model::ItemCost&, const model::ItemCost&) {
             return step.bucket <= edge.bucket && try_step(c, k, opens, step.refined ? 1.0 : share_) && do_step(c, k, opens);
@@ -155,8 +149,8 @@ private:
     }
 
     /// The first bucket whose steps do not all fit.
-    [[nodiscard]] Edge common_edge() const {
-        Edge edge{0, builder_.floor_sum()};
+    [[nodiscard]] Edge common_edge(const Sum& spent) const {
+        Edge edge{0, spent};
         for (; edge.bucket < buckets; ++edge.bucket) {
             const Sum fresh = sums_.fresh(edge.bucket);
             const Sum next = edge.before + fresh + sums_.refined(edge.bucket);

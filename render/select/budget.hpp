@@ -31,9 +31,7 @@ public:
         factor_ = correction * headroom_of(input);
         // 1 + items / slice_us is never less than the number of slices that plan_slices makes.
         const double slice_end_us = static_cast<double>(costs.combine.submit_weight) * static_cast<double>(costs.slice_us);
-        const model::Viewport& view = input.prepared->viewport;
-        const float enlarge_us =
-            costs.enlarge_us(input.prepared->resolution, static_cast<std::uint64_t>(view.width) * view.height);
+        const float enlarge_us = costs.enlarge_us(input.prepared->resolution, input.prepared->viewport);
         fixed_us_ = static_cast<double>(combine_.fixed_us) + slice_end_us + static_cast<double>(enlarge_us);
         per_item_us_ = 1.0 + (input.slice_us > 0.0 ? slice_end_us / input.slice_us : 0.0);
         budget_us_ = input.budget_us > 0.0 ? input.budget_us : 0.0;  // NaN too: then the floor is drawn

@@ -5,14 +5,13 @@
 
 #include <vector>
 
-#include "render/bake/bake.hpp"
-#include "render/engine.hpp"
-#include "tools/scenes/scenes.hpp"
+#include "tests/engine/forest_engine.hpp"
 
 namespace surefoot {
 namespace {
 
 using select::Shown;
+using test::ample_us;
 
 TEST(FloorWatch, OnlyWhatWasFinerBeforeHasFallen) {
     FloorWatch watch;
@@ -35,24 +34,15 @@ TEST(FloorWatch, OnlyWhatWasFinerBeforeHasFallen) {
 }
 
 struct FallToFloor : testing::Test {
-    static constexpr double ample_us = 1e9;
     std::unique_ptr<Engine> engine;
     prepare::PreparedFrame prepared;
     Pose pose;
 
     void SetUp() override {
-        auto scene = scenes::generate("forest", 0.5, 1);
-        ASSERT_TRUE(scene.ok());
-        auto model = bake::bake(scene->scene, {}, {});
-        ASSERT_TRUE(model.ok());
-        EngineOptions options;
-        options.device.kind = gl::BackendKind::null;
-        auto opened = Engine::open(std::move(*model), model::default_costs(), options);
-        ASSERT_TRUE(opened.ok());
-        engine = std::move(*opened);
+        engine = test::forest_engine();
+        ASSERT_NE(engine, nullptr);
         engine->reserve(prepared);
-        const Box& box = engine->model().nodes[0].box;
-        pose.position = box.centre() + dvec3(0, 2, 0.8 * box.half().z);  // most of the forest lies ahead
+        pose = test::forest_pose(*engine);
         engine->prepare({pose, 0.1, 0.1}, 0, 0, 0, prepared);
     }
     SubmitReport draw(double budget_us) {

@@ -7,33 +7,24 @@
 #include <memory>
 #include <vector>
 
-#include "render/bake/bake.hpp"
-#include "render/engine.hpp"
 #include "render/prepare/evaluate.hpp"
-#include "tools/scenes/scenes.hpp"
+#include "tests/engine/forest_engine.hpp"
 
 namespace surefoot {
 namespace {
 
+using test::ample_us;
+
 struct WithoutPreparedSet : testing::Test {
-    static constexpr double ample_us = 1e9;
     std::unique_ptr<Engine> engine;
     prepare::PreparedFrame prepared;
     Pose pose;
 
     void SetUp() override {
-        auto scene = scenes::generate("forest", 0.5, 1);
-        ASSERT_TRUE(scene.ok());
-        auto model = bake::bake(scene->scene, {}, {});
-        ASSERT_TRUE(model.ok());
-        EngineOptions options;
-        options.device.kind = gl::BackendKind::null;
-        auto opened = Engine::open(std::move(*model), model::default_costs(), options);
-        ASSERT_TRUE(opened.ok());
-        engine = std::move(*opened);
+        engine = test::forest_engine();
+        ASSERT_NE(engine, nullptr);
         engine->reserve(prepared);
-        const Box& box = engine->model().nodes[0].box;
-        pose.position = box.centre() + dvec3(0, 2, 0.8 * box.half().z);  // most of the forest lies ahead
+        pose = test::forest_pose(*engine);
     }
     const select::Cut& select_here() {
         engine->prepare({pose, 0.1, 0.06}, 0, 0, 0, prepared);
@@ -135,21 +126,12 @@ TEST_F(WithoutPreparedSet, SeveralSuchFramesInARowKeepTheForms) {
 }
 
 TEST(WithoutPreparedSetAtHalfResolution, TheFrameKeepsTheResolutionAndPaysForEnlarging) {
-    auto scene = scenes::generate("forest", 0.5, 1);
-    ASSERT_TRUE(scene.ok());
-    auto model = bake::bake(scene->scene, {}, {});
-    ASSERT_TRUE(model.ok());
-    EngineOptions options;
-    options.device.kind = gl::BackendKind::null;
-    options.resolution = 0.5F;
-    auto opened = Engine::open(std::move(*model), model::default_costs(), options);
-    ASSERT_TRUE(opened.ok());
-    Engine& engine = **opened;
-    constexpr double ample_us = 1e9;
+    const auto opened = test::forest_engine(0.5F);
+    ASSERT_NE(opened, nullptr);
+    Engine& engine = *opened;
     prepare::PreparedFrame prepared;
     engine.reserve(prepared);
-    Pose pose;
-    pose.position = engine.model().nodes[0].box.centre() + dvec3(0, 2, 0);
+    const Pose pose = test::forest_pose(engine);
     engine.prepare({pose, 0.1, 0.06}, 0, 0, 0, prepared);
     engine.select(prepared, ample_us, {}, 0);
     EXPECT_EQ(engine.submit(pose, {.elapsed_us = 0, .limit_us = ample_us}).resolution, 0.5F);

@@ -33,6 +33,8 @@ model::CostModel with_overhead(model::CostModel costs, double factor);
 
 /// What the parts of a session share while it runs.
 struct Session {
+    rt::TripleBuffer<PoseSample> poses;  ///< both stand on cache lines of their own
+    rt::TripleBuffer<prepare::PreparedFrame> prepared;
     const WalkRequest& request;
     const WalkObserver& observer;
     WalkFacts facts;
@@ -44,16 +46,14 @@ struct Session {
     rt::InputState reported_input;
     std::vector<std::string> notes;
     rt::Grid grid;
-    const bool virtual_clock = request.clock == rt::ClockKind::virtual_time;
     std::uint64_t frames = 0;  ///< 0: until stopped
     std::vector<pid_t> rasterisers;
     std::vector<pid_t> on_frame_core;  ///< those of them that share the frame thread's core
-    rt::TripleBuffer<PoseSample> poses;
-    rt::TripleBuffer<prepare::PreparedFrame> prepared;
     KeptFrame kept;
     rt::ControlSchedule control;
     std::int64_t burn_ns = 0;  ///< the control's
     model::CostModel costs;
+    const bool virtual_clock = request.clock == rt::ClockKind::virtual_time;
     std::atomic<bool> lost{false};  ///< the graphics context
 
     Session(const WalkRequest& r, const WalkObserver& w) : request(r), observer(w) {}

@@ -1,0 +1,41 @@
+// A small forest in an engine without GL, for tests of what a frame draws.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "render/bake/bake.hpp"
+#include "render/engine.hpp"
+#include "tools/scenes/scenes.hpp"
+
+namespace surefoot::test {
+
+/// More time than any frame takes.
+constexpr double ample_us = 1e9;
+
+/// Null and a failure of the test where it cannot be opened. resolution: as in EngineOptions.
+inline std::unique_ptr<Engine> forest_engine(float resolution = 1) {
+    auto scene = scenes::generate("forest", 0.5, 1);
+    EXPECT_TRUE(scene.ok());
+    if (!scene) return nullptr;
+    auto model = bake::bake(scene->scene, {}, {});
+    EXPECT_TRUE(model.ok());
+    if (!model) return nullptr;
+    EngineOptions options;
+    options.device.kind = gl::BackendKind::null;
+    options.resolution = resolution;
+    auto opened = Engine::open(std::move(*model), model::default_costs(), options);
+    EXPECT_TRUE(opened.ok());
+    return opened ? std::move(*opened) : nullptr;
+}
+
+/// Most of the forest lies ahead.
+inline Pose forest_pose(const Engine& engine) {
+    Pose pose;
+    const Box& box = engine.model().nodes[0].box;
+    pose.position = box.centre() + dvec3(0, 2, 0.8 * box.half().z);
+    return pose;
+}
+
+}  // namespace surefoot::test
