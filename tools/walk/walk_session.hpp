@@ -43,7 +43,6 @@ struct Session {
     std::unique_ptr<Engine> engine;
     ChosenPath path;
     std::unique_ptr<InputSession> input;  ///< null: the path is followed
-    rt::InputState reported_input;
     std::vector<std::string> notes;
     rt::Grid grid;
     std::uint64_t frames = 0;  ///< 0: until stopped
@@ -53,6 +52,7 @@ struct Session {
     rt::ControlSchedule control;
     std::int64_t burn_ns = 0;  ///< the control's
     model::CostModel costs;
+    rt::InputState reported_input;
     const bool virtual_clock = request.clock == rt::ClockKind::virtual_time;
     std::atomic<bool> lost{false};  ///< the graphics context
 
