@@ -43,6 +43,7 @@ struct Engine::Impl {
     const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
     Correction correction GUARDED_BY(draws);
     double headroom GUARDED_BY(draws) = 1;         ///< that the last select() spent
+    double forecast_us GUARDED_BY(draws) = 0;      ///< end of this frame, by the last check that let a slice be drawn in full
     float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
 
     void use(const select::SelectorEntry& entry);
@@ -61,7 +62,7 @@ struct Engine::Impl {
         const model::ItemCost &so_far, &next, &stand_in, &rest;
         float in_flight_us;  ///< of so_far: not finished yet
     };
-    [[nodiscard]] bool in_time(const Progression& p, const SubmitLimits& limits, double start_us) const REQUIRES(draws);
+    [[nodiscard]] bool in_time(const Progression& p, const SubmitLimits& limits, double start_us) REQUIRES(draws);
     model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report) REQUIRES(draws);
     void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
     void submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
@@ -149,12 +150,13 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     out.full_factor = apart;
     out.coarse_factor = 1.0F / apart;
     e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out);
-    if (!chosen || !(hints.planned_us > 0.0) || e.options.prepare.full_depth) return;
+    if (!chosen || !(hints.planned_us[0] > 0.0) || e.options.prepare.full_depth) return;
     // As Budget counts it: the fixed time, and the ends of slices.
     const double slice_end_us = static_cast<double>(e.costs.combine.submit_weight * e.costs.slice_us);
     const auto lost = [&](const prepare::ValueCurve& curve, float at) {
         const double fixed_us = static_cast<double>(e.costs.combine.fixed_us + e.costs.enlarge_us(at, viewport)) + slice_end_us;
-        const double items_us = (hints.planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us));
+        const double planned_us = hints.planned_us[model::resolution_step(at)];
+        const double items_us = (planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us));
         return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(at));
     };
     const float other = e.resolution.trial();
@@ -228,7 +230,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
 }
 
 /// The in-frame check: whether the next part may be drawn in full.
-bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, double start_us) const {
+bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, double start_us) {
     if (!options.in_frame_check) return true;
     const model::FrameCombine& combine = costs.combine;
     const float so_far_us = combine.frame_us(p.so_far.submit_us, p.so_far.raster_us);
@@ -243,8 +245,10 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     check.next_us = with(p.next) * scale;
     check.next_stand_in_us = with(p.stand_in) * scale;
     check.rest_stand_in_us = (with(p.rest) + static_cast<double>(enlarge_us())) * correction.factor;  // of many: little spread
-    check.limit_us = limits.limit_us;
-    return select::still_fits(check);
+    check.limit_us = limits.limit_us - limits.margin_us;
+    if (!select::still_fits(check)) return false;
+    forecast_us = select::forecast_us(check);
+    return true;
 }
 
 void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) {
@@ -334,6 +338,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.drawn.clear();
     e.culled.clear();
     e.floor.begin();
+    e.forecast_us = 0;
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
     e.device->begin_frame(pose, e.drawn_resolution);
     if (e.use_last) {
@@ -345,6 +350,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.submitted_us = e.now_us(limits) - start_us;
     e.device->finish_frame();
     report.finished_us = e.now_us(limits) - start_us;
+    report.forecast_us = e.forecast_us > 0 ? e.forecast_us - limits.elapsed_us : 0;
     const gl::FrameStats stats = e.device->stats();
     report.items = stats.items;
     report.draws = stats.draws;

@@ -4,6 +4,7 @@
 //   frame thread:  select(prepared, budget) ──► Cut ◄──┘ ──► submit(pose, limit): slice by slice ──► SubmitReport
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "render/gl/device.hpp"
 #include "render/model/cost.hpp"
 #include "render/model/model.hpp"
+#include "render/model/resolution.hpp"
 #include "render/prepare/prepared.hpp"
 #include "render/select/registry.hpp"
 #include "rt/base/result.hpp"
@@ -37,6 +39,7 @@ struct EngineOptions {
 struct SubmitLimits {
     double elapsed_us = 0;                            ///< already spent in this frame when submit is called
     double limit_us = 0;                              ///< when the frame must be done, from its start
+    double margin_us = 0;                             ///< of the in-frame check: how much later than forecast frames end
     std::int64_t (*now_ns)(void* context) = nullptr;  ///< null: the device's charged time (virtual)
     void* now_context = nullptr;
 };
@@ -49,7 +52,8 @@ struct Correction {
 
 /// What the frame thread knows for the next preparation.
 struct PrepareHints {
-    double planned_us = 0;  ///< predicted time that a cut may take, without correction and headroom; 0: the resolution stays
+    /// By step of resolution: predicted time that a cut may take, without correction and headroom. 0: the resolution stays.
+    std::array<double, model::resolution_steps.size()> planned_us{};
     double form_ratio = 1;  ///< how much more expensive full detail is against coarse forms than predicted
 };
 
@@ -61,6 +65,7 @@ struct SubmitReport {
     model::ItemCost predicted;          ///< the sums behind predicted_us, slices included
     double full_us = 0, coarse_us = 0;  ///< of predicted_us, before PrepareHints::form_ratio: items in full detail, and others
     double other_us = 0;                ///< of predicted_us: all but the items
+    double forecast_us = 0;             ///< of finished_us, by the last check that let a slice be drawn in full; 0: none did
     std::uint32_t slices = 0, downgraded_slices = 0, items = 0, draws = 0;
     std::uint32_t culled = 0;  ///< items of the cut outside this pose's view
     std::uint64_t triangles = 0;

@@ -142,6 +142,8 @@ struct CheckInput {
     double limit_us = 0;             ///< when the frame must be done
     double margin = 1.0;             ///< factor on top of the headroom
 };
+/// When the frame would end, us since it was due, if the slice is drawn in full and all after it as stand-ins. NaN: unknown.
+double forecast_us(const CheckInput& input);
 /// True: draw the slice in full. False: draw this and all later slices as stand-ins. Pure.
 /// Predictions are multiplied by a factor of 1..8: elapsed / predicted time of the frame so far. A few early slices must not
 /// decide alone. So a prior time is added to both: 1/20 of the limit, and half of the rest's cost times the share of time left.

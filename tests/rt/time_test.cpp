@@ -3,9 +3,10 @@
 
 #include "rt/base/random.hpp"
 #include "rt/clock/grid.hpp"
-#include "rt/frame/controller.hpp"
+#include "rt/frame/corrections.hpp"
 #include "rt/frame/form_correction.hpp"
 #include "rt/frame/loop.hpp"
+#include "rt/frame/overshoot.hpp"
 #include "tests/time_units.hpp"
 
 namespace surefoot::rt {
@@ -153,6 +154,32 @@ TEST(Controller, MeetsADoubledCostAndIsDeafToOutliers) {
     for (const double bad : {0.0, -5.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         deaf.update(bad, 100), deaf.update(100, bad);
     EXPECT_NEAR(deaf.factor(), 1.0, 1e-9);
+}
+
+TEST(Corrections, EachStateKeepsItsOwnAndStartsWithTheLastOnes) {
+    Corrections c;
+    for (int i = 0; i < 100; ++i) c.update(0, 100, 150);
+    EXPECT_NEAR(c.of(0).factor(), 1.5, 1e-9);
+    EXPECT_EQ(c.of(4).factor(), c.of(0).factor()) << "not drawn yet: as the last state";
+    for (int i = 0; i < 100; ++i) c.update(4, 100, 80);
+    EXPECT_NEAR(c.of(4).factor(), 0.8, 1e-9);
+    EXPECT_NEAR(c.of(0).factor(), 1.5, 1e-9) << "kept, although 100 frames of another state came between";
+    EXPECT_EQ(c.of(2).factor(), c.of(4).factor()) << "the last frame's state is 4";
+    EXPECT_EQ(c.of(99).factor(), c.of(4).factor()) << "states above the last are the last";
+}
+
+TEST(Overshoot, IsTheUpperTwentiethOfRecentFrames) {
+    Overshoot o;
+    EXPECT_EQ(o.margin_us(), 0);
+    for (int i = 0; i < 200; ++i) o.update(-500);
+    EXPECT_EQ(o.margin_us(), 0) << "frames that end before their forecast give nothing back";
+    for (int i = 0; i < 200; ++i) o.update(i % 10 == 0 ? 2000 : 100);
+    EXPECT_EQ(o.margin_us(), 2000);
+    for (int i = 0; i < 192; ++i) o.update(i % 64 == 0 ? 9000 : 100);
+    EXPECT_EQ(o.margin_us(), 100) << "one frame in 64 is an outlier";
+    o.update(std::numeric_limits<double>::quiet_NaN());
+    o.update(std::numeric_limits<double>::infinity());
+    EXPECT_EQ(o.margin_us(), 100);
 }
 
 double random_share(std::uint32_t& seed) {

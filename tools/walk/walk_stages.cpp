@@ -10,6 +10,8 @@
 namespace surefoot::walk {
 
 namespace {
+constexpr double max_margin_share = 0.2;  // of the limit: more would only draw everything coarse
+
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
 }  // namespace
 
@@ -48,6 +50,13 @@ void WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
     if (fault == Fault::context_lost && options_.lost != nullptr) options_.lost->store(true);
 }
 
+Correction WalkStages::correction_at(float resolution) const {
+    const float of_table = engine_.costs().headroom;
+    if (!request_.correct_costs) return {1.0, static_cast<double>(of_table)};
+    const rt::CostController& controller = corrections_.of(model::resolution_step(resolution));
+    return {controller.factor(), controller.headroom(static_cast<double>(of_table))};
+}
+
 void WalkStages::sample(rt::FrameRecord& record) {
     inject(FramePhase::sample, record);
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
@@ -74,9 +83,10 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
     now_.hints = {};
-    const double headroom =
-        request_.correct_costs ? controller_.headroom(engine_.costs().headroom) : static_cast<double>(engine_.costs().headroom);
-    now_.hints.planned_us = options_.budget_us / (headroom * (request_.correct_costs ? controller_.factor() : 1.0));
+    for (std::size_t step = 0; step < now_.hints.planned_us.size(); ++step) {
+        const Correction correction = correction_at(model::resolution_steps[step]);
+        now_.hints.planned_us[step] = options_.budget_us / (correction.factor * correction.headroom);
+    }
     if (request_.correct_costs) now_.hints.form_ratio = forms_.ratio();
     now_.valid = true;
     take(newest, record);
@@ -116,7 +126,8 @@ void WalkStages::select(rt::FrameRecord& record) {
     const std::uint64_t age = now_.frame - std::min(set.frame, now_.frame);
     record.prepared_age = static_cast<std::uint32_t>(age);
     record.cost_scale = static_cast<float>(request_.cost_scale);
-    record.correction = static_cast<float>(request_.correct_costs ? controller_.factor() : 1.0);
+    const Correction correction = correction_at(set.resolution);
+    record.correction = static_cast<float>(correction.factor);
     record.budget_us = static_cast<float>(options_.budget_us);
     coarse_ = age > rt::oldest_prepared || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
@@ -125,8 +136,6 @@ void WalkStages::select(rt::FrameRecord& record) {
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
     const double budget_us = std::max(0.0, options_.budget_us - spent_us);
-    const Correction correction =
-        request_.correct_costs ? Correction{controller_.factor(), controller_.headroom(engine_.costs().headroom)} : Correction{};
     const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
     record.floor_us = cut.floor_us;
     record.floor_binds = cut.floor_binds;
@@ -166,6 +175,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
     limits.limit_us = options_.limit_us;
+    limits.margin_us = std::min(overshoot_.margin_us(), max_margin_share * options_.limit_us);
     if (!virtual_clock_) {
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
@@ -210,9 +220,10 @@ void WalkStages::account(rt::FrameRecord& record) {
     // The correction is of the machine's own figures: it must not take back an overhead that the user asked for.
     const double overhead = virtual_clock_ ? 1.0 : request_.cost_scale;
     if (!coarse_) {
-        controller_.update(report_.predicted_us / overhead, actual_us);
+        corrections_.update(model::resolution_step(report_.resolution), report_.predicted_us / overhead, actual_us);
         forms_.update(report_.full_us / overhead, report_.coarse_us / overhead, report_.other_us / overhead, actual_us);
     }
+    if (report_.forecast_us > 0) overshoot_.update(actual_us - report_.forecast_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     record.floor_share = report_.floor_share;
     const bool follows = now_.frame > 0;  // the cut before the first frame is of the warm-up

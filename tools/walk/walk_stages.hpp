@@ -9,9 +9,10 @@
 #include "render/engine.hpp"
 #include "rt/clock/clock.hpp"
 #include "rt/exchange/triple_buffer.hpp"
-#include "rt/frame/controller.hpp"
+#include "rt/frame/corrections.hpp"
 #include "rt/frame/form_correction.hpp"
 #include "rt/frame/loop.hpp"
+#include "rt/frame/overshoot.hpp"
 #include "tools/walk/pose_source.hpp"
 #include "tools/walk/prepare_thread.hpp"
 #include "tools/walk/snapshots.hpp"
@@ -69,6 +70,8 @@ private:
     void prepare_inline();
     void take(const FramePose& from, rt::FrameRecord& record);
     void latch(rt::FrameRecord& record);
+    /// What the frames at this resolution have taught, as far as predictions are corrected.
+    [[nodiscard]] Correction correction_at(float resolution) const;
     [[nodiscard]] FrameTime frame_time(const rt::FrameRecord& record) const;
     void keep(const rt::FrameRecord& record);
     [[nodiscard]] double cost_factor(const rt::FrameRecord& record, double actual_us) const;
@@ -82,8 +85,9 @@ private:
     KeptFrame& kept_;
     WalkStagesOptions options_;
     const WalkRequest& request_;
-    const bool virtual_clock_;  ///< prepare on this thread, and add the device's virtual time to the clock
-    rt::CostController controller_;
+    const bool virtual_clock_;     ///< prepare on this thread, and add the device's virtual time to the clock
+    rt::Corrections corrections_;  ///< by step of resolution
+    rt::Overshoot overshoot_;
     rt::FormCorrection forms_;
     PoseSample now_;
     SubmitReport report_;

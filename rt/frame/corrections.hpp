@@ -1,0 +1,37 @@
+// Online corrections by state of the picture: predictions are wrong in another way at another resolution.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "rt/frame/controller.hpp"
+
+namespace surefoot::rt {
+
+/// A CostController for each state. A state that no frame was drawn in yet starts with what the last frame's state has learnt.
+/// After that it keeps its own. So a return to a state finds the figures that it was left with.
+class Corrections {
+public:
+    static constexpr std::size_t states = 5;
+
+    /// As CostController::update(). States above the last are the last.
+    void update(std::size_t state, double predicted_us, double actual_us) {
+        state = std::min(state, states - 1);
+        if (!known_[state]) of_[state] = of_[last_];
+        known_[state] = true;
+        last_ = state;
+        of_[state].update(predicted_us, actual_us);
+    }
+    [[nodiscard]] const CostController& of(std::size_t state) const {
+        state = std::min(state, states - 1);
+        return of_[known_[state] ? state : last_];
+    }
+
+private:
+    std::array<CostController, states> of_{};
+    std::array<bool, states> known_{};
+    std::size_t last_ = 0;
+};
+
+}  // namespace surefoot::rt
