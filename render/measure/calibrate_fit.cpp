@@ -209,7 +209,7 @@ model::FrameCombine fit_combine(std::span<const FrameSample> samples, const mode
 }
 
 std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model::Viewport& picture) {
-    constexpr double least_ns = 0.01;  // noise must not make it free
+    constexpr double min_ns = 0.01;  // noise must not make it free
     std::vector<double> added_ns;
     for (const EmptyPair& pair : pairs) {
         added_ns.push_back(1e3 * (pair.lower_us - pair.full_us));
@@ -217,7 +217,7 @@ std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model
     }
     const double pixels = static_cast<double>(picture.width) * static_cast<double>(picture.height);
     if (added_ns.empty() || !(pixels > 0)) return {};
-    return static_cast<float>(std::clamp(median_of(std::move(added_ns)) / pixels, least_ns, max_enlarge_ns));
+    return static_cast<float>(std::clamp(median_of(std::move(added_ns)) / pixels, min_ns, max_enlarge_ns));
 }
 
 double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile) {

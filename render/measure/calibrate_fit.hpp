@@ -40,8 +40,8 @@ double ratio(std::span<const FrameSample> samples, const model::FrameCombine& co
 struct EmptyPair {
     double full_us = 0, lower_us = 0;
 };
-/// Time that enlarging adds to a frame, ns for a pixel of the whole picture: the median of the pairs' differences, kept within
-/// 0.01 to max_enlarge_ns. Nothing if there are no pixels or no pairs, or if a time is not finite.
+/// Time that enlarging adds to a frame, ns for a pixel of the whole picture: the median of the pairs' differences. It is kept
+/// within 0.01 to max_enlarge_ns. Nothing if there are no pixels or no pairs, or if a time is not finite.
 std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model::Viewport& picture);
 
 /// One time for each frame, from several measurements of it.
