@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "render/gl/backends.hpp"
 #include "render/measure/calibrate_fit.hpp"
@@ -49,15 +50,16 @@ public:
     }
     void timer(Calibration& out);
     void slices(Calibration& out);
+    void enlarging(Calibration& out);
     Result<void> cells(Calibration& out);
     Result<void> frames(Calibration& out);
 
 private:
     /// The frame twice: the second finds warm caches, as a walk's frames do.
-    FrameTiming timed(const Pose& pose, std::span<const gl::DrawItem> items, std::size_t slice_items) {
+    FrameTiming timed(const Pose& pose, std::span<const gl::DrawItem> items, std::size_t slice_items, float resolution = 1) {
         device_.draws.plays();
-        run_frame(device_, clocks_, pose, items, slice_items);
-        return run_frame(device_, clocks_, pose, items, slice_items);
+        run_frame(device_, clocks_, pose, items, slice_items, resolution);
+        return run_frame(device_, clocks_, pose, items, slice_items, resolution);
     }
     [[nodiscard]] int repeats() const { return options_.quick ? 3 : 5; }
     FrameSample predict(const TownView& view, const model::ItemCosts& costs) const;
@@ -105,6 +107,16 @@ void Run::slices(Calibration& out) {
     out.costs.slice_us =
         static_cast<float>(std::clamp((min_of(sliced) - min_of(whole)) / static_cast<double>(parts - 1), 0.0, 500.0));
     empty_ = {min_of(empty_submit), min_of(empty_raster), min_of(empty_wall)};
+}
+
+/// Nothing is drawn, so what a frame at 50 % takes longer than one at 100 % is the enlarging. Its smaller clear is in the figure:
+/// the fixed time of a frame holds a whole one.
+void Run::enlarging(Calibration& out) {
+    std::vector<EmptyPair> pairs;
+    for (int i = 0; i < 10 * repeats(); ++i) pairs.push_back({timed(Pose{}, {}, 1).wall_us, timed(Pose{}, {}, 1, 0.5F).wall_us});
+    const std::optional<float> ns = enlarge_ns_of(pairs, options_.device.viewport);
+    out.costs.enlarge_measured = ns.has_value();
+    if (ns) out.costs.enlarge_ns_per_pixel = *ns;
 }
 
 Result<void> Run::cells(Calibration& out) {
@@ -210,6 +222,7 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     out.costs.calibrated = true;
     run.timer(out);
     run.slices(out);
+    run.enlarging(out);
     if (auto done = run.cells(out); !done) return done.error();
     if (auto done = run.frames(out); !done) return done.error();
     if ((*device)->lost())

@@ -49,6 +49,9 @@ struct CalibrateOptions {
 
 Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& progress);
 
+/// Largest time of enlarging in a table, ns for a pixel of the whole picture.
+constexpr double max_enlarge_ns = 100;
+
 /// Equal for equal tables. Tells from which table a fit to a model was made.
 std::uint64_t hash_of(const model::CostModel& costs);
 /// The table as a file: TOML text with a checksum in its first line.

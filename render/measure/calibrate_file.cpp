@@ -1,6 +1,8 @@
 // The cost table as a file: TOML whose first line holds a checksum of the rest; and what machine it is valid for.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -48,12 +50,18 @@ std::string body_of(const model::CostModel& costs) {
     const model::FrameCombine& c = costs.combine;
     std::string text = fmt::format(
         "version = {}\nestimate = {}\nmachine = {}\ncalibrated = {}\ntimer_query_honest = {}\nupper_factor = {:.9g}\nslice_us = "
-        "{:.9g}\n\n"
-        "# frame_us = fixed_us + submit_weight * S + raster_weight * R + max_weight * max(S, R)\n[combine]\n"
-        "fixed_us = {:.9g}\nsubmit_weight = {:.9g}\nraster_weight = {:.9g}\nmax_weight = {:.9g}\n",
+        "{:.9g}\n",
         format_version, estimate, quoted(costs.machine), costs.calibrated, costs.timer_query_honest,
-        static_cast<double>(costs.headroom), static_cast<double>(costs.slice_us), static_cast<double>(c.fixed_us),
-        static_cast<double>(c.submit_weight), static_cast<double>(c.raster_weight), static_cast<double>(c.max_weight));
+        static_cast<double>(costs.headroom), static_cast<double>(costs.slice_us));
+    // Only what was measured: tables of before, and their hashes, stay what they are.
+    if (costs.enlarge_measured)
+        text += fmt::format("enlarge_ns_per_pixel = {:.9g}\n", static_cast<double>(costs.enlarge_ns_per_pixel));
+    if (costs.blur_measured) text += fmt::format("blur_loss = [{:.9g}]\n", fmt::join(costs.blur_loss, ", "));
+    text += fmt::format(
+        "\n# frame_us = fixed_us + submit_weight * S + raster_weight * R + max_weight * max(S, R)\n[combine]\n"
+        "fixed_us = {:.9g}\nsubmit_weight = {:.9g}\nraster_weight = {:.9g}\nmax_weight = {:.9g}\n",
+        static_cast<double>(c.fixed_us), static_cast<double>(c.submit_weight), static_cast<double>(c.raster_weight),
+        static_cast<double>(c.max_weight));
     for (const model::CostGrid& grid : costs.grids) {
         text += fmt::format(
             "\n# us an item; rows: 2^0, 2^1, ... triangles; columns: 2^0, 2^1, ... pixels\n[[class]]\neffects = {}\n"
@@ -91,6 +99,27 @@ void needed_numbers(TableReader& table, std::string_view key, model::CostGrid& g
     for (std::size_t i = 0; i < values.size(); ++i) grid.cells[i].*member = static_cast<float>(values[i]);
 }
 
+/// Absent: the constant, and said to be one.
+void read_enlarging(TableReader& top, model::CostModel& costs) {
+    constexpr std::string_view key = "enlarge_ns_per_pixel";
+    double ns = static_cast<double>(costs.enlarge_ns_per_pixel);
+    top.number(key, 0, max_enlarge_ns, {}, ns);
+    costs.enlarge_ns_per_pixel = static_cast<float>(ns);
+    costs.enlarge_measured = top.has(key);
+}
+
+/// Absent: the constants, and said to be such.
+void read_blur(TableReader& top, model::CostModel& costs) {
+    constexpr std::string_view key = "blur_loss";
+    if (!top.has(key)) return;
+    std::vector<double> losses(costs.blur_loss.size());
+    top.numbers(key, losses.size(), 0, losses);
+    if (losses.front() != 0 || losses.back() > 1 || !std::is_sorted(losses.begin(), losses.end()))
+        return top.refuse(key, "does not begin with 0, falls or ends above 1", remedy);
+    std::transform(losses.begin(), losses.end(), costs.blur_loss.begin(), [](double loss) { return static_cast<float>(loss); });
+    costs.blur_measured = true;
+}
+
 Result<model::CostModel> costs_of(const toml::table& table, const std::string& file) {
     model::CostModel costs;
     const auto refuse = [&](const std::string& key) {
@@ -105,6 +134,8 @@ Result<model::CostModel> costs_of(const toml::table& table, const std::string& f
     costs.timer_query_honest = table["timer_query_honest"].value_or(false);
     costs.headroom = needed_number(top, "upper_factor", 0.1, 100);
     costs.slice_us = needed_number(top, "slice_us", 0, 1e6);
+    read_enlarging(top, costs);
+    read_blur(top, costs);
     if (!top.wrong_key().empty()) return refuse(top.wrong_key());
     const toml::table* combine = table["combine"].as_table();
     if (combine == nullptr) return refuse("combine");

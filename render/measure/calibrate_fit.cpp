@@ -208,6 +208,18 @@ model::FrameCombine fit_combine(std::span<const FrameSample> samples, const mode
     return combine;
 }
 
+std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model::Viewport& picture) {
+    constexpr double min_ns = 0.01;  // noise must not make it free
+    std::vector<double> added_ns;
+    for (const EmptyPair& pair : pairs) {
+        added_ns.push_back(1e3 * (pair.lower_us - pair.full_us));
+        if (!std::isfinite(added_ns.back())) return {};
+    }
+    const double pixels = static_cast<double>(picture.width) * static_cast<double>(picture.height);
+    if (added_ns.empty() || !(pixels > 0)) return {};
+    return static_cast<float>(std::clamp(median_of(std::move(added_ns)) / pixels, min_ns, max_enlarge_ns));
+}
+
 double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile) {
     std::vector<double> values;
     for (const FrameSample& s : samples) {

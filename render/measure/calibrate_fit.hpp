@@ -1,6 +1,7 @@
 // Fits: measured points to a cost table; measured frames to the weights by which items add up.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,14 @@ model::FrameCombine fit_combine(std::span<const FrameSample> samples, const mode
 double relative_error(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile);
 /// actual / predicted at a quantile.
 double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile);
+
+/// A frame at full resolution, and right after it one at a lower resolution: both empty.
+struct EmptyPair {
+    double full_us = 0, lower_us = 0;
+};
+/// Time that enlarging adds to a frame, ns for a pixel of the whole picture: the median of the pairs' differences. It is kept
+/// within 0.01 to max_enlarge_ns. Nothing if there are no pixels or no pairs, or if a time is not finite.
+std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model::Viewport& picture);
 
 /// One time for each frame, from several measurements of it.
 struct FrameTimes {

@@ -45,6 +45,9 @@ struct FrameCombine {
     }
 };
 
+/// What a lower resolution loses of the value, by resolution_steps: 0 at first, never falling, at most 1.
+using BlurLoss = std::array<float, resolution_steps.size()>;
+
 /// The cost table of a machine, fitted to a model of a whole frame.
 struct CostModel {
     std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
@@ -52,12 +55,12 @@ struct CostModel {
     float headroom = 1.25F;             ///< 90 % quantile of actual / predicted whole-frame cost at calibration
     float slice_us = 30;                ///< cost of ending a slice (flush and fence)
     float enlarge_ns_per_pixel = 1.6F;  ///< of the whole picture, where it is drawn at a lower resolution
-    /// What a lower resolution loses of the value, by resolution_steps: six times the mean squared error (0..1) of full detail
-    /// that is enlarged. Typical of five scenes; no calibration measures it.
-    std::array<float, resolution_steps.size()> blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
+    /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.
+    BlurLoss blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
     std::string machine;  ///< CPU, renderer, rasteriser count; a table of another machine is refused
     bool timer_query_honest = false;
-    bool calibrated = false;  ///< false: built-in defaults
+    bool calibrated = false;                               ///< false: built-in defaults
+    bool enlarge_measured = false, blur_measured = false;  ///< false: the constants above, which no file holds
 
     /// Interpolated. Arguments below 1 count as 1; beyond the grid the cost is extrapolated linearly. Never negative. A NaN
     /// argument gives the largest cell.

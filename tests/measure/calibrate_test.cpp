@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -129,6 +130,26 @@ TEST(FrameFit, of_rounds_is_the_same_whatever_turns_the_machine_takes) {
     EXPECT_GT(measure::relative_error(once, measure::fit_combine(once, prior), 0.9), 0.2) << "one round would have done";
 }
 
+TEST(EnlargeTime, is_the_median_of_what_the_pairs_differ_by) {
+    const std::vector<measure::EmptyPair> pairs{{1000, 1300}, {500, 700}, {400, 9000}};  // one was disturbed
+    EXPECT_FLOAT_EQ(measure::enlarge_ns_of(pairs, {1000, 200}).value(), 1.5F);           // 300 us of 200 000 pixels
+}
+
+TEST(EnlargeTime, is_never_free_and_never_without_end) {
+    const std::vector<measure::EmptyPair> faster{{500, 400}}, stuck{{0, 1e9}};
+    EXPECT_FLOAT_EQ(measure::enlarge_ns_of(faster, {1000, 200}).value(), 0.01F);
+    EXPECT_FLOAT_EQ(measure::enlarge_ns_of(stuck, {1000, 200}).value(), 100);
+}
+
+TEST(EnlargeTime, of_nothing_or_of_no_number_is_unknown) {
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    const std::vector<measure::EmptyPair> good{{1, 2}}, no_number{{1, 2}, {nan, 2}, {1, 2}}, endless{{1, infinity}};
+    EXPECT_FALSE(measure::enlarge_ns_of({}, {1000, 200}));
+    EXPECT_FALSE(measure::enlarge_ns_of(good, {0, 200}));
+    EXPECT_FALSE(measure::enlarge_ns_of(no_number, {1000, 200}));
+    EXPECT_FALSE(measure::enlarge_ns_of(endless, {1000, 200}));
+}
+
 std::vector<measure::CalibrationPoint> affine_points() {
     std::vector<measure::CalibrationPoint> points;
     for (const double t : {6.0, 64.0, 1000.0, 60000.0}) {
@@ -202,6 +223,32 @@ TEST_F(CostFile, comes_back_bit_for_bit) {
     }
 }
 
+TEST_F(CostFile, holds_blur_and_enlarging_where_they_were_measured) {
+    costs_.enlarge_ns_per_pixel = 2.3456789F;
+    costs_.blur_loss = {0, 0.0012345678F, 0.002F, 0.002F, 0.9F};
+    const auto unmeasured = measure::hash_of(costs_);
+    costs_.enlarge_measured = costs_.blur_measured = true;
+    EXPECT_NE(measure::hash_of(costs_), unmeasured);
+    ASSERT_TRUE(measure::write_costs(file_, costs_).ok());
+    const auto read = measure::read_costs(file_, costs_.machine);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_EQ(read->enlarge_ns_per_pixel, costs_.enlarge_ns_per_pixel);
+    EXPECT_EQ(read->blur_loss, costs_.blur_loss);
+    EXPECT_TRUE(read->enlarge_measured && read->blur_measured);
+    EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_)) << "a fit is found by the table as it was read";
+}
+
+TEST_F(CostFile, without_blur_and_enlarging_keeps_the_constants_and_its_hash) {
+    EXPECT_EQ(read_text(file_).value().find("blur_loss"), std::string::npos);
+    EXPECT_EQ(read_text(file_).value().find("enlarge"), std::string::npos);
+    const auto read = measure::read_costs(file_, "");
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_EQ(read->blur_loss, model::CostModel{}.blur_loss);
+    EXPECT_EQ(read->enlarge_ns_per_pixel, model::CostModel{}.enlarge_ns_per_pixel);
+    EXPECT_FALSE(read->enlarge_measured || read->blur_measured);
+    EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
+}
+
 TEST_F(CostFile, of_another_machine_is_refused_by_name_unless_any_will_do) {
     const auto read = measure::read_costs(file_, "this one");
     ASSERT_FALSE(read.ok());
@@ -247,6 +294,19 @@ TEST_F(CostFile, with_a_wrong_key_is_refused_by_its_name) {
     EXPECT_EQ(problem("submit_us = [", "submit_us = [ -1,"), "The key 'class.submit_us' is missing or out of range");
     EXPECT_EQ(problem("version", "version = 9"), "The key 'version' is missing or out of range");
     EXPECT_EQ(problem("version", "version = 1"), "nothing");
+    for (const std::string bad : {"nan", "-0.1", "inf", "101", "\"2\""}) {
+        EXPECT_EQ(problem("slice_us", "slice_us = 30\nenlarge_ns_per_pixel = " + bad),
+                  "The key 'enlarge_ns_per_pixel' is missing or out of range");
+    }
+    for (const std::string bad :
+         {"0, 0.1, 0.2, nan, 0.3", "0, -0.1, 0.2, 0.3, 0.4", "0, 0.1, 0.2, 0.3, 1.01", "0, 0.2, 0.1, 0.3, 0.4",
+          "0.1, 0.1, 0.2, 0.3, 0.4", "0, 0.1, 0.2, 0.3", "0, 0.1, 0.2, 0.3, 0.4, 0.5", "0, 0.1, 0.2, 0.3, inf"}) {
+        EXPECT_EQ(problem("slice_us", "slice_us = 30\nblur_loss = [" + bad + "]"),
+                  "The key 'blur_loss' is missing or out of range")
+            << bad;
+    }
+    EXPECT_EQ(problem("slice_us", "slice_us = 30\nblur_loss = 0.1"), "The key 'blur_loss' is missing or out of range");
+    EXPECT_EQ(problem("slice_us", "slice_us = 30\nblur_loss = [0, 0.1, 0.1, 0.3, 1]\nenlarge_ns_per_pixel = 0"), "nothing");
     const std::string torn = "slice_us = = 1\n";
     ASSERT_TRUE(
         write_text(file_, fmt::format("hash = \"{:016x}\"\n{}", hash_bytes(std::as_bytes(std::span<const char>(torn))), torn))
@@ -351,6 +411,10 @@ TEST(Calibrate, measures_a_table_that_predicts_more_for_more) {
     EXPECT_EQ(c->costs.grids.size(), 4U);
     EXPECT_EQ(c->points.size(), 4U * 4U * 6U);
     EXPECT_GE(c->costs.headroom, 1);
+    EXPECT_TRUE(c->costs.enlarge_measured);
+    EXPECT_GE(c->costs.enlarge_ns_per_pixel, 0.01F);
+    EXPECT_LE(c->costs.enlarge_ns_per_pixel, 100);
+    EXPECT_FALSE(c->costs.blur_measured) << "blur is of a model";
     EXPECT_TRUE(std::isfinite(c->frame_error_p99));
     const auto& grid = c->costs.grid_for(0);
     const auto less = c->costs.item(10, 100, grid);

@@ -114,6 +114,11 @@ TEST(ModelCosts, a_fit_is_nearer_to_measured_frames_than_a_table_five_times_off)
     EXPECT_LT(fit->after.p50, fit->before.p50);
     EXPECT_GE(fit->costs.headroom, 1);
     EXPECT_EQ(fit->costs.grids.size(), wrong.grids.size());
+    EXPECT_TRUE(fit->costs.blur_measured);
+    EXPECT_EQ(fit->blur_poses, options.blur_poses);
+    EXPECT_NE(fit->costs.blur_loss, wrong.blur_loss);
+    EXPECT_GT(fit->costs.blur_loss[1], 0) << "leaves are finer than pixels";
+    EXPECT_GT(fit->costs.blur_loss[4], fit->costs.blur_loss[1]);
 }
 
 /// A fit on the null backend, which charges by `combine` alone.
@@ -149,6 +154,8 @@ TEST(ModelCosts, a_published_formula_is_exact_on_a_machine_that_charges_by_it) {
     EXPECT_GT(error_of(software, "max_of_sums").p50, 0.05);
     EXPECT_LT(software.before.p99, 1e-3) << "the table is the machine";
     EXPECT_LT(software.after.p99, 0.02);
+    EXPECT_FALSE(software.costs.blur_measured) << "there are no pictures without GL";
+    EXPECT_EQ(software.costs.blur_loss, model::CostModel{}.blur_loss);
 }
 
 TEST(ModelCosts, stopping_a_fit_is_an_error) {

@@ -48,6 +48,25 @@ void print_frame(const model::FrameCombine& k) {
                k.raster_weight, k.max_weight);
 }
 
+/// By resolution, the whole one left out.
+nlohmann::ordered_json blur_json(const model::CostModel& costs, std::size_t poses) {
+    auto steps = nlohmann::ordered_json::array();
+    for (std::size_t step = 1; step < costs.blur_loss.size(); ++step)
+        steps.push_back({{"resolution", model::resolution_steps[step]}, {"loss", costs.blur_loss[step]}});
+    return {{"measured", costs.blur_measured}, {"poses", poses}, {"steps", steps}};
+}
+
+void print_blur(const model::CostModel& costs, std::size_t poses) {
+    std::string resolutions, losses;
+    for (std::size_t step = 1; step < costs.blur_loss.size(); ++step) {
+        const char* const between = step > 1 ? ", " : "";
+        resolutions += fmt::format("{}{:g}", between, 100 * model::resolution_steps[step]);
+        losses += fmt::format("{}{:.2f}", between, 100 * costs.blur_loss[step]);
+    }
+    fmt::print("  a resolution of {} % loses {} % of the value{}\n", resolutions, losses,
+               costs.blur_measured ? fmt::format(", at {} poses of the path", poses) : ": built-in figures");
+}
+
 nlohmann::ordered_json to_json(const measure::Calibration& c, const std::string& file, const std::string& plot) {
     return {{"table", file},
             {"plot", plot},
@@ -55,6 +74,7 @@ nlohmann::ordered_json to_json(const measure::Calibration& c, const std::string&
             {"seconds", c.seconds},
             {"points", c.points.size()},
             {"frame", to_json(c.costs)},
+            {"enlarge", {{"measured", c.costs.enlarge_measured}, {"ns_per_pixel", c.costs.enlarge_ns_per_pixel}}},
             {"frame_error", {{"p50", c.frame_error_p50}, {"p90", c.frame_error_p90}, {"p99", c.frame_error_p99}}},
             {"timer_query",
              {{"available", c.timer.available},
@@ -182,6 +202,7 @@ void print_fit(const CalibrateArguments& a, const walk::ModelFit& fit, const std
                     {"slowdown", fit.slowdown},
                     {"seconds", fit.seconds},
                     {"frame", to_json(fit.costs)},
+                    {"blur", blur_json(fit.costs, fit.blur_poses)},
                     {"frame_error_before", to_json(fit.before)},
                     {"frame_error", to_json(fit.after)},
                     {"published", to_json(fit.published)},
@@ -196,6 +217,7 @@ void print_fit(const CalibrateArguments& a, const walk::ModelFit& fit, const std
         fit.costs.headroom, fit.slowdown, fit.repeated, fit.frames);
     fmt::print("  errors of the {} frames that were held out:\n", fit.frames / 2);
     print_errors(fit);
+    print_blur(fit.costs, fit.blur_poses);
     if (kept) print_kept(*kept);
 }
 
@@ -230,7 +252,10 @@ int run_fit(const CalibrateArguments& a, const config::Configuration& settings, 
     options.device.viewport = {s.width, s.height};
     options.device.rasterisers = s.rasterisers;
     options.frame_us = 1e6 / s.rate_hz;
-    if (a.quick) options.poses = 80;
+    if (a.quick) {
+        options.poses = 80;
+        options.blur_poses = 6;
+    }
     options.opened = *placed;
     auto fit = fit_on_own_thread(std::move(*model), path->path, *table, options, context);
     end_progress(context);
@@ -240,15 +265,18 @@ int run_fit(const CalibrateArguments& a, const config::Configuration& settings, 
                      "The model was drawn on \"" + fit->machine + "\", but the table was measured on \"" + table->machine + "\"",
                      "First run `surefoot calibrate` with the same backend and rasterisers", ErrorKind::misuse});
     }
+    model::CostModel weights_of_table = *table;  // pictures were measured, whichever weights are kept
+    weights_of_table.blur_loss = fit->costs.blur_loss;
+    weights_of_table.blur_measured = fit->costs.blur_measured;
     std::optional<accuracy::KeptCosts> kept;
     if (a.keep == "better") {
-        auto decided = walk_both(a, settings, *fit, *table, path->path, context);
+        auto decided = walk_both(a, settings, *fit, weights_of_table, path->path, context);
         end_progress(context);
         if (!decided) return fail(decided.error());
         kept = std::move(*decided);
     }
     const bool keeps_fit = kept ? kept->fit : a.keep == "fit";
-    if (!keeps_fit) fit->costs = *table;
+    if (!keeps_fit) fit->costs = std::move(weights_of_table);
     if (auto written = measure::write_costs(file, fit->costs); !written) return fail(written.error());
     print_fit(a, *fit, kept, keeps_fit, file, path->source);
     return exit_success;
@@ -301,6 +329,8 @@ int run_calibrate(const CalibrateArguments& a, const Context& context) {
     if (a.json) return print_json(to_json(*c, file, plot)), exit_success;
     fmt::print("{}\n  table {} ({} points, {:.0f} s), plot {}\n", c->costs.machine, file, c->points.size(), c->seconds, plot);
     print_frame(c->costs.combine);
+    fmt::print("  enlarging a smaller picture: {:.2f} ns a pixel of the whole one{}\n", c->costs.enlarge_ns_per_pixel,
+               c->costs.enlarge_measured ? "" : ", a built-in figure");
     fmt::print("  held-out frames: error p50 {:.0f} %, p90 {:.0f} %, p99 {:.0f} %; the budget spends x{:.2f}\n",
                100 * c->frame_error_p50, 100 * c->frame_error_p90, 100 * c->frame_error_p99, c->costs.headroom);
     fmt::print("  timer query: {} (reports {:.3f} ms where {:.3f} ms pass): {}\n",

@@ -10,6 +10,7 @@
 #include "render/model/pixels.hpp"
 #include "rt/base/random.hpp"
 #include "rt/clock/clock.hpp"
+#include "tools/walk/model_blur.hpp"
 #include "tools/walk/path_source.hpp"
 
 namespace surefoot::walk {
@@ -88,6 +89,14 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     fit.repeated = frame_times.repeated;
     fit.slowdown = frame_times.slowdown;
     fit.machine = measure::machine_identity(engine.device().renderer(), options.device.rasterisers);
+    if (options.blur_poses > 0 && options.device.kind != gl::BackendKind::null) {
+        const std::vector<Pose> poses = poses_along(path, options.blur_poses);
+        const auto blur = measure_blur(engine, poses, progress);
+        if (!blur) return blur.error();
+        fit.costs.blur_loss = *blur;
+        fit.costs.blur_measured = true;
+        fit.blur_poses = poses.size();
+    }
     fit.seconds = static_cast<double>(rt::monotonic_ns() - begun) * 1e-9;
     return fit;
 }
