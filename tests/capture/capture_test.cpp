@@ -33,7 +33,7 @@ Capture captured(std::string_view selector, std::uint32_t depth = 4) {
     }
     s.look(region);
     s.run(selector, 5500);
-    return take(s.input(5500), selector, s.state.hysteresis, s.state.before, s.cut);
+    return take(s.input(5500), selector, s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
 }
 
 TEST(Capture, ReplaysToTheSameCutForEverySelector) {
@@ -62,7 +62,7 @@ TEST(Capture, OfALowerResolutionKnowsWhatEnlargingCosts) {
     s.frame.resolution = 0.5F;
     s.look(region);
     s.run("two-stage", 6500);
-    const Capture before = take(s.input(6500), "two-stage", s.state.hysteresis, s.state.before, s.cut);
+    const Capture before = take(s.input(6500), "two-stage", s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
     ASSERT_TRUE(write_capture(file.path, before));
     auto after = read_capture(file.path);
     ASSERT_TRUE(after) << after.error().text();
