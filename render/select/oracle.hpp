@@ -13,7 +13,7 @@ constexpr std::string_view oracle_name = "oracle";
 /// Limits of the search. It counts steps, not seconds: the same frame has the same answer on any machine.
 struct OracleLimits {
     std::uint32_t exact_leaves = 16;        ///< frames with as many visible leaves are searched to the end
-    std::uint64_t max_steps = 200'000'000;  ///< of larger ones; about ten seconds
+    std::uint64_t max_steps = 200'000'000;  ///< of larger ones; some seconds
 };
 
 /// What is known of the greatest value of a legal cut within the budget. Values of forms and of bought items, weighted pixels.
