@@ -89,7 +89,7 @@ std::span<std::uint32_t> CutBuilder::take_floor() {
 }
 
 void CutBuilder::buy_items(Budget& budget) {
-    if (items_.offered().empty()) return items_.note_refused();
+    if (items_.offered().empty()) return items_.count_refused();
     take_floor();
     items_.buy_before_forms(*this, state_, budget);
 }

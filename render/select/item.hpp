@@ -50,8 +50,8 @@ public:
     static constexpr std::uint32_t capacity = 64;  ///< so that a set of them is a word of bits
 
     void clear() { count_ = refused_ = 0; }
-    /// False: refused and counted. Cost or value are not above zero or not finite, the name is offered already, a lever's step is
-    /// not above the one before it, or the list is full.
+    /// False: refused and counted. Cost and value must be finite and above zero. A name is offered once, the steps of a lever in
+    /// rising order.
     bool offer(const Item& item);
     /// An item that is bought whatever its rate: its cost is part of all predictions already. Its value may be 0.
     bool prepay(Item item);

@@ -52,7 +52,7 @@ bool ItemBuyer::try_item(const Place& place, const Sum& spent, double fresh, Bud
 }
 
 void ItemBuyer::buy_before_forms(const CutBuilder& builder, SelectState& state, Budget& budget) {
-    note_refused();
+    count_refused();
     const std::span<const Item> list = offered();
     for (std::uint32_t i = 0; i < list.size(); ++i)
         if (list[i].prepaid) take(i, budget);
@@ -74,7 +74,7 @@ void ItemBuyer::buy_before_forms(const CutBuilder& builder, SelectState& state, 
 void ItemBuyer::buy_all(Budget& budget) { buy_set(~std::uint64_t{0}, budget); }
 
 void ItemBuyer::buy_set(std::uint64_t set, Budget& budget) {
-    note_refused();
+    count_refused();
     const std::span<const Item> list = offered();
     for (std::uint32_t i = 0; i < list.size(); ++i)
         if (list[i].prepaid || (set >> i & 1U) != 0) take(i, budget);

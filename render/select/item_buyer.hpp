@@ -19,7 +19,7 @@ public:
     explicit ItemBuyer(const SelectInput& input) : input_(input) {}
 
     /// Without an item to buy: says how many were refused.
-    void note_refused() { bought_.refused = input_.items != nullptr ? input_.items->refused() : 0; }
+    void count_refused() { bought_.refused = input_.items != nullptr ? input_.items->refused() : 0; }
     /// The first round. Walks over all steps by rate; the builder holds the floor. `budget` pays.
     void buy_before_forms(const CutBuilder& builder, SelectState& state, Budget& budget);
     /// For selectors without a budget: everything.

@@ -20,14 +20,14 @@ struct Solution {
     Gain sum;
 };
 
-/// Calls visit(node, decision) for all nodes that a solution reaches.
-template <class Visit>
-void for_reached(const Problem& problem, const std::vector<std::uint32_t>& decision, const Visit& visit) {
+/// Calls use(node, decision) for all nodes that a solution reaches.
+template <class Use>
+void for_reached(const Problem& problem, const std::vector<std::uint32_t>& decision, const Use& use) {
     std::vector<std::uint32_t> stack = problem.roots;
     while (!stack.empty()) {
         const std::uint32_t n = stack.back();
         stack.pop_back();
-        visit(n, decision[n]);
+        use(n, decision[n]);
         const ProblemNode& node = problem.nodes[n];
         if (!problem.decisions_of(n)[decision[n]].opens) continue;
         for (std::uint32_t k = 0; k < node.child_count; ++k) stack.push_back(node.first_child + k);
@@ -77,7 +77,7 @@ private:
     /// A node of which something remains to be decided, and what was decided before it.
     struct Level {
         std::uint32_t node, pending, arena, next = 0;  // next: which of the node's admitted decisions is tried
-        Gain sum, least;                               // decided; the least that the pending nodes cost
+        Gain sum, min_cost;                            // decided; the least that the pending nodes cost
         double lost;
     };
     struct Pending {
@@ -103,7 +103,7 @@ private:
     Multipliers multipliers_;
     std::vector<double> worth_;
     double bound_;
-    std::vector<Gain> least_;  ///< of each subtree, the costs apart
+    std::vector<Gain> min_costs_;  ///< of each subtree, the costs apart
     std::vector<Admitted> admitted_;
     std::vector<std::uint32_t> first_admitted_;
     std::vector<std::uint8_t> settled_;  ///< one way is left in the whole subtree
@@ -121,17 +121,17 @@ double BranchAndBound::lost_by(std::uint32_t n, const Decision& d) const {
 }
 
 void BranchAndBound::find_least_costs() {
-    least_.assign(problem_.nodes.size(), {});
+    min_costs_.assign(problem_.nodes.size(), {});
     std::vector<Gain> below(problem_.nodes.size());
     for (std::size_t i = problem_.nodes.size(); i-- > 0;) {
-        Gain least{0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+        Gain min_cost{0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
         for (const Decision& d : problem_.decisions_of(static_cast<std::uint32_t>(i))) {
             const Gain& g = d.opens ? below[i] : d.gain;
-            least.first_us = std::min(least.first_us, g.first_us);
-            least.second_us = std::min(least.second_us, g.second_us);
+            min_cost.first_us = std::min(min_cost.first_us, g.first_us);
+            min_cost.second_us = std::min(min_cost.second_us, g.second_us);
         }
-        least_[i] = least;
-        if (problem_.nodes[i].parent != none) below[problem_.nodes[i].parent] += least;
+        min_costs_[i] = min_cost;
+        if (problem_.nodes[i].parent != none) below[problem_.nodes[i].parent] += min_cost;
     }
 }
 
@@ -173,7 +173,7 @@ void BranchAndBound::push(std::uint32_t n, Level& to) {
     }
     arena_.push_back({n, to.pending});
     to.pending = static_cast<std::uint32_t>(arena_.size() - 1);
-    to.least += least_[n];
+    to.min_cost += min_costs_[n];
 }
 
 /// Makes the level's next decision that may lead to something better. False: there is none.
@@ -185,12 +185,12 @@ bool BranchAndBound::decide(Level& level, Level& below) {
         ++steps_;
         arena_.resize(level.arena);
         const Decision& decision = problem_.decisions_of(n)[admitted.decision];
-        below = {none, level.pending, 0, 0, level.sum, level.least, level.lost + admitted.lost};
+        below = {none, level.pending, 0, 0, level.sum, level.min_cost, level.lost + admitted.lost};
         below.sum += decision.gain;
         for (std::uint32_t k = 0; decision.opens && k < problem_.nodes[n].child_count; ++k)
             push(problem_.nodes[n].first_child + k, below);
-        const Gain least{0, below.sum.first_us + below.least.first_us, below.sum.second_us + below.least.second_us};
-        if (problem_.fits(least)) return true;
+        const Gain min_cost{0, below.sum.first_us + below.min_cost.first_us, below.sum.second_us + below.min_cost.second_us};
+        if (problem_.fits(min_cost)) return true;
     }
     return false;
 }
@@ -223,8 +223,8 @@ bool BranchAndBound::search(std::uint64_t max_steps) {
             level.node = pending.node;
             level.pending = pending.next;
             level.arena = static_cast<std::uint32_t>(arena_.size());
-            level.least.first_us -= least_[level.node].first_us;
-            level.least.second_us -= least_[level.node].second_us;
+            level.min_cost.first_us -= min_costs_[level.node].first_us;
+            level.min_cost.second_us -= min_costs_[level.node].second_us;
             levels.push_back(level);
         }
         if (levels.empty()) return true;

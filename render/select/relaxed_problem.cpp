@@ -95,9 +95,9 @@ Gain Relaxation::solve(const Multipliers& multipliers) {
 
 Gain Relaxation::solve_along(double share, double multiplier) {
     const Gain sum = solve({multiplier * share, multiplier * (1.0 - share)});
-    if (bound_ < least_bound_) {
-        least_bound_ = bound_;
-        least_multipliers_ = multipliers_;
+    if (bound_ < min_bound_) {
+        min_bound_ = bound_;
+        min_multipliers_ = multipliers_;
     }
     return sum;
 }
@@ -132,17 +132,17 @@ bool Relaxation::minimise_along(double share) {
 }
 
 bool Relaxation::minimise() {
-    least_bound_ = infinity;
+    min_bound_ = infinity;
     const bool one = minimise_along(1.0), other = minimise_along(0.0);
     double low = 0, high = 1;
     const auto bound_along = [&](double share) {
-        const double before = std::exchange(least_bound_, infinity);
-        const Multipliers multipliers = least_multipliers_;
+        const double before = std::exchange(min_bound_, infinity);
+        const Multipliers multipliers = min_multipliers_;
         minimise_along(share);
-        const double found = least_bound_;
+        const double found = min_bound_;
         if (!(found < before)) {
-            least_bound_ = before;
-            least_multipliers_ = multipliers;
+            min_bound_ = before;
+            min_multipliers_ = multipliers;
         }
         return found;
     };
@@ -154,7 +154,7 @@ bool Relaxation::minimise() {
             low = a;
         }
     }
-    solve(least_multipliers_);
+    solve(min_multipliers_);
     return one && other;
 }
 

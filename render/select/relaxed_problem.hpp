@@ -83,8 +83,8 @@ private:
     Gain solve_along(double share, double multiplier);
 
     const Problem& problem_;
-    Multipliers multipliers_, least_multipliers_;
-    double bound_ = 0, least_bound_ = 0, feasible_value_ = 0;
+    Multipliers multipliers_, min_multipliers_;
+    double bound_ = 0, min_bound_ = 0, feasible_value_ = 0;
     std::vector<std::uint32_t> best_, feasible_;
     std::vector<double> worth_, below_worth_;
     std::vector<Gain> sums_, below_;

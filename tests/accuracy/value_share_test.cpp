@@ -36,8 +36,8 @@ TEST(ValueShares, AreBelowOneAndOfTheBoundAtMostThoseOfTheBest) {
     for (const ValueShare& s : shares->selectors) {
         EXPECT_LE(s.of_best, 1 + 1e-6) << s.selector;
         EXPECT_LE(s.of_bound, s.of_best + 1e-9) << s.selector;
-        EXPECT_LE(s.least_of_best, s.of_best + 1e-9) << s.selector;
-        EXPECT_GT(s.least_of_bound, 0) << s.selector;
+        EXPECT_LE(s.min_of_best, s.of_best + 1e-9) << s.selector;
+        EXPECT_GT(s.min_of_bound, 0) << s.selector;
     }
     EXPECT_GT(shares->selectors[0].of_best, 0.95);
     EXPECT_GT(shares->selectors[0].of_best, shares->selectors[1].of_best);

@@ -19,8 +19,8 @@ std::string shares_json(const accuracy::ValueShares& shares, double seconds) {
         shares.frames, shares.proven, shares.floor_frames, shares.full_frames, shares.bound_gap, seconds);
     for (const accuracy::ValueShare& s : shares.selectors)
         out += fmt::format(
-            ", \"{}\": {{\"of_best\": {:.5f}, \"least_of_best\": {:.5f}, \"of_bound\": {:.5f}, \"least_of_bound\": {:.5f}}}",
-            s.selector, s.of_best, s.least_of_best, s.of_bound, s.least_of_bound);
+            ", \"{}\": {{\"of_best\": {:.5f}, \"min_of_best\": {:.5f}, \"of_bound\": {:.5f}, \"min_of_bound\": {:.5f}}}",
+            s.selector, s.of_best, s.min_of_best, s.of_bound, s.min_of_bound);
     return out + "}";
 }
 

@@ -107,7 +107,7 @@ TEST(Oracle, IsTheOptimumOfEveryCutAndItsBoundIsOne) {
 
 /// Mean share of the optimum by threshold and two-stage. Two of five random trees have a budget to divide and at most 16 leaves.
 void expect_near_the_optimum(std::uint64_t trees) {
-    double threshold = 0, two_stage = 0, least = 1;
+    double threshold = 0, two_stage = 0, min_share = 1;
     std::uint64_t count = 0, steps = 0;
     for_trees(trees, 24, [&](Scene& s, double budget) {
         if (leaves_of(s.frame) > 16) return;
@@ -122,12 +122,12 @@ void expect_near_the_optimum(std::uint64_t trees) {
         s.forget();
         two_stage += s.run("two-stage", budget).value / optimum.value;
         threshold += share;
-        least = std::min(least, share);
+        min_share = std::min(min_share, share);
         ++count;
     });
     const auto n = static_cast<double>(count);
     std::printf("share of the optimum: threshold %.4f (least %.2f), two-stage %.4f, %.0f trees, at most %.0f steps\n",
-                threshold / n, least, two_stage / n, n, static_cast<double>(steps));
+                threshold / n, min_share, two_stage / n, n, static_cast<double>(steps));
     EXPECT_GT(count, trees / 3);
     EXPECT_GE(threshold / n, 0.95);
     EXPECT_GT(threshold, two_stage);

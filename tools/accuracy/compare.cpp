@@ -90,8 +90,8 @@ std::string value_text(const Comparison& c, const ComparedSelector& s) {
 nlohmann::ordered_json value_json(const Comparison& c, const ComparedSelector& s) {
     if (c.value.frames == 0 || !s.goes_by_budget) return nullptr;
     using report::rounded;
-    return {{"of_best_known", {{"mean", rounded(s.value.of_best)}, {"min", rounded(s.value.least_of_best)}}},
-            {"of_bound", {{"mean", rounded(s.value.of_bound)}, {"min", rounded(s.value.least_of_bound)}}}};
+    return {{"of_best_known", {{"mean", rounded(s.value.of_best)}, {"min", rounded(s.value.min_of_best)}}},
+            {"of_bound", {{"mean", rounded(s.value.of_bound)}, {"min", rounded(s.value.min_of_bound)}}}};
 }
 
 }  // namespace

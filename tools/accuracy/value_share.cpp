@@ -67,14 +67,14 @@ void add_frame(const select::SelectInput& input, const select::OracleLimits& lim
         const double value = value_of(one.cut);
         s.of_best += value / optimum.value;
         s.of_bound += value / optimum.bound;
-        s.least_of_best = std::min(s.least_of_best, value / optimum.value);
-        s.least_of_bound = std::min(s.least_of_bound, value / optimum.bound);
+        s.min_of_best = std::min(s.min_of_best, value / optimum.value);
+        s.min_of_bound = std::min(s.min_of_bound, value / optimum.bound);
     }
 }
 
 Result<ValueShares> value_shares(const model::Model& model, const model::CostModel& costs, const Path& path,
                                  const ShareRequest& request, const Progress& progress) {
-    constexpr int settled = 4;  // preparations until the visits of a frame are limited as in a walk
+    constexpr int preparations = 4;  // until the visits of a frame are limited as in a walk
     prepare::PrepareOptions options;
     options.workers = request.workers;
     options.max_candidates = static_cast<std::uint32_t>(std::min<std::size_t>(options.max_candidates, model.nodes.size()));
@@ -94,7 +94,7 @@ Result<ValueShares> value_shares(const model::Model& model, const model::CostMod
         const prepare::Region region = predict_region(before, now, request.period_s, walk::horizon_periods * request.period_s);
         const double speed_mps = glm::length(now.position - before.position) / request.period_s;
         const double w = std::min(1.0, std::abs(glm::dot(now.orientation, before.orientation)));
-        for (int k = 0; k < settled; ++k)
+        for (int k = 0; k < preparations; ++k)
             preparer.run(region, request.viewport, i, speed_mps, 2.0 * std::acos(w) / request.period_s, frame);
         if (frame.candidates.empty()) continue;
         select::SelectInput input{&model, &frame, &costs, request.budget_us, 1.0, 0.0, request.slice_us};

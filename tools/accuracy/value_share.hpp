@@ -22,7 +22,7 @@ namespace surefoot::accuracy {
 struct ValueShare {
     std::string selector;
     /// Means and least values: of the best cut known, and of the bound where the optimum is not proven.
-    double of_best = 0, least_of_best = 1, of_bound = 0, least_of_bound = 1;
+    double of_best = 0, min_of_best = 1, of_bound = 0, min_of_bound = 1;
 };
 
 /// Shares of all selectors over the same frames.
