@@ -7,6 +7,7 @@
 //   if (engine.bought(ItemKind::filter, 1)) ...                spend the time, in this frame only
 //
 // cost_us: what the frame takes longer, before correction and headroom, as the cost table predicts forms.
+// A lever that saves time is offered the other way round: its dear setting is the item.
 // value: what it shows more, in the weighted pixels of Choice::value. A share of the picture is share *
 // PreparedFrame::full_value.
 #pragma once

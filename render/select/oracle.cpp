@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "render/select/bound_search.hpp"
 #include "render/select/cut_builder.hpp"
 #include "render/select/relaxed_problem.hpp"
 
@@ -287,6 +288,22 @@ void offer_selectors(const Problem& problem, const SelectInput& input, const Rel
     }
 }
 
+/// A bound that is no greater than `bound`. What fits on the way may be the new best.
+double reduce_bound(const Problem& problem, Relaxation& relaxation, const OracleLimits& limits, BranchAndBound& search,
+                    double bound) {
+    const Multipliers m = relaxation.multipliers();
+    const double sum = m.first + m.second;
+    BoundSearch parts(problem, relaxation, sum > 0.0 ? m.first / sum : 0.5);
+    const auto offer = [&](const std::vector<std::uint32_t>& decision) {
+        Solution s{decision, sum_of(problem, decision)};
+        if (problem.fits(s.sum)) fill(problem, relaxation, s);
+        search.offer(s);
+        return search.best() ? search.best()->sum.value : -std::numeric_limits<double>::infinity();
+    };
+    const double best = search.best() ? search.best()->sum.value : -std::numeric_limits<double>::infinity();
+    return std::min(bound, parts.search(limits.max_parts, best, offer));
+}
+
 /// Gives the solution to the builder.
 void build(const Problem& problem, const Solution& s, CutBuilder& builder, Budget& budget) {
     builder.take_root(0);
@@ -324,6 +341,7 @@ Optimum find_optimum(const SelectInput& input, SelectState& state, Cut& cut, con
     const Problem problem(input, budget);
     Relaxation relaxation(problem);
     const bool may_fit = relaxation.minimise();
+    double bound = relaxation.bound();
     BranchAndBound search(problem, relaxation, relaxation.multipliers());
     if (may_fit) {
         if (!relaxation.feasible().empty()) {
@@ -333,6 +351,8 @@ Optimum find_optimum(const SelectInput& input, SelectState& state, Cut& cut, con
         }
         offer_selectors(problem, input, relaxation, search);
         optimum.proven = search.search(problem.leaves <= limits.exact_leaves ? ~std::uint64_t{0} : limits.max_steps);
+        if (!optimum.proven) bound = reduce_bound(problem, relaxation, limits, search, bound);
+        optimum.proven = optimum.proven || (search.best() && bound <= search.best()->sum.value * (1.0 + 1e-6));
     }
     optimum.steps = search.steps();
     optimum.floor_binds = !search.best().has_value();
@@ -345,8 +365,7 @@ Optimum find_optimum(const SelectInput& input, SelectState& state, Cut& cut, con
     }
     builder.finish(budget, 0, cut);
     optimum.value = cut.value + cut.bought.value;
-    optimum.bound =
-        optimum.floor_binds || optimum.proven ? optimum.value : std::max(relaxation.bound() + problem.fixed_value, optimum.value);
+    optimum.bound = optimum.floor_binds || optimum.proven ? optimum.value : std::max(bound + problem.fixed_value, optimum.value);
     return optimum;
 }
 

@@ -12,15 +12,16 @@ constexpr std::string_view oracle_name = "oracle";
 
 /// Limits of the search. It counts steps, not seconds: the same frame has the same answer on any machine.
 struct OracleLimits {
-    std::uint32_t exact_leaves = 16;        ///< frames with as many visible leaves are searched to the end
-    std::uint64_t max_steps = 200'000'000;  ///< of larger ones; some seconds
+    std::uint32_t exact_leaves = 16;       ///< frames with as many visible leaves are searched to the end
+    std::uint64_t max_steps = 50'000'000;  ///< of branch and bound in larger ones; half a second
+    std::uint32_t max_parts = 2000;        ///< into which the bound's problem is split then; some seconds
 };
 
 /// What is known of the greatest value of a legal cut within the budget. Values of forms and of bought items, weighted pixels.
 struct Optimum {
     double value = 0;     ///< of the best cut known
     double bound = 0;     ///< no cut has more. The budget is relaxed to two linear ones, and these to their Lagrangian
-    bool proven = false;  ///< `value` is the optimum, to 10^-7 of it; the bound equals it then
+    bool proven = false;  ///< `value` is the optimum, to 10^-6 of it; the bound equals it then
     bool floor_binds = false;
     std::uint64_t steps = 0;
 };

@@ -53,6 +53,7 @@ Problem::Problem(const SelectInput& input, const Budget& budget)
 Relaxation::Relaxation(const Problem& problem)
     : problem_(problem),
       best_(problem.nodes.size()),
+      forbidden_(problem.decisions.size()),
       worth_(problem.nodes.size()),
       below_worth_(problem.nodes.size()),
       sums_(problem.nodes.size()),
@@ -67,6 +68,7 @@ Gain Relaxation::solve(const Multipliers& multipliers) {
         const auto decisions = problem_.decisions_of(static_cast<std::uint32_t>(i));
         worth_[i] = -infinity;
         for (std::uint32_t d = 0; d < decisions.size(); ++d) {
+            if (forbidden_[node.first_decision + d] != 0) continue;
             const double worth = decisions[d].opens ? below_worth_[i] : multipliers.of(decisions[d].gain);
             if (!(worth > worth_[i])) continue;  // of equals the coarser one
             worth_[i] = worth;
@@ -84,7 +86,12 @@ Gain Relaxation::solve(const Multipliers& multipliers) {
         worth += worth_[root];
         size += std::abs(worth_[root]);
     }
-    const double given = (multipliers.first + multipliers.second) * problem_.room_us;
+    if (!std::isfinite(worth)) {  // nothing is allowed
+        bound_ = -infinity;
+        return {0, infinity, infinity};
+    }
+    const double price = multipliers.first + multipliers.second;
+    const double given = price > 0.0 ? price * problem_.room_us : 0.0;
     bound_ = worth + given + 1e-9 * (size + std::abs(given));  // what rounding may have taken
     if (problem_.fits(sum) && (feasible_.empty() || sum.value > feasible_value_)) {
         feasible_ = best_;
@@ -107,10 +114,13 @@ Gain Relaxation::solve_along(double share, double multiplier) {
 bool Relaxation::minimise_along(double share) {
     const auto cost = [share](const Gain& g) { return share * g.first_us + (1.0 - share) * g.second_us; };
     Gain rich = solve_along(share, 0.0), poor;
+    cheap_ = dear_ = best_;
     if (cost(rich) <= problem_.room_us) return true;
+    if (!std::isfinite(bound_)) return false;
     double low = 0, high = 1e-9 * (1.0 + std::abs(rich.value)) / std::max(1e-9, std::abs(cost(rich)));
     for (int i = 0;; ++i) {
         poor = solve_along(share, high);
+        (cost(poor) <= problem_.room_us ? cheap_ : dear_) = best_;
         if (cost(poor) <= problem_.room_us) break;
         if (i == 60) return false;
         low = high;
@@ -125,10 +135,34 @@ bool Relaxation::minimise_along(double share) {
         const Gain sum = solve_along(share, next);
         if (sum.value - next * cost(sum) <= expected + 1e-12 * std::abs(expected) && i % 3 != 2)
             return true;  // the lines' corner
-        (cost(sum) <= problem_.room_us ? high : low) = next;
-        (cost(sum) <= problem_.room_us ? poor : rich) = sum;
+        const bool fits = cost(sum) <= problem_.room_us;
+        (fits ? high : low) = next;
+        (fits ? poor : rich) = sum;
+        (fits ? cheap_ : dear_) = best_;
     }
     return true;
+}
+
+bool Relaxation::minimise_for(double share) {
+    min_bound_ = infinity;
+    feasible_.clear();
+    const bool any = minimise_along(share);
+    bound_ = any ? min_bound_ : -infinity;
+    return any;
+}
+
+bool Relaxation::find_tie(std::uint32_t& node, std::uint32_t& decision) const {
+    std::vector<std::uint32_t> stack = problem_.roots;
+    while (!stack.empty()) {
+        node = stack.back();
+        stack.pop_back();
+        decision = dear_[node];
+        if (decision != cheap_[node]) return true;
+        if (!problem_.decisions_of(node)[decision].opens) continue;
+        for (std::uint32_t k = 0; k < problem_.nodes[node].child_count; ++k)
+            stack.push_back(problem_.nodes[node].first_child + k);
+    }
+    return false;
 }
 
 bool Relaxation::minimise() {

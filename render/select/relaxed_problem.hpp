@@ -6,6 +6,7 @@
 // since a*S + b*R + m*max(S, R) is. So the two linear limits together are the budget itself, and not an estimate of it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -65,6 +66,10 @@ class Relaxation {
 public:
     explicit Relaxation(const Problem& problem);
 
+    /// Restricts the problem to a part of it. Decisions are counted as in Problem::decisions.
+    void allow_all() { std::fill(forbidden_.begin(), forbidden_.end(), std::uint8_t{0}); }
+    void forbid(std::uint32_t decision) { forbidden_[decision] = 1; }
+
     /// Returns the sums over the best solution, which may exceed the limits.
     Gain solve(const Multipliers& multipliers);
     /// Upper bound of the problem by the last solve(): rounding included.
@@ -72,6 +77,12 @@ public:
     /// Finds the multipliers of the least bound, and solves for them. False: no solution fits, or none was found.
     bool minimise();
     [[nodiscard]] const Multipliers& multipliers() const { return multipliers_; }
+    /// The least bound for one ratio of the multipliers, 0..1. False: no solution fits. bound() is of that ratio's best
+    /// multiplier.
+    bool minimise_for(double share);
+    /// A node at which minimise_for() found two best solutions, one too dear and one that fits: the dear one's decision.
+    /// Such a node is reached in both. False: there is none.
+    bool find_tie(std::uint32_t& node, std::uint32_t& decision) const;
     /// Of the last solve(), for each node: its best decision, and the Lagrangian of its subtree.
     [[nodiscard]] std::span<const std::uint32_t> best() const { return best_; }
     [[nodiscard]] std::span<const double> worth() const { return worth_; }
@@ -85,7 +96,8 @@ private:
     const Problem& problem_;
     Multipliers multipliers_, min_multipliers_;
     double bound_ = 0, min_bound_ = 0, feasible_value_ = 0;
-    std::vector<std::uint32_t> best_, feasible_;
+    std::vector<std::uint32_t> best_, feasible_, dear_, cheap_;
+    std::vector<std::uint8_t> forbidden_;
     std::vector<double> worth_, below_worth_;
     std::vector<Gain> sums_, below_;
 };

@@ -23,6 +23,7 @@ ShareRequest request_of(std::vector<std::string> selectors) {
     request.selectors = std::move(selectors);
     request.frames = 6;
     request.limits.max_steps = 100'000;
+    request.limits.max_parts = 20;
     return request;
 }
 

@@ -1,5 +1,6 @@
 // Bench: what share of the greatest value each selector shows, on frames along a path, at half and a quarter of the predicted
-// time of full detail. bench_optimum MODEL.walk [FRAMES 20] [PATH.csv] [STATE_DIR] [LIFT_M] [STEPS 50000000] -> one JSON object.
+// time of full detail. bench_optimum MODEL.walk [FRAMES 20] [PATH.csv] [STATE_DIR] [LIFT_M] [STEPS 50000000] [PARTS 2000] -> one
+// JSON object.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -28,7 +29,7 @@ std::string shares_json(const accuracy::ValueShares& shares, double seconds) {
 
 int main(int argc, char** argv) {
     if (argc < 2) {
-        fmt::print(stderr, "bench_optimum MODEL.walk [FRAMES] [PATH.csv] [STATE_DIR] [LIFT_M] [STEPS]\n");
+        fmt::print(stderr, "bench_optimum MODEL.walk [FRAMES] [PATH.csv] [STATE_DIR] [LIFT_M] [STEPS] [PARTS]\n");
         return 2;
     }
     walk::WalkRequest walk;
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
     request.selectors = {"threshold", "two-stage", "best-first", "depth-first"};
     request.frames = argc > 2 ? static_cast<std::uint32_t>(std::max(1, std::atoi(argv[2]))) : 20;
     request.limits.max_steps = argc > 6 ? static_cast<std::uint64_t>(std::atoll(argv[6])) : 50'000'000;
+    request.limits.max_parts = argc > 7 ? static_cast<std::uint32_t>(std::atoi(argv[7])) : 2000;
     fmt::print("{{\"model\": \"{}\"", walk.model_file);
     for (const auto& [name, share] : {std::pair{"half", 0.5}, std::pair{"quarter", 0.25}}) {
         request.share_of_full = share;

@@ -76,7 +76,7 @@ void for_trees(std::uint64_t trees, std::uint32_t max_nodes, const Use& use) {
 }
 
 TEST(Oracle, IsTheOptimumOfEveryCutAndItsBoundIsOne) {
-    int trees = 0, open = 0;
+    int trees = 0, open = 0, tighter = 0;
     double tightest = 0;
     for_trees(4000, 12, [&](Scene& s, double budget) {
         const std::vector<Whole> cuts = all_cuts(s.frame, 0, 20000);
@@ -92,16 +92,22 @@ TEST(Oracle, IsTheOptimumOfEveryCutAndItsBoundIsOne) {
         ASSERT_GE(exact.value, optimum - near);
         ASSERT_EQ(check_legal(s.frame, s.cut), "");
         ASSERT_LE(static_cast<double>(s.cut.predicted_us), budget);
-        const Optimum loose = find_optimum(s.input(budget), s.state, s.cut, {.exact_leaves = 0, .max_steps = 0});
+        const Optimum loose = find_optimum(s.input(budget), s.state, s.cut, {.exact_leaves = 0, .max_steps = 0, .max_parts = 0});
         ASSERT_GE(loose.bound, optimum - near);
         ASSERT_LE(loose.value, exact.value + near);
         ASSERT_GE(loose.value, s.run("threshold", budget).value - near);
+        const Optimum split = find_optimum(s.input(budget), s.state, s.cut, {.exact_leaves = 0, .max_steps = 0, .max_parts = 30});
+        ASSERT_GE(split.bound, optimum - near) << "of parts";
+        ASSERT_LE(split.bound, loose.bound * (1 + 1e-9));
+        ASSERT_GE(split.value, loose.value - near);
         ++trees;
         if (!loose.proven) ++open;
+        if (split.bound < 0.999 * loose.bound) ++tighter;
         tightest = std::max(tightest, exact.value / loose.bound);
     });
     EXPECT_GT(trees, 1000);
     EXPECT_GT(open, 100) << "bounds that were not proven were looked at too";
+    EXPECT_GT(tighter, 100) << "splitting brings bounds down";
     EXPECT_GT(tightest, 0.999);
 }
 
@@ -146,7 +152,7 @@ TEST(Oracle, OfALargeFrameItBoundsEverySelector) {
     const double full = static_cast<double>(s.run("flat", test::infinity).predicted_us);
     for (const double share : {0.3, 0.5, 0.8}) {
         s.forget();
-        const Optimum optimum = find_optimum(s.input(share * full), s.state, s.cut, {.max_steps = 100000});
+        const Optimum optimum = find_optimum(s.input(share * full), s.state, s.cut, {.max_steps = 100000, .max_parts = 50});
         EXPECT_LE(optimum.steps, 100000U);
         EXPECT_EQ(check_legal(s.frame, s.cut), "");
         EXPECT_LE(static_cast<double>(s.cut.predicted_us), share * full);
@@ -160,7 +166,8 @@ TEST(Oracle, OfALargeFrameItBoundsEverySelector) {
         s.forget();
         Cut again;
         reserve(again, s.state.max_candidates());
-        EXPECT_EQ(find_optimum(s.input(share * full), s.state, again, {.max_steps = 100000}).value, optimum.value)
+        EXPECT_EQ(find_optimum(s.input(share * full), s.state, again, {.max_steps = 100000, .max_parts = 50}).value,
+                  optimum.value)
             << "deterministic";
     }
 }

@@ -28,7 +28,8 @@ accuracy::FindShares find_shares(const CompareArguments& a) {
         request.selectors.assign(selectors.begin(), selectors.end());
         request.frames = a.value_frames;
         request.budget_us = budget_us;
-        request.limits.max_steps = 20'000'000;  // a quarter of a second a frame
+        request.limits.max_steps = 10'000'000;  // both together about half a second a frame
+        request.limits.max_parts = 200;
         return accuracy::value_shares_of_walk(a.request.walk, std::move(request), progress);
     };
 }
