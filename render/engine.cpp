@@ -35,6 +35,8 @@ struct Engine::Impl {
     [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
     select::SelectState state GUARDED_BY(draws);
     select::Cut cut GUARDED_BY(draws);
+    select::ItemList offered GUARDED_BY(draws);
+    bool offers_used GUARDED_BY(draws) = false;  ///< by a selection: the next offer begins a new list
     select::SlicePlan plan GUARDED_BY(draws);
     std::vector<gl::DrawItem> drawn GUARDED_BY(draws), culled GUARDED_BY(draws);
     FloorWatch floor GUARDED_BY(draws);
@@ -62,6 +64,9 @@ struct Engine::Impl {
         const model::ItemCost &so_far, &next, &stand_in, &rest;
         float in_flight_us;  ///< of so_far: not finished yet
     };
+    void begin_offers() REQUIRES(draws);
+    void prepay_resolution(const prepare::PreparedFrame& set) REQUIRES(draws);
+    void report_items(SubmitReport& report) const REQUIRES(draws);
     [[nodiscard]] bool in_time(const Progression& p, const SubmitLimits& limits, double start_us) REQUIRES(draws);
     model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report) REQUIRES(draws);
     void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
@@ -145,6 +150,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     const model::Viewport viewport = e.options.device.viewport;
     const bool chosen = !(e.options.resolution > 0.0F);
     out.resolution = chosen ? e.resolution.resolution() : e.options.resolution;
+    out.resolution_value = 0.0F;
     // Only their ratio: the common correction, which follows whole frames, finds their level.
     const auto apart = static_cast<float>(std::sqrt(hints.form_ratio > 0.0 ? hints.form_ratio : 1.0));
     out.full_factor = apart;
@@ -161,6 +167,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     };
     const float other = e.resolution.trial();
     if (other > 0.0F) e.resolution.judge(lost(out.curve, out.resolution), lost(e.preparer->value_at(other), other));
+    out.resolution_value = e.resolution.gain() * out.curve.full_value;
 }
 
 Result<void> Engine::set_selector(std::string_view name) {
@@ -168,6 +175,38 @@ Result<void> Engine::set_selector(std::string_view name) {
     if (!selector) return selector.error();
     impl_->use(**selector);
     return {};
+}
+
+void Engine::Impl::begin_offers() {
+    if (offers_used) offered.clear();
+    offers_used = false;
+}
+
+bool Engine::offer(const select::Item& item) {
+    impl_->draws.plays();
+    impl_->begin_offers();
+    return impl_->offered.offer(item);
+}
+
+bool Engine::bought(select::ItemKind kind, std::uint32_t what) const {
+    const Impl& e = *impl_;
+    e.draws.plays();
+    const std::span<const select::Item> list = e.offered.offered();
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (list[i].name() == select::ItemName{kind, what}) return !e.use_last && e.offers_used && e.cut.bought.has(i);
+    return false;
+}
+
+const select::ItemList& Engine::offered() const {
+    impl_->draws.plays();
+    return impl_->offered;
+}
+
+/// The step of resolution was bought where the set's prices were made. Enlarging is what it costs, beyond those prices.
+void Engine::Impl::prepay_resolution(const prepare::PreparedFrame& set) {
+    if (!(set.resolution < 1.0F)) return;
+    offered.prepay({select::ItemKind::resolution, static_cast<std::uint32_t>(model::resolution_step(set.resolution)),
+                    costs.enlarge_us(set.resolution, options.device.viewport), set.resolution_value});
 }
 
 const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction,
@@ -178,10 +217,14 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.prepared = &prepared;
     e.drawn_resolution = prepared.resolution;
     e.correction = correction;
-    const select::SelectInput input{&e.model,          &prepared,        &e.costs,           budget_us,
-                                    correction.factor, target_error_rad, e.options.slice_us, correction.headroom};
+    e.begin_offers();
+    e.prepay_resolution(prepared);
+    const select::SelectInput input{&e.model,           &prepared,           &e.costs,
+                                    budget_us,          correction.factor,   target_error_rad,
+                                    e.options.slice_us, correction.headroom, &e.offered};
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
+    e.offers_used = true;
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
     return e.cut;
 }
@@ -233,6 +276,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
 bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, double start_us) {
     if (!options.in_frame_check) return true;
     const model::FrameCombine& combine = costs.combine;
+    const auto bought_us = static_cast<float>(use_last ? 0.0 : cut.bought.cost_us);
     const float so_far_us = combine.frame_us(p.so_far.submit_us, p.so_far.raster_us);
     const auto with = [&](const model::ItemCost& more) {
         return static_cast<double>(combine.frame_us(p.so_far.submit_us + more.submit_us, p.so_far.raster_us + more.raster_us) -
@@ -241,7 +285,7 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     const double scale = correction.factor * headroom;
     select::CheckInput check;
     check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + static_cast<double>(p.in_flight_us) * correction.factor;
-    check.predicted_so_far_us = limits.elapsed_us + static_cast<double>(so_far_us) * correction.factor;
+    check.predicted_so_far_us = limits.elapsed_us + static_cast<double>(so_far_us + bought_us) * correction.factor;
     check.next_us = with(p.next) * scale;
     check.next_stand_in_us = with(p.stand_in) * scale;
     check.rest_stand_in_us = (with(p.rest) + static_cast<double>(enlarge_us())) * correction.factor;  // of many: little spread
@@ -252,6 +296,7 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
 }
 
 void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) {
+    device->draws.plays();
     const model::FrameCombine& combine = costs.combine;
     model::ItemCost rest_stand_in, so_far;
     for (const select::Slice& slice : plan.slices) {
@@ -259,6 +304,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     }
     bool full = true;
     float in_flight_us = 0;
+    if (cut.bought.cost_us > 0.0) device->charge_us(cut.bought.cost_us);
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
     for (const select::Slice& slice : plan.slices) {
         rest_stand_in.submit_us -= slice.stand_in_cost.submit_us + costs.slice_us;
@@ -273,9 +319,22 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         if (!full) ++report.downgraded_slices;
     }
     report.predicted = so_far;
-    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us();
+    report.predicted_us =
+        static_cast<double>(combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us()) + cut.bought.cost_us;
     report.other_us = report.predicted_us - report.full_us * static_cast<double>(prepared->full_factor) -
                       report.coarse_us * static_cast<double>(prepared->coarse_factor);
+}
+
+/// After select_last(), nothing is bought but the enlarging of the picture.
+void Engine::Impl::report_items(SubmitReport& report) const {
+    if (use_last) {
+        report.bought_us = static_cast<double>(enlarge_us());
+        report.bought_items = drawn_resolution < 1.0F ? 1U : 0U;
+        return;
+    }
+    report.bought_us = cut.bought.cost_us + cut.bought.prepaid_us;
+    report.bought_items = cut.bought.count;
+    report.refused_items = cut.bought.refused;
 }
 
 void Engine::Impl::push(const UnpreparedItem& item, SubmitReport& report) {
@@ -357,6 +416,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.resolution = stats.resolution;
     if (!e.drawn.empty()) report.benefit_mean /= static_cast<double>(e.drawn.size());
     report.floor_share = e.floor.floor_share();
+    e.report_items(report);
     return report;
 }
 

@@ -69,8 +69,10 @@ struct SubmitReport {
     std::uint32_t slices = 0, downgraded_slices = 0, items = 0, draws = 0;
     std::uint32_t culled = 0;  ///< items of the cut outside this pose's view
     std::uint64_t triangles = 0;
-    float resolution = 1;       ///< that was drawn: a step of model::resolution_steps
-    float worst_error_rad = 0;  ///< of the drawn items, stand-ins included
+    std::uint32_t bought_items = 0, refused_items = 0;  ///< beside the forms; see select/item.hpp
+    double bought_us = 0;                               ///< of predicted_us: what they cost
+    float resolution = 1;                               ///< that was drawn: a step of model::resolution_steps
+    float worst_error_rad = 0;                          ///< of the drawn items, stand-ins included
     double benefit_mean = 0;
     float floor_share = 0;  ///< of the drawn pixels, as estimated: those in the cheapest forms of nodes that have finer ones
 };
@@ -97,6 +99,13 @@ public:
 
     /// Changes the selector, from the next prepare() on. No prepare() may be running, since `flat` changes its depth. Allocates.
     Result<void> set_selector(std::string_view name);
+
+    /// Offers something that the next select() may buy beside forms. False: refused, and counted in its cut.
+    bool offer(const select::Item& item);
+    /// Whether the cut that the next submit() draws has it. Always false after select_last().
+    [[nodiscard]] bool bought(select::ItemKind kind, std::uint32_t what) const;
+    /// All that was offered to the last select(), what it prepaid included.
+    [[nodiscard]] const select::ItemList& offered() const;
 
     /// budget_us: of the whole frame; target_error_rad 0: as far as the budget goes.
     const select::Cut& select(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction,

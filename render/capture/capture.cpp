@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "render/select/registry.hpp"
+#include "render/select/oracle.hpp"
 
 namespace surefoot::capture {
 
-Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<select::Shown> memory,
+Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, Memory memory,
              const select::Cut& cut) {
     Capture c;
     c.prepared = *input.prepared;
@@ -24,16 +24,33 @@ Capture take(const select::SelectInput& input, std::string_view selector, float 
     c.enlarge_ns_per_pixel = input.costs->enlarge_ns_per_pixel;
     c.hysteresis = hysteresis;
     c.node_count = static_cast<std::uint32_t>(input.model->nodes.size());
-    c.memory = std::move(memory);
+    c.memory = std::move(memory.shown);
+    const auto bought = memory.bought.names();
+    c.bought_before.assign(bought.begin(), bought.end());
+    if (input.items != nullptr) {
+        c.offered.assign(input.items->offered().begin(), input.items->offered().end());
+    }
     c.items = cut.items;
     c.hash = cut.hash;
     c.predicted_us = cut.predicted_us;
     return c;
 }
 
+select::ItemList items_of(const Capture& capture) {
+    select::ItemList items;
+    for (const select::Item& item : capture.offered) {
+        if (item.prepaid) {
+            items.prepay(item);
+        } else {
+            items.offer(item);
+        }
+    }
+    return items;
+}
+
 Result<select::Cut> replay(const Capture& capture, std::string_view selector_name) {
     const std::string_view name = selector_name.empty() ? std::string_view(capture.selector) : selector_name;
-    const select::Selector* selector = select::find_selector(name);
+    const select::Selector* selector = select::find_offline_selector(name);
     if (selector == nullptr) {
         return Error{"selector '" + std::string(name) + "'", "There is no such selector", "Name one that this version knows",
                      ErrorKind::misuse};
@@ -46,13 +63,22 @@ Result<select::Cut> replay(const Capture& capture, std::string_view selector_nam
     state.hysteresis = capture.hysteresis;
     for (const select::Shown& m : capture.memory) state.shown[m.node] = m.form;
     state.touched = capture.memory;
+    for (const select::ItemName& bought : capture.bought_before) state.bought.add(bought);
+    const select::ItemList items = items_of(capture);
     model::CostModel costs;
     costs.combine = capture.combine;
     costs.headroom = capture.headroom;
     costs.slice_us = capture.slice_end_us;
     costs.enlarge_ns_per_pixel = capture.enlarge_ns_per_pixel;
-    select::SelectInput input{&nodes_only,        &capture.prepared,        &costs,          capture.budget_us,
-                              capture.correction, capture.target_error_rad, capture.slice_us};
+    select::SelectInput input{&nodes_only,
+                              &capture.prepared,
+                              &costs,
+                              capture.budget_us,
+                              capture.correction,
+                              capture.target_error_rad,
+                              capture.slice_us,
+                              0,
+                              &items};
     select::Cut cut;
     select::reserve(cut, candidates);
     selector->run(input, state, cut);

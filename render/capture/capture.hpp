@@ -14,6 +14,12 @@
 
 namespace surefoot::capture {
 
+/// What a selector remembered: SelectState::before and bought_before, after the selection.
+struct Memory {
+    std::vector<select::Shown> shown;
+    select::RememberedItems bought{};
+};
+
 /// One captured frame: prepared arrays, cut, and all that the selection depended on.
 struct Capture {
     std::uint64_t frame = 0;  ///< of the walk; prepared.frame is the frame whose pose started the preparation
@@ -24,15 +30,17 @@ struct Capture {
     float enlarge_ns_per_pixel = 0;        ///< of the cost model
     float headroom = 1, slice_end_us = 0;  ///< of the cost model; selection uses no more of it
     float hysteresis = 1;
-    std::uint32_t node_count = 0;        ///< of the model
-    std::vector<select::Shown> memory;   ///< state of the selector before the selection
-    std::vector<select::CutItem> items;  ///< the cut
-    std::uint64_t hash = 0;              ///< of the cut
+    std::uint32_t node_count = 0;                 ///< of the model
+    std::vector<select::Shown> memory;            ///< state of the selector before the selection
+    std::vector<select::ItemName> bought_before;  ///< the same, of what was bought beside forms
+    std::vector<select::Item> offered;            ///< what could be bought beside forms
+    std::vector<select::CutItem> items;           ///< the cut
+    std::uint64_t hash = 0;                       ///< of the cut
     float predicted_us = 0;
 };
 
-/// Makes a capture. `memory`: SelectState::before, after `cut` was made. Allocates, so not for the frame thread.
-Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, std::vector<select::Shown> memory,
+/// Makes a capture. Allocates, so not for the frame thread.
+Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, Memory memory,
              const select::Cut& cut);
 
 /// Little-endian; magic, version, sizes and a checksum, then one zstd frame. Replaces the file only when complete.
@@ -42,7 +50,10 @@ Result<void> write_capture(const std::string& file, const Capture& capture);
 Result<Capture> read_capture(const std::string& file);
 Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::string& place);
 
-/// Repeats the selection, by the captured selector or by another one.
+/// The captured offers, as the selection had them.
+select::ItemList items_of(const Capture& capture);
+
+/// Repeats the selection, by the captured selector or by another one, the oracle too.
 Result<select::Cut> replay(const Capture& capture, std::string_view selector = {});
 
 /// replay() by the captured selector. If the cut differs, the error names the first difference.

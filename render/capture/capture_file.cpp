@@ -1,6 +1,7 @@
 // The file form of a captured frame: written field by field, read by a bounded reader that trusts no count and no index.
 #include <zstd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -21,7 +22,7 @@ using model::Index;
 using model::none;
 
 constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
-constexpr std::uint32_t version = 4, version_without_values = 3;
+constexpr std::uint32_t version = 5, version_without_items = 4, version_without_values = 3;
 constexpr std::uint64_t max_bytes = 1ULL << 31U;  // unpacked
 constexpr std::uint32_t max_nodes = 1U << 26U;    // replay makes room for them
 constexpr std::size_t header_bytes = 40;
@@ -62,6 +63,15 @@ void each(Io& io, I& i) requires std::is_same_v<std::remove_const_t<I>, select::
     io(i.candidate, i.node, i.rep, i.choice);
 }
 
+template <class Io, class I>
+void each(Io& io, I& i) requires std::is_same_v<std::remove_const_t<I>, select::Item> {
+    io(i.kind, i.what, i.cost_us, i.value, i.prepaid);
+}
+template <class Io, class N>
+void each(Io& io, N& n) requires std::is_same_v<std::remove_const_t<N>, select::ItemName> {
+    io(n.kind, n.what);
+}
+
 class Writer {
 public:
     template <class... T>
@@ -78,7 +88,7 @@ public:
         const auto bytes = std::as_bytes(std::span(s));
         out.insert(out.end(), bytes.begin(), bytes.end());
     }
-    static constexpr bool has_values = true;
+    static constexpr bool has_values = true, has_items = true;
     std::vector<std::byte> out;
 
 private:
@@ -92,7 +102,8 @@ private:
 
 class Reader {
 public:
-    Reader(std::span<const std::byte> bytes, bool with_values) : in(bytes), has_values(with_values) {}
+    Reader(std::span<const std::byte> bytes, std::uint32_t file_version)
+        : in(bytes), has_values(file_version != version_without_values), has_items(file_version == version) {}
     template <class... T>
     void operator()(T&... values) {
         (get(values), ...);
@@ -114,6 +125,7 @@ public:
     }
     ByteReader in;
     bool has_values;  ///< whether choices have values and rates
+    bool has_items;   ///< whether it holds what was offered beside forms
 
 private:
     void get(bool& value) { value = in.read<std::uint8_t>() != 0; }
@@ -132,6 +144,9 @@ void whole(Io& io, C& c) {
     io.list(c.prepared.choices);
     io.list(c.memory);
     io.list(c.items);
+    if (!io.has_items) return;
+    io.list(c.offered);
+    io.list(c.bought_before);
 }
 
 bool finite(const model::ItemCost& cost) { return std::isfinite(cost.submit_us) && std::isfinite(cost.raster_us); }
@@ -167,6 +182,12 @@ Result<void> check(const Capture& c, const std::string& place) {
     for (std::size_t i = 0; i < f.choices.size(); ++i) {
         if (!finite(f.choices[i].cost)) return bad(fmt::format("The cost of choice {} is not finite", i));
     }
+    if (items_of(c).offered().size() != c.offered.size()) return bad("An item is unsound");
+    if (c.bought_before.size() > select::ItemList::capacity) return bad("Too many items are remembered");
+    const auto known = [](const auto& i) { return static_cast<std::size_t>(i.kind) < select::item_kind_names.size(); };
+    if (!std::all_of(c.offered.begin(), c.offered.end(), known) ||
+        !std::all_of(c.bought_before.begin(), c.bought_before.end(), known))
+        return bad("The kind of an item is unknown");
     for (const select::Shown& m : c.memory) {
         if (m.node >= c.node_count) return bad("A remembered node is out of range");
     }
@@ -200,7 +221,7 @@ Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::strin
         return Error{place, "The file is no captured frame", "Name a file that `surefoot walk --capture` wrote",
                      ErrorKind::damaged};
     const auto file_version = header.read<std::uint32_t>();
-    if (file_version != version && file_version != version_without_values)
+    if (file_version != version && file_version != version_without_items && file_version != version_without_values)
         return Error{place, "The file is of another version", remedy, ErrorKind::unsupported};
     const auto unpacked = header.read<std::uint64_t>(), packed = header.read<std::uint64_t>(), sum = header.read<std::uint64_t>();
     const auto header_sum = header.read<std::uint64_t>();
@@ -215,7 +236,7 @@ Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::strin
     const std::size_t got = ZSTD_decompress(body.data(), body.size(), payload.data(), payload.size());
     if (ZSTD_isError(got) != 0 || got != unpacked) return Error{place, "The frame does not unpack", remedy, ErrorKind::damaged};
     Capture capture;
-    Reader reader(body, file_version == version);
+    Reader reader(body, file_version);
     whole(reader, capture);
     if (reader.in.failed() || reader.in.left() != 0)
         return Error{place, "The lists do not add up to the size", remedy, ErrorKind::damaged};

@@ -94,6 +94,8 @@ public:
     void begin_frame(const Pose& pose) REQUIRES(draws) { begin_frame(pose, 1.0F); }
     /// Draws items sorted by state, as multi-draws. Blended items wait for end_items().
     virtual void draw(std::span<const DrawItem> items) REQUIRES(draws) = 0;
+    /// Time that the frame spends beside its draws, as predicted: the null device charges it. Other devices take what it takes.
+    virtual void charge_us(double us) REQUIRES(draws) { static_cast<void>(us); }
     /// Ends a slice: flush and fence. Returns its number, from 1.
     virtual std::uint32_t end_slice() REQUIRES(draws) = 0;
     /// Waits until at most `in_flight` slices are unfinished.

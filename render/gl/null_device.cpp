@@ -32,6 +32,10 @@ public:
     using Device::begin_frame;
     void begin_frame(const Pose& pose, float resolution) override REQUIRES(draws);
     void draw(std::span<const DrawItem> items) override REQUIRES(draws);
+    void charge_us(double us) override REQUIRES(draws) {
+        other_us_ += us;
+        charge();
+    }
     std::uint32_t end_slice() override REQUIRES(draws) {
         ++slices_;
         charge();
@@ -70,7 +74,7 @@ private:
     model::ViewScale scale_;
     FrameStats stats_ GUARDED_BY(draws);
     double submit_us_ GUARDED_BY(draws) = 0, raster_us_ GUARDED_BY(draws) = 0, factor_ GUARDED_BY(draws) = 1;
-    double before_us_ GUARDED_BY(draws) = 0, frame_us_ GUARDED_BY(draws) = 0;
+    double before_us_ GUARDED_BY(draws) = 0, frame_us_ GUARDED_BY(draws) = 0, other_us_ GUARDED_BY(draws) = 0;
     std::uint32_t slices_ GUARDED_BY(draws) = 0, blended_ GUARDED_BY(draws) = 0;
 };
 
@@ -103,7 +107,7 @@ void NullDevice::begin_frame(const Pose& pose, float resolution) {
     stats_ = {};
     stats_.resolution = model::resolution_steps[model::resolution_step(resolution)];
     scale_ = model::scaled(model::make_view_scale(pose, options_.viewport), stats_.resolution);
-    submit_us_ = raster_us_ = 0;
+    submit_us_ = raster_us_ = other_us_ = 0;
     slices_ = blended_ = 0;
     // One factor a frame: what makes real predictions wrong is common to a frame's items. Drawn even without noise, so that
     // the sequence does not depend on it.
@@ -130,7 +134,7 @@ void NullDevice::draw(std::span<const DrawItem> items) {
 void NullDevice::charge() {
     const double slices_us = static_cast<double>(slices_) * static_cast<double>(costs_.slice_us);
     const float sums = costs_.combine.frame_us(static_cast<float>(submit_us_ + slices_us), static_cast<float>(raster_us_));
-    frame_us_ = null_.cost_scale * factor_ * static_cast<double>(sums);
+    frame_us_ = null_.cost_scale * factor_ * (static_cast<double>(sums) + other_us_);
 }
 
 }  // namespace

@@ -82,6 +82,7 @@ struct PreparedFrame {
     ValueCurve curve;                          ///< of the best cuts
     float full_factor = 1, coarse_factor = 1;  ///< in the costs of full detail and of all other forms
     float resolution = 1;                      ///< of the picture that the costs are for, 0..1]: share of its width
+    float resolution_value = 0;                ///< weighted pixels: what it shows more than full resolution for the same time
     std::uint32_t visits = 0;                  ///< nodes tested, invisible ones included
     std::uint32_t hidden = 0;                  ///< of these, nodes in the view that others hide; their subtrees were not tested
     bool truncated = false;                    ///< capacity reached: deeper detail is missing, but the tree is complete and legal

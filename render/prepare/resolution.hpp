@@ -20,6 +20,9 @@ public:
     /// What is lost now, and what would be lost at the resolution of trial(), 0..1 each.
     void judge(double lost_now, double lost_tried);
 
+    /// Share of the value that resolution() loses less than full resolution, by the newest of both; 0 at full resolution.
+    [[nodiscard]] float gain() const { return at_ == 0 ? 0.0F : static_cast<float>(lost_[0] - lost_[at_]); }
+
 private:
     static constexpr std::uint32_t every = 3;
     std::uint32_t at_ = 0, tried_ = 0, best_before_ = 0, frame_ = 0;

@@ -14,35 +14,13 @@
 #include "render/select/cut_builder.hpp"
 #include "render/select/entries.hpp"
 #include "render/select/scratch.hpp"
-#include "render/select/steps.hpp"
+#include "render/select/step_sums.hpp"
 
 namespace surefoot::select {
 
 namespace {
 
-constexpr std::uint32_t buckets = BucketQueue::buckets;
-
-/// Cost changes of all steps by bucket of their key: those that are new, and those that were shown in the last frame.
-class StepSums {
-public:
-    explicit StepSums(std::span<double> room) : room_(room.first(std::size_t{4} * buckets)) {
-        std::fill(room_.begin(), room_.end(), 0.0);
-    }
-    void clear() { std::fill(room_.begin(), room_.end(), 0.0); }
-    void add(std::uint32_t bucket, bool refined, const model::ItemCost& away, const model::ItemCost& in) {
-        double* at = &room_[std::size_t{4} * bucket + (refined ? 2U : 0U)];
-        at[0] += static_cast<double>(in.submit_us) - static_cast<double>(away.submit_us);
-        at[1] += static_cast<double>(in.raster_us) - static_cast<double>(away.raster_us);
-    }
-    [[nodiscard]] Sum fresh(std::uint32_t bucket) const { return {room_[4 * bucket], room_[4 * bucket + 1]}; }
-    [[nodiscard]] Sum refined(std::uint32_t bucket) const { return {room_[4 * bucket + 2], room_[4 * bucket + 3]}; }
-
-private:
-    std::span<double> room_;
-};
-
-Sum operator+(const Sum& a, const Sum& b) { return {a.submit_us + b.submit_us, a.raster_us + b.raster_us}; }
-bool nothing(const Sum& sum) { return sum.submit_us == 0.0 && sum.raster_us == 0.0; }
+constexpr std::uint32_t buckets = key_buckets;
 
 /// Where the budget ends. All steps of buckets before `bucket` are taken. In it, steps are tried in turn. Behind it, none is
 /// taken.
@@ -65,7 +43,7 @@ public:
 
     /// Returns the number of steps taken.
     std::uint32_t run(bool fill) {
-        sum_up();
+        sum_steps(builder_, steps_, sums_, scan_state_);
         const Edge both = common_edge(builder_.floor_sum());
         take_common(both);
         if (deferred_count_ > 0 && !closed_) take_deferred(refined_edge(both));
@@ -75,26 +53,10 @@ public:
     }
 
 private:
-    struct Step {
-        std::uint32_t bucket;
-        bool refined;
-    };
-    [[nodiscard]] Step step_of(const prepare::Choice& now, Index shown) const {
-        const bool refined = Steps::was_refined(shown, now);
-        return {BucketQueue::bucket_of(steps_.key(now, refined)), refined};
-    }
-
-    /// Calls use(offset of the choice, whether the step opens the children) for every step of a candidate, in order, until it
-    /// returns false. True: all steps were used, the opening one included.
+    [[nodiscard]] StepPlace step_of(const prepare::Choice& now, Index shown) const { return place_of(steps_, now, shown); }
     template <class Use>
     bool for_steps(Index c, const Use& use) const {
-        const prepare::Candidate& candidate = builder_.candidate(c);
-        const auto choices = builder_.choices(c);
-        for (std::uint32_t k = 0; k < candidate.choice_count; ++k) {
-            const bool last = k + 1 == candidate.choice_count;
-            if ((last && candidate.child_count == 0) || !steps_.wanted(choices[k]) || !use(k, last)) return false;
-        }
-        return true;
+        return select::for_steps(builder_, steps_, c, use);
     }
 
     /// A step that does not fit has ended the search; others behind it may still fit. The same search among those that fit one by
@@ -113,39 +75,18 @@ private:
                 });
             }
         };
-        each_left([&](Index, std::uint32_t, bool, const Step& step, const model::ItemCost& away, const model::ItemCost& in) {
+        each_left([&](Index, std::uint32_t, bool, const StepPlace& step, const model::ItemCost& away, const model::ItemCost& in) {
             if (!budget_.fits(sum_.changed(away, in), step.refined ? 1.0 : share_)) return false;
             sums_.add(step.bucket, step.refined, away, in);
             return true;
         });
         const Edge edge = common_edge(sum_);
         const std::uint32_t before = taken_;
-        each_left([&](Index c, std::uint32_t k, bool opens, const Step& step, const model::ItemCost&, const model::ItemCost&) {
-            return step.bucket <= edge.bucket && try_step(c, k, opens, step.refined ? 1.0 : share_) && do_step(c, k, opens);
-        });
-        return taken_ > before;
-    }
-
-    void sum_up() {
-        for (Index c = 0; c < builder_.size(); ++c) {
-            if (builder_.chosen(c) == SelectState::opened) continue;  // above the floor
-            const prepare::Candidate& candidate = builder_.candidate(c);
-            const auto choices = builder_.choices(c);
-            const Index shown = steps_.shown(candidate.node);
-            const std::uint32_t flags = Steps::was_refined(shown, choices[0]) ? refined_before : 0;
-            if (steps_.has_target() && builder_.chosen(c) == none && (scan_state_[candidate.parent] & opens_below) == 0) {
-                scan_state_[c] = flags;
-                continue;
-            }
-            std::uint32_t last = 0;
-            const bool passed = for_steps(c, [&](std::uint32_t k, bool opens) {
-                const Step step = step_of(choices[k], shown);
-                last = step.bucket;
-                sums_.add(step.bucket, step.refined, choices[k].cost, opens ? candidate.children_cost : choices[k + 1].cost);
-                return true;
+        each_left(
+            [&](Index c, std::uint32_t k, bool opens, const StepPlace& step, const model::ItemCost&, const model::ItemCost&) {
+                return step.bucket <= edge.bucket && try_step(c, k, opens, step.refined ? 1.0 : share_) && do_step(c, k, opens);
             });
-            scan_state_[c] = flags | last | (passed ? opens_below : 0);
-        }
+        return taken_ > before;
     }
 
     /// The first bucket whose steps do not all fit.
@@ -183,7 +124,7 @@ private:
             const auto choices = builder_.choices(c);
             const Index shown = steps_.shown(builder_.candidate(c).node);
             for_steps(c, [&](std::uint32_t k, bool opens) {
-                const Step step = step_of(choices[k], shown);
+                const StepPlace step = step_of(choices[k], shown);
                 bool take = step.bucket < edge.bucket;
                 if (step.bucket == edge.bucket && !closed_ && (step.refined || !fresh_closed)) {
                     take = try_step(c, k, opens, step.refined ? 1.0 : share_);
@@ -217,7 +158,7 @@ private:
             const Index shown = steps_.shown(builder_.candidate(c).node);
             for_steps(c, [&](std::uint32_t k, bool opens) {
                 if (k < builder_.chosen(c)) return true;  // taken already
-                const Step step = step_of(choices[k], shown);
+                const StepPlace step = step_of(choices[k], shown);
                 bool take = step.refined && step.bucket < edge.bucket;
                 if (step.refined && step.bucket == edge.bucket && !closed_) {
                     take = try_step(c, k, opens, 1.0);
@@ -247,19 +188,13 @@ private:
         return true;
     }
 
-    /// Bits of scan_state_: what the first walk computed for a candidate.
-    static constexpr std::uint32_t last_bucket = buckets - 1;  ///< mask: the bucket of its last step
-    static constexpr std::uint32_t opens_below = 1U
-                                                 << 16U;  ///< its children may be opened: the target error allows all its steps
-    static constexpr std::uint32_t refined_before = 1U << 17U;  ///< its first step was taken in the last frame
-
     static constexpr int fill_rounds = 4;
 
     CutBuilder& builder_;
     const Budget& budget_;
     Steps steps_;
     StepSums sums_;
-    std::span<std::uint32_t> scan_state_;
+    std::span<std::uint32_t> scan_state_;  ///< what sum_steps() noted
     double share_;
     std::span<std::uint32_t> deferred_;  ///< candidates that the last frame showed finer than the common edge allows, ascending
     std::uint32_t deferred_count_ = 0;
@@ -275,8 +210,9 @@ public:
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         clear(cut);
         if (!has_room(input, state, cut)) return;
-        const Budget budget(input);
+        Budget budget(input);
         CutBuilder builder(input, state);
+        builder.buy_items(budget);
         builder.take_floor();
         if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
             return builder.finish(budget, builder.take_finest(), cut);

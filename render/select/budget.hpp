@@ -41,7 +41,20 @@ public:
                static_cast<double>(combine_.raster_weight) * sum.raster_us +
                static_cast<double>(combine_.max_weight) * std::max(sum.submit_us, sum.raster_us);
     }
-    [[nodiscard]] double predicted_us(const Sum& sum) const { return (fixed_us_ + items_us(sum) * per_item_us_) * factor_; }
+    [[nodiscard]] double predicted_us(const Sum& sum) const {
+        return (fixed_us_ + bought_us_ + items_us(sum) * per_item_us_) * factor_;
+    }
+    /// The same before anything but forms was bought.
+    [[nodiscard]] double forms_us(const Sum& sum) const { return (fixed_us_ + items_us(sum) * per_item_us_) * factor_; }
+    /// Takes the time of an item, before correction and headroom.
+    void spend(double item_us) { bought_us_ += item_us; }
+    [[nodiscard]] bool fits_with(const Sum& sum, double item_us, double share) const {
+        return fits_us(predicted_us(sum) + item_us * factor_, share);
+    }
+    /// What the sums of forms may come to: items_us() within it fits. Negative: nothing does.
+    [[nodiscard]] double room_us() const { return (budget_us_ / (1.0 + 1e-6) / factor_ - fixed_us_ - bought_us_) / per_item_us_; }
+    [[nodiscard]] double per_item_us() const { return per_item_us_; }
+    [[nodiscard]] const model::FrameCombine& combine() const { return combine_; }
     /// Within `share` of the budget. The margin of 1e-6 covers rounding: the final sum of the cut, computed in float, fits too.
     [[nodiscard]] bool fits(const Sum& sum, double share = 1.0) const { return fits_us(predicted_us(sum), share); }
     [[nodiscard]] bool fits_us(double predicted_us, double share = 1.0) const {
@@ -51,7 +64,7 @@ public:
 
 private:
     model::FrameCombine combine_;
-    double factor_ = 1, fixed_us_ = 0, per_item_us_ = 1, budget_us_ = 0;
+    double factor_ = 1, fixed_us_ = 0, per_item_us_ = 1, budget_us_ = 0, bought_us_ = 0;
 };
 
 }  // namespace surefoot::select

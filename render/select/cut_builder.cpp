@@ -28,6 +28,8 @@ std::uint32_t SelectState::max_candidates() const { return static_cast<std::uint
 
 void SelectState::reserve(const model::Model& model, std::uint32_t max_candidates) {
     shown.assign(model.nodes.size(), none);
+    bought.clear();
+    bought_before.clear();
     for (std::vector<Shown>* list : {&touched, &before}) {
         list->clear();
         list->reserve(max_candidates);
@@ -47,6 +49,7 @@ void clear(Cut& cut) {
     cut.predicted_us = cut.floor_us = cut.worst_error_rad = 0;
     cut.floor_binds = false;
     cut.benefit = cut.value = 0;
+    cut.bought = {};
     cut.triangles = cut.hash = 0;
     cut.switches = cut.refinements = 0;
 }
@@ -61,7 +64,8 @@ CutBuilder::CutBuilder(const SelectInput& input, SelectState& state)
     : prepared_(*input.prepared),
       state_(state),
       chosen_(std::span(state.scratch().chosen).first(input.prepared->candidates.size())),
-      scratch_(std::span(state.scratch().list).first(input.prepared->candidates.size())) {}
+      scratch_(std::span(state.scratch().list).first(input.prepared->candidates.size())),
+      items_(input) {}
 
 // Candidates are in breadth-first order, so a first-in first-out walk meets them ascending.
 std::span<std::uint32_t> CutBuilder::take_floor() {
@@ -82,6 +86,12 @@ std::span<std::uint32_t> CutBuilder::take_floor() {
         }
     }
     return scratch_.first(items);
+}
+
+void CutBuilder::buy_items(Budget& budget) {
+    if (items_.offered().empty()) return items_.count_refused();
+    take_floor();
+    items_.buy_before_forms(*this, state_, budget);
 }
 
 std::uint32_t CutBuilder::take_finest() {
@@ -118,7 +128,7 @@ bool CutBuilder::switched(Index c, Index rep) const {
     return false;
 }
 
-void CutBuilder::list_items(const Budget& budget, Cut& cut) {
+void CutBuilder::list_items(Budget& budget, Cut& cut) {
     Sum sum;
     cut.hash = fnv_start;
     for (Index c = 0; c < chosen_.size(); ++c) {
@@ -137,10 +147,14 @@ void CutBuilder::list_items(const Budget& budget, Cut& cut) {
         cut.hash = mixed(cut.hash, item);
     }
     cut.sum = {static_cast<float>(sum.submit_us), static_cast<float>(sum.raster_us)};
+    items_.buy_what_fits(sum, state_, budget);
+    cut.bought = items_.bought();
     cut.predicted_us = static_cast<float>(budget.predicted_us(sum));
 }
 
 void CutBuilder::remember(const Cut& cut) {
+    state_.bought_before = state_.bought;
+    state_.bought.remember(items_.offered(), cut.bought);
     for (const Shown& last : state_.touched) state_.shown[last.node] = none;
     std::swap(state_.before, state_.touched);
     state_.touched.clear();
@@ -155,10 +169,10 @@ void CutBuilder::remember(const Cut& cut) {
     }
 }
 
-void CutBuilder::finish(const Budget& budget, std::uint32_t refinements, Cut& cut) {
+void CutBuilder::finish(Budget& budget, std::uint32_t refinements, Cut& cut) {
     list_items(budget, cut);
     // What is drawn is a legal cut: if it is cheaper than the floor, it is the floor.
-    cut.floor_us = std::min(static_cast<float>(budget.predicted_us(floor_)), cut.predicted_us);
+    cut.floor_us = std::min(static_cast<float>(budget.forms_us(floor_)), cut.predicted_us);
     cut.floor_binds = !budget.fits_us(static_cast<double>(cut.floor_us));
     cut.refinements = refinements;
     remember(cut);

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "render/select/budget.hpp"
+#include "render/select/item_buyer.hpp"
 #include "render/select/select.hpp"
 
 namespace surefoot::select {
@@ -39,19 +40,28 @@ public:
     void choose(Index c, std::uint32_t offset) { chosen_[c] = offset; }
     void open(Index c) { chosen_[c] = SelectState::opened; }
     [[nodiscard]] std::span<std::uint32_t> scratch() { return scratch_; }
+    /// Before the search: buys the items whose rate is above that of the steps where the budget ends. Takes the floor for it,
+    /// where items are offered.
+    void buy_items(Budget& budget);
+    /// The same for selectors without a budget: everything.
+    void buy_all_items(Budget& budget) { items_.buy_all(budget); }
+    /// The items of a set, as BoughtItems::set, and what is prepaid.
+    void buy_items_of(std::uint64_t set, Budget& budget) { items_.buy_set(set, budget); }
 
-    /// Writes the items, their sums and hash, and stores them for the next frame's hysteresis. refinements: for the report.
-    void finish(const Budget& budget, std::uint32_t refinements, Cut& cut);
+    /// Writes the cut, its sums and hash, and stores it for the next frame's hysteresis. Buys the items that still fit.
+    /// refinements: for the report.
+    void finish(Budget& budget, std::uint32_t refinements, Cut& cut);
 
 private:
     [[nodiscard]] bool switched(Index c, Index rep) const;
-    void list_items(const Budget& budget, Cut& cut);
+    void list_items(Budget& budget, Cut& cut);
     void remember(const Cut& cut);
 
     const prepare::PreparedFrame& prepared_;
     SelectState& state_;
     std::span<std::uint32_t> chosen_, scratch_;
     Sum floor_;
+    ItemBuyer items_;
 };
 
 /// Empties a cut and keeps its capacity.

@@ -60,9 +60,10 @@ public:
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         clear(cut);
         if (!has_room(input, state, cut)) return;
-        const Budget budget(input);
+        Budget budget(input);
         CutBuilder builder(input, state);
         const Steps steps(input, state, Key::benefit);
+        builder.buy_items(budget);
         const auto floor = builder.take_floor();
         if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
             return builder.finish(budget, builder.take_finest(), cut);

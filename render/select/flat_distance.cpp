@@ -14,8 +14,9 @@ template <class Stops>
 void walk(const SelectInput& input, SelectState& state, Cut& cut, const Stops& stops) {
     clear(cut);
     if (!has_room(input, state, cut)) return;
-    const Budget budget(input);
+    Budget budget(input);
     CutBuilder builder(input, state);
+    builder.buy_all_items(budget);
     builder.take_root(0);
     std::uint32_t refinements = 0;
     for (Index c = 0; c < builder.size(); ++c) {  // breadth-first order: a child comes after its parent opened it

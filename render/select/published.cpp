@@ -30,8 +30,9 @@ public:
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         clear(cut);
         if (!has_room(input, state, cut)) return;
-        const Budget budget(input);
+        Budget budget(input);
         CutBuilder builder(input, state);
+        builder.buy_items(budget);
         const double half_pixel = 0.5 * model::pixel_angle(input.prepared->region.centre, input.prepared->viewport);
         const auto threshold = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : half_pixel);
         builder.take_root(fixed_form(builder, 0, threshold));

@@ -12,6 +12,7 @@
 #include "render/model/cost.hpp"
 #include "render/model/model.hpp"
 #include "render/prepare/prepared.hpp"
+#include "render/select/item.hpp"
 
 namespace surefoot::select {
 
@@ -36,6 +37,7 @@ struct Cut {
     float worst_error_rad = 0;   ///< 1 / accuracy
     double benefit = 0;  ///< sum over items of 1 - benefit of the next finer step; 0..items, items: nothing is left to gain
     double value = 0;    ///< sum over items, weighted pixels; PreparedFrame::full_value: nothing is left to gain
+    BoughtItems bought;  ///< beside the forms; in predicted_us, not in sum and value
     std::uint64_t triangles = 0;
     std::uint32_t switches = 0;     ///< representations that differ from the previous frame's
     std::uint64_t hash = 0;         ///< of (node, rep) in order
@@ -47,11 +49,12 @@ struct SelectInput {
     const model::Model* model = nullptr;
     const prepare::PreparedFrame* prepared = nullptr;
     const model::CostModel* costs = nullptr;
-    double budget_us = 0;         ///< whole frame; infinity: full detail
-    double correction = 1;        ///< online factor on predictions
-    double target_error_rad = 0;  ///< stop refining at this error; 0: refine as far as the budget goes
-    double slice_us = 1000;       ///< predicted length of a slice; the prediction includes the cost of ending slices
-    double headroom = 0;          ///< headroom on corrected predictions; 0: that of the cost table
+    double budget_us = 0;             ///< whole frame; infinity: full detail
+    double correction = 1;            ///< online factor on predictions
+    double target_error_rad = 0;      ///< stop refining at this error; 0: refine as far as the budget goes
+    double slice_us = 1000;           ///< predicted length of a slice; the prediction includes the cost of ending slices
+    double headroom = 0;              ///< headroom on corrected predictions; 0: that of the cost table
+    const ItemList* items = nullptr;  ///< what else may be bought; null: nothing
 };
 
 inline double headroom_of(const SelectInput& input) {
@@ -70,6 +73,7 @@ struct SelectState {
     std::vector<Index> shown;    ///< by node: its representation in the last cut, `opened` if descendants were in it, or none
     std::vector<Shown> touched;  ///< all nodes with `shown` other than none
     std::vector<Shown> before;   ///< `touched` before the last selection; allows to repeat it
+    RememberedItems bought, bought_before;  ///< by the last selection, and by the one before it
     /// Factor 1..2 on the benefit of nodes that were refined in the last frame; 1: no hysteresis.
     float hysteresis = 1.25F;
 

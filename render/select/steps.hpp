@@ -17,12 +17,13 @@ public:
           hysteresis_(state.hysteresis),
           key_(key) {}
 
+    /// Rates as keys. The queue's keys end at 2: rates above 4096 px/us are equal.
+    [[nodiscard]] static float rate_key(float rate) { return rate * 0x1p-12F; }
     /// Whether `now` has more error than the target.
     [[nodiscard]] bool wanted(const prepare::Choice& now) const { return target_ <= 0.0F || now.error_rad > target_; }
     [[nodiscard]] bool has_target() const { return target_ > 0.0F; }
     [[nodiscard]] float key(const prepare::Choice& now, bool refined) const {
-        constexpr float rate_scale = 0x1p-12F;  // the queue's keys end at 2: steps above 4096 px/us are equal
-        const float key = key_ == Key::rate              ? now.rate * rate_scale
+        const float key = key_ == Key::rate              ? rate_key(now.rate)
                           : key_ == Key::subtree_benefit ? now.subtree_benefit
                                                          : now.benefit;
         return refined ? key * hysteresis_ : key;

@@ -56,11 +56,14 @@ struct FrameRecord {
     std::uint32_t prepared_age = 0;  ///< frames; 1 is the newest possible
     std::uint32_t slices = 0, downgraded_slices = 0;
     std::uint32_t items = 0, draws = 0, switches = 0, visits = 0, hidden = 0, candidates = 0;
+    std::uint32_t bought_items = 0;   ///< what time was spent on beside the forms: a resolution, an upload, an effect
+    std::uint32_t refused_items = 0;  ///< offered with a cost or a value that is no number above zero, or twice
     std::uint64_t triangles = 0;
     std::uint64_t cut_hash = 0;
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;
     float cost_scale = 1;  ///< the setting's factor in predicted_us (real clock) or in actual_us (virtual clock)
     float prepare_cpu_us = 0;
+    float bought_us = 0;       ///< of predicted_us, without correction: what bought_items cost
     float accuracy = 0;        ///< rad^-1
     float benefit = 0;         ///< mean over items of 1 - benefit of the next finer step; 1: nothing is left to gain
     float floor_share = 0;     ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones

@@ -45,9 +45,10 @@ CompareRequest request_of(std::vector<std::string> selectors, std::uint32_t roun
     return request;
 }
 
-Result<Comparison> compare(FakeWalks& walks, const CompareRequest& request, const Progress& progress = {}) {
+Result<Comparison> compare(FakeWalks& walks, const CompareRequest& request, const Progress& progress = {},
+                           const FindShares& find_shares = nullptr) {
     return compare_selectors(
-        request, [&](const walk::WalkRequest& one, const Progress&) { return walks(one); }, progress);
+        request, [&](const walk::WalkRequest& one, const Progress&) { return walks(one); }, find_shares, progress);
 }
 
 TEST(Compare, SelectorsWalkInTurnsAndMediansAreOfTheRounds) {
@@ -98,6 +99,46 @@ TEST(Compare, OnePictureHasNoFrameBeforeToPopFrom) {
     const auto c = compare(walks, request_of({"flat"}, 1));
     ASSERT_TRUE(c.ok());
     EXPECT_TRUE(nlohmann::json::parse(compare_json(*c))["selectors"][0]["popping"].is_null());
+}
+
+/// Shares of 0.9 of the bound, `proven` of 4 frames.
+FindShares shares_of(std::uint32_t proven, std::vector<std::string>& names) {
+    return [proven, &names](std::span<const std::string> selectors, double, const Progress&) -> Result<ValueShares> {
+        names.assign(selectors.begin(), selectors.end());
+        ValueShares shares;
+        shares.frames = 4;
+        shares.proven = proven;
+        for (const std::string& name : selectors) shares.selectors.push_back({name, 0.95, 0.8, 0.9, 0.7});
+        return shares;
+    };
+}
+
+TEST(Compare, TheShareOfTheGreatestValueIsOfTheBoundWhereTheOptimumIsNotProven) {
+    for (const std::uint32_t proven : {4U, 3U}) {
+        FakeWalks walks{{}, {20, 21}};
+        std::vector<std::string> names;
+        const auto c = compare(walks, request_of({"flat", "threshold"}, 1), {}, shares_of(proven, names));
+        ASSERT_TRUE(c.ok());
+        EXPECT_EQ(names, std::vector<std::string>{"threshold"}) << "flat keeps no budget";
+        const auto json = nlohmann::json::parse(compare_json(*c));
+        EXPECT_TRUE(json["selectors"][0]["value_share"].is_null());
+        EXPECT_DOUBLE_EQ(json["selectors"][1]["value_share"]["of_bound"]["mean"].get<double>(), 0.9);
+        EXPECT_DOUBLE_EQ(json["selectors"][1]["value_share"]["of_best_known"]["min"].get<double>(), 0.8);
+        EXPECT_EQ(json["value_frames"]["proven"], proven);
+        const std::string table = compare_table(*c);
+        EXPECT_EQ(table.find(">=90.00") != std::string::npos, proven < 4) << table;
+        EXPECT_NE(table.find("90.00"), std::string::npos) << table;
+        for (std::size_t begin = 0; begin < table.size(); begin = table.find('\n', begin) + 1)
+            EXPECT_LE(table.find('\n', begin) - begin, 100U) << table;
+    }
+}
+
+TEST(Compare, WithoutASearchForTheGreatestValueNoShareIsStated) {
+    FakeWalks walks{{}, {20}};
+    const auto c = compare(walks, request_of({"threshold"}, 1));
+    ASSERT_TRUE(c.ok());
+    EXPECT_TRUE(nlohmann::json::parse(compare_json(*c))["selectors"][0]["value_share"].is_null());
+    EXPECT_EQ(c->value.frames, 0U);
 }
 
 TEST(Compare, AWalkWithoutPicturesAndAStopAreErrors) {

@@ -33,7 +33,7 @@ Capture captured(std::string_view selector, std::uint32_t depth = 4) {
     }
     s.look(region);
     s.run(selector, 5500);
-    return take(s.input(5500), selector, s.state.hysteresis, s.state.before, s.cut);
+    return take(s.input(5500), selector, s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
 }
 
 TEST(Capture, ReplaysToTheSameCutForEverySelector) {
@@ -62,7 +62,7 @@ TEST(Capture, OfALowerResolutionKnowsWhatEnlargingCosts) {
     s.frame.resolution = 0.5F;
     s.look(region);
     s.run("two-stage", 6500);
-    const Capture before = take(s.input(6500), "two-stage", s.state.hysteresis, s.state.before, s.cut);
+    const Capture before = take(s.input(6500), "two-stage", s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
     ASSERT_TRUE(write_capture(file.path, before));
     auto after = read_capture(file.path);
     ASSERT_TRUE(after) << after.error().text();
@@ -72,6 +72,59 @@ TEST(Capture, OfALowerResolutionKnowsWhatEnlargingCosts) {
     Capture cheap = *after;
     cheap.enlarge_ns_per_pixel = 0;
     EXPECT_NE(replay(cheap)->predicted_us, before.predicted_us);
+}
+
+/// A capture in which an item is bought that the frame before had bought too.
+Capture captured_with_items() {
+    Scene s(test::town(4));
+    prepare::Region region;
+    region.centre.position = dvec3(0, 3, 30);
+    s.look(region);
+    select::ItemList items;
+    items.offer({select::ItemKind::effect, 3, 500, 1e9F});
+    items.offer({select::ItemKind::upload, 9, 400, 1e-9F});
+    items.prepay({select::ItemKind::resolution, 2, 100, 7});
+    select::SelectInput input = s.input(5500);
+    input.items = &items;
+    for (int i = 0; i < 2; ++i) select::find_selector("threshold")->run(input, s.state, s.cut);
+    EXPECT_TRUE(s.cut.bought.has(0) && s.cut.bought.has(2));
+    return take(input, "threshold", s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
+}
+
+TEST(Capture, HoldsWhatWasOfferedAndBoughtBesideForms) {
+    const TempFile file;
+    const Capture before = captured_with_items();
+    ASSERT_EQ(before.offered.size(), 3U);
+    ASSERT_GE(before.bought_before.size(), 2U);
+    ASSERT_TRUE(write_capture(file.path, before));
+    auto after = read_capture(file.path);
+    ASSERT_TRUE(after) << after.error().text();
+    EXPECT_EQ(after->bought_before, before.bought_before);
+    EXPECT_TRUE(verify(*after));
+    const auto cut = replay(*after);
+    EXPECT_EQ(cut->predicted_us, before.predicted_us);
+    EXPECT_TRUE(cut->bought.has(0) && cut->bought.has(2));
+    Capture free = *after;
+    free.offered[0].cost_us = 1;
+    EXPECT_NE(replay(free)->predicted_us, before.predicted_us);
+    for (const float bad : {0.0F, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
+        Capture wrong = before;
+        wrong.offered[0].cost_us = bad;
+        ASSERT_TRUE(write_capture(file.path, wrong));
+        EXPECT_FALSE(read_capture(file.path)) << bad;
+    }
+    Capture wrong = before;
+    wrong.offered[1].kind = static_cast<select::ItemKind>(99);
+    ASSERT_TRUE(write_capture(file.path, wrong));
+    EXPECT_FALSE(read_capture(file.path));
+}
+
+TEST(Capture, TheOracleCanBeTriedOnTheSameFrame) {
+    const Capture c = captured("threshold");
+    const auto best = replay(c, "oracle");
+    ASSERT_TRUE(best) << best.error().text();
+    EXPECT_GE(best->value, replay(c)->value);
+    EXPECT_LE(static_cast<double>(best->predicted_us), c.budget_us);
 }
 
 TEST(Capture, MemoryIsPartOfTheDecision) {

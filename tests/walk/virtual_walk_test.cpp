@@ -37,6 +37,25 @@ TEST(VirtualWalk, EverySlotIsRunOrSkippedExactly) {
     EXPECT_GT(skipped, 0U) << "costs of 2.3 times the budget must overrun slots, or the test shows nothing";
 }
 
+TEST(VirtualWalk, RecordsAndLedgerSayWhatWasBoughtBesideForms) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(20);
+    for (const rt::FrameRecord& r : walk(request).records) {
+        EXPECT_EQ(r.bought_items + r.refused_items, 0U);
+        EXPECT_EQ(r.bought_us, 0.0F);
+    }
+    const test::TemporaryFolder folder;
+    request.resolution_pct = 50;
+    request.ledger_file = folder / "ledger.csv";
+    for (const rt::FrameRecord& r : walk(request).records) {
+        EXPECT_EQ(r.bought_items, 1U) << "the enlarging, frame " << r.frame;
+        EXPECT_GT(r.bought_us, 100.0F);
+        EXPECT_LT(r.bought_us, r.predicted_us);
+    }
+    const auto ledger = read_text(request.ledger_file);
+    ASSERT_TRUE(ledger.ok());
+    EXPECT_NE(ledger->find(",bought_items,bought_us,refused_items,"), std::string::npos);
+}
+
 TEST(VirtualWalk, ATourThatStartsAtSpeedIsPreparedForFromItsFirstFrame) {
     walk::WalkRequest request = test::Forest::get().virtual_request(10);
     const test::TemporaryFolder folder;

@@ -63,6 +63,37 @@ ComparedSelector medians(const std::string& selector, const Summaries& rounds) {
     return c;
 }
 
+/// The off-line part of the comparison.
+Result<void> add_shares(const FindShares& find_shares, const Progress& progress, Comparison& c) {
+    std::vector<std::string> names;
+    for (ComparedSelector& s : c.selectors) {
+        const auto entry = select::selector_named(s.selector);
+        s.goes_by_budget = entry.ok() && (*entry)->goes_by == select::GoesBy::budget;
+        if (s.goes_by_budget) names.push_back(s.selector);
+    }
+    if (find_shares == nullptr || names.empty()) return {};
+    auto shares = find_shares(names, c.budget_ms * 1e3, progress);
+    if (!shares) return shares.error();
+    c.value = std::move(*shares);
+    for (ComparedSelector& s : c.selectors)
+        for (const ValueShare& share : c.value.selectors)
+            if (share.selector == s.selector) s.value = share;
+    return {};
+}
+
+/// Percent of the greatest value; of its bound, "at least", where the greatest value of a frame is not proven.
+std::string value_text(const Comparison& c, const ComparedSelector& s) {
+    if (c.value.frames == 0 || !s.goes_by_budget) return "-";
+    return fmt::format("{}{:.2f}", c.value.proven == c.value.frames ? "" : ">=", 100 * s.value.of_bound);
+}
+
+nlohmann::ordered_json value_json(const Comparison& c, const ComparedSelector& s) {
+    if (c.value.frames == 0 || !s.goes_by_budget) return nullptr;
+    using report::rounded;
+    return {{"of_best_known", {{"mean", rounded(s.value.of_best)}, {"min", rounded(s.value.min_of_best)}}},
+            {"of_bound", {{"mean", rounded(s.value.of_bound)}, {"min", rounded(s.value.min_of_bound)}}}};
+}
+
 }  // namespace
 
 Progress part_of(const Progress& progress, const std::string& stage, double number, double count) {
@@ -74,7 +105,8 @@ Progress part_of(const Progress& progress, const std::string& stage, double numb
     return part;
 }
 
-Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const Progress& progress) {
+Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const FindShares& find_shares,
+                                     const Progress& progress) {
     std::vector<Summaries> rounds(request.selectors.size());
     const auto count = static_cast<double>(request.selectors.size() * request.rounds);
     double number = 0;
@@ -107,6 +139,7 @@ Result<Comparison> compare_selectors(const CompareRequest& request, const RunWal
     c.rounds = request.rounds;
     c.pictures = first.picture.frames;
     for (std::size_t i = 0; i < rounds.size(); ++i) c.selectors.push_back(medians(request.selectors[i], rounds[i]));
+    if (auto shared = add_shares(find_shares, progress, c); !shared) return shared.error();
     return c;
 }
 
@@ -127,6 +160,7 @@ std::string compare_json(const Comparison& c) {
                              {"frame_ms", {{"p50", rounded(s.frame_ms_p50)}, {"p99", rounded(s.frame_ms_p99)}}},
                              {"unused_ms", rounded(s.unused_ms)},
                              {"switches_per_frame", rounded(s.switches_per_frame)},
+                             {"value_share", value_json(c, s)},
                              {"frames", s.frames},
                              {"misses", s.misses},
                              {"coarse_frames", s.coarse_frames},
@@ -142,6 +176,11 @@ std::string compare_json(const Comparison& c) {
                        {"budget_ms", rounded(c.budget_ms)},
                        {"rounds", c.rounds},
                        {"pictures", c.pictures},
+                       {"value_frames",
+                        {{"compared", c.value.frames},
+                         {"proven", c.value.proven},
+                         {"at_the_floor", c.value.floor_frames},
+                         {"in_full_detail", c.value.full_frames}}},
                        {"selectors", selectors}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -173,6 +212,7 @@ std::string compare_table(const Comparison& c) {
                                   {"p99 ms", -8},
                                   {"unused", -8},
                                   {"switches", -9},
+                                  {"value %", -8},
                                   {"frames", -8},
                                   {"misses", -7},
                                   {"coarse", -7},
@@ -180,9 +220,13 @@ std::string compare_table(const Comparison& c) {
     out += frames.heading() + "\n";
     for (const ComparedSelector& s : c.selectors)
         out += frames.row({s.selector, text(s.frame_ms_p50, 1), text(s.frame_ms_p99, 1), text(s.unused_ms, 1),
-                           text(s.switches_per_frame, 2), std::to_string(s.frames), std::to_string(s.misses),
+                           text(s.switches_per_frame, 2), value_text(c, s), std::to_string(s.frames), std::to_string(s.misses),
                            std::to_string(s.coarse_frames), std::to_string(s.floor_frames)}) +
                "\n";
+    if (c.value.frames > 0)
+        out += fmt::format(
+            "value: {} frames off line; the greatest is proven for {}; bounds are {:.2f} % above the best in the mean\n",
+            c.value.frames, c.value.proven, 100 * c.value.bound_gap);
     return out;
 }
 

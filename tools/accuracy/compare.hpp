@@ -8,6 +8,7 @@
 
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
+#include "tools/accuracy/value_share.hpp"
 #include "tools/walk/walk.hpp"
 
 namespace surefoot::accuracy {
@@ -29,6 +30,8 @@ struct ComparedSelector {
     double popped_share = 0, pop_psnr_db = 0;    ///< of one pose by a frame's cut and by the cut before it
     double frame_ms_p50 = 0, frame_ms_p99 = 0, unused_ms = 0, switches_per_frame = 0;
     std::uint64_t frames = 0, misses = 0, coarse_frames = 0, floor_frames = 0;  ///< sums
+    bool goes_by_budget = true;                                                 ///< else no share of a budget's value is stated
+    ValueShare value;                                                           ///< of the frames in Comparison::value
 };
 
 /// All that `surefoot compare` prints.
@@ -36,17 +39,22 @@ struct Comparison {
     std::string model, path, renderer, machine, uncalibrated;
     std::uint32_t width = 0, height = 0, rounds = 0, pictures = 0;
     double rate_hz = 0, budget_ms = 0;
+    ValueShares value;                        ///< frames 0: not compared, or none had anything to choose
     std::vector<ComparedSelector> selectors;  ///< in the order of the request
 };
 
 /// How a walk is run: walk::run_walk, or a test's stand-in.
 using RunWalk = std::function<Result<walk::WalkOutcome>(const walk::WalkRequest&, const Progress&)>;
 
+/// Shares of the greatest value at this budget, for the names of the request that keep a budget; null: not compared.
+using FindShares = std::function<Result<ValueShares>(std::span<const std::string> selectors, double budget_us, const Progress&)>;
+
 /// The progress of walk `number` of `count`, from 0, as part of the whole. `progress` must outlive it.
 Progress part_of(const Progress& progress, const std::string& stage, double number, double count);
 
 /// Errors: of a walk; stopped by the user; a walk that compared no picture.
-Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const Progress& progress);
+Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const FindShares& find_shares,
+                                     const Progress& progress);
 
 std::string compare_json(const Comparison& comparison);
 /// At most 100 columns; after a line that says what was walked, a line a selector of the pictures, then one of the frames.

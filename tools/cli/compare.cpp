@@ -16,9 +16,23 @@ namespace {
 
 struct CompareArguments {
     accuracy::CompareRequest request;
+    std::uint32_t value_frames = 20;
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool json = false;
 };
+
+accuracy::FindShares find_shares(const CompareArguments& a) {
+    if (a.value_frames == 0) return nullptr;
+    return [&a](std::span<const std::string> selectors, double budget_us, const Progress& progress) {
+        accuracy::ShareRequest request;
+        request.selectors.assign(selectors.begin(), selectors.end());
+        request.frames = a.value_frames;
+        request.budget_us = budget_us;
+        request.limits.max_steps = 10'000'000;  // both together about half a second a frame
+        request.limits.max_parts = 200;
+        return accuracy::value_shares_of_walk(a.request.walk, std::move(request), progress);
+    };
+}
 
 int run_compare_command(CompareArguments& a, const Context& context) {
     auto read = read_settings(*a.settings);
@@ -32,7 +46,7 @@ int run_compare_command(CompareArguments& a, const Context& context) {
     walk::prepare_process(r);
     auto comparison = accuracy::compare_selectors(
         a.request, [](const walk::WalkRequest& one, const Progress& progress) { return walk::run_walk(one, progress, {}); },
-        terminal_progress(context));
+        find_shares(a), terminal_progress(context));
     end_progress(context);
     if (!comparison) return fail(comparison.error());
     if (!comparison->uncalibrated.empty()) notify("The figures are uncalibrated: " + comparison->uncalibrated + ".");
@@ -51,7 +65,9 @@ void add_compare(CLI::App& app, Context& context) {
         "them, SSIM and FLIP are means. `popped` and `pops` compare one pose by a frame's cut and by the cut before it:\n"
         "the share of pixels that change visibly, and PSNR. `unused` is the mean time left, in ms, where the benefit\n"
         "is below 0.99. `coarse` counts frames with coarser slices. `floor` counts frames that fell to the floor\n"
-        "although the cut before would have fitted.",
+        "although the cut before would have fitted. `value` is the share of the greatest value that the budget buys,\n"
+        "found off line on frames of the path at full resolution. >= says that some optimum is not proven: the share is\n"
+        "of an upper bound then.",
         a->json);
     walk::WalkRequest& r = a->request.walk;
     r.pictures = 7;
@@ -70,6 +86,9 @@ void add_compare(CLI::App& app, Context& context) {
         ->capture_default_str();
     c->add_option("--rounds", a->request.rounds, "Number of walks by each selector, in turns; medians are printed")
         ->check(whole_number_within(1, 100))
+        ->capture_default_str();
+    c->add_option("--value-frames", a->value_frames, "Number of frames whose best cut is searched for, evenly spread; 0: none")
+        ->check(whole_number_within(0, 1000))
         ->capture_default_str();
     c->add_option("--size", a->settings->size, "Size of the picture in pixels [1280x720]");
     for (const auto& [flag, key] : std::initializer_list<std::pair<const char*, const char*>>{{"--lift", "lift_m"},

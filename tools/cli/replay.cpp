@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "render/capture/capture.hpp"
-#include "render/select/registry.hpp"
+#include "render/select/oracle.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/report/terminal.hpp"
@@ -25,6 +25,8 @@ nlohmann::ordered_json cut_json(const std::string& selector, const select::Cut& 
             {"floor_binds", cut.floor_binds},
             {"triangles", cut.triangles},
             {"refinements", cut.refinements},
+            {"value", cut.value + cut.bought.value},
+            {"bought_items", cut.bought.count},
             {"accuracy",
              cut.worst_error_rad > 0 ? nlohmann::ordered_json(1.0 / cut.worst_error_rad) : nlohmann::ordered_json(nullptr)}};
 }
@@ -56,13 +58,19 @@ int run_replay(const ReplayArguments& a) {
     }
     fmt::print("{}: frame {}, {} candidates, budget {:.2f} ms; the repeated cut is equal\n", a.file, captured->frame,
                captured->prepared.candidates.size(), captured->budget_us * 1e-3);
-    const report::Columns columns(
-        {{"selector", 18}, {"hash", -16}, {"items", -7}, {"predicted us", -13}, {"triangles", -10}, {"refinements", -12}});
+    const report::Columns columns({{"selector", 18},
+                                   {"hash", -16},
+                                   {"items", -7},
+                                   {"predicted us", -13},
+                                   {"triangles", -10},
+                                   {"refinements", -12},
+                                   {"value", -10}});
     fmt::print("{}\n", columns.heading());
     for (std::size_t i = 0; i < cuts.size(); ++i)
         fmt::print("{}\n", columns.row({selectors[i], fmt::format("{:016x}", cuts[i].hash), std::to_string(cuts[i].items.size()),
                                         fmt::format("{:.0f}", cuts[i].predicted_us), std::to_string(cuts[i].triangles),
-                                        std::to_string(cuts[i].refinements)}));
+                                        std::to_string(cuts[i].refinements),
+                                        fmt::format("{:.0f}", cuts[i].value + cuts[i].bought.value)}));
     return exit_success;
 }
 }  // namespace
@@ -74,8 +82,11 @@ void add_replay(CLI::App& app, Context& context) {
         "surefoot walk town.walk --capture frame.cap --capture-frame 120\n  surefoot replay frame.cap --selector best-first",
         a->json);
     c->add_option("capture", a->file, "File from `surefoot walk --capture`")->required();
-    c->add_option("--selector", a->selectors, "Additional selectors to run on the same frame")
-        ->check(one_of(select::selector_names()));
+    std::vector<std::string_view> names(select::selector_names().begin(), select::selector_names().end());
+    names.push_back(select::oracle_name);
+    c->add_option("--selector", a->selectors,
+                  "Additional selectors to run on the same frame; oracle: the greatest value, in seconds")
+        ->check(one_of(names));
     c->callback([&context, a] { context.run = [a] { return run_replay(*a); }; });
 }
 

@@ -22,10 +22,11 @@ void KeptFrame::reserve(const Engine& engine) {
 }
 
 capture::Capture capture_of(const KeptFrame& kept, const WalkRequest& request, const Engine& engine) {
-    const select::SelectInput input{&engine.model(),        &kept.prepared,        &engine.costs(),  kept.budget_us,
-                                    kept.correction.factor, kept.target_error_rad, request.slice_us, kept.correction.headroom};
-    capture::Capture taken =
-        capture::take(input, request.selector, static_cast<float>(request.hysteresis), kept.memory, kept.cut);
+    const select::SelectInput input{&engine.model(),  &kept.prepared,           &engine.costs(),
+                                    kept.budget_us,   kept.correction.factor,   kept.target_error_rad,
+                                    request.slice_us, kept.correction.headroom, &kept.offered};
+    capture::Capture taken = capture::take(input, request.selector, static_cast<float>(request.hysteresis),
+                                           {kept.memory, kept.bought_before}, kept.cut);
     taken.frame = kept.frame;
     return taken;
 }
@@ -162,6 +163,8 @@ void WalkStages::keep(const rt::FrameRecord& record) {
     kept_.prepared = set;  // into vectors that were reserved: no allocation
     kept_.cut = *cut_;
     kept_.memory = engine_.selection_memory().before;
+    kept_.offered = engine_.offered();
+    kept_.bought_before = engine_.selection_memory().bought_before;
     kept_.budget_us = requested_budget_us_;
     kept_.correction = requested_correction_;
     kept_.target_error_rad = options_.target_error_rad;
@@ -212,6 +215,9 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.draws = report_.draws;
     record.triangles = report_.triangles;
     record.resolution = report_.resolution;
+    record.bought_items = report_.bought_items;
+    record.refused_items = report_.refused_items;
+    record.bought_us = static_cast<float>(report_.bought_us);
     record.accuracy = report_.worst_error_rad > 0 ? 1.0F / report_.worst_error_rad : std::numeric_limits<float>::infinity();
     record.benefit = static_cast<float>(report_.benefit_mean);
     record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);

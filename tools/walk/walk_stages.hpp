@@ -28,6 +28,8 @@ struct KeptFrame {
     prepare::PreparedFrame prepared;
     select::Cut cut;
     std::vector<select::Shown> memory;  ///< before the selection
+    select::RememberedItems bought_before;
+    select::ItemList offered;
     double budget_us = 0, target_error_rad = 0;
     Correction correction;
 
