@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 64> columns = {{
+constexpr std::array<Column, 66> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -48,6 +48,8 @@ constexpr std::array<Column, 64> columns = {{
     {"accuracy", [](auto& r, auto& f) { add(r, "{:.3f}", f.accuracy); }},
     {"benefit", [](auto& r, auto& f) { add(r, "{:.5f}", f.benefit); }},
     {"resolution", [](auto& r, auto& f) { add(r, "{:.3f}", f.resolution); }},
+    {"at_rest", [](auto& r, auto& f) { add(r, "{:d}", f.at_rest); }},
+    {"rest_samples", [](auto& r, auto& f) { add(r, "{}", f.rest_samples); }},
     {"switches", [](auto& r, auto& f) { add(r, "{}", f.switches); }},
     {"slices", [](auto& r, auto& f) { add(r, "{}", f.slices); }},
     {"downgraded_slices", [](auto& r, auto& f) { add(r, "{}", f.downgraded_slices); }},
