@@ -17,7 +17,7 @@ constexpr double margin = 1.1;        // on the cost of a slice
 constexpr double forget = 0.95;       // a frame, of the learned ratio
 constexpr double highest_ratio = 4;   // a stolen core says nothing about costs
 constexpr double early_share = 0.25;  // of the limit: a frame that begins later is no reason to refuse a picture
-constexpr double least_learned_us = 500;
+constexpr double min_learned_us = 500;
 
 double halton(std::uint32_t index, std::uint32_t base) {
     double value = 0, digit = 1;
@@ -147,7 +147,7 @@ bool RestPicture::frame(const RestScene& scene, const Pose& pose, const SubmitLi
     scene.device.finish_rest_frame();
     report.submitted_us = report.finished_us = now.measured_us();
     learned_ *= forget;
-    if (now.predicted_us > least_learned_us)
+    if (now.predicted_us > min_learned_us)
         learned_ = std::max(learned_, std::min(report.finished_us / now.predicted_us, highest_ratio));
     const bool early = limits.elapsed_us < early_share * limits.limit_us;
     if (now.progress || phase_ == Phase::done) {

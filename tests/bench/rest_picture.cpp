@@ -74,7 +74,7 @@ struct Stand {
     double full_ms = -1, smooth_ms = -1, frame_ms_max = 0;  ///< from the first frame
     int frames = 0, late = 0, late_without_rest = 0;
     std::uint32_t samples = 0;
-    double changed_before = 0;  ///< largest share of pixels that changed from frame to frame, from 2 s on until full detail
+    double changed_before = 0;  ///< largest share of pixels that changed from frame to frame at rest, until full detail
 };
 
 Stand stand(Engine& engine, const Pose& pose, double seconds) {
@@ -102,7 +102,7 @@ Stand stand(Engine& engine, const Pose& pose, double seconds) {
         Pixels now;
         if (reads) now = shown(engine.device());
         if (report.rest_samples == 0) {
-            if (at_s >= 2 && !s.before.empty())
+            if (report.at_rest && !s.before.empty())
                 s.changed_before = std::max(s.changed_before, 1 - measure::share_within(s.before, now, 0));
             s.before = std::move(now);
         } else if (reads) {

@@ -40,7 +40,7 @@ TEST(RestWalk, RestsWhereItStandsAndChangesNothingElse) {
     int rests = 0;
     for (std::size_t i = 0; i < with.records.size(); ++i) {
         const rt::FrameRecord &f = with.records[i], &g = without.records[i];
-        const bool stands = i >= 60 + 15 && i < 360;
+        const bool stands = i >= 60 + 15 && i <= 360;  // the last of them is a hair before the path goes on
         ASSERT_EQ(f.at_rest, stands && f.at_rest) << "frame " << i << " moves";
         ASSERT_FALSE(g.at_rest);
         ASSERT_EQ(f.cut_hash, g.cut_hash) << i;

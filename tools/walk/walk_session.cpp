@@ -85,7 +85,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
 }
 
 /// Says what of a picture at rest the driver cannot draw.
-void note_rest(Session& s) {
+void add_rest_message(Session& s) {
     if (!(s.request.rest_after_ms > 0)) return;
     s.engine->device().draws.plays();
     const gl::RestSupport support = s.engine->device().rest_support();
@@ -139,7 +139,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
             return require_real_time(std::vector<rt::Lack>{{rt::LackKind::cost_table, s.facts.uncalibrated, ""}});
         }
     }
-    note_rest(s);
+    add_rest_message(s);
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
     if (!r.capture_file.empty() || s.observer.on_missed_frame) s.kept.reserve(*s.engine);
     return {};
