@@ -42,7 +42,8 @@ struct Settings {
     int workers = 0;      ///< 0: one a core beside the frame thread's
     int rasterisers = 0;  ///< 0: one a core
     bool fifo = true, strict = false, in_frame_check = true, occlusion = true, control = false;
-    int frame_core = -1;  ///< -1: chosen
+    int frame_core = -1;         ///< -1: chosen
+    double rest_after_ms = 500;  ///< 0: never
     double slice_us = 1000;
     double hysteresis = 1.25;
     std::string sky = "#9eb8d1";

@@ -11,6 +11,7 @@
 #include "render/floor_watch.hpp"
 #include "render/model/view.hpp"
 #include "render/prepare/resolution.hpp"
+#include "render/rest.hpp"
 #include "render/unprepared.hpp"
 #include "rt/base/check.hpp"
 #include "rt/base/thread_annotations.hpp"
@@ -48,7 +49,12 @@ struct Engine::Impl {
     double forecast_us GUARDED_BY(draws) = 0;      ///< end of this frame, by the last check that let a slice be drawn in full
     float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
 
+    RestWatch watch GUARDED_BY(draws);
+    RestPicture rest_picture GUARDED_BY(draws);
+    SubmitReport last_report GUARDED_BY(draws);  ///< of the last frame that drew a cut
+
     void use(const select::SelectorEntry& entry);
+    bool submit_rest(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) REQUIRES(draws);
     [[nodiscard]] model::ViewScale drawn_scale(const Pose& pose) const REQUIRES(draws) {
         return model::scaled(model::make_view_scale(pose, options.device.viewport), drawn_resolution);
     }
@@ -87,6 +93,8 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     if (!selector) return selector.error();
     impl->options.device.null.costs = &impl->costs;
     impl->options.device.null.enlarge_us = static_cast<double>(costs.enlarge_us(0.5F, options.device.viewport));
+    impl->options.device.rest = options.rest_after_ms > 0;
+    impl->options.device.null.rest_pass_us = static_cast<double>(costs.rest_pass_us(options.device.viewport));
     impl->options.resolution = model::stepped(options.resolution);
     if (impl->options.resolution > 0.0F) impl->drawn_resolution = impl->options.resolution;
     auto device = gl::open_device(impl->options.device);
@@ -112,6 +120,10 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->drawn.reserve(max_drawn);
     impl->culled.reserve(candidates);
     impl->floor.reserve(impl->model.nodes.size(), std::max<std::size_t>(candidates, impl->unprepared.capacity()));
+    if (options.rest_after_ms > 0) {
+        impl->watch = RestWatch(static_cast<std::int64_t>(options.rest_after_ms * 1e6));
+        impl->rest_picture.reserve(impl->model);
+    }
     return std::unique_ptr<Engine>(new Engine(std::move(impl)));
 }
 
@@ -131,15 +143,15 @@ gl::Device& Engine::device() { return *impl_->device; }
 const EngineOptions& Engine::options() const { return impl_->options; }
 std::span<const gl::DrawItem> Engine::drawn() const {
     impl_->draws.plays();
-    return impl_->drawn;
+    return impl_->rest_picture.samples() > 0 ? impl_->rest_picture.items() : std::span<const gl::DrawItem>(impl_->drawn);
 }
 std::span<const gl::DrawItem> Engine::culled() const {
     impl_->draws.plays();
-    return impl_->culled;
+    return impl_->rest_picture.samples() > 0 ? std::span<const gl::DrawItem>() : std::span<const gl::DrawItem>(impl_->culled);
 }
 std::size_t Engine::drawn_capacity() const {
     impl_->draws.plays();
-    return impl_->drawn.capacity();
+    return std::max(impl_->drawn.capacity(), impl_->rest_picture.capacity());
 }
 
 void Engine::reserve(prepare::PreparedFrame& frame) const { impl_->preparer->reserve(frame); }
@@ -387,12 +399,28 @@ void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, dou
     report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us();
 }
 
+/// False: the pose is not at rest, and a cut is to be drawn.
+bool Engine::Impl::submit_rest(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) {
+    device->draws.plays();
+    const bool still = limits.frame_ns >= 0 && watch.at_rest(pose, limits.frame_ns) && !device->lost();
+    if (still) {
+        report = last_report;
+        const RestScene scene{model, preparer->item_costs(), costs, *device, options.device.viewport, options.slice_us};
+        if (rest_picture.frame(scene, pose, limits, correction.factor, report)) return true;
+        report = {};
+    } else {
+        rest_picture.leave();
+    }
+    return false;
+}
+
 SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     Impl& e = *impl_;
     e.draws.plays();
     e.device->draws.plays();
     CHECK(e.use_last || e.prepared != nullptr, "A submitted frame was selected before");
     SubmitReport report;
+    if (e.submit_rest(pose, limits, report)) return report;
     const double start_us = e.now_us(limits);
     e.drawn.clear();
     e.culled.clear();
@@ -417,6 +445,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     if (!e.drawn.empty()) report.benefit_mean /= static_cast<double>(e.drawn.size());
     report.floor_share = e.floor.floor_share();
     e.report_items(report);
+    e.last_report = report;
     return report;
 }
 
@@ -441,6 +470,9 @@ bool Engine::fell_to_floor(const Pose& pose, double time_us, double correction) 
 void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution) {
     gl::Device& device = *impl_->device;
     device.draws.plays();
+    impl_->draws.plays();
+    impl_->watch.forget();  // another picture is shown
+    impl_->rest_picture.leave();
     device.begin_frame(pose, resolution);
     constexpr std::size_t chunk = 4096;  // below the device's max_items, and bounded work a slice
     for (std::size_t at = 0; at < items.size(); at += chunk) {

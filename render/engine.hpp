@@ -32,6 +32,8 @@ struct EngineOptions {
     float hysteresis = 1.25F;
     /// Share of the picture's width and height that is drawn, then enlarged; 0: chosen frame by frame.
     float resolution = 1;
+    /// How long the pose must stay before the picture at rest is drawn, ms; 0: never. SubmitLimits::frame_ns is its clock.
+    double rest_after_ms = 0;
     bool in_frame_check = true;  ///< checks slices against the time left; off only for comparison
 };
 
@@ -42,6 +44,7 @@ struct SubmitLimits {
     double margin_us = 0;                             ///< of the in-frame check: how much later than forecast frames end
     std::int64_t (*now_ns)(void* context) = nullptr;  ///< null: the device's charged time (virtual)
     void* now_context = nullptr;
+    std::int64_t frame_ns = -1;  ///< the time that the pose is of; below 0: unknown, and no rest
 };
 
 /// Actual / predicted cost of recent frames: the median, and the headroom (p90) on top of it.
@@ -74,6 +77,10 @@ struct SubmitReport {
     float resolution = 1;                               ///< that was drawn: a step of model::resolution_steps
     float worst_error_rad = 0;                          ///< of the drawn items, stand-ins included
     double benefit_mean = 0;
+    /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was
+    /// drawn beside it; all else describes the shown picture.
+    bool at_rest = false;
+    std::uint32_t rest_samples = 0;  ///< of the shown picture: 1 is full detail; 0: it is a cut
     float floor_share = 0;  ///< of the drawn pixels, as estimated: those in the cheapest forms of nodes that have finer ones
 };
 
@@ -118,7 +125,7 @@ public:
     /// pose. All else shows coarse levels, valid from everywhere. The in-frame check holds here too.
     void select_last();
 
-    /// (node, representation) in drawing order of the last submit(); valid until the next.
+    /// (node, representation) of what the last submit() shows, in drawing order; valid until the next.
     [[nodiscard]] std::span<const gl::DrawItem> drawn() const;
     /// Items of that cut, or their stand-ins, that were outside the pose's view; valid as long.
     [[nodiscard]] std::span<const gl::DrawItem> culled() const;

@@ -41,8 +41,15 @@ struct NullOptions {
     double cost_scale = 1;
     double noise = 0;  ///< relative, seeded
     std::uint64_t seed = 1;
-    double enlarge_us = 0;  ///< charged for a frame below full resolution
+    double enlarge_us = 0;    ///< charged for a frame below full resolution
+    double rest_pass_us = 0;  ///< charged for a pass over the picture at rest
 };
+
+/// What a device can do at rest: nothing, a second picture, or also the mean of several samples.
+enum class RestSupport : std::uint8_t { none, picture, samples };
+
+/// Parts of items that are drawn together. Blended ones come last.
+enum class Parts : std::uint8_t { all, opaque, blended };
 
 /// Settings of a device.
 struct DeviceOptions {
@@ -52,7 +59,8 @@ struct DeviceOptions {
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
     std::array<float, 3> sky{0.62F, 0.72F, 0.82F};
-    NullOptions null;  ///< of the null backend
+    NullOptions null;   ///< of the null backend
+    bool rest = false;  ///< has targets for a picture at rest
 };
 
 /// Counts and times of one drawn frame.
@@ -104,6 +112,21 @@ public:
     virtual void end_items() REQUIRES(draws) = 0;
     /// Enlarges a frame below full resolution, waits for all slices; presents if there is a window.
     virtual void finish_frame() REQUIRES(draws) = 0;
+
+    // ---- a picture at rest: drawn over several frames into a second target, while the shown picture stays; the same rules ----
+    [[nodiscard]] virtual RestSupport rest_support() const REQUIRES(draws) { return RestSupport::none; }
+    /// Begins the second picture. `offset_px`: by how much everything is moved on the picture, in pixels. The next begin_frame()
+    /// or begin_rest() gives it up.
+    virtual void begin_rest(const Pose& /*pose*/, const dvec2& /*offset_px*/) REQUIRES(draws) {}
+    /// Draws these parts of the items as a slice.
+    virtual void draw_rest(std::span<const DrawItem> /*items*/, Parts /*parts*/) REQUIRES(draws) {}
+    /// The second picture is whole: adds it to the sum of samples, which the first one starts.
+    virtual void add_sample(bool /*first*/) REQUIRES(draws) {}
+    /// Makes the shown picture: the second one if `samples` is 1, else the mean of so many.
+    virtual void show_rest(std::uint32_t /*samples*/) REQUIRES(draws) {}
+    /// Ends a frame at rest: waits for all slices, and presents the shown picture if there is a window.
+    virtual void finish_rest_frame() REQUIRES(draws) {}
+
     [[nodiscard]] virtual FrameStats stats() const REQUIRES(draws) = 0;
     /// The context is lost: the GPU was reset or removed, or does not finish. Later frames were not shown. All calls are safe
     /// then, and draw nothing.

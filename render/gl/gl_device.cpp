@@ -54,6 +54,7 @@ Result<void> GlDevice::set_up() {
     auto targets = make_targets(gl_, options_.viewport);
     if (!targets) return targets.error();
     targets_ = *targets;
+    if (options_.rest) rest_ = make_rest_targets(gl_, targets_);
     auto frame = make_frame_buffers(gl_, std::max(1U, options_.max_items));
     if (!frame) return frame.error();
     frame_ = *frame;
@@ -118,6 +119,15 @@ void GlDevice::warm_up() {
         begin_frame(Pose{}, resolution);
         finish_frame();
     }
+    if (rest_support() != RestSupport::none) {
+        begin_rest(Pose{}, dvec2(0));
+        show_rest(1);
+        for (const bool first : {true, false}) {
+            if (rest_support() == RestSupport::samples) add_sample(first);
+        }
+        if (rest_support() == RestSupport::samples) show_rest(2);
+        finish_rest_frame();
+    }
     stats_ = {};
 }
 
@@ -159,14 +169,63 @@ void GlDevice::finish_frame() {
     if (step_ > 0 && !lost_) enlarge(gl_, targets_, step_);
     end_slice();
     wait_slices(0);
+    present();
+}
+
+/// The shown target goes to the window, if there is one.
+void GlDevice::present() {
     if (reset_status_ != nullptr && reset_status_() != GL_NO_ERROR) lost_ = true;
     if (lost_ || !context_->has_window()) return;
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_.steps.front().framebuffer);
     const auto w = static_cast<GLint>(options_.viewport.width);
     const auto h = static_cast<GLint>(options_.viewport.height);
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     gl_.BlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     context_->present();
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_.steps.front().framebuffer);
+}
+
+RestSupport GlDevice::rest_support() const {
+    return rest_.picture.framebuffer == 0 ? RestSupport::none
+           : rest_.sum.framebuffer == 0   ? RestSupport::picture
+                                          : RestSupport::samples;
+}
+
+void GlDevice::begin_rest(const Pose& pose, const dvec2& offset_px) {
+    start_picture(pose);
+    if (offset_px != dvec2(0)) {
+        const vec2 moved(2.0 * offset_px / dvec2(options_.viewport.width, options_.viewport.height));
+        for (int c = 0; c < 4; ++c) {
+            view_projection_[c][0] += moved.x * view_projection_[c][3];
+            view_projection_[c][1] += moved.y * view_projection_[c][3];
+        }
+    }
+    if (lost_ || rest_.picture.framebuffer == 0) return;
+    draw_into(rest_.picture);
+    clear_target();
+}
+
+void GlDevice::add_sample(bool first) {
+    if (lost_ || rest_.sum.framebuffer == 0) return;
+    add_to_sum(gl_, rest_, first);
+    state_known_ = false;
+    end_slice();
+}
+
+void GlDevice::show_rest(std::uint32_t samples) {
+    if (lost_ || rest_.picture.framebuffer == 0) return;
+    if (samples > 1) {
+        show_mean(gl_, rest_, targets_.steps.front(), samples);
+    } else {
+        show_picture(gl_, rest_, targets_.steps.front());
+    }
+    state_known_ = false;
+    end_slice();
+}
+
+void GlDevice::finish_rest_frame() {
+    wait_slices(0);
+    present();
 }
 
 Result<PixelImage> GlDevice::read_pixels() {

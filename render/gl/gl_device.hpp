@@ -10,6 +10,7 @@
 #include "render/draw/tables.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/resources.hpp"
+#include "render/gl/rest_targets.hpp"
 #include "render/gl/targets.hpp"
 
 namespace surefoot::gl {
@@ -37,6 +38,12 @@ public:
     void wait_slices(std::uint32_t in_flight) override REQUIRES(draws);
     void end_items() override REQUIRES(draws);
     void finish_frame() override REQUIRES(draws);
+    [[nodiscard]] RestSupport rest_support() const override REQUIRES(draws);
+    void begin_rest(const Pose& pose, const dvec2& offset_px) override REQUIRES(draws);
+    void draw_rest(std::span<const DrawItem> items, Parts parts) override REQUIRES(draws);
+    void add_sample(bool first) override REQUIRES(draws);
+    void show_rest(std::uint32_t samples) override REQUIRES(draws);
+    void finish_rest_frame() override REQUIRES(draws);
     [[nodiscard]] FrameStats stats() const override REQUIRES(draws) { return stats_; }
     [[nodiscard]] bool lost() const override REQUIRES(draws) { return lost_; }
     Result<PixelImage> read_pixels() override REQUIRES(draws);
@@ -59,6 +66,11 @@ private:
     GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options);
     Result<void> set_up() REQUIRES(draws);
     void warm_up() REQUIRES(draws);
+    void start_picture(const Pose& pose) REQUIRES(draws);
+    void draw_into(const Target& target) REQUIRES(draws);
+    void clear_target() REQUIRES(draws);
+    void draw_parts(std::span<const DrawItem> items, Parts parts) REQUIRES(draws);
+    void present() REQUIRES(draws);
     [[nodiscard]] State state_of(const Pending& pending) const;
     void submit(std::span<Pending> sorted) REQUIRES(draws);
     void submit_blended() REQUIRES(draws);
@@ -74,6 +86,7 @@ private:
     std::string renderer_;
     bool software_ = false;
     Targets targets_ GUARDED_BY(draws);
+    RestTargets rest_ GUARDED_BY(draws);
     std::size_t step_ GUARDED_BY(draws) = 0;  ///< of this frame, in model::resolution_steps
     FrameBuffers frame_ GUARDED_BY(draws);
     Resources resources_;

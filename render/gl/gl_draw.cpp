@@ -31,20 +31,27 @@ void apply_depth_bias(std::uint8_t rank, std::array<float, 12>& rows) {
 }  // namespace
 
 void GlDevice::begin_frame(const Pose& pose, float resolution) {
-    if (slices_ != slices_done_) wait_slices(0);  // an abandoned frame: its buffers may still be read
-    ++frame_number_;
-    pose_ = pose;
-    view_projection_ = model::projection(pose, options_.viewport) * model::view_rotation(pose);
+    start_picture(pose);
     stats_ = {};
     step_ = model::resolution_step(resolution);
     stats_.resolution = model::resolution_steps[step_];
+    if (lost_) return;
+    draw_into(targets_.steps[step_]);
+    clear_target();
+}
+
+void GlDevice::start_picture(const Pose& pose) {
+    if (slices_ != slices_done_) wait_slices(0);  // an abandoned picture: its buffers may still be read
+    ++frame_number_;
+    pose_ = pose;
+    view_projection_ = model::projection(pose, options_.viewport) * model::view_rotation(pose);
     slices_ = slices_done_ = 0;
     blended_count_ = 0;
     used_instances_ = used_commands_ = 0;
     state_known_ = false;
-    if (lost_) return;
+}
 
-    const Target& target = targets_.steps[step_];
+void GlDevice::draw_into(const Target& target) {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     gl_.Viewport(0, 0, target.width, target.height);
     gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // reversed-Z needs 0..1: -1..1 would round near 1
@@ -52,10 +59,13 @@ void GlDevice::begin_frame(const Pose& pose, float resolution) {
     gl_.DepthFunc(GL_GREATER);
     gl_.CullFace(GL_BACK);
     set_blending(false);
+    gl_.BindBuffer(GL_DRAW_INDIRECT_BUFFER, frame_.command_buffer);
+}
+
+void GlDevice::clear_target() {
     gl_.ClearColor(options_.sky[0], options_.sky[1], options_.sky[2], 1.0F);
     gl_.ClearDepthf(0.0F);
     gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    gl_.BindBuffer(GL_DRAW_INDIRECT_BUFFER, frame_.command_buffer);
 }
 
 void GlDevice::set_blending(bool on) {
@@ -73,7 +83,18 @@ GlDevice::State GlDevice::state_of(const Pending& pending) const {
     return {part.program, part.texture, draw::culling(part, tables_.placements[tables_.reps[pending.rep].placement])};
 }
 
-void GlDevice::draw(std::span<const DrawItem> items) {
+void GlDevice::draw(std::span<const DrawItem> items) { draw_parts(items, Parts::all); }
+
+void GlDevice::draw_rest(std::span<const DrawItem> items, Parts parts) {
+    if (lost_ || rest_.picture.framebuffer == 0) return;
+    draw_into(rest_.picture);  // frames in between show the other target
+    state_known_ = false;
+    draw_parts(items, parts);
+    if (blended_count_ > 0) submit_blended();
+    end_slice();
+}
+
+void GlDevice::draw_parts(std::span<const DrawItem> items, Parts parts) {
     const vec3 eye(pose_.position - tables_.middle);
     std::size_t count = 0;
     for (const DrawItem& item : items) {
@@ -84,7 +105,7 @@ void GlDevice::draw(std::span<const DrawItem> items) {
         stats_.triangles += rep.triangles;
         for (std::uint32_t p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
             const draw::DrawPart& part = tables_.parts[p];
-            if (part.index_count == 0) continue;
+            if (part.index_count == 0 || (parts != Parts::all && part.blended != (parts == Parts::blended))) continue;
             if (part.blended) {
                 if (blended_count_ == blended_.size()) submit_blended();  // out of order rather than not at all
                 // Far first; ids break ties.

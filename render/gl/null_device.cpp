@@ -49,6 +49,14 @@ public:
     void finish_frame() override REQUIRES(draws) {
         if (stats_.resolution < 1) frame_us_ += null_.cost_scale * factor_ * null_.enlarge_us;
     }
+    [[nodiscard]] RestSupport rest_support() const override REQUIRES(draws) {
+        return options_.rest ? RestSupport::samples : RestSupport::none;
+    }
+    void begin_rest(const Pose& pose, const dvec2& offset_px) override REQUIRES(draws);
+    void draw_rest(std::span<const DrawItem> items, Parts parts) override REQUIRES(draws);
+    void add_sample(bool) override REQUIRES(draws) { charge_pass(); }
+    void show_rest(std::uint32_t) override REQUIRES(draws) { charge_pass(); }
+    void finish_rest_frame() override REQUIRES(draws) {}
     [[nodiscard]] FrameStats stats() const override REQUIRES(draws) { return stats_; }
     Result<PixelImage> read_pixels() override REQUIRES(draws) {
         return Error{"backend 'null'", "The backend draws nothing, so there is no picture", "Use --backend egl for pictures",
@@ -58,6 +66,8 @@ public:
 
 private:
     void charge() REQUIRES(draws);
+    /// The picture at rest has no fixed costs of a frame: its passes are charged one by one.
+    void charge_pass() REQUIRES(draws) { before_us_ += null_.cost_scale * factor_ * null_.rest_pass_us; }
 
     DeviceOptions options_;
     NullOptions null_;
@@ -128,6 +138,24 @@ void NullDevice::draw(std::span<const DrawItem> items) {
     }
     ++stats_.batches;
     charge();
+}
+
+void NullDevice::begin_rest(const Pose& pose, const dvec2&) {
+    eye_ = pose.position;
+    scale_ = model::make_view_scale(pose, options_.viewport);
+    charge_pass();
+}
+
+/// A slice of its own, as the engine predicts it. Items with blended parts are charged both times.
+void NullDevice::draw_rest(std::span<const DrawItem> items, Parts parts) {
+    model::ItemCost sum{costs_.slice_us, 0};
+    for (const DrawItem& item : items) {
+        if (parts == Parts::blended && (model_->reps[item.rep].effects & model::effect_blend) == 0) continue;
+        sum += item_costs_->of(item.rep, model_->nodes[item.node].box, eye_, scale_);
+        stats_.draws += model_->reps[item.rep].part_count;
+    }
+    const float us = costs_.combine.frame_us(sum.submit_us, sum.raster_us) - costs_.combine.fixed_us;
+    before_us_ += null_.cost_scale * factor_ * static_cast<double>(us);
 }
 
 /// As the engine predicts a frame: slices are submit time.

@@ -27,6 +27,8 @@ uniform sampler2D picture;
 void main() { colour = texture(picture, at); }
 )";
 
+}  // namespace
+
 bool make_target(const Api& gl, model::Viewport size, GLuint depth, Target& target) {
     target.width = static_cast<GLsizei>(size.width);
     target.height = static_cast<GLsizei>(size.height);
@@ -45,13 +47,14 @@ bool make_target(const Api& gl, model::Viewport size, GLuint depth, Target& targ
     return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
-}  // namespace
+void free_target(const Api& gl, Target& target) {
+    gl.DeleteTextures(1, &target.colour);
+    gl.DeleteFramebuffers(1, &target.framebuffer);
+    target = {};
+}
 
 void free_targets(const Api& gl, Targets& targets) {
-    for (Target& target : targets.steps) {
-        gl.DeleteTextures(1, &target.colour);
-        gl.DeleteFramebuffers(1, &target.framebuffer);
-    }
+    for (Target& target : targets.steps) free_target(gl, target);
     gl.DeleteRenderbuffers(1, &targets.depth);
     gl.DeleteProgram(targets.program);
     gl.DeleteVertexArrays(1, &targets.vertex_array);

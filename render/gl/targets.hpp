@@ -23,6 +23,10 @@ struct Targets {
     GLuint program = 0, vertex_array = 0;  ///< of the enlarging pass
 };
 
+/// Makes a colour texture of this size with the depth buffer, and binds it. False: the driver cannot draw into it.
+bool make_target(const Api& gl, model::Viewport size, GLuint depth, Target& target);
+void free_target(const Api& gl, Target& target);
+
 /// Makes all of it or nothing. The shown target is bound for drawing.
 Result<Targets> make_targets(const Api& gl, model::Viewport viewport);
 void free_targets(const Api& gl, Targets& targets);

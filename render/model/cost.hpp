@@ -55,6 +55,7 @@ struct CostModel {
     float headroom = 1.25F;             ///< 90 % quantile of actual / predicted whole-frame cost at calibration
     float slice_us = 30;                ///< cost of ending a slice (flush and fence)
     float enlarge_ns_per_pixel = 1.6F;  ///< of the whole picture, where it is drawn at a lower resolution
+    float rest_pass_ns_per_pixel = 8;   ///< of one pass over the picture at rest; typical, no calibration measures it
     /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.
     BlurLoss blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
     std::string machine;  ///< CPU, renderer, rasteriser count; a table of another machine is refused
@@ -71,6 +72,10 @@ struct CostModel {
     [[nodiscard]] float enlarge_us(float resolution, const Viewport& picture) const {
         const float pixels = static_cast<float>(picture.width) * static_cast<float>(picture.height);
         return resolution < 1.0F ? 1e-3F * enlarge_ns_per_pixel * pixels : 0.0F;
+    }
+    /// Time to clear, copy, add or divide the picture at rest, us.
+    [[nodiscard]] float rest_pass_us(const Viewport& picture) const {
+        return 1e-3F * rest_pass_ns_per_pixel * static_cast<float>(picture.width) * static_cast<float>(picture.height);
     }
 };
 

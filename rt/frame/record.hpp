@@ -58,6 +58,7 @@ struct FrameRecord {
     std::uint32_t items = 0, draws = 0, switches = 0, visits = 0, hidden = 0, candidates = 0;
     std::uint32_t bought_items = 0;   ///< what time was spent on beside the forms: a resolution, an upload, an effect
     std::uint32_t refused_items = 0;  ///< offered with a cost or a value that is no number above zero, or twice
+    std::uint32_t rest_samples = 0;  ///< of the shown picture: 1 is full detail; 0: it is a cut
     std::uint64_t triangles = 0;
     std::uint64_t cut_hash = 0;
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;
@@ -70,6 +71,7 @@ struct FrameRecord {
     bool floor_frame = false;  ///< over half of the picture fell to floor forms, although the cut before would have fitted
     float resolution = 1;      ///< share of the picture's sides at which it was drawn
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
+    bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it
     bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss
     Cause cause = Cause::none;
     std::uint32_t block = 0;              ///< control blocks: number of the 2 s block

@@ -100,6 +100,33 @@ TEST(Allocation, a_frame_on_gl_makes_none_of_its_own) {
     EXPECT_EQ(allocations_of_a_frame(**device, scene), 0);
 }
 
+TEST(Allocation, a_picture_at_rest_makes_none_and_compiles_nothing) {
+    if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
+    const auto scene = many_squares();
+    gl::DeviceOptions options;
+    options.viewport = {64, 64};
+    options.rest = true;
+    auto device = gl::open_device(options);
+    if (!device) GTEST_SKIP() << device.error().text();
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    ASSERT_EQ((*device)->rest_support(), gl::RestSupport::samples);
+    Pose pose;
+    pose.position.z = 11;
+    counted = 0;
+    counting = true;
+    for (std::uint32_t sample = 0; sample < 3; ++sample) {
+        (*device)->begin_rest(pose, dvec2(0.1 * sample));
+        (*device)->draw_rest(scene.items, gl::Parts::opaque);
+        (*device)->draw_rest(scene.items, gl::Parts::blended);
+        (*device)->add_sample(sample == 0);
+        (*device)->show_rest(sample + 1);
+        (*device)->finish_rest_frame();
+    }
+    counting = false;
+    EXPECT_EQ(counted, 0);
+}
+
 TEST(Allocation, a_frame_on_null_makes_none) {
     if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
     const auto scene = many_squares();

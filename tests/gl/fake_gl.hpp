@@ -21,7 +21,8 @@ struct FakeGl {
     int buffers = 0, textures = 0, vertex_arrays = 0, framebuffers = 0, renderbuffers = 0;
     int maps = 0, bad_map = 0;  ///< bad_map: the how many-th mapping fails, from 1
     GLenum framebuffer_status = GL_FRAMEBUFFER_COMPLETE;
-    int errors_asked = 0, bad_error = 0;  ///< bad_error: the how many-th glGetError says out of memory, from 1
+    int framebuffers_asked = 0, bad_framebuffer = 0;  ///< bad_framebuffer: the how many-th check fails, from 1
+    int errors_asked = 0, bad_error = 0;              ///< bad_error: the how many-th glGetError says out of memory, from 1
     GLint max_texture_size = 4096;
     int compiles = 0, bad_compile = 0;  ///< bad_compile: the how many-th compile fails, from 1
     bool links = true;
@@ -76,7 +77,10 @@ inline gl::Api fake_api() {
     count_names<&FakeGl::vertex_arrays>(api.GenVertexArrays, api.DeleteVertexArrays);
     count_names<&FakeGl::framebuffers>(api.GenFramebuffers, api.DeleteFramebuffers);
     count_names<&FakeGl::renderbuffers>(api.GenRenderbuffers, api.DeleteRenderbuffers);
-    api.CheckFramebufferStatus = [](GLenum) -> GLenum { return FakeGl::get().framebuffer_status; };
+    api.CheckFramebufferStatus = [](GLenum) -> GLenum {
+        FakeGl& fake = FakeGl::get();
+        return ++fake.framebuffers_asked == fake.bad_framebuffer ? GL_FRAMEBUFFER_UNSUPPORTED : fake.framebuffer_status;
+    };
     api.MapBufferRange = [](GLenum, GLintptr, GLsizeiptr bytes, GLbitfield) -> void* {
         if (++FakeGl::get().maps == FakeGl::get().bad_map) return nullptr;
         return FakeGl::get().mapped.emplace_back(static_cast<std::size_t>(bytes)).data();

@@ -5,6 +5,8 @@
 
 #include "render/draw/tables.hpp"
 #include "render/effects/effects.hpp"
+#include "render/gl/gl_device.hpp"
+#include "render/gl/rest_targets.hpp"
 #include "render/gl/targets.hpp"
 #include "tests/gl/fake_gl.hpp"
 #include "tests/gl/small_models.hpp"
@@ -89,6 +91,43 @@ TEST_F(ResourceObjects, targets_are_freed_whole_also_where_the_enlarging_pass_do
     EXPECT_EQ(FakeGl::get().framebuffers, static_cast<int>(model::resolution_steps.size()));
     gl::free_targets(test::fake_api(), *targets);
     EXPECT_EQ(FakeGl::get().objects(), 0);
+}
+
+TEST_F(ResourceObjects, a_driver_without_a_target_for_rest_still_opens) {
+    using gl::RestSupport;
+    const int steps = static_cast<int>(model::resolution_steps.size());
+    for (const auto& [bad, expected] :
+         {std::pair{0, RestSupport::samples}, {steps + 1, RestSupport::none}, {steps + 2, RestSupport::picture}}) {
+        auto context = std::make_unique<test::FakeContext>();
+        FakeGl::get().bad_framebuffer = bad;
+        gl::DeviceOptions options;
+        options.viewport = {64, 64};
+        options.rest = true;
+        auto device = gl::GlDevice::make(std::move(context), options);
+        ASSERT_TRUE(device.ok()) << bad;
+        (*device)->draws.plays();
+        EXPECT_EQ((*device)->rest_support(), expected) << bad;
+        const int more = expected == RestSupport::samples ? 2 : expected == RestSupport::picture ? 1 : 0;
+        EXPECT_EQ(FakeGl::get().framebuffers, steps + more) << "what cannot be used is freed";
+        (*device)->begin_rest(Pose{}, {0.25, 0.25});
+        (*device)->add_sample(true);
+        (*device)->show_rest(1);
+        (*device)->finish_rest_frame();
+        EXPECT_EQ(FakeGl::get().syncs, 0);
+    }
+}
+
+TEST_F(ResourceObjects, targets_for_rest_are_freed_whole_where_a_pass_does_not_link) {
+    auto targets = gl::make_targets(test::fake_api(), {64, 64});
+    ASSERT_TRUE(targets.ok());
+    const int before = FakeGl::get().objects();
+    FakeGl::get().links = false;
+    auto rest = gl::make_rest_targets(test::fake_api(), *targets);
+    EXPECT_NE(rest.picture.framebuffer, 0U);
+    EXPECT_EQ(rest.sum.framebuffer, 0U) << "no samples without their passes";
+    EXPECT_EQ(FakeGl::get().objects(), before + 2);
+    gl::free_rest_targets(test::fake_api(), rest);
+    EXPECT_EQ(FakeGl::get().objects(), before);
 }
 
 TEST_F(ResourceObjects, nothing_is_left_where_a_frame_buffer_cannot_be_mapped) {

@@ -170,7 +170,8 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                     "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
                     "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated",
                     "input",       "picture",    "unused_ms", "coarse_frames",  "floor_frames", "cost_scale",
-                    "resolution"}));
+                    "resolution",  "rest"}));
+    EXPECT_EQ(keys_of(json["rest"]), (Keys{"frames", "full_detail_frames", "samples", "full_detail_ms"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
     EXPECT_EQ(keys_of(json["prepared_age"]), (Keys{"p50", "p99", "max"}));

@@ -209,7 +209,9 @@ void add_walk(CLI::App& app, Context& context) {
         "  surefoot walk town.walk --monitor 127.0.0.1:9464 --incidents incidents\n"
         "  surefoot walk town.walk --control                                 (six minutes: the deadline rule)\n\n"
         "In --json, `coarse_frames` counts frames with coarser slices. `floor_frames` counts frames where over half of the\n"
-        "picture fell to the coarsest forms, although the forms of the frame before would have been drawn in time.",
+        "picture fell to the coarsest forms, although the forms of the frame before would have been drawn in time.\n"
+        "Where the eye stands still, full detail is drawn over several frames, then smoothed by 64 samples. In --json,\n"
+        "`rest` counts the frames at rest, those that show full detail, and the samples of the smoothest picture.",
         a->json);
     c->add_option("model", r.model_file, "The .walk model (else `model` in the --config file)");
     add_sources(c, r);
@@ -218,7 +220,11 @@ void add_walk(CLI::App& app, Context& context) {
         ->check(whole_number_within(1, 4'000'000));
     c->add_option("--seconds", r.seconds, "Seconds to walk; the path is walked back and forth")
         ->check(number_within(0.001, 1e6, "s"));
-    add_settings(c, a->settings, {{"--accuracy", "accuracy"}, {"--resolution", "resolution"}, {"--cost-scale", "cost_scale"}},
+    add_settings(c, a->settings,
+                 {{"--accuracy", "accuracy"},
+                  {"--resolution", "resolution"},
+                  {"--rest-after", "rest_after_ms"},
+                  {"--cost-scale", "cost_scale"}},
                  {{"--slice", "slice_us"}, {"--hysteresis", "hysteresis"}});
     c->add_option("--cost-noise", r.cost_noise, "With --clock virtual: relative noise of the costs")->check(number_within(0, 10));
     for (const char* experiment : {"--slice", "--hysteresis", "--cost-noise"}) c->get_option(experiment)->group(hidden_group);

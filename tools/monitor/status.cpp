@@ -93,6 +93,7 @@ ordered_json totals_json(const Figures& f) {
     j["input_reports"] = f.input_reports;
     j["stopped_frames"] = f.stopped_frames;
     j["floor_bound_frames"] = f.floor_frames;
+    j["rest_frames"] = f.rest_frames;
     j["stolen_ms"] = static_cast<double>(f.stolen_ns) * 1e-6;
     j["preempted_ms"] = static_cast<double>(f.preempted_ns) * 1e-6;
     return j;
@@ -189,6 +190,8 @@ std::string status_json(const MonitorPage& p) {
                 {"exact", f.frames > 0 && std::isinf(f.last.accuracy)},
                 {"budget_ms", f.frames > 0 ? known(double{f.last.budget_us} * 1e-3) : ordered_json(nullptr)},
                 {"resolution", f.frames > 0 ? known(double{f.last.resolution}) : ordered_json(nullptr)},
+                {"at_rest", f.last.at_rest},
+                {"rest_samples", f.last.rest_samples},
                 {"triangles", f.last.triangles},
                 {"nodes", f.last.items},
                 {"standing_still", f.last.stopped}};

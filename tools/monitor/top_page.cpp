@@ -96,6 +96,10 @@ void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::stri
                                          : fmt::format("accuracy {} /rad, least {}, {} triangles", short_number(accuracy),
                                                        short_number(number_at(s, "/recent/accuracy/min")),
                                                        grouped(number_at(s, "/now/triangles"))));
+    if (flag_at(s, "/now/at_rest"))
+        lines.push_back(number_at(s, "/now/rest_samples") > 0
+                            ? fmt::format("at rest  full detail, {:.0f} samples", number_at(s, "/now/rest_samples"))
+                            : std::string("at rest  full detail is being drawn"));
     const double drawn = number_at(s, "/recent/resolution/min");
     if (drawn < 1)
         lines.push_back(fmt::format("resolution {:.1f} % of the sides, least {:.1f} %",

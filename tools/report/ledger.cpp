@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 67> columns = {{
+constexpr std::array<Column, 69> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -51,6 +51,8 @@ constexpr std::array<Column, 67> columns = {{
     {"bought_items", [](auto& r, auto& f) { add(r, "{}", f.bought_items); }},
     {"bought_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.bought_us); }},
     {"refused_items", [](auto& r, auto& f) { add(r, "{}", f.refused_items); }},
+    {"at_rest", [](auto& r, auto& f) { add(r, "{:d}", f.at_rest); }},
+    {"rest_samples", [](auto& r, auto& f) { add(r, "{}", f.rest_samples); }},
     {"switches", [](auto& r, auto& f) { add(r, "{}", f.switches); }},
     {"slices", [](auto& r, auto& f) { add(r, "{}", f.slices); }},
     {"downgraded_slices", [](auto& r, auto& f) { add(r, "{}", f.downgraded_slices); }},

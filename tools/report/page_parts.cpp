@@ -129,6 +129,9 @@ std::string tiles(const WalkSummary& s) {
                 s.model_triangles > 0
                     ? fmt::format("a frame, of {} in the model", short_number(static_cast<double>(s.model_triangles)))
                     : fmt::format("a frame, at most {}", short_number(static_cast<double>(s.triangles_max))));
+    if (s.rest_frames > 0)
+        out += tile("At rest", fmt::format("{}", s.rest_frames), "frames",
+                    fmt::format("{} in full detail, up to {} samples", s.rested_frames, s.rest_samples));
     if (s.resolution_min < 1)
         out += tile("Resolution", fmt::format("{:.0f}", s.resolution_mean * 100), "%",
                     fmt::format("of the sides on average, at least {:.0f}", s.resolution_min * 100));

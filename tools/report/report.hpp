@@ -89,6 +89,9 @@ struct WalkSummary {
     double cost_scale = 1;  ///< the setting
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
+    std::uint64_t rest_frames = 0, rested_frames = 0;  ///< that drew no cut; those of them that showed full detail
+    std::uint32_t rest_samples = 0;                    ///< of the smoothest picture at rest
+    double rest_ms = 0;  ///< longest time from the first frame of a rest until full detail was shown; 0: it never was
     double resolution_mean = 1, resolution_min = 1;  ///< share of the picture's sides at which frames were drawn
     std::uint64_t coarse_frames = 0;                 ///< with a slice that the in-frame check drew coarser
     std::uint64_t floor_frames = 0;  ///< over half of the picture fell to floor forms, although the cut before would have fitted

@@ -102,6 +102,29 @@ void resolution_figures(std::span<const FrameRecord* const> frames, WalkSummary&
     s.resolution_min = q.min;
 }
 
+void rest_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
+    s.rest_frames = s.rested_frames = s.rest_samples = 0;
+    s.rest_ms = 0;
+    const FrameRecord* first = nullptr;  // of this rest
+    bool waits = false;                  // for full detail
+    for (const FrameRecord* f : frames) {
+        if (!f->at_rest) {
+            first = nullptr;
+            continue;
+        }
+        if (first == nullptr) {
+            first = f;
+            waits = true;
+        }
+        ++s.rest_frames;
+        s.rested_frames += f->rest_samples > 0 ? 1 : 0;
+        s.rest_samples = std::max(s.rest_samples, f->rest_samples);
+        if (f->rest_samples == 0 || !waits) continue;
+        waits = false;
+        s.rest_ms = std::max(s.rest_ms, static_cast<double>(f->presented_ns - first->due_ns) * 1e-6);
+    }
+}
+
 /// Everything that is counted up starts from zero, so that a summary can be made anew from longer records.
 void clear_counts(WalkSummary& s) {
     s.frames = s.slots = s.skipped = s.misses = s.own_misses = 0;
@@ -126,6 +149,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     budget_figures(frames, period_ns, summary);
     unused_time(frames, summary);
     resolution_figures(frames, summary);
+    rest_figures(frames, summary);
     summary.rate_hz = 1e9 / static_cast<double>(period_ns);
     summary.seconds = static_cast<double>(summary.slots) * static_cast<double>(period_ns) * 1e-9;
     summary.frame_ms = quantiles_of(frames, frame_ms);

@@ -51,6 +51,9 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
     if (s.resolution_min < 1)
         table.row("resolution",
                   fmt::format("mean {}, least {} of the sides", percent(s.resolution_mean), percent(s.resolution_min)));
+    if (s.rest_frames > 0)
+        table.row("at rest", fmt::format("{} frames, {} of them in full detail after at most {:.0f} ms, {} samples",
+                                         s.rest_frames, s.rested_frames, s.rest_ms, s.rest_samples));
     if (s.picture.frames > 0) table.row("picture", picture_words(s.picture));
     if (s.unused_ms.max > 0)
         table.row("unused", fmt::format("{:.1f} ms of the period (mean), {:.1f} (p99), where the benefit is below 0.99",

@@ -80,7 +80,19 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.hysteresis = static_cast<float>(r.hysteresis);
     options.resolution = static_cast<float>(r.resolution_pct * 0.01);
     options.in_frame_check = r.in_frame_check;
+    options.rest_after_ms = r.rest_after_ms;
     return options;
+}
+
+/// Says what of a picture at rest the driver cannot draw.
+void add_rest_message(Session& s) {
+    if (!(s.request.rest_after_ms > 0)) return;
+    s.engine->device().draws.plays();
+    const gl::RestSupport support = s.engine->device().rest_support();
+    if (support == gl::RestSupport::none)
+        s.notes.emplace_back("rest_after_ms: the driver has no second target for a picture at rest, so the walk's picture stays");
+    if (support == gl::RestSupport::picture)
+        s.notes.emplace_back("rest_after_ms: the driver has no float target, so the picture at rest is not smoothed");
 }
 
 Result<void> open_engine(Session& s, const Progress& progress) {
@@ -127,6 +139,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
             return require_real_time(std::vector<rt::Lack>{{rt::LackKind::cost_table, s.facts.uncalibrated, ""}});
         }
     }
+    add_rest_message(s);
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
     if (!r.capture_file.empty() || s.observer.on_missed_frame) s.kept.reserve(*s.engine);
     return {};

@@ -179,6 +179,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
     limits.limit_us = options_.limit_us;
     limits.margin_us = std::min(overshoot_.margin_us(), max_margin_share * options_.limit_us);
+    limits.frame_ns = record.due_ns;
     if (!virtual_clock_) {
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
@@ -225,15 +226,18 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.actual_us = static_cast<float>(actual_us);
     // The correction is of the machine's own figures: it must not take back an overhead that the user asked for.
     const double overhead = virtual_clock_ ? 1.0 : request_.cost_scale;
-    if (!coarse_) {
+    record.at_rest = report_.at_rest;
+    record.rest_samples = report_.rest_samples;
+    if (!coarse_ && !report_.at_rest) {
         corrections_.update(model::resolution_step(report_.resolution), report_.predicted_us / overhead, actual_us);
         forms_.update(report_.full_us / overhead, report_.coarse_us / overhead, report_.other_us / overhead, actual_us);
     }
-    if (report_.forecast_us > 0) overshoot_.update(actual_us - report_.forecast_us);
+    if (report_.forecast_us > 0 && !report_.at_rest) overshoot_.update(actual_us - report_.forecast_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     record.floor_share = report_.floor_share;
     const bool follows = now_.frame > 0;  // the cut before the first frame is of the warm-up
-    record.floor_frame = follows && engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
+    record.floor_frame =
+        follows && !report_.at_rest && engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
     keep(record);
     const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
     snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.resolution, record.triangles, engine_.drawn(),
