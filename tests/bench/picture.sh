@@ -159,14 +159,14 @@ picture_group() {
   picture_generate forest 10 || { failed=1; return 0; }
   # The forest first: it is what says how fast the machine is.
   picture_set_up "$old" forest "$picture_work/forest.glb" "$picture_work/forest.path.csv" 0 || { failed=1; return 0; }
-  local chosen=" ${picture_scenes[*]} "
+  local chosen=" ${chosen_scenes[*]} "
   while read -r name scene path lift <&3; do
     [[ $chosen == "  " || $chosen == *" $name "* ]] || continue
     [[ $name != town ]] || picture_generate town 1 || { failed=1; continue; }
     picture_scene "$name" "$scene" "$path" "$lift"
     chosen=${chosen/" $name "/" $name: done "}
   done 3< <(picture_sources)
-  for name in "${picture_scenes[@]}"; do
+  for name in "${chosen_scenes[@]}"; do
     if [[ $chosen != *" $name: done "* ]]; then echo "tests/bench/run: picture: there is no scene $name, or SUREFOOT_DATA names no folder" >&2; failed=1; fi
   done
 }

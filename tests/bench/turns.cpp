@@ -1,0 +1,157 @@
+// Bench: sudden turns. The drive of a path looks on straight; every three seconds the view turns by 170 degrees at 113 degrees
+// a second. Each frame is drawn again after the walk, and in full detail at its pose. A turn's frame drops by the median PSNR of
+// the 30 frames beside it, 15 before and 15 after, less its own. bench_turns MODEL.walk [PATH.csv] [LIFT_M] [STATE_DIR]
+// [virtual|real] [TURNS 5] [SELECTOR] -> one JSON object.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "render/engine.hpp"
+#include "render/image/image.hpp"
+#include "render/measure/image_metrics.hpp"
+#include "render/model/walk_file.hpp"
+#include "rt/base/file.hpp"
+#include "rt/base/path.hpp"
+#include "rt/base/statistics.hpp"
+#include "tools/walk/path_source.hpp"
+#include "tools/walk/state.hpp"
+#include "tools/walk/walk.hpp"
+
+namespace {
+
+using namespace surefoot;
+
+constexpr double turn_rps = 113 * std::numbers::pi / 180, turn_rad = 170 * std::numbers::pi / 180;
+constexpr double turn_s = turn_rad / turn_rps, straight_s = 3 - turn_s, period_s = straight_s + turn_s;
+constexpr std::size_t beside = 15;  // frames, on either side
+constexpr double tolerated_db = 6;
+
+int fail(const Error& error) {
+    fmt::print(stderr, "{}\n", error.text());
+    return 1;
+}
+
+/// How far the view has turned off the path's at a time. A turn ends each period; every other goes back.
+double turned_rad(double time_s) {
+    const double periods = std::floor(time_s / period_s);
+    const double part = std::clamp((time_s - periods * period_s - straight_s) / turn_s, 0.0, 1.0);
+    return turn_rad * (std::fmod(periods, 2) == 0 ? part : 1 - part);
+}
+bool turns(double time_s) { return time_s >= straight_s && std::fmod(time_s, period_s) >= straight_s; }
+
+/// The drive. It starts a quarter of the path in, at the path's speed, and looks where the path does on average.
+std::shared_ptr<const Path> drive_along(const Path& path, std::size_t count) {
+    auto drive = std::make_shared<Path>();
+    const double seconds = (static_cast<double>(count) + 0.5) * period_s;
+    constexpr double step_s = 1.0 / 120;
+    for (int i = 0; i * step_s <= seconds; ++i) {
+        Pose pose = sample_path(path, 0.25 * path.duration_s() + i * step_s);
+        pose.orientation = glm::angleAxis(turned_rad(i * step_s), dvec3(0, 1, 0)) * pose.orientation;
+        drive->samples.push_back({i * step_s, pose});
+    }
+    return drive;
+}
+
+/// PSNR of every picture of the walk against full detail.
+Result<std::vector<double>> psnr_of_frames(const walk::WalkRequest& request, const std::vector<rt::FrameRecord>& records,
+                                           const std::string& folder) {
+    auto model = model::read_walk(request.model_file);
+    if (!model) return model.error();
+    auto engine = Engine::open(std::move(*model), model::default_costs(), {});
+    if (!engine) return engine.error();
+    (*engine)->device().bind();
+    (*engine)->device().draws.plays();
+    std::vector<double> psnr_db;
+    for (const rt::FrameRecord& frame : records) {
+        const std::string file = fmt::format("{}/{:05}.png", folder, frame.frame);
+        const auto text = read_text(file);
+        if (!text) return text.error();
+        const auto picture = image::decode_image(std::as_bytes(std::span(*text)), file);
+        if (!picture) return picture.error();
+        Pose pose = request.given_path->samples.front().pose;  // for its field of view
+        pose.position = {frame.eye[0], frame.eye[1], frame.eye[2]};
+        pose.orientation = dquat(frame.orientation[3], frame.orientation[0], frame.orientation[1], frame.orientation[2]);
+        (*engine)->draw_unbudgeted(pose, (*engine)->full_detail(pose));
+        const auto full = (*engine)->device().read_pixels();
+        if (!full) return full.error();
+        psnr_db.push_back(10 * std::log10(255 * 255 / std::max(measure::snr(picture->rgba, full->rgba).mse, 1e-8)));
+    }
+    return psnr_db;
+}
+
+/// A frame of a turn, against those beside it.
+struct Drop {
+    std::uint64_t frame = 0;
+    double time_s = 0, psnr_db = 0, neighbours_db = 0;
+    [[nodiscard]] double db() const { return neighbours_db - psnr_db; }
+};
+
+std::vector<Drop> drops_of(const std::vector<rt::FrameRecord>& records, double frame_s, const std::vector<double>& psnr_db) {
+    std::vector<Drop> drops;
+    for (std::size_t i = beside; i + beside < records.size(); ++i) {
+        const double time_s = static_cast<double>(records[i].slot) * frame_s;
+        if (!turns(time_s)) continue;
+        std::vector<double> neighbours;
+        for (std::size_t k = i - beside; k <= i + beside; ++k)
+            if (k != i) neighbours.push_back(psnr_db[k]);
+        drops.push_back({records[i].frame, time_s, psnr_db[i], median_of(neighbours)});
+    }
+    return drops;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2)
+        return fmt::print(stderr, "bench_turns MODEL.walk [PATH.csv] [LIFT_M] [STATE_DIR] [virtual|real] [TURNS] [SELECTOR]\n"),
+               2;
+    walk::WalkRequest request;
+    request.model_file = argv[1];
+    request.state_dir = argc > 4 ? argv[4] : "";
+    request.clock = argc > 5 && std::string_view(argv[5]) == "real" ? rt::ClockKind::real : rt::ClockKind::virtual_time;
+    const auto count = static_cast<std::size_t>(argc > 6 ? std::max(1, std::atoi(argv[6])) : 5);
+    if (argc > 7) request.selector = argv[7];
+    auto model = model::read_walk(request.model_file);
+    if (!model) return fail(model.error());
+    auto path = walk::choose_path(argc > 2 ? argv[2] : "", argv[1], *model, argc > 3 ? std::atof(argv[3]) : 0);
+    if (!path) return fail(path.error());
+    request.given_path = drive_along(path->path, count);
+    const double frame_s = 1 / request.rate_hz;
+    request.frames = static_cast<std::uint64_t>(request.given_path->duration_s() / frame_s);
+    std::string folder = (std::filesystem::temp_directory_path() / "bench-turns-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr) return fmt::print(stderr, "bench_turns: no temporary folder: {}\n", folder), 1;
+    request.snap_dir = folder;
+    request.snap_every = 1;
+    auto outcome = walk::run_walk(request, {});
+    Result<std::vector<double>> psnr_db = std::vector<double>{};
+    if (outcome && outcome->failures.empty()) psnr_db = psnr_of_frames(request, outcome->records, folder);
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+    if (!outcome) return fail(outcome.error());
+    if (!outcome->failures.empty()) return fail(outcome->failures.front());
+    if (!psnr_db) return fail(psnr_db.error());
+    const std::vector<Drop> drops = drops_of(outcome->records, frame_s, *psnr_db);
+    if (drops.empty()) return fmt::print(stderr, "bench_turns: no frame of a turn was drawn\n"), 1;
+    std::vector<double> db;
+    for (const Drop& drop : drops) db.push_back(drop.db());
+    const Drop& worst =
+        *std::max_element(drops.begin(), drops.end(), [](const Drop& a, const Drop& b) { return a.db() < b.db(); });
+    const auto over = std::count_if(db.begin(), db.end(), [](double d) { return d > tolerated_db; });
+    const report::WalkSummary& s = outcome->summary;
+    fmt::print(
+        "{{\"model\": \"{}\", \"selector\": \"{}\", \"turns\": {}, \"frames\": {}, \"misses\": {}, \"floor_frames\": {}, "
+        "\"turn_frames\": {}, \"psnr_db\": {{\"p50\": {:.2f}, \"min\": {:.2f}}}, \"drop_db\": {{\"p50\": {:.2f}, \"p99\": "
+        "{:.2f}, \"max\": {:.2f}}}, \"over_6_db\": {}, \"worst\": {{\"frame\": {}, \"time_s\": {:.2f}, \"psnr_db\": {:.2f}, "
+        "\"neighbours_db\": {:.2f}}}}}\n",
+        argv[1], s.selector, count, s.frames, s.misses, s.floor_frames, drops.size(), quantile_of(*psnr_db, 0.5),
+        quantile_of(*psnr_db, 0), quantile_of(db, 0.5), quantile_of(db, 0.99), worst.db(), over, worst.frame, worst.time_s,
+        worst.psnr_db, worst.neighbours_db);
+    return 0;
+}
