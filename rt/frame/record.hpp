@@ -58,7 +58,7 @@ struct FrameRecord {
     std::uint32_t items = 0, draws = 0, switches = 0, visits = 0, hidden = 0, candidates = 0;
     std::uint32_t bought_items = 0;   ///< what time was spent on beside the forms: a resolution, an upload, an effect
     std::uint32_t refused_items = 0;  ///< offered with a cost or a value that is no number above zero, or twice
-    std::uint32_t rest_samples = 0;  ///< of the shown picture: 1 is full detail; 0: it is a cut
+    std::uint32_t rest_samples = 0;   ///< of the shown picture: 1 is full detail; 0: it is a cut
     std::uint64_t triangles = 0;
     std::uint64_t cut_hash = 0;
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;

@@ -1,0 +1,76 @@
+// What an engine owns and what its submission shares: private to engine.cpp and engine_submit.cpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "render/engine.hpp"
+#include "render/floor_watch.hpp"
+#include "render/model/view.hpp"
+#include "render/prepare/resolution.hpp"
+#include "render/rest.hpp"
+#include "render/unprepared.hpp"
+#include "rt/base/thread_annotations.hpp"
+
+namespace surefoot {
+
+struct Engine::Impl {
+    model::Model model;
+    model::CostModel costs;
+    EngineOptions options;
+    std::unique_ptr<gl::Device> device;
+    std::unique_ptr<prepare::Preparer> preparer;
+    prepare::ResolutionChooser resolution;
+    bool full_depth_always = false;  ///< requested by the options, for every selector
+    const select::Selector* selector = nullptr;
+    [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
+    select::SelectState state GUARDED_BY(draws);
+    select::Cut cut GUARDED_BY(draws);
+    select::ItemList offered GUARDED_BY(draws);
+    bool offers_used GUARDED_BY(draws) = false;  ///< by a selection: the next offer begins a new list
+    select::SlicePlan plan GUARDED_BY(draws);
+    std::vector<gl::DrawItem> drawn GUARDED_BY(draws), culled GUARDED_BY(draws);
+    FloorWatch floor GUARDED_BY(draws);
+    Unprepared unprepared GUARDED_BY(draws);
+    bool use_last GUARDED_BY(draws) = false;  ///< the last cut's forms: no prepared set may be used
+    const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
+    Correction correction GUARDED_BY(draws);
+    double headroom GUARDED_BY(draws) = 1;         ///< that the last select() spent
+    double forecast_us GUARDED_BY(draws) = 0;      ///< end of this frame, by the last check that let a slice be drawn in full
+    float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
+
+    RestWatch watch GUARDED_BY(draws);
+    RestPicture rest_picture GUARDED_BY(draws);
+    SubmitReport last_report GUARDED_BY(draws);  ///< of the last frame that drew a cut
+
+    void use(const select::SelectorEntry& entry);
+    bool submit_rest(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) REQUIRES(draws);
+    [[nodiscard]] model::ViewScale drawn_scale(const Pose& pose) const REQUIRES(draws) {
+        return model::scaled(model::make_view_scale(pose, options.device.viewport), drawn_resolution);
+    }
+    [[nodiscard]] float enlarge_us() const REQUIRES(draws) { return costs.enlarge_us(drawn_resolution, options.device.viewport); }
+    double now_us(const SubmitLimits& limits) const REQUIRES(draws) {
+        device->draws.plays();  // `draws` is the same thread
+        return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
+    }
+    model::Frustum frustum GUARDED_BY(draws);  ///< of the pose that is drawn: narrower than the region that was prepared
+    /// Predicted costs within a frame: of what is drawn, of the next part in full and as its stand-in, and of all after it as
+    /// stand-ins.
+    struct Progression {
+        const model::ItemCost &so_far, &next, &stand_in, &rest;
+        float in_flight_us;  ///< of so_far: not finished yet
+    };
+    void begin_offers() REQUIRES(draws);
+    void prepay_resolution(const prepare::PreparedFrame& set) REQUIRES(draws);
+    void report_items(SubmitReport& report) const REQUIRES(draws);
+    [[nodiscard]] bool in_time(const Progression& p, const SubmitLimits& limits, double start_us) REQUIRES(draws);
+    model::ItemCost draw_slice(std::span<const select::CutItem> items, SubmitReport& report) REQUIRES(draws);
+    void submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
+    void submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) REQUIRES(draws);
+    void push(const UnpreparedItem& item, SubmitReport& report) REQUIRES(draws);
+};
+
+}  // namespace surefoot

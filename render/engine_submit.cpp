@@ -1,0 +1,234 @@
+// The engine's submission: a cut is drawn slice by slice, with the in-frame check before each.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/drawn_items.hpp"
+#include "render/engine_impl.hpp"
+#include "rt/base/check.hpp"
+
+namespace surefoot {
+
+namespace {
+
+constexpr float floor_picture_share = 0.5F;
+
+}  // namespace
+
+/// Draws what of a slice the pose really sees; returns what that was predicted to cost.
+model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitReport& report) {
+    device->draws.plays();
+    const std::size_t first = drawn.size();
+    model::ItemCost cost;
+    for (const select::CutItem& item : items) {
+        if (!model::visible(frustum, model.nodes[item.node].box)) {
+            ++report.culled;
+            if (culled.size() < culled.capacity()) culled.push_back({item.node, item.rep});
+            continue;
+        }
+        if (!push_within(drawn, {item.node, item.rep})) break;
+        const prepare::Choice& choice = prepared->choices[item.choice];
+        const prepare::Candidate& candidate = prepared->candidates[item.candidate];
+        const bool finer = candidate.choice_count > 1 || candidate.child_count > 0;
+        floor.add(drawn.back(), candidate.pixels, finer && item.choice == candidate.first_choice);
+        cost += choice.cost;
+        const bool full = model::is_full_detail(model.nodes[item.node], item.rep);
+        const model::FrameCombine& combine = costs.combine;
+        const double item_us =
+            static_cast<double>(combine.frame_us(choice.cost.submit_us, choice.cost.raster_us) - combine.fixed_us);
+        (full ? report.full_us : report.coarse_us) +=
+            item_us / static_cast<double>(full ? prepared->full_factor : prepared->coarse_factor);
+        report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
+        report.benefit_mean += 1.0 - choice.benefit;
+        report.triangles += model.reps[item.rep].triangles;
+    }
+    device->draw(std::span<const gl::DrawItem>(drawn).subspan(first));
+    device->end_slice();
+    device->wait_slices(1);
+    return cost;
+}
+
+/// The in-frame check: whether the next part may be drawn in full.
+bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, double start_us) {
+    if (!options.in_frame_check) return true;
+    const model::FrameCombine& combine = costs.combine;
+    const auto bought_us = static_cast<float>(use_last ? 0.0 : cut.bought.cost_us);
+    const float so_far_us = combine.frame_us(p.so_far.submit_us, p.so_far.raster_us);
+    const auto with = [&](const model::ItemCost& more) {
+        return static_cast<double>(combine.frame_us(p.so_far.submit_us + more.submit_us, p.so_far.raster_us + more.raster_us) -
+                                   so_far_us);
+    };
+    const double scale = correction.factor * headroom;
+    select::CheckInput check;
+    check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + static_cast<double>(p.in_flight_us) * correction.factor;
+    check.predicted_so_far_us = limits.elapsed_us + static_cast<double>(so_far_us + bought_us) * correction.factor;
+    check.next_us = with(p.next) * scale;
+    check.next_stand_in_us = with(p.stand_in) * scale;
+    check.rest_stand_in_us = (with(p.rest) + static_cast<double>(enlarge_us())) * correction.factor;  // of many: little spread
+    check.limit_us = limits.limit_us - limits.margin_us;
+    if (!select::still_fits(check)) return false;
+    forecast_us = select::forecast_us(check);
+    return true;
+}
+
+void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) {
+    device->draws.plays();
+    const model::FrameCombine& combine = costs.combine;
+    model::ItemCost rest_stand_in, so_far;
+    for (const select::Slice& slice : plan.slices) {
+        rest_stand_in += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
+    }
+    bool full = true;
+    float in_flight_us = 0;
+    if (cut.bought.cost_us > 0.0) device->charge_us(cut.bought.cost_us);
+    const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
+    for (const select::Slice& slice : plan.slices) {
+        rest_stand_in.submit_us -= slice.stand_in_cost.submit_us + costs.slice_us;
+        rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
+        full = full && in_time({so_far, slice.cost, slice.stand_in_cost, rest_stand_in, in_flight_us}, limits, start_us);
+        const model::ItemCost cost = draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
+                                                     : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count),
+                                                report);
+        so_far += {cost.submit_us + costs.slice_us, cost.raster_us};
+        in_flight_us = cost.raster_us;
+        ++report.slices;
+        if (!full) ++report.downgraded_slices;
+    }
+    report.predicted = so_far;
+    report.predicted_us =
+        static_cast<double>(combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us()) + cut.bought.cost_us;
+    report.other_us = report.predicted_us - report.full_us * static_cast<double>(prepared->full_factor) -
+                      report.coarse_us * static_cast<double>(prepared->coarse_factor);
+}
+
+/// After select_last(), nothing is bought but the enlarging of the picture.
+void Engine::Impl::report_items(SubmitReport& report) const {
+    if (use_last) {
+        report.bought_us = static_cast<double>(enlarge_us());
+        report.bought_items = drawn_resolution < 1.0F ? 1U : 0U;
+        return;
+    }
+    report.bought_us = cut.bought.cost_us + cut.bought.prepaid_us;
+    report.bought_items = cut.bought.count;
+    report.refused_items = cut.bought.refused;
+}
+
+void Engine::Impl::push(const UnpreparedItem& item, SubmitReport& report) {
+    if (!push_within(drawn, item.item)) return;
+    floor.add(item.item, item.pixels, item.floor);
+    report.triangles += model.reps[item.item.rep].triangles;
+    report.worst_error_rad = std::max(report.worst_error_rad, item.error_rad);
+}
+
+/// As submit_cut(), with groups of the plan in place of slices. Several groups make a slice, since ending one has its price.
+void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) {
+    device->draws.plays();
+    const model::FrameCombine& combine = costs.combine;
+    unprepared.plan(state.shown, frustum, pose, drawn_scale(pose), preparer->item_costs());
+    const std::span<const UnpreparedGroup> groups = unprepared.groups();
+    model::ItemCost rest_stand_in, so_far, slice;
+    for (const UnpreparedGroup& group : groups) rest_stand_in += group.stand_in.cost;
+    bool full = true, slice_full = true;
+    float in_flight_us = 0;
+    std::size_t slice_begin = 0;
+    for (const UnpreparedGroup& group : groups) {
+        rest_stand_in.submit_us -= group.stand_in.cost.submit_us;
+        rest_stand_in.raster_us -= group.stand_in.cost.raster_us;
+        const model::ItemCost rest{rest_stand_in.submit_us + costs.slice_us, rest_stand_in.raster_us};
+        const float unfinished_us = in_flight_us + slice.submit_us + slice.raster_us;
+        full = full && in_time({so_far, group.cost, group.stand_in.cost, rest, unfinished_us}, limits, start_us);
+        if (full) {
+            for (const UnpreparedItem& item : unprepared.items().subspan(group.first, group.count)) push(item, report);
+        } else {
+            push(group.stand_in, report);
+            slice_full = false;
+        }
+        const model::ItemCost& cost = full ? group.cost : group.stand_in.cost;
+        so_far += cost;
+        slice += cost;
+        const bool last = &group == &groups.back();
+        if (!last && slice.submit_us + slice.raster_us < options.slice_us) continue;
+        device->draw(std::span<const gl::DrawItem>(drawn).subspan(slice_begin));
+        device->end_slice();
+        device->wait_slices(1);
+        slice_begin = drawn.size();
+        so_far.submit_us += costs.slice_us;
+        in_flight_us = slice.raster_us;
+        slice = {};
+        ++report.slices;
+        if (!slice_full) ++report.downgraded_slices;
+        slice_full = true;
+    }
+    report.predicted = so_far;
+    report.predicted_us = combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us();
+}
+
+/// False: the pose is not at rest, and a cut is to be drawn.
+bool Engine::Impl::submit_rest(const Pose& pose, const SubmitLimits& limits, SubmitReport& report) {
+    device->draws.plays();
+    const bool still = limits.frame_ns >= 0 && watch.at_rest(pose, limits.frame_ns) && !device->lost();
+    if (still) {
+        report = last_report;
+        const RestScene scene{model, preparer->item_costs(), costs, *device, options.device.viewport, options.slice_us};
+        if (rest_picture.frame(scene, pose, limits, correction.factor, report)) return true;
+        report = {};
+    } else {
+        rest_picture.leave();
+    }
+    return false;
+}
+
+SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
+    Impl& e = *impl_;
+    e.draws.plays();
+    e.device->draws.plays();
+    CHECK(e.use_last || e.prepared != nullptr, "A submitted frame was selected before");
+    SubmitReport report;
+    if (e.submit_rest(pose, limits, report)) return report;
+    const double start_us = e.now_us(limits);
+    e.drawn.clear();
+    e.culled.clear();
+    e.floor.begin();
+    e.forecast_us = 0;
+    e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
+    e.device->begin_frame(pose, e.drawn_resolution);
+    if (e.use_last) {
+        e.submit_last(pose, limits, start_us, report);
+    } else {
+        e.submit_cut(limits, start_us, report);
+    }
+    e.device->end_items();
+    report.submitted_us = e.now_us(limits) - start_us;
+    e.device->finish_frame();
+    report.finished_us = e.now_us(limits) - start_us;
+    report.forecast_us = e.forecast_us > 0 ? e.forecast_us - limits.elapsed_us : 0;
+    const gl::FrameStats stats = e.device->stats();
+    report.items = stats.items;
+    report.draws = stats.draws;
+    report.resolution = stats.resolution;
+    if (!e.drawn.empty()) report.benefit_mean /= static_cast<double>(e.drawn.size());
+    report.floor_share = e.floor.floor_share();
+    e.report_items(report);
+    e.last_report = report;
+    return report;
+}
+
+bool Engine::fell_to_floor(const Pose& pose, double time_us, double correction) {
+    Impl& e = *impl_;
+    e.draws.plays();
+    if (!(e.floor.floor_share() > floor_picture_share)) return false;
+    const std::vector<select::Shown>& last = e.use_last ? e.state.touched : e.state.before;
+    if (!(e.floor.fallen_share(last) > floor_picture_share)) return false;
+    const model::ViewScale scale = e.drawn_scale(pose);
+    model::ItemCost sum;
+    for (const select::Shown& shown : last) {
+        if (shown.form == select::SelectState::opened) continue;
+        const Box& box = e.model.nodes[shown.node].box;
+        if (!model::visible(e.frustum, box)) continue;
+        sum += e.preparer->item_costs().of(shown.form, box, pose.position, scale);
+        if ((e.costs.combine.frame_us(sum.submit_us, sum.raster_us) + e.enlarge_us()) * correction > time_us) return false;
+    }
+    return true;
+}
+
+}  // namespace surefoot
