@@ -17,6 +17,7 @@
 
 namespace surefoot {
 
+/// The engine itself. prepare() runs on a worker; what GUARDED_BY(draws) marks belongs to the thread that draws.
 struct Engine::Impl {
     model::Model model;
     model::CostModel costs;
@@ -57,8 +58,8 @@ struct Engine::Impl {
         return limits.now_ns != nullptr ? static_cast<double>(limits.now_ns(limits.now_context)) * 1e-3 : device->charged_us();
     }
     model::Frustum frustum GUARDED_BY(draws);  ///< of the pose that is drawn: narrower than the region that was prepared
-    /// Predicted costs within a frame: of what is drawn, of the next part in full and as its stand-in, and of all after it as
-    /// stand-ins.
+    /// Predicted costs within a frame: of what is drawn, of the next part in full and as its stand-in. `rest` is of all after it
+    /// as stand-ins.
     struct Progression {
         const model::ItemCost &so_far, &next, &stand_in, &rest;
         float in_flight_us;  ///< of so_far: not finished yet
