@@ -1,7 +1,7 @@
 # The group `replay OLD NEW` of tests/bench/run, which sources this: captures that an older build recorded, selected from again by both.
 # Every selector that OLD has must make the same cut in NEW. Frames are of the virtual clock and the null backend, so nothing is timed.
 # shellcheck shell=bash
-# shellcheck disable=SC2154 # work, top, data, old, new, failed, values: of run
+# shellcheck disable=SC2034,SC2154 # work, top, data, old, new, failed, values: of run
 
 replay_captures=7 replay_every=60  # frames
 replay_budgets=(24 12 6)           # ms, in turns, so that selectors do not all reach full detail

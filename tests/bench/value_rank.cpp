@@ -1,7 +1,8 @@
-// Bench: whether value orders pictures. At each pose, random legal cuts of the same predicted cost are drawn; the rank
-// correlation (Spearman) of their values and of their PSNR against full detail is taken. Cuts are made by `threshold` from rates
-// that are multiplied by exp(2 n), n normal. The cost is the geometric mean of the floor's and of full detail's. bench_value_rank
-// MODEL.walk [PATH.csv] [LIFT_M] [STATE_DIR] [POSES 10] [CUTS 20] -> one JSON object.
+// Bench: whether value orders pictures. At each pose, random legal cuts of the same predicted cost are drawn. The figure is the
+// rank correlation (Spearman) of their values and of their PSNR against full detail. Cuts are made by `threshold` from rates that
+// are multiplied by exp(2 n), n normal. The cost is the geometric mean of the floor's and of full detail's.
+//
+// bench_value_rank MODEL.walk [PATH.csv] [LIFT_M] [STATE_DIR] [POSES 10] [CUTS 20] -> one JSON object.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -126,6 +127,10 @@ Result<PoseFigures> measure_pose(Drawing& drawing, const prepare::PreparedFrame&
     return figures;
 }
 
+double mean_of(const std::vector<double>& of) {
+    return std::accumulate(of.begin(), of.end(), 0.0) / static_cast<double>(of.size());
+}
+
 double spread(const std::vector<double>& of) {
     const auto [least, most] = std::minmax_element(of.begin(), of.end());
     return *most - *least;
@@ -160,7 +165,7 @@ int main(int argc, char** argv) {
     prepare::PreparedFrame prepared;
     (*engine)->reserve(prepared);
     Random random(2026);
-    std::vector<double> correlations, psnr_spreads, value_spreads, worse;
+    std::vector<double> correlations, psnr_spreads, value_spreads, worse, chosen_db;
     std::size_t left_out = 0;
     for (std::size_t i = 0; i < poses; ++i) {
         const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(poses);
@@ -182,15 +187,16 @@ int main(int argc, char** argv) {
         value_spreads.push_back(spread(figures->values) / figures->full_value);
         const auto below = std::count_if(figures->psnr_db.begin(), figures->psnr_db.end(),
                                          [&](double db) { return db < figures->chosen_psnr_db; });
+        chosen_db.push_back(figures->chosen_psnr_db);
         worse.push_back(static_cast<double>(below) / static_cast<double>(cuts));
     }
     if (correlations.empty()) return fmt::print(stderr, "{}: no pose has {} cuts of one cost\n", argv[1], cuts), 1;
     fmt::print(
         "{{\"model\": \"{}\", \"poses\": {}, \"poses_left_out\": {}, \"cuts\": {}, \"correlation\": {{\"median\": {:.3f}, "
         "\"least\": {:.3f}, \"each\": [{:.3f}]}}, \"psnr_range_db\": {:.2f}, \"value_range\": {:.4f}, "
-        "\"worse_than_chosen\": {:.3f}}}\n",
+        "\"worse_than_chosen\": {:.3f}, \"chosen_psnr_db\": {:.2f}}}\n",
         argv[1], correlations.size(), left_out, cuts, median_of(correlations),
         *std::min_element(correlations.begin(), correlations.end()), fmt::join(correlations, ", "), median_of(psnr_spreads),
-        median_of(value_spreads), median_of(worse));
+        median_of(value_spreads), median_of(worse), mean_of(chosen_db));
     return 0;
 }
