@@ -152,8 +152,8 @@ bool RestPicture::frame(const RestScene& scene, const Pose& pose, const SubmitLi
     const bool early = limits.elapsed_us < early_share * limits.limit_us;
     if (now.progress || phase_ == Phase::done) {
         stalled_ = 0;
-    } else if (early && ++stalled_ >= max_stalled) {
-        phase_ = Phase::refused;  // from the next frame on; this one is presented
+    } else if (shown_ == 0 && early && ++stalled_ >= max_stalled) {
+        phase_ = Phase::refused;  // from the next frame on; this one is presented. What is whole stays shown
     }
     report.at_rest = true;
     report.rest_samples = shown_;

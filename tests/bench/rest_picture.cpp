@@ -15,25 +15,20 @@
 #include "render/engine.hpp"
 #include "render/image/image.hpp"
 #include "render/measure/image_metrics.hpp"
-#include "render/model/walk_file.hpp"
 #include "rt/threads/memory.hpp"
-#include "tools/walk/path_source.hpp"
-#include "tools/walk/state.hpp"
+#include "tests/bench/bench_scene.hpp"
+#include "tools/report/report.hpp"
 
 namespace {
 
 using namespace surefoot;
+using bench::fail;
 
 constexpr std::int64_t period_ns = 33'333'333;
 constexpr double rest_after_ms = 500, budget_share = 0.8, limit_share = 0.97;
 
 std::int64_t now_ns(void* /*context*/) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-int fail(const Error& error) {
-    fmt::print(stderr, "{}\n", error.text());
-    return 1;
 }
 
 using Pixels = std::vector<std::uint8_t>;
@@ -44,10 +39,7 @@ Pixels shown(gl::Device& device) {
     return image ? image->rgba : Pixels{};
 }
 
-double psnr_db(const Pixels& a, const Pixels& b) {
-    const double mse = measure::snr(a, b).mse;
-    return mse > 0 ? 10 * std::log10(255.0 * 255.0 / mse) : 130.0;
-}
+double psnr_db(const Pixels& a, const Pixels& b) { return report::psnr_db(measure::snr(a, b).mse); }
 
 /// The mean of 8 x 8 pictures of full detail, moved over a pixel.
 Pixels grid_of_64(Engine& engine, const Pose& pose, const std::vector<gl::DrawItem>& items) {
@@ -124,21 +116,19 @@ Stand stand(Engine& engine, const Pose& pose, double seconds) {
 int main(int argc, char** argv) {
     if (argc < 2)
         return fmt::print(stderr, "bench_rest_picture MODEL.walk [PATH.csv] [AT_S] [STATE_DIR] [LIFT_M] [SECONDS] [FOLDER]\n"), 2;
-    model::WalkFileInfo info;
-    auto model = model::read_walk(argv[1], &info);
-    if (!model) return fail(model.error());
-    auto path = walk::choose_path(argc > 2 ? argv[2] : "", argv[1], *model, argc > 5 ? std::atof(argv[5]) : 0);
-    if (!path) return fail(path.error());
-    std::string note;
-    auto costs = walk::load_costs(walk::state_directory(argc > 4 ? argv[4] : ""), "", note);
-    if (!costs) return fail(costs.error());
+    bench::SceneArguments arguments{argv[1]};
+    if (argc > 2) arguments.path_file = argv[2];
+    if (argc > 4) arguments.state_dir = argv[4];
+    if (argc > 5) arguments.lift_m = std::atof(argv[5]);
+    auto scene = bench::open_scene(arguments);
+    if (!scene) return fail(scene.error());
     EngineOptions options;
     options.rest_after_ms = rest_after_ms;
-    auto opened = Engine::open(std::move(*model), *costs, options);
+    auto opened = Engine::open(std::move(scene->model), scene->costs, options);
     if (!opened) return fail(opened.error());
     Engine& engine = **opened;
     engine.device().bind();
-    const Pose pose = sample_path(path->path, argc > 3 ? std::atof(argv[3]) : 0);
+    const Pose pose = sample_path(scene->path.path, argc > 3 ? std::atof(argv[3]) : 0);
     const Stand s = stand(engine, pose, argc > 6 ? std::atof(argv[6]) : 20);
 
     const auto items = engine.full_detail(pose);

@@ -20,17 +20,17 @@
 #include "render/engine.hpp"
 #include "render/image/image.hpp"
 #include "render/measure/image_metrics.hpp"
-#include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/path.hpp"
 #include "rt/base/statistics.hpp"
-#include "tools/walk/path_source.hpp"
-#include "tools/walk/state.hpp"
+#include "tests/bench/bench_scene.hpp"
+#include "tools/report/report.hpp"
 #include "tools/walk/walk.hpp"
 
 namespace {
 
 using namespace surefoot;
+using bench::fail;
 
 constexpr double turn_rps = 113 * std::numbers::pi / 180, turn_rad = 170 * std::numbers::pi / 180;
 constexpr double turn_s = turn_rad / turn_rps, straight_s = 3 - turn_s, period_s = straight_s + turn_s;
@@ -38,11 +38,6 @@ constexpr std::size_t beside = 15;  // frames, on either side
 constexpr double tolerated_db = 6;
 /// From here on nobody tells a picture from full detail. A frame of 60 dB among exact ones is no flash.
 constexpr double exact_db = 40;
-
-int fail(const Error& error) {
-    fmt::print(stderr, "{}\n", error.text());
-    return 1;
-}
 
 /// How far the view has turned off the path's at a time. A turn ends each period; every other goes back.
 double turned_rad(double time_s) {
@@ -65,21 +60,13 @@ std::shared_ptr<const Path> drive_along(const Path& path, std::size_t count) {
     return drive;
 }
 
-/// With the costs that the walk had, so that it can select again.
-Result<std::unique_ptr<Engine>> open_engine(const walk::WalkRequest& request) {
-    model::WalkFileInfo info;
-    auto model = model::read_walk(request.model_file, &info);
-    if (!model) return model.error();
-    const std::string state = walk::state_directory(request.state_dir);
-    std::string note;
-    auto costs = walk::load_costs(state, "", note);
-    if (costs) costs = walk::fitted_costs(state, *costs, {info.hash, request.width, request.height, request.backend});
-    if (!costs) return costs.error();
+/// With the costs that the walk has, so that it can select again.
+Result<std::unique_ptr<Engine>> open_engine(const walk::WalkRequest& request, bench::Scene& scene) {
     EngineOptions options;
     options.device.viewport = {request.width, request.height};
     options.selector = request.selector;
     options.in_frame_check = false;
-    auto engine = Engine::open(std::move(*model), *costs, options);
+    auto engine = Engine::open(std::move(scene.model), scene.costs, options);
     if (!engine) return engine.error();
     (*engine)->device().bind();
     return engine;
@@ -99,7 +86,7 @@ Result<gl::PixelImage> full_detail(Engine& engine, const Pose& pose) {
 }
 
 double psnr_of(std::span<const std::uint8_t> picture, std::span<const std::uint8_t> full) {
-    return 10 * std::log10(255 * 255 / std::max(measure::snr(picture, full).mse, 1e-8));
+    return report::psnr_db(measure::snr(picture, full).mse);
 }
 
 /// Of every picture of the walk, against full detail.
@@ -205,11 +192,17 @@ int main(int argc, char** argv) {
     request.clock = argc > 5 && std::string_view(argv[5]) == "real" ? rt::ClockKind::real : rt::ClockKind::virtual_time;
     const auto count = static_cast<std::size_t>(argc > 6 ? std::max(1, std::atoi(argv[6])) : 5);
     if (argc > 7) request.selector = argv[7];
-    auto model = model::read_walk(request.model_file);
-    if (!model) return fail(model.error());
-    auto path = walk::choose_path(argc > 2 ? argv[2] : "", argv[1], *model, argc > 3 ? std::atof(argv[3]) : 0);
-    if (!path) return fail(path.error());
-    request.given_path = drive_along(path->path, count);
+    bench::SceneArguments arguments{request.model_file};
+    arguments.fitted = true;
+    if (argc > 2) arguments.path_file = argv[2];
+    if (argc > 3) arguments.lift_m = std::atof(argv[3]);
+    arguments.state_dir = request.state_dir;
+    arguments.width = request.width;
+    arguments.height = request.height;
+    arguments.backend = request.backend;
+    auto scene = bench::open_scene(arguments);
+    if (!scene) return fail(scene.error());
+    request.given_path = drive_along(scene->path.path, count);
     const double frame_s = 1 / request.rate_hz;
     request.frames = static_cast<std::uint64_t>(request.given_path->duration_s() / frame_s);
     std::string folder = (std::filesystem::temp_directory_path() / "bench-turns-XXXXXX").string();
@@ -219,7 +212,7 @@ int main(int argc, char** argv) {
     auto outcome = walk::run_walk(request, {});
     Result<std::unique_ptr<Engine>> engine = std::unique_ptr<Engine>();
     Result<std::vector<double>> psnr_db = std::vector<double>{};
-    if (outcome && outcome->failures.empty()) engine = open_engine(request);
+    if (outcome && outcome->failures.empty()) engine = open_engine(request, *scene);
     if (engine && *engine) psnr_db = psnr_of_frames(**engine, *request.given_path, outcome->records, folder);
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);

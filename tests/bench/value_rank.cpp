@@ -16,23 +16,18 @@
 
 #include "render/engine.hpp"
 #include "render/measure/image_metrics.hpp"
-#include "render/model/walk_file.hpp"
 #include "rt/base/random.hpp"
 #include "rt/base/statistics.hpp"
-#include "tools/walk/path_source.hpp"
-#include "tools/walk/state.hpp"
+#include "tests/bench/bench_scene.hpp"
+#include "tools/report/report.hpp"
 
 namespace {
 
 using namespace surefoot;
+using bench::fail;
 
 constexpr double noise = 2, tolerated_cost = 0.05;
 constexpr int tries = 20;  // for a cut of the right cost
-
-int fail(const Error& error) {
-    fmt::print(stderr, "{}\n", error.text());
-    return 1;
-}
 
 double normal(Random& random) {
     const double radius = std::sqrt(-2 * std::log(1 - random.unit()));
@@ -92,7 +87,7 @@ struct Drawing {
         engine.submit(pose, limits);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
-        return 10 * std::log10(255 * 255 / std::max(measure::snr(image->rgba, full).mse, 1e-8));
+        return report::psnr_db(measure::snr(image->rgba, full).mse);
     }
 };
 
@@ -140,24 +135,21 @@ double spread(const std::vector<double>& of) {
 
 int main(int argc, char** argv) {
     if (argc < 2) return fmt::print(stderr, "bench_value_rank MODEL.walk [PATH.csv] [LIFT_M] [STATE_DIR] [POSES] [CUTS]\n"), 2;
-    const std::string state = walk::state_directory(argc > 4 ? argv[4] : "");
     const auto poses = static_cast<std::size_t>(argc > 5 ? std::atoi(argv[5]) : 10);
     const auto cuts = static_cast<std::size_t>(argc > 6 ? std::atoi(argv[6]) : 20);
-    model::WalkFileInfo info;
-    auto model = model::read_walk(argv[1], &info);
-    if (!model) return fail(model.error());
-    auto path = walk::choose_path(argc > 2 ? argv[2] : "", argv[1], *model, argc > 3 ? std::atof(argv[3]) : 0);
-    if (!path) return fail(path.error());
-    std::string note;
-    auto costs = walk::load_costs(state, "", note);
-    if (costs) costs = walk::fitted_costs(state, *costs, {info.hash, 1280, 720, "egl"});
-    if (!costs) return fail(costs.error());
-    if (!note.empty()) fmt::print(stderr, "{}\n", note);
+    bench::SceneArguments arguments{argv[1]};
+    arguments.fitted = true;
+    if (argc > 2) arguments.path_file = argv[2];
+    if (argc > 3) arguments.lift_m = std::atof(argv[3]);
+    if (argc > 4) arguments.state_dir = argv[4];
+    auto scene = bench::open_scene(arguments);
+    if (!scene) return fail(scene.error());
+    const Path& path = scene->path.path;
     EngineOptions options;
     options.in_frame_check = false;
     options.selector = "threshold";
     options.hysteresis = 1;
-    auto engine = Engine::open(std::move(*model), *costs, options);
+    auto engine = Engine::open(std::move(scene->model), scene->costs, options);
     if (!engine) return fail(engine.error());
     (*engine)->device().bind();
     (*engine)->device().draws.plays();
@@ -169,7 +161,7 @@ int main(int argc, char** argv) {
     std::size_t left_out = 0;
     for (std::size_t i = 0; i < poses; ++i) {
         const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(poses);
-        Drawing drawing{**engine, sample_path(path->path, path->path.duration_s() * at), {}};
+        Drawing drawing{**engine, sample_path(path, path.duration_s() * at), {}};
         (*engine)->draw_unbudgeted(drawing.pose, (*engine)->full_detail(drawing.pose));
         auto full = (*engine)->device().read_pixels();
         if (!full) return fail(full.error());

@@ -13,26 +13,20 @@
 
 #include "render/engine.hpp"
 #include "render/measure/calibrate_fit.hpp"
-#include "render/model/walk_file.hpp"
 #include "rt/base/random.hpp"
 #include "rt/base/statistics.hpp"
 #include "rt/threads/memory.hpp"
 #include "rt/threads/placement.hpp"
-#include "tools/walk/path_source.hpp"
+#include "tests/bench/bench_scene.hpp"
 #include "tools/walk/placing.hpp"
-#include "tools/walk/state.hpp"
 
 namespace {
 
 using namespace surefoot;
+using bench::fail;
 
 std::int64_t now_ns(void* /*context*/) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-int fail(const Error& error) {
-    fmt::print(stderr, "{}\n", error.text());
-    return 1;
 }
 
 using Rounds = std::vector<std::vector<measure::FrameSample>>;  // [pose][round]
@@ -104,23 +98,19 @@ int main(int argc, char** argv) {
         return fmt::print(stderr, "bench_whole_frame_cost MODEL.walk [POSES] [PATH.csv] [STATE_DIR] [fitted|table] [LIFT_M]\n"),
                2;
     const int poses = argc > 2 ? std::atoi(argv[2]) : 500;
-    model::WalkFileInfo info;
-    auto model = model::read_walk(argv[1], &info);
-    if (!model) return fail(model.error());
-    auto path = walk::choose_path(argc > 3 ? argv[3] : "", argv[1], *model, argc > 6 ? std::atof(argv[6]) : 0);
-    if (!path) return fail(path.error());
-    std::string note;
-    auto costs = walk::load_costs(walk::state_directory(argc > 4 ? argv[4] : ""), "", note);
-    if (!costs) return fail(costs.error());
-    if (!note.empty()) fmt::print(stderr, "{}\n", note);
-    if (argc > 5 && std::string_view(argv[5]) == "fitted") {  // "fitted": as `surefoot calibrate MODEL.walk` left it
-        costs = walk::fitted_costs(walk::state_directory(argv[4]), *costs, {info.hash, 1280, 720, "egl"});
-        if (!costs) return fail(costs.error());
-    }
+    bench::SceneArguments arguments{argv[1]};
+    if (argc > 3) arguments.path_file = argv[3];
+    if (argc > 4) arguments.state_dir = argv[4];
+    arguments.fitted = argc > 5 && std::string_view(argv[5]) == "fitted";
+    if (argc > 6) arguments.lift_m = std::atof(argv[6]);
+    auto scene = bench::open_scene(arguments);
+    if (!scene) return fail(scene.error());
+    const model::CostModel& costs = scene->costs;
+    const Path& path = scene->path.path;
     (void)rt::prepare_memory({});
     EngineOptions options;
     options.in_frame_check = false;
-    auto engine = Engine::open(std::move(*model), *costs, options);
+    auto engine = Engine::open(std::move(scene->model), costs, options);
     if (!engine) return fail(engine.error());
     walk::WalkRequest request;
     auto plan = walk::plan_placing(request, true);
@@ -130,13 +120,13 @@ int main(int argc, char** argv) {
     (*engine)->device().bind();
 
     constexpr int rounds = 8;
-    const Rounds frames = drawn(**engine, path->path, static_cast<std::size_t>(poses), rounds);
+    const Rounds frames = drawn(**engine, path, static_cast<std::size_t>(poses), rounds);
     const measure::FrameTimes frame_times = measure::robust_frame_times(frames);
     std::vector<double> took, predicted, ratios, at_speed;
     for (const measure::FrameSample& f : frame_times.frames) {
         took.push_back(f.actual_us);
         predicted.push_back(
-            static_cast<double>(costs->combine.frame_us(static_cast<float>(f.submit_us), static_cast<float>(f.raster_us))));
+            static_cast<double>(costs.combine.frame_us(static_cast<float>(f.submit_us), static_cast<float>(f.raster_us))));
         ratios.push_back(took.back() / predicted.back());
     }
     // What a correction of the run's own speed would leave: the machine's speed moves between calibration and this run.

@@ -16,6 +16,13 @@ struct Drawn {
     double charged_us = 0;
 };
 
+prepare::PreparedFrame prepared_forest(Engine& engine) {
+    prepare::PreparedFrame set;
+    engine.reserve(set);
+    engine.prepare({test::forest_pose(engine), 0, 0}, 0, 0, 0, set);
+    return set;
+}
+
 Drawn draw(Engine& engine, const prepare::PreparedFrame& set, double budget_us) {
     engine.device().draws.plays();
     engine.select(set, budget_us, {}, 0);
@@ -27,9 +34,7 @@ Drawn draw(Engine& engine, const prepare::PreparedFrame& set, double budget_us) 
 TEST(EngineItems, AreChargedPredictedAndReported) {
     const auto engine = test::forest_engine();
     ASSERT_TRUE(engine);
-    prepare::PreparedFrame set;
-    engine->reserve(set);
-    engine->prepare({test::forest_pose(*engine), 0, 0}, 0, 0, 0, set);
+    const prepare::PreparedFrame set = prepared_forest(*engine);
     const Drawn without = draw(*engine, set, ample_us);
     EXPECT_EQ(without.report.bought_items, 0U);
     EXPECT_EQ(without.report.bought_us, 0.0);
@@ -54,9 +59,7 @@ TEST(EngineItems, AreChargedPredictedAndReported) {
 TEST(EngineItems, LeaveFormsTheRestOfTheBudget) {
     const auto engine = test::forest_engine();
     ASSERT_TRUE(engine);
-    prepare::PreparedFrame set;
-    engine->reserve(set);
-    engine->prepare({test::forest_pose(*engine), 0, 0}, 0, 0, 0, set);
+    const prepare::PreparedFrame set = prepared_forest(*engine);
     const double budget_us = 0.5 * draw(*engine, set, ample_us).report.predicted_us;
     const Drawn without = draw(*engine, set, budget_us);
     engine->offer({ItemKind::effect, 1, static_cast<float>(0.2 * budget_us), 1e12F});
@@ -70,9 +73,7 @@ TEST(EngineItems, LeaveFormsTheRestOfTheBudget) {
 TEST(EngineItems, AResolutionBelowFullIsOneThatIsPrepaid) {
     const auto engine = test::forest_engine(0.5F);
     ASSERT_TRUE(engine);
-    prepare::PreparedFrame set;
-    engine->reserve(set);
-    engine->prepare({test::forest_pose(*engine), 0, 0}, 0, 0, 0, set);
+    const prepare::PreparedFrame set = prepared_forest(*engine);
     const Drawn drawn = draw(*engine, set, ample_us);
     EXPECT_TRUE(engine->bought(ItemKind::resolution, 4));
     EXPECT_EQ(drawn.report.bought_items, 1U);

@@ -389,6 +389,27 @@ TEST(Rest, APictureThatFitsNoFrameIsRefusedAndTheCutIsDrawnAgain) {
     EXPECT_GT(report.rest_samples, 0U) << "another pose is tried again";
 }
 
+// Full detail is never taken back while the eye stands still, not even if no further sample fits.
+TEST(Rest, AWholePictureStaysWhereNoSampleFitsAnyMore) {
+    Walk walk = open(gl::BackendKind::null, 500);
+    ASSERT_NE(walk.engine, nullptr);
+    const Pose pose = test::forest_pose(*walk.engine);
+    SubmitReport report;
+    for (int i = 0; i < 100 && report.rest_samples == 0; ++i) report = walk.frame(pose);
+    ASSERT_GT(report.rest_samples, 0U);
+    const std::size_t items = walk.engine->drawn().size();
+    walk.limit = 200;
+    for (int i = 0; i < 200; ++i) {
+        report = walk.frame(pose);
+        EXPECT_TRUE(report.at_rest) << i;
+        EXPECT_GT(report.rest_samples, 0U) << i;
+        EXPECT_EQ(walk.engine->drawn().size(), items) << i;
+    }
+    walk.limit = frame_limit_us;
+    for (int i = 0; i < 600; ++i) report = walk.frame(pose);
+    EXPECT_EQ(report.rest_samples, max_rest_samples) << "it goes on when there is time again";
+}
+
 TEST(Rest, AllocatesNothing) {
     Walk walk = open(gl::BackendKind::null, 500);
     ASSERT_NE(walk.engine, nullptr);

@@ -75,6 +75,8 @@ struct PictureSummary {
 constexpr int visible_steps = 8;
 /// PSNR of equal pictures: no other pair of 8-bit pictures below 4000 x 4000 pixels reaches it.
 constexpr double max_psnr_db = 130;
+/// Of a mean squared error of 8-bit channels; at most max_psnr_db.
+double psnr_db(double mse);
 
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {

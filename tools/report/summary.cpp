@@ -165,11 +165,12 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     summary.switches_per_frame = quantiles_of(frames, [](const FrameRecord& f) { return double(f.switches); }).mean;
 }
 
-PictureSummary compare_pictures(std::span<const ReportSnapshot> snapshots) {
+double psnr_db(double mse) {
     constexpr double white = 255;
-    const auto psnr_db = [](double mse) {
-        return mse > 0 ? std::min(max_psnr_db, 10 * std::log10(white * white / mse)) : max_psnr_db;
-    };
+    return mse > 0 ? std::min(max_psnr_db, 10 * std::log10(white * white / mse)) : max_psnr_db;
+}
+
+PictureSummary compare_pictures(std::span<const ReportSnapshot> snapshots) {
     PictureSummary p;
     double mse = 0, worst_mse = -1, pop_mse = 0;
     for (const ReportSnapshot& snapshot : snapshots) {

@@ -10,6 +10,8 @@
 namespace surefoot::walk {
 
 namespace {
+static_assert(rt::Corrections::states == model::resolution_steps.size(), "A correction for each resolution");
+
 constexpr double max_margin_share = 0.2;  // of the limit: more would only draw everything coarse
 
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
