@@ -56,6 +56,17 @@ TEST(VirtualWalk, RecordsAndLedgerSayWhatWasBoughtBesideForms) {
     EXPECT_NE(ledger->find(",bought_items,bought_us,refused_items,"), std::string::npos);
 }
 
+TEST(VirtualWalk, AResolutionBelowTheLeastIsReportedAndDrawnAsTheLeast) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(5);
+    request.resolution_pct = 10;
+    const walk::WalkOutcome outcome = walk(request);
+    for (const rt::FrameRecord& r : outcome.records) EXPECT_EQ(r.resolution, 0.5F);
+    const auto is_message = [](const std::string& note) { return note == "resolution: 10 % is below the least. 50 % is drawn."; };
+    EXPECT_EQ(std::count_if(outcome.notes.begin(), outcome.notes.end(), is_message), 1);
+    request.resolution_pct = 60;
+    EXPECT_TRUE(walk(request).notes.empty());
+}
+
 TEST(VirtualWalk, ATourThatStartsAtSpeedIsPreparedForFromItsFirstFrame) {
     walk::WalkRequest request = test::Forest::get().virtual_request(10);
     const test::TemporaryFolder folder;

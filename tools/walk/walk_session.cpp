@@ -84,15 +84,24 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     return options;
 }
 
+/// Says where the resolution that was asked for is below the least one.
+void add_resolution_message(Session& s) {
+    const double min_pct = 100.0 * static_cast<double>(model::resolution_steps.back());
+    if (s.request.resolution_pct > 0 && s.request.resolution_pct < min_pct)
+        s.notes.push_back(
+            fmt::format("resolution: {:g} % is below the least. {:g} % is drawn.", s.request.resolution_pct, min_pct));
+}
+
 /// Says what of a picture at rest the driver cannot draw.
 void add_rest_message(Session& s) {
     if (!(s.request.rest_after_ms > 0)) return;
     s.engine->device().draws.plays();
     const gl::RestSupport support = s.engine->device().rest_support();
     if (support == gl::RestSupport::none)
-        s.notes.emplace_back("rest_after_ms: the driver has no second target for a picture at rest, so the walk's picture stays");
+        s.notes.emplace_back(
+            "rest_after_ms: The driver has no second target for a picture at rest. The last picture of the walk stays.");
     if (support == gl::RestSupport::picture)
-        s.notes.emplace_back("rest_after_ms: the driver has no float target, so the picture at rest is not smoothed");
+        s.notes.emplace_back("rest_after_ms: The driver has no float target. The picture at rest is not smoothed.");
 }
 
 Result<void> open_engine(Session& s, const Progress& progress) {
@@ -139,6 +148,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
             return require_real_time(std::vector<rt::Lack>{{rt::LackKind::cost_table, s.facts.uncalibrated, ""}});
         }
     }
+    add_resolution_message(s);
     add_rest_message(s);
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
     if (!r.capture_file.empty() || s.observer.on_missed_frame) s.kept.reserve(*s.engine);
