@@ -71,7 +71,7 @@ TEST_P(Record, EndsWithAValidFileHoweverItEnds) {
     std::vector<std::string> arguments = {"record", "046d:c626", "-o", file, "--json"};
     if (how == "time") arguments.insert(arguments.end(), {"--seconds", "3"});
     Tool tool(arguments);
-    ASSERT_TRUE(tool.until("recording /dev/hidraw0")) << tool.err();
+    ASSERT_TRUE(tool.until("The reports of /dev/hidraw0 (3Dconnexion SpaceNavigator) are recorded to " + file)) << tool.err();
     for (std::size_t i = 0; i < r.reports.size(); ++i) {
         ASSERT_TRUE(Testbed::send(plug, r.report(i)));
         usleep(30'000);  // a device's pace
