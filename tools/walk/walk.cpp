@@ -19,7 +19,7 @@ namespace surefoot::walk {
 
 namespace {
 
-constexpr double limit_share = 0.93;  // of the period: when the in-frame check wants the frame done
+constexpr double limit_share = 0.88;  // of the period: when the in-frame check wants the frame done
 
 WalkStagesOptions stages_options(Session& s) {
     const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;

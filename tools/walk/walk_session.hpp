@@ -25,7 +25,7 @@
 namespace surefoot::walk {
 
 /// Share of the period that a frame may cost if no budget is set.
-constexpr double budget_share = 0.84;
+constexpr double budget_share = 0.80;
 
 /// The costs with Maciel's overhead factor on all that they predict (Maciel 1994, sections 3.3.1 and 4). A user sets it by hand,
 /// for overheads that the table cannot know.
