@@ -61,11 +61,12 @@ ItemCosts::Classes ItemCosts::gather(const Representation& rep, std::vector<Clas
     return classes;
 }
 
-ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const {
+ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& all_pixels) const {
     const Representation& rep = model_.reps[r];
     const auto classes = std::span(classes_).subspan(classes_of_[r].first, classes_of_[r].count);
     std::array<float, PixelEstimator::max_parts> of_part;  // NOLINT: filled as far as it is read
     ItemCost sum;
+    all_pixels = 0;
     const auto add = [&](const Class& c, float pixels) { sum += costs_.item(c.triangles, pixels, costs_.grids[c.grid]); };
     if (estimator_.part_pixels(model_, r, node_box, eye, scale, of_part)) {
         for (const Class& c : classes) {
@@ -73,10 +74,12 @@ ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const Vie
             for (std::uint32_t p = 0; p < rep.part_count; ++p)
                 if (grid_of_part_[rep.first_part + p] == c.grid) pixels += of_part[p];
             add(c, std::min(pixels, max_pixels));
+            all_pixels += pixels;
         }
     } else {
         const float pixels = estimator_.pixels(model_, r, node_box, eye, scale);
         for (const Class& c : classes) add(c, pixels * c.share);
+        all_pixels = pixels;
     }
     return sum;
 }

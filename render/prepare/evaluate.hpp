@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,8 @@ struct Weight {
     float weight = 0;
     float size = 0;        ///< square root of the share of the view, times importance
     float distance_m = 1;  ///< error_distance()
+    float each_pixel = 0;  ///< importance x focus x motion
+    std::array<float, 4> outline{};  ///< of the box in the view: left, low, right, high; -1..1 is the view
 };
 
 /// The accuracy factor of the benefit, 0..1: the mean of e / (e + 8) and e / (e + 256), with e the error in pixels.

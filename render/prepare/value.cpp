@@ -15,17 +15,14 @@ namespace {
 constexpr float top_rate = 0x1p20F;      // px/us, of level 0
 constexpr std::size_t max_choices = 32;  // of one candidate on its hull; more are left out of it
 
-/// 0..1, by the error in pixels. Nearly linear up to a hundred pixels: twice the error is twice as wrong.
-float looks_right(float error_px) { return 256.0F / (error_px + 256.0F); }
+/// 0..1: a quarter by the error in pixels, the rest by the share of the leaves' surface that the choice covers.
+float looks_right(float error_px, float covered) {
+    const float error = error_px / (error_px + 256.0F);
+    return 1.0F - 0.25F * error - 0.75F * std::clamp(1.0F - covered, 0.0F, 1.0F);
+}
 
 float pixels_of(const model::Viewport& viewport) {
     return std::max(1.0F, static_cast<float>(viewport.width) * static_cast<float>(viewport.height));
-}
-
-/// Pixels of a leaf, weighted. Large things count for more than their pixels: they hide what stands behind them.
-float weight_of(const Weight& weight, float pixels, float view_pixels) {
-    const float share = std::max(pixels, 0.0F) / view_pixels;
-    return weight.weight * std::sqrt(share * std::sqrt(share)) * view_pixels;  // weight.weight has the root of the share already
 }
 
 float rate_of(std::uint32_t level) { return std::ldexp(top_rate, -static_cast<int>(level)); }
@@ -80,6 +77,7 @@ float ValueCurve::value_at(float cost_us) const {
 
 void ValuePass::reserve(std::uint32_t max_candidates) {
     sums_.resize(max_candidates);
+    shown_.reserve(max_candidates);
     // Curves are held for one level of the tree at a time, and only for nodes that have children in the frame.
     const std::uint32_t curves = std::min(max_candidates / 2 + 1, 1U << 15U);
     curves_.resize(curves);
@@ -104,23 +102,25 @@ void ValuePass::add(Index parent, std::uint32_t level, float value, float cost) 
 }
 
 /// What a leaf weighs, and the value of each choice of a candidate.
-void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, PreparedFrame& frame) {
+void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame) {
     const Candidate& candidate = frame.candidates[i];
     Sums& sums = sums_[i];
     if (candidate.child_count == 0) {
-        sums.weight = weight_of(seen, candidate.pixels, pixels_of(frame.viewport));
+        sums.weight = seen.each_pixel * shown_px;
+        sums.surface_px = frame.choices[candidate.first_choice + candidate.choice_count - 1].surface_px;
         sums.weight_per_m = sums.weight / seen.distance_m;
     }
     if (candidate.parent != none) {
         sums_[candidate.parent].weight += sums.weight;
         sums_[candidate.parent].weight_per_m += sums.weight_per_m;
+        sums_[candidate.parent].surface_px += sums.surface_px;
     }
     // A leaf is seen from its own distance; what stands for many leaves, from their mean one.
     const float per_m = sums.weight > 0.0F ? sums.weight_per_m / sums.weight : 0.0F;
     float value = 0.0F;
     for (Choice& choice : std::span(&frame.choices[candidate.first_choice], candidate.choice_count)) {
         const float error_px = choice.error_rad * seen.distance_m * per_m / pixel_angle_rad;
-        value = std::max(value, sums.weight * looks_right(error_px) * (1.0F - unusable_penalty(seen.size, choice.error_rad)));
+        value = std::max(value, sums.weight * looks_right(error_px, choice.surface_px / std::max(sums.surface_px, 1.0F)));
         choice.value = value;
     }
 }
@@ -206,7 +206,8 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
     const std::size_t n = frame.candidates.size();
     if (n == 0) return;
     CHECK(n <= sums_.size(), "Values are made for no more candidates than were reserved");
-    std::fill_n(sums_.begin(), n, Sums{0, 0, none});
+    std::fill_n(sums_.begin(), n, Sums{0, 0, 0, none});
+    const std::span<const float> shown = shown_.run(weights, frame);
     free_.clear();
     for (std::uint32_t i = static_cast<std::uint32_t>(curves_.size()); i-- > 0;) free_.push_back(i);
     std::array<std::uint32_t, max_choices> room{};
@@ -214,7 +215,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
     for (std::size_t i = n; i-- > 0;) {
         const Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
-        set_values(i, pixel_angle_rad, weights[i], frame);
+        set_values(i, pixel_angle_rad, weights[i], shown[i], frame);
         const OwnChoices own{combine, choices, hull_of(combine, choices, room)};
         if (candidate.child_count == 0) full_value += static_cast<double>(choices.back().value);
         const bool inner = candidate.child_count > 0 && sums_[i].curve != none;
@@ -239,7 +240,7 @@ void estimate_values(const model::FrameCombine& combine, PreparedFrame& frame) {
     weights.reserve(frame.candidates.size());
     for (const Candidate& candidate : frame.candidates) {
         const float size = std::sqrt(std::max(candidate.pixels, 0.0F) / pixels_of(frame.viewport));
-        weights.push_back({size, size, 1.0F});
+        weights.push_back({size, size, 1.0F, 1.0F, {}});
     }
     ValuePass pass;
     pass.reserve(static_cast<std::uint32_t>(frame.candidates.size()));

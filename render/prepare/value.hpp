@@ -8,6 +8,7 @@
 
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/prepared.hpp"
+#include "render/prepare/shown_pixels.hpp"
 
 namespace surefoot::prepare {
 
@@ -32,6 +33,7 @@ public:
 private:
     struct Sums {
         float weight = 0;         ///< W, px
+        float surface_px = 0;     ///< of the leaves' finest choices
         float weight_per_m = 0;   ///< sum of W / distance of the leaves
         std::uint32_t curve = 0;  ///< of the children, while they are summed up; none: not yet
     };
@@ -48,13 +50,14 @@ private:
     };
     std::uint32_t take_curve();
     void add(Index parent, std::uint32_t level, float value, float cost);
-    void set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, PreparedFrame& frame);
+    void set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame);
     void add_own(const Candidate& candidate, const OwnChoices& own);
     static void own_curve(const OwnChoices& own, ValueCurve& curve);
     void merge_curve(Index parent, Curve& curve, const OwnChoices& own);
     static void set_opening_rate(std::uint32_t level, float value, float cost, const OwnChoices& own);
     static void enforce_falling_rates(PreparedFrame& frame);
 
+    ShownPixels shown_;
     std::vector<Sums> sums_;
     std::vector<Curve> curves_;
     std::vector<std::uint32_t> free_;

@@ -1,0 +1,76 @@
+// Pixels that leaves show, from near to far over a grid of tiles.
+#include "render/prepare/shown_pixels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace surefoot::prepare {
+
+namespace {
+
+/// A range of tiles, with the shares of the first and the last.
+struct Range {
+    int first = 0, last = -1;
+    float first_share = 0, last_share = 0;
+    [[nodiscard]] float share(int i) const { return i == first ? first_share : i == last ? last_share : 1.0F; }
+};
+Range range_of(float low, float high, int tiles) {
+    const auto scaled = [&](float x) { return 0.5F * (std::clamp(x, -1.0F, 1.0F) + 1.0F) * static_cast<float>(tiles); };
+    const float from = scaled(low), to = scaled(high);
+    if (!(to > from)) return {};
+    Range range;
+    range.first = std::min(static_cast<int>(from), tiles - 1);
+    range.last = std::min(static_cast<int>(to), tiles - 1);
+    range.first_share = std::min(to, static_cast<float>(range.first + 1)) - from;
+    range.last_share = range.last == range.first ? range.first_share : to - static_cast<float>(range.last);
+    return range;
+}
+
+}  // namespace
+
+void ShownPixels::reserve(std::uint32_t max_candidates) {
+    order_.reserve(max_candidates);
+    shown_.resize(max_candidates);
+    open_.resize(static_cast<std::size_t>(across) * down);
+}
+
+float ShownPixels::show(const Weight& weight, float surface_px, float tile_px) {
+    const Range x = range_of(weight.outline[0], weight.outline[2], across), y = range_of(weight.outline[1], weight.outline[3], down);
+    float area = 0, open = 0;
+    for (int j = y.first; j <= y.last; ++j) {
+        for (int i = x.first; i <= x.last; ++i) {
+            const float part = x.share(i) * y.share(j);
+            area += part;
+            open += part * open_[static_cast<std::size_t>(j * across + i)];
+        }
+    }
+    if (!(area > 0.0F)) return 0.0F;
+    const float cover = 1.0F - std::exp(-surface_px / (area * tile_px));
+    for (int j = y.first; j <= y.last; ++j)
+        for (int i = x.first; i <= x.last; ++i) open_[static_cast<std::size_t>(j * across + i)] *= 1.0F - cover * x.share(i) * y.share(j);
+    return cover * open * tile_px;
+}
+
+std::span<const float> ShownPixels::run(std::span<const Weight> weights, const PreparedFrame& frame) {
+    const float tile_px = static_cast<float>(frame.viewport.width) * static_cast<float>(frame.viewport.height) /
+                          static_cast<float>(across * down);
+    const float surface_scale = 1.0F / (frame.resolution * frame.resolution);
+    const std::size_t n = frame.candidates.size();
+    order_.clear();
+    std::fill_n(shown_.begin(), n, 0.0F);
+    std::fill(open_.begin(), open_.end(), 1.0F);
+    for (std::uint32_t i = 0; i < n; ++i)
+        if (frame.candidates[i].child_count == 0) order_.push_back(i);
+    std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return weights[a].distance_m != weights[b].distance_m ? weights[a].distance_m < weights[b].distance_m : a < b;
+    });
+    for (const std::uint32_t i : order_) {
+        const Candidate& candidate = frame.candidates[i];
+        const Choice& finest = frame.choices[candidate.first_choice + candidate.choice_count - 1];
+        shown_[i] = show(weights[i], finest.surface_px * surface_scale, tile_px);
+    }
+    return std::span(shown_).first(n);
+}
+
+}  // namespace surefoot::prepare
