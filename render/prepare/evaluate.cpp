@@ -70,16 +70,18 @@ Seen look(const RegionView& view, const Box& box, const dvec3& eye) {
     return seen;
 }
 
-/// Of a box, from the middle of the region. What is beside the eye counts as at the near plane.
-std::array<float, 4> outline_of(const RegionView& view, const Box& box) {
+/// What is beside the eye counts as at the near plane.
+Outline outline_of(const RegionView& view, const Box& box) {
     const model::ViewScale& s = view.scale;
-    std::array<float, 4> outline{1e9F, 1e9F, -1e9F, -1e9F};
+    constexpr float far_out = 1e9F;
+    Outline outline{far_out, far_out, -far_out, -far_out};
     const vec3 low(box.min - view.eye), high(box.max - view.eye);
     for (unsigned i = 0; i < 8; ++i) {
         const vec3 corner((i & 1U) != 0 ? high.x : low.x, (i & 2U) != 0 ? high.y : low.y, (i & 4U) != 0 ? high.z : low.z);
         const float depth = std::max(glm::dot(corner, s.forward), near_m);
-        const float x = glm::dot(corner, s.across) / (depth * s.tan_half_x), y = glm::dot(corner, s.rise) / (depth * s.tan_half_y);
-        outline = {std::min(outline[0], x), std::min(outline[1], y), std::max(outline[2], x), std::max(outline[3], y)};
+        const float x = glm::dot(corner, s.across) / (depth * s.tan_half_x),
+                    y = glm::dot(corner, s.rise) / (depth * s.tan_half_y);
+        outline = {std::min(outline.left, x), std::min(outline.low, y), std::max(outline.right, x), std::max(outline.high, y)};
     }
     return outline;
 }
@@ -124,13 +126,14 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
     candidate.pixels = seen.pixels;
     const float size = std::sqrt(seen.pixels / view.wide.viewport_pixels);
     const float importance = node.importance >= 0.0F ? std::min(node.importance, 1.0F) : 0.0F;
-    const float each_pixel = importance * seen.focus * motion_factor(view, distance);
-    weight = {size * each_pixel, size * importance, distance, each_pixel, outline_of(view, node.box)};
+    const float pixel_weight = importance * seen.focus * motion_factor(view, distance);
+    weight = {size * pixel_weight, size * importance, distance, pixel_weight, outline_of(view, node.box)};
 
     const auto fill = [&](Choice& choice, Index r, float error_rad) {
         choice.rep = r;
         choice.cost = item_costs_.of(r, node.box, eye, view.scale, choice.surface_px) *
                       (model::is_full_detail(node, r) ? view.full_factor : view.coarse_factor);
+        choice.surface_px *= view.wide.viewport_pixels / view.scale.viewport_pixels;  // of full resolution
         choice.error_rad = error_rad;
         choice.benefit =
             benefit_of(weight.weight, accuracy_gain(error_rad, view.pixel_angle_rad), unusable_penalty(weight.size, error_rad));

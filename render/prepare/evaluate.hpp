@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <span>
 #include <vector>
 
@@ -37,14 +36,19 @@ bool legal(const model::Representation& rep, float nearest_m);
 /// Error in metres of the finest legal representation.
 float finest_error(const model::Model& model, const model::Node& node, float nearest_m);
 
-/// The part of the benefit that all choices of a node share: size x importance x focus x motion, each 0..1.
-/// Source: factors of Funkhouser & Séquin 1993, as in Maciel 1994, 3.3.2. The accuracy factor is accuracy_gain().
+/// The rectangle round a box as the eye in the middle of the region sees it. -1..1 is the view.
+struct Outline {
+    float left = 1, low = 1, right = -1, high = -1;
+};
+
+/// What all choices of a node share.
+/// Source of the factors: Funkhouser & Séquin 1993, as in Maciel 1994, 3.3.2. The accuracy factor is accuracy_gain().
 struct Weight {
-    float weight = 0;
-    float size = 0;        ///< square root of the share of the view, times importance
-    float distance_m = 1;  ///< error_distance()
-    float each_pixel = 0;  ///< importance x focus x motion
-    std::array<float, 4> outline{};  ///< of the box in the view: left, low, right, high; -1..1 is the view
+    float weight = 0;        ///< of the benefit: size x importance x focus x motion, each 0..1
+    float size = 0;          ///< square root of the share of the view, times importance
+    float distance_m = 1;    ///< error_distance()
+    float pixel_weight = 0;  ///< of one pixel in the value: importance x focus x motion
+    Outline outline;
 };
 
 /// The accuracy factor of the benefit, 0..1: the mean of e / (e + 8) and e / (e + 256), with e the error in pixels.

@@ -13,6 +13,7 @@
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/occlusion.hpp"
 #include "render/prepare/prepared.hpp"
+#include "render/prepare/shown_pixels.hpp"
 #include "render/prepare/tree_passes.hpp"
 #include "render/prepare/value.hpp"
 #include "render/prepare/workers.hpp"
@@ -76,6 +77,7 @@ struct Preparer::Impl {
     std::vector<Weight> weights;                   ///< a candidate
     PreparedFrame tried;                           ///< of value_at()
     double last_speed_mps = 0, last_turn_rps = 0;  ///< of the last run()
+    ShownPixels shown;
     ValuePass values;
     std::uint32_t choice_bound = 0;  ///< choices that the visits may need
     float used_factor = 1;           ///< of the last run(), for value_at() too
@@ -93,6 +95,7 @@ struct Preparer::Impl {
     void drop_false_positives(PreparedFrame& out);
     void make_room(PreparedFrame& out);
     void evaluate_all(const RegionView& view, PreparedFrame& out);
+    void set_values(const RegionView& view, PreparedFrame& out);
     void adapt(const PreparedFrame& out);
 };
 
@@ -124,6 +127,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     chunk_candidate.resize(chunks);
     chunk_count.resize(chunks);
     weights.resize(max_nodes);
+    shown.reserve(static_cast<std::uint32_t>(max_nodes));
     values.reserve(static_cast<std::uint32_t>(max_nodes));
 }
 
@@ -313,6 +317,11 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
     out.choices.resize(to);
 }
 
+void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
+    const std::span<const float> shown_px = shown.run(weights, out.candidates, out.choices, view.wide.viewport_pixels);
+    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out);
+}
+
 // A band between raising and lowering, so that the target does not swing while the eye stands still.
 void Preparer::Impl::adapt(const PreparedFrame& out) {
     if (options.max_visits == 0 || options.full_depth) return;
@@ -380,7 +389,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.tried.viewport = viewport;
     s.tried.full_factor = out.full_factor;
     s.tried.coarse_factor = out.coarse_factor;
-    s.values.run(s.costs.combine, view.pixel_angle_rad, s.weights, out);
+    s.set_values(view, out);
     propagate_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     enforce_monotone_benefit(out);
     s.adapt(out);
@@ -394,7 +403,7 @@ const ValueCurve& Preparer::value_at(float resolution) {
     s.make_room(s.tried);
     const RegionView view = s.view_of(s.tried, s.last_speed_mps, s.last_turn_rps);
     s.evaluate_all(view, s.tried);
-    s.values.run(s.costs.combine, view.pixel_angle_rad, s.weights, s.tried);
+    s.set_values(view, s.tried);
     return s.tried.curve;
 }
 

@@ -31,7 +31,7 @@ struct Choice {
     /// Monotone down the tree. The key of two-stage search (Maciel 1994, 3.5.3, figures 3.17 and 3.18).
     float subtree_benefit = 0;
     std::uint32_t triangles = 0;
-    float surface_px = 0;  ///< pixels that it rasterises, overdraw included
+    float surface_px = 0;  ///< pixels that it rasterises, of full resolution, overdraw included. Captures have none.
     /// What the choice shows, in weighted pixels; adds up over a cut, and rises along the choices. See value.hpp.
     float value = 0;
     /// Value per us of replacing this choice, and all that follows below at that rate. Monotone down the tree. The key of

@@ -2,7 +2,6 @@
 #include "render/prepare/shown_pixels.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace surefoot::prepare {
@@ -35,8 +34,8 @@ void ShownPixels::reserve(std::uint32_t max_candidates) {
     open_.resize(static_cast<std::size_t>(across) * down);
 }
 
-float ShownPixels::show(const Weight& weight, float surface_px, float tile_px) {
-    const Range x = range_of(weight.outline[0], weight.outline[2], across), y = range_of(weight.outline[1], weight.outline[3], down);
+float ShownPixels::show(const Outline& outline, float surface_px, float tile_px) {
+    const Range x = range_of(outline.left, outline.right, across), y = range_of(outline.low, outline.high, down);
     float area = 0, open = 0;
     for (int j = y.first; j <= y.last; ++j) {
         for (int i = x.first; i <= x.last; ++i) {
@@ -45,32 +44,30 @@ float ShownPixels::show(const Weight& weight, float surface_px, float tile_px) {
             open += part * open_[static_cast<std::size_t>(j * across + i)];
         }
     }
-    if (!(area > 0.0F)) return 0.0F;
+    if (!(area > 0.0F && surface_px > 0.0F)) return 0.0F;
     const float cover = 1.0F - std::exp(-surface_px / (area * tile_px));
     for (int j = y.first; j <= y.last; ++j)
-        for (int i = x.first; i <= x.last; ++i) open_[static_cast<std::size_t>(j * across + i)] *= 1.0F - cover * x.share(i) * y.share(j);
+        for (int i = x.first; i <= x.last; ++i)
+            open_[static_cast<std::size_t>(j * across + i)] *= 1.0F - cover * x.share(i) * y.share(j);
     return cover * open * tile_px;
 }
 
-std::span<const float> ShownPixels::run(std::span<const Weight> weights, const PreparedFrame& frame) {
-    const float tile_px = static_cast<float>(frame.viewport.width) * static_cast<float>(frame.viewport.height) /
-                          static_cast<float>(across * down);
-    const float surface_scale = 1.0F / (frame.resolution * frame.resolution);
-    const std::size_t n = frame.candidates.size();
+std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::span<const Candidate> candidates,
+                                        std::span<const Choice> choices, float view_px) {
+    const float tile_px = view_px / static_cast<float>(across * down);
     order_.clear();
-    std::fill_n(shown_.begin(), n, 0.0F);
+    std::fill_n(shown_.begin(), candidates.size(), 0.0F);
     std::fill(open_.begin(), open_.end(), 1.0F);
-    for (std::uint32_t i = 0; i < n; ++i)
-        if (frame.candidates[i].child_count == 0) order_.push_back(i);
+    for (std::uint32_t i = 0; i < candidates.size(); ++i)
+        if (candidates[i].child_count == 0) order_.push_back(i);
     std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
         return weights[a].distance_m != weights[b].distance_m ? weights[a].distance_m < weights[b].distance_m : a < b;
     });
     for (const std::uint32_t i : order_) {
-        const Candidate& candidate = frame.candidates[i];
-        const Choice& finest = frame.choices[candidate.first_choice + candidate.choice_count - 1];
-        shown_[i] = show(weights[i], finest.surface_px * surface_scale, tile_px);
+        const Choice& finest = choices[candidates[i].first_choice + candidates[i].choice_count - 1];
+        shown_[i] = show(weights[i].outline, finest.surface_px, tile_px);
     }
-    return std::span(shown_).first(n);
+    return std::span(shown_).first(candidates.size());
 }
 
 }  // namespace surefoot::prepare

@@ -10,21 +10,24 @@
 
 namespace surefoot::prepare {
 
-/// Goes through the leaves from near to far over a grid of tiles. A leaf covers the share 1 - exp(-surface / outline) of the tiles
-/// in its outline, and shows that share of what nearer leaves left open there.
+/// Goes through the leaves from near to far over a grid of tiles on the view. A leaf's surface is taken to lie at random in its
+/// outline. So it covers the share 1 - exp(-surface / outline) of it, and shows that share of what nearer leaves left open.
 class ShownPixels {
 public:
+    /// Reserves for this many candidates. run() allocates nothing below that.
     void reserve(std::uint32_t max_candidates);
-    /// [candidate]: pixels, 0 of candidates with children. Valid until the next call.
-    std::span<const float> run(std::span<const Weight> weights, const PreparedFrame& frame);
+    /// [candidate]: pixels of the finest choice; 0 of candidates with children or out of the view. All are >= 0, and together
+    /// they are at most view_px. Valid until the next call. weights: one a candidate, as Evaluator::evaluate made them.
+    std::span<const float> run(std::span<const Weight> weights, std::span<const Candidate> candidates,
+                               std::span<const Choice> choices, float view_px);
 
 private:
     static constexpr int across = 32, down = 18;
-    float show(const Weight& weight, float surface_px, float tile_px);
+    float show(const Outline& outline, float surface_px, float tile_px);
 
-    std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> order_;  ///< leaves, near to far
     std::vector<float> shown_;
-    std::vector<float> open_;
+    std::vector<float> open_;  ///< [tile]: share that no leaf has covered yet
 };
 
 }  // namespace surefoot::prepare

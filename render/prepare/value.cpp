@@ -15,14 +15,13 @@ namespace {
 constexpr float top_rate = 0x1p20F;      // px/us, of level 0
 constexpr std::size_t max_choices = 32;  // of one candidate on its hull; more are left out of it
 
-/// 0..1: a quarter by the error in pixels, the rest by the share of the leaves' surface that the choice covers.
-float looks_right(float error_px, float covered) {
-    const float error = error_px / (error_px + 256.0F);
-    return 1.0F - 0.25F * error - 0.75F * std::clamp(1.0F - covered, 0.0F, 1.0F);
-}
-
-float pixels_of(const model::Viewport& viewport) {
-    return std::max(1.0F, static_cast<float>(viewport.width) * static_cast<float>(viewport.height));
+/// 0..1. What is out of the view has no surface there: only its error counts.
+float looks_right(float error_px, float surface_px, float leaves_surface_px) {
+    constexpr float of_error = 0.25F;
+    const float error =
+        error_px / (error_px + 256.0F);  // nearly linear up to a hundred pixels: twice the error is twice as wrong
+    const float lacks = leaves_surface_px > 0.0F ? std::clamp(1.0F - surface_px / leaves_surface_px, 0.0F, 1.0F) : 0.0F;
+    return 1.0F - of_error * error - (1.0F - of_error) * lacks;
 }
 
 float rate_of(std::uint32_t level) { return std::ldexp(top_rate, -static_cast<int>(level)); }
@@ -77,7 +76,6 @@ float ValueCurve::value_at(float cost_us) const {
 
 void ValuePass::reserve(std::uint32_t max_candidates) {
     sums_.resize(max_candidates);
-    shown_.reserve(max_candidates);
     // Curves are held for one level of the tree at a time, and only for nodes that have children in the frame.
     const std::uint32_t curves = std::min(max_candidates / 2 + 1, 1U << 15U);
     curves_.resize(curves);
@@ -106,7 +104,7 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
     const Candidate& candidate = frame.candidates[i];
     Sums& sums = sums_[i];
     if (candidate.child_count == 0) {
-        sums.weight = seen.each_pixel * shown_px;
+        sums.weight = seen.pixel_weight * shown_px;
         sums.surface_px = frame.choices[candidate.first_choice + candidate.choice_count - 1].surface_px;
         sums.weight_per_m = sums.weight / seen.distance_m;
     }
@@ -120,7 +118,7 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
     float value = 0.0F;
     for (Choice& choice : std::span(&frame.choices[candidate.first_choice], candidate.choice_count)) {
         const float error_px = choice.error_rad * seen.distance_m * per_m / pixel_angle_rad;
-        value = std::max(value, sums.weight * looks_right(error_px, choice.surface_px / std::max(sums.surface_px, 1.0F)));
+        value = std::max(value, sums.weight * looks_right(error_px, choice.surface_px, sums.surface_px));
         choice.value = value;
     }
 }
@@ -200,14 +198,13 @@ void ValuePass::enforce_falling_rates(PreparedFrame& frame) {
 }
 
 void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
-                    PreparedFrame& frame) {
+                    std::span<const float> shown_px, PreparedFrame& frame) {
     frame.curve = {};
     frame.full_value = 0;
     const std::size_t n = frame.candidates.size();
     if (n == 0) return;
     CHECK(n <= sums_.size(), "Values are made for no more candidates than were reserved");
     std::fill_n(sums_.begin(), n, Sums{0, 0, 0, none});
-    const std::span<const float> shown = shown_.run(weights, frame);
     free_.clear();
     for (std::uint32_t i = static_cast<std::uint32_t>(curves_.size()); i-- > 0;) free_.push_back(i);
     std::array<std::uint32_t, max_choices> room{};
@@ -215,7 +212,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
     for (std::size_t i = n; i-- > 0;) {
         const Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
-        set_values(i, pixel_angle_rad, weights[i], shown[i], frame);
+        set_values(i, pixel_angle_rad, weights[i], shown_px[i], frame);
         const OwnChoices own{combine, choices, hull_of(combine, choices, room)};
         if (candidate.child_count == 0) full_value += static_cast<double>(choices.back().value);
         const bool inner = candidate.child_count > 0 && sums_[i].curve != none;
@@ -237,14 +234,18 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
 
 void estimate_values(const model::FrameCombine& combine, PreparedFrame& frame) {
     std::vector<Weight> weights;
+    std::vector<float> shown_px;
     weights.reserve(frame.candidates.size());
+    shown_px.reserve(frame.candidates.size());
     for (const Candidate& candidate : frame.candidates) {
-        const float size = std::sqrt(std::max(candidate.pixels, 0.0F) / pixels_of(frame.viewport));
-        weights.push_back({size, size, 1.0F, 1.0F, {}});
+        Weight weight;
+        weight.pixel_weight = 1.0F;
+        weights.push_back(weight);
+        shown_px.push_back(std::max(candidate.pixels, 0.0F));
     }
     ValuePass pass;
     pass.reserve(static_cast<std::uint32_t>(frame.candidates.size()));
-    pass.run(combine, static_cast<float>(model::pixel_angle(frame.region.centre, frame.viewport)), weights, frame);
+    pass.run(combine, static_cast<float>(model::pixel_angle(frame.region.centre, frame.viewport)), weights, shown_px, frame);
 }
 
 }  // namespace surefoot::prepare

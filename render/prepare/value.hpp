@@ -8,14 +8,14 @@
 
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/prepared.hpp"
-#include "render/prepare/shown_pixels.hpp"
 
 namespace surefoot::prepare {
 
 /// Fills Choice::value, Choice::rate and PreparedFrame::full_value.
 ///
-/// value = W * (1 - g). W of a leaf: (share of the view)^1.25 * pixels of the view * importance * focus * motion. W of a node:
-/// the sum of its leaves'. g, 0..1: how wrong the choice looks, from its error in pixels and unusable_penalty().
+/// value = W * (1 - g). W of a leaf: the pixels that it shows (ShownPixels) * importance * focus * motion. W of a node: the sum
+/// of its leaves'. g, 0..1: how wrong the choice looks. A quarter is by its error in pixels. The rest is the share of the leaves'
+/// surface that it lacks: a fence that is missing, a tree that is a shard.
 /// rate = value per us of the next step, where a step into the children counts all that follows below at that rate. It is the
 /// slope of the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a
 /// candidate and down the tree. So all steps with a rate of at least r make the cut of the greatest value - r * cost. This holds
@@ -28,12 +28,14 @@ public:
     /// Reserves for this many candidates. run() allocates nothing below that.
     void reserve(std::uint32_t max_candidates);
     /// weights: one a candidate, as Evaluator::evaluate made them. Call it before propagate_up(), which replaces them.
-    void run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights, PreparedFrame& frame);
+    /// shown_px: one a candidate, read of leaves alone.
+    void run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
+             std::span<const float> shown_px, PreparedFrame& frame);
 
 private:
     struct Sums {
         float weight = 0;         ///< W, px
-        float surface_px = 0;     ///< of the leaves' finest choices
+        float surface_px = 0;     ///< of the leaves' finest choices, overdraw included
         float weight_per_m = 0;   ///< sum of W / distance of the leaves
         std::uint32_t curve = 0;  ///< of the children, while they are summed up; none: not yet
     };
@@ -57,7 +59,6 @@ private:
     static void set_opening_rate(std::uint32_t level, float value, float cost, const OwnChoices& own);
     static void enforce_falling_rates(PreparedFrame& frame);
 
-    ShownPixels shown_;
     std::vector<Sums> sums_;
     std::vector<Curve> curves_;
     std::vector<std::uint32_t> free_;

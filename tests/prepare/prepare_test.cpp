@@ -102,7 +102,7 @@ bool same(const PreparedFrame& a, const PreparedFrame& b) {
             return false;
         }
     }
-    static_assert(sizeof(Choice) == 36);  // no padding: bytes can be compared
+    static_assert(sizeof(Choice) == 40);  // no padding: bytes can be compared
     return std::memcmp(a.choices.data(), b.choices.data(), a.choices.size() * sizeof(Choice)) == 0;
 }
 

@@ -1,0 +1,164 @@
+// Shown pixels of leaves against values worked out by hand, and the values that follow from them.
+#include "render/prepare/shown_pixels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "render/prepare/value.hpp"
+#include "rt/base/random.hpp"
+#include "tests/prepare/random_model.hpp"
+
+namespace surefoot::prepare {
+namespace {
+
+constexpr float view_px = 1280.0F * 720.0F;
+constexpr Outline whole_view{-1, -1, 1, 1};
+
+/// Leaves below one root, each with one choice.
+struct Leaves {
+    std::vector<Candidate> candidates{Candidate{}};
+    std::vector<Choice> choices{Choice{}};
+    std::vector<Weight> weights{Weight{}};
+    ShownPixels shown;
+
+    void add(float distance_m, const Outline& outline, float surface_px) {
+        Candidate leaf;
+        leaf.parent = 0;
+        leaf.first_choice = static_cast<Index>(choices.size());
+        leaf.choice_count = 1;
+        candidates.push_back(leaf);
+        Choice choice;
+        choice.surface_px = surface_px;
+        choices.push_back(choice);
+        Weight weight;
+        weight.distance_m = distance_m;
+        weight.outline = outline;
+        weights.push_back(weight);
+    }
+    std::span<const float> run() {
+        candidates[0].first_child = 1;
+        candidates[0].child_count = static_cast<std::uint32_t>(candidates.size() - 1);
+        candidates[0].choice_count = 1;
+        shown.reserve(static_cast<std::uint32_t>(candidates.size()));
+        return shown.run(weights, candidates, choices, view_px);
+    }
+};
+
+TEST(ShownPixels, OfASurfaceAsLargeAsItsOutlineAreTwoThirds) {
+    Leaves leaves;
+    leaves.add(10, {-0.5F, -0.5F, 0.5F, 0.5F}, view_px / 4);
+    const auto shown = leaves.run();
+    EXPECT_EQ(shown[0], 0) << "the root has children";
+    EXPECT_NEAR(shown[1], (1 - std::exp(-1.0)) * view_px / 4, 1);
+}
+
+TEST(ShownPixels, OfWhatIsBehindAreWhatTheNearerLeftOpen) {
+    Leaves leaves;
+    leaves.add(20, whole_view, 2 * view_px);  // added first, and yet behind
+    leaves.add(10, {-1, -1, 0, 1}, view_px / 2);
+    const auto shown = leaves.run();
+    const double near = 1 - std::exp(-1.0), far = 1 - std::exp(-2.0);
+    EXPECT_NEAR(shown[2], near * view_px / 2, 1);
+    EXPECT_NEAR(shown[1], far * ((1 - near) * view_px / 2 + view_px / 2), 1);
+}
+
+TEST(ShownPixels, OfEquallyFarLeavesGoByTheirOrder) {
+    Leaves leaves;
+    leaves.add(10, whole_view, view_px);
+    leaves.add(10, whole_view, view_px);
+    const auto shown = leaves.run();
+    EXPECT_NEAR(shown[1], (1 - std::exp(-1.0)) * view_px, 1);
+    EXPECT_NEAR(shown[2], (1 - std::exp(-1.0)) * std::exp(-1.0) * view_px, 1);
+}
+
+TEST(ShownPixels, OutsideTheViewAreNoneAndAPartCountsAsFarAsItIsInside) {
+    Leaves leaves;
+    leaves.add(5, {1.1F, -1, 2, 1}, view_px);
+    leaves.add(10, {-3, -1, -0.75F, 1}, 1e9F);
+    const auto shown = leaves.run();
+    EXPECT_EQ(shown[1], 0);
+    EXPECT_NEAR(shown[2], view_px / 8, 1);
+}
+
+TEST(ShownPixels, OfPartsOfTilesAddUp) {
+    Leaves leaves;
+    leaves.add(5, {0.01F, 0.01F, 0.02F, 0.02F}, 1e9F);  // within one tile
+    leaves.add(10, whole_view, 1e9F);
+    const auto shown = leaves.run();
+    EXPECT_NEAR(shown[1], 0.0001F / 4 * view_px, 0.5);
+    EXPECT_NEAR(shown[1] + shown[2], view_px, 2);
+}
+
+TEST(ShownPixels, AreNoMoreThanTheViewWhateverTheLeaves) {
+    Random random(7);
+    constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr std::array odd{0.0F, -1.0F, 1e30F, -1e30F, inf, -inf, nan};
+    for (int round = 0; round < 300; ++round) {
+        Leaves leaves;
+        const auto number = [&](double low, double high) {
+            return round % 2 == 1 && random.below(8) == 0 ? odd[random.below(odd.size())]
+                                                          : static_cast<float>(random.range(low, high));
+        };
+        for (std::uint32_t i = random.below(60); i-- > 0;) {
+            const float left = number(-1.5, 1), low = number(-1.5, 1);
+            leaves.add(static_cast<float>(random.range(1, 100)), {left, low, left + number(0, 1), low + number(0, 1)},
+                       number(0, 4 * static_cast<double>(view_px)));
+        }
+        double sum = 0;
+        for (const float px : leaves.run()) {
+            ASSERT_GE(px, 0) << "and a number";
+            sum += static_cast<double>(px);
+        }
+        ASSERT_LE(sum, 1.0001 * static_cast<double>(view_px));
+    }
+}
+
+/// One leaf below a root, which has a coarse form of half of the leaf's surface.
+TEST(Value, IsByShownPixelsAndLostSurface) {
+    PreparedFrame frame;
+    frame.candidates.resize(2);
+    frame.candidates[0].first_child = 1;
+    frame.candidates[0].child_count = 1;
+    frame.candidates[0].choice_count = 1;
+    frame.candidates[1].parent = 0;
+    frame.candidates[1].first_choice = 1;
+    frame.candidates[1].choice_count = 2;
+    frame.choices.resize(3);
+    const std::array<float, 3> surface_px{500, 800, 1000}, error_px{256, 64, 0};
+    for (std::size_t i = 0; i < 3; ++i) {
+        frame.choices[i].surface_px = surface_px[i];
+        frame.choices[i].error_rad = 1e-3F * error_px[i];
+        frame.choices[i].cost.submit_us = static_cast<float>(10 * (i + 1));
+    }
+    std::vector<Weight> weights(2);
+    weights[0].distance_m = weights[1].distance_m = 10;
+    weights[1].pixel_weight = 0.5F;
+    const std::vector<float> shown_px{0, 600};
+    ValuePass pass;
+    pass.reserve(2);
+    pass.run({.fixed_us = 0, .submit_weight = 1, .raster_weight = 0, .max_weight = 0}, 1e-3F, weights, shown_px, frame);
+    EXPECT_NEAR(frame.choices[2].value, 300, 1e-3) << "full detail lacks nothing";
+    EXPECT_NEAR(frame.choices[1].value, 300 * (1 - 0.25 * 64 / 320 - 0.75 * 0.2), 1e-3);
+    EXPECT_NEAR(frame.choices[0].value, 300 * (1 - 0.25 * 0.5 - 0.75 * 0.5), 1e-3);
+    EXPECT_NEAR(frame.full_value, 300, 1e-3);
+}
+
+TEST(Value, OfFullDetailIsNoMoreThanTheView) {
+    const model::Model m = test::town(7);
+    const model::CostModel prices = model::default_costs();
+    Preparer preparer(m, prices, {});
+    PreparedFrame frame;
+    preparer.reserve(frame);
+    Region region;
+    region.centre.position = dvec3(0, 3, 60);
+    preparer.run(region, {1280, 720}, 0, 0, 0, frame);
+    EXPECT_GT(frame.full_value, 0);
+    EXPECT_LE(frame.full_value, static_cast<double>(view_px)) << "no pixel counts twice";
+}
+
+}  // namespace
+}  // namespace surefoot::prepare
