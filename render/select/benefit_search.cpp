@@ -241,9 +241,9 @@ const Selector& make_two_stage() {
 
 const SelectorEntry best_first_entry{"best-first", "the node of the greatest own benefit next, within the budget", GoesBy::budget,
                                      true, make_best_first};
-const SelectorEntry threshold_entry{"threshold", "the step of the greatest value per cost next, within the budget",
+const SelectorEntry threshold_entry{usual_selector, "the step of the greatest value per cost next, within the budget",
                                     GoesBy::budget, true, make_threshold};
-const SelectorEntry two_stage_entry{usual_selector, "the node of the greatest benefit in its subtree next, within the budget",
+const SelectorEntry two_stage_entry{"two-stage", "the node of the greatest benefit in its subtree next, within the budget",
                                     GoesBy::budget, true, make_two_stage};
 
 }  // namespace surefoot::select

@@ -23,7 +23,7 @@ struct SelectorEntry {
     const Selector& (*make)() = nullptr;
 };
 
-constexpr std::string_view usual_selector = "two-stage";
+constexpr std::string_view usual_selector = "threshold";
 constexpr std::string_view full_detail_selector = "flat";
 
 std::span<const SelectorEntry> selectors();

@@ -102,18 +102,17 @@ std::string_view repeated(std::string_view file, std::string_view literal, const
 bool is_meant(std::string_view file, std::string_view name) {
     using Pair = std::pair<std::string_view, std::string_view>;
     static const std::vector<Pair> meant = {
-        {"tools/cli/bake.cpp", ".obj"},                          // an example of use: two files
-        {"tools/cli/replay.cpp", "best-first"},                  // an example of use
-        {"systemd/daemon/options.cpp", "osmesa"},                // an example of use
-        {"tools/cli/devices_watch.cpp", "device"},               // what is plugged in
-        {"tools/cli/devices_map.cpp", "device"},                 // the same
-        {"tools/cli/devices_list.cpp", "device"},                // the same
-        {"tools/cli/devices_record.cpp", "device"},              // the same
-        {"render/gl/program.cpp", "vertex_colour"},              // an attribute of the shaders
-        {"tools/scenes/write_glb.cpp", "mesh"},                  // glTF's word
-        {"tools/selftest/transforms.cpp", "flat"},               // the name of an object in a scene
-        {"tools/selftest/budgets_and_curves.cpp", "two-stage"},  // the label of a measured value
-        {"tools/selftest/fixtures.cpp", "two-stage"},            // a settings file as a user writes it
+        {"tools/cli/bake.cpp", ".obj"},                // an example of use: two files
+        {"tools/cli/replay.cpp", "best-first"},        // an example of use
+        {"systemd/daemon/options.cpp", "osmesa"},      // an example of use
+        {"tools/cli/devices_watch.cpp", "device"},     // what is plugged in
+        {"tools/cli/devices_map.cpp", "device"},       // the same
+        {"tools/cli/devices_list.cpp", "device"},      // the same
+        {"tools/cli/devices_record.cpp", "device"},    // the same
+        {"render/gl/program.cpp", "vertex_colour"},    // an attribute of the shaders
+        {"tools/scenes/write_glb.cpp", "mesh"},        // glTF's word
+        {"tools/selftest/transforms.cpp", "flat"},     // the name of an object in a scene
+        {"tools/selftest/fixtures.cpp", "two-stage"},  // a settings file as a user writes it
     };
     return std::find(meant.begin(), meant.end(), Pair{file, name}) != meant.end();
 }

@@ -114,7 +114,7 @@ void equal_benefits(const Effort&, Outcome& out) {
     const double budget_us = 0.75 * static_cast<double>(fixture.select(select::full_detail_selector, infinity).predicted_us);
     std::uint64_t flicker = 0, bad = frame.candidates.empty() ? 1 : 0;
     std::size_t fewest = 1000;
-    model::Index coarsest = 99, finest = 0;  // forms that two-stage shows
+    model::Index coarsest = 99, finest = 0;  // forms that the default shows
     for (const std::string_view selector : select::selector_names()) {
         fixture.forget();
         const select::Cut& first = fixture.select(selector, budget_us);
@@ -137,7 +137,8 @@ void equal_benefits(const Effort&, Outcome& out) {
     out.none_of("frames that differ from the first", flicker);
     out.none_of("cuts that are illegal or not finite", bad);
     out.at_least("items of the smallest cut", static_cast<double>(fewest), 1000);
-    out.at_least("forms between two-stage's coarsest and finest", static_cast<double>(finest) - static_cast<double>(coarsest), 1);
+    out.at_least("forms between the default's coarsest and finest", static_cast<double>(finest) - static_cast<double>(coarsest),
+                 1);
 }
 
 void odd_costs(const Effort&, Outcome& out) {
