@@ -72,7 +72,7 @@ Seen look(const RegionView& view, const Box& box, const dvec3& eye) {
 
 /// What is beside the eye counts as at the near plane.
 Outline outline_of(const RegionView& view, const Box& box) {
-    const model::ViewScale& s = view.scale;
+    const model::ViewScale& s = view.wide;
     constexpr float far_out = 1e9F;
     Outline outline{far_out, far_out, -far_out, -far_out};
     const vec3 low(box.min - view.eye), high(box.max - view.eye);

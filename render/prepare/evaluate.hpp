@@ -36,7 +36,7 @@ bool legal(const model::Representation& rep, float nearest_m);
 /// Error in metres of the finest legal representation.
 float finest_error(const model::Model& model, const model::Node& node, float nearest_m);
 
-/// The rectangle round a box as the eye in the middle of the region sees it. -1..1 is the view.
+/// The rectangle round a box as the eye in the middle of the region sees it. -1..1 is the wide view.
 struct Outline {
     float left = 1, low = 1, right = -1, high = -1;
 };

@@ -8,6 +8,8 @@ namespace surefoot::prepare {
 
 namespace {
 
+constexpr float unseen_layers = 0.5F;  // of what is not in the picture yet
+
 /// A range of tiles, with the shares of the first and the last.
 struct Range {
     int first = 0, last = -1;
@@ -44,8 +46,9 @@ float ShownPixels::show(const Outline& outline, float surface_px, float tile_px)
             open += part * open_[static_cast<std::size_t>(j * across + i)];
         }
     }
-    if (!(area > 0.0F && surface_px > 0.0F)) return 0.0F;
-    const float cover = 1.0F - std::exp(-surface_px / (area * tile_px));
+    if (!(area > 0.0F)) return 0.0F;
+    const float layers = surface_px > 0.0F ? surface_px / (area * tile_px) : unseen_layers;
+    const float cover = 1.0F - std::exp(-layers);
     for (int j = y.first; j <= y.last; ++j)
         for (int i = x.first; i <= x.last; ++i)
             open_[static_cast<std::size_t>(j * across + i)] *= 1.0F - cover * x.share(i) * y.share(j);
@@ -53,8 +56,9 @@ float ShownPixels::show(const Outline& outline, float surface_px, float tile_px)
 }
 
 std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::span<const Candidate> candidates,
-                                        std::span<const Choice> choices, float view_px) {
-    const float tile_px = view_px / static_cast<float>(across * down);
+                                        std::span<const Choice> choices, const model::ViewScale& wide) {
+    const float focal_px = wide.pixels_per_radian;
+    const float tile_px = 4.0F * wide.tan_half_x * wide.tan_half_y * focal_px * focal_px / static_cast<float>(across * down);
     order_.clear();
     std::fill_n(shown_.begin(), candidates.size(), 0.0F);
     std::fill(open_.begin(), open_.end(), 1.0F);

@@ -5,21 +5,23 @@
 #include <span>
 #include <vector>
 
+#include "render/model/pixels.hpp"
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/prepared.hpp"
 
 namespace surefoot::prepare {
 
-/// Goes through the leaves from near to far over a grid of tiles on the view. A leaf's surface is taken to lie at random in its
+/// Goes through the leaves from near to far over a grid of tiles on the view, widened by the region's angle: what may come into
+/// view in the next frames has value. A leaf's surface is taken to lie at random in its
 /// outline. So it covers the share 1 - exp(-surface / outline) of it, and shows that share of what nearer leaves left open.
 class ShownPixels {
 public:
     /// Reserves for this many candidates. run() allocates nothing below that.
     void reserve(std::uint32_t max_candidates);
-    /// [candidate]: pixels of the finest choice; 0 of candidates with children or out of the view. All are >= 0, and together
-    /// they are at most view_px. Valid until the next call. weights: one a candidate, as Evaluator::evaluate made them.
+    /// [candidate]: pixels of the finest choice; 0 of candidates with children. All are >= 0, and together they are at most those
+    /// of the wide view. Valid until the next call. weights: one a candidate, as Evaluator::evaluate made them.
     std::span<const float> run(std::span<const Weight> weights, std::span<const Candidate> candidates,
-                               std::span<const Choice> choices, float view_px);
+                               std::span<const Choice> choices, const model::ViewScale& wide);
 
 private:
     static constexpr int across = 32, down = 18;

@@ -16,6 +16,14 @@ namespace surefoot::prepare {
 namespace {
 
 constexpr float view_px = 1280.0F * 720.0F;
+/// 1280 x 720 pixels.
+const model::ViewScale view = [] {
+    model::ViewScale scale;
+    scale.tan_half_x = 0.64F;
+    scale.tan_half_y = 0.36F;
+    scale.pixels_per_radian = 1000.0F;
+    return scale;
+}();
 constexpr Outline whole_view{-1, -1, 1, 1};
 
 /// Leaves below one root, each with one choice.
@@ -44,7 +52,7 @@ struct Leaves {
         candidates[0].child_count = static_cast<std::uint32_t>(candidates.size() - 1);
         candidates[0].choice_count = 1;
         shown.reserve(static_cast<std::uint32_t>(candidates.size()));
-        return shown.run(weights, candidates, choices, view_px);
+        return shown.run(weights, candidates, choices, view);
     }
 };
 
@@ -82,6 +90,12 @@ TEST(ShownPixels, OutsideTheViewAreNoneAndAPartCountsAsFarAsItIsInside) {
     const auto shown = leaves.run();
     EXPECT_EQ(shown[1], 0);
     EXPECT_NEAR(shown[2], view_px / 8, 1);
+}
+
+TEST(ShownPixels, OfWhatIsNotInThePictureYetAreAsOfHalfALayer) {
+    Leaves leaves;
+    leaves.add(10, {0.5F, -1, 1, 1}, 0);
+    EXPECT_NEAR(leaves.run()[1], (1 - std::exp(-0.5)) * view_px / 4, 1);
 }
 
 TEST(ShownPixels, OfPartsOfTilesAddUp) {
