@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string>
 #include <utility>
@@ -30,6 +31,7 @@ constexpr Entry choice(string_view key, std::span<const Named> of, string_view h
     return {key, Kind::choice, {}, 0, 0, of, help, member};
 }
 
+constexpr std::array<double, 3> sample_counts{1, 2, 4};
 constexpr double longest_name = 4095;  // bytes, PATH_MAX
 
 constexpr Entry file_name(string_view key, string_view help, std::string S::*member) {
@@ -68,6 +70,10 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
             "resolution", "%", 0, 100,
             "Share of the picture's width and height that is drawn, then enlarged, in steps of 12.5 from 50; 0: what shows most.",
             &S::resolution_pct),
+        integer("samples", "a pixel", 1, 4,
+                "Samples of a pixel. More of them smooth edges, those of alpha-tested textures too, and take longer.",
+                &S::samples),
+        choice("filter", rt::texture_filters, "How textures are read where they are drawn smaller than they are.", &S::filter),
         number("rest_after_ms", "ms", 0, 60000,
                "Time that the eye must stand still before full detail is drawn bit by bit, then smoothed; 0: never.",
                &S::rest_after_ms),
@@ -96,7 +102,11 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),
         integer("worker_priority", "FIFO", 1, 98, "Priority of the workers; below the rasterisers'.", &S::worker_priority),
     };
-    std::find_if(entries.begin(), entries.end(), [](const Entry& e) { return e.key == "backend"; })->absent = backends.absent;
+    const auto entry = [&](string_view key) {
+        return std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
+    };
+    entry("backend")->absent = backends.absent;
+    entry("samples")->only = sample_counts;
     return entries;
 }
 

@@ -190,6 +190,26 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     EXPECT_EQ(json["control"]["blocks"].size(), 1U);
 }
 
+TEST(Summary, SamplesAndFilterAreTheWalks) {
+    std::vector<rt::FrameRecord> frames = good_frames(2);
+    WalkSummary s;
+    summarize(frames, period_ns, s);
+    EXPECT_EQ(to_table(s, false).find("samples"), std::string::npos) << "nothing to say of one sample";
+    for (rt::FrameRecord& f : frames) {
+        f.samples = 2;
+        f.other_samples = true;
+        f.filter = rt::TextureFilter::trilinear;
+    }
+    summarize(frames, period_ns, s);
+    const std::string table = to_table(s, false);
+    EXPECT_NE(table.find("2 a pixel: the driver lacks what was asked for"), std::string::npos) << table;
+    EXPECT_NE(table.find("trilinear"), std::string::npos) << table;
+    const auto json = nlohmann::json::parse(to_json(s));
+    EXPECT_EQ(json["samples"]["drawn"], 2);
+    EXPECT_EQ(json["samples"]["as_asked"], false);
+    EXPECT_EQ(json["filter"], "trilinear");
+}
+
 TEST(Summary, ResolutionIsTheMeanAndTheLeastOfTheFrames) {
     std::vector<rt::FrameRecord> frames = good_frames(4);
     WalkSummary s;
