@@ -25,13 +25,19 @@ template <class Whole>
 constexpr Entry integer(string_view key, string_view unit, double min, double max, string_view help, Whole S::*member) {
     return {key, Kind::integer, unit, min, max, {}, help, member};
 }
+constexpr std::array<double, 3> sample_counts{1, 2, 4};
+
+constexpr Entry samples(string_view help, std::uint32_t S::*member) {
+    Entry entry = integer("samples", "a pixel", sample_counts.front(), sample_counts.back(), help, member);
+    entry.only = sample_counts;
+    return entry;
+}
 constexpr Entry flag(string_view key, string_view help, bool S::*member) { return {key, Kind::flag, {}, 0, 1, {}, help, member}; }
 template <class Chosen>
 constexpr Entry choice(string_view key, std::span<const Named> of, string_view help, Chosen S::*member) {
     return {key, Kind::choice, {}, 0, 0, of, help, member};
 }
 
-constexpr std::array<double, 3> sample_counts{1, 2, 4};
 constexpr double longest_name = 4095;  // bytes, PATH_MAX
 
 constexpr Entry file_name(string_view key, string_view help, std::string S::*member) {
@@ -70,8 +76,7 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
             "resolution", "%", 0, 100,
             "Share of the picture's width and height that is drawn, then enlarged, in steps of 12.5 from 50; 0: what shows most.",
             &S::resolution_pct),
-        integer("samples", "a pixel", 1, 4,
-                "Samples of a pixel. More of them smooth edges, those of alpha-tested textures too, and take longer.",
+        samples("Samples of a pixel. More of them smooth edges, those of alpha-tested textures too, and take longer.",
                 &S::samples),
         choice("filter", rt::texture_filters, "How textures are read where they are drawn smaller than they are.", &S::filter),
         number("rest_after_ms", "ms", 0, 60000,
@@ -102,11 +107,7 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),
         integer("worker_priority", "FIFO", 1, 98, "Priority of the workers; below the rasterisers'.", &S::worker_priority),
     };
-    const auto entry = [&](string_view key) {
-        return std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
-    };
-    entry("backend")->absent = backends.absent;
-    entry("samples")->only = sample_counts;
+    std::find_if(entries.begin(), entries.end(), [](const Entry& e) { return e.key == "backend"; })->absent = backends.absent;
     return entries;
 }
 

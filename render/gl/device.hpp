@@ -91,7 +91,7 @@ public:
     virtual ~Device() = default;
     [[nodiscard]] virtual std::string renderer() const = 0;  ///< GL_RENDERER, or "null"
     [[nodiscard]] virtual bool software() const = 0;
-    /// Samples of a pixel that frames are drawn with. Others than asked for where the driver has no such number.
+    /// Samples of a pixel that frames are drawn with. Others than requested where the driver has no such number.
     [[nodiscard]] virtual std::uint32_t samples() const { return 1; }
     /// The filter that textures are read by; never `automatic`.
     [[nodiscard]] virtual rt::TextureFilter filter() const { return rt::TextureFilter::bilinear; }

@@ -37,9 +37,9 @@ bool make_steps(const Api& gl, model::Viewport viewport, GLsizei samples, Sample
 
 SampleTargets make_sample_targets(const Api& gl, model::Viewport viewport, std::uint32_t samples) {
     SampleTargets targets;
-    GLint most = 0;
-    if (samples > 1) gl.GetIntegerv(GL_MAX_SAMPLES, &most);
-    for (auto count = std::min(static_cast<GLint>(samples), most); count > 1; count /= 2) {
+    GLint max_samples = 0;
+    if (samples > 1) gl.GetIntegerv(GL_MAX_SAMPLES, &max_samples);
+    for (auto count = std::min(static_cast<GLint>(samples), max_samples); count > 1; count /= 2) {
         bool made = make_steps(gl, viewport, count, targets);
         while (gl.GetError() != GL_NO_ERROR) made = false;
         if (made) break;

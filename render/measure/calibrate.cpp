@@ -177,17 +177,17 @@ Result<std::unique_ptr<gl::Device>> Run::open_other(const gl::DeviceOptions& how
 std::vector<WorkPair> Run::compare(gl::Device& other, bool textured) {
     constexpr double min_pixels = 500;
     RasteriserClocks clocks;  // of both devices
-    const auto least_us = [&](gl::Device& device, std::span<const gl::DrawItem> items, double& least) {
+    const auto draw = [&](gl::Device& device, std::span<const gl::DrawItem> items, double& min_us) {
         device.bind();
         const std::size_t slice = std::max<std::size_t>(1, (items.size() + 2) / 3);
-        for (int i = 0; i < 2; ++i) least = std::min(least, run_frame(device, clocks, Pose{}, items, slice).raster_us);
+        for (int i = 0; i < 2; ++i) min_us = std::min(min_us, run_frame(device, clocks, Pose{}, items, slice).raster_us);
         device.release();
     };
     const auto pair_of = [&](std::span<const gl::DrawItem> items) {
         WorkPair pair{1e12, 1e12};
         for (int round = 0; round < repeats(); ++round) {
-            least_us(device_, items, pair.plain_us);
-            least_us(other, items, pair.dearer_us);
+            draw(device_, items, pair.plain_us);
+            draw(other, items, pair.dearer_us);
         }
         return pair;
     };

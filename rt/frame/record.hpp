@@ -73,7 +73,7 @@ struct FrameRecord {
     bool floor_frame = false;    ///< over half of the picture fell to floor forms, although the cut before would have fitted
     float resolution = 1;        ///< share of the picture's sides at which it was drawn
     std::uint32_t samples = 1;   ///< of a pixel
-    bool other_samples = false;  ///< the driver lacks the number that was asked for
+    bool other_samples = false;  ///< the driver lacks the requested number
     TextureFilter filter = TextureFilter::bilinear;
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it

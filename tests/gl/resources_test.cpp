@@ -120,13 +120,13 @@ TEST_F(ResourceObjects, a_driver_without_a_target_for_rest_still_opens) {
 
 TEST_F(ResourceObjects, a_driver_without_samples_still_opens_and_says_what_it_draws) {
     const int steps = static_cast<int>(model::resolution_steps.size());
-    for (const auto& [most, asked, drawn] :
+    for (const auto& [most, requested, drawn] :
          {std::tuple{4, 4U, 4U}, {4, 2U, 2U}, {4, 1U, 1U}, {2, 4U, 2U}, {1, 4U, 1U}, {0, 2U, 1U}}) {
         auto context = std::make_unique<test::FakeContext>();
         FakeGl::get().max_samples = most;
         gl::DeviceOptions options;
         options.viewport = {64, 64};
-        options.samples = asked;
+        options.samples = requested;
         auto device = gl::GlDevice::make(std::move(context), options);
         ASSERT_TRUE(device.ok()) << most;
         (*device)->draws.plays();
