@@ -57,9 +57,9 @@ struct CostModel {
     float slice_us = 30;                ///< cost of ending a slice (flush and fence)
     float enlarge_ns_per_pixel = 1.6F;  ///< of the whole picture, where it is drawn at a lower resolution
     /// Of an item's raster time: what each sample of a pixel beyond the first adds.
-    float sample_share = 0.7F;
-    float sample_pass_ns_per_pixel = 3;  ///< of the whole picture: to clear and resolve each sample beyond the first
-    float trilinear_factor = 1.2F;       ///< raster time of textured items, against bilinear
+    float sample_share = 0.77F;
+    float sample_pass_ns_per_pixel = 2.5F;  ///< of the whole picture: to clear and resolve each sample beyond the first
+    float trilinear_factor = 1.24F;       ///< raster time of textured items, against bilinear
     float rest_pass_ns_per_pixel = 8;    ///< of one pass over the picture at rest; typical, no calibration measures it
     /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.
     BlurLoss blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
