@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string>
 #include <utility>
@@ -23,6 +24,13 @@ constexpr Entry number(string_view key, string_view unit, double min, double max
 template <class Whole>
 constexpr Entry integer(string_view key, string_view unit, double min, double max, string_view help, Whole S::*member) {
     return {key, Kind::integer, unit, min, max, {}, help, member};
+}
+constexpr std::array<double, 3> sample_counts{1, 2, 4};
+
+constexpr Entry samples(string_view help, std::uint32_t S::*member) {
+    Entry entry = integer("samples", "a pixel", sample_counts.front(), sample_counts.back(), help, member);
+    entry.only = sample_counts;
+    return entry;
 }
 constexpr Entry flag(string_view key, string_view help, bool S::*member) { return {key, Kind::flag, {}, 0, 1, {}, help, member}; }
 template <class Chosen>
@@ -68,6 +76,9 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
             "resolution", "%", 0, 100,
             "Share of the picture's width and height that is drawn, then enlarged, in steps of 12.5 from 50; 0: what shows most.",
             &S::resolution_pct),
+        samples("Samples of a pixel. More of them smooth edges, those of alpha-tested textures too, and take longer.",
+                &S::samples),
+        choice("filter", rt::texture_filters, "How textures are read where they are drawn smaller than they are.", &S::filter),
         number("rest_after_ms", "ms", 0, 60000,
                "Time that the eye must stand still before full detail is drawn bit by bit, then smoothed; 0: never.",
                &S::rest_after_ms),

@@ -35,8 +35,10 @@ struct Settings {
     double budget_ms = 0;                      ///< 0: what the rate allows
     double accuracy = 0;                       ///< rad^-1 to stop at; 0: as far as the budget goes
     double resolution_pct = 100;               ///< of the sides at which frames are drawn; a step of 12.5; 0: chosen
-    double cost_scale = 1;                     ///< factor on predicted costs (real clock) or on charged ones (virtual clock)
-    std::string selector, backend;             ///< names out of registries
+    std::uint32_t samples = 1;                 ///< of a pixel: 1, 2 or 4
+    rt::TextureFilter filter = rt::TextureFilter::automatic;
+    double cost_scale = 1;          ///< factor on predicted costs (real clock) or on charged ones (virtual clock)
+    std::string selector, backend;  ///< names out of registries
     rt::LatePolicy late = rt::LatePolicy::lock;
     rt::ClockKind clock = rt::ClockKind::real;
     int workers = 0;      ///< 0: one a core beside the frame thread's
@@ -52,8 +54,9 @@ struct Settings {
 
 enum class Kind : std::uint8_t { number, integer, flag, choice, colour, file };
 
-using Member = std::variant<double Settings::*, std::uint32_t Settings::*, int Settings::*, bool Settings::*,
-                            std::string Settings::*, rt::LatePolicy Settings::*, rt::ClockKind Settings::*>;
+using Member =
+    std::variant<double Settings::*, std::uint32_t Settings::*, int Settings::*, bool Settings::*, std::string Settings::*,
+                 rt::LatePolicy Settings::*, rt::ClockKind Settings::*, rt::TextureFilter Settings::*>;
 
 /// One row of the schema. min and max hold for number and integer, choices for choice (of an enum: in its order); max for
 /// file: bytes.
@@ -65,6 +68,7 @@ struct Entry {
     std::span<const Named> choices;
     std::string_view help;
     Member member;
+    std::span<const double> only = {};   ///< of integer: the values within the limits that are allowed; empty: all
     std::span<const Named> absent = {};  ///< names that are known and cannot be chosen, and why
 };
 

@@ -2,6 +2,7 @@
 #include "config/values.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -50,6 +51,7 @@ std::string limits_of(const Entry& entry) {
         case Kind::number:
             return fmt::format("a number from {} to {}", number_text(entry.min), number_text(entry.max));
         case Kind::integer:
+            if (!entry.only.empty()) return fmt::format("one of {}", fmt::join(entry.only, ", "));
             return fmt::format("a whole number from {} to {}", number_text(entry.min), number_text(entry.max));
         case Kind::flag:
             return "true or false";
@@ -114,7 +116,8 @@ std::optional<Error> assign(Settings& settings, const Entry& entry, const Value&
     if (const auto* number = std::get_if<double>(&value)) {
         const bool numeric = entry.kind == Kind::number || entry.kind == Kind::integer;
         const bool whole = entry.kind != Kind::integer || std::floor(*number) == *number;
-        if (!numeric || !whole || !(*number >= entry.min && *number <= entry.max)) return refusal();
+        const bool listed = entry.only.empty() || std::find(entry.only.begin(), entry.only.end(), *number) != entry.only.end();
+        if (!numeric || !whole || !listed || !(*number >= entry.min && *number <= entry.max)) return refusal();
         put_number(settings, entry, *number);
         return std::nullopt;
     }

@@ -34,6 +34,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     if (!device) return device.error();
     impl->device = std::move(*device);
     impl->device->draws.plays();
+    impl->costs = model::at_quality(std::move(impl->costs), gl::quality_of(*impl->device), options.device.viewport);
     auto loaded = impl->device->load(impl->model, effects::assemble_program);
     if (!loaded) return loaded.error();
     decltype(impl->model.texels)().swap(impl->model.texels);  // the device has its own

@@ -75,6 +75,7 @@ struct SubmitReport {
     std::uint32_t bought_items = 0, refused_items = 0;  ///< beside the forms; see select/item.hpp
     double bought_us = 0;                               ///< of predicted_us: what they cost
     float resolution = 1;                               ///< that was drawn: a step of model::resolution_steps
+    std::uint32_t samples = 1;                          ///< of a pixel, that were drawn
     float worst_error_rad = 0;                          ///< of the drawn items, stand-ins included
     double benefit_mean = 0;
     /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was
@@ -96,6 +97,7 @@ public:
 
     /// The model, without its texels.
     [[nodiscard]] const model::Model& model() const;
+    /// As the device draws: with its samples and its texture filter.
     [[nodiscard]] const model::CostModel& costs() const;
     [[nodiscard]] gl::Device& device();
     [[nodiscard]] const EngineOptions& options() const;

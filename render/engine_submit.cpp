@@ -206,6 +206,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.items = stats.items;
     report.draws = stats.draws;
     report.resolution = stats.resolution;
+    report.samples = stats.samples;
     if (!e.drawn.empty()) report.benefit_mean /= static_cast<double>(e.drawn.size());
     report.floor_share = e.floor.floor_share();
     e.report_items(report);

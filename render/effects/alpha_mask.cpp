@@ -12,6 +12,9 @@ constexpr EffectModule alpha_mask{
     .vertex_code = "    v_alpha_cutoff = alpha_cutoff;\n",
     .fragment_declarations = "flat in float v_alpha_cutoff;\n",
     .fragment_code = "    if (colour.a < v_alpha_cutoff) discard;\n",
+    .fragment_code_samples =
+        "    opacity = clamp((colour.a - v_alpha_cutoff) / max(fwidth(colour.a), 1.0 / 255.0) + 0.5, 0.0, 1.0);\n"
+        "    if (opacity == 0.0) discard;\n",
 };
 const EffectModule alpha_mask_module = alpha_mask;
 

@@ -32,12 +32,17 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
     std::string vertex_code;
     std::string fragment_declarations;
     std::string fragment_code;
+    std::string fragment_code_samples;
+    bool covers = false;
     for (const EffectModule& module : all_effects()) {
         if ((mask & module.bit) == 0) continue;
         vertex_declarations += module.vertex_declarations;
         vertex_code += module.vertex_code;
         fragment_declarations += module.fragment_declarations;
         fragment_code += module.fragment_code;
+        const bool other = !module.fragment_code_samples.empty() && (mask & model::effect_blend) == 0;
+        fragment_code_samples += other ? module.fragment_code_samples : module.fragment_code;
+        covers = covers || other;
     }
     // A colour that no effect varies over the triangle needs no interpolation.
     const std::string flat = (mask & varying_colour) == 0 ? "flat " : "";
@@ -57,14 +62,18 @@ gl::ProgramSource assemble_program(model::EffectMask mask) {
         vertex_code +
         "    gl_Position = view_projection * vec4(world, 1.0);\n"
         "}\n";
-    source.fragment = "#version 430 core\n" + flat + "in vec4 v_colour;\n" + fragment_declarations +
-                      "out vec4 pixel;\n"
-                      "void main() {\n"
-                      "    vec4 colour = v_colour;\n"
-                      "    float opacity = 1.0;\n" +
-                      fragment_code +
-                      "    pixel = vec4(colour.rgb, opacity);\n"
-                      "}\n";
+    const auto fragment = [&](const std::string& code) {
+        return "#version 430 core\n" + flat + "in vec4 v_colour;\n" + fragment_declarations +
+               "out vec4 pixel;\n"
+               "void main() {\n"
+               "    vec4 colour = v_colour;\n"
+               "    float opacity = 1.0;\n" +
+               code +
+               "    pixel = vec4(colour.rgb, opacity);\n"
+               "}\n";
+    };
+    source.fragment = fragment(fragment_code);
+    if (covers) source.fragment_samples = fragment(fragment_code_samples);
     return source;
 }
 

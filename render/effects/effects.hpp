@@ -19,6 +19,8 @@ struct EffectModule {
     std::string_view requested_by;                          ///< what in a scene asks for it
     std::string_view vertex_declarations, vertex_code;      ///< may read `world_rows`, write `v_colour`
     std::string_view fragment_declarations, fragment_code;  ///< may change `colour`, discard
+    /// In place of fragment_code where pixels have several samples; sets `opacity` to the covered share. Empty: fragment_code.
+    std::string_view fragment_code_samples = {};
 };
 
 /// In bit order. To add one: its bit, a file in this folder, and its line in modules.hpp and assemble.cpp.

@@ -15,6 +15,7 @@
 #include "render/model/model.hpp"
 #include "render/model/resolution.hpp"
 #include "render/model/view.hpp"
+#include "rt/base/modes.hpp"
 #include "rt/base/result.hpp"
 #include "rt/base/thread_annotations.hpp"
 
@@ -32,6 +33,8 @@ struct DrawItem {
 struct ProgramSource {
     std::string vertex, fragment;
     std::string name{};  ///< of the state class, for people: "texture sun"
+    /// In place of `fragment` where pixels have several samples: its alpha is the covered share of the pixel. Empty: `fragment`.
+    std::string fragment_samples{};
 };
 using ProgramFactory = std::function<ProgramSource(model::EffectMask)>;
 
@@ -59,15 +62,18 @@ struct DeviceOptions {
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
     std::array<float, 3> sky{0.62F, 0.72F, 0.82F};
-    NullOptions null;   ///< of the null backend
-    bool rest = false;  ///< has targets for a picture at rest
+    NullOptions null;           ///< of the null backend
+    bool rest = false;          ///< has targets for a picture at rest
+    std::uint32_t samples = 1;  ///< of a pixel: 1, 2 or 4; see Device::samples()
+    rt::TextureFilter filter = rt::TextureFilter::automatic;
 };
 
 /// Counts and times of one drawn frame.
 struct FrameStats {
     std::uint32_t items = 0, draws = 0, batches = 0, state_changes = 0;
     std::uint64_t triangles = 0;
-    float resolution = 1;  ///< the step that is drawn, of model::resolution_steps
+    float resolution = 1;       ///< the step that is drawn, of model::resolution_steps
+    std::uint32_t samples = 1;  ///< Device::samples()
 };
 
 /// A picture in memory, RGBA8.
@@ -85,6 +91,10 @@ public:
     virtual ~Device() = default;
     [[nodiscard]] virtual std::string renderer() const = 0;  ///< GL_RENDERER, or "null"
     [[nodiscard]] virtual bool software() const = 0;
+    /// Samples of a pixel that frames are drawn with. Others than requested where the driver has no such number.
+    [[nodiscard]] virtual std::uint32_t samples() const { return 1; }
+    /// The filter that textures are read by; never `automatic`.
+    [[nodiscard]] virtual rt::TextureFilter filter() const { return rt::TextureFilter::bilinear; }
     /// Uploads geometry and textures; compiles and warms up the programs of the scene's state classes, and no others. The model
     /// must not change until the last draw or the next load. Its texels may go: they are not read again.
     virtual Result<void> load(const model::Model& model, const ProgramFactory& programs) REQUIRES(draws) = 0;
@@ -142,6 +152,12 @@ public:
     /// Virtual time charged so far, us (null backend); 0 elsewhere.
     [[nodiscard]] virtual double charged_us() const REQUIRES(draws) { return 0; }
 };
+
+/// How the device draws. Tables are measured by the filter that is automatic on it.
+inline model::Quality quality_of(const Device& device) {
+    const auto automatic = device.software() ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear;
+    return {device.samples(), device.filter(), automatic};
+}
 
 /// Sets how many threads software GL draws with, for the whole process; 0: the measured default. Call it before any other thread
 /// exists: drivers read the number from the environment (LP_NUM_THREADS), which must not change while threads read it.

@@ -55,6 +55,7 @@ Result<void> GlDevice::set_up() {
     if (!targets) return targets.error();
     targets_ = *targets;
     if (options_.rest) rest_ = make_rest_targets(gl_, targets_);
+    samples_ = make_sample_targets(gl_, options_.viewport, options_.samples);
     auto frame = make_frame_buffers(gl_, std::max(1U, options_.max_items));
     if (!frame) return frame.error();
     frame_ = *frame;
@@ -67,10 +68,16 @@ Result<void> GlDevice::set_up() {
     return check_errors(gl_, context_->name(), "See `surefoot doctor`");
 }
 
+rt::TextureFilter GlDevice::filter() const {
+    if (options_.filter != rt::TextureFilter::automatic) return options_.filter;
+    return software_ ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear;
+}
+
 Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
     free_resources(gl_, resources_);
     tables_ = draw::make_tables(model);
-    auto resources = load_resources(gl_, model, tables_.masks, tables_.textures, programs, frame_, software_);
+    const LoadOptions how{filter() == rt::TextureFilter::trilinear, samples() > 1};
+    auto resources = load_resources(gl_, model, tables_.masks, tables_.textures, programs, frame_, how);
     if (!resources) return resources.error();
     resources_ = std::move(*resources);
     sun_direction_ = vec3(glm::normalize(model.sun_direction));
@@ -166,10 +173,25 @@ void GlDevice::wait_slices(std::uint32_t in_flight) {
 }
 
 void GlDevice::finish_frame() {
+    if (!lost_) resolve(targets_.steps[step_], step_);
     if (step_ > 0 && !lost_) enlarge(gl_, targets_, step_);
     end_slice();
     wait_slices(0);
     present();
+}
+
+/// The picture of a step, out of its samples.
+void GlDevice::resolve(const Target& shown, std::size_t step) {
+    if (samples_.samples == 1) return;
+    set_coverage(false);
+    resolve_samples(gl_, samples_.steps[step], shown);
+    state_known_ = false;
+}
+
+/// The second picture is whole.
+void GlDevice::resolve_rest() {
+    if (!rest_resolved_) resolve(rest_.picture, 0);
+    rest_resolved_ = true;
 }
 
 /// The shown target goes to the window, if there is one.
@@ -201,12 +223,14 @@ void GlDevice::begin_rest(const Pose& pose, const dvec2& offset_px) {
         }
     }
     if (lost_ || rest_.picture.framebuffer == 0) return;
-    draw_into(rest_.picture);
+    rest_resolved_ = false;
+    draw_into(drawn_into(rest_.picture, 0));
     clear_target();
 }
 
 void GlDevice::add_sample(bool first) {
     if (lost_ || rest_.sum.framebuffer == 0) return;
+    resolve_rest();
     add_to_sum(gl_, rest_, first);
     state_known_ = false;
     end_slice();
@@ -214,6 +238,7 @@ void GlDevice::add_sample(bool first) {
 
 void GlDevice::show_rest(std::uint32_t samples) {
     if (lost_ || rest_.picture.framebuffer == 0) return;
+    resolve_rest();
     if (samples > 1) {
         show_mean(gl_, rest_, targets_.steps.front(), samples);
     } else {

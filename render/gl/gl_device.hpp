@@ -11,6 +11,7 @@
 #include "render/gl/context.hpp"
 #include "render/gl/resources.hpp"
 #include "render/gl/rest_targets.hpp"
+#include "render/gl/sample_targets.hpp"
 #include "render/gl/targets.hpp"
 
 namespace surefoot::gl {
@@ -25,6 +26,8 @@ public:
 
     [[nodiscard]] std::string renderer() const override { return renderer_; }
     [[nodiscard]] bool software() const override { return software_; }
+    [[nodiscard]] std::uint32_t samples() const override { return samples_.samples; }
+    [[nodiscard]] rt::TextureFilter filter() const override;
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -68,6 +71,12 @@ private:
     void warm_up() REQUIRES(draws);
     void start_picture(const Pose& pose) REQUIRES(draws);
     void draw_into(const Target& target) REQUIRES(draws);
+    [[nodiscard]] const Target& drawn_into(const Target& shown, std::size_t step) const REQUIRES(draws) {
+        return samples_.samples > 1 ? samples_.steps[step] : shown;
+    }
+    void resolve(const Target& shown, std::size_t step) REQUIRES(draws);
+    void resolve_rest() REQUIRES(draws);
+    void set_coverage(bool on) REQUIRES(draws);
     void clear_target() REQUIRES(draws);
     void draw_parts(std::span<const DrawItem> items, Parts parts) REQUIRES(draws);
     void present() REQUIRES(draws);
@@ -87,7 +96,9 @@ private:
     bool software_ = false;
     Targets targets_ GUARDED_BY(draws);
     RestTargets rest_ GUARDED_BY(draws);
-    std::size_t step_ GUARDED_BY(draws) = 0;  ///< of this frame, in model::resolution_steps
+    bool rest_resolved_ GUARDED_BY(draws) = false;  ///< the second picture is out of its samples
+    SampleTargets samples_;                         ///< of frames and of the second picture, which never alternate within one
+    std::size_t step_ GUARDED_BY(draws) = 0;        ///< of this frame, in model::resolution_steps
     FrameBuffers frame_ GUARDED_BY(draws);
     Resources resources_;
     draw::DrawTables tables_;

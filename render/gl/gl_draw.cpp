@@ -35,8 +35,9 @@ void GlDevice::begin_frame(const Pose& pose, float resolution) {
     stats_ = {};
     step_ = model::resolution_step(resolution);
     stats_.resolution = model::resolution_steps[step_];
+    stats_.samples = samples();
     if (lost_) return;
-    draw_into(targets_.steps[step_]);
+    draw_into(drawn_into(targets_.steps[step_], step_));
     clear_target();
 }
 
@@ -78,6 +79,11 @@ void GlDevice::set_blending(bool on) {
     gl_.DepthMask(on ? GL_FALSE : GL_TRUE);
 }
 
+/// Alpha says which samples of a pixel are drawn. Their own alpha is 1 then: the picture is opaque.
+void GlDevice::set_coverage(bool on) {
+    for (const GLenum what : {GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE}) on ? gl_.Enable(what) : gl_.Disable(what);
+}
+
 GlDevice::State GlDevice::state_of(const Pending& pending) const {
     const draw::DrawPart& part = tables_.parts[pending.part];
     return {part.program, part.texture, draw::culling(part, tables_.placements[tables_.reps[pending.rep].placement])};
@@ -87,7 +93,7 @@ void GlDevice::draw(std::span<const DrawItem> items) { draw_parts(items, Parts::
 
 void GlDevice::draw_rest(std::span<const DrawItem> items, Parts parts) {
     if (lost_ || rest_.picture.framebuffer == 0) return;
-    draw_into(rest_.picture);  // frames in between show the other target
+    draw_into(drawn_into(rest_.picture, 0));  // frames in between show the other target
     state_known_ = false;
     draw_parts(items, parts);
     if (blended_count_ > 0) submit_blended();
@@ -199,6 +205,8 @@ void GlDevice::apply(const State& state) {
         gl_.BindVertexArray(program.vertex_array);
         ++stats_.state_changes;
     }
+    if (samples_.samples > 1 && (all || program.coverage != resources_.programs[current_.program].coverage))
+        set_coverage(program.coverage);
     if (program.frame != frame_number_) {
         gl_.UniformMatrix4fv(program.view_projection, 1, GL_FALSE, &view_projection_[0][0]);
         if (program.sun_direction >= 0)

@@ -19,10 +19,18 @@ public:
         : options_(options),
           null_(null_options),
           costs_(null_options.costs != nullptr ? *null_options.costs : model::default_costs()),
-          random_(null_options.seed) {}
+          random_(null_options.seed) {
+        const float plain_us = costs_.rest_pass_us(options.viewport);
+        costs_ = model::at_quality(std::move(costs_), gl::quality_of(*this), options.viewport);
+        null_.rest_pass_us += static_cast<double>(costs_.rest_pass_us(options.viewport) - plain_us);
+    }
 
     [[nodiscard]] std::string renderer() const override { return "null"; }
     [[nodiscard]] bool software() const override { return true; }
+    [[nodiscard]] std::uint32_t samples() const override { return std::max(1U, options_.samples); }
+    [[nodiscard]] rt::TextureFilter filter() const override {
+        return options_.filter == rt::TextureFilter::automatic ? rt::TextureFilter::bilinear : options_.filter;
+    }
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -116,6 +124,7 @@ void NullDevice::begin_frame(const Pose& pose, float resolution) {
     eye_ = pose.position;
     stats_ = {};
     stats_.resolution = model::resolution_steps[model::resolution_step(resolution)];
+    stats_.samples = samples();
     scale_ = model::scaled(model::make_view_scale(pose, options_.viewport), stats_.resolution);
     submit_us_ = raster_us_ = other_us_ = 0;
     slices_ = blended_ = 0;

@@ -110,12 +110,15 @@ Result<GLuint> link_program(const Api& gl, const ProgramSource& source) {
                  ErrorKind::unsupported};
 }
 
-Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers) {
-    auto id = link_program(gl, source);
-    if (!id) return id.error();
+Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSource source, bool samples,
+                             const GeometryBuffers& buffers) {
     Program program;
     program.mask = mask;
-    program.source = source;
+    program.coverage = samples && !source.fragment_samples.empty();
+    if (program.coverage) source.fragment = source.fragment_samples;
+    auto id = link_program(gl, source);
+    if (!id) return id.error();
+    program.source = std::move(source);
     program.id = *id;
     program.view_projection = gl.GetUniformLocation(program.id, "view_projection");
     program.sun_direction = gl.GetUniformLocation(program.id, "sun_direction");

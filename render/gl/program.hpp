@@ -29,6 +29,7 @@ struct Program {
     GLint view_projection = -1, sun_direction = -1;  ///< uniform locations, -1: not used
     std::uint64_t frame = 0;                         ///< the frame whose uniforms it holds
     std::uint32_t attributes = 0;                    ///< bit a location
+    bool coverage = false;                           ///< its alpha says which samples of a pixel are drawn
 };
 
 /// Buffers that every vertex array reads.
@@ -38,8 +39,9 @@ struct GeometryBuffers {
 
 /// Compiles and links; the error carries the compiler's message.
 Result<GLuint> link_program(const Api& gl, const ProgramSource& source);
-/// link_program(), and the vertex array.
-Result<Program> make_program(const Api& gl, model::EffectMask mask, const ProgramSource& source, const GeometryBuffers& buffers);
+/// link_program(), and the vertex array. samples: pixels have several.
+Result<Program> make_program(const Api& gl, model::EffectMask mask, ProgramSource source, bool samples,
+                             const GeometryBuffers& buffers);
 void delete_program(const Api& gl, Program& program);
 
 }  // namespace surefoot::gl

@@ -14,8 +14,7 @@ namespace surefoot::gl {
 namespace {
 
 /// Uploads an array of textures of equal size, levels and wrap.
-/// soft: nearest mip level instead of trilinear, which costs software GL time for every pixel.
-Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw::TextureArray& array, bool soft) {
+Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw::TextureArray& array, bool trilinear) {
     GLint largest = 0;
     gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     if (std::max(array.width, array.height) > static_cast<std::uint32_t>(largest)) {
@@ -39,7 +38,7 @@ Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw
             byte += 4ULL * w * h;
         }
     }
-    const GLint smaller = levels == 1 ? GL_LINEAR : soft ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
+    const GLint smaller = levels == 1 ? GL_LINEAR : trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST;
     const GLint wrap = array.clamp ? GL_CLAMP_TO_EDGE : GL_REPEAT;
     gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, smaller);
     gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -104,7 +103,7 @@ Result<FrameBuffers> make_frame_buffers(const Api& gl, std::uint32_t max_items) 
 
 Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
                                  const draw::TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
-                                 bool soft) {
+                                 const LoadOptions& options) {
     Undone<Resources> made(gl, free_resources);
     Resources& resources = made.value;
     gl.BindVertexArray(0);  // the index buffer's binding belongs to the vertex array
@@ -113,7 +112,7 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
     const std::string remedy = "Bake a smaller part: the model's geometry does not fit the device";
     if (auto fine = check_errors(gl, "uploading geometry", remedy); !fine) return fine.error();
     for (const draw::TextureArray& array : layout.arrays) {
-        auto texture = upload_array(gl, model, array, soft);
+        auto texture = upload_array(gl, model, array, options.trilinear);
         if (!texture) return texture.error();
         resources.textures.push_back(*texture);
     }
@@ -121,7 +120,7 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
     if (auto fine = check_errors(gl, "uploading textures", smaller); !fine) return fine.error();
     const GeometryBuffers buffers{resources.vertices, resources.indices, frame.instance_buffer, frame.command_buffer};
     for (const model::EffectMask mask : masks) {
-        auto program = make_program(gl, mask, programs(mask), buffers);
+        auto program = make_program(gl, mask, programs(mask), options.samples, buffers);
         if (!program) return program.error();
         resources.programs.push_back(std::move(*program));
     }

@@ -36,10 +36,13 @@ struct Resources {
     std::vector<GLuint> textures;   ///< in the order of TextureLayout::arrays
     std::vector<Program> programs;  ///< in the order of DrawTables::masks
 };
-/// soft: nearest mip level instead of trilinear, which costs software GL time for every pixel.
+/// How everything is drawn. trilinear: else from the nearest mip level. samples: pixels have several.
+struct LoadOptions {
+    bool trilinear = false, samples = false;
+};
 Result<Resources> load_resources(const Api& gl, const model::Model& model, std::span<const model::EffectMask> masks,
                                  const draw::TextureLayout& layout, const ProgramFactory& programs, const FrameBuffers& frame,
-                                 bool soft);
+                                 const LoadOptions& options);
 void free_resources(const Api& gl, Resources& resources);
 
 /// An Error naming `place` if GL has recorded an error since the last check.

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "render/gl/backends.hpp"
 #include "render/measure/calibrate_fit.hpp"
@@ -53,6 +55,7 @@ public:
     void enlarging(Calibration& out);
     Result<void> cells(Calibration& out);
     Result<void> frames(Calibration& out);
+    Result<void> levers(Calibration& out);
 
 private:
     /// The frame twice: the second finds warm caches, as a walk's frames do.
@@ -63,6 +66,10 @@ private:
     }
     [[nodiscard]] int repeats() const { return options_.quick ? 3 : 5; }
     FrameSample predict(const TownView& view, const model::ItemCosts& costs) const;
+    Result<void> samples(Calibration& out);
+    Result<void> filter(Calibration& out);
+    Result<std::unique_ptr<gl::Device>> open_other(const gl::DeviceOptions& how);
+    std::vector<WorkPair> compare(gl::Device& other, bool textured);
 
     gl::Device& device_;
     const CalibrateOptions& options_;
@@ -154,6 +161,102 @@ Result<void> Run::cells(Calibration& out) {
     return {};
 }
 
+/// A second device beside the first, with the same scene. Bound to this thread; the first is not.
+Result<std::unique_ptr<gl::Device>> Run::open_other(const gl::DeviceOptions& how) {
+    device_.draws.plays();
+    device_.release();
+    auto other = gl::open_device(how);
+    if (!other) return other.error();
+    (*other)->draws.plays();
+    if (auto loaded = (*other)->load(scene_.model, effects::assemble_program); !loaded) return loaded.error();
+    (*other)->release();
+    return other;
+}
+
+/// Cells with many pixels, drawn by both devices in turns; the least of the rounds counts.
+std::vector<WorkPair> Run::compare(gl::Device& other, bool textured) {
+    constexpr double min_pixels = 500;
+    RasteriserClocks clocks;  // of both devices
+    const auto draw = [&](gl::Device& device, std::span<const gl::DrawItem> items, double& min_us) {
+        device.bind();
+        const std::size_t slice = std::max<std::size_t>(1, (items.size() + 2) / 3);
+        for (int i = 0; i < 2; ++i) min_us = std::min(min_us, run_frame(device, clocks, Pose{}, items, slice).raster_us);
+        device.release();
+    };
+    const auto pair_of = [&](std::span<const gl::DrawItem> items) {
+        WorkPair pair{1e12, 1e12};
+        for (int round = 0; round < repeats(); ++round) {
+            draw(device_, items, pair.plain_us);
+            draw(other, items, pair.dearer_us);
+        }
+        return pair;
+    };
+    const WorkPair empty = pair_of({});
+    std::vector<WorkPair> pairs;
+    for (const CalibrationCell& cell : scene_.cells) {
+        if (cell.pixels < min_pixels || (textured && (cell.effects & model::effect_texture) == 0)) continue;
+        const WorkPair pair = pair_of(cell.items);
+        const WorkPair work{pair.plain_us - empty.plain_us, pair.dearer_us - empty.dearer_us};
+        if (work.plain_us > 0 && work.dearer_us > 0) pairs.push_back(work);  // else it drowns in the empty frame
+    }
+    return pairs;
+}
+
+/// What each sample of a pixel beyond the first adds: to items, and to an empty frame. A driver without keeps the constants.
+Result<void> Run::samples(Calibration& out) {
+    gl::DeviceOptions how = options_.device;
+    how.samples = 4;
+    auto other = open_other(how);
+    if (!other) return other.error();
+    const auto more = static_cast<float>((*other)->samples() - 1);
+    if (!(more > 0)) return {};
+    const auto factor = dearer_factor_of(compare(**other, false), 1.0 + max_sample_share * static_cast<double>(more));
+    std::vector<EmptyPair> pairs;
+    const auto empty_us = [&](gl::Device& device) {
+        device.bind();
+        run_frame(device, clocks_, Pose{}, {}, 1);
+        const double us = run_frame(device, clocks_, Pose{}, {}, 1).wall_us;
+        device.release();
+        return us;
+    };
+    for (int i = 0; i < 10 * repeats(); ++i) {
+        const double plain_us = empty_us(device_);
+        pairs.push_back({plain_us, empty_us(**other)});
+    }
+    const std::optional<float> pass_ns = enlarge_ns_of(pairs, options_.device.viewport);
+    if (!factor || !pass_ns) return {};
+    out.costs.sample_share = (*factor - 1) / more;
+    out.costs.sample_pass_ns_per_pixel = std::min(*pass_ns / more, static_cast<float>(max_sample_pass_ns));
+    out.costs.samples_measured = true;
+    return {};
+}
+
+/// What the dearer texture filter adds to textured items.
+Result<void> Run::filter(Calibration& out) {
+    gl::DeviceOptions how = options_.device;
+    const bool automatic = gl::quality_of(device_).of_table == rt::TextureFilter::trilinear;
+    how.filter = automatic ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear;
+    auto other = open_other(how);
+    if (!other) return other.error();
+    std::vector<WorkPair> pairs = compare(**other, true);
+    if (automatic)
+        for (WorkPair& pair : pairs) std::swap(pair.plain_us, pair.dearer_us);
+    const auto factor = dearer_factor_of(pairs, max_trilinear_factor);
+    out.costs.trilinear_measured = factor.has_value();
+    if (factor) out.costs.trilinear_factor = *factor;
+    return {};
+}
+
+Result<void> Run::levers(Calibration& out) {
+    progress_.update("samples", 0);
+    if (auto done = samples(out); !done) return done;
+    if (progress_.stopped()) return stopped;
+    progress_.update("filter", 0.5);
+    if (auto done = filter(out); !done) return done;
+    device_.bind();
+    return {};
+}
+
 FrameSample Run::predict(const TownView& view, const model::ItemCosts& costs) const {
     const model::ViewScale scale = model::make_view_scale(view.pose, options_.device.viewport);
     FrameSample sample;
@@ -225,6 +328,7 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     run.enlarging(out);
     if (auto done = run.cells(out); !done) return done.error();
     if (auto done = run.frames(out); !done) return done.error();
+    if (auto done = run.levers(out); !done) return done.error();
     if ((*device)->lost())
         return Error{"calibration", "The device was lost, so its times mean nothing", "Restart the driver, and try again",
                      ErrorKind::no_device};

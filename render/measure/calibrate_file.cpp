@@ -56,6 +56,10 @@ std::string body_of(const model::CostModel& costs) {
     // Only what was measured: tables of before, and their hashes, stay what they are.
     if (costs.enlarge_measured)
         text += fmt::format("enlarge_ns_per_pixel = {:.9g}\n", static_cast<double>(costs.enlarge_ns_per_pixel));
+    if (costs.samples_measured)
+        text += fmt::format("sample_share = {:.9g}\nsample_pass_ns_per_pixel = {:.9g}\n", static_cast<double>(costs.sample_share),
+                            static_cast<double>(costs.sample_pass_ns_per_pixel));
+    if (costs.trilinear_measured) text += fmt::format("trilinear_factor = {:.9g}\n", static_cast<double>(costs.trilinear_factor));
     if (costs.blur_measured) text += fmt::format("blur_loss = [{:.9g}]\n", fmt::join(costs.blur_loss, ", "));
     text += fmt::format(
         "\n# frame_us = fixed_us + submit_weight * S + raster_weight * R + max_weight * max(S, R)\n[combine]\n"
@@ -99,13 +103,22 @@ void needed_numbers(TableReader& table, std::string_view key, model::CostGrid& g
     for (std::size_t i = 0; i < values.size(); ++i) grid.cells[i].*member = static_cast<float>(values[i]);
 }
 
-/// Absent: the constant, and said to be one.
-void read_enlarging(TableReader& top, model::CostModel& costs) {
-    constexpr std::string_view key = "enlarge_ns_per_pixel";
-    double ns = static_cast<double>(costs.enlarge_ns_per_pixel);
-    top.number(key, 0, max_enlarge_ns, {}, ns);
-    costs.enlarge_ns_per_pixel = static_cast<float>(ns);
-    costs.enlarge_measured = top.has(key);
+/// Absent: the constant. Returns whether the key is there.
+bool read_measured(TableReader& top, std::string_view key, double low, double high, float& constant) {
+    auto value = static_cast<double>(constant);
+    top.number(key, low, high, {}, value);
+    constant = static_cast<float>(value);
+    return top.has(key);
+}
+
+/// Absent: the constants, and said to be such.
+void read_levers(TableReader& top, model::CostModel& costs) {
+    costs.enlarge_measured = read_measured(top, "enlarge_ns_per_pixel", 0, max_enlarge_ns, costs.enlarge_ns_per_pixel);
+    const bool share = read_measured(top, "sample_share", 0, max_sample_share, costs.sample_share);
+    const bool pass = read_measured(top, "sample_pass_ns_per_pixel", 0, max_sample_pass_ns, costs.sample_pass_ns_per_pixel);
+    costs.samples_measured = share && pass;
+    if (share != pass) top.refuse(share ? "sample_pass_ns_per_pixel" : "sample_share", "is missing", remedy);
+    costs.trilinear_measured = read_measured(top, "trilinear_factor", 1, max_trilinear_factor, costs.trilinear_factor);
 }
 
 /// Absent: the constants, and said to be such.
@@ -134,7 +147,7 @@ Result<model::CostModel> costs_of(const toml::table& table, const std::string& f
     costs.timer_query_honest = table["timer_query_honest"].value_or(false);
     costs.headroom = needed_number(top, "upper_factor", 0.1, 100);
     costs.slice_us = needed_number(top, "slice_us", 0, 1e6);
-    read_enlarging(top, costs);
+    read_levers(top, costs);
     read_blur(top, costs);
     if (!top.wrong_key().empty()) return refuse(top.wrong_key());
     const toml::table* combine = table["combine"].as_table();

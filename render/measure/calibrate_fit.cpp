@@ -220,6 +220,16 @@ std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model
     return static_cast<float>(std::clamp(median_of(std::move(added_ns)) / pixels, min_ns, max_enlarge_ns));
 }
 
+std::optional<float> dearer_factor_of(std::span<const WorkPair> pairs, double max) {
+    std::vector<double> ratios;
+    for (const WorkPair& pair : pairs) {
+        ratios.push_back(pair.plain_us > 0 ? pair.dearer_us / pair.plain_us : std::numeric_limits<double>::quiet_NaN());
+        if (!std::isfinite(ratios.back())) return {};
+    }
+    if (ratios.empty()) return {};
+    return static_cast<float>(std::clamp(median_of(std::move(ratios)), 1.0, max));
+}
+
 double ratio(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile) {
     std::vector<double> values;
     for (const FrameSample& s : samples) {

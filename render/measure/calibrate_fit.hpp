@@ -44,6 +44,14 @@ struct EmptyPair {
 /// within 0.01 to max_enlarge_ns. Nothing if there are no pixels or no pairs, or if a time is not finite.
 std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model::Viewport& picture);
 
+/// The same work drawn in two ways, one right after the other.
+struct WorkPair {
+    double plain_us = 0, dearer_us = 0;  ///< raster time, without that of an empty frame
+};
+/// How much longer the dearer way takes: the median ratio, within 1 to max. Nothing if there are no pairs, or if a ratio is not
+/// finite.
+std::optional<float> dearer_factor_of(std::span<const WorkPair> pairs, double max);
+
 /// One time for each frame, from several measurements of it.
 struct FrameTimes {
     std::vector<FrameSample> frames;  ///< sums as last drawn; actual_us: minimum of the rounds, times `slowdown`

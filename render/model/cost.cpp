@@ -77,6 +77,22 @@ const CostGrid& CostModel::grid_for(EffectMask effects) const {
 
 float CostModel::blur_loss_at(float resolution) const { return blur_loss[resolution_step(resolution)]; }
 
+CostModel at_quality(CostModel costs, const Quality& quality, const Viewport& picture) {
+    const float more = quality.samples > 1 ? static_cast<float>(quality.samples - 1) : 0.0F;
+    const float by_samples = 1.0F + costs.sample_share * more;
+    const bool dearer = quality.filter == rt::TextureFilter::trilinear && quality.of_table != rt::TextureFilter::trilinear;
+    const bool cheaper = quality.filter != rt::TextureFilter::trilinear && quality.of_table == rt::TextureFilter::trilinear;
+    const float by_filter = dearer ? costs.trilinear_factor : cheaper ? 1.0F / costs.trilinear_factor : 1.0F;
+    for (CostGrid& grid : costs.grids) {
+        const float factor = (grid.effects & effect_texture) != 0 ? by_samples * by_filter : by_samples;
+        for (ItemCost& cell : grid.cells) cell.raster_us *= factor;
+    }
+    const float pass_ns_per_pixel = costs.sample_pass_ns_per_pixel * more;
+    costs.combine.fixed_us += 1e-3F * pass_ns_per_pixel * static_cast<float>(picture.width) * static_cast<float>(picture.height);
+    costs.rest_pass_ns_per_pixel += pass_ns_per_pixel;
+    return costs;
+}
+
 CostModel default_costs() {
     // Orders of magnitude of llvmpipe on two cores at 1280x720; `surefoot calibrate` replaces them.
     constexpr std::array<ClassFigures, 12> classes = {{

@@ -10,6 +10,7 @@
 
 #include "render/model/effects.hpp"
 #include "render/model/resolution.hpp"
+#include "rt/base/modes.hpp"
 
 namespace surefoot::model {
 
@@ -55,13 +56,18 @@ struct CostModel {
     float headroom = 1.25F;             ///< 90 % quantile of actual / predicted whole-frame cost at calibration
     float slice_us = 30;                ///< cost of ending a slice (flush and fence)
     float enlarge_ns_per_pixel = 1.6F;  ///< of the whole picture, where it is drawn at a lower resolution
-    float rest_pass_ns_per_pixel = 8;   ///< of one pass over the picture at rest; typical, no calibration measures it
+    /// Of an item's raster time: what each sample of a pixel beyond the first adds.
+    float sample_share = 0.77F;
+    float sample_pass_ns_per_pixel = 2.5F;  ///< of the whole picture: to clear and resolve each sample beyond the first
+    float trilinear_factor = 1.24F;       ///< raster time of textured items, against bilinear
+    float rest_pass_ns_per_pixel = 8;    ///< of one pass over the picture at rest; typical, no calibration measures it
     /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.
     BlurLoss blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
     std::string machine;  ///< CPU, renderer, rasteriser count; a table of another machine is refused
     bool timer_query_honest = false;
-    bool calibrated = false;                               ///< false: built-in defaults
-    bool enlarge_measured = false, blur_measured = false;  ///< false: the constants above, which no file holds
+    bool calibrated = false;  ///< false: built-in defaults
+    /// False: the constants above, which no file holds.
+    bool enlarge_measured = false, blur_measured = false, samples_measured = false, trilinear_measured = false;
 
     /// Interpolated. Arguments below 1 count as 1; beyond the grid the cost is extrapolated linearly. Never negative. A NaN
     /// argument gives the largest cell.
@@ -78,6 +84,15 @@ struct CostModel {
         return 1e-3F * rest_pass_ns_per_pixel * static_cast<float>(picture.width) * static_cast<float>(picture.height);
     }
 };
+
+/// How frames are drawn, and by which filter the table was measured. Filters are not `automatic` here.
+struct Quality {
+    std::uint32_t samples = 1;  ///< of a pixel
+    rt::TextureFilter filter = rt::TextureFilter::bilinear, of_table = rt::TextureFilter::bilinear;
+};
+
+/// The costs of frames that are drawn so. A table is measured with one sample a pixel.
+CostModel at_quality(CostModel costs, const Quality& quality, const Viewport& picture);
 
 /// Conservative costs for an uncalibrated machine (llvmpipe on two cores).
 CostModel default_costs();

@@ -1,5 +1,5 @@
-// The two modes of a walk that the core knows: the policy for late frames, and the clock. Enums, with their names in settings and
-// reports.
+// Modes of a walk that several rooms know: the policy for late frames, the clock, the texture filter. Enums, with their names in
+// settings and reports.
 #pragma once
 
 #include <array>
@@ -21,6 +21,10 @@ enum class LatePolicy : std::uint8_t { lock, floating };
 /// The clock of a walk: the machine's, or a virtual one that predicted costs advance.
 enum class ClockKind : std::uint8_t { real, virtual_time };
 
+/// How textures are read where they are drawn smaller than they are. bilinear: from the nearest mip level. trilinear: from the
+/// two nearest ones, blended.
+enum class TextureFilter : std::uint8_t { automatic, bilinear, trilinear };
+
 /// In the enums' order.
 inline constexpr std::array late_policies = {
     Named{"lock", "frames appear on the grid only; a late frame skips whole slots"},
@@ -31,7 +35,14 @@ inline constexpr std::array clock_kinds = {
     Named{"virtual", "predicted costs advance the clock; the same cost table gives the same frames"},
 };
 
+inline constexpr std::array texture_filters = {
+    Named{"auto", "bilinear on a software driver, else trilinear"},
+    Named{"bilinear", "from the nearest mip level"},
+    Named{"trilinear", "blended from the two nearest mip levels; a software driver takes longer for it"},
+};
+
 constexpr std::string_view name_of(LatePolicy late) { return late_policies[static_cast<std::size_t>(late)].name; }
 constexpr std::string_view name_of(ClockKind clock) { return clock_kinds[static_cast<std::size_t>(clock)].name; }
+constexpr std::string_view name_of(TextureFilter filter) { return texture_filters[static_cast<std::size_t>(filter)].name; }
 
 }  // namespace surefoot::rt

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "rt/base/modes.hpp"
+
 namespace surefoot::rt {
 
 /// The cause of a miss, one a frame. none: on time.
@@ -64,12 +66,15 @@ struct FrameRecord {
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;
     float cost_scale = 1;  ///< the setting's factor in predicted_us (real clock) or in actual_us (virtual clock)
     float prepare_cpu_us = 0;
-    float bought_us = 0;       ///< of predicted_us, without correction: what bought_items cost
-    float accuracy = 0;        ///< rad^-1
-    float benefit = 0;         ///< mean over items of 1 - benefit of the next finer step; 1: nothing is left to gain
-    float floor_share = 0;     ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones
-    bool floor_frame = false;  ///< over half of the picture fell to floor forms, although the cut before would have fitted
-    float resolution = 1;      ///< share of the picture's sides at which it was drawn
+    float bought_us = 0;         ///< of predicted_us, without correction: what bought_items cost
+    float accuracy = 0;          ///< rad^-1
+    float benefit = 0;           ///< mean over items of 1 - benefit of the next finer step; 1: nothing is left to gain
+    float floor_share = 0;       ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones
+    bool floor_frame = false;    ///< over half of the picture fell to floor forms, although the cut before would have fitted
+    float resolution = 1;        ///< share of the picture's sides at which it was drawn
+    std::uint32_t samples = 1;   ///< of a pixel
+    bool other_samples = false;  ///< the driver lacks the requested number
+    TextureFilter filter = TextureFilter::bilinear;
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;
     bool at_rest = false;  ///< no cut was drawn: the shown picture stays, or full detail replaces it
     bool stopped = false;  ///< the input stands still by order (emergency stop, dead-man); not a cause of a miss

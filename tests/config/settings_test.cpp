@@ -103,6 +103,9 @@ TEST(Settings, WrongTypesAndLimitsAreNamed) {
     refused("rate_hz = nan\n", 1, "rate_hz = nan is not allowed", "from 1 to 1000 (Hz)");
     refused("rate_hz = inf\n", 1, "rate_hz");
     refused("rate_hz = [1]\n", 1, "rate_hz is not allowed", "Use a number from 1 to 1000 (Hz)");
+    for (const std::string odd : {"0", "3", "2.5", "5", "-4", "nan", "inf"})
+        refused("samples = " + odd + "\n", 1, "samples = " + odd + " is not allowed", "Use one of 1, 2, 4");
+    refused("filter = \"cubic\"\n", 1, "filter = \"cubic\" is not allowed", "one of auto, bilinear, trilinear");
     refused("fifo = 1\n", 1, "fifo = 1 is not allowed", "Use true or false");
     refused("selector = \"best\"\n", 1, "selector = \"best\" is not allowed", "one of flat");
     refused("sky = \"blue\"\n", 1, "sky = \"blue\" is not allowed", "#rrggbb");

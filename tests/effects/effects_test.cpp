@@ -27,6 +27,19 @@ TEST(Programs, hold_the_code_of_their_effects_and_of_no_other) {
     }
 }
 
+TEST(Programs, of_an_alpha_test_cover_part_of_a_pixel_where_pixels_have_several_samples) {
+    for (model::EffectMask mask = 0; mask < 1U << model::effect_count; ++mask) {
+        const auto source = effects::assemble_program(mask);
+        const bool tested = (mask & model::effect_alpha_mask) != 0, blended = (mask & model::effect_blend) != 0;
+        EXPECT_EQ(source.fragment_samples.empty(), !tested || blended) << mask << ": a blended alpha is no coverage";
+        for (const auto& module : effects::all_effects()) {
+            if (source.fragment_samples.empty() || (mask & module.bit) == 0) continue;
+            const auto code = module.fragment_code_samples.empty() ? module.fragment_code : module.fragment_code_samples;
+            EXPECT_NE(source.fragment_samples.find(code), std::string::npos) << module.name << " in mask " << mask;
+        }
+    }
+}
+
 TEST(Programs, the_bare_one_mentions_no_effect) {
     const std::string text = text_of(0);
     for (const std::string word :

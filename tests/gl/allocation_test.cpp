@@ -100,6 +100,19 @@ TEST(Allocation, a_frame_on_gl_makes_none_of_its_own) {
     EXPECT_EQ(allocations_of_a_frame(**device, scene), 0);
 }
 
+TEST(Allocation, a_frame_with_several_samples_a_pixel_makes_none_of_its_own) {
+    if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
+    const auto scene = many_squares();
+    gl::DeviceOptions options;
+    options.viewport = {64, 64};
+    options.samples = 4;
+    auto device = gl::open_device(options);
+    if (!device) GTEST_SKIP() << device.error().text();
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    EXPECT_EQ(allocations_of_a_frame(**device, scene), 0);
+}
+
 TEST(Allocation, a_picture_at_rest_makes_none_and_compiles_nothing) {
     if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
     const auto scene = many_squares();

@@ -24,7 +24,8 @@ struct FakeGl {
     int framebuffers_asked = 0, bad_framebuffer = 0;  ///< bad_framebuffer: the how many-th check fails, from 1
     int errors_asked = 0, bad_error = 0;              ///< bad_error: the how many-th glGetError says out of memory, from 1
     GLint max_texture_size = 4096;
-    int compiles = 0, bad_compile = 0;  ///< bad_compile: the how many-th compile fails, from 1
+    GLint max_samples = 4, samples = 0;  ///< samples: of the newest renderbuffer
+    int compiles = 0, bad_compile = 0;   ///< bad_compile: the how many-th compile fails, from 1
     bool links = true;
     GLuint names = 0;
     std::vector<std::vector<std::byte>> mapped;  ///< memory of the mapped buffers
@@ -67,8 +68,15 @@ inline gl::Api fake_api() {
 #undef SUREFOOT_GL_FAKE
     api.version = 43;
     api.GetIntegerv = [](GLenum what, GLint* value) {
-        *value = what == GL_MAJOR_VERSION ? 4 : what == GL_MINOR_VERSION ? 5 : FakeGl::get().max_texture_size;
+        *value = what == GL_MAJOR_VERSION   ? 4
+                 : what == GL_MINOR_VERSION ? 5
+                 : what == GL_MAX_SAMPLES   ? FakeGl::get().max_samples
+                                            : FakeGl::get().max_texture_size;
     };
+    api.RenderbufferStorageMultisample = [](GLenum, GLsizei samples, GLenum, GLsizei, GLsizei) {
+        FakeGl::get().samples = samples;
+    };
+    api.GetRenderbufferParameteriv = [](GLenum, GLenum, GLint* value) { *value = FakeGl::get().samples; };
     api.GetError = []() -> GLenum {
         return ++FakeGl::get().errors_asked == FakeGl::get().bad_error ? GL_OUT_OF_MEMORY : GL_NO_ERROR;
     };

@@ -113,7 +113,7 @@ TEST_F(LostDevice, a_driver_that_hangs_while_a_model_is_loaded_is_an_error) {
 class ProgramObjects : public ::testing::Test {
 protected:
     void SetUp() override { FakeGl::get() = {}; }
-    static Result<gl::Program> make() { return gl::make_program(test::fake_api(), 0, {"vertex", "fragment", "name"}, {}); }
+    static Result<gl::Program> make() { return gl::make_program(test::fake_api(), 0, {"vertex", "fragment", "name"}, false, {}); }
 };
 
 TEST_F(ProgramObjects, a_program_that_links_keeps_no_shader) {

@@ -79,6 +79,28 @@ TEST(NullDevice, charges_exactly_what_the_table_predicts) {
                      2.0 * static_cast<double>(costs.combine.frame_us(static_cast<float>(submit), static_cast<float>(raster))));
 }
 
+TEST(NullDevice, charges_samples_and_the_filter_as_the_table_at_that_quality_predicts) {
+    const auto scene = scene_of_squares(5);
+    const model::CostModel costs = model::default_costs();
+    gl::DeviceOptions how;
+    how.samples = 4;
+    how.filter = rt::TextureFilter::trilinear;
+    gl::NullOptions plain, dearer;
+    plain.costs = &costs;
+    auto device = gl::open_null_device(how, plain);
+    ASSERT_TRUE(device.ok());
+    (*device)->draws.plays();
+    EXPECT_EQ((*device)->samples(), 4U);
+    EXPECT_EQ((*device)->filter(), rt::TextureFilter::trilinear);
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    const model::CostModel of_quality = model::at_quality(costs, gl::quality_of(**device), how.viewport);
+    dearer.costs = &of_quality;
+    const double charged = charge_of(**device, scene, 3);
+    EXPECT_EQ(charged, charge_of(*null_device(scene, dearer), scene, 3));
+    EXPECT_GT(charged, charge_of(*null_device(scene, plain), scene, 3));
+    EXPECT_EQ((*device)->stats().samples, 4U);
+}
+
 // Near, and of two state classes: the virtual clock is what prepare predicts, to the bit.
 TEST(NullDevice, charges_exactly_what_prepare_predicts_of_parts) {
     SmallModel small;

@@ -7,6 +7,7 @@
 #include "render/effects/effects.hpp"
 #include "render/gl/gl_device.hpp"
 #include "render/gl/rest_targets.hpp"
+#include "render/gl/sample_targets.hpp"
 #include "render/gl/targets.hpp"
 #include "tests/gl/fake_gl.hpp"
 #include "tests/gl/small_models.hpp"
@@ -36,7 +37,7 @@ protected:
         const draw::DrawTables tables = draw::make_tables(model);
         EXPECT_EQ(tables.masks.size(), 2U);
         EXPECT_EQ(tables.textures.arrays.size(), 2U);
-        return gl::load_resources(test::fake_api(), model, tables.masks, tables.textures, effects::assemble_program, {}, false);
+        return gl::load_resources(test::fake_api(), model, tables.masks, tables.textures, effects::assemble_program, {}, {});
     }
 };
 
@@ -115,6 +116,39 @@ TEST_F(ResourceObjects, a_driver_without_a_target_for_rest_still_opens) {
         (*device)->finish_rest_frame();
         EXPECT_EQ(FakeGl::get().syncs, 0);
     }
+}
+
+TEST_F(ResourceObjects, a_driver_without_samples_still_opens_and_says_what_it_draws) {
+    const int steps = static_cast<int>(model::resolution_steps.size());
+    for (const auto& [most, requested, drawn] :
+         {std::tuple{4, 4U, 4U}, {4, 2U, 2U}, {4, 1U, 1U}, {2, 4U, 2U}, {1, 4U, 1U}, {0, 2U, 1U}}) {
+        auto context = std::make_unique<test::FakeContext>();
+        FakeGl::get().max_samples = most;
+        gl::DeviceOptions options;
+        options.viewport = {64, 64};
+        options.samples = requested;
+        auto device = gl::GlDevice::make(std::move(context), options);
+        ASSERT_TRUE(device.ok()) << most;
+        (*device)->draws.plays();
+        EXPECT_EQ((*device)->samples(), drawn) << most;
+        EXPECT_EQ(FakeGl::get().framebuffers, drawn > 1 ? 2 * steps : steps) << most;
+        (*device)->begin_frame(Pose{}, 0.5F);
+        (*device)->finish_frame();
+        EXPECT_EQ((*device)->stats().samples, drawn);
+    }
+}
+
+TEST_F(ResourceObjects, fewer_samples_are_tried_where_more_do_not_fit_and_nothing_is_left_of_them) {
+    FakeGl::get().bad_framebuffer = 3;  // of those with four
+    auto targets = gl::make_sample_targets(test::fake_api(), {64, 64}, 4);
+    EXPECT_EQ(targets.samples, 2U);
+    EXPECT_EQ(FakeGl::get().framebuffers, static_cast<int>(model::resolution_steps.size()));
+    gl::free_sample_targets(test::fake_api(), targets);
+    EXPECT_EQ(FakeGl::get().objects(), 0);
+    FakeGl::get().framebuffer_status = GL_FRAMEBUFFER_UNSUPPORTED;
+    targets = gl::make_sample_targets(test::fake_api(), {64, 64}, 4);
+    EXPECT_EQ(targets.samples, 1U);
+    EXPECT_EQ(FakeGl::get().objects(), 0);
 }
 
 TEST_F(ResourceObjects, targets_for_rest_are_freed_whole_where_a_pass_does_not_link) {

@@ -141,6 +141,17 @@ TEST(EnlargeTime, is_never_free_and_never_without_end) {
     EXPECT_FLOAT_EQ(measure::enlarge_ns_of(stuck, {1000, 200}).value(), 100);
 }
 
+TEST(DearerFactor, is_the_median_of_the_pairs_and_at_least_one) {
+    const std::vector<measure::WorkPair> pairs{{100, 250}, {1000, 2000}, {10, 500}};  // the last was disturbed
+    EXPECT_FLOAT_EQ(measure::dearer_factor_of(pairs, 4).value(), 2.5F);
+    EXPECT_FLOAT_EQ(measure::dearer_factor_of(pairs, 2).value(), 2);
+    EXPECT_FLOAT_EQ(measure::dearer_factor_of(std::vector<measure::WorkPair>{{100, 80}}, 4).value(), 1);
+    EXPECT_FALSE(measure::dearer_factor_of({}, 4));
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const measure::WorkPair bad : {measure::WorkPair{0, 1}, {-1, 1}, {nan, 1}, {1, nan}})
+        EXPECT_FALSE(measure::dearer_factor_of(std::vector<measure::WorkPair>{{1, 2}, bad}, 4));
+}
+
 TEST(EnlargeTime, of_nothing_or_of_no_number_is_unknown) {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
     const std::vector<measure::EmptyPair> good{{1, 2}}, no_number{{1, 2}, {nan, 2}, {1, 2}}, endless{{1, infinity}};
@@ -238,6 +249,24 @@ TEST_F(CostFile, holds_blur_and_enlarging_where_they_were_measured) {
     EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_)) << "a fit is found by the table as it was read";
 }
 
+TEST_F(CostFile, holds_samples_and_the_filter_where_they_were_measured) {
+    costs_.sample_share = 0.61234567F;
+    costs_.sample_pass_ns_per_pixel = 1.2345678F;
+    costs_.trilinear_factor = 1.3456789F;
+    EXPECT_EQ(read_text(file_).value().find("sample_share"), std::string::npos);
+    EXPECT_EQ(read_text(file_).value().find("trilinear"), std::string::npos);
+    EXPECT_FALSE(measure::read_costs(file_, "")->samples_measured || measure::read_costs(file_, "")->trilinear_measured);
+    costs_.samples_measured = costs_.trilinear_measured = true;
+    ASSERT_TRUE(measure::write_costs(file_, costs_).ok());
+    const auto read = measure::read_costs(file_, costs_.machine);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_EQ(read->sample_share, costs_.sample_share);
+    EXPECT_EQ(read->sample_pass_ns_per_pixel, costs_.sample_pass_ns_per_pixel);
+    EXPECT_EQ(read->trilinear_factor, costs_.trilinear_factor);
+    EXPECT_TRUE(read->samples_measured && read->trilinear_measured);
+    EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
+}
+
 TEST_F(CostFile, without_blur_and_enlarging_keeps_the_constants_and_its_hash) {
     EXPECT_EQ(read_text(file_).value().find("blur_loss"), std::string::npos);
     EXPECT_EQ(read_text(file_).value().find("enlarge"), std::string::npos);
@@ -307,6 +336,16 @@ TEST_F(CostFile, with_a_wrong_key_is_refused_by_its_name) {
     }
     EXPECT_EQ(problem("slice_us", "slice_us = 30\nblur_loss = 0.1"), "The key 'blur_loss' is missing or out of range");
     EXPECT_EQ(problem("slice_us", "slice_us = 30\nblur_loss = [0, 0.1, 0.1, 0.3, 1]\nenlarge_ns_per_pixel = 0"), "nothing");
+    for (const std::string bad : {"nan", "-0.1", "inf", "101", "\"2\""}) {
+        EXPECT_EQ(problem("slice_us", "slice_us = 30\nsample_pass_ns_per_pixel = 1\nsample_share = " + bad),
+                  "The key 'sample_share' is missing or out of range");
+        EXPECT_EQ(problem("slice_us", "slice_us = 30\nsample_share = 1\nsample_pass_ns_per_pixel = " + bad),
+                  "The key 'sample_pass_ns_per_pixel' is missing or out of range");
+        EXPECT_EQ(problem("slice_us", "slice_us = 30\ntrilinear_factor = " + bad),
+                  "The key 'trilinear_factor' is missing or out of range");
+    }
+    EXPECT_EQ(problem("slice_us", "slice_us = 30\nsample_share = 1"),
+              "The key 'sample_pass_ns_per_pixel' is missing or out of range");
     const std::string torn = "slice_us = = 1\n";
     ASSERT_TRUE(
         write_text(file_, fmt::format("hash = \"{:016x}\"\n{}", hash_bytes(std::as_bytes(std::span<const char>(torn))), torn))
@@ -415,6 +454,15 @@ TEST(Calibrate, measures_a_table_that_predicts_more_for_more) {
     EXPECT_GE(c->costs.enlarge_ns_per_pixel, 0.01F);
     EXPECT_LE(c->costs.enlarge_ns_per_pixel, 100);
     EXPECT_FALSE(c->costs.blur_measured) << "blur is of a model";
+    gl::DeviceOptions sampled = options.device;
+    sampled.samples = 4;
+    const auto with_samples = gl::open_device(sampled);
+    ASSERT_TRUE(with_samples.ok());
+    EXPECT_EQ(c->costs.samples_measured, (*with_samples)->samples() > 1);
+    EXPECT_GE(c->costs.sample_share, 0);
+    EXPECT_LE(c->costs.sample_share, measure::max_sample_share);
+    EXPECT_TRUE(c->costs.trilinear_measured);
+    EXPECT_GE(c->costs.trilinear_factor, 1);
     EXPECT_TRUE(std::isfinite(c->frame_error_p99));
     const auto& grid = c->costs.grid_for(0);
     const auto less = c->costs.item(10, 100, grid);

@@ -170,7 +170,7 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
                     "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
                     "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated",
                     "input",       "picture",    "unused_ms", "coarse_frames",  "floor_frames", "cost_scale",
-                    "resolution",  "rest"}));
+                    "resolution",  "rest",       "samples",   "filter"}));
     EXPECT_EQ(keys_of(json["rest"]), (Keys{"frames", "full_detail_frames", "samples", "full_detail_ms"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
@@ -188,6 +188,26 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     EXPECT_EQ(json["miss_causes"]["raster"], 1);
     EXPECT_TRUE(json["control"]["p_value"].is_null()) << "no control ran";
     EXPECT_EQ(json["control"]["blocks"].size(), 1U);
+}
+
+TEST(Summary, SamplesAndFilterAreTheWalks) {
+    std::vector<rt::FrameRecord> frames = good_frames(2);
+    WalkSummary s;
+    summarize(frames, period_ns, s);
+    EXPECT_EQ(to_table(s, false).find("samples"), std::string::npos) << "nothing to say of one sample";
+    for (rt::FrameRecord& f : frames) {
+        f.samples = 2;
+        f.other_samples = true;
+        f.filter = rt::TextureFilter::trilinear;
+    }
+    summarize(frames, period_ns, s);
+    const std::string table = to_table(s, false);
+    EXPECT_NE(table.find("2 a pixel: the driver lacks the requested number"), std::string::npos) << table;
+    EXPECT_NE(table.find("trilinear"), std::string::npos) << table;
+    const auto json = nlohmann::json::parse(to_json(s));
+    EXPECT_EQ(json["samples"]["drawn"], 2);
+    EXPECT_EQ(json["samples"]["as_requested"], false);
+    EXPECT_EQ(json["filter"], "trilinear");
 }
 
 TEST(Summary, ResolutionIsTheMeanAndTheLeastOfTheFrames) {

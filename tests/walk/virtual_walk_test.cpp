@@ -67,6 +67,40 @@ TEST(VirtualWalk, AResolutionBelowTheLeastIsReportedAndDrawnAsTheLeast) {
     EXPECT_TRUE(walk(request).notes.empty());
 }
 
+TEST(VirtualWalk, SamplesAreRecordedAndPredicted) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(60);
+    const walk::WalkOutcome plain = walk(request);
+    for (const rt::FrameRecord& r : plain.records) EXPECT_EQ(r.samples, 1U);
+    const test::TemporaryFolder folder;
+    request.samples = 4;
+    request.ledger_file = folder / "ledger.csv";
+    const walk::WalkOutcome smooth = walk(request);
+    ASSERT_EQ(smooth.records.size(), 60U);
+    for (const rt::FrameRecord& r : smooth.records) {
+        EXPECT_EQ(r.samples, 4U);
+        EXPECT_FALSE(r.other_samples) << "the virtual device has any number";
+        EXPECT_FALSE(r.missed) << "costs are predicted with their samples, frame " << r.frame;
+    }
+    EXPECT_TRUE(smooth.notes.empty());
+    EXPECT_LT(smooth.summary.triangles_mean, plain.summary.triangles_mean) << "dearer pixels leave time for fewer triangles";
+    EXPECT_NE(read_text(request.ledger_file).value().find(",samples,other_samples,filter,"), std::string::npos);
+}
+
+TEST(VirtualWalk, SamplesThatTheDriverLacksAreFlaggedAndSaidOnce) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(3);
+    request.backend = "egl";
+    request.samples = 2;  // software drivers have four or none
+    const auto outcome = walk::run_walk(request, {}, {});
+    if (!outcome) GTEST_SKIP() << outcome.error().text();
+    ASSERT_EQ(outcome->records.size(), 3U);
+    const std::uint32_t drawn = outcome->records.front().samples;
+    for (const rt::FrameRecord& r : outcome->records) EXPECT_EQ(r.other_samples, drawn != 2U);
+    const auto is_message = [&](const std::string& note) {
+        return note == "samples: The driver cannot draw 2 a pixel. It draws " + std::to_string(drawn) + ".";
+    };
+    EXPECT_EQ(std::count_if(outcome->notes.begin(), outcome->notes.end(), is_message), drawn != 2U ? 1 : 0);
+}
+
 TEST(VirtualWalk, ATourThatStartsAtSpeedIsPreparedForFromItsFirstFrame) {
     walk::WalkRequest request = test::Forest::get().virtual_request(10);
     const test::TemporaryFolder folder;

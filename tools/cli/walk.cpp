@@ -223,6 +223,8 @@ void add_walk(CLI::App& app, Context& context) {
     add_settings(c, a->settings,
                  {{"--accuracy", "accuracy"},
                   {"--resolution", "resolution"},
+                  {"--samples", "samples"},
+                  {"--filter", "filter"},
                   {"--rest-after", "rest_after_ms"},
                   {"--cost-scale", "cost_scale"}},
                  {{"--slice", "slice_us"}, {"--hysteresis", "hysteresis"}});

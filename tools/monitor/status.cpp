@@ -190,6 +190,8 @@ std::string status_json(const MonitorPage& p) {
                 {"exact", f.frames > 0 && std::isinf(f.last.accuracy)},
                 {"budget_ms", f.frames > 0 ? known(double{f.last.budget_us} * 1e-3) : ordered_json(nullptr)},
                 {"resolution", f.frames > 0 ? known(double{f.last.resolution}) : ordered_json(nullptr)},
+                {"samples", f.frames > 0 ? ordered_json(f.last.samples) : ordered_json(nullptr)},
+                {"filter", f.frames > 0 ? ordered_json(rt::name_of(f.last.filter)) : ordered_json(nullptr)},
                 {"at_rest", f.last.at_rest},
                 {"rest_samples", f.last.rest_samples},
                 {"triangles", f.last.triangles},

@@ -104,6 +104,7 @@ void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::stri
     if (drawn < 1)
         lines.push_back(fmt::format("resolution {:.1f} % of the sides, least {:.1f} %",
                                     100 * number_at(s, "/recent/resolution/mean"), 100 * drawn));
+    if (number_at(s, "/now/samples") > 1) lines.push_back(fmt::format("samples {:.0f} a pixel", number_at(s, "/now/samples")));
 }
 
 void add_events(const json& s, const json& before, double between_s, const TerminalStyle& style,

@@ -125,6 +125,8 @@ std::string to_json(const WalkSummary& s) {
         {"accuracy", {{"min", rounded(s.accuracy_min)}, {"mean", rounded(s.accuracy_mean)}}},
         {"triangles", {{"mean", rounded(s.triangles_mean)}, {"max", s.triangles_max}}},
         {"resolution", {{"mean", rounded(s.resolution_mean)}, {"min", rounded(s.resolution_min)}}},
+        {"samples", {{"drawn", s.samples}, {"as_requested", !s.other_samples}}},
+        {"filter", rt::name_of(s.filter)},
         {"rest",
          {{"frames", s.rest_frames},
           {"full_detail_frames", s.rested_frames},

@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 69> columns = {{
+constexpr std::array<Column, 72> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -48,6 +48,9 @@ constexpr std::array<Column, 69> columns = {{
     {"accuracy", [](auto& r, auto& f) { add(r, "{:.3f}", f.accuracy); }},
     {"benefit", [](auto& r, auto& f) { add(r, "{:.5f}", f.benefit); }},
     {"resolution", [](auto& r, auto& f) { add(r, "{:.3f}", f.resolution); }},
+    {"samples", [](auto& r, auto& f) { add(r, "{}", f.samples); }},
+    {"other_samples", [](auto& r, auto& f) { add(r, "{:d}", f.other_samples); }},
+    {"filter", [](auto& r, auto& f) { add(r, "{}", rt::name_of(f.filter)); }},
     {"bought_items", [](auto& r, auto& f) { add(r, "{}", f.bought_items); }},
     {"bought_us", [](auto& r, auto& f) { add(r, "{:.1f}", f.bought_us); }},
     {"refused_items", [](auto& r, auto& f) { add(r, "{}", f.refused_items); }},

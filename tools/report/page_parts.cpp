@@ -135,6 +135,11 @@ std::string tiles(const WalkSummary& s) {
     if (s.resolution_min < 1)
         out += tile("Resolution", fmt::format("{:.0f}", s.resolution_mean * 100), "%",
                     fmt::format("of the sides on average, at least {:.0f}", s.resolution_min * 100));
+    if (s.samples > 1 || s.other_samples)
+        out += tile("Samples", fmt::format("{}", s.samples), "a pixel",
+                    s.other_samples ? "the driver lacks the requested number" : "edges are smoothed");
+    if (s.filter == rt::TextureFilter::trilinear)
+        out += tile("Filter", std::string(rt::name_of(s.filter)), "", "two mip levels of each texture are blended");
     return out + "</div>\n";
 }
 

@@ -102,6 +102,14 @@ void resolution_figures(std::span<const FrameRecord* const> frames, WalkSummary&
     s.resolution_min = q.min;
 }
 
+/// The same in all frames of a walk.
+void quality_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
+    const FrameRecord& last = frames.empty() ? FrameRecord{} : *frames.back();
+    s.samples = last.samples;
+    s.other_samples = last.other_samples;
+    s.filter = last.filter;
+}
+
 void rest_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
     s.rest_frames = s.rested_frames = s.rest_samples = 0;
     s.rest_ms = 0;
@@ -149,6 +157,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     budget_figures(frames, period_ns, summary);
     unused_time(frames, summary);
     resolution_figures(frames, summary);
+    quality_figures(frames, summary);
     rest_figures(frames, summary);
     summary.rate_hz = 1e9 / static_cast<double>(period_ns);
     summary.seconds = static_cast<double>(summary.slots) * static_cast<double>(period_ns) * 1e-9;

@@ -70,6 +70,8 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.device.kind = (*backend)->kind;
     options.device.viewport = {r.width, r.height, r.shift_x, r.shift_y};
     options.device.rasterisers = r.rasterisers;
+    options.device.samples = r.samples;
+    options.device.filter = r.filter;
     options.device.sky = config::colour_of(r.sky);
     options.device.null.cost_scale = r.cost_scale;
     options.device.null.noise = r.cost_noise;
@@ -90,6 +92,13 @@ void add_resolution_message(Session& s) {
     if (s.request.resolution_pct > 0 && s.request.resolution_pct < min_pct)
         s.notes.push_back(
             fmt::format("resolution: {:g} % is below the least. {:g} % is drawn.", s.request.resolution_pct, min_pct));
+}
+
+/// Says where the driver draws another number of samples.
+void add_samples_message(Session& s) {
+    const std::uint32_t drawn = s.engine->device().samples();
+    if (drawn != s.request.samples)
+        s.notes.push_back(fmt::format("samples: The driver cannot draw {} a pixel. It draws {}.", s.request.samples, drawn));
 }
 
 /// Says what of a picture at rest the driver cannot draw.
@@ -149,6 +158,7 @@ Result<void> open_engine(Session& s, const Progress& progress) {
         }
     }
     add_resolution_message(s);
+    add_samples_message(s);
     add_rest_message(s);
     for (std::size_t i = 0; i < 3; ++i) s.engine->reserve(s.prepared.slot(i));
     if (!r.capture_file.empty() || s.observer.on_missed_frame) s.kept.reserve(*s.engine);

@@ -218,6 +218,9 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.draws = report_.draws;
     record.triangles = report_.triangles;
     record.resolution = report_.resolution;
+    record.samples = report_.samples;
+    record.other_samples = report_.samples != request_.samples;
+    record.filter = engine_.device().filter();
     record.bought_items = report_.bought_items;
     record.refused_items = report_.refused_items;
     record.bought_us = static_cast<float>(report_.bought_us);
