@@ -59,8 +59,8 @@ struct CostModel {
     /// Of an item's raster time: what each sample of a pixel beyond the first adds.
     float sample_share = 0.77F;
     float sample_pass_ns_per_pixel = 2.5F;  ///< of the whole picture: to clear and resolve each sample beyond the first
-    float trilinear_factor = 1.24F;       ///< raster time of textured items, against bilinear
-    float rest_pass_ns_per_pixel = 8;    ///< of one pass over the picture at rest; typical, no calibration measures it
+    float trilinear_factor = 1.24F;         ///< raster time of textured items, against bilinear
+    float rest_pass_ns_per_pixel = 8;       ///< of one pass over the picture at rest; typical, no calibration measures it
     /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.
     BlurLoss blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
     std::string machine;  ///< CPU, renderer, rasteriser count; a table of another machine is refused

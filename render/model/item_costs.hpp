@@ -22,7 +22,7 @@ public:
     ItemCosts(const Model&, CostModel&&) = delete;
 
     /// Cost of the representation `r` of a node with box `node_box`, seen from `eye`. Finite and >= 0.
-    /// Takes 0.1 us; nearby 1 to 4 us; up to 25 us where each triangle is tested (PixelEstimator::part_pixels).
+    /// Takes 0.1 us; nearby 1 to 4 us; up to 50 us where each triangle is tested (PixelEstimator::part_pixels).
     [[nodiscard]] ItemCost of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const {
         float pixels = 0;
         return of(r, node_box, eye, scale, pixels);

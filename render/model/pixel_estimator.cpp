@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t max_samples = 128;  // triangles, and samples, of a surface
 constexpr float near_half_diagonals = 3.0F, close_half_diagonals = 1.5F;
-constexpr std::uint32_t max_each = 1024;  // triangles that are looked at one by one
+constexpr std::uint32_t max_each = 2048;  // triangles that are looked at one by one
 constexpr float surface_share = 2.0F / 3.0F;
 
 /// Nearer than so many half diagonals of the box.

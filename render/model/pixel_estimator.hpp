@@ -25,11 +25,11 @@ public:
     /// Pixels of the representation `r` of a node with box `node_box`. The sum of part_pixels() if available; else the box
     /// estimate, if farther than 3 half diagonals of the box. Nearer: 2/3 surface_pixels() + 1/3 box estimate. The box term damps
     /// noise from samples that enter or leave the view, and costs some accuracy on random poses (figures:
-    /// render/model/README.md). Nearby 1 to 4 us; with part_pixels() up to 25 us.
+    /// render/model/README.md). Nearby 1 to 4 us; with part_pixels() up to 50 us.
     [[nodiscard]] float pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale) const;
     /// Pixels by part, every triangle clipped to the view. Samples are too coarse near the eye, where most visible pixels lie.
     /// True if the eye is nearer than 1.5 half diagonals of the box, and the node is small enough. Else false, and of_part is
-    /// undefined. Small enough: each of its representations has at most 1024 triangles in at most `max_parts` parts. So all
+    /// undefined. Small enough: each of its representations has at most 2048 triangles in at most `max_parts` parts. So all
     /// representations of a node are estimated in the same way. 22 to 35 ns a triangle.
     bool part_pixels(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale,
                      std::span<float> of_part) const;

@@ -11,9 +11,9 @@
 
 namespace surefoot::prepare {
 
-/// Goes through the leaves from near to far over a grid of tiles on the view, widened by the region's angle: what may come into
-/// view in the next frames has value. A leaf's surface is taken to lie at random in its
-/// outline. So it covers the share 1 - exp(-surface / outline) of it, and shows that share of what nearer leaves left open.
+/// Goes through the leaves from near to far over a grid of tiles on the view. The view is widened by the region's angle: what may
+/// come into it in the next frames has value. A leaf's surface is taken to lie at random in its outline. So it covers the share
+/// 1 - exp(-surface / outline) of it, and shows that share of what nearer leaves left open.
 class ShownPixels {
 public:
     /// Reserves for this many candidates. run() allocates nothing below that.

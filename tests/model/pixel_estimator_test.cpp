@@ -219,15 +219,15 @@ TEST(PixelEstimator, OfPartsAreLeftToTheMixFarAwayAndOfMuch) {
     EXPECT_TRUE(part_pixels(few, turned({0, 0, 2.5}, 0), of_part));
     EXPECT_FALSE(part_pixels(few, turned({0, 0, 2.7}, 0), of_part));
     EXPECT_FALSE(part_pixels(few, turned({0, 0, 2.5}, 0), std::span(of_part).first(8))) << "of nine parts";
-    const Model many = in_parts(ball(24, 1.0), 100);
-    ASSERT_GT(many.reps[0].triangles, 1024U);
+    const Model many = in_parts(ball(34, 1.0), 100);
+    ASSERT_GT(many.reps[0].triangles, 2048U);
     EXPECT_FALSE(part_pixels(many, turned({0, 0, 2.5}, 0), of_part));
     // A coarse form of a node whose fine one is not looked at is not either: which is dearer must not hang on how it was counted.
     Model both = few;
     both.reps.push_back(both.reps[0]);
     both.nodes[0].rep_count = 2;
     EXPECT_TRUE(part_pixels(both, turned({0, 0, 2.5}, 0), of_part));
-    both.reps[1].triangles = 1025;
+    both.reps[1].triangles = 2049;
     EXPECT_FALSE(part_pixels(both, turned({0, 0, 2.5}, 0), of_part));
     Model bare = few;
     bare.reps[0].part_count = 0;
