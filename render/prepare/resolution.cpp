@@ -13,6 +13,8 @@ double lost_share(const ValueCurve& curve, double items_us) {
     return std::isfinite(lost) ? std::clamp(lost, 0.0, 1.0) : 0.0;
 }
 
+double picture_loss(double lost_share) { return 0.4 * std::sqrt(std::max(lost_share, 0.0)); }
+
 float ResolutionChooser::trial() {
     if (++frame_ % every != 0) return 0.0F;
     tried_ = (tried_ + 1) % model::resolution_steps.size();

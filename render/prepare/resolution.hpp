@@ -17,10 +17,10 @@ public:
     [[nodiscard]] float resolution() const { return model::resolution_steps[at_]; }
     /// After a frame was prepared at resolution(): the resolution to evaluate beside it; 0: none this time.
     float trial();
-    /// What is lost now, and what would be lost at the resolution of trial(), 0..1 each.
+    /// What the picture loses now, and what it would lose at the resolution of trial(), 0..1 each.
     void judge(double lost_now, double lost_tried);
 
-    /// Share of the value that resolution() loses less than full resolution, by the newest of both; 0 at full resolution.
+    /// What the picture loses less at resolution() than at full resolution, by the newest of both; 0 at full resolution.
     [[nodiscard]] float gain() const { return at_ == 0 ? 0.0F : static_cast<float>(lost_[0] - lost_[at_]); }
 
 private:
@@ -31,5 +31,9 @@ private:
 
 /// Share of the value that is lost where `items_us` may be spent on items, 0..1.
 double lost_share(const ValueCurve& curve, double items_us);
+
+/// What a lost share of the value does to the picture, in the unit of CostModel::blur_loss: six times the mean squared error.
+/// Measured: the error grows with the root of the lost share.
+double picture_loss(double lost_share);
 
 }  // namespace surefoot::prepare

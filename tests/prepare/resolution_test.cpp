@@ -50,6 +50,9 @@ TEST(ValueCurve, IsReadBetweenItsLevels) {
     EXPECT_EQ(lost_share(curve, 1e9), 0);
     EXPECT_EQ(lost_share(curve, 0), 1);
     EXPECT_EQ(lost_share({}, 100), 0) << "no value was computed";
+    EXPECT_EQ(picture_loss(0), 0);
+    EXPECT_NEAR(picture_loss(0.04), 0.08, 1e-9);
+    EXPECT_EQ(picture_loss(-1), 0);
 }
 
 }  // namespace
