@@ -70,20 +70,22 @@ Seen look(const RegionView& view, const Box& box, const dvec3& eye) {
     return seen;
 }
 
-/// What is beside the eye counts as at the near plane.
+/// What is beside the eye counts as at the near plane. What is wholly behind it has none.
 Outline outline_of(const RegionView& view, const Box& box) {
     const model::ViewScale& s = view.wide;
     constexpr float far_out = 1e9F;
     Outline outline{far_out, far_out, -far_out, -far_out};
     const vec3 low(box.min - view.eye), high(box.max - view.eye);
+    float deepest = -far_out;
     for (unsigned i = 0; i < 8; ++i) {
         const vec3 corner((i & 1U) != 0 ? high.x : low.x, (i & 2U) != 0 ? high.y : low.y, (i & 4U) != 0 ? high.z : low.z);
+        deepest = std::max(deepest, glm::dot(corner, s.forward));
         const float depth = std::max(glm::dot(corner, s.forward), near_m);
         const float x = glm::dot(corner, s.across) / (depth * s.tan_half_x),
                     y = glm::dot(corner, s.rise) / (depth * s.tan_half_y);
         outline = {std::min(outline.left, x), std::min(outline.low, y), std::max(outline.right, x), std::max(outline.high, y)};
     }
-    return outline;
+    return deepest > near_m ? outline : Outline{};
 }
 
 /// What moves fast across the view is blurred (Maciel 1994, section 3.3.2): down to a half, since walking towards a thing does

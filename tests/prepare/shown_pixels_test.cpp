@@ -161,6 +161,23 @@ TEST(Value, IsByShownPixelsAndLostSurface) {
     EXPECT_NEAR(frame.full_value, 300, 1e-3);
 }
 
+TEST(ShownPixels, BehindTheEyeThereIsNoOutline) {
+    const model::Model m = test::town(3);
+    const model::CostModel prices = model::default_costs();
+    const Evaluator evaluator(m, prices);
+    const model::Node& node = m.nodes.back();
+    std::vector<Choice> choices(node.rep_count + 1);
+    Candidate candidate;
+    candidate.node = static_cast<Index>(m.nodes.size() - 1);
+    for (const double side : {-1.0, 1.0}) {
+        RegionView from;
+        from.eye = node.box.centre() + dvec3(0, 0, side * (node.box.half().z + 5));
+        Weight weight;
+        evaluator.evaluate(from, nearest_distance(from, node.box), candidate, choices.data(), weight);
+        EXPECT_EQ(weight.outline.right > weight.outline.left, side > 0) << "the view looks along -z";
+    }
+}
+
 TEST(Value, OfFullDetailIsNoMoreThanTheView) {
     const model::Model m = test::town(7);
     const model::CostModel prices = model::default_costs();
