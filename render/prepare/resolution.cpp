@@ -13,7 +13,18 @@ double lost_share(const ValueCurve& curve, double items_us) {
     return std::isfinite(lost) ? std::clamp(lost, 0.0, 1.0) : 0.0;
 }
 
-double picture_loss(double lost_share) { return 0.4 * std::sqrt(std::max(lost_share, 0.0)); }
+constexpr double loss_of_all = 0.4;  // of the picture, where all value is lost
+
+double picture_loss(double lost_share) { return loss_of_all * std::sqrt(std::max(lost_share, 0.0)); }
+
+double share_that_looks_lost(double picture_loss) {
+    const double root = std::clamp(picture_loss / loss_of_all, 0.0, 1.0);
+    return root * root;
+}
+
+float ResolutionChooser::gain() const {
+    return at_ == 0 ? 0.0F : static_cast<float>(share_that_looks_lost(lost_[0]) - share_that_looks_lost(lost_[at_]));
+}
 
 float ResolutionChooser::trial() {
     if (++frame_ % every != 0) return 0.0F;

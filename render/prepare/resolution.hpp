@@ -20,8 +20,9 @@ public:
     /// What the picture loses now, and what it would lose at the resolution of trial(), 0..1 each.
     void judge(double lost_now, double lost_tried);
 
-    /// What the picture loses less at resolution() than at full resolution, by the newest of both; 0 at full resolution.
-    [[nodiscard]] float gain() const { return at_ == 0 ? 0.0F : static_cast<float>(lost_[0] - lost_[at_]); }
+    /// The share of the value that looks like what resolution() loses less than full resolution, by the newest of both; 0 at full
+    /// resolution.
+    [[nodiscard]] float gain() const;
 
 private:
     static constexpr std::uint32_t every = 3;
@@ -35,5 +36,7 @@ double lost_share(const ValueCurve& curve, double items_us);
 /// What a lost share of the value does to the picture, in the unit of CostModel::blur_loss: six times the mean squared error.
 /// Measured: the error grows with the root of the lost share.
 double picture_loss(double lost_share);
+/// The inverse: the share of the value that looks as lost, 0..1.
+double share_that_looks_lost(double picture_loss);
 
 }  // namespace surefoot::prepare

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt/base/check.hpp"
+
 namespace surefoot::prepare {
 
 namespace {
@@ -59,6 +61,7 @@ std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::sp
                                         std::span<const Choice> choices, const model::ViewScale& wide) {
     const float focal_px = wide.pixels_per_radian;
     const float tile_px = 4.0F * wide.tan_half_x * wide.tan_half_y * focal_px * focal_px / static_cast<float>(across * down);
+    CHECK(candidates.size() <= shown_.size(), "Shown pixels are of no more candidates than were reserved");
     order_.clear();
     std::fill_n(shown_.begin(), candidates.size(), 0.0F);
     std::fill(open_.begin(), open_.end(), 1.0F);

@@ -53,6 +53,9 @@ TEST(ValueCurve, IsReadBetweenItsLevels) {
     EXPECT_EQ(picture_loss(0), 0);
     EXPECT_NEAR(picture_loss(0.04), 0.08, 1e-9);
     EXPECT_EQ(picture_loss(-1), 0);
+    for (const double share : {0.0, 0.01, 0.3, 1.0}) EXPECT_NEAR(share_that_looks_lost(picture_loss(share)), share, 1e-12);
+    EXPECT_EQ(share_that_looks_lost(9), 1);
+    EXPECT_EQ(share_that_looks_lost(-1), 0);
 }
 
 }  // namespace
