@@ -18,6 +18,7 @@
 #include "render/image/image.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "rt/base/statistics.hpp"
+#include "tests/bench/bench_picture.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tools/report/report.hpp"
 #include "tools/walk/tour_controller.hpp"
@@ -25,7 +26,7 @@
 namespace {
 
 using namespace surefoot;
-using bench::fail;
+using bench::fail, bench::Pixels, bench::psnr_db;
 
 double cpu_us() {
     timespec t{};
@@ -55,25 +56,11 @@ EngineOptions options_of(std::string_view name) {
     return o;
 }
 
-/// The mean of 8 x 8 pictures of full detail, moved over a pixel.
-std::vector<std::uint8_t> smooth_picture(Engine& engine, const Pose& pose) {
+Pixels smooth_picture(Engine& engine, const Pose& pose) {
     gl::Device& device = engine.device();
     device.draws.plays();
     device.bind();
-    const std::vector<gl::DrawItem> items = engine.full_detail(pose);
-    std::vector<double> sum;
-    for (int i = 0; i < 64; ++i) {
-        device.begin_rest(pose, {(i % 8 + 0.5) / 8 - 0.5, (i / 8 + 0.5) / 8 - 0.5});
-        for (const gl::Parts parts : {gl::Parts::opaque, gl::Parts::blended}) device.draw_rest(items, parts);
-        device.show_rest(1);
-        device.finish_rest_frame();
-        const auto one = device.read_pixels();
-        if (!one) break;
-        sum.resize(one->rgba.size());
-        for (std::size_t p = 0; p < sum.size(); ++p) sum[p] += double(one->rgba[p]);
-    }
-    std::vector<std::uint8_t> mean(sum.size());
-    for (std::size_t p = 0; p < sum.size(); ++p) mean[p] = static_cast<std::uint8_t>(std::lround(sum[p] / 64));
+    Pixels mean = bench::grid_of_64(device, pose, engine.full_detail(pose));
     device.release();
     return mean;
 }
@@ -126,7 +113,7 @@ int main(int argc, char** argv) {
     if (variants.empty()) return 2;
     for (std::size_t p = 0; p < poses; ++p) {
         const Pose pose = walk::pose_at(path, path.duration_s() * (static_cast<double>(p) + 0.5) / static_cast<double>(poses));
-        const std::vector<std::uint8_t> smooth = smooth_picture(*smoother, pose);
+        const Pixels smooth = smooth_picture(*smoother, pose);
         std::vector<std::uint8_t> first;
         for (std::size_t round = 0; round < rounds; ++round) {
             for (std::size_t i = 0; i < variants.size(); ++i) {
@@ -147,8 +134,8 @@ int main(int argc, char** argv) {
                         (void)image::write_png(fmt::format("{}/{}-{}.png", folder, p, v.name), image.width, image.height,
                                                image.rgba);
                     if (i == 0) first = image.rgba;
-                    v.to_first_db.push_back(report::psnr_db(measure::snr(image.rgba, first).mse));
-                    v.to_smooth_db.push_back(report::psnr_db(measure::snr(image.rgba, smooth).mse));
+                    v.to_first_db.push_back(psnr_db(image.rgba, first));
+                    v.to_smooth_db.push_back(psnr_db(image.rgba, smooth));
                 }
                 v.engine->device().draws.plays();
                 v.engine->device().release();

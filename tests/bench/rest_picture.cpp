@@ -16,6 +16,7 @@
 #include "render/image/image.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "rt/threads/memory.hpp"
+#include "tests/bench/bench_picture.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tools/report/report.hpp"
 
@@ -31,34 +32,7 @@ std::int64_t now_ns(void* /*context*/) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-using Pixels = std::vector<std::uint8_t>;
-
-Pixels shown(gl::Device& device) {
-    device.draws.plays();
-    auto image = device.read_pixels();
-    return image ? image->rgba : Pixels{};
-}
-
-double psnr_db(const Pixels& a, const Pixels& b) { return report::psnr_db(measure::snr(a, b).mse); }
-
-/// The mean of 8 x 8 pictures of full detail, moved over a pixel.
-Pixels grid_of_64(Engine& engine, const Pose& pose, const std::vector<gl::DrawItem>& items) {
-    gl::Device& device = engine.device();
-    device.draws.plays();
-    std::vector<double> sum;
-    for (int i = 0; i < 64; ++i) {
-        device.begin_rest(pose, {(i % 8 + 0.5) / 8 - 0.5, (i / 8 + 0.5) / 8 - 0.5});
-        for (const gl::Parts parts : {gl::Parts::opaque, gl::Parts::blended}) device.draw_rest(items, parts);
-        device.show_rest(1);
-        device.finish_rest_frame();
-        const Pixels one = shown(device);
-        sum.resize(one.size());
-        for (std::size_t p = 0; p < one.size(); ++p) sum[p] += double(one[p]);
-    }
-    Pixels mean(sum.size());
-    for (std::size_t p = 0; p < sum.size(); ++p) mean[p] = static_cast<std::uint8_t>(std::lround(sum[p] / 64));
-    return mean;
-}
+using bench::Pixels, bench::psnr_db, bench::shown;
 
 /// What was seen while the eye stood still.
 struct Stand {
@@ -135,7 +109,7 @@ int main(int argc, char** argv) {
     const auto begun = now_ns(nullptr);
     engine.draw_unbudgeted(pose, items);
     const double full_cost_ms = 1e-6 * static_cast<double>(now_ns(nullptr) - begun);
-    const Pixels full = shown(engine.device()), grid = grid_of_64(engine, pose, items);
+    const Pixels full = shown(engine.device()), grid = bench::grid_of_64(engine.device(), pose, items);
     const auto db = [](const Pixels& a, const Pixels& b) { return a.empty() ? -1.0 : psnr_db(a, b); };
     fmt::print(
         "{{\"model\": \"{}\", \"frames\": {}, \"full_detail_frame_ms\": {:.1f}, \"shown_after_ms\": {:.0f}, \"smooth_after_ms\": "
