@@ -47,6 +47,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->use(**selector);
     impl->state.reserve(impl->model, candidates);
     impl->state.hysteresis = options.hysteresis;
+    impl->state.reserve_share = options.reserve_share;
     select::reserve(impl->cut, candidates);
     impl->plan.reserve(candidates);
     impl->unprepared.reserve(impl->model);

@@ -30,6 +30,7 @@ struct EngineOptions {
     std::string selector{select::usual_selector};
     double slice_us = 1000;  ///< predicted length of a slice
     float hysteresis = 1.25F;
+    float reserve_share = 0.03F;  ///< SelectState::reserve_share
     /// Share of the picture's width and height that is drawn, then enlarged; 0: chosen frame by frame.
     float resolution = 1;
     /// How long the pose must stay before the picture at rest is drawn, ms; 0: never. SubmitLimits::frame_ns is its clock.
@@ -68,7 +69,7 @@ struct SubmitReport {
     model::ItemCost predicted;          ///< the sums behind predicted_us, slices included
     double full_us = 0, coarse_us = 0;  ///< of predicted_us, before PrepareHints::form_ratio: items in full detail, and others
     double other_us = 0;                ///< of predicted_us: all but the items
-    double forecast_us = 0;             ///< of finished_us, by the last check that let a slice be drawn in full; 0: none did
+    double forecast_us = 0;  ///< of finished_us, by the last check that let a slice be drawn in full; 0: none did, or untimed
     std::uint32_t slices = 0, downgraded_slices = 0, items = 0, draws = 0;
     std::uint32_t culled = 0;  ///< items of the cut outside this pose's view
     std::uint64_t triangles = 0;

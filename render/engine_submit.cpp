@@ -201,7 +201,8 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.submitted_us = e.now_us(limits) - start_us;
     e.device->finish_frame();
     report.finished_us = e.now_us(limits) - start_us;
-    report.forecast_us = e.forecast_us > 0 ? e.forecast_us - limits.elapsed_us : 0;
+    const bool timed = report.finished_us > 0;  // else no clock runs within the frame, and no forecast was made of it
+    report.forecast_us = timed && e.forecast_us > 0 ? e.forecast_us - limits.elapsed_us : 0;
     const gl::FrameStats stats = e.device->stats();
     report.items = stats.items;
     report.draws = stats.draws;

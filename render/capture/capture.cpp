@@ -9,8 +9,7 @@
 
 namespace surefoot::capture {
 
-Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, Memory memory,
-             const select::Cut& cut) {
+Capture take(const select::SelectInput& input, std::string_view selector, Memory memory, const select::Cut& cut) {
     Capture c;
     c.prepared = *input.prepared;
     c.selector = selector;
@@ -22,7 +21,8 @@ Capture take(const select::SelectInput& input, std::string_view selector, float 
     c.headroom = static_cast<float>(select::headroom_of(input));
     c.slice_end_us = input.costs->slice_us;
     c.enlarge_ns_per_pixel = input.costs->enlarge_ns_per_pixel;
-    c.hysteresis = hysteresis;
+    c.hysteresis = memory.hysteresis;
+    c.reserve_share = memory.reserve_share;
     c.node_count = static_cast<std::uint32_t>(input.model->nodes.size());
     c.memory = std::move(memory.shown);
     const auto bought = memory.bought.names();
@@ -61,6 +61,7 @@ Result<select::Cut> replay(const Capture& capture, std::string_view selector_nam
     select::SelectState state;
     state.reserve(nodes_only, candidates);
     state.hysteresis = capture.hysteresis;
+    state.reserve_share = capture.reserve_share;
     for (const select::Shown& m : capture.memory) state.shown[m.node] = m.form;
     state.touched = capture.memory;
     for (const select::ItemName& bought : capture.bought_before) state.bought.add(bought);

@@ -14,10 +14,11 @@
 
 namespace surefoot::capture {
 
-/// What a selector remembered: SelectState::before and bought_before, after the selection.
+/// What a selector remembered, SelectState::before and bought_before after the selection, and how it prefers that.
 struct Memory {
     std::vector<select::Shown> shown;
     select::RememberedItems bought{};
+    float hysteresis = 1, reserve_share = 0;  ///< of the state
 };
 
 /// One captured frame: prepared arrays, cut, and all that the selection depended on.
@@ -27,9 +28,9 @@ struct Capture {
     std::string selector;
     double budget_us = 0, correction = 1, target_error_rad = 0, slice_us = 1000;
     model::FrameCombine combine;
-    float enlarge_ns_per_pixel = 0;        ///< of the cost model
-    float headroom = 1, slice_end_us = 0;  ///< of the cost model; selection uses no more of it
-    float hysteresis = 1;
+    float enlarge_ns_per_pixel = 0;               ///< of the cost model
+    float headroom = 1, slice_end_us = 0;         ///< of the cost model; selection uses no more of it
+    float hysteresis = 1, reserve_share = 0.03F;  ///< the share in files that do not hold it
     std::uint32_t node_count = 0;                 ///< of the model
     std::vector<select::Shown> memory;            ///< state of the selector before the selection
     std::vector<select::ItemName> bought_before;  ///< the same, of what was bought beside forms
@@ -40,8 +41,7 @@ struct Capture {
 };
 
 /// Makes a capture. Allocates, so not for the frame thread.
-Capture take(const select::SelectInput& input, std::string_view selector, float hysteresis, Memory memory,
-             const select::Cut& cut);
+Capture take(const select::SelectInput& input, std::string_view selector, Memory memory, const select::Cut& cut);
 
 /// Little-endian; magic, version, sizes and a checksum, then one zstd frame. Replaces the file only when complete.
 Result<void> write_capture(const std::string& file, const Capture& capture);

@@ -22,7 +22,7 @@ using model::Index;
 using model::none;
 
 constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
-constexpr std::uint32_t version = 5, version_without_items = 4, version_without_values = 3;
+constexpr std::uint32_t version = 6, version_without_reserve = 5, version_without_items = 4, version_without_values = 3;
 constexpr std::uint64_t max_bytes = 1ULL << 31U;  // unpacked
 constexpr std::uint32_t max_nodes = 1U << 26U;    // replay makes room for them
 constexpr std::size_t header_bytes = 40;
@@ -43,6 +43,7 @@ void each_setting(Io& io, C& c) {
        c.combine.raster_weight, c.combine.max_weight, c.headroom, c.slice_end_us, c.hysteresis, c.node_count, c.hash,
        c.predicted_us);
     if (io.has_values) io(c.enlarge_ns_per_pixel);
+    if (io.has_reserve) io(c.reserve_share);
 }
 template <class Io, class C>
 void each(Io& io, C& c) requires std::is_same_v<std::remove_const_t<C>, prepare::Candidate> {
@@ -88,7 +89,7 @@ public:
         const auto bytes = std::as_bytes(std::span(s));
         out.insert(out.end(), bytes.begin(), bytes.end());
     }
-    static constexpr bool has_values = true, has_items = true;
+    static constexpr bool has_values = true, has_items = true, has_reserve = true;
     std::vector<std::byte> out;
 
 private:
@@ -103,7 +104,10 @@ private:
 class Reader {
 public:
     Reader(std::span<const std::byte> bytes, std::uint32_t file_version)
-        : in(bytes), has_values(file_version != version_without_values), has_items(file_version == version) {}
+        : in(bytes),
+          has_values(file_version > version_without_values),
+          has_items(file_version > version_without_items),
+          has_reserve(file_version > version_without_reserve) {}
     template <class... T>
     void operator()(T&... values) {
         (get(values), ...);
@@ -126,6 +130,7 @@ public:
     ByteReader in;
     bool has_values;  ///< whether choices have values and rates
     bool has_items;   ///< whether it holds what was offered beside forms
+    bool has_reserve;
 
 private:
     void get(bool& value) { value = in.read<std::uint8_t>() != 0; }
@@ -172,6 +177,7 @@ Result<void> check(const Capture& c, const std::string& place) {
     const auto bad = [&](std::string_view what) { return Error{place, std::string(what), remedy, ErrorKind::damaged}; };
     if (c.node_count == 0 || c.node_count > max_nodes) return bad("The number of nodes is out of range");
     if (!(c.hysteresis >= 1.0F && c.hysteresis <= 16.0F)) return bad("The hysteresis is out of range");
+    if (!(c.reserve_share >= 0.0F && c.reserve_share <= 1.0F)) return bad("The reserve is out of range");
     const auto& f = c.prepared;
     std::size_t next_child = 1;
     for (std::size_t i = 0; i < f.candidates.size(); ++i) {
@@ -221,7 +227,7 @@ Result<Capture> parse_capture(std::span<const std::byte> bytes, const std::strin
         return Error{place, "The file is no captured frame", "Name a file that `surefoot walk --capture` wrote",
                      ErrorKind::damaged};
     const auto file_version = header.read<std::uint32_t>();
-    if (file_version != version && file_version != version_without_items && file_version != version_without_values)
+    if (file_version < version_without_values || file_version > version)
         return Error{place, "The file is of another version", remedy, ErrorKind::unsupported};
     const auto unpacked = header.read<std::uint64_t>(), packed = header.read<std::uint64_t>(), sum = header.read<std::uint64_t>();
     const auto header_sum = header.read<std::uint64_t>();

@@ -76,6 +76,9 @@ struct SelectState {
     RememberedItems bought, bought_before;  ///< by the last selection, and by the one before it
     /// Factor 1..2 on the benefit of nodes that were refined in the last frame; 1: no hysteresis.
     float hysteresis = 1.25F;
+    /// With hysteresis: share of the budget that steps of the last frame alone may use, 0..1. The rest of the frame's budget
+    /// serves all steps.
+    float reserve_share = 0.03F;
 
     struct Scratch;  ///< private to the searches
     SelectState();

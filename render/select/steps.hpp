@@ -43,8 +43,7 @@ private:
 /// With hysteresis the budget has two thresholds, as a Schmitt trigger has. Steps of the last frame may use all of it, new steps
 /// only this share. Smaller changes of cost switch nothing.
 inline double fresh_share(const SelectState& state) {
-    constexpr double fresh_margin = 0.03;
-    return state.hysteresis > 1.0F ? 1.0 - fresh_margin : 1.0;
+    return state.hysteresis > 1.0F ? 1.0 - static_cast<double>(state.reserve_share) : 1.0;
 }
 
 /// If full detail fits, no search is needed.

@@ -22,6 +22,8 @@ struct TempFile {
     std::string path = folder / "capture";
 };
 
+Memory memory_of(const Scene& s) { return {s.state.before, s.state.bought_before, s.state.hysteresis, s.state.reserve_share}; }
+
 Capture captured(std::string_view selector, std::uint32_t depth = 4) {
     Scene s(test::town(depth));
     prepare::Region region;
@@ -33,7 +35,7 @@ Capture captured(std::string_view selector, std::uint32_t depth = 4) {
     }
     s.look(region);
     s.run(selector, 5500);
-    return take(s.input(5500), selector, s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
+    return take(s.input(5500), selector, memory_of(s), s.cut);
 }
 
 TEST(Capture, ReplaysToTheSameCutForEverySelector) {
@@ -62,7 +64,7 @@ TEST(Capture, OfALowerResolutionKnowsWhatEnlargingCosts) {
     s.frame.resolution = 0.5F;
     s.look(region);
     s.run("two-stage", 6500);
-    const Capture before = take(s.input(6500), "two-stage", s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
+    const Capture before = take(s.input(6500), "two-stage", memory_of(s), s.cut);
     ASSERT_TRUE(write_capture(file.path, before));
     auto after = read_capture(file.path);
     ASSERT_TRUE(after) << after.error().text();
@@ -88,7 +90,7 @@ Capture captured_with_items() {
     input.items = &items;
     for (int i = 0; i < 2; ++i) select::find_selector("threshold")->run(input, s.state, s.cut);
     EXPECT_TRUE(s.cut.bought.has(0) && s.cut.bought.has(2));
-    return take(input, "threshold", s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
+    return take(input, "threshold", memory_of(s), s.cut);
 }
 
 TEST(Capture, HoldsWhatWasOfferedAndBoughtBesideForms) {
@@ -133,6 +135,24 @@ TEST(Capture, MemoryIsPartOfTheDecision) {
     const std::uint64_t with = replay(c)->hash;
     c.memory.clear();
     EXPECT_NE(replay(c)->hash, with);
+}
+
+TEST(Capture, TheReserveIsPartOfTheDecision) {
+    const TempFile file;
+    Scene s(test::town(4));
+    prepare::Region region;
+    region.centre.position = dvec3(0, 3, 30);
+    s.look(region);
+    s.state.reserve_share = 0.4F;
+    s.run("threshold", 5500);
+    ASSERT_TRUE(write_capture(file.path, take(s.input(5500), "threshold", memory_of(s), s.cut)));
+    auto after = read_capture(file.path);
+    ASSERT_TRUE(after) << after.error().text();
+    EXPECT_EQ(after->reserve_share, 0.4F);
+    EXPECT_TRUE(verify(*after));
+    EXPECT_LE(replay(*after)->predicted_us, 0.6F * 5500.0F) << "nothing was on screen: all forms are new";
+    after->reserve_share = 0;
+    EXPECT_GT(replay(*after)->predicted_us, 0.6F * 5500.0F);
 }
 
 TEST(Capture, AnotherSelectorCanBeTriedOnTheSameFrame) {
@@ -191,7 +211,8 @@ TEST(Capture, InconsistentIndicesAreRefusedThoughTheChecksumIsRight) {
     refused([](Capture& c) { c.items[0].candidate = 0xffffffff; });
     refused([](Capture& c) { c.node_count = 0xffffffff; });
     refused([](Capture& c) { c.hysteresis = std::numeric_limits<float>::infinity(); });
-    EXPECT_EQ(tried, 11);
+    refused([](Capture& c) { c.reserve_share = 1.5F; });
+    EXPECT_EQ(tried, 12);
 }
 
 TEST(Capture, MissingFileIsNamed) {

@@ -56,6 +56,19 @@ TEST(VirtualWalk, RecordsAndLedgerSayWhatWasBoughtBesideForms) {
     EXPECT_NE(ledger->find(",bought_items,bought_us,refused_items,"), std::string::npos);
 }
 
+TEST(VirtualWalk, PlansUpToTheLimitOfTheInFrameCheck) {
+    for (const char* backend : {"null", "egl"}) {
+        walk::WalkRequest request = test::Forest::get().virtual_request(80);
+        request.backend = backend;
+        const auto outcome = walk::run_walk(request, {}, {});
+        if (!outcome) GTEST_SKIP() << outcome.error().text();
+        for (const rt::FrameRecord& r : outcome->records) {
+            EXPECT_NEAR(double{r.budget_us}, 0.88 * 1e6 / request.rate_hz, 1) << backend << ", frame " << r.frame;
+            EXPECT_EQ(r.downgraded_slices, 0U) << "costs are as predicted";
+        }
+    }
+}
+
 TEST(VirtualWalk, AResolutionBelowTheLeastIsReportedAndDrawnAsTheLeast) {
     walk::WalkRequest request = test::Forest::get().virtual_request(5);
     request.resolution_pct = 10;

@@ -226,6 +226,7 @@ void add_walk(CLI::App& app, Context& context) {
                   {"--samples", "samples"},
                   {"--filter", "filter"},
                   {"--rest-after", "rest_after_ms"},
+                  {"--reserve", "reserve"},
                   {"--cost-scale", "cost_scale"}},
                  {{"--slice", "slice_us"}, {"--hysteresis", "hysteresis"}});
     c->add_option("--cost-noise", r.cost_noise, "With --clock virtual: relative noise of the costs")->check(number_within(0, 10));

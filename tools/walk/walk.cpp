@@ -19,14 +19,12 @@ namespace surefoot::walk {
 
 namespace {
 
-constexpr double limit_share = 0.88;  // of the period: when the in-frame check wants the frame done
-
 WalkStagesOptions stages_options(Session& s) {
     const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
     WalkStagesOptions o{s.request};
     o.period_ns = s.grid.period_ns;
-    o.budget_us = s.request.budget_ms > 0 ? s.request.budget_ms * 1e3 : budget_share * period_us;
-    o.limit_us = limit_share * period_us;
+    o.budget_us = s.request.budget_ms > 0 ? s.request.budget_ms * 1e3 : frame_share * period_us;
+    o.limit_us = frame_share * period_us;
     o.target_error_rad = s.request.accuracy > 0 ? 1.0 / s.request.accuracy : 0;
     if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
     o.capture_missed = s.request.capture_file.empty() && s.observer.on_missed_frame;

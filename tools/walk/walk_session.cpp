@@ -80,6 +80,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.selector = r.selector;
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
+    options.reserve_share = static_cast<float>(r.reserve_pct * 0.01);
     options.resolution = static_cast<float>(r.resolution_pct * 0.01);
     options.in_frame_check = r.in_frame_check;
     options.rest_after_ms = r.rest_after_ms;
@@ -248,7 +249,7 @@ void warm_up(Session& s) {
         const Pose pose = pose_at(s.path.path, i * s.path.path.duration_s() / 12.0);
         prepare::PreparedFrame& set = s.prepared.slot(0);
         prepare_at_worker_priority(s, {pose, 0.1, 0.05}, set);
-        engine.select(set, budget_share * period_us, {}, 0);
+        engine.select(set, frame_share * period_us, {}, 0);
         engine.submit(pose, limits);
         engine.select_last();
         engine.submit(pose, limits);

@@ -24,8 +24,9 @@
 
 namespace surefoot::walk {
 
-/// Share of the period that a frame may cost if no budget is set.
-constexpr double budget_share = 0.80;
+/// Share of the period by which a frame is to be done: the limit of the in-frame check, and the budget if none is set. The rest
+/// is for what the machine does late.
+constexpr double frame_share = 0.88;
 
 /// The costs with Maciel's overhead factor on all that they predict (Maciel 1994, sections 3.3.1 and 4). A user sets it by hand,
 /// for overheads that the table cannot know.

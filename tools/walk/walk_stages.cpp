@@ -27,8 +27,9 @@ capture::Capture capture_of(const KeptFrame& kept, const WalkRequest& request, c
     const select::SelectInput input{&engine.model(),  &kept.prepared,           &engine.costs(),
                                     kept.budget_us,   kept.correction.factor,   kept.target_error_rad,
                                     request.slice_us, kept.correction.headroom, &kept.offered};
-    capture::Capture taken = capture::take(input, request.selector, static_cast<float>(request.hysteresis),
-                                           {kept.memory, kept.bought_before}, kept.cut);
+    capture::Capture taken =
+        capture::take(input, request.selector,
+                      {kept.memory, kept.bought_before, engine.options().hysteresis, engine.options().reserve_share}, kept.cut);
     taken.frame = kept.frame;
     return taken;
 }
@@ -60,6 +61,13 @@ Correction WalkStages::correction_at(float resolution) const {
     return {controller.factor(), controller.headroom(static_cast<double>(of_table))};
 }
 
+double WalkStages::margin_us() const { return std::min(overshoot_.margin_us(), max_margin_share * options_.limit_us); }
+
+/// A cut that the in-frame check would not let through is not planned.
+double WalkStages::planned_us() const {
+    return request_.in_frame_check ? std::min(options_.budget_us, options_.limit_us - margin_us()) : options_.budget_us;
+}
+
 void WalkStages::sample(rt::FrameRecord& record) {
     inject(FramePhase::sample, record);
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
@@ -88,7 +96,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.hints = {};
     for (std::size_t step = 0; step < now_.hints.planned_us.size(); ++step) {
         const Correction correction = correction_at(model::resolution_steps[step]);
-        now_.hints.planned_us[step] = options_.budget_us / (correction.factor * correction.headroom);
+        now_.hints.planned_us[step] = planned_us() / (correction.factor * correction.headroom);
     }
     if (request_.correct_costs) now_.hints.form_ratio = forms_.ratio();
     now_.valid = true;
@@ -131,14 +139,14 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.cost_scale = static_cast<float>(request_.cost_scale);
     const Correction correction = correction_at(set.resolution);
     record.correction = static_cast<float>(correction.factor);
-    record.budget_us = static_cast<float>(options_.budget_us);
+    record.budget_us = static_cast<float>(planned_us());
     coarse_ = age > rt::oldest_prepared || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_last();
         return;
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
-    const double budget_us = std::max(0.0, options_.budget_us - spent_us);
+    const double budget_us = std::max(0.0, planned_us() - spent_us);
     const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
     record.floor_us = cut.floor_us;
     record.floor_binds = cut.floor_binds;
@@ -180,7 +188,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
     limits.limit_us = options_.limit_us;
-    limits.margin_us = std::min(overshoot_.margin_us(), max_margin_share * options_.limit_us);
+    limits.margin_us = margin_us();
     limits.frame_ns = record.due_ns;
     if (!virtual_clock_) {
         limits.now_ns = clock_now;

@@ -74,6 +74,9 @@ private:
     void latch(rt::FrameRecord& record);
     /// What the frames at this resolution have taught, as far as predictions are corrected.
     [[nodiscard]] Correction correction_at(float resolution) const;
+    /// How much later than forecast recent frames ended, us, within bounds.
+    [[nodiscard]] double margin_us() const;
+    [[nodiscard]] double planned_us() const;  ///< that a cut may take, from the due time
     [[nodiscard]] FrameTime frame_time(const rt::FrameRecord& record) const;
     void keep(const rt::FrameRecord& record);
     [[nodiscard]] double cost_factor(const rt::FrameRecord& record, double actual_us) const;
