@@ -18,8 +18,9 @@ expect() {
 }
 # eventually SECONDS COMMAND...: whether COMMAND succeeds at some moment within SECONDS: for what another process does and announces to nobody.
 eventually() { local end=$((SECONDS + $1)); shift; until "$@"; do (( SECONDS < end )) || return 1; sleep 0.05; done; }
-# hears_interrupt PID: Ctrl-C reaches a handler of the process, and no longer ends it at once.
-hears_interrupt() { (( 0x$(awk '/^SigCgt/ { print $2 }' "/proc/$1/status") & 2 )); }
+# hears_interrupt PID: Ctrl-C reaches a handler of the program, and no longer ends it at once. Until it is started, PID is this shell's fork:
+# a signal would run the trap above there, which removes the folder.
+hears_interrupt() { [ "$(readlink "/proc/$1/exe")" != "$(readlink "/proc/$$/exe")" ] && (( 0x$(awk '/^SigCgt/ { print $2 }' "/proc/$1/status") & 2 )); }
 valid_json() { if command -v python3 >/dev/null; then python3 -c 'import json,sys; json.load(open(sys.argv[1]))' "$1"; else
   echo "python3 is absent: $1 is only looked at for its braces"; [ "$(head -c 1 "$1")" = "{" ] && [ "$(tail -c 2 "$1")" = "}" ]; fi; }
 # verdict NAME: the last line of a script; its exit code.
