@@ -78,7 +78,7 @@ struct SubmitReport {
     float resolution = 1;                               ///< that was drawn: a step of model::resolution_steps
     std::uint32_t samples = 1;                          ///< of a pixel, that were drawn
     float worst_error_rad = 0;                          ///< of the drawn items, stand-ins included
-    double benefit_mean = 0;
+    double value = 0;  ///< share of PreparedFrame::full_value that is drawn; 0 where no prepared frame is
     /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was
     /// drawn beside it; all else describes the shown picture.
     bool at_rest = false;

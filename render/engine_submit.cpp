@@ -21,13 +21,14 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
     const std::size_t first = drawn.size();
     model::ItemCost cost;
     for (const select::CutItem& item : items) {
+        const prepare::Choice& choice = prepared->choices[item.choice];
+        report.value += static_cast<double>(choice.value);
         if (!model::visible(frustum, model.nodes[item.node].box)) {
             ++report.culled;
             if (culled.size() < culled.capacity()) culled.push_back({item.node, item.rep});
             continue;
         }
         if (!push_within(drawn, {item.node, item.rep})) break;
-        const prepare::Choice& choice = prepared->choices[item.choice];
         const prepare::Candidate& candidate = prepared->candidates[item.candidate];
         const bool finer = candidate.choice_count > 1 || candidate.child_count > 0;
         floor.add(drawn.back(), candidate.pixels, finer && item.choice == candidate.first_choice);
@@ -39,7 +40,6 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
         (full ? report.full_us : report.coarse_us) +=
             item_us / static_cast<double>(full ? prepared->full_factor : prepared->coarse_factor);
         report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
-        report.benefit_mean += 1.0 - choice.benefit;
         report.triangles += model.reps[item.rep].triangles;
     }
     device->draw(std::span<const gl::DrawItem>(drawn).subspan(first));
@@ -95,6 +95,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         if (!full) ++report.downgraded_slices;
     }
     report.predicted = so_far;
+    report.value = prepared->full_value > 0.0F ? report.value / static_cast<double>(prepared->full_value) : 1.0;
     report.predicted_us =
         static_cast<double>(combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us()) + cut.bought.cost_us;
     report.other_us = report.predicted_us - report.full_us * static_cast<double>(prepared->full_factor) -
@@ -208,7 +209,6 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.draws = stats.draws;
     report.resolution = stats.resolution;
     report.samples = stats.samples;
-    if (!e.drawn.empty()) report.benefit_mean /= static_cast<double>(e.drawn.size());
     report.floor_share = e.floor.floor_share();
     e.report_items(report);
     e.last_report = report;

@@ -171,7 +171,7 @@ void RestPicture::describe(SubmitReport& report) const {
     report.triangles = triangles_;
     report.resolution = 1;
     report.worst_error_rad = 0;
-    report.benefit_mean = 1;
+    report.value = 1;
     report.floor_share = 0;
 }
 

@@ -56,6 +56,22 @@ TEST(EngineItems, AreChargedPredictedAndReported) {
     EXPECT_FALSE(engine->bought(ItemKind::upload, 3));
 }
 
+TEST(EngineReport, TellsTheShareOfTheValueThatIsDrawn) {
+    const auto engine = test::forest_engine();
+    ASSERT_TRUE(engine);
+    const prepare::PreparedFrame set = prepared_forest(*engine);
+    EXPECT_NEAR(draw(*engine, set, ample_us).report.value, 1, 1e-6) << "full detail";
+    const double floor = draw(*engine, set, 0).report.value;
+    EXPECT_LT(floor, 0.9);
+    EXPECT_GE(floor, 0);
+    engine->select(set, ample_us, {}, 0);
+    const double stand_ins = engine->submit(test::forest_pose(*engine), {}).value;
+    EXPECT_LE(stand_ins, floor) << "without time, all slices are stand-ins";
+    EXPECT_GT(stand_ins, 0);
+    engine->select_last();
+    EXPECT_EQ(engine->submit(test::forest_pose(*engine), {.elapsed_us = 0, .limit_us = ample_us}).value, 0) << "not known";
+}
+
 TEST(EngineItems, LeaveFormsTheRestOfTheBudget) {
     const auto engine = test::forest_engine();
     ASSERT_TRUE(engine);

@@ -42,7 +42,7 @@ TEST_F(ReportFiles, LedgerHasOneRowAFrameAndTheColumnsOfTheDesign) {
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size()) << "a column twice";
     for (const auto* wanted :
          {"wake_us", "select_us", "submit_us", "raster_us", "present_us", "slack_us", "predicted_us", "actual_us", "nodes",
-          "triangles", "accuracy", "benefit", "switches", "cause", "waited_us", "preempted_us"})
+          "triangles", "accuracy", "value", "switches", "cause", "waited_us", "preempted_us"})
         EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end()) << wanted;
     std::map<std::string, std::string> miss;
     const auto cells = test::split(lines[2], ',');

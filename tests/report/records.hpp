@@ -31,7 +31,7 @@ inline rt::FrameRecord good_frame(std::uint64_t slot, std::uint64_t frame) {
     f.draws = 4;
     f.triangles = 1000;
     f.accuracy = 500;
-    f.benefit = 0.5F;
+    f.value = 0.5F;
     f.switches = 2;
     f.prepared_age = 1;
     f.cut_hash = 0x1234 + frame;

@@ -227,9 +227,9 @@ TEST(Summary, ResolutionIsTheMeanAndTheLeastOfTheFrames) {
 TEST(Summary, UnusedTimeIsOfFramesThatDetailCouldImprove) {
     std::vector<rt::FrameRecord> frames = good_frames(3);
     for (rt::FrameRecord& f : frames) f.rastered_ns = f.deadline_ns - 8'000'000;
-    frames[0].benefit = 1;  // all of its detail is there
-    frames[1].benefit = 0.5F;
-    frames[2].benefit = 0.98F;
+    frames[0].value = 1;  // all of its detail is there
+    frames[1].value = 0.5F;
+    frames[2].value = 0.98F;
     frames[2].rastered_ns = frames[2].deadline_ns + 1;  // late: nothing was left
     frames[2].downgraded_slices = 3;
     WalkSummary s;

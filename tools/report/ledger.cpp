@@ -46,7 +46,7 @@ constexpr std::array<Column, 72> columns = {{
     {"draws", [](auto& r, auto& f) { add(r, "{}", f.draws); }},
     {"triangles", [](auto& r, auto& f) { add(r, "{}", f.triangles); }},
     {"accuracy", [](auto& r, auto& f) { add(r, "{:.3f}", f.accuracy); }},
-    {"benefit", [](auto& r, auto& f) { add(r, "{:.5f}", f.benefit); }},
+    {"value", [](auto& r, auto& f) { add(r, "{:.5f}", f.value); }},
     {"resolution", [](auto& r, auto& f) { add(r, "{:.3f}", f.resolution); }},
     {"samples", [](auto& r, auto& f) { add(r, "{}", f.samples); }},
     {"other_samples", [](auto& r, auto& f) { add(r, "{:d}", f.other_samples); }},

@@ -86,10 +86,10 @@ void budget_figures(std::span<const FrameRecord* const> frames, std::int64_t per
 
 /// Time that could have bought detail. A frame beyond its deadline left none.
 void unused_time(std::span<const FrameRecord* const> frames, WalkSummary& s) {
-    constexpr float whole_benefit = 0.99F;
+    constexpr float whole_value = 0.99F;
     std::vector<double> left_ms;
     for (const FrameRecord* f : frames)
-        if (f->benefit < whole_benefit)
+        if (f->value < whole_value)
             left_ms.push_back(static_cast<double>(std::max<std::int64_t>(0, f->deadline_ns - f->rastered_ns)) * 1e-6);
     s.unused_ms = quantiles(std::move(left_ms));
 }
