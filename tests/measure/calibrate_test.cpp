@@ -267,6 +267,21 @@ TEST_F(CostFile, holds_samples_and_the_filter_where_they_were_measured) {
     EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
 }
 
+TEST_F(CostFile, names_the_filter_that_it_was_measured_by) {
+    EXPECT_EQ(read_text(file_).value().find("filter"), std::string::npos);
+    EXPECT_EQ(measure::read_costs(file_, "")->filter, rt::TextureFilter::automatic) << "a table of before does not know";
+    for (const rt::TextureFilter filter : {rt::TextureFilter::bilinear, rt::TextureFilter::trilinear}) {
+        const auto before = measure::hash_of(costs_);
+        costs_.filter = filter;
+        EXPECT_NE(measure::hash_of(costs_), before);
+        ASSERT_TRUE(measure::write_costs(file_, costs_).ok());
+        const auto read = measure::read_costs(file_, costs_.machine);
+        ASSERT_TRUE(read.ok()) << read.error().text();
+        EXPECT_EQ(read->filter, filter);
+        EXPECT_EQ(measure::hash_of(*read), measure::hash_of(costs_));
+    }
+}
+
 TEST_F(CostFile, without_blur_and_enlarging_keeps_the_constants_and_its_hash) {
     EXPECT_EQ(read_text(file_).value().find("blur_loss"), std::string::npos);
     EXPECT_EQ(read_text(file_).value().find("enlarge"), std::string::npos);
@@ -344,6 +359,8 @@ TEST_F(CostFile, with_a_wrong_key_is_refused_by_its_name) {
         EXPECT_EQ(problem("slice_us", "slice_us = 30\ntrilinear_factor = " + bad),
                   "The key 'trilinear_factor' is missing or out of range");
     }
+    for (const std::string bad : {"\"auto\"", "\"cubic\"", "1"})
+        EXPECT_EQ(problem("slice_us", "slice_us = 30\nfilter = " + bad), "The key 'filter' is missing or out of range");
     EXPECT_EQ(problem("slice_us", "slice_us = 30\nsample_share = 1"),
               "The key 'sample_pass_ns_per_pixel' is missing or out of range");
     const std::string torn = "slice_us = = 1\n";
