@@ -60,6 +60,7 @@ std::string body_of(const model::CostModel& costs) {
         text += fmt::format("sample_share = {:.9g}\nsample_pass_ns_per_pixel = {:.9g}\n", static_cast<double>(costs.sample_share),
                             static_cast<double>(costs.sample_pass_ns_per_pixel));
     if (costs.trilinear_measured) text += fmt::format("trilinear_factor = {:.9g}\n", static_cast<double>(costs.trilinear_factor));
+    if (costs.ns_per_pixel > 0) text += fmt::format("ns_per_pixel = {:.9g}\n", static_cast<double>(costs.ns_per_pixel));
     if (costs.filter != rt::TextureFilter::automatic)
         text += fmt::format("filter = {}\n", quoted(std::string(rt::name_of(costs.filter))));
     if (costs.blur_measured) text += fmt::format("blur_loss = [{:.9g}]\n", fmt::join(costs.blur_loss, ", "));
@@ -156,6 +157,7 @@ Result<model::CostModel> costs_of(const toml::table& table, const std::string& f
     costs.timer_query_honest = table["timer_query_honest"].value_or(false);
     costs.headroom = needed_number(top, "upper_factor", 0.1, 100);
     costs.slice_us = needed_number(top, "slice_us", 0, 1e6);
+    read_measured(top, "ns_per_pixel", 0, max_ns_per_pixel, costs.ns_per_pixel);
     read_levers(top, costs);
     read_blur(top, costs);
     if (!top.wrong_key().empty()) return refuse(top.wrong_key());

@@ -94,6 +94,7 @@ CostModel at_quality(CostModel costs, const Quality& quality) {
         const float factor = (grid.effects & effect_texture) != 0 ? by_samples * by_filter : by_samples;
         for (ItemCost& cell : grid.cells) cell.raster_us *= factor;
     }
+    costs.ns_per_pixel *= by_samples;
     costs.drawn_pass_ns_per_pixel += costs.sample_pass_ns_per_pixel * more;
     costs.rest_pass_ns_per_pixel += costs.sample_pass_ns_per_pixel * more;
     return costs;

@@ -53,6 +53,9 @@ using BlurLoss = std::array<float, resolution_steps.size()>;
 struct CostModel {
     std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
     FrameCombine combine;
+    /// Raster time of every rasterised pixel beyond the cells, whatever its state class. 0: the cells alone; else a fit measured
+    /// it.
+    float ns_per_pixel = 0;
     float headroom = 1.25F;             ///< 90 % quantile of actual / predicted whole-frame cost at calibration
     float slice_us = 30;                ///< cost of ending a slice (flush and fence)
     float enlarge_ns_per_pixel = 1.6F;  ///< of the whole picture, where it is drawn at a lower resolution

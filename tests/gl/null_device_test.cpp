@@ -169,6 +169,7 @@ TEST(NullDevice, charges_exactly_what_prepare_predicts_of_parts) {
     for (model::ItemCost& cell : dear.cells) cell.raster_us *= 5;
     costs.grids[0].effects = 0;
     dear.effects = model::effect_sun;
+    costs.ns_per_pixel = 0.25F;
     costs.grids = {costs.grids[0], dear};
     gl::NullOptions options;
     options.costs = &costs;
