@@ -34,7 +34,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     if (!device) return device.error();
     impl->device = std::move(*device);
     impl->device->draws.plays();
-    impl->costs = model::at_quality(std::move(impl->costs), gl::quality_of(*impl->device), options.device.viewport);
+    impl->costs = model::at_quality(std::move(impl->costs), gl::quality_of(*impl->device, costs));
     auto loaded = impl->device->load(impl->model, effects::assemble_program);
     if (!loaded) return loaded.error();
     decltype(impl->model.texels)().swap(impl->model.texels);  // the device has its own
@@ -107,7 +107,8 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     // As Budget counts it: the fixed time, and the ends of slices.
     const double slice_end_us = static_cast<double>(e.costs.combine.submit_weight * e.costs.slice_us);
     const auto lost = [&](const prepare::ValueCurve& curve, float at) {
-        const double fixed_us = static_cast<double>(e.costs.combine.fixed_us + e.costs.enlarge_us(at, viewport)) + slice_end_us;
+        const double fixed_us =
+            static_cast<double>(e.costs.combine_at(at, viewport).fixed_us + e.costs.enlarge_us(at, viewport)) + slice_end_us;
         const double planned_us = hints.planned_us[model::resolution_step(at)];
         const double items_us = (planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us));
         return prepare::picture_loss(prepare::lost_share(curve, items_us)) + static_cast<double>(e.costs.blur_loss_at(at));

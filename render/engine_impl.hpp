@@ -52,6 +52,10 @@ struct Engine::Impl {
     [[nodiscard]] model::ViewScale drawn_scale(const Pose& pose) const REQUIRES(draws) {
         return model::scaled(model::make_view_scale(pose, options.device.viewport), drawn_resolution);
     }
+    /// How items add up at the resolution that is drawn.
+    [[nodiscard]] model::FrameCombine combine() const REQUIRES(draws) {
+        return costs.combine_at(drawn_resolution, options.device.viewport);
+    }
     [[nodiscard]] float enlarge_us() const REQUIRES(draws) { return costs.enlarge_us(drawn_resolution, options.device.viewport); }
     double now_us(const SubmitLimits& limits) const REQUIRES(draws) {
         device->draws.plays();  // `draws` is the same thread

@@ -51,7 +51,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
 /// The in-frame check: whether the next part may be drawn in full.
 bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, double start_us) {
     if (!options.in_frame_check) return true;
-    const model::FrameCombine& combine = costs.combine;
+    const model::FrameCombine combine = this->combine();
     const auto bought_us = static_cast<float>(use_last ? 0.0 : cut.bought.cost_us);
     const float so_far_us = combine.frame_us(p.so_far.submit_us, p.so_far.raster_us);
     const auto with = [&](const model::ItemCost& more) {
@@ -73,7 +73,7 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
 
 void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, SubmitReport& report) {
     device->draws.plays();
-    const model::FrameCombine& combine = costs.combine;
+    const model::FrameCombine combine = this->combine();
     model::ItemCost rest_stand_in, so_far;
     for (const select::Slice& slice : plan.slices) {
         rest_stand_in += {slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
@@ -124,7 +124,7 @@ void Engine::Impl::push(const UnpreparedItem& item, SubmitReport& report) {
 /// As submit_cut(), with groups of the plan in place of slices. Several groups make a slice, since ending one has its price.
 void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, double start_us, SubmitReport& report) {
     device->draws.plays();
-    const model::FrameCombine& combine = costs.combine;
+    const model::FrameCombine combine = this->combine();
     unprepared.plan(state.shown, frustum, pose, drawn_scale(pose), preparer->item_costs());
     const std::span<const UnpreparedGroup> groups = unprepared.groups();
     model::ItemCost rest_stand_in, so_far, slice;
@@ -222,13 +222,14 @@ bool Engine::fell_to_floor(const Pose& pose, double time_us, double correction) 
     const std::vector<select::Shown>& last = e.use_last ? e.state.touched : e.state.before;
     if (!(e.floor.fallen_share(last) > floor_picture_share)) return false;
     const model::ViewScale scale = e.drawn_scale(pose);
+    const model::FrameCombine combine = e.combine();
     model::ItemCost sum;
     for (const select::Shown& shown : last) {
         if (shown.form == select::SelectState::opened) continue;
         const Box& box = e.model.nodes[shown.node].box;
         if (!model::visible(e.frustum, box)) continue;
         sum += e.preparer->item_costs().of(shown.form, box, pose.position, scale);
-        if ((e.costs.combine.frame_us(sum.submit_us, sum.raster_us) + e.enlarge_us()) * correction > time_us) return false;
+        if ((combine.frame_us(sum.submit_us, sum.raster_us) + e.enlarge_us()) * correction > time_us) return false;
     }
     return true;
 }

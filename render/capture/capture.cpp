@@ -17,7 +17,7 @@ Capture take(const select::SelectInput& input, std::string_view selector, Memory
     c.correction = input.correction;
     c.target_error_rad = input.target_error_rad;
     c.slice_us = input.slice_us;
-    c.combine = input.costs->combine;
+    c.combine = input.costs->combine_at(input.prepared->resolution, input.prepared->viewport);
     c.headroom = static_cast<float>(select::headroom_of(input));
     c.slice_end_us = input.costs->slice_us;
     c.enlarge_ns_per_pixel = input.costs->enlarge_ns_per_pixel;

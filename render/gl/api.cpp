@@ -17,6 +17,14 @@ bool Api::has_extension(std::string_view name) const {
     return false;
 }
 
+GLenum take_errors(const Api& gl) {
+    constexpr int max_errors = 16;
+    const GLenum first = gl.GetError();
+    GLenum next = first;
+    for (int i = 1; next != GL_NO_ERROR && i < max_errors; ++i) next = gl.GetError();
+    return first;
+}
+
 Result<Api> load_api(const std::function<void*(const char*)>& find, const std::string& place) {
     Api api;
     const char* missing = nullptr;

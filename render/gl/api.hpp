@@ -105,6 +105,10 @@ struct Api {
     [[nodiscard]] bool has_extension(std::string_view name) const;
 };
 
+/// The first error since the last call, or none. Takes all that are recorded. A lost context may report them without end, so it
+/// asks at most 16 times.
+GLenum take_errors(const Api& gl);
+
 /// Loads the table with a context current, and checks version (4.3 at least), clip control and buffer storage.
 /// `find`: the context's GetProcAddress. glvnd returns a pointer for any name, so version and extensions decide.
 Result<Api> load_api(const std::function<void*(const char*)>& find, const std::string& place);

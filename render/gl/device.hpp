@@ -153,10 +153,10 @@ public:
     [[nodiscard]] virtual double charged_us() const REQUIRES(draws) { return 0; }
 };
 
-/// How the device draws. Tables are measured by the filter that is automatic on it.
-inline model::Quality quality_of(const Device& device) {
+/// How the device draws, and by which filter `costs` were measured: unless they name it, by the one that is automatic here.
+inline model::Quality quality_of(const Device& device, const model::CostModel& costs) {
     const auto automatic = device.software() ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear;
-    return {device.samples(), device.filter(), automatic};
+    return {device.samples(), device.filter(), costs.filter == rt::TextureFilter::automatic ? automatic : costs.filter};
 }
 
 /// Sets how many threads software GL draws with, for the whole process; 0: the measured default. Call it before any other thread

@@ -21,7 +21,7 @@ public:
           costs_(null_options.costs != nullptr ? *null_options.costs : model::default_costs()),
           random_(null_options.seed) {
         const float plain_us = costs_.rest_pass_us(options.viewport);
-        costs_ = model::at_quality(std::move(costs_), gl::quality_of(*this), options.viewport);
+        costs_ = model::at_quality(costs_, gl::quality_of(*this, costs_));
         null_.rest_pass_us += static_cast<double>(costs_.rest_pass_us(options.viewport) - plain_us);
     }
 
@@ -29,7 +29,8 @@ public:
     [[nodiscard]] bool software() const override { return true; }
     [[nodiscard]] std::uint32_t samples() const override { return std::max(1U, options_.samples); }
     [[nodiscard]] rt::TextureFilter filter() const override {
-        return options_.filter == rt::TextureFilter::automatic ? rt::TextureFilter::bilinear : options_.filter;
+        if (options_.filter != rt::TextureFilter::automatic) return options_.filter;
+        return costs_.filter == rt::TextureFilter::automatic ? rt::TextureFilter::bilinear : costs_.filter;
     }
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
@@ -170,7 +171,8 @@ void NullDevice::draw_rest(std::span<const DrawItem> items, Parts parts) {
 /// As the engine predicts a frame: slices are submit time.
 void NullDevice::charge() {
     const double slices_us = static_cast<double>(slices_) * static_cast<double>(costs_.slice_us);
-    const float sums = costs_.combine.frame_us(static_cast<float>(submit_us_ + slices_us), static_cast<float>(raster_us_));
+    const model::FrameCombine combine = costs_.combine_at(stats_.resolution, options_.viewport);
+    const float sums = combine.frame_us(static_cast<float>(submit_us_ + slices_us), static_cast<float>(raster_us_));
     frame_us_ = null_.cost_scale * factor_ * (static_cast<double>(sums) + other_us_);
 }
 

@@ -81,10 +81,8 @@ GLuint make_static(const Api& gl, GLenum target, const void* data, std::size_t b
 }  // namespace
 
 Result<void> check_errors(const Api& gl, const std::string& place, const std::string& remedy) {
-    const GLenum error = gl.GetError();
+    const GLenum error = take_errors(gl);
     if (error == GL_NO_ERROR) return {};
-    while (gl.GetError() != GL_NO_ERROR) {
-    }
     if (error == GL_OUT_OF_MEMORY) return Error{place, "The device is out of memory", remedy, ErrorKind::no_memory};
     return Error{place, "The driver reports GL error " + std::to_string(error), remedy, ErrorKind::no_device};
 }

@@ -40,9 +40,8 @@ SampleTargets make_sample_targets(const Api& gl, model::Viewport viewport, std::
     GLint max_samples = 0;
     if (samples > 1) gl.GetIntegerv(GL_MAX_SAMPLES, &max_samples);
     for (auto count = std::min(static_cast<GLint>(samples), max_samples); count > 1; count /= 2) {
-        bool made = make_steps(gl, viewport, count, targets);
-        while (gl.GetError() != GL_NO_ERROR) made = false;
-        if (made) break;
+        const bool made = make_steps(gl, viewport, count, targets);
+        if (take_errors(gl) == GL_NO_ERROR && made) break;
         free_sample_targets(gl, targets);
     }
     return targets;

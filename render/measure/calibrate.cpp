@@ -235,7 +235,7 @@ Result<void> Run::samples(Calibration& out) {
 /// What the dearer texture filter adds to textured items.
 Result<void> Run::filter(Calibration& out) {
     gl::DeviceOptions how = options_.device;
-    const bool automatic = gl::quality_of(device_).of_table == rt::TextureFilter::trilinear;
+    const bool automatic = device_.filter() == rt::TextureFilter::trilinear;
     how.filter = automatic ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear;
     auto other = open_other(how);
     if (!other) return {};
@@ -323,6 +323,7 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
     if (options.opened) options.opened();
     Calibration out;
     out.costs.machine = machine_identity((*device)->renderer(), options.device.rasterisers);
+    out.costs.filter = (*device)->filter();
     out.costs.calibrated = true;
     run.timer(out);
     run.slices(out);

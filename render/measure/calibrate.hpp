@@ -51,6 +51,8 @@ Result<Calibration> calibrate(const CalibrateOptions& options, const Progress& p
 
 /// Largest time of enlarging in a table, ns for a pixel of the whole picture.
 constexpr double max_enlarge_ns = 100;
+/// Largest CostModel::ns_per_pixel.
+constexpr double max_ns_per_pixel = 100;
 /// Of CostModel::sample_share, sample_pass_ns_per_pixel and trilinear_factor.
 constexpr double max_sample_share = 4, max_sample_pass_ns = 100, max_trilinear_factor = 4;
 

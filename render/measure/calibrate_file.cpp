@@ -60,6 +60,9 @@ std::string body_of(const model::CostModel& costs) {
         text += fmt::format("sample_share = {:.9g}\nsample_pass_ns_per_pixel = {:.9g}\n", static_cast<double>(costs.sample_share),
                             static_cast<double>(costs.sample_pass_ns_per_pixel));
     if (costs.trilinear_measured) text += fmt::format("trilinear_factor = {:.9g}\n", static_cast<double>(costs.trilinear_factor));
+    if (costs.ns_per_pixel > 0) text += fmt::format("ns_per_pixel = {:.9g}\n", static_cast<double>(costs.ns_per_pixel));
+    if (costs.filter != rt::TextureFilter::automatic)
+        text += fmt::format("filter = {}\n", quoted(std::string(rt::name_of(costs.filter))));
     if (costs.blur_measured) text += fmt::format("blur_loss = [{:.9g}]\n", fmt::join(costs.blur_loss, ", "));
     text += fmt::format(
         "\n# frame_us = fixed_us + submit_weight * S + raster_weight * R + max_weight * max(S, R)\n[combine]\n"
@@ -118,6 +121,13 @@ void read_levers(TableReader& top, model::CostModel& costs) {
     const bool pass = read_measured(top, "sample_pass_ns_per_pixel", 0, max_sample_pass_ns, costs.sample_pass_ns_per_pixel);
     costs.samples_measured = share && pass;
     if (share != pass) top.refuse(share ? "sample_pass_ns_per_pixel" : "sample_share", "is missing", remedy);
+    std::size_t filter = 0;
+    if (top.has("filter")) {
+        constexpr std::array<std::string_view, 2> filters{rt::name_of(rt::TextureFilter::bilinear),
+                                                          rt::name_of(rt::TextureFilter::trilinear)};
+        top.choice("filter", filters, filter);
+        costs.filter = filter == 0 ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear;
+    }
     costs.trilinear_measured = read_measured(top, "trilinear_factor", 1, max_trilinear_factor, costs.trilinear_factor);
 }
 
@@ -147,6 +157,7 @@ Result<model::CostModel> costs_of(const toml::table& table, const std::string& f
     costs.timer_query_honest = table["timer_query_honest"].value_or(false);
     costs.headroom = needed_number(top, "upper_factor", 0.1, 100);
     costs.slice_us = needed_number(top, "slice_us", 0, 1e6);
+    read_measured(top, "ns_per_pixel", 0, max_ns_per_pixel, costs.ns_per_pixel);
     read_levers(top, costs);
     read_blur(top, costs);
     if (!top.wrong_key().empty()) return refuse(top.wrong_key());

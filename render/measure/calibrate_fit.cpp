@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint32_t triangle_steps = 21, pixel_steps = 25;  // to 2^20 triangles and 2^24 pixels
 constexpr int terms = 4;                                        // fixed, S, R, max
+constexpr double tolerated = 0.15;                              // relative error up to which a sample counts in full
 constexpr double prior_share = 5e-4;                            // of the samples' own weight
 
 using Row = std::array<double, terms>;
@@ -185,13 +186,23 @@ model::CostGrid fill_grid(model::EffectMask effects, std::span<const Calibration
     return grid;
 }
 
+/// The error that fit_combine() makes least: squares of relative errors, but outliers count less.
+double huber_loss(std::span<const FrameSample> samples, const model::FrameCombine& combine) {
+    double sum = 0;
+    for (const FrameSample& s : samples) {
+        const float us = combine.frame_us(static_cast<float>(s.submit_us), static_cast<float>(s.raster_us));
+        const double error = std::abs(static_cast<double>(us) - s.actual_us) / std::max(1.0, s.actual_us);
+        sum += error <= tolerated ? error * error : tolerated * (2.0 * error - tolerated);
+    }
+    return sum;
+}
+
 model::FrameCombine fit_combine(std::span<const FrameSample> samples, const model::FrameCombine& prior) {
     const Row start{static_cast<double>(prior.fixed_us), static_cast<double>(prior.submit_weight),
                     static_cast<double>(prior.raster_weight), static_cast<double>(prior.max_weight)};
     if (samples.empty()) return prior;
     std::vector<double> weights(samples.size());
     Row w{};
-    constexpr double tolerated = 0.15;  // relative error up to which a sample counts in full
     for (int round = 0; round < 8; ++round) {
         for (std::size_t s = 0; s < samples.size(); ++s) {
             const double actual = std::max(1.0, samples[s].actual_us);
@@ -206,6 +217,28 @@ model::FrameCombine fit_combine(std::span<const FrameSample> samples, const mode
     combine.raster_weight = static_cast<float>(w[2]);
     combine.max_weight = static_cast<float>(w[3]);
     return combine;
+}
+
+std::vector<FrameSample> priced(std::span<const FrameSample> samples, float ns_per_pixel) {
+    std::vector<FrameSample> out(samples.begin(), samples.end());
+    for (FrameSample& s : out) s.raster_us += 1e-3 * static_cast<double>(ns_per_pixel) * s.pixels;
+    return out;
+}
+
+FrameFit fit_frames(std::span<const FrameSample> samples, const model::FrameCombine& prior) {
+    constexpr std::array<float, 4> tried_ns{0.25F, 0.5F, 1, 2};  // few, so that noise chooses seldom
+    constexpr double clearly = 0.97, min_gain = 1e-5;  // of the loss without a price, and for each sample: rounding is no gain
+    FrameFit best{fit_combine(samples, prior), 0};
+    double to_beat = clearly * huber_loss(samples, best.combine) - min_gain * static_cast<double>(samples.size());
+    for (const float ns : tried_ns) {
+        const std::vector<FrameSample> at = priced(samples, ns);
+        const model::FrameCombine combine = fit_combine(at, prior);
+        const double loss = huber_loss(at, combine);
+        if (!(loss < to_beat)) continue;
+        to_beat = loss;
+        best = {combine, ns};
+    }
+    return best;
 }
 
 std::optional<float> enlarge_ns_of(std::span<const EmptyPair> pairs, const model::Viewport& picture) {

@@ -24,12 +24,25 @@ struct ItemSums {
 struct FrameSample {
     double submit_us = 0, raster_us = 0;  ///< predicted sums over items, slices included
     double actual_us = 0;
-    ItemSums items{};  ///< for published formulas; zeros where they are not asked for
+    ItemSums items{};   ///< for published formulas; zeros where they are not asked for
+    double pixels = 0;  ///< rasterised by the items, overdraw included
 };
 
 /// Weights >= 0 of fixed, S, R and max(S, R) with the least relative error. Outliers count less (Huber 1964). If the samples
 /// cannot tell weights apart, as when rasterising dominates all of them, the weights nearest to `prior` are taken.
 model::FrameCombine fit_combine(std::span<const FrameSample> samples, const model::FrameCombine& prior);
+
+/// The samples with this price of every pixel. Requires that raster_us is without one.
+std::vector<FrameSample> priced(std::span<const FrameSample> samples, float ns_per_pixel);
+
+/// What a fit to frames finds.
+struct FrameFit {
+    model::FrameCombine combine;
+    float ns_per_pixel = 0;
+};
+/// The price of a pixel, of a few, with the least error of fit_combine(). None unless another one is clearly better: then a
+/// machine that charges by the cells alone is fitted by them. Allocates.
+FrameFit fit_frames(std::span<const FrameSample> samples, const model::FrameCombine& prior);
 
 /// |actual - predicted| / actual at a quantile, 0..1.
 double relative_error(std::span<const FrameSample> samples, const model::FrameCombine& combine, double quantile);

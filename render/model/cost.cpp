@@ -77,7 +77,14 @@ const CostGrid& CostModel::grid_for(EffectMask effects) const {
 
 float CostModel::blur_loss_at(float resolution) const { return blur_loss[resolution_step(resolution)]; }
 
-CostModel at_quality(CostModel costs, const Quality& quality, const Viewport& picture) {
+FrameCombine CostModel::combine_at(float resolution, const Viewport& picture) const {
+    const Viewport drawn = viewport_of_step(picture, resolution_step(resolution));
+    FrameCombine all = combine;
+    all.fixed_us += 1e-3F * drawn_pass_ns_per_pixel * static_cast<float>(drawn.width) * static_cast<float>(drawn.height);
+    return all;
+}
+
+CostModel at_quality(CostModel costs, const Quality& quality) {
     const float more = quality.samples > 1 ? static_cast<float>(quality.samples - 1) : 0.0F;
     const float by_samples = 1.0F + costs.sample_share * more;
     const bool dearer = quality.filter == rt::TextureFilter::trilinear && quality.of_table != rt::TextureFilter::trilinear;
@@ -87,9 +94,9 @@ CostModel at_quality(CostModel costs, const Quality& quality, const Viewport& pi
         const float factor = (grid.effects & effect_texture) != 0 ? by_samples * by_filter : by_samples;
         for (ItemCost& cell : grid.cells) cell.raster_us *= factor;
     }
-    const float pass_ns_per_pixel = costs.sample_pass_ns_per_pixel * more;
-    costs.combine.fixed_us += 1e-3F * pass_ns_per_pixel * static_cast<float>(picture.width) * static_cast<float>(picture.height);
-    costs.rest_pass_ns_per_pixel += pass_ns_per_pixel;
+    costs.ns_per_pixel *= by_samples;
+    costs.drawn_pass_ns_per_pixel += costs.sample_pass_ns_per_pixel * more;
+    costs.rest_pass_ns_per_pixel += costs.sample_pass_ns_per_pixel * more;
     return costs;
 }
 

@@ -53,16 +53,22 @@ using BlurLoss = std::array<float, resolution_steps.size()>;
 struct CostModel {
     std::vector<CostGrid> grids;  ///< at least one. Found by exact mask, else by most common bits among the supersets
     FrameCombine combine;
+    /// Raster time of every rasterised pixel beyond the cells, whatever its state class. 0: the cells alone; else a fit measured
+    /// it.
+    float ns_per_pixel = 0;
     float headroom = 1.25F;             ///< 90 % quantile of actual / predicted whole-frame cost at calibration
     float slice_us = 30;                ///< cost of ending a slice (flush and fence)
     float enlarge_ns_per_pixel = 1.6F;  ///< of the whole picture, where it is drawn at a lower resolution
     /// Of an item's raster time: what each sample of a pixel beyond the first adds.
     float sample_share = 0.77F;
-    float sample_pass_ns_per_pixel = 2.5F;  ///< of the whole picture: to clear and resolve each sample beyond the first
+    float sample_pass_ns_per_pixel = 2.5F;  ///< of what is drawn: to clear and resolve each sample beyond the first
     float trilinear_factor = 1.24F;         ///< raster time of textured items, against bilinear
-    float rest_pass_ns_per_pixel = 8;       ///< of one pass over the picture at rest; typical, no calibration measures it
+    /// Of the picture as it is drawn, in every frame: at_quality() finds it from the samples. No file holds it.
+    float drawn_pass_ns_per_pixel = 0;
+    float rest_pass_ns_per_pixel = 8;  ///< of one pass over the picture at rest; typical, no calibration measures it
     /// Six times the mean squared error (0..1) of full detail that is enlarged. Typical of five scenes; a fit measures its model.
     BlurLoss blur_loss{0.0F, 0.005F, 0.0067F, 0.0085F, 0.0107F};
+    rt::TextureFilter filter = rt::TextureFilter::automatic;  ///< that it was measured by; automatic: as the device chooses
     std::string machine;  ///< CPU, renderer, rasteriser count; a table of another machine is refused
     bool timer_query_honest = false;
     bool calibrated = false;  ///< false: built-in defaults
@@ -74,6 +80,8 @@ struct CostModel {
     [[nodiscard]] ItemCost item(float triangles, float pixels, const CostGrid& grid) const;
     [[nodiscard]] const CostGrid& grid_for(EffectMask effects) const;
     [[nodiscard]] float blur_loss_at(float resolution) const;  ///< of the step that is drawn for it
+    /// How the items of a frame add up that is drawn at `resolution`: with the passes over what is drawn.
+    [[nodiscard]] FrameCombine combine_at(float resolution, const Viewport& picture) const;
     /// Time to enlarge a picture of `resolution` to its full size, us; 0 at full resolution.
     [[nodiscard]] float enlarge_us(float resolution, const Viewport& picture) const {
         const float pixels = static_cast<float>(picture.width) * static_cast<float>(picture.height);
@@ -92,7 +100,7 @@ struct Quality {
 };
 
 /// The costs of frames that are drawn so. A table is measured with one sample a pixel.
-CostModel at_quality(CostModel costs, const Quality& quality, const Viewport& picture);
+CostModel at_quality(CostModel costs, const Quality& quality);
 
 /// Conservative costs for an uncalibrated machine (llvmpipe on two cores).
 CostModel default_costs();

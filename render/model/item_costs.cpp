@@ -62,6 +62,12 @@ ItemCosts::Classes ItemCosts::gather(const Representation& rep, std::vector<Clas
 }
 
 ItemCost ItemCosts::of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& all_pixels) const {
+    ItemCost cost = by_cells(r, node_box, eye, scale, all_pixels);
+    cost.raster_us += 1e-3F * costs_.ns_per_pixel * std::min(all_pixels, max_pixels);
+    return cost;
+}
+
+ItemCost ItemCosts::by_cells(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& all_pixels) const {
     const Representation& rep = model_.reps[r];
     const auto classes = std::span(classes_).subspan(classes_of_[r].first, classes_of_[r].count);
     std::array<float, PixelEstimator::max_parts> of_part;  // NOLINT: filled as far as it is read

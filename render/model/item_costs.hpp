@@ -31,6 +31,7 @@ public:
     [[nodiscard]] ItemCost of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& pixels) const;
 
 private:
+    [[nodiscard]] ItemCost by_cells(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& pixels) const;
     /// Parts of one state class in a representation.
     struct Class {
         std::uint32_t grid = 0;  ///< in CostModel::grids

@@ -318,7 +318,7 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
 }
 
 void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
-    const std::span<const float> shown_px = shown.run(weights, out.candidates, out.choices, view.wide);
+    const std::span<const float> shown_px = shown.run(weights, out.candidates, out.choices, view.wide, view.scale);
     values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out);
 }
 

@@ -26,7 +26,7 @@ class Budget {
 public:
     explicit Budget(const SelectInput& input) {
         const model::CostModel& costs = *input.costs;
-        combine_ = costs.combine;
+        combine_ = costs.combine_at(input.prepared->resolution, input.prepared->viewport);
         const double correction = input.correction > 0.0 && std::isfinite(input.correction) ? input.correction : 1.0;
         factor_ = correction * headroom_of(input);
         // 1 + items / slice_us is never less than the number of slices that plan_slices makes.

@@ -76,6 +76,28 @@ TEST(Capture, OfALowerResolutionKnowsWhatEnlargingCosts) {
     EXPECT_NE(replay(cheap)->predicted_us, before.predicted_us);
 }
 
+TEST(Capture, OfSeveralSamplesKnowsWhatTheirPassesCostAtTheResolutionThatIsDrawn) {
+    Scene s(test::town(4));
+    s.costs.sample_pass_ns_per_pixel = 0.7F;
+    s.costs = model::at_quality(s.costs, {4, rt::TextureFilter::bilinear, rt::TextureFilter::bilinear});
+    prepare::Region region;
+    region.centre.position = dvec3(0, 3, 30);
+    std::vector<float> predicted_us;
+    for (const float resolution : {1.0F, 0.5F}) {
+        s.frame.resolution = resolution;
+        s.look(region);
+        s.run("threshold", 6500);
+        const Capture before =
+            take(s.input(6500), "threshold", s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
+        EXPECT_TRUE(verify(before));
+        EXPECT_EQ(replay(before)->predicted_us, before.predicted_us);
+        const model::FrameCombine at = s.costs.combine_at(resolution, s.frame.viewport);
+        EXPECT_EQ(before.combine.fixed_us, at.fixed_us);
+        predicted_us.push_back(before.combine.fixed_us);
+    }
+    EXPECT_LT(predicted_us[1], predicted_us[0]);
+}
+
 /// A capture in which an item is bought that the frame before had bought too.
 Capture captured_with_items() {
     Scene s(test::town(4));

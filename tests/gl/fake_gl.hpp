@@ -23,6 +23,7 @@ struct FakeGl {
     GLenum framebuffer_status = GL_FRAMEBUFFER_COMPLETE;
     int framebuffers_asked = 0, bad_framebuffer = 0;  ///< bad_framebuffer: the how many-th check fails, from 1
     int errors_asked = 0, bad_error = 0;              ///< bad_error: the how many-th glGetError says out of memory, from 1
+    GLenum lost_error = GL_NO_ERROR;                  ///< else what glGetError says without end, as of a lost context
     GLint max_texture_size = 4096;
     GLint max_samples = 4, samples = 0;  ///< samples: of the newest renderbuffer
     int compiles = 0, bad_compile = 0;   ///< bad_compile: the how many-th compile fails, from 1
@@ -78,6 +79,7 @@ inline gl::Api fake_api() {
     };
     api.GetRenderbufferParameteriv = [](GLenum, GLenum, GLint* value) { *value = FakeGl::get().samples; };
     api.GetError = []() -> GLenum {
+        if (FakeGl::get().lost_error != GL_NO_ERROR && ++FakeGl::get().errors_asked < 10000) return FakeGl::get().lost_error;
         return ++FakeGl::get().errors_asked == FakeGl::get().bad_error ? GL_OUT_OF_MEMORY : GL_NO_ERROR;
     };
     count_names<&FakeGl::buffers>(api.GenBuffers, api.DeleteBuffers);

@@ -93,12 +93,61 @@ TEST(NullDevice, charges_samples_and_the_filter_as_the_table_at_that_quality_pre
     EXPECT_EQ((*device)->samples(), 4U);
     EXPECT_EQ((*device)->filter(), rt::TextureFilter::trilinear);
     ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
-    const model::CostModel of_quality = model::at_quality(costs, gl::quality_of(**device), how.viewport);
+    const model::CostModel of_quality = model::at_quality(costs, gl::quality_of(**device, costs));
     dearer.costs = &of_quality;
     const double charged = charge_of(**device, scene, 3);
     EXPECT_EQ(charged, charge_of(*null_device(scene, dearer), scene, 3));
     EXPECT_GT(charged, charge_of(*null_device(scene, plain), scene, 3));
     EXPECT_EQ((*device)->stats().samples, 4U);
+}
+
+TEST(NullDevice, charges_passes_over_samples_at_the_size_that_is_drawn) {
+    const auto scene = scene_of_squares(1);
+    model::CostModel costs = model::default_costs();
+    costs.sample_pass_ns_per_pixel = 5;
+    gl::NullOptions options;
+    options.costs = &costs;
+    gl::DeviceOptions how;
+    how.samples = 2;
+    auto device = gl::open_null_device(how, options);
+    ASSERT_TRUE(device.ok());
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    const double pixels = static_cast<double>(how.viewport.width) * static_cast<double>(how.viewport.height);
+    for (const float resolution : {1.0F, 0.5F}) {
+        const double before = (*device)->charged_us();
+        (*device)->begin_frame(Pose{}, resolution);
+        (*device)->finish_frame();
+        const auto share = static_cast<double>(resolution * resolution);
+        EXPECT_NEAR((*device)->charged_us() - before, static_cast<double>(costs.combine.fixed_us) + 5e-3 * share * pixels, 0.01);
+    }
+}
+
+TEST(NullDevice, takes_a_table_as_measured_by_the_filter_that_it_names) {
+    const auto scene = scene_of_squares(2);
+    model::CostModel costs = model::default_costs();
+    costs.grids.resize(1);
+    costs.grids[0].effects = model::effect_texture;
+    costs.trilinear_factor = 1.5F;
+    gl::NullOptions options;
+    options.costs = &costs;
+    const auto charged = [&](rt::TextureFilter by, rt::TextureFilter drawn) {
+        costs.filter = by;
+        gl::DeviceOptions how;
+        how.filter = drawn;
+        auto device = gl::open_null_device(how, options);
+        EXPECT_TRUE(device.ok() && (*device)->load(scene.model, effects::assemble_program).ok());
+        EXPECT_NE((*device)->filter(), rt::TextureFilter::automatic);
+        return charge_of(**device, scene, 1);
+    };
+    using rt::TextureFilter;
+    const double table = charged(TextureFilter::automatic, TextureFilter::automatic);
+    EXPECT_EQ(charged(TextureFilter::bilinear, TextureFilter::bilinear), table);
+    EXPECT_EQ(charged(TextureFilter::trilinear, TextureFilter::trilinear), table);
+    EXPECT_EQ(charged(TextureFilter::trilinear, TextureFilter::automatic), table) << "as the machine of the table draws";
+    EXPECT_LT(charged(TextureFilter::trilinear, TextureFilter::bilinear), table);
+    EXPECT_GT(charged(TextureFilter::bilinear, TextureFilter::trilinear), table);
+    EXPECT_GT(charged(TextureFilter::automatic, TextureFilter::trilinear), table) << "a table of before is a software driver's";
 }
 
 // Near, and of two state classes: the virtual clock is what prepare predicts, to the bit.
@@ -120,6 +169,7 @@ TEST(NullDevice, charges_exactly_what_prepare_predicts_of_parts) {
     for (model::ItemCost& cell : dear.cells) cell.raster_us *= 5;
     costs.grids[0].effects = 0;
     dear.effects = model::effect_sun;
+    costs.ns_per_pixel = 0.25F;
     costs.grids = {costs.grids[0], dear};
     gl::NullOptions options;
     options.costs = &costs;

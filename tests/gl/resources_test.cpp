@@ -151,6 +151,17 @@ TEST_F(ResourceObjects, fewer_samples_are_tried_where_more_do_not_fit_and_nothin
     EXPECT_EQ(FakeGl::get().objects(), 0);
 }
 
+TEST_F(ResourceObjects, errors_without_end_are_asked_for_a_few_times_only) {
+    FakeGl::get().lost_error = GL_CONTEXT_LOST;
+    EXPECT_EQ(gl::take_errors(test::fake_api()), static_cast<GLenum>(GL_CONTEXT_LOST));
+    EXPECT_LE(FakeGl::get().errors_asked, 16);
+    EXPECT_FALSE(gl::check_errors(test::fake_api(), "here", "none").ok());
+    EXPECT_LE(FakeGl::get().errors_asked, 32);
+    EXPECT_EQ(gl::make_sample_targets(test::fake_api(), {64, 64}, 4).samples, 1U);
+    EXPECT_LE(FakeGl::get().errors_asked, 64) << "for four samples, and for two";
+    EXPECT_EQ(FakeGl::get().objects(), 0);
+}
+
 TEST_F(ResourceObjects, targets_for_rest_are_freed_whole_where_a_pass_does_not_link) {
     auto targets = gl::make_targets(test::fake_api(), {64, 64});
     ASSERT_TRUE(targets.ok());

@@ -59,6 +59,19 @@ TEST(Cost, ClassIsExactElseTheNextThatDoesMore) {
     EXPECT_EQ(costs.grid_for(effect_blend | effect_texture).effects, effect_texture);
 }
 
+TEST(Cost, OfClearingAndResolvingSamplesIsOfTheSizeThatIsDrawn) {
+    CostModel costs = default_costs();
+    costs.sample_pass_ns_per_pixel = 2;
+    const Viewport picture{1000, 500};
+    const CostModel smooth = at_quality(costs, {4, rt::TextureFilter::bilinear, rt::TextureFilter::bilinear});
+    EXPECT_FLOAT_EQ(smooth.combine_at(1, picture).fixed_us, costs.combine.fixed_us + 3000);
+    EXPECT_FLOAT_EQ(smooth.combine_at(0.5F, picture).fixed_us, costs.combine.fixed_us + 750);
+    EXPECT_FLOAT_EQ(smooth.combine_at(0.6F, picture).fixed_us, costs.combine.fixed_us + 750) << "the step that is drawn";
+    EXPECT_EQ(smooth.combine_at(0.5F, picture).raster_weight, costs.combine.raster_weight);
+    EXPECT_EQ(costs.combine_at(0.5F, picture).fixed_us, costs.combine.fixed_us) << "one sample needs no pass";
+    EXPECT_FLOAT_EQ(smooth.rest_pass_us(picture), costs.rest_pass_us(picture) + 3000) << "a picture at rest is whole";
+}
+
 TEST(Cost, OfSamplesAndAFilterChangesRasterTimeAndThePasses) {
     using rt::TextureFilter;
     CostModel costs = default_costs();
@@ -66,21 +79,22 @@ TEST(Cost, OfSamplesAndAFilterChangesRasterTimeAndThePasses) {
     costs.sample_pass_ns_per_pixel = 2;
     costs.trilinear_factor = 1.5F;
     const auto raster = [](const CostModel& of, EffectMask mask) { return of.item(100, 1000, of.grid_for(mask)).raster_us; };
-    const CostModel plain = at_quality(costs, {}, {1000, 500});
+    const CostModel plain = at_quality(costs, {});
     EXPECT_EQ(raster(plain, effect_texture), raster(costs, effect_texture));
     EXPECT_EQ(plain.combine.fixed_us, costs.combine.fixed_us);
-    const CostModel smooth = at_quality(costs, {4, TextureFilter::bilinear, TextureFilter::bilinear}, {1000, 500});
+    const CostModel smooth = at_quality(costs, {4, TextureFilter::bilinear, TextureFilter::bilinear});
     EXPECT_FLOAT_EQ(raster(smooth, 0), 2.5F * raster(costs, 0));
     EXPECT_FLOAT_EQ(raster(smooth, effect_texture), 2.5F * raster(costs, effect_texture));
     EXPECT_EQ(smooth.item(100, 1000, smooth.grid_for(0)).submit_us, costs.item(100, 1000, costs.grid_for(0)).submit_us);
-    EXPECT_FLOAT_EQ(smooth.combine.fixed_us, costs.combine.fixed_us + 3000.0F);  // 3 samples, 2 ns, half a million pixels
+    EXPECT_FLOAT_EQ(smooth.combine_at(1, {1000, 500}).fixed_us,
+                    costs.combine.fixed_us + 3000.0F);  // 3 samples, 2 ns, half a million pixels
     EXPECT_FLOAT_EQ(smooth.rest_pass_us({1000, 500}), costs.rest_pass_us({1000, 500}) + 3000.0F);
-    const CostModel filtered = at_quality(costs, {1, TextureFilter::trilinear, TextureFilter::bilinear}, {1000, 500});
+    const CostModel filtered = at_quality(costs, {1, TextureFilter::trilinear, TextureFilter::bilinear});
     EXPECT_EQ(raster(filtered, effect_sun), raster(costs, effect_sun)) << "no texture";
     EXPECT_FLOAT_EQ(raster(filtered, effect_texture), 1.5F * raster(costs, effect_texture));
-    const CostModel cheaper = at_quality(costs, {1, TextureFilter::bilinear, TextureFilter::trilinear}, {1000, 500});
+    const CostModel cheaper = at_quality(costs, {1, TextureFilter::bilinear, TextureFilter::trilinear});
     EXPECT_FLOAT_EQ(raster(cheaper, effect_texture), raster(costs, effect_texture) / 1.5F);
-    const CostModel same = at_quality(costs, {1, TextureFilter::trilinear, TextureFilter::trilinear}, {1000, 500});
+    const CostModel same = at_quality(costs, {1, TextureFilter::trilinear, TextureFilter::trilinear});
     EXPECT_EQ(raster(same, effect_texture), raster(costs, effect_texture));
 }
 

@@ -144,5 +144,23 @@ TEST(ItemCosts, OfPartsWithoutAreaAreSharedEvenly) {
     EXPECT_LT(cost(costs, m, at({0, 0, 1})).raster_us, 0.02) << "nearby, where they are looked at, they cover nothing";
 }
 
+TEST(ItemCosts, OfEveryPixelAreAddedWhateverItsClass) {
+    const Model m = wall_and_poster();
+    const CostModel cells = priced();
+    CostModel with_pixels = cells;
+    with_pixels.ns_per_pixel = 2;
+    for (const Pose& pose : {at({0, 0, 60}), at({2, 0, 1})}) {
+        const ViewScale scale = make_view_scale(pose, picture);
+        float pixels = 0;
+        const ItemCost plain = ItemCosts(m, cells).of(0, m.nodes[0].box, pose.position, scale, pixels);
+        const ItemCost more = ItemCosts(m, with_pixels).of(0, m.nodes[0].box, pose.position, scale);
+        ASSERT_GT(pixels, 1000.0F);
+        EXPECT_FLOAT_EQ(more.raster_us, plain.raster_us + 2e-3F * pixels);
+        EXPECT_EQ(more.submit_us, plain.submit_us);
+    }
+    const CostModel smooth = at_quality(with_pixels, {4, rt::TextureFilter::bilinear, rt::TextureFilter::bilinear});
+    EXPECT_FLOAT_EQ(smooth.ns_per_pixel, 2 * (1 + 3 * with_pixels.sample_share)) << "samples make each pixel dearer";
+}
+
 }  // namespace
 }  // namespace surefoot::model

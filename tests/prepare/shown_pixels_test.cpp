@@ -32,6 +32,7 @@ struct Leaves {
     std::vector<Choice> choices{Choice{}};
     std::vector<Weight> weights{Weight{}};
     ShownPixels shown;
+    model::ViewScale picture = view;  ///< that surfaces are counted in
 
     void add(float distance_m, const Outline& outline, float surface_px) {
         Candidate leaf;
@@ -52,7 +53,7 @@ struct Leaves {
         candidates[0].child_count = static_cast<std::uint32_t>(candidates.size() - 1);
         candidates[0].choice_count = 1;
         shown.reserve(static_cast<std::uint32_t>(candidates.size()));
-        return shown.run(weights, candidates, choices, view);
+        return shown.run(weights, candidates, choices, view, picture);
     }
 };
 
@@ -96,6 +97,17 @@ TEST(ShownPixels, OfWhatIsNotInThePictureYetAreAsOfHalfALayer) {
     Leaves leaves;
     leaves.add(10, {0.5F, -1, 1, 1}, 0);
     EXPECT_NEAR(leaves.run()[1], (1 - std::exp(-0.5)) * view_px / 4, 1);
+}
+
+TEST(ShownPixels, OfAnOutlineBesideThePictureAreAsOfHalfALayerThere) {
+    Leaves leaves;
+    leaves.picture.tan_half_x *= 0.5F;                   // half of the wide view
+    leaves.add(10, {0.25F, -1, 0.75F, 1}, view_px / 8);  // one layer on the half of it that is in the picture
+    EXPECT_NEAR(leaves.run()[1], (1 - std::exp(-0.75)) * view_px / 4, 1);
+    Leaves whole;
+    whole.picture = leaves.picture;
+    whole.add(10, {-0.25F, -1, 0.25F, 1}, view_px / 4);
+    EXPECT_NEAR(whole.run()[1], (1 - std::exp(-1.0)) * view_px / 4, 1) << "wholly in the picture nothing changes";
 }
 
 TEST(ShownPixels, OfPartsOfTilesAddUp) {

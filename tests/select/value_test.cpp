@@ -1,10 +1,13 @@
 // Values, rates and the selector that goes by them, against every cut of small trees.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
+#include "render/prepare/tree_passes.hpp"
 #include "render/prepare/value.hpp"
 #include "tests/select/scene.hpp"
 
@@ -159,6 +162,69 @@ TEST(Value, OddCostsAndValuesStayFinite) {
             EXPECT_EQ(check_legal(s.frame, s.run("threshold", 1000)), "");
         });
     }
+}
+
+/// Equal leaves below a root, each with a coarse form, one for 95 % of full detail's cost and half of its value, and full detail.
+prepare::PreparedFrame leaves_with_a_dear_form(model::Index leaves, const model::FrameCombine& combine) {
+    prepare::PreparedFrame frame;
+    frame.candidates.resize(leaves + 1);
+    frame.choices.resize(3 * leaves + 1);
+    frame.choices[0].cost.submit_us = 1;
+    frame.choices[0].error_rad = 1;
+    frame.candidates[0].first_child = 1;
+    frame.candidates[0].child_count = leaves;
+    frame.candidates[0].choice_count = 1;
+    const std::array<float, 3> cost_us{10, 95, 100}, surface_px{100, 500, 1000}, error_rad{2e-3F, 1e-3F, 0};
+    for (model::Index leaf = 1; leaf <= leaves; ++leaf) {
+        const model::Index first = 3 * leaf - 2;
+        prepare::Candidate& candidate = frame.candidates[leaf];
+        candidate.node = leaf;
+        candidate.parent = 0;
+        candidate.first_choice = first;
+        candidate.choice_count = 3;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            prepare::Choice& choice = frame.choices[first + k];
+            choice.rep = 3 * leaf + k;
+            choice.cost.submit_us = cost_us[k];
+            choice.surface_px = surface_px[k];
+            choice.error_rad = error_rad[k];
+        }
+    }
+    std::vector<prepare::Weight> weights(leaves + 1);
+    for (prepare::Weight& weight : weights) weight.pixel_weight = 1;
+    const std::vector<float> shown_px(leaves + 1, 1000.0F);
+    prepare::ValuePass pass;
+    pass.reserve(leaves + 1);
+    pass.run(combine, 1e-3F, weights, shown_px, frame);
+    prepare::propagate_up(combine, 1e-3F, weights, frame);
+    return frame;
+}
+
+TEST(Value, AFormThatIsHardlyCheaperThanTheNextFinerOneIsNoStopForTheDefault) {
+    constexpr model::Index leaves = 8;
+    model::Model nodes_only;
+    nodes_only.nodes.resize(leaves + 1);
+    model::CostModel costs;
+    costs.combine = {0, 1, 0, 0};
+    costs.headroom = 1;
+    costs.slice_us = 0;
+    const prepare::PreparedFrame frame = leaves_with_a_dear_form(leaves, costs.combine);
+    EXPECT_EQ(frame.choices[1].rate, frame.choices[2].rate) << "off the hull: one step for the search";
+    SelectState state;
+    state.hysteresis = 1;
+    Cut cut;
+    reserve(cut, leaves + 1);
+    std::size_t max_finest = 0;
+    for (double budget_us = 81; budget_us < 820; budget_us += 3) {
+        state.reserve(nodes_only, leaves + 1);
+        find_selector(usual_selector)->run({&nodes_only, &frame, &costs, budget_us, 1.0, 0, 1000.0}, state, cut);
+        std::array<std::size_t, 3> shown{};
+        for (const CutItem& item : cut.items)
+            if (item.candidate > 0) ++shown[item.choice - frame.candidates[item.candidate].first_choice];
+        EXPECT_LE(shown[1], 1U) << "at the budget's edge alone, with " << budget_us;
+        max_finest = std::max(max_finest, shown[2]);
+    }
+    EXPECT_EQ(max_finest, leaves);
 }
 
 }  // namespace

@@ -121,12 +121,13 @@ TEST(ModelCosts, a_fit_is_nearer_to_measured_frames_than_a_table_five_times_off)
     EXPECT_GT(fit->costs.blur_loss[4], fit->costs.blur_loss[1]);
 }
 
-/// A fit on the null backend, which charges by `combine` alone.
-ModelFit fit_without_gl(const model::FrameCombine& combine) {
+/// A fit on the null backend, which charges by `combine`, and by a price of every pixel.
+ModelFit fit_without_gl(const model::FrameCombine& combine, float ns_per_pixel = 0) {
     auto model = model::read_walk(model_file());
     auto path = choose_path("", model_file(), *model, 0);
     model::CostModel costs = table(1);
     costs.combine = combine;
+    costs.ns_per_pixel = ns_per_pixel;
     costs.slice_us = 0;
     ModelFitOptions options;
     options.device.kind = gl::BackendKind::null;
@@ -156,6 +157,16 @@ TEST(ModelCosts, a_published_formula_is_exact_on_a_machine_that_charges_by_it) {
     EXPECT_LT(software.after.p99, 0.02);
     EXPECT_FALSE(software.costs.blur_measured) << "there are no pictures without GL";
     EXPECT_EQ(software.costs.blur_loss, model::CostModel{}.blur_loss);
+}
+
+TEST(ModelCosts, a_fit_finds_the_price_of_pixels_and_keeps_the_cells_where_they_are_the_machine) {
+    const ModelFit priced = fit_without_gl({200, 1, 1, 0}, 2), plain = fit_without_gl({200, 1, 1, 0});
+    EXPECT_EQ(priced.costs.ns_per_pixel, 2);
+    EXPECT_LT(priced.before.p99, 1e-3) << "the table is the machine";
+    EXPECT_LT(priced.after.p90, 0.02);
+    EXPECT_EQ(plain.costs.ns_per_pixel, 0);
+    EXPECT_LT(plain.after.p99, 0.02);
+    EXPECT_GT(error_of(priced, "sum_of_stages").p50, error_of(plain, "sum_of_stages").p50) << "formulas are by the cells";
 }
 
 TEST(ModelCosts, stopping_a_fit_is_an_error) {

@@ -52,6 +52,14 @@ TEST(Overhead, MultipliesEveryPredictedCost) {
     EXPECT_FLOAT_EQ(more.combine.frame_us(300, 700), 1.5F * costs.combine.frame_us(300, 700));
     EXPECT_FLOAT_EQ(more.combine.frame_us(700, 300), 1.5F * costs.combine.frame_us(700, 300));
     EXPECT_EQ(more.headroom, costs.headroom);
+    const model::Viewport picture{1280, 720};
+    const model::Quality smooth{4, rt::TextureFilter::bilinear, rt::TextureFilter::bilinear};
+    const model::CostModel of_samples = model::at_quality(costs, smooth), more_of_samples = model::at_quality(more, smooth);
+    const auto fixed_us = [&](const model::CostModel& of) { return of.combine_at(0.5F, picture).fixed_us; };
+    EXPECT_GT(fixed_us(of_samples), fixed_us(costs));
+    EXPECT_FLOAT_EQ(fixed_us(more_of_samples), 1.5F * fixed_us(of_samples));
+    EXPECT_FLOAT_EQ(more.enlarge_us(0.5F, picture), 1.5F * costs.enlarge_us(0.5F, picture));
+    EXPECT_FLOAT_EQ(more_of_samples.rest_pass_us(picture), 1.5F * of_samples.rest_pass_us(picture));
 }
 
 TEST(Overhead, OnTheRealClockFullDetailIsPredictedDearerAndTheRecordSaysBy) {

@@ -39,8 +39,13 @@ constexpr std::array<std::string_view, 3> kept_costs{"better", "fit", "table"};
 
 nlohmann::ordered_json to_json(const model::CostModel& costs) {
     const model::FrameCombine& k = costs.combine;
-    return {{"fixed_us", k.fixed_us},     {"submit_weight", k.submit_weight}, {"raster_weight", k.raster_weight},
-            {"max_weight", k.max_weight}, {"upper_factor", costs.headroom},   {"slice_us", costs.slice_us}};
+    return {{"fixed_us", k.fixed_us},
+            {"submit_weight", k.submit_weight},
+            {"raster_weight", k.raster_weight},
+            {"max_weight", k.max_weight},
+            {"upper_factor", costs.headroom},
+            {"slice_us", costs.slice_us},
+            {"ns_per_pixel", costs.ns_per_pixel}};
 }
 
 void print_frame(const model::FrameCombine& k) {
@@ -217,6 +222,8 @@ void print_fit(const CalibrateArguments& a, const walk::ModelFit& fit, const std
     }
     fmt::print("{}: {} frames near {}, {:.0f} s\n  fit {}\n", a.model, fit.frames, path_source, fit.seconds, file);
     print_frame(k);
+    if (fit.costs.ns_per_pixel > 0)
+        fmt::print("  raster: every rasterised pixel takes {:.2f} ns more than the table has\n", fit.costs.ns_per_pixel);
     fmt::print(
         "  the budget spends x{:.2f}; a frame's median time is {:.2f} of its best here ({} of {} frames were drawn alike)\n",
         fit.costs.headroom, fit.slowdown, fit.repeated, fit.frames);

@@ -19,16 +19,21 @@ namespace {
 
 constexpr std::uint32_t warm_up = 10;
 
-measure::ItemSums sums_of(const Engine& engine, const model::ItemCosts& item_costs, const Pose& pose) {
+/// Sums over what was drawn. Raster times are without the table's own price of a pixel, if it has one.
+void add_items(const Engine& engine, const model::ItemCosts& item_costs, const Pose& pose, measure::FrameSample& sample) {
     const model::ViewScale scale = model::make_view_scale(pose, engine.options().device.viewport);
-    measure::ItemSums sums;
     for (const gl::DrawItem& item : engine.drawn()) {
-        const model::ItemCost cost = item_costs.of(item.rep, engine.model().nodes[item.node].box, pose.position, scale);
-        sums.submit_us += static_cast<double>(cost.submit_us);
-        sums.raster_us += static_cast<double>(cost.raster_us);
-        sums.larger_us += static_cast<double>(std::max(cost.submit_us, cost.raster_us));
+        float pixels = 0;
+        model::ItemCost cost = item_costs.of(item.rep, engine.model().nodes[item.node].box, pose.position, scale, pixels);
+        pixels = std::min(pixels, model::max_pixels);
+        const float price_us = 1e-3F * engine.costs().ns_per_pixel * pixels;
+        cost.raster_us -= price_us;
+        sample.raster_us -= static_cast<double>(price_us);
+        sample.items.submit_us += static_cast<double>(cost.submit_us);
+        sample.items.raster_us += static_cast<double>(cost.raster_us);
+        sample.items.larger_us += static_cast<double>(std::max(cost.submit_us, cost.raster_us));
+        sample.pixels += static_cast<double>(pixels);
     }
-    return sums;
 }
 
 /// Drawn twice: the second finds warm caches, as a walk's frames do.
@@ -38,8 +43,10 @@ measure::FrameSample measured(Engine& engine, const model::ItemCosts& item_costs
     if (engine.options().device.kind != gl::BackendKind::null) limits.now_ns = [](void*) { return rt::monotonic_ns(); };
     engine.submit(pose, limits);
     const SubmitReport report = engine.submit(pose, limits);
-    return {static_cast<double>(report.predicted.submit_us), static_cast<double>(report.predicted.raster_us), report.finished_us,
-            sums_of(engine, item_costs, pose)};
+    measure::FrameSample sample{static_cast<double>(report.predicted.submit_us), static_cast<double>(report.predicted.raster_us),
+                                report.finished_us};
+    add_items(engine, item_costs, pose, sample);
+    return sample;
 }
 
 }  // namespace
@@ -80,10 +87,13 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     for (std::size_t i = 0; i < frame_times.frames.size(); ++i) (i % 2 == 0 ? taught : held_out).push_back(frame_times.frames[i]);
     ModelFit fit;
     fit.costs = table;
-    fit.costs.combine = measure::fit_combine(taught, table.combine);
-    fit.costs.headroom = static_cast<float>(std::max(1.0, measure::ratio(held_out, fit.costs.combine, 0.9)));
-    fit.before = measure::cost_errors(held_out, table.combine);
-    fit.after = measure::cost_errors(held_out, fit.costs.combine);
+    const measure::FrameFit found = measure::fit_frames(taught, table.combine);
+    const std::vector<measure::FrameSample> judged = measure::priced(held_out, found.ns_per_pixel);
+    fit.costs.combine = found.combine;
+    fit.costs.ns_per_pixel = found.ns_per_pixel;
+    fit.costs.headroom = static_cast<float>(std::max(1.0, measure::ratio(judged, found.combine, 0.9)));
+    fit.before = measure::cost_errors(measure::priced(held_out, table.ns_per_pixel), table.combine);
+    fit.after = measure::cost_errors(judged, found.combine);
     fit.published = measure::published_costs(taught, held_out);
     fit.frames = options.poses;
     fit.repeated = frame_times.repeated;

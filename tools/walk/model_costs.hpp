@@ -26,8 +26,8 @@ struct ModelFitOptions {
 
 /// A cost table fitted to one model.
 struct ModelFit {
-    model::CostModel costs;                         ///< the table with `combine`, `headroom` and `blur_loss` of this model
-    measure::CostErrors before, after;              ///< on the half of the frames that were not used for the fit
+    model::CostModel costs;             ///< the table with `combine`, `ns_per_pixel`, `headroom` and `blur_loss` of this model
+    measure::CostErrors before, after;  ///< on the half of the frames that were not used for the fit
     std::vector<measure::PublishedCost> published;  ///< published formulas on the same half
     std::string machine;                            ///< that drew it, as a table names its own
     std::uint32_t frames = 0;
@@ -38,7 +38,8 @@ struct ModelFit {
 };
 
 /// Draws random views near the path at random budgets, in several rounds (measure::robust_frame_times). Every other view is used
-/// for the fit, the rest to measure its error. The table's cells do not change, as they are of single items. Models differ in how
+/// for the fit, the rest to measure its error. The fit adds a price of every pixel if that predicts clearly better.
+/// The table's cells do not change, as they are of single items. Models differ in how
 /// items overlap and hide each other. The null backend charges what the table says: a fit without GL, for tests. It shows
 /// nothing, so the blur keeps the table's figures.
 Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
