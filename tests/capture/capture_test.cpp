@@ -87,8 +87,7 @@ TEST(Capture, OfSeveralSamplesKnowsWhatTheirPassesCostAtTheResolutionThatIsDrawn
         s.frame.resolution = resolution;
         s.look(region);
         s.run("threshold", 6500);
-        const Capture before =
-            take(s.input(6500), "threshold", s.state.hysteresis, {s.state.before, s.state.bought_before}, s.cut);
+        const Capture before = take(s.input(6500), "threshold", memory_of(s), s.cut);
         EXPECT_TRUE(verify(before));
         EXPECT_EQ(replay(before)->predicted_us, before.predicted_us);
         const model::FrameCombine at = s.costs.combine_at(resolution, s.frame.viewport);
