@@ -36,7 +36,7 @@ inline constexpr std::array clock_kinds = {
 };
 
 inline constexpr std::array texture_filters = {
-    Named{"auto", "bilinear on a software driver, else trilinear"},
+    Named{"auto", "trilinear; on a software driver, while all is in full detail and time is left, else bilinear"},
     Named{"bilinear", "from the nearest mip level"},
     Named{"trilinear", "blended from the two nearest mip levels; a software driver takes longer for it"},
 };

@@ -72,6 +72,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.device.rasterisers = r.rasterisers;
     options.device.samples = r.samples;
     options.device.filter = r.filter;
+    options.device.second_filter = r.filter == rt::TextureFilter::automatic;
     options.device.sky = config::colour_of(r.sky);
     options.device.null.cost_scale = r.cost_scale;
     options.device.null.noise = r.cost_noise;
