@@ -167,6 +167,7 @@ struct FilteredWalk {
     /// Returns what the selection predicts, with headroom.
     double frame(double budget_us, std::int64_t at_ns = -1) {
         bind();
+        engine->device().draws.plays();
         engine->prepare({{}, 0, 0}, 0, 0, 0, set);  // prices are of this very pose
         engine->offer_filter(set, budget_us, {});
         const double predicted_us = static_cast<double>(engine->select(set, budget_us, {}, 0).predicted_us);
