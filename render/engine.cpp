@@ -10,6 +10,7 @@
 #include "render/effects/effects.hpp"
 #include "render/engine_impl.hpp"
 #include "render/select/budget.hpp"
+#include "render/select/steps.hpp"
 #include "rt/base/check.hpp"
 
 namespace surefoot {
@@ -163,7 +164,8 @@ bool Engine::offer_filter(const prepare::PreparedFrame& prepared, double budget_
     budget.spend(static_cast<double>(more_us));
     select::Sum sum;
     sum.add(full);
-    if (!e.dwell.offer(budget.predicted_us(sum) / budget_us)) return false;
+    // Within what new steps may use. So full detail fits beside it, whatever has just come into view.
+    if (!e.dwell.offer(budget.predicted_us(sum) / (budget_us * select::fresh_share(e.state)))) return false;
     const auto value = static_cast<float>(static_cast<double>(value_share) * prepared.full_value);
     if (!e.offered.offer({select::ItemKind::filter, 1, more_us, value})) return false;
     e.filter_us = more_us;

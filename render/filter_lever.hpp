@@ -38,7 +38,8 @@ public:
     static constexpr double ample_share = 0.9;
     static constexpr std::uint32_t min_wait = 30, max_wait = 480;
 
-    /// Once a frame. share: of the budget, that full detail takes with the step. Above 1, or no number: it does not fit.
+    /// Once a frame. share: of the time for new forms, that full detail takes with the step. Above 1, or no number: it does not
+    /// fit.
     bool offer(double share);
     /// Whether the frame that it was offered to has bought it.
     void answer(bool bought);
