@@ -9,6 +9,8 @@
 #include "render/drawn_items.hpp"
 #include "render/effects/effects.hpp"
 #include "render/engine_impl.hpp"
+#include "render/select/budget.hpp"
+#include "render/select/steps.hpp"
 #include "rt/base/check.hpp"
 
 namespace surefoot {
@@ -43,6 +45,11 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->options.prepare.max_candidates = candidates;
     impl->options.prepare.max_choices =
         static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_choices, impl->model.reps.size()));
+    impl->best_filter = impl->device->filter();
+    if (impl->device->switches_filter()) {
+        impl->best_filter = rt::TextureFilter::trilinear;
+        impl->filter_costs = FilterCosts(impl->model, impl->costs);
+    }
     impl->full_depth_always = options.prepare.full_depth;
     impl->use(**selector);
     impl->state.reserve(impl->model, candidates);
@@ -65,6 +72,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
 /// A preparer's depth is fixed as it is made: full detail needs the leaves, the other selectors are spared them.
 void Engine::Impl::use(const select::SelectorEntry& entry) {
     selector = &entry.make();
+    by_budget = entry.goes_by == select::GoesBy::budget;
     const bool full_depth = full_depth_always || entry.goes_by == select::GoesBy::nothing;
     if (preparer && full_depth == options.prepare.full_depth) return;
     options.prepare.full_depth = full_depth;
@@ -103,6 +111,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     out.full_factor = apart;
     out.coarse_factor = 1.0F / apart;
     e.preparer->run(region, viewport, frame, speed_mps, turn_rps, out);
+    out.full_filter_us = e.filter_costs.any() ? e.filter_costs.full_us(out) : 0.0F;
     if (!chosen || !(hints.planned_us[0] > 0.0) || e.options.prepare.full_depth) return;
     // As Budget counts it: the fixed time, and the ends of slices.
     const double slice_end_us = static_cast<double>(e.costs.combine.submit_weight * e.costs.slice_us);
@@ -136,6 +145,58 @@ bool Engine::offer(const select::Item& item) {
     return impl_->offered.offer(item);
 }
 
+select::SelectInput Engine::Impl::input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,
+                                           double target_error_rad) const {
+    return {&model, &set, &costs, budget_us, by.factor, target_error_rad, options.slice_us, by.headroom, &offered};
+}
+
+/// The price is that of full detail, since a frame that shows less has no time for it.
+bool Engine::offer_filter(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction) {
+    constexpr float value_share = 1e-4F;  // of the picture: less than any form that is missing
+    Impl& e = *impl_;
+    e.draws.plays();
+    e.begin_offers();
+    e.filter_us = 0;
+    if (!e.by_budget || !(prepared.full_filter_us > 0.0F)) return false;
+    const model::FrameCombine combine = e.combine();
+    const model::ItemCost& full = prepared.full_cost;
+    const float more_us = combine.frame_us(full.submit_us, full.raster_us + prepared.full_filter_us) -
+                          combine.frame_us(full.submit_us, full.raster_us);
+    select::Budget budget(e.input_of(prepared, budget_us, correction, 0));
+    budget.spend(static_cast<double>(more_us));
+    select::Sum sum;
+    sum.add(full);
+    // Within what new steps may use. So full detail fits beside it, whatever has just come into view.
+    if (!e.dwell.offer(budget.predicted_us(sum) / (budget_us * select::fresh_share(e.state)))) return false;
+    const auto value = static_cast<float>(static_cast<double>(value_share) * prepared.full_value);
+    if (!e.offered.offer({select::ItemKind::filter, 1, more_us, value})) return false;
+    e.filter_us = more_us;
+    return true;
+}
+
+/// After a selection: whether it bought the second mip level. What is drawn with it takes longer, slice by slice.
+void Engine::Impl::take_filter() {
+    filtered = false;
+    if (!(filter_us > 0.0F)) return;
+    for (std::size_t i = 0; i < offered.offered().size(); ++i)
+        if (offered.offered()[i].kind == select::ItemKind::filter) filtered = cut.bought.has(i);
+    dwell.answer(filtered);
+    if (!filtered) {
+        filter_us = 0;
+        return;
+    }
+    const auto sum_of = [&](std::span<const select::CutItem> items) {
+        model::ItemCost sum;
+        for (const select::CutItem& item : items) sum += filter_costs.with(item.rep, prepared->choices[item.choice].cost);
+        return sum;
+    };
+    const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
+    for (select::Slice& slice : plan.slices) {
+        slice.cost = sum_of(order.subspan(slice.first_item, slice.item_count));
+        slice.stand_in_cost = sum_of(stand_ins.subspan(slice.first_stand_in, slice.stand_in_count));
+    }
+}
+
 bool Engine::bought(select::ItemKind kind, std::uint32_t what) const {
     const Impl& e = *impl_;
     e.draws.plays();
@@ -167,13 +228,12 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.correction = correction;
     e.begin_offers();
     e.prepay_resolution(prepared);
-    const select::SelectInput input{&e.model,           &prepared,           &e.costs,
-                                    budget_us,          correction.factor,   target_error_rad,
-                                    e.options.slice_us, correction.headroom, &e.offered};
+    const select::SelectInput input = e.input_of(prepared, budget_us, correction, target_error_rad);
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
     e.offers_used = true;
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
+    e.take_filter();
     return e.cut;
 }
 
@@ -185,14 +245,16 @@ const select::SelectState& Engine::selection_memory() const {
 void Engine::select_last() {
     impl_->draws.plays();
     impl_->use_last = true;
+    impl_->dwell.answer(false);
 }
 
-void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution) {
+void Engine::draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution, rt::TextureFilter filter) {
     gl::Device& device = *impl_->device;
     device.draws.plays();
     impl_->draws.plays();
     impl_->watch.forget();  // another picture is shown
     impl_->rest_picture.leave();
+    device.set_filter(filter == rt::TextureFilter::automatic ? impl_->best_filter : filter);
     device.begin_frame(pose, resolution);
     constexpr std::size_t chunk = 4096;  // below the device's max_items, and bounded work a slice
     for (std::size_t at = 0; at < items.size(); at += chunk) {

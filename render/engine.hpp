@@ -77,8 +77,9 @@ struct SubmitReport {
     double bought_us = 0;                               ///< of predicted_us: what they cost
     float resolution = 1;                               ///< that was drawn: a step of model::resolution_steps
     std::uint32_t samples = 1;                          ///< of a pixel, that were drawn
-    float worst_error_rad = 0;                          ///< of the drawn items, stand-ins included
-    double value = 0;  ///< share of PreparedFrame::full_value that is drawn; 0 where no prepared frame is
+    rt::TextureFilter filter = rt::TextureFilter::bilinear;
+    float worst_error_rad = 0;  ///< of the drawn items, stand-ins included
+    double value = 0;           ///< share of PreparedFrame::full_value that is drawn; 0 where no prepared frame is
     /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was
     /// drawn beside it; all else describes the shown picture.
     bool at_rest = false;
@@ -112,6 +113,9 @@ public:
 
     /// Offers something that the next select() may buy beside forms. False: refused, and counted in its cut.
     bool offer(const select::Item& item);
+    /// Offers the next select() the second mip level of textures, where frames before had ample time for it: see QualityDwell.
+    /// correction: of frames that are drawn so. False: not offered. Call it once a frame; without it, none has the second level.
+    bool offer_filter(const prepare::PreparedFrame& prepared, double budget_us, const Correction& correction);
     /// Whether the cut that the next submit() draws has it. Always false after select_last().
     [[nodiscard]] bool bought(select::ItemKind kind, std::uint32_t what) const;
     /// All that was offered to the last select(), what it prepaid included.
@@ -139,8 +143,10 @@ public:
     /// Maximum number of items in drawn() and culled() together.
     [[nodiscard]] std::size_t drawn_capacity() const;
 
-    /// Draws items without a budget, for images of reports: full_detail(), or a remembered set.
-    void draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution = 1);
+    /// Draws items without a budget, for images of reports: full_detail(), or a remembered set. `filter`: automatic is the best
+    /// that frames may have.
+    void draw_unbudgeted(const Pose& pose, std::span<const gl::DrawItem> items, float resolution = 1,
+                         rt::TextureFilter filter = rt::TextureFilter::automatic);
     /// Every visible leaf at full detail, for draw_unbudgeted; allocates.
     [[nodiscard]] std::vector<gl::DrawItem> full_detail(const Pose& pose) const;
 

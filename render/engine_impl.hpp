@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/engine.hpp"
+#include "render/filter_lever.hpp"
 #include "render/floor_watch.hpp"
 #include "render/model/view.hpp"
 #include "render/prepare/resolution.hpp"
@@ -28,6 +29,12 @@ struct Engine::Impl {
     bool full_depth_always = false;  ///< requested by the options, for every selector
     const select::Selector* selector = nullptr;
     [[no_unique_address]] ThreadRole draws;  ///< the thread that called bind(); prepare() runs on another
+    bool by_budget = true;                   ///< the selector: others buy whatever is offered
+    FilterCosts filter_costs;
+    rt::TextureFilter best_filter = rt::TextureFilter::bilinear;  ///< that frames may have
+    QualityDwell dwell GUARDED_BY(draws);
+    float filter_us GUARDED_BY(draws) = 0;    ///< that the second mip level was offered for; 0: it was not
+    bool filtered GUARDED_BY(draws) = false;  ///< the cut has it
     select::SelectState state GUARDED_BY(draws);
     select::Cut cut GUARDED_BY(draws);
     select::ItemList offered GUARDED_BY(draws);
@@ -68,7 +75,17 @@ struct Engine::Impl {
         const model::ItemCost &so_far, &next, &stand_in, &rest;
         float in_flight_us;  ///< of so_far: not finished yet
     };
+    [[nodiscard]] select::SelectInput input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,
+                                               double target_error_rad) const REQUIRES(draws);
     void begin_offers() REQUIRES(draws);
+    void take_filter() REQUIRES(draws);
+    [[nodiscard]] model::ItemCost drawn_cost(model::Index rep, const model::ItemCost& cost) const REQUIRES(draws) {
+        return filtered && !use_last ? filter_costs.with(rep, cost) : cost;
+    }
+    /// Of what was bought, the time that is spent beside the draws.
+    [[nodiscard]] double beside_us() const REQUIRES(draws) {
+        return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0);
+    }
     void prepay_resolution(const prepare::PreparedFrame& set) REQUIRES(draws);
     void report_items(SubmitReport& report) const REQUIRES(draws);
     [[nodiscard]] bool in_time(const Progression& p, const SubmitLimits& limits, double start_us) REQUIRES(draws);

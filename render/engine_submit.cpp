@@ -32,11 +32,11 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
         const prepare::Candidate& candidate = prepared->candidates[item.candidate];
         const bool finer = candidate.choice_count > 1 || candidate.child_count > 0;
         floor.add(drawn.back(), candidate.pixels, finer && item.choice == candidate.first_choice);
-        cost += choice.cost;
+        const model::ItemCost drawn_as = drawn_cost(item.rep, choice.cost);
+        cost += drawn_as;
         const bool full = model::is_full_detail(model.nodes[item.node], item.rep);
         const model::FrameCombine& combine = costs.combine;
-        const double item_us =
-            static_cast<double>(combine.frame_us(choice.cost.submit_us, choice.cost.raster_us) - combine.fixed_us);
+        const double item_us = static_cast<double>(combine.frame_us(drawn_as.submit_us, drawn_as.raster_us) - combine.fixed_us);
         (full ? report.full_us : report.coarse_us) +=
             item_us / static_cast<double>(full ? prepared->full_factor : prepared->coarse_factor);
         report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
@@ -52,7 +52,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
 bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, double start_us) {
     if (!options.in_frame_check) return true;
     const model::FrameCombine combine = this->combine();
-    const auto bought_us = static_cast<float>(use_last ? 0.0 : cut.bought.cost_us);
+    const auto bought_us = static_cast<float>(beside_us());
     const float so_far_us = combine.frame_us(p.so_far.submit_us, p.so_far.raster_us);
     const auto with = [&](const model::ItemCost& more) {
         return static_cast<double>(combine.frame_us(p.so_far.submit_us + more.submit_us, p.so_far.raster_us + more.raster_us) -
@@ -80,7 +80,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     }
     bool full = true;
     float in_flight_us = 0;
-    if (cut.bought.cost_us > 0.0) device->charge_us(cut.bought.cost_us);
+    if (beside_us() > 0.0) device->charge_us(beside_us());
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);
     for (const select::Slice& slice : plan.slices) {
         rest_stand_in.submit_us -= slice.stand_in_cost.submit_us + costs.slice_us;
@@ -96,8 +96,7 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     }
     report.predicted = so_far;
     report.value = prepared->full_value > 0.0F ? report.value / static_cast<double>(prepared->full_value) : 1.0;
-    report.predicted_us =
-        static_cast<double>(combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us()) + cut.bought.cost_us;
+    report.predicted_us = static_cast<double>(combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us()) + beside_us();
     report.other_us = report.predicted_us - report.full_us * static_cast<double>(prepared->full_factor) -
                       report.coarse_us * static_cast<double>(prepared->coarse_factor);
 }
@@ -170,7 +169,8 @@ bool Engine::Impl::submit_rest(const Pose& pose, const SubmitLimits& limits, Sub
     const bool still = limits.frame_ns >= 0 && watch.at_rest(pose, limits.frame_ns) && !device->lost();
     if (still) {
         report = last_report;
-        const RestScene scene{model, preparer->item_costs(), costs, *device, options.device.viewport, options.slice_us};
+        const RestScene scene{
+            model, preparer->item_costs(), costs, *device, options.device.viewport, options.slice_us, filter_costs, best_filter};
         if (rest_picture.frame(scene, pose, limits, correction.factor, report)) return true;
         report = {};
     } else {
@@ -192,6 +192,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.floor.begin();
     e.forecast_us = 0;
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
+    e.device->set_filter(e.filtered && !e.use_last ? e.best_filter : e.device->filter());
     e.device->begin_frame(pose, e.drawn_resolution);
     if (e.use_last) {
         e.submit_last(pose, limits, start_us, report);
@@ -209,6 +210,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.draws = stats.draws;
     report.resolution = stats.resolution;
     report.samples = stats.samples;
+    report.filter = stats.filter;
     report.floor_share = e.floor.floor_share();
     e.report_items(report);
     e.last_report = report;

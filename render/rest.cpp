@@ -160,7 +160,10 @@ bool RestPicture::frame(const RestScene& scene, const Pose& pose, const SubmitLi
     report.slices = now.slices;
     report.downgraded_slices = report.draws = 0;
     report.predicted_us = now.predicted_us;
-    if (shown_ > 0) describe(report);
+    if (shown_ > 0) {
+        describe(report);
+        report.filter = scene.filter;
+    }
     return true;
 }
 
@@ -185,6 +188,7 @@ bool RestPicture::advance(Frame& frame) {
             return sort(frame);
         case Phase::begin:
             if (!frame.pass_fits()) return false;
+            frame.scene.device.set_filter(frame.scene.filter);
             frame.scene.device.begin_rest(pose_, rest_offset_px(sample_));
             frame.drawn(frame.pass_us());
             next_ = 0;
@@ -245,7 +249,9 @@ void RestPicture::collect_node(const Frame& frame, model::Index index) {
     const model::Index rep = node.first_rep + node.rep_count - 1;
     if (!CHECK_RARE(leaves_.size() < leaves_.capacity(), "There are no more leaves than were counted")) return;
     const auto near = static_cast<float>(distance);
-    leaves_.push_back({{index, rep}, frame.scene.item_costs.of(rep, node.box, pose_.position, scale_), near, bucket_of(near)});
+    model::ItemCost cost = frame.scene.item_costs.of(rep, node.box, pose_.position, scale_);
+    if (frame.scene.filter_costs.any()) cost = frame.scene.filter_costs.with(rep, cost);
+    leaves_.push_back({{index, rep}, cost, near, bucket_of(near)});
     ++place_[leaves_.back().bucket];
     triangles_ += model.reps[rep].triangles;
     if ((model.reps[rep].effects & model::effect_blend) != 0) blended_leaves_.push_back(leaves_.back());

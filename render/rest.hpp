@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/engine.hpp"
+#include "render/filter_lever.hpp"
 #include "render/gl/device.hpp"
 #include "render/model/item_costs.hpp"
 #include "render/model/model.hpp"
@@ -49,6 +50,8 @@ struct RestScene {
     gl::Device& device;
     model::Viewport viewport;
     double slice_us = 1000;
+    const FilterCosts& filter_costs;
+    rt::TextureFilter filter;  ///< the best one: a picture at rest has the time
 };
 
 /// Belongs to the frame thread. Sized once; then nothing allocates. Each part is drawn only if its predicted cost fits the frame.

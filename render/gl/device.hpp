@@ -66,14 +66,16 @@ struct DeviceOptions {
     bool rest = false;          ///< has targets for a picture at rest
     std::uint32_t samples = 1;  ///< of a pixel: 1, 2 or 4; see Device::samples()
     rt::TextureFilter filter = rt::TextureFilter::automatic;
+    bool second_filter = false;  ///< prepares set_filter(), where `filter` is automatic and the driver is software
 };
 
 /// Counts and times of one drawn frame.
 struct FrameStats {
     std::uint32_t items = 0, draws = 0, batches = 0, state_changes = 0;
     std::uint64_t triangles = 0;
-    float resolution = 1;       ///< the step that is drawn, of model::resolution_steps
-    std::uint32_t samples = 1;  ///< Device::samples()
+    float resolution = 1;                                    ///< the step that is drawn, of model::resolution_steps
+    std::uint32_t samples = 1;                               ///< Device::samples()
+    rt::TextureFilter filter = rt::TextureFilter::bilinear;  ///< that textures are read by
 };
 
 /// A picture in memory, RGBA8.
@@ -93,7 +95,7 @@ public:
     [[nodiscard]] virtual bool software() const = 0;
     /// Samples of a pixel that frames are drawn with. Others than requested where the driver has no such number.
     [[nodiscard]] virtual std::uint32_t samples() const { return 1; }
-    /// The filter that textures are read by; never `automatic`.
+    /// The filter that textures are read by, unless set_filter() asks for the other; never `automatic`.
     [[nodiscard]] virtual rt::TextureFilter filter() const { return rt::TextureFilter::bilinear; }
     /// Uploads geometry and textures; compiles and warms up the programs of the scene's state classes, and no others. The model
     /// must not change until the last draw or the next load. Its texels may go: they are not read again.
@@ -105,7 +107,12 @@ public:
     virtual void bind() ASSERT_CAPABILITY(draws) = 0;
     virtual void release() RELEASE(draws) = 0;
 
+    /// Whether set_filter() has an effect: see DeviceOptions::second_filter.
+    [[nodiscard]] virtual bool switches_filter() const { return false; }
+
     // ---- the frame; no own allocation, no throw ----
+    /// The filter of the pictures that begin from now on. A change takes a call or two of the driver for each texture array.
+    virtual void set_filter(rt::TextureFilter filter) REQUIRES(draws) { static_cast<void>(filter); }
     /// `resolution`: share of the picture's width and height at which it is drawn, then enlarged once by finish_frame(). The step
     /// of model::resolution_steps that is not above it, or the least; NaN, zero and below mean 1.
     virtual void begin_frame(const Pose& pose, float resolution) REQUIRES(draws) = 0;

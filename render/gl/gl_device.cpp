@@ -73,6 +73,17 @@ rt::TextureFilter GlDevice::filter() const {
     return software_ ? rt::TextureFilter::bilinear : rt::TextureFilter::trilinear;
 }
 
+bool GlDevice::switches_filter() const {
+    return options_.second_filter && options_.filter == rt::TextureFilter::automatic && software_;
+}
+
+void GlDevice::set_filter(rt::TextureFilter filter) {
+    if (lost_ || !switches_filter() || filter == set_filter_) return;
+    set_filter_ = filter;
+    set_mip_levels(gl_, tables_.textures, resources_, filter == rt::TextureFilter::trilinear);
+    state_known_ = false;
+}
+
 Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
     free_resources(gl_, resources_);
     tables_ = draw::make_tables(model);
@@ -80,6 +91,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     auto resources = load_resources(gl_, model, tables_.masks, tables_.textures, programs, frame_, how);
     if (!resources) return resources.error();
     resources_ = std::move(*resources);
+    set_filter_ = filter();
     sun_direction_ = vec3(glm::normalize(model.sun_direction));
     warm_up();
     if (lost_)
@@ -107,20 +119,29 @@ void GlDevice::warm_up() {
     const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
     kinds.erase(std::unique(kinds.begin(), kinds.end(), same), kinds.end());
 
-    begin_frame(Pose{});
-    for (auto& [state, pending] : kinds) {
-        if (used_instances_ >= frame_.instances.size()) break;
-        set_blending(tables_.parts[pending.part].blended);
-        const std::uint32_t at = used_commands_;
-        write_instance(pending, used_instances_);
-        append_command(pending, used_instances_, at);
-        frame_.commands[at].index_count = std::min(3U, frame_.commands[at].index_count);
-        apply(state);
-        issue(state, at, 1);
-        ++used_instances_;
+    for (const bool second : {true, false}) {  // the filter of the first frame comes last
+        if (second && !switches_filter()) continue;
+        set_filter(second ? rt::TextureFilter::trilinear : filter());
+        begin_frame(Pose{});
+        for (auto& [state, pending] : kinds) {
+            if (used_instances_ >= frame_.instances.size()) break;
+            set_blending(tables_.parts[pending.part].blended);
+            const std::uint32_t at = used_commands_;
+            write_instance(pending, used_instances_);
+            append_command(pending, used_instances_, at);
+            frame_.commands[at].index_count = std::min(3U, frame_.commands[at].index_count);
+            apply(state);
+            issue(state, at, 1);
+            ++used_instances_;
+        }
+        set_blending(false);
+        finish_frame();
     }
-    set_blending(false);
-    finish_frame();
+    warm_up_passes();
+    stats_ = {};
+}
+
+void GlDevice::warm_up_passes() {
     // A driver may compile the enlarging pass for each size.
     for (const float resolution : model::resolution_steps) {
         begin_frame(Pose{}, resolution);
@@ -135,7 +156,6 @@ void GlDevice::warm_up() {
         if (rest_support() == RestSupport::samples) show_rest(2);
         finish_rest_frame();
     }
-    stats_ = {};
 }
 
 std::vector<std::string> GlDevice::program_listing() const {

@@ -28,6 +28,8 @@ public:
     [[nodiscard]] bool software() const override { return software_; }
     [[nodiscard]] std::uint32_t samples() const override { return samples_.samples; }
     [[nodiscard]] rt::TextureFilter filter() const override;
+    [[nodiscard]] bool switches_filter() const override;
+    void set_filter(rt::TextureFilter filter) override REQUIRES(draws);
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
     [[nodiscard]] std::string program_text(model::EffectMask mask) const override;
@@ -69,6 +71,7 @@ private:
     GlDevice(std::unique_ptr<Context> context, const DeviceOptions& options);
     Result<void> set_up() REQUIRES(draws);
     void warm_up() REQUIRES(draws);
+    void warm_up_passes() REQUIRES(draws);
     void start_picture(const Pose& pose) REQUIRES(draws);
     void draw_into(const Target& target) REQUIRES(draws);
     [[nodiscard]] const Target& drawn_into(const Target& shown, std::size_t step) const REQUIRES(draws) {
@@ -102,6 +105,7 @@ private:
     FrameBuffers frame_ GUARDED_BY(draws);
     Resources resources_;
     draw::DrawTables tables_;
+    rt::TextureFilter set_filter_ GUARDED_BY(draws) = rt::TextureFilter::bilinear;  ///< in the parameters of all textures
 
     Pose pose_ GUARDED_BY(draws);
     mat4 view_projection_ GUARDED_BY(draws){1.0F};

@@ -36,6 +36,7 @@ void GlDevice::begin_frame(const Pose& pose, float resolution) {
     step_ = model::resolution_step(resolution);
     stats_.resolution = model::resolution_steps[step_];
     stats_.samples = samples();
+    stats_.filter = set_filter_;
     if (lost_) return;
     draw_into(drawn_into(targets_.steps[step_], step_));
     clear_target();

@@ -23,6 +23,8 @@ public:
         const float plain_us = costs_.rest_pass_us(options.viewport);
         costs_ = model::at_quality(costs_, gl::quality_of(*this, costs_));
         null_.rest_pass_us += static_cast<double>(costs_.rest_pass_us(options.viewport) - plain_us);
+        if (switches_filter())
+            other_grids_ = model::at_quality(costs_, {1, rt::TextureFilter::trilinear, rt::TextureFilter::bilinear}).grids;
     }
 
     [[nodiscard]] std::string renderer() const override { return "null"; }
@@ -31,6 +33,15 @@ public:
     [[nodiscard]] rt::TextureFilter filter() const override {
         if (options_.filter != rt::TextureFilter::automatic) return options_.filter;
         return costs_.filter == rt::TextureFilter::automatic ? rt::TextureFilter::bilinear : costs_.filter;
+    }
+    [[nodiscard]] bool switches_filter() const override {
+        return options_.second_filter && options_.filter == rt::TextureFilter::automatic &&
+               filter() == rt::TextureFilter::bilinear;
+    }
+    void set_filter(rt::TextureFilter filter) override REQUIRES(draws) {
+        if (!switches_filter() || filter == set_filter_) return;
+        set_filter_ = filter;
+        std::swap(costs_.grids, other_grids_);  // of equal layout, so item_costs_ stays right
     }
     Result<void> load(const model::Model& model, const ProgramFactory& programs) override REQUIRES(draws);
     [[nodiscard]] std::vector<std::string> program_listing() const override;
@@ -81,6 +92,8 @@ private:
     DeviceOptions options_;
     NullOptions null_;
     model::CostModel costs_;
+    std::vector<model::CostGrid> other_grids_;  ///< of the filter that is not set
+    rt::TextureFilter set_filter_ GUARDED_BY(draws) = filter();
     Random random_;
     struct LoadedProgram {
         model::EffectMask mask;
@@ -126,6 +139,7 @@ void NullDevice::begin_frame(const Pose& pose, float resolution) {
     stats_ = {};
     stats_.resolution = model::resolution_steps[model::resolution_step(resolution)];
     stats_.samples = samples();
+    stats_.filter = set_filter_;
     scale_ = model::scaled(model::make_view_scale(pose, options_.viewport), stats_.resolution);
     submit_us_ = raster_us_ = other_us_ = 0;
     slices_ = blended_ = 0;

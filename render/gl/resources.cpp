@@ -13,6 +13,8 @@ namespace surefoot::gl {
 
 namespace {
 
+GLint mip_filter(bool trilinear) { return trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST; }
+
 /// Uploads an array of textures of equal size, levels and wrap.
 Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw::TextureArray& array, bool trilinear) {
     GLint largest = 0;
@@ -38,7 +40,7 @@ Result<GLuint> upload_array(const Api& gl, const model::Model& model, const draw
             byte += 4ULL * w * h;
         }
     }
-    const GLint smaller = levels == 1 ? GL_LINEAR : trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST;
+    const GLint smaller = levels == 1 ? GL_LINEAR : mip_filter(trilinear);
     const GLint wrap = array.clamp ? GL_CLAMP_TO_EDGE : GL_REPEAT;
     gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, smaller);
     gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -123,6 +125,14 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
         resources.programs.push_back(std::move(*program));
     }
     return made.keep();
+}
+
+void set_mip_levels(const Api& gl, const draw::TextureLayout& layout, const Resources& resources, bool two) {
+    for (std::size_t i = 0; i < resources.textures.size(); ++i) {
+        if (layout.arrays[i].levels < 2) continue;
+        gl.BindTexture(GL_TEXTURE_2D_ARRAY, resources.textures[i]);
+        gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, mip_filter(two));
+    }
 }
 
 void free_resources(const Api& gl, Resources& resources) {

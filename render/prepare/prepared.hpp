@@ -79,6 +79,7 @@ struct PreparedFrame {
     std::vector<Candidate> candidates;  ///< reserved at start; never grows after; empty: nothing is visible
     std::vector<Choice> choices;
     model::ItemCost full_cost;                 ///< of the finest choice of every visible leaf
+    float full_filter_us = 0;                  ///< raster time that two mip levels add to full_cost; 0: they are not bought
     double full_value = 0;                     ///< sum of their values; 0: not computed
     ValueCurve curve;                          ///< of the best cuts
     float full_factor = 1, coarse_factor = 1;  ///< in the costs of full detail and of all other forms

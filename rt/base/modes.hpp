@@ -22,8 +22,8 @@ enum class LatePolicy : std::uint8_t { lock, floating };
 enum class ClockKind : std::uint8_t { real, virtual_time };
 
 /// How textures are read where they are drawn smaller than they are. bilinear: from the nearest mip level. trilinear: from the
-/// two nearest ones, blended.
-enum class TextureFilter : std::uint8_t { automatic, bilinear, trilinear };
+/// two nearest ones, blended. adaptive: frame by frame, where a driver takes longer for two.
+enum class TextureFilter : std::uint8_t { automatic, bilinear, trilinear, adaptive };
 
 /// In the enums' order.
 inline constexpr std::array late_policies = {
@@ -39,6 +39,7 @@ inline constexpr std::array texture_filters = {
     Named{"auto", "bilinear on a software driver, else trilinear"},
     Named{"bilinear", "from the nearest mip level"},
     Named{"trilinear", "blended from the two nearest mip levels; a software driver takes longer for it"},
+    Named{"adaptive", "trilinear; on a software driver only while all is in full detail and time is left"},
 };
 
 constexpr std::string_view name_of(LatePolicy late) { return late_policies[static_cast<std::size_t>(late)].name; }

@@ -1,4 +1,4 @@
-// Online corrections by state of the picture: predictions are wrong in another way at another resolution.
+// Online corrections by state of the picture: predictions are wrong in another way at another resolution, or by another filter.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace surefoot::rt {
 /// After that it keeps its own. So a return to a state finds the figures that it was left with.
 class Corrections {
 public:
-    static constexpr std::size_t states = 5;
+    static constexpr std::size_t states = 10;
 
     /// As CostController::update(). States above the last are the last.
     void update(std::size_t state, double predicted_us, double actual_us) {
@@ -23,6 +23,9 @@ public:
         last_ = state;
         of_[state].update(predicted_us, actual_us);
     }
+    /// What the states from `first` on have learnt is old: they start again as if no frame had been drawn in them. The last
+    /// frame's state must not be one of them.
+    void forget_from(std::size_t first) { std::fill(known_.begin() + std::min(first, states), known_.end(), false); }
     [[nodiscard]] const CostController& of(std::size_t state) const {
         state = std::min(state, states - 1);
         return of_[known_[state] ? state : last_];

@@ -113,6 +113,38 @@ TEST(Allocation, a_frame_with_several_samples_a_pixel_makes_none_of_its_own) {
     EXPECT_EQ(allocations_of_a_frame(**device, scene), 0);
 }
 
+TEST(Allocation, a_change_of_the_filter_makes_none_and_compiles_nothing) {
+    if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
+    test::SmallModel small;
+    model::Material picture = test::plain(1, 1, 1, 1, model::effect_texture);
+    picture.texture = small.texture({255, 0, 0, 255}, {0, 0, 255, 255}, 64);
+    model::Material leaf = picture;
+    leaf.effects |= model::effect_alpha_mask;
+    const auto a = small.material(picture), b = small.material(leaf);
+    Counted scene;
+    for (int i = 0; i < 100; ++i) {
+        const auto node = small.square(i % 2 == 0 ? a : b, test::at(0.02 * i - 1, 0, 8.0 - 0.01 * i), 0.1F);
+        scene.items.push_back({node, node - 1});
+    }
+    scene.model = small.finish();
+    gl::DeviceOptions options;
+    options.viewport = {64, 64};
+    options.second_filter = true;
+    auto device = gl::open_device(options);
+    if (!device) GTEST_SKIP() << device.error().text();
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    if (!(*device)->switches_filter()) GTEST_SKIP() << "no software driver";
+    counted = 0;
+    counting = true;
+    for (int i = 0; i < 6; ++i) {
+        (*device)->set_filter(i % 3 == 0 ? rt::TextureFilter::trilinear : rt::TextureFilter::bilinear);
+        frame(**device, scene.items, i < 3 ? 1 : 0.5F);
+    }
+    counting = false;
+    EXPECT_EQ(counted, 0);
+}
+
 TEST(Allocation, a_picture_at_rest_makes_none_and_compiles_nothing) {
     if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
     const auto scene = many_squares();

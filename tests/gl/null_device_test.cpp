@@ -150,6 +150,39 @@ TEST(NullDevice, takes_a_table_as_measured_by_the_filter_that_it_names) {
     EXPECT_GT(charged(TextureFilter::automatic, TextureFilter::trilinear), table) << "a table of before is a software driver's";
 }
 
+TEST(NullDevice, charges_the_filter_that_is_set_from_picture_to_picture) {
+    test::SmallModel small;
+    const auto textured = small.material(plain(1, 1, 1, 1, model::effect_texture));
+    const auto bare = small.material(plain(1, 1, 1));
+    Scene scene{{}, {}};
+    for (const auto material : {textured, bare}) {
+        const auto node = small.square(material, at(0, 0, -3));
+        scene.items.push_back({node, node - 1});
+    }
+    scene.model = small.finish();
+    const model::CostModel costs = model::default_costs();
+    gl::NullOptions null;
+    null.costs = &costs;
+    const auto charged = [&](gl::DeviceOptions how, std::initializer_list<rt::TextureFilter> filters) {
+        auto device = gl::open_null_device(how, null);
+        EXPECT_TRUE(device.ok());
+        (*device)->draws.plays();
+        EXPECT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+        for (const auto filter : filters) (*device)->set_filter(filter);
+        return charge_of(**device, scene, 1);
+    };
+    using F = rt::TextureFilter;
+    gl::DeviceOptions both, trilinear;
+    both.second_filter = true;
+    trilinear.filter = F::trilinear;
+    const double one = charged({}, {}), two = charged(trilinear, {});
+    EXPECT_GT(two, one);
+    EXPECT_EQ(charged(both, {}), one);
+    EXPECT_EQ(charged(both, {F::trilinear}), two);
+    EXPECT_EQ(charged(both, {F::trilinear, F::bilinear}), one);
+    EXPECT_EQ(charged({}, {F::trilinear}), one) << "a device that was not prepared for it keeps its filter";
+}
+
 // Near, and of two state classes: the virtual clock is what prepare predicts, to the bit.
 TEST(NullDevice, charges_exactly_what_prepare_predicts_of_parts) {
     SmallModel small;

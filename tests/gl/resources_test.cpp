@@ -138,6 +138,28 @@ TEST_F(ResourceObjects, a_driver_without_samples_still_opens_and_says_what_it_dr
     }
 }
 
+TEST_F(ResourceObjects, a_change_of_the_filter_takes_two_calls_for_each_array_with_mip_levels) {
+    static int calls, blended;
+    calls = blended = 0;
+    gl::Api api = test::fake_api();
+    api.BindTexture = [](GLenum, GLuint) { ++calls; };
+    api.TexParameteri = [](GLenum, GLenum what, GLint value) {
+        ++calls;
+        blended += what == GL_TEXTURE_MIN_FILTER && value == GL_LINEAR_MIPMAP_LINEAR ? 1 : 0;
+    };
+    draw::TextureLayout layout;
+    layout.arrays.resize(3);
+    for (const auto& [i, levels] : {std::pair{0U, 4U}, {1U, 1U}, {2U, 7U}}) layout.arrays[i].levels = levels;
+    gl::Resources resources;
+    resources.textures = {11, 12, 13};
+    gl::set_mip_levels(api, layout, resources, true);
+    EXPECT_EQ(calls, 4);
+    EXPECT_EQ(blended, 2);
+    gl::set_mip_levels(api, layout, resources, false);
+    EXPECT_EQ(calls, 8);
+    EXPECT_EQ(blended, 2);
+}
+
 TEST_F(ResourceObjects, fewer_samples_are_tried_where_more_do_not_fit_and_nothing_is_left_of_them) {
     FakeGl::get().bad_framebuffer = 3;  // of those with four
     auto targets = gl::make_sample_targets(test::fake_api(), {64, 64}, 4);

@@ -202,6 +202,24 @@ TEST(Filter, trilinear_blends_two_mip_levels_and_bilinear_shows_one) {
     const int nearest = middle(rt::TextureFilter::bilinear, drawn);
     EXPECT_EQ(drawn, rt::TextureFilter::bilinear);
     EXPECT_TRUE(nearest == 0 || nearest == 255) << nearest;
+    gl::DeviceOptions options;
+    options.viewport = samples_size;
+    options.second_filter = true;
+    const auto device = opened(scene, options);
+    device->draws.plays();
+    if (device->switches_filter()) {
+        EXPECT_EQ(device->filter(), rt::TextureFilter::bilinear);
+        for (const auto filter : {rt::TextureFilter::trilinear, rt::TextureFilter::bilinear, rt::TextureFilter::trilinear}) {
+            device->bind();
+            device->set_filter(filter);
+            const bool two = filter == rt::TextureFilter::trilinear;
+            EXPECT_EQ(red_at(frame_of(*device, scene), 80, 48), two ? blended : nearest) << "from picture to picture";
+            device->draws.plays();
+            EXPECT_EQ(device->stats().filter, filter);
+        }
+    }
+    options.second_filter = false;
+    EXPECT_FALSE(opened(scene, options)->switches_filter());
     const int automatic = middle(rt::TextureFilter::automatic, drawn);
     EXPECT_NE(drawn, rt::TextureFilter::automatic);
     EXPECT_EQ(automatic, drawn == rt::TextureFilter::trilinear ? blended : nearest);

@@ -165,12 +165,12 @@ TEST(Json, HasExactlyTheKeysOfTheContract) {
     const auto json = nlohmann::json::parse(to_json(s));
     using Keys = std::set<std::string>;
     EXPECT_EQ(keys_of(json),
-              (Keys{"frames",      "slots",      "skipped",   "misses",         "own_misses",   "miss_causes",
-                    "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age", "budget_ms",
-                    "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",   "switches_per_frame",
-                    "cut_hash",    "steal_ms",   "rt",        "control",        "threads",      "calibrated",
-                    "input",       "picture",    "unused_ms", "coarse_frames",  "floor_frames", "cost_scale",
-                    "resolution",  "rest",       "samples",   "filter"}));
+              (Keys{"frames",      "slots",      "skipped",   "misses",         "own_misses",      "miss_causes",
+                    "frame_ms",    "wake_us",    "select_us", "prepare_cpu_us", "prepared_age",    "budget_ms",
+                    "budget_used", "cost_error", "accuracy",  "triangles",      "downgrades",      "switches_per_frame",
+                    "cut_hash",    "steal_ms",   "rt",        "control",        "threads",         "calibrated",
+                    "input",       "picture",    "unused_ms", "coarse_frames",  "floor_frames",    "cost_scale",
+                    "resolution",  "rest",       "samples",   "filter",         "trilinear_frames"}));
     EXPECT_EQ(keys_of(json["rest"]), (Keys{"frames", "full_detail_frames", "samples", "full_detail_ms"}));
     for (const auto* tail : {"frame_ms", "wake_us", "select_us", "prepare_cpu_us"})
         EXPECT_EQ(keys_of(json[tail]), (Keys{"p50", "p99", "p999", "max"})) << tail;
@@ -208,6 +208,19 @@ TEST(Summary, SamplesAndFilterAreTheWalks) {
     EXPECT_EQ(json["samples"]["drawn"], 2);
     EXPECT_EQ(json["samples"]["as_requested"], false);
     EXPECT_EQ(json["filter"], "trilinear");
+}
+
+TEST(Summary, CountsTheFramesThatBoughtTheSecondMipLevel) {
+    std::vector<rt::FrameRecord> frames = good_frames(5);
+    WalkSummary s;
+    summarize(frames, period_ns, s);
+    EXPECT_EQ(to_table(s, false).find("trilinear"), std::string::npos) << "nothing to say of none";
+    frames[1].filter = frames[2].filter = rt::TextureFilter::trilinear;
+    summarize(frames, period_ns, s);
+    EXPECT_NE(to_table(s, false).find("trilinear in 2 frames of 5"), std::string::npos) << to_table(s, false);
+    const auto json = nlohmann::json::parse(to_json(s));
+    EXPECT_EQ(json["filter"], "bilinear") << "of the last frame";
+    EXPECT_EQ(json["trilinear_frames"], 2);
 }
 
 TEST(Summary, ResolutionIsTheMeanAndTheLeastOfTheFrames) {

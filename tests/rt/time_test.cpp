@@ -166,6 +166,14 @@ TEST(Corrections, EachStateKeepsItsOwnAndStartsWithTheLastOnes) {
     EXPECT_NEAR(c.of(0).factor(), 1.5, 1e-9) << "kept, although 100 frames of another state came between";
     EXPECT_EQ(c.of(2).factor(), c.of(4).factor()) << "the last frame's state is 4";
     EXPECT_EQ(c.of(99).factor(), c.of(4).factor()) << "states above the last are the last";
+    for (int i = 0; i < 100; ++i) c.update(5, 100, 130);
+    EXPECT_NEAR(c.of(0).factor(), 1.5, 1e-9) << "a wrong price of one state spoils no other";
+    EXPECT_NEAR(c.of(4).factor(), 0.8, 1e-9);
+    c.update(4, 100, 80);
+    EXPECT_NEAR(c.of(5).factor(), 1.3, 1e-9);
+    c.forget_from(5);
+    EXPECT_EQ(c.of(5).factor(), c.of(4).factor()) << "what is forgotten starts again as the last state";
+    EXPECT_NEAR(c.of(0).factor(), 1.5, 1e-9);
 }
 
 TEST(Overshoot, IsTheUpperTwentiethOfRecentFrames) {

@@ -22,7 +22,7 @@ TEST(Snapshots, HoldTheFrameBeforeWithWhatWasOutsideItsView) {
     walk::SnapshotStore store(3, 2, 10, true);
     for (model::Index frame = 0; frame < 9; ++frame) {
         const Items drawn{{frame, 0}}, culled{{frame + 100, 0}};
-        store.remember(frame, 0, {}, 0, 1, 0, drawn, culled);
+        store.remember(frame, 0, {}, 0, 1, rt::TextureFilter::bilinear, 0, drawn, culled);
     }
     ASSERT_EQ(store.used(), 2U);
     EXPECT_TRUE(store.snapshots()[0].last_items.empty()) << "nothing comes before the first";
@@ -33,11 +33,13 @@ TEST(Snapshots, HoldTheFrameBeforeWithWhatWasOutsideItsView) {
 
 TEST(Snapshots, OfEveryFrameHoldTheFrameBeforeToo) {
     walk::SnapshotStore store(1, 2, 10, true);
-    for (model::Index frame = 0; frame < 4; ++frame) store.remember(frame, 0, {}, 0, 1, 0, Items{{frame, 0}});
+    for (model::Index frame = 0; frame < 4; ++frame)
+        store.remember(frame, 0, {}, 0, 1, rt::TextureFilter::bilinear, 0, Items{{frame, 0}});
     EXPECT_TRUE(store.snapshots()[0].last_items.empty());
     EXPECT_EQ(pairs_of(store.snapshots()[1].last_items), (Pairs{{0, 0}}));
     walk::SnapshotStore without(1, 2, 10);
-    for (model::Index frame = 0; frame < 4; ++frame) without.remember(frame, 0, {}, 0, 1, 0, Items{{frame, 0}});
+    for (model::Index frame = 0; frame < 4; ++frame)
+        without.remember(frame, 0, {}, 0, 1, rt::TextureFilter::bilinear, 0, Items{{frame, 0}});
     EXPECT_TRUE(without.snapshots()[1].last_items.empty());
 }
 

@@ -94,6 +94,7 @@ ordered_json totals_json(const Figures& f) {
     j["stopped_frames"] = f.stopped_frames;
     j["floor_bound_frames"] = f.floor_frames;
     j["rest_frames"] = f.rest_frames;
+    j["trilinear_frames"] = f.trilinear_frames;
     j["stolen_ms"] = static_cast<double>(f.stolen_ns) * 1e-6;
     j["preempted_ms"] = static_cast<double>(f.preempted_ns) * 1e-6;
     return j;

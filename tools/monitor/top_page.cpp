@@ -104,6 +104,9 @@ void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::stri
     if (drawn < 1)
         lines.push_back(fmt::format("resolution {:.1f} % of the sides, least {:.1f} %",
                                     100 * number_at(s, "/recent/resolution/mean"), 100 * drawn));
+    if (number_at(s, "/totals/trilinear_frames") > 0)
+        lines.push_back(fmt::format("filter   {}, {} frames with two mip levels", text_at(s, "/now/filter"),
+                                    grouped(number_at(s, "/totals/trilinear_frames"))));
     if (number_at(s, "/now/samples") > 1) lines.push_back(fmt::format("samples {:.0f} a pixel", number_at(s, "/now/samples")));
 }
 

@@ -127,6 +127,7 @@ std::string to_json(const WalkSummary& s) {
         {"resolution", {{"mean", rounded(s.resolution_mean)}, {"min", rounded(s.resolution_min)}}},
         {"samples", {{"drawn", s.samples}, {"as_requested", !s.other_samples}}},
         {"filter", rt::name_of(s.filter)},
+        {"trilinear_frames", s.trilinear_frames},
         {"rest",
          {{"frames", s.rest_frames},
           {"full_detail_frames", s.rested_frames},

@@ -138,8 +138,9 @@ std::string tiles(const WalkSummary& s) {
     if (s.samples > 1 || s.other_samples)
         out += tile("Samples", fmt::format("{}", s.samples), "a pixel",
                     s.other_samples ? "the driver lacks the requested number" : "edges are smoothed");
-    if (s.filter == rt::TextureFilter::trilinear)
-        out += tile("Filter", std::string(rt::name_of(s.filter)), "", "two mip levels of each texture are blended");
+    if (s.trilinear_frames > 0)
+        out += tile("Filter", std::string(rt::name_of(rt::TextureFilter::trilinear)), "",
+                    fmt::format("two mip levels of each texture are blended in {} frames of {}", s.trilinear_frames, s.frames));
     return out + "</div>\n";
 }
 

@@ -95,10 +95,11 @@ struct WalkSummary {
     std::uint64_t rest_frames = 0, rested_frames = 0;  ///< that drew no cut; those of them that showed full detail
     std::uint32_t rest_samples = 0;                    ///< of the smoothest picture at rest
     double rest_ms = 0;  ///< longest time from the first frame of a rest until full detail was shown; 0: it never was
-    double resolution_mean = 1, resolution_min = 1;  ///< share of the picture's sides at which frames were drawn
-    std::uint32_t samples = 1;                       ///< of a pixel, as the last frame was drawn
-    bool other_samples = false;                      ///< the driver lacks the requested number
-    rt::TextureFilter filter = rt::TextureFilter::bilinear;
+    double resolution_mean = 1, resolution_min = 1;          ///< share of the picture's sides at which frames were drawn
+    std::uint32_t samples = 1;                               ///< of a pixel, as the last frame was drawn
+    bool other_samples = false;                              ///< the driver lacks the requested number
+    rt::TextureFilter filter = rt::TextureFilter::bilinear;  ///< as the last frame was drawn
+    std::uint64_t trilinear_frames = 0;
     std::uint64_t coarse_frames = 0;  ///< with a slice that the in-frame check drew coarser
     std::uint64_t floor_frames = 0;   ///< over half of the picture fell to floor forms, although the cut before would have fitted
     Quantiles unused_ms;              ///< time between the end of drawing and the deadline, of frames with a value below 0.99

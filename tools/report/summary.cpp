@@ -102,12 +102,14 @@ void resolution_figures(std::span<const FrameRecord* const> frames, WalkSummary&
     s.resolution_min = q.min;
 }
 
-/// The same in all frames of a walk.
+/// Samples are the same in all frames of a walk.
 void quality_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
     const FrameRecord& last = frames.empty() ? FrameRecord{} : *frames.back();
     s.samples = last.samples;
     s.other_samples = last.other_samples;
     s.filter = last.filter;
+    s.trilinear_frames = static_cast<std::uint64_t>(std::count_if(
+        frames.begin(), frames.end(), [](const FrameRecord* f) { return f->filter == rt::TextureFilter::trilinear; }));
 }
 
 void rest_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {

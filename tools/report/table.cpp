@@ -54,7 +54,9 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
     if (s.samples > 1 || s.other_samples)
         table.row("samples",
                   fmt::format("{} a pixel{}", s.samples, s.other_samples ? ": the driver lacks the requested number" : ""));
-    if (s.filter == rt::TextureFilter::trilinear) table.row("filter", std::string(rt::name_of(s.filter)));
+    if (s.trilinear_frames > 0)
+        table.row("filter",
+                  fmt::format("{} in {} frames of {}", rt::name_of(rt::TextureFilter::trilinear), s.trilinear_frames, s.frames));
     if (s.rest_frames > 0)
         table.row("at rest", fmt::format("{} frames, {} of them in full detail after at most {:.0f} ms, {} samples",
                                          s.rest_frames, s.rested_frames, s.rest_ms, s.rest_samples));

@@ -32,10 +32,11 @@ SnapshotStore::SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std
 }
 
 void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
-                             std::uint64_t triangles, std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled) {
+                             rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
+                             std::span<const gl::DrawItem> culled) {
     if (every_ == 0 || used_ == snapshots_.size()) return;
     if (frame % every_ != 0) {
-        if ((frame + 1) % every_ == 0) remember_last(drawn, culled);
+        if ((frame + 1) % every_ == 0) remember_last(filter, drawn, culled);
         return;
     }
     FrameSnapshot& snapshot = snapshots_[used_];
@@ -45,16 +46,19 @@ void SnapshotStore::remember(std::uint64_t frame, double time_s, const Pose& pos
     snapshot.pose = pose;
     snapshot.accuracy = accuracy;
     snapshot.resolution = resolution;
+    snapshot.filter = filter;
     snapshot.triangles = triangles;
     snapshot.items.assign(drawn.begin(), drawn.end());
     ++used_;
-    if (every_ == 1 && used_ < snapshots_.size()) remember_last(drawn, culled);
+    if (every_ == 1 && used_ < snapshots_.size()) remember_last(filter, drawn, culled);
 }
 
-void SnapshotStore::remember_last(std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled) {
+void SnapshotStore::remember_last(rt::TextureFilter filter, std::span<const gl::DrawItem> drawn,
+                                  std::span<const gl::DrawItem> culled) {
     if (!with_last_) return;
     std::vector<gl::DrawItem>& last = snapshots_[used_].last_items;
     if (!CHECK_RARE(drawn.size() + culled.size() <= last.capacity(), "A snapshot has room for a whole cut")) return;
+    snapshots_[used_].last_filter = filter;
     last.assign(drawn.begin(), drawn.end());
     last.insert(last.end(), culled.begin(), culled.end());
 }
@@ -120,14 +124,14 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     if (engine.options().device.kind == gl::BackendKind::null) return out;  // nothing to look at
 
     engine.device().draws.plays();
-    engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution);
+    engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
     auto walk = engine.device().read_pixels();
     if (!walk) return walk.error();
     engine.draw_unbudgeted(snapshot.pose, full);
     auto reference = engine.device().read_pixels();
     if (!reference) return reference.error();
     if (!snapshot.last_items.empty()) {
-        engine.draw_unbudgeted(snapshot.pose, last_cut_at(engine.model(), snapshot));
+        engine.draw_unbudgeted(snapshot.pose, last_cut_at(engine.model(), snapshot), 1, snapshot.last_filter);
         auto before = engine.device().read_pixels();
         if (!before) return before.error();
         out.pops_compared = true;
@@ -163,7 +167,7 @@ Result<void> write_snaps(Engine& engine, const SnapshotStore& store, const std::
         }
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(store.used()));
         const FrameSnapshot& snapshot = store.snapshots()[i];
-        engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution);
+        engine.draw_unbudgeted(snapshot.pose, snapshot.items, snapshot.resolution, snapshot.filter);
         auto image = engine.device().read_pixels();
         if (!image) return image.error();
         auto written = image::write_png(fmt::format("{}/{:05}.png", dir, i), image->width, image->height, image->rgba);

@@ -19,6 +19,7 @@ struct FrameSnapshot {
     double time_s = 0;
     Pose pose;
     float accuracy = 0, resolution = 1;
+    rt::TextureFilter filter = rt::TextureFilter::automatic, last_filter = rt::TextureFilter::automatic;  ///< of last_items
     std::uint64_t triangles = 0;
     std::vector<gl::DrawItem> items;
     std::vector<gl::DrawItem> last_items;  ///< the frame before's, those outside its view included; empty: none was kept
@@ -36,13 +37,14 @@ public:
     /// frame before each.
     SnapshotStore(std::uint64_t every, std::size_t max_snapshots, std::size_t max_items, bool with_last = false);
     /// On the frame thread, after each frame. Frames that are not due, or beyond the store, are passed over.
-    void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution, std::uint64_t triangles,
-                  std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled = {});
+    void remember(std::uint64_t frame, double time_s, const Pose& pose, float accuracy, float resolution,
+                  rt::TextureFilter filter, std::uint64_t triangles, std::span<const gl::DrawItem> drawn,
+                  std::span<const gl::DrawItem> culled = {});
     [[nodiscard]] const std::vector<FrameSnapshot>& snapshots() const { return snapshots_; }
     [[nodiscard]] std::size_t used() const { return used_; }
 
 private:
-    void remember_last(std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled);
+    void remember_last(rt::TextureFilter filter, std::span<const gl::DrawItem> drawn, std::span<const gl::DrawItem> culled);
 
     std::uint64_t every_;
     bool with_last_;

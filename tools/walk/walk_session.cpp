@@ -71,7 +71,8 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.device.viewport = {r.width, r.height, r.shift_x, r.shift_y};
     options.device.rasterisers = r.rasterisers;
     options.device.samples = r.samples;
-    options.device.filter = r.filter;
+    options.device.filter = r.filter == rt::TextureFilter::adaptive ? rt::TextureFilter::automatic : r.filter;
+    options.device.second_filter = r.filter == rt::TextureFilter::adaptive;
     options.device.sky = config::colour_of(r.sky);
     options.device.null.cost_scale = r.cost_scale;
     options.device.null.noise = r.cost_noise;

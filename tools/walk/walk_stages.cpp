@@ -10,7 +10,10 @@
 namespace surefoot::walk {
 
 namespace {
-static_assert(rt::Corrections::states == model::resolution_steps.size(), "A correction for each resolution");
+constexpr std::size_t steps = model::resolution_steps.size();
+static_assert(rt::Corrections::states == 2 * steps, "A correction for each resolution, with one mip level and with two");
+
+std::size_t state_of(float resolution, bool filtered) { return model::resolution_step(resolution) + (filtered ? steps : 0); }
 
 constexpr double max_margin_share = 0.2;  // of the limit: more would only draw everything coarse
 
@@ -54,10 +57,10 @@ void WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
     if (fault == Fault::context_lost && options_.lost != nullptr) options_.lost->store(true);
 }
 
-Correction WalkStages::correction_at(float resolution) const {
+Correction WalkStages::correction_at(float resolution, bool filtered) const {
     const float of_table = engine_.costs().headroom;
     if (!request_.correct_costs) return {1.0, static_cast<double>(of_table)};
-    const rt::CostController& controller = corrections_.of(model::resolution_step(resolution));
+    const rt::CostController& controller = corrections_.of(state_of(resolution, filtered));
     return {controller.factor(), controller.headroom(static_cast<double>(of_table))};
 }
 
@@ -95,7 +98,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.time_ns = record.due_ns;
     now_.hints = {};
     for (std::size_t step = 0; step < now_.hints.planned_us.size(); ++step) {
-        const Correction correction = correction_at(model::resolution_steps[step]);
+        const Correction correction = correction_at(model::resolution_steps[step], filtered_);
         now_.hints.planned_us[step] = planned_us() / (correction.factor * correction.headroom);
     }
     if (request_.correct_costs) now_.hints.form_ratio = forms_.ratio();
@@ -137,8 +140,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     const std::uint64_t age = now_.frame - std::min(set.frame, now_.frame);
     record.prepared_age = static_cast<std::uint32_t>(age);
     record.cost_scale = static_cast<float>(request_.cost_scale);
-    const Correction correction = correction_at(set.resolution);
-    record.correction = static_cast<float>(correction.factor);
+    record.correction = static_cast<float>(correction_at(set.resolution, filtered_).factor);
     record.budget_us = static_cast<float>(planned_us());
     coarse_ = age > rt::oldest_prepared || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
@@ -147,6 +149,9 @@ void WalkStages::select(rt::FrameRecord& record) {
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
     const double budget_us = std::max(0.0, planned_us() - spent_us);
+    const bool filtered = engine_.offer_filter(set, budget_us, correction_at(set.resolution, true));
+    const Correction correction = correction_at(set.resolution, filtered);
+    record.correction = static_cast<float>(correction.factor);
     const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
     record.floor_us = cut.floor_us;
     record.floor_binds = cut.floor_binds;
@@ -219,6 +224,18 @@ double WalkStages::cost_factor(const rt::FrameRecord& record, double actual_us) 
 /// submit() has waited for the last fence and presented.
 void WalkStages::finish(rt::FrameRecord& record) { inject(FramePhase::finish, record); }
 
+/// What a frame that drew a selected cut says of predictions.
+void WalkStages::learn(double actual_us) {
+    // The correction is of the machine's own figures: it must not take back an overhead that the user asked for.
+    const double overhead = virtual_clock_ ? 1.0 : request_.cost_scale;
+    const bool had_filter = filtered_;
+    filtered_ = engine_.device().switches_filter() && report_.filter == rt::TextureFilter::trilinear;
+    corrections_.update(state_of(report_.resolution, filtered_), report_.predicted_us / overhead, actual_us);
+    if (had_filter && !filtered_) corrections_.forget_from(steps);  // until it is bought again, the machine may be another
+    if (!filtered_)  // all is in full detail then: nothing to compare, and another price may be wrong
+        forms_.update(report_.full_us / overhead, report_.coarse_us / overhead, report_.other_us / overhead, actual_us);
+}
+
 void WalkStages::account(rt::FrameRecord& record) {
     record.slices = report_.slices;
     record.downgraded_slices = report_.downgraded_slices;
@@ -228,7 +245,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.resolution = report_.resolution;
     record.samples = report_.samples;
     record.other_samples = report_.samples != request_.samples;
-    record.filter = engine_.device().filter();
+    record.filter = report_.filter;
     record.bought_items = report_.bought_items;
     record.refused_items = report_.refused_items;
     record.bought_us = static_cast<float>(report_.bought_us);
@@ -237,14 +254,9 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);
     const double actual_us = report_.finished_us - static_cast<double>(record.stolen_ns) * 1e-3;
     record.actual_us = static_cast<float>(actual_us);
-    // The correction is of the machine's own figures: it must not take back an overhead that the user asked for.
-    const double overhead = virtual_clock_ ? 1.0 : request_.cost_scale;
     record.at_rest = report_.at_rest;
     record.rest_samples = report_.rest_samples;
-    if (!coarse_ && !report_.at_rest) {
-        corrections_.update(model::resolution_step(report_.resolution), report_.predicted_us / overhead, actual_us);
-        forms_.update(report_.full_us / overhead, report_.coarse_us / overhead, report_.other_us / overhead, actual_us);
-    }
+    if (!coarse_ && !report_.at_rest) learn(actual_us);
     if (report_.forecast_us > 0 && !report_.at_rest) overshoot_.update(actual_us - report_.forecast_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     record.floor_share = report_.floor_share;
@@ -253,8 +265,8 @@ void WalkStages::account(rt::FrameRecord& record) {
         follows && !report_.at_rest && engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
     keep(record);
     const double time_s = static_cast<double>(path_slot_) * static_cast<double>(options_.period_ns) * 1e-9;
-    snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.resolution, record.triangles, engine_.drawn(),
-                        engine_.culled());
+    snapshots_.remember(record.frame, time_s, now_.pose, record.accuracy, record.resolution, record.filter, record.triangles,
+                        engine_.drawn(), engine_.culled());
 }
 
 }  // namespace surefoot::walk

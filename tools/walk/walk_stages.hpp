@@ -72,12 +72,14 @@ private:
     void prepare_inline();
     void take(const FramePose& from, rt::FrameRecord& record);
     void latch(rt::FrameRecord& record);
-    /// What the frames at this resolution have taught, as far as predictions are corrected.
-    [[nodiscard]] Correction correction_at(float resolution) const;
+    /// What the frames at this resolution have taught, as far as predictions are corrected. filtered: those that bought the
+    /// second mip level.
+    [[nodiscard]] Correction correction_at(float resolution, bool filtered) const;
     /// How much later than forecast recent frames ended, us, within bounds.
     [[nodiscard]] double margin_us() const;
     [[nodiscard]] double planned_us() const;  ///< that a cut may take, from the due time
     [[nodiscard]] FrameTime frame_time(const rt::FrameRecord& record) const;
+    void learn(double actual_us);
     void keep(const rt::FrameRecord& record);
     [[nodiscard]] double cost_factor(const rt::FrameRecord& record, double actual_us) const;
 
@@ -91,7 +93,7 @@ private:
     WalkStagesOptions options_;
     const WalkRequest& request_;
     const bool virtual_clock_;     ///< prepare on this thread, and add the device's virtual time to the clock
-    rt::Corrections corrections_;  ///< by step of resolution
+    rt::Corrections corrections_;  ///< by step of resolution, then those with the second mip level
     rt::Overshoot overshoot_;
     rt::FormCorrection forms_;
     PoseSample now_;
@@ -99,6 +101,7 @@ private:
     double time_left_us_ = 0;           ///< until the limit, as the last submission began
     std::uint64_t walked_ = 0;          ///< frames so far, without the control's bare ones
     std::uint64_t path_slot_ = 0;       ///< position on the path, in periods; with a control it does not advance in bare blocks
+    bool filtered_ = false;             ///< the last cut has the second mip level
     bool coarse_ = false;               ///< the last selection was Engine::select_last()
     const select::Cut* cut_ = nullptr;  ///< of the last selection
     double requested_budget_us_ = 0;    ///< what that selection was given
