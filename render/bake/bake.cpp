@@ -14,6 +14,7 @@
 
 #include "render/bake/limits.hpp"
 #include "render/bake/materials.hpp"
+#include "render/bake/picture_loss.hpp"
 #include "render/bake/proxies.hpp"
 #include "render/model/pixels.hpp"
 #include "rt/base/fork_join.hpp"
@@ -89,6 +90,7 @@ struct BakeContext {
     bool make_clusters();
     bool make_object_boxes();
     void emit();
+    bool measure_pictures();
     void emit_object(model::Index node, std::uint32_t object, const std::vector<EmittedChain>& chains);
     void emit_cluster(model::Index node, std::uint32_t cluster, std::vector<std::pair<model::Index, std::uint32_t>>& open);
     model::Index add_name(const std::string& name);
@@ -359,6 +361,16 @@ void BakeContext::emit() {
     model.effects = find_effects(model, material_triangles);
 }
 
+bool BakeContext::measure_pictures() {
+    Stage stage(progress, "pictures", loss_steps(model));
+    MeasuredLosses measured = measure_losses(
+        model, [](std::size_t count, const std::function<void(std::size_t)>& body) { for_all(count, body); },
+        [&] { return stage.step(); });
+    model.losses = std::move(measured.forms);
+    model.colours = measured.colours;
+    return !model.losses.empty();
+}
+
 }  // namespace
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
@@ -387,8 +399,12 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     }
     if (auto ok = check_limits(counts_of(context.proxy_input(), context.object_boxes), place_of(scene), options.max_counts); !ok)
         return ok.error();
+    arena.execute([&] {
+        context.emit();
+        done = context.measure_pictures();
+    });
+    if (!done) return stopped_by_user(scene);
     progress.update("write", 0.0);
-    arena.execute([&] { context.emit(); });
     model::Model& model = context.model;
     model.provenance.sources = scene.sources;
     model.provenance.warnings = scene.warnings;

@@ -116,6 +116,23 @@ Check check_reps(const Model& m) {
     return {};
 }
 
+bool within_one(float share) { return share >= 0.0F && share <= 1.0F; }
+
+Check check_losses(const Model& m) {
+    if (m.losses.empty()) return {};
+    if (m.losses.size() != m.reps.size())
+        return Error{"losses", "The losses are not one for every form", "Bake the model again", ErrorKind::damaged};
+    bool colours = within_one(m.colours.variance);
+    for (const float mean : m.colours.mean) colours = colours && within_one(mean);
+    if (!colours) return Error{"losses", "The colours are not within 0 to 1", "Bake the model again", ErrorKind::damaged};
+    for (std::size_t i = 0; i < m.losses.size(); ++i) {
+        bool good = within_one(m.losses[i].coverage);
+        for (const float colour : m.losses[i].colour) good = good && within_one(colour);
+        if (!good) return wrong("losses", i, "The loss is not within 0 to 1");
+    }
+    return {};
+}
+
 Check check_node_reps(const Model& m, std::size_t i) {
     const Node& node = m.nodes[i];
     if (node.rep_count == 0 || !in_range(node.first_rep, node.rep_count, m.reps.size()))
@@ -205,7 +222,7 @@ EffectMask Model::called_for() const {
 Result<void> validate(const Model& model) {
     if (auto fits = check_limits(counts_of(model), "model"); !fits) return fits;
     for (const auto check :
-         {check_textures, check_materials, check_parts, check_placements, check_reps, check_tree, check_rest}) {
+         {check_textures, check_materials, check_parts, check_placements, check_reps, check_losses, check_tree, check_rest}) {
         if (Check result = check(model); !result) return result;
     }
     return {};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/model/effects.hpp"
+#include "render/model/picture_loss.hpp"
 #include "rt/base/geometry.hpp"
 #include "rt/base/named.hpp"
 #include "rt/base/page_memory.hpp"
@@ -111,6 +112,8 @@ struct Provenance {
 struct Model {
     std::vector<Node> nodes;
     std::vector<Representation> reps;
+    std::vector<PictureLoss> losses;  ///< one a representation; empty: not measured
+    ColourSpread colours;             ///< of what the leaves show, as measured with the losses
     std::vector<Part> parts;
     std::vector<Placement> placements;
     std::vector<Material> materials;

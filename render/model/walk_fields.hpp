@@ -85,6 +85,20 @@ void fields(Archive& a, RepT& r) {
     a(r.triangles), a(r.effects), a(r.area_m2[0]), a(r.area_m2[1]), a(r.area_m2[2]);
 }
 
+template <class Archive, class LossT>
+requires std::is_same_v<std::remove_const_t<LossT>, PictureLoss>
+void fields(Archive& a, LossT& l) {
+    a(l.coverage);
+    for (auto& colour : l.colour) a(colour);
+}
+
+template <class Archive, class SpreadT>
+requires std::is_same_v<std::remove_const_t<SpreadT>, ColourSpread>
+void fields(Archive& a, SpreadT& s) {
+    for (auto& mean : s.mean) a(mean);
+    a(s.variance);
+}
+
 template <class Archive, class PartT>
 requires std::is_same_v<std::remove_const_t<PartT>, Part>
 void fields(Archive& a, PartT& p) { a(p.material), a(p.first_index), a(p.index_count), a(p.first_vertex), a(p.vertex_count); }

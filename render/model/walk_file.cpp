@@ -46,12 +46,13 @@ enum Section : std::uint32_t {
     textures_section,
     effects_section,
     rest_section,
+    losses_section,
     section_count
 };
 constexpr std::array<std::string_view, section_count> section_names = {
-    "pages", "nodes", "representations", "parts", "placements", "materials", "textures", "effects", "provenance"};
+    "pages", "nodes", "representations", "parts", "placements", "materials", "textures", "effects", "provenance", "losses"};
 /// No model is valid without them; any other that a file has not got is empty.
-constexpr bool required(std::uint32_t section) { return section != textures_section; }
+constexpr bool required(std::uint32_t section) { return section != textures_section && section != losses_section; }
 
 struct PageEntry {
     std::uint32_t stored = 0;  ///< bytes on disk; equal to the unpacked size: kept raw
@@ -128,6 +129,10 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
         case effects_section:
             put.list(m.effects);
             break;
+        case losses_section:
+            walk::fields(put, m.colours);
+            put.list(m.losses);
+            break;
         default:
             walk::rest(put, m);
             break;
@@ -138,7 +143,7 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
 std::vector<std::byte> header(std::uint64_t file_size, std::uint64_t pages_size, std::span<const std::byte> table) {
     walk::PutArchive put;
     for (const char c : magic) put(c);
-    put(version), put(static_cast<std::uint32_t>(section_count));
+    put(version), put(static_cast<std::uint32_t>(table.size() / entry_bytes));
     put(file_size), put(pages_size), put(hash_bytes(table));
     put(std::uint64_t{0});  // room for a later version
     put(hash_bytes(put.bytes));
@@ -184,7 +189,7 @@ Result<void> open_sections(Reading& in, std::span<const std::byte> table, std::s
     if (!rest.empty()) return in.error("section table", "Some bytes belong to no section");
     for (std::uint32_t id = 0; id < section_count; ++id) {
         if (required(id) && !in.sections[id]) return in.error(section_names[id], "The section is missing");
-        if (id != rest_section) in.model_hash = fnv1a(in.model_hash, hashes[id]);
+        if (id != rest_section && id != losses_section) in.model_hash = fnv1a(in.model_hash, hashes[id]);
     }
     return {};
 }
@@ -248,6 +253,10 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
             break;
         case effects_section:
             take.list(m.effects);
+            break;
+        case losses_section:
+            walk::fields(take, m.colours);
+            take.list(m.losses);
             break;
         default:
             walk::rest(take, m);
@@ -325,14 +334,16 @@ Result<WalkFileInfo> write_walk(const std::string& file, const Model& model) {
     for (const PageEntry& page : pages) pages_size += page.stored;
 
     const PayloadSizes sizes{payloads[0].size(), payloads[1].size(), payloads[2].size()};
-    std::uint64_t file_size = header_bytes + pages_size + section_count * entry_bytes;
+    std::uint64_t file_size = header_bytes + pages_size;
     walk::PutArchive table;
     for (std::uint32_t section = 0; section < section_count; ++section) {
+        if (section == losses_section && model.losses.empty()) continue;
         const auto bytes = section_bytes(section, model, sizes, pages);
         table(section), table(static_cast<std::uint64_t>(bytes.size())), table(hash_bytes(bytes));
         if (auto written = out.write(bytes); !written) return written.error();
         file_size += bytes.size();
     }
+    file_size += table.bytes.size();
     if (auto written = out.write(table.bytes); !written) return written.error();
     if (auto written = out.write_at(0, header(file_size, pages_size, table.bytes)); !written) return written.error();
     if (auto committed = out.commit(); !committed) return committed.error();

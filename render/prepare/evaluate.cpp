@@ -88,6 +88,11 @@ Outline outline_of(const RegionView& view, const Box& box) {
     return deepest > near_m ? outline : Outline{};
 }
 
+float mean_size_m(const Box& box) {
+    const vec3 half(box.half());
+    return std::sqrt(2.0F * std::max(half.x * half.y + half.y * half.z + half.z * half.x, 0.0F));
+}
+
 /// What moves fast across the view is blurred (Maciel 1994, section 3.3.2): down to a half, since walking towards a thing does
 /// not blur it.
 float motion_factor(const RegionView& view, float distance_m) {
@@ -129,7 +134,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
     const float size = std::sqrt(seen.pixels / view.wide.viewport_pixels);
     const float importance = node.importance >= 0.0F ? std::min(node.importance, 1.0F) : 0.0F;
     const float pixel_weight = importance * seen.focus * motion_factor(view, distance);
-    weight = {size * pixel_weight, size * importance, distance, pixel_weight, outline_of(view, node.box)};
+    weight = {size * pixel_weight, size * importance, distance, pixel_weight, outline_of(view, node.box), mean_size_m(node.box)};
 
     const auto fill = [&](Choice& choice, Index r, float error_rad) {
         choice.rep = r;

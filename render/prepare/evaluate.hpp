@@ -49,6 +49,7 @@ struct Weight {
     float distance_m = 1;    ///< error_distance()
     float pixel_weight = 0;  ///< of one pixel in the value: importance x focus x motion
     Outline outline;
+    float size_m = 0;  ///< square root of the box's outline, as a mean of all directions
 };
 
 /// The accuracy factor of the benefit, 0..1: the mean of e / (e + 8) and e / (e + 256), with e the error in pixels.

@@ -319,7 +319,7 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
 
 void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
     const std::span<const float> shown_px = shown.run(weights, out.candidates, out.choices, view.wide, view.scale);
-    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out);
+    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model));
 }
 
 // A band between raising and lowering, so that the target does not swing while the eye stands still.

@@ -24,6 +24,12 @@ float looks_right(float error_px, float surface_px, float leaves_surface_px) {
     return 1.0F - of_error * error - (1.0F - of_error) * lacks;
 }
 
+/// 0..1, by the measured loss. What is out of the view looks as in it.
+float looks_right_measured(float error_px, float loss, float of_missing) {
+    constexpr float of_error = 0.05F;
+    return 1.0F - of_error * error_px / (error_px + 256.0F) - (1.0F - of_error) * std::clamp(loss / of_missing, 0.0F, 1.0F);
+}
+
 float rate_of(std::uint32_t level) { return std::ldexp(top_rate, -static_cast<int>(level)); }
 
 /// The first level whose rate is at most `rate`.
@@ -64,6 +70,12 @@ std::span<const std::uint32_t> hull_of(const model::FrameCombine& combine, std::
 
 }  // namespace
 
+/// Two colours of the model that have nothing to do with each other differ by twice the variance, in square.
+Looks looks_of(const model::Model& model) {
+    constexpr float min_variance = 0.005F;  // of a model of one colour
+    return {model.losses, 2.0F * std::max(model.colours.variance, min_variance)};
+}
+
 float ValueCurve::value_at(float cost_us) const {
     if (!(cost_us >= cost[0])) return value[0];  // the floor is always drawn
     for (std::uint32_t level = 1; level < value_levels; ++level) {
@@ -100,7 +112,8 @@ void ValuePass::add(Index parent, std::uint32_t level, float value, float cost) 
 }
 
 /// What a leaf weighs, and the value of each choice of a candidate.
-void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame) {
+void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame,
+                           const Looks& looks) {
     const Candidate& candidate = frame.candidates[i];
     Sums& sums = sums_[i];
     if (candidate.child_count == 0) {
@@ -115,10 +128,14 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
     }
     // A leaf is seen from its own distance; what stands for many leaves, from their mean one.
     const float per_m = sums.weight > 0.0F ? sums.weight_per_m / sums.weight : 0.0F;
+    const float size_px = seen.size_m * per_m / pixel_angle_rad;
     float value = 0.0F;
     for (Choice& choice : std::span(&frame.choices[candidate.first_choice], candidate.choice_count)) {
         const float error_px = choice.error_rad * seen.distance_m * per_m / pixel_angle_rad;
-        value = std::max(value, sums.weight * looks_right(error_px, choice.surface_px, sums.surface_px));
+        const float right = looks.losses.empty()
+                                ? looks_right(error_px, choice.surface_px, sums.surface_px)
+                                : looks_right_measured(error_px, loss_at(looks.losses[choice.rep], size_px), looks.of_missing);
+        value = std::max(value, sums.weight * right);
         choice.value = value;
     }
 }
@@ -198,7 +215,7 @@ void ValuePass::enforce_falling_rates(PreparedFrame& frame) {
 }
 
 void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
-                    std::span<const float> shown_px, PreparedFrame& frame) {
+                    std::span<const float> shown_px, PreparedFrame& frame, const Looks& looks) {
     frame.curve = {};
     frame.full_value = 0;
     const std::size_t n = frame.candidates.size();
@@ -212,7 +229,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
     for (std::size_t i = n; i-- > 0;) {
         const Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
-        set_values(i, pixel_angle_rad, weights[i], shown_px[i], frame);
+        set_values(i, pixel_angle_rad, weights[i], shown_px[i], frame, looks);
         const OwnChoices own{combine, choices, hull_of(combine, choices, room)};
         if (candidate.child_count == 0) full_value += static_cast<double>(choices.back().value);
         const bool inner = candidate.child_count > 0 && sums_[i].curve != none;

@@ -11,15 +11,23 @@
 
 namespace surefoot::prepare {
 
+/// How far the forms' pictures are off full detail, as the bake measured it.
+struct Looks {
+    std::span<const model::PictureLoss> losses;  ///< by form; empty: not measured
+    float of_missing = 1;                        ///< colour loss of a missing thing, on average
+};
+Looks looks_of(const model::Model& model);
+
 /// Fills Choice::value, Choice::rate and PreparedFrame::full_value.
 ///
 /// value = W * (1 - g). W of a leaf: the pixels that it shows (ShownPixels) * importance * focus * motion. W of a node: the sum
-/// of its leaves'. g, 0..1: how wrong the choice looks. A quarter is by its error in pixels. The rest is the share of the leaves'
-/// surface that it lacks: a fence that is missing, a tree that is a shard.
-/// rate = value per us of the next step, where a step into the children counts all that follows below at that rate. It is the
-/// slope of the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a
-/// candidate and down the tree. So all steps with a rate of at least r make the cut of the greatest value - r * cost. This holds
-/// to the resolution of the levels below. Source: Lagrange multipliers for choices under one budget, Everett 1963.
+/// of its leaves'. g, 0..1: how wrong the choice looks. A twentieth is by its error in pixels. The rest is the measured loss at
+/// the node's size on the screen, as a share of what a missing thing loses. Without losses, a quarter is by the error in pixels.
+/// Then the rest is the share of the leaves' surface that the choice lacks: a fence that is missing, a tree that is a shard. rate
+/// = value per us of the next step, where a step into the children counts all that follows below at that rate. It is the slope of
+/// the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a candidate and
+/// down the tree. So all steps with a rate of at least r make the cut of the greatest value - r * cost. This holds to the
+/// resolution of the levels below. Source: Lagrange multipliers for choices under one budget, Everett 1963.
 class ValuePass {
 public:
     /// Rates are told apart by octaves while they are summed up: from 2^20 down to 2^-19 px/us.
@@ -30,7 +38,7 @@ public:
     /// weights: one a candidate, as Evaluator::evaluate made them. Call it before propagate_up(), which replaces them.
     /// shown_px: one a candidate, read of leaves alone.
     void run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
-             std::span<const float> shown_px, PreparedFrame& frame);
+             std::span<const float> shown_px, PreparedFrame& frame, const Looks& looks = {});
 
 private:
     struct Sums {
@@ -52,7 +60,8 @@ private:
     };
     std::uint32_t take_curve();
     void add(Index parent, std::uint32_t level, float value, float cost);
-    void set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame);
+    void set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame,
+                    const Looks& looks);
     void add_own(const Candidate& candidate, const OwnChoices& own);
     static void own_curve(const OwnChoices& own, ValueCurve& curve);
     void merge_curve(Index parent, Curve& curve, const OwnChoices& own);

@@ -122,6 +122,9 @@ TEST(Bake, TheSameBitsAtAnyWorkerCount) {
         EXPECT_EQ(std::memcmp(one.vertices.data(), other.vertices.data(), one.vertices.size() * sizeof(model::Vertex)), 0);
         ASSERT_EQ(one.reps.size(), other.reps.size());
         for (std::size_t r = 0; r < one.reps.size(); ++r) EXPECT_EQ(one.reps[r].error_m, other.reps[r].error_m);
+        ASSERT_EQ(one.losses.size(), one.reps.size());
+        ASSERT_EQ(other.losses.size(), one.reps.size());
+        for (std::size_t r = 0; r < one.reps.size(); ++r) EXPECT_EQ(one.losses[r].colour, other.losses[r].colour);
     }
 }
 

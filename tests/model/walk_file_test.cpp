@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -249,9 +250,9 @@ struct Sections {
     }
 };
 
-constexpr std::array<const char*, 9> section_names = {"pages",     "nodes",    "representations", "parts",     "placements",
-                                                      "materials", "textures", "effects",         "provenance"};
-constexpr std::uint32_t textures_id = 6;
+constexpr std::array<const char*, 10> section_names = {"pages",     "nodes",    "representations", "parts",      "placements",
+                                                       "materials", "textures", "effects",         "provenance", "losses"};
+constexpr std::uint32_t textures_id = 6, losses_id = 9;  // optional
 
 struct OpenTable : WalkFile {
     Model model = two_triangles();
@@ -305,10 +306,66 @@ TEST_F(OpenTable, AMissingOptionalSectionIsEmpty) {
     EXPECT_EQ(read->nodes.size(), model.nodes.size());
 }
 
+TEST_F(OpenTable, LossesComeBackAndWithoutThemTheModelIsTheSame) {
+    WalkFileInfo without, with;
+    ASSERT_TRUE(write_walk(file, model).ok());
+    ASSERT_TRUE(read_walk(file, &without).ok());
+    model.losses.assign(model.reps.size(), {0.5F, {0.25F, 0.125F, 0.0F}});
+    model.colours = {{0.5F, 0.25F, 0.125F}, 0.0625F};
+    Sections sections = sections_of_model();
+    const auto read = read_walk(file, &with);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    ASSERT_EQ(read->losses.size(), model.reps.size());
+    EXPECT_EQ(read->losses.back().coverage, 0.5F);
+    EXPECT_EQ(read->losses.back().colour, model.losses.back().colour);
+    EXPECT_EQ(read->colours.mean, model.colours.mean);
+    EXPECT_EQ(read->colours.variance, 0.0625F);
+    EXPECT_EQ(with.hash, without.hash);
+    sections.drop(losses_id);
+    put(sections.file());
+    const auto dropped = read_walk(file);
+    ASSERT_TRUE(dropped.ok()) << dropped.error().text();
+    EXPECT_TRUE(dropped->losses.empty());
+}
+
+TEST(PictureLoss, IsBetweenTheSizesByTheirLogarithm) {
+    const PictureLoss loss{0, {0.4F, 0.1F, 0.2F}};  // of 512, 64 and 8 pixels
+    for (const auto& [size_px, expected] : {std::pair{512.0F, 0.4F},
+                                            {64.0F, 0.1F},
+                                            {8.0F, 0.2F},
+                                            {256.0F, 0.3F},
+                                            {128.0F, 0.2F},
+                                            {16.0F, 0.1F + 0.2F / 3},
+                                            {1e9F, 0.4F},
+                                            {0.0F, 0.2F},
+                                            {-1.0F, 0.2F}})
+        EXPECT_NEAR(loss_at(loss, size_px), expected, 1e-5F) << size_px;
+}
+
+TEST_F(OpenTable, LossesThatAreNoSharesAreRefused) {
+    for (const float bad : {-0.1F, 1.1F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        for (std::size_t at = 0; at < 4; ++at) {
+            model.losses.assign(model.reps.size(), {});
+            (at == 0 ? model.losses[0].coverage : model.losses[0].colour[at - 1]) = bad;
+            ASSERT_TRUE(write_walk(file, model).ok());
+            const auto read = read_walk(file);
+            ASSERT_FALSE(read.ok()) << bad << ' ' << at;
+            EXPECT_NE(read.error().place.find("losses[0]"), std::string::npos) << read.error().text();
+        }
+    }
+    model.losses.assign(model.reps.size() + 1, {});
+    ASSERT_TRUE(write_walk(file, model).ok());
+    EXPECT_FALSE(read_walk(file).ok());
+    model.losses.assign(model.reps.size(), {});
+    model.colours.variance = 2;
+    ASSERT_TRUE(write_walk(file, model).ok());
+    EXPECT_FALSE(read_walk(file).ok());
+}
+
 TEST_F(OpenTable, AMissingRequiredSectionIsAnErrorByItsName) {
     const Sections whole = sections_of_model();
     for (std::uint32_t id = 0; id < section_names.size(); ++id) {
-        if (id == textures_id) continue;
+        if (id == textures_id || id == losses_id) continue;
         Sections sections = whole;
         sections.drop(id);
         put(sections.file());

@@ -171,6 +171,25 @@ TEST(Value, IsByShownPixelsAndLostSurface) {
     EXPECT_NEAR(frame.choices[1].value, 300 * (1 - 0.25 * 64 / 320 - 0.75 * 0.2), 1e-3);
     EXPECT_NEAR(frame.choices[0].value, 300 * (1 - 0.25 * 0.5 - 0.75 * 0.5), 1e-3);
     EXPECT_NEAR(frame.full_value, 300, 1e-3);
+
+    // With measured losses: the root is 64 pixels across, the leaf 8. Two colours of the model differ by 0.4.
+    model::Model looks;
+    looks.losses = {{0, {0, 0.1F, 0}}, {0, {0, 0, 0.05F}}, {}};
+    looks.colours.variance = 0.2F;
+    weights[0].size_m = 0.64F;
+    weights[1].size_m = 0.08F;
+    for (Index r = 0; r < 3; ++r) frame.choices[r].rep = r;
+    const auto value_again = [&] {
+        pass.run({.fixed_us = 0, .submit_weight = 1, .raster_weight = 0, .max_weight = 0}, 1e-3F, weights, shown_px, frame,
+                 looks_of(looks));
+    };
+    value_again();
+    EXPECT_NEAR(frame.choices[2].value, 300, 1e-3);
+    EXPECT_NEAR(frame.choices[1].value, 300 * (1 - 0.05 * 64 / 320 - 0.95 * 0.125), 1e-2);
+    EXPECT_NEAR(frame.choices[0].value, 300 * (1 - 0.05 * 0.5 - 0.95 * 0.25), 1e-2);
+    looks.losses[0].colour[1] = 1;
+    value_again();
+    EXPECT_NEAR(frame.choices[0].value, 300 * (1 - 0.05 * 0.5 - 0.95), 1e-2) << "no worse than missing";
 }
 
 TEST(ShownPixels, BehindTheEyeThereIsNoOutline) {

@@ -4,6 +4,7 @@
 #include "render/effects/effects.hpp"
 #include "render/model/model.hpp"
 #include "render/model/walk_file.hpp"
+#include "rt/base/statistics.hpp"
 #include "tools/cli/command.hpp"
 
 namespace surefoot::cli {
@@ -78,6 +79,17 @@ nlohmann::ordered_json effects_json(const model::Model& m) {
     return list;
 }
 
+/// Of the forms that are not full detail: the median of how far their pictures are off, as mean squared error at middle size.
+double median_loss(const model::Model& m, bool leaves) {
+    std::vector<double> losses;
+    for (const model::Node& node : m.nodes) {
+        if ((node.child_count == 0) != leaves) continue;
+        for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r)
+            if (!model::is_full_detail(node, r)) losses.push_back(static_cast<double>(m.losses[r].colour[1]));
+    }
+    return losses.empty() ? 0 : median_of(losses);
+}
+
 int run_inspect(const InspectArguments& a) {
     model::WalkFileInfo info;
     auto m = model::read_walk(a.file, &info);
@@ -92,6 +104,8 @@ int run_inspect(const InspectArguments& a) {
     std::map<std::string, std::uint64_t> kinds;
     for (const model::Representation& rep : m->reps) ++kinds[rep_name(rep.kind)];
     const Box& box = m->nodes[0].box;
+    nlohmann::ordered_json losses(nullptr);  // null: not measured
+    if (!m->losses.empty()) losses = {{"clusters", median_loss(*m, false)}, {"objects", median_loss(*m, true)}};
     print_json({{"file", a.file},
                 {"objects", m->object_count},
                 {"clusters", clusters},
@@ -99,6 +113,7 @@ int run_inspect(const InspectArguments& a) {
                 {"nodes", m->nodes.size()},
                 {"representations", m->reps.size()},
                 {"representation_kinds", kinds},
+                {"median_loss", losses},
                 {"triangles", m->triangles()},
                 {"stored_triangles", m->indices.size() / 3},
                 {"vertices", m->vertices.size()},

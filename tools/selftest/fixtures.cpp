@@ -161,8 +161,11 @@ Bytes recording_fixture() {
 }
 
 void reseal_walk(Bytes& bytes) {
-    constexpr std::size_t header = 56, entry = 20, sections = 9, table = entry * sections;
-    if (bytes.size() < header + table) return;
+    constexpr std::size_t header = 56, entry = 20;
+    if (bytes.size() < header) return;
+    const std::size_t sections = take<std::uint32_t>(bytes, 12);
+    if (sections > (bytes.size() - header) / entry) return;
+    const std::size_t table = entry * sections;
     const std::span<const std::byte> all(bytes);
     const std::size_t at_table = bytes.size() - table;
     const auto pages = take<std::uint64_t>(bytes, 24);

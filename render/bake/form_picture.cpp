@@ -1,0 +1,260 @@
+// One triangle after the other into a depth buffer. Colours are those of the effects: material, vertex, sun and sky, texture.
+#include "render/bake/form_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::bake {
+
+namespace {
+
+constexpr std::uint32_t max_side = 512;
+constexpr int level_octaves = 3;  // between two levels of a picture
+constexpr int max_octaves = 12;   // what is finer has hardly a sample
+
+/// 0..1, evenly spread over 4 x 4 samples of the grid and the same in every picture: equal glass looks equal in two forms.
+float threshold_of(std::int64_t x, std::int64_t y) {
+    constexpr std::array<std::uint8_t, 16> order = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+    return (static_cast<float>(order[static_cast<std::size_t>((y & 3) * 4 + (x & 3))]) + 0.5F) / 16.0F;
+}
+
+/// The mip level with about one texel a pixel.
+struct Texels {
+    const std::byte* first = nullptr;
+    std::uint32_t width = 1, height = 1;
+    bool clamp = false;
+
+    Texels(const model::Model& model, const model::Texture& texture, float texels_a_pixel) {
+        width = texture.width;
+        height = texture.height;
+        clamp = texture.clamp;
+        std::uint64_t at = texture.first_byte;
+        for (std::uint32_t level = 0; level + 1 < texture.levels && texels_a_pixel > 2.0F; ++level, texels_a_pixel *= 0.25F) {
+            at += static_cast<std::uint64_t>(width) * height * 4;
+            width = std::max(1U, width / 2);
+            height = std::max(1U, height / 2);
+        }
+        first = model.texels.data() + at;
+    }
+    [[nodiscard]] std::size_t place(float uv, std::uint32_t size) const {
+        const float inside = clamp ? std::clamp(uv, 0.0F, 1.0F) : uv - std::floor(uv);
+        return std::min(size - 1, static_cast<std::uint32_t>(inside * static_cast<float>(size)));
+    }
+    [[nodiscard]] vec4 at(const vec2& uv) const {
+        const std::byte* c = first + (place(uv.y, height) * width + place(uv.x, width)) * 4;
+        return vec4(std::to_integer<int>(c[0]), std::to_integer<int>(c[1]), std::to_integer<int>(c[2]),
+                    std::to_integer<int>(c[3])) /
+               255.0F;
+    }
+};
+
+float cross(const vec2& a, const vec2& b) { return a.x * b.y - a.y * b.x; }
+vec2 uv_of(const model::Vertex& v) { return {v.uv[0], v.uv[1]}; }
+
+std::array<std::uint8_t, 3> bytes_of(const vec4& colour) {
+    const vec4 scaled = glm::clamp(colour, 0.0F, 1.0F) * 255.0F + 0.5F;
+    return {static_cast<std::uint8_t>(scaled.r), static_cast<std::uint8_t>(scaled.g), static_cast<std::uint8_t>(scaled.b)};
+}
+
+/// One part of a form, as the view sees it.
+struct Painter {
+    const model::Model& model;
+    const model::Material& material;
+    FormPicture& picture;
+    mat3 cofactor{1.0F};  ///< turns normals
+    bool mirrored = false;
+
+    struct Corner {
+        vec3 at;  ///< pixels, pixels, metres towards the eye
+        const model::Vertex* vertex;
+    };
+    /// What its samples are made from.
+    struct Triangle {
+        std::array<vec4, 3> colours;
+        std::array<vec2, 3> uv;
+        float texels_a_pixel = 0;
+    };
+
+    /// Colours before the texture, 0 to about 1.
+    [[nodiscard]] vec4 lit(const model::Vertex& v) const {
+        vec4 colour(material.colour[0], material.colour[1], material.colour[2], material.colour[3]);
+        if ((material.effects & model::effect_vertex_colour) != 0)
+            colour *= vec4(v.colour[0], v.colour[1], v.colour[2], v.colour[3]) / 255.0F;
+        if ((material.effects & model::effect_sun) == 0) return colour;
+        vec3 n = cofactor * vec3(v.normal[0], v.normal[1], v.normal[2]);
+        n *= (mirrored ? -1.0F : 1.0F) / std::sqrt(std::max(glm::dot(n, n), 1e-30F));
+        if (material.two_sided && glm::dot(n, picture.view.direction.towards) < 0.0F) n = -n;
+        const vec3 sky = glm::mix(vec3(0.34F, 0.32F, 0.30F), vec3(0.52F, 0.56F, 0.62F), 0.5F * n.y + 0.5F);
+        const float sun = std::max(glm::dot(n, vec3(model.sun_direction)), 0.0F);
+        return {vec3(colour) * (sky + vec3(0.56F, 0.53F, 0.47F) * sun), colour.a};
+    }
+    [[nodiscard]] bool textured() const { return (material.effects & model::effect_texture) != 0; }
+    [[nodiscard]] Triangle triangle_of(const std::array<Corner, 3>& corners, float area) const;
+    void draw(std::array<Corner, 3> corners) const;
+    void fill(const std::array<Corner, 3>& corners, float area, const glm::uvec4& range) const;
+    void put(const Triangle& triangle, const vec3& weights, float depth, std::uint32_t x, std::uint32_t y) const;
+};
+
+void Painter::draw(std::array<Corner, 3> corners) const {
+    const vec2 a(corners[0].at), b(corners[1].at), c(corners[2].at);
+    float area = cross(b - a, c - a);
+    if (!(std::abs(area) > 1e-12F) || !std::isfinite(area)) return;
+    if ((area > 0) == mirrored && !material.two_sided) return;
+    if (area < 0) {
+        std::swap(corners[1], corners[2]);
+        area = -area;
+    }
+    const vec2 low = glm::min(glm::min(a, b), c), high = glm::max(glm::max(a, b), c);
+    const vec2 size(picture.view.width, picture.view.height);
+    const vec2 from = glm::ceil(glm::clamp(low, vec2(0), size)), to = glm::clamp(glm::floor(high) + 1.0F, vec2(0), size);
+    if (from.x >= to.x || from.y >= to.y) return;
+    fill(corners, area, {from.x, from.y, to.x, to.y});
+}
+
+Painter::Triangle Painter::triangle_of(const std::array<Corner, 3>& corners, float area) const {
+    Triangle t;
+    for (std::size_t k = 0; k < 3; ++k) t.colours[k] = lit(*corners[k].vertex), t.uv[k] = uv_of(*corners[k].vertex);
+    if (textured()) {
+        const model::Texture& texture = model.textures[material.texture];
+        t.texels_a_pixel = std::abs(cross(t.uv[1] - t.uv[0], t.uv[2] - t.uv[0])) * static_cast<float>(texture.width) *
+                           static_cast<float>(texture.height) / area;
+    }
+    return t;
+}
+
+void Painter::fill(const std::array<Corner, 3>& corners, float area, const glm::uvec4& range) const {
+    const vec2 a(corners[0].at), b(corners[1].at), c(corners[2].at);
+    Triangle triangle;
+    bool ready = false;
+    for (std::uint32_t y = range.y; y < range.w; ++y) {
+        for (std::uint32_t x = range.x; x < range.z; ++x) {
+            const vec2 p(static_cast<float>(x), static_cast<float>(y));
+            const float wa = cross(c - b, p - b), wb = cross(a - c, p - c), wc = area - wa - wb;
+            if (wa < 0 || wb < 0 || wc < 0) continue;
+            const vec3 w = vec3(wa, wb, wc) / area;
+            const float depth = w.x * corners[0].at.z + w.y * corners[1].at.z + w.z * corners[2].at.z;
+            if (!(depth > picture.samples[static_cast<std::size_t>(y) * picture.view.width + x].depth)) continue;
+            if (!ready) triangle = triangle_of(corners, area);  // most of the small triangles have no sample
+            ready = true;
+            put(triangle, w, depth, x, y);
+        }
+    }
+}
+
+void Painter::put(const Triangle& triangle, const vec3& w, float depth, std::uint32_t x, std::uint32_t y) const {
+    const FormView& view = picture.view;
+    FormSample& sample = picture.samples[static_cast<std::size_t>(y) * view.width + x];
+    const vec4 plain = w.x * triangle.colours[0] + w.y * triangle.colours[1] + w.z * triangle.colours[2];
+    std::array<vec4, picture_levels> colours{plain, plain, plain};
+    if (textured()) {
+        const vec2 uv = w.x * triangle.uv[0] + w.y * triangle.uv[1] + w.z * triangle.uv[2];
+        float scale = std::ldexp(1.0F, -2 * level_octaves);
+        for (vec4& colour : colours) {
+            colour *= Texels(model, model.textures[material.texture], scale * triangle.texels_a_pixel).at(uv);
+            scale *= std::ldexp(1.0F, 2 * level_octaves);
+        }
+    }
+    const float alpha = colours[1].a;
+    if (material.alpha == model::AlphaMode::mask && alpha < material.alpha_cutoff) return;
+    if (material.alpha == model::AlphaMode::blend && alpha < threshold_of(view.left + x, view.low + y)) return;
+    sample.depth = depth;
+    for (std::size_t k = 0; k < picture_levels; ++k) sample.rgb[k] = bytes_of(colours[k]);
+}
+
+/// How finer levels of one picture make those of another, whose pixels are 2^octaves as large.
+void mix_levels(const FormSample& from, int octaves, FormSample& to) {
+    for (std::size_t k = 0; k < picture_levels; ++k) {
+        const std::size_t a = std::min(k + static_cast<std::size_t>(octaves / level_octaves), picture_levels - 1);
+        const std::size_t b = std::min(a + 1, picture_levels - 1);
+        const int part = octaves % level_octaves;
+        for (std::size_t c = 0; c < 3; ++c)
+            to.rgb[k][c] =
+                static_cast<std::uint8_t>((from.rgb[a][c] * (level_octaves - part) + from.rgb[b][c] * part) / level_octaves);
+    }
+}
+
+}  // namespace
+
+Direction direction_of(double azimuth_rad, double elevation_rad) {
+    const double ce = std::cos(elevation_rad), se = std::sin(elevation_rad), ca = std::cos(azimuth_rad),
+                 sa = std::sin(azimuth_rad);
+    const vec3 towards(ce * sa, se, ce * ca), right(ca, 0, -sa);
+    return {right, glm::cross(towards, right), towards};
+}
+
+FormView view_of(const Box& box, const Direction& direction, const dvec3& middle, std::uint32_t pixels) {
+    FormView view{direction, middle};
+    if (box.empty()) return view;
+    const dvec3 half = box.half(), size = 2.0 * half, along = glm::abs(dvec3(direction.towards));
+    const double across = glm::dot(glm::abs(dvec3(direction.right)), half), rise = glm::dot(glm::abs(dvec3(direction.up)), half);
+    const double outline = along.x * size.y * size.z + along.y * size.z * size.x + along.z * size.x * size.y;
+    // Something without an outline from here (a card from its edge) still has a length.
+    const double wide = std::max(std::sqrt(std::max(outline, 0.0)), 0.25 * std::max(across, rise));
+    if (!(wide > 1e-30) || !std::isfinite(wide)) return view;
+    view.exponent = static_cast<int>(std::ceil(std::log2(wide / pixels)));
+    const double pixel_m = std::ldexp(1.0, view.exponent);
+    const dvec3 centre = box.centre() - middle;
+    const auto range = [&](const vec3& axis, double extent, std::int64_t& first, std::uint32_t& count) {
+        const double at = glm::dot(centre, dvec3(axis)) / pixel_m, reach = 1.1 * extent / pixel_m + 1.0;
+        first = static_cast<std::int64_t>(std::ceil(at - reach));
+        count = static_cast<std::uint32_t>(std::clamp(std::floor(at + reach) - std::ceil(at - reach) + 1.0, 1.0, 1.0 * max_side));
+    };
+    if (!(glm::length(centre) / pixel_m < 1e15)) return view;
+    range(direction.right, across, view.left, view.width);
+    range(direction.up, rise, view.low, view.height);
+    return view;
+}
+
+void FormPicture::clear(const FormView& of) {
+    view = of;
+    samples.assign(static_cast<std::size_t>(view.width) * view.height, {});
+}
+
+void draw_form(const model::Model& model, const model::Representation& rep, FormPicture& picture) {
+    const FormView& view = picture.view;
+    if (picture.samples.empty()) return;
+    const Direction& from = view.direction;
+    const model::Placement& placement = model.placements[rep.placement];
+    const mat3& linear = placement.linear;
+    const double pixel_m = std::ldexp(1.0, view.exponent);
+    const mat3 to_view =
+        glm::transpose(mat3(from.right / static_cast<float>(pixel_m), from.up / static_cast<float>(pixel_m), from.towards));
+    const mat3 turned = to_view * linear;
+    const dvec3 away = placement.origin - view.middle;
+    const vec3 origin(glm::dot(away, dvec3(from.right)) / pixel_m - static_cast<double>(view.left),
+                      glm::dot(away, dvec3(from.up)) / pixel_m - static_cast<double>(view.low),
+                      glm::dot(away, dvec3(from.towards)));
+    const mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+    const bool mirrored = glm::dot(linear[0], cofactor[0]) < 0;
+    for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
+        const model::Part& part = model.parts[p];
+        const Painter painter{model, model.materials[part.material], picture, cofactor, mirrored};
+        const auto corner = [&](std::uint32_t i) {
+            const model::Vertex& v = model.vertices[part.first_vertex + model.indices[part.first_index + i]];
+            return Painter::Corner{turned * vec3(v.position[0], v.position[1], v.position[2]) + origin, &v};
+        };
+        for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) painter.draw({corner(i), corner(i + 1), corner(i + 2)});
+    }
+}
+
+void draw_picture(const FormPicture& from, FormPicture& picture) {
+    const FormView &a = from.view, &b = picture.view;
+    const int octaves = b.exponent - a.exponent;
+    if (from.samples.empty() || octaves < 0 || octaves > max_octaves) return;
+    const std::int64_t ratio = std::int64_t{1} << octaves;
+    for (std::uint32_t y = 0; y < b.height; ++y) {
+        const std::int64_t ay = (b.low + y) * ratio - a.low;
+        if (ay < 0 || ay >= a.height) continue;
+        for (std::uint32_t x = 0; x < b.width; ++x) {
+            const std::int64_t ax = (b.left + x) * ratio - a.left;
+            if (ax < 0 || ax >= a.width) continue;
+            const FormSample& seen = from.samples[static_cast<std::size_t>(ay * a.width + ax)];
+            FormSample& sample = picture.samples[static_cast<std::size_t>(y) * b.width + x];
+            if (!(seen.depth > sample.depth)) continue;
+            sample.depth = seen.depth;
+            mix_levels(seen, octaves, sample);
+        }
+    }
+}
+
+}  // namespace surefoot::bake

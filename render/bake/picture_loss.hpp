@@ -1,0 +1,41 @@
+// Measures how far the picture of each form is off its node's full detail, from some directions.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "render/bake/form_picture.hpp"
+#include "render/model/picture_loss.hpp"
+
+namespace surefoot::bake {
+
+/// Sums over pictures of one form against full detail. Whole numbers: the order does not matter.
+struct PictureDifference {
+    /// Pictures of one view. levels: 1 where textures do not differ by level.
+    void add(const FormPicture& full, const FormPicture& form, std::size_t levels = picture_levels);
+    /// Zero where neither picture shows anything.
+    [[nodiscard]] model::PictureLoss loss(const model::ColourSpread& of_model) const;
+
+    using ByLevel = std::array<std::uint64_t, picture_levels>;
+    std::uint64_t full_detail = 0, either = 0, one = 0;  ///< samples that it covers, that either covers, that only one covers
+    ByLevel both{};                                      ///< squared differences of bytes, where both cover
+    ByLevel squares{};                                   ///< squares of bytes, where only one covers
+    std::array<ByLevel, 3> sums{};                       ///< of bytes there, by channel
+};
+
+/// Calls body(0) to body(count - 1) in any order, on any threads; each result is of its index alone.
+using ForAll = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
+
+struct MeasuredLosses {
+    std::vector<model::PictureLoss> forms;  ///< one a form of the model; empty: stopped
+    model::ColourSpread colours;
+};
+
+/// Objects of one mesh share what the first of them shows. The same bits, whatever the threads. step(): false: stop.
+MeasuredLosses measure_losses(const model::Model& model, const ForAll& for_all, const std::function<bool()>& step);
+/// How many steps there are.
+std::size_t loss_steps(const model::Model& model);
+
+}  // namespace surefoot::bake
