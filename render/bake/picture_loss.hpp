@@ -28,6 +28,7 @@ struct PictureDifference {
 /// Calls body(0) to body(count - 1) in any order, on any threads; each result is of its index alone.
 using ForAll = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
 
+/// What measure_losses() found.
 struct MeasuredLosses {
     std::vector<model::PictureLoss> forms;  ///< one a form of the model; empty: stopped
     model::ColourSpread colours;

@@ -54,7 +54,7 @@ protected:
             count += outcome.records[i].filter != outcome.records[i - 1].filter ? 1 : 0;
         return count;
     }
-    static constexpr float scale = 0.5F;
+    static constexpr float scale = 0.55F;
     static constexpr std::uint64_t frames = 450;
     test::TemporaryFolder folder_;
     walk::WalkRequest request_;
