@@ -185,9 +185,10 @@ void Engine::Impl::take_filter() {
         filter_us = 0;
         return;
     }
+    const std::vector<prepare::Choice>& choices = prepared->choices;
     const auto sum_of = [&](std::span<const select::CutItem> items) {
         model::ItemCost sum;
-        for (const select::CutItem& item : items) sum += filter_costs.with(item.rep, prepared->choices[item.choice].cost);
+        for (const select::CutItem& item : items) sum += filter_costs.with(item.rep, choices[item.choice].cost);
         return sum;
     };
     const std::span<const select::CutItem> order(plan.order), stand_ins(plan.stand_ins);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "render/model/cost.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
 #include "tests/temporary_folder.hpp"
