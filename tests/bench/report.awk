@@ -9,7 +9,7 @@ function refuse_line(what) { refuse(named ":" FNR ": " what) }
 function width(text) { gsub(/[\200-\277]/, "", text); return length(text) }
 
 BEGIN {
-  max_lines = 150; max_width = 160
+  max_lines = 180; max_width = 160
   wrong = read_promises(promises_file)
   if (wrong != "") refuse(wrong)
   split("time commit host.cpu host.kernel host.mesa promise scene unit target bound command", texts, " ")
