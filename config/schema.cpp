@@ -103,7 +103,7 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         number("slice_us", "us", 50, 100000, "Predicted length of a slice of submission.", &S::slice_us),
         number("hysteresis", "", 1, 10, "Factor by which a form must be better to replace the one on screen.", &S::hysteresis),
         number("reserve", "%", 0, 50,
-               "Share of the budget that new forms leave free, so that what comes into view does not displace others.",
+               "Share of the budget that new forms leave free, so that others need not change. No effect at hysteresis 1.",
                &S::reserve_pct),
         {"sky", Kind::colour, {}, 0, 0, {}, "Background, as \"#rrggbb\".", &S::sky},
         integer("frame_priority", "FIFO", 1, 98, "Priority of the frame thread.", &S::frame_priority),

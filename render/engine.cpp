@@ -157,11 +157,14 @@ bool Engine::offer_filter(const prepare::PreparedFrame& prepared, double budget_
     e.draws.plays();
     e.begin_offers();
     e.filter_us = 0;
-    if (!e.by_budget || !(prepared.full_filter_us > 0.0F)) return false;
-    const model::FrameCombine combine = e.combine();
+    const model::FrameCombine combine = e.costs.combine_at(prepared.resolution, prepared.viewport);
     const model::ItemCost& full = prepared.full_cost;
     const float more_us = combine.frame_us(full.submit_us, full.raster_us + prepared.full_filter_us) -
                           combine.frame_us(full.submit_us, full.raster_us);
+    if (!e.by_budget || !(more_us > 0.0F)) {
+        e.dwell.answer(false);
+        return false;
+    }
     select::Budget budget(e.input_of(prepared, budget_us, correction, 0));
     budget.spend(static_cast<double>(more_us));
     select::Sum sum;
@@ -169,9 +172,10 @@ bool Engine::offer_filter(const prepare::PreparedFrame& prepared, double budget_
     // Within what new steps may use. So full detail fits beside it, whatever has just come into view.
     if (!e.dwell.offer(budget.predicted_us(sum) / (budget_us * select::fresh_share(e.state)))) return false;
     const auto value = static_cast<float>(static_cast<double>(value_share) * prepared.full_value);
-    if (!e.offered.offer({select::ItemKind::filter, 1, more_us, value})) return false;
-    e.filter_us = more_us;
-    return true;
+    const bool offered = e.offered.offer({select::ItemKind::filter, 1, more_us, value});
+    if (offered) e.filter_us = more_us;
+    if (!offered) e.dwell.answer(false);
+    return offered;
 }
 
 /// After a selection: whether it bought the second mip level. What is drawn with it takes longer, slice by slice.

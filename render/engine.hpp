@@ -79,7 +79,7 @@ struct SubmitReport {
     std::uint32_t samples = 1;                          ///< of a pixel, that were drawn
     rt::TextureFilter filter = rt::TextureFilter::bilinear;
     float worst_error_rad = 0;  ///< of the drawn items, stand-ins included
-    double value = 0;           ///< share of PreparedFrame::full_value that is drawn; 0 where no prepared frame is
+    double value = 0;  ///< share of PreparedFrame::full_value that is drawn; 0: no prepared frame is; 1: nothing has value
     /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was
     /// drawn beside it; all else describes the shown picture.
     bool at_rest = false;

@@ -8,7 +8,7 @@ namespace surefoot {
 
 namespace {
 
-/// Raster time of a shown pixel, us.
+/// Raster time of a pixel by the table, us.
 float pixel_us(const model::CostModel& costs, model::EffectMask effects) {
     constexpr float many = 65536;
     const model::CostGrid& grid = costs.grid_for(effects);
@@ -24,23 +24,25 @@ bool textured(const model::CostModel& costs, model::EffectMask effects) {
 FilterCosts::FilterCosts(const model::Model& model, const model::CostModel& costs) {
     const float growth = costs.trilinear_factor - 1.0F;
     if (!(growth > 0.0F) || !std::isfinite(growth)) return;
-    std::vector<double> part_us(model.parts.size());  // of a copy at a distance where its area in m2 is its pixels
+    // Of copies at a distance where the area in m2 is the pixels. The price of every pixel (ns_per_pixel) does not grow.
+    std::vector<double> table_us(model.parts.size()), part_us(model.parts.size());
     for (model::Index p = 0; p < model.parts.size(); ++p) {
         double area = 0;
         model::for_triangles(model, p, [&](const model::Material&, const vec3& a, const vec3& b, const vec3& c) {
             area += static_cast<double>(0.5F * glm::length(glm::cross(b - a, c - a)));
         });
-        part_us[p] = area * static_cast<double>(pixel_us(costs, model.materials[model.parts[p].material].effects));
+        table_us[p] = area * static_cast<double>(pixel_us(costs, model.materials[model.parts[p].material].effects));
+        part_us[p] = table_us[p] + 1e-3 * static_cast<double>(costs.ns_per_pixel) * area;
     }
     growth_.reserve(model.reps.size());
     for (const model::Representation& rep : model.reps) {
         double all_us = 0, textured_us = 0;
-        bool any_textured = rep.part_count == 0 && textured(costs, rep.effects);
+        bool any_textured = false;
         for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
             const bool with_texture = textured(costs, model.materials[model.parts[p].material].effects);
             any_textured = any_textured || with_texture;
             all_us += part_us[p];
-            if (with_texture) textured_us += part_us[p];
+            if (with_texture) textured_us += table_us[p];
         }
         const double share = all_us > 0 && std::isfinite(all_us) ? textured_us / all_us : any_textured ? 1.0 : 0.0;
         growth_.push_back(growth * static_cast<float>(share));

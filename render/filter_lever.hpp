@@ -11,7 +11,8 @@
 namespace surefoot {
 
 /// What blending two mip levels adds to the raster time of each representation. The share of its textured parts counts by their
-/// area and by what a pixel of their state class costs. Exact where all parts of a representation are of one class.
+/// area and by what a pixel of their state class costs. Exact where all parts of a representation are of one class, and no price
+/// of every pixel is fitted.
 class FilterCosts {
 public:
     FilterCosts() = default;

@@ -11,6 +11,7 @@ json scene forest --scale 0.3 -o f.glb
 cp f.glb again.glb; json scene forest --scale 0.3 -o f.glb; cmp -s f.glb again.glb || complain "a scene is not the same bits twice"
 json bake f.glb -o f.walk
 json inspect f.walk
+grep -q '"median_loss": {' out || complain "inspect has no loss of a fresh bake"
 json effects f.walk
 json walk f.walk --clock virtual --backend null --frames 30 --ledger l.csv --trace t.json --capture c.cap --capture-frame 7
 json replay c.cap --selector best-first

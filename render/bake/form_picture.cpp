@@ -8,9 +8,9 @@ namespace surefoot::bake {
 
 namespace {
 
-constexpr std::uint32_t max_side = 512;
-constexpr int level_octaves = 3;  // between two levels of a picture
-constexpr int max_octaves = 12;   // what is finer has hardly a sample
+constexpr std::uint32_t max_side = 576;  // of 64 pixels across: a side reaches 1.1 * 4 * 64 samples and one to both sides
+constexpr int level_octaves = 3;         // between two levels of a picture
+constexpr int max_octaves = 12;          // what is finer has hardly a sample
 
 /// 0..1, evenly spread over 4 x 4 samples of the grid and the same in every picture: equal glass looks equal in two forms.
 float threshold_of(std::int64_t x, std::int64_t y) {
@@ -38,7 +38,7 @@ struct Texels {
     }
     [[nodiscard]] std::size_t place(float uv, std::uint32_t size) const {
         const float inside = clamp ? std::clamp(uv, 0.0F, 1.0F) : uv - std::floor(uv);
-        return std::min(size - 1, static_cast<std::uint32_t>(inside * static_cast<float>(size)));
+        return inside > 0.0F ? std::min(size - 1, static_cast<std::uint32_t>(inside * static_cast<float>(size))) : 0;  // NaN: 0
     }
     [[nodiscard]] vec4 at(const vec2& uv) const {
         const std::byte* c = first + (place(uv.y, height) * width + place(uv.x, width)) * 4;

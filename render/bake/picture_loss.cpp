@@ -40,8 +40,9 @@ void plan_leaves(const Model& model, Plan& plan) {
         const Node& node = model.nodes[n];
         if (node.child_count > 0) continue;
         std::vector<Index> key;
-        for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r)
-            key.push_back(model.reps[r].kind == RepKind::mesh ? model.reps[r].first_part : none);
+        const Index finest = node.first_rep + node.rep_count - 1;
+        for (Index r = node.first_rep; r <= finest; ++r)
+            key.push_back(r == finest || model.reps[r].kind == RepKind::mesh ? model.reps[r].first_part : none);
         const auto [at, first] = seen.emplace(std::move(key), static_cast<Index>(plan.leaves.size()));
         if (first) plan.leaves.push_back(n);
         plan.same.emplace_back(n, at->second);
@@ -70,6 +71,13 @@ void plan_clusters(const Model& model, Plan& plan) {
     }
 }
 
+Plan plan_of(const Model& model) {
+    Plan plan;
+    plan_leaves(model, plan);
+    plan_clusters(model, plan);
+    return plan;
+}
+
 struct Measuring {
     const Model& model;
     Plan plan;
@@ -80,9 +88,8 @@ struct Measuring {
     std::vector<FormPicture> pictures;           ///< by node: of clusters whose parent is still to come
     Direction from;
 
-    explicit Measuring(const Model& m) : model(m), middle(m.nodes.empty() ? dvec3(0.0) : m.nodes[0].box.centre()) {
-        plan_leaves(m, plan);
-        plan_clusters(m, plan);
+    explicit Measuring(const Model& m)
+        : model(m), plan(plan_of(m)), middle(m.nodes.empty() ? dvec3(0.0) : m.nodes[0].box.centre()) {
         if (m.textures.empty()) levels = 1;
         differences.resize(m.reps.size());
         shown.resize(plan.leaves.size());
@@ -235,7 +242,7 @@ PictureLoss PictureDifference::loss(const model::ColourSpread& of_model) const {
 }
 
 std::size_t loss_steps(const Model& model) {
-    const Plan plan = Measuring(model).plan;
+    const Plan plan = plan_of(model);
     return plan.leaves.size() + directions.size() * plan.clusters;
 }
 

@@ -29,8 +29,9 @@ struct ColourSpread {
 inline float loss_at(const PictureLoss& loss, float size_px) {
     constexpr float octaves = 3.0F;  // between two sizes
     const float at = std::log2(loss_sizes_px[0] / std::clamp(size_px, loss_sizes_px.back(), loss_sizes_px[0])) / octaves;
-    const auto from = std::min(static_cast<std::size_t>(std::max(at, 0.0F)), loss_sizes_px.size() - 2);
-    return loss.colour[from] + (loss.colour[from + 1] - loss.colour[from]) * (at - static_cast<float>(from));
+    const float within = std::max(0.0F, at);  // a size that is no number counts as the largest
+    const auto from = std::min(static_cast<std::size_t>(within), loss_sizes_px.size() - 2);
+    return loss.colour[from] + (loss.colour[from + 1] - loss.colour[from]) * (within - static_cast<float>(from));
 }
 
 }  // namespace surefoot::model

@@ -23,11 +23,12 @@ Looks looks_of(const model::Model& model);
 /// value = W * (1 - g). W of a leaf: the pixels that it shows (ShownPixels) * importance * focus * motion. W of a node: the sum
 /// of its leaves'. g, 0..1: how wrong the choice looks. A twentieth is by its error in pixels. The rest is the measured loss at
 /// the node's size on the screen, as a share of what a missing thing loses. Without losses, a quarter is by the error in pixels.
-/// Then the rest is the share of the leaves' surface that the choice lacks: a fence that is missing, a tree that is a shard. rate
-/// = value per us of the next step, where a step into the children counts all that follows below at that rate. It is the slope of
-/// the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a candidate and
-/// down the tree. So all steps with a rate of at least r make the cut of the greatest value - r * cost. This holds to the
-/// resolution of the levels below. Source: Lagrange multipliers for choices under one budget, Everett 1963.
+/// Then the rest is the share of the leaves' surface that the choice lacks: a fence that is missing, a tree that is a shard.
+///
+/// rate = value per us of the next step, where a step into the children counts all that follows below at that rate. It is the
+/// slope of the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a
+/// candidate and down the tree. So all steps with a rate of at least r make the cut of the greatest value - r * cost. This holds
+/// to the resolution of the levels below. Source: Lagrange multipliers for choices under one budget, Everett 1963.
 class ValuePass {
 public:
     /// Rates are told apart by octaves while they are summed up: from 2^20 down to 2^-19 px/us.

@@ -106,6 +106,13 @@ TEST(FilterCosts, GrowByTheShareOfTexturedPixels) {
     EXPECT_EQ(grown(2), 100);
     EXPECT_FLOAT_EQ(grown(3), 150);
     EXPECT_EQ(filter.with(model.nodes[3].first_rep, {7, 100}).submit_us, 7);
+    model::CostModel priced = costs;
+    priced.ns_per_pixel = 1;
+    const FilterCosts with_price(model, priced);
+    const auto grown_beside = [&](model::Index node) { return with_price.with(model.nodes[node].first_rep, {7, 100}).raster_us; };
+    EXPECT_NEAR(grown_beside(3), 100 + 50 * 3.0F / (3.0F + 1.0F), 0.01) << "the price of every pixel does not grow";
+    EXPECT_NEAR(grown_beside(1), 100 + 50 * (16 * 3.0F) / (16 * (3.0F + 1.0F) + 4 * (1.5F + 1.0F)), 0.01);
+    EXPECT_EQ(grown_beside(2), 100);
     for (const float odd : {1.0F, 0.5F, std::nanf(""), std::numeric_limits<float>::infinity()}) {
         costs.trilinear_factor = odd;
         EXPECT_FALSE(FilterCosts(model, costs).any()) << odd;
@@ -131,10 +138,12 @@ model::Model textured_wall(bool textured = true) {
 
 struct FilteredWalk {
     std::unique_ptr<Engine> engine;
+    Pose pose;
     prepare::PreparedFrame set;
     double charged_us = 0;
     SubmitReport report;
 
+    FilteredWalk() = default;
     explicit FilteredWalk(model::Model model, bool second_filter = true,
                           std::string selector = std::string(select::usual_selector)) {
         EngineOptions options;
@@ -152,8 +161,8 @@ struct FilteredWalk {
         options.rest_after_ms = 500;
         open(textured_wall(), options);
     }
-    void open(model::Model model, const EngineOptions& options) {
-        auto opened = Engine::open(std::move(model), model::default_costs(), options);
+    void open(model::Model model, const EngineOptions& options, const model::CostModel& costs = model::default_costs()) {
+        auto opened = Engine::open(std::move(model), costs, options);
         if (!opened) return;
         engine = std::move(*opened);
         engine->device().draws.plays();
@@ -168,11 +177,11 @@ struct FilteredWalk {
     double frame(double budget_us, std::int64_t at_ns = -1) {
         bind();
         engine->device().draws.plays();
-        engine->prepare({{}, 0, 0}, 0, 0, 0, set);  // prices are of this very pose
+        engine->prepare({pose, 0, 0}, 0, 0, 0, set);  // prices are of this very pose
         engine->offer_filter(set, budget_us, {});
         const double predicted_us = static_cast<double>(engine->select(set, budget_us, {}, 0).predicted_us);
         const double before_us = engine->device().charged_us();
-        report = engine->submit({}, {.elapsed_us = 0, .limit_us = budget_us, .frame_ns = at_ns});
+        report = engine->submit(pose, {.elapsed_us = 0, .limit_us = budget_us, .frame_ns = at_ns});
         charged_us = engine->device().charged_us() - before_us;
         return predicted_us;
     }
@@ -235,6 +244,35 @@ TEST(EngineFilter, StaysWhileItFitsAndLeavesAtOnceWhereItDoesNot) {
     EXPECT_EQ(walk.engine->submit({}, {.elapsed_us = 0, .limit_us = 1e6}).filter, TextureFilter::bilinear);
     walk.frame(2 * with_us);
     EXPECT_EQ(walk.report.filter, TextureFilter::bilinear) << "a frame without a prepared set ends it too";
+}
+
+TEST(EngineFilter, AViewWithoutTexturesEndsItAndTheWaitBeginsAnew) {
+    FilteredWalk walk(textured_wall());
+    ASSERT_TRUE(walk.engine);
+    ASSERT_EQ(walk.frames_until_trilinear(1e6), QualityDwell::min_wait);
+    const Pose ahead = walk.pose;
+    walk.pose.orientation = glm::angleAxis(3.14159265358979, dvec3(0, 1, 0));
+    walk.frame(1e6);
+    EXPECT_EQ(walk.report.filter, TextureFilter::bilinear) << "there is nothing to filter";
+    EXPECT_EQ(walk.report.refused_items, 0U);
+    walk.pose = ahead;
+    EXPECT_EQ(walk.frames_until_trilinear(1e6), 2 * QualityDwell::min_wait) << "it stayed for one frame";
+}
+
+TEST(EngineFilter, WhatTakesNoTimeIsNotOffered) {
+    FilteredWalk walk;
+    model::CostModel costs = model::default_costs();
+    costs.combine.raster_weight = costs.combine.max_weight = 0;  // a machine whose frames wait for submission alone
+    EngineOptions options;
+    options.device.kind = gl::BackendKind::null;
+    options.device.second_filter = true;
+    walk.open(textured_wall(), options, costs);
+    ASSERT_TRUE(walk.engine);
+    for (std::uint32_t i = 0; i < 2 * QualityDwell::min_wait; ++i) {
+        walk.frame(1e6);
+        ASSERT_EQ(walk.report.refused_items, 0U) << i;
+    }
+    EXPECT_GT(walk.set.full_filter_us, 0) << "or the test shows nothing";
 }
 
 TEST(EngineFilter, DoesNotFlickerWhereTheBudgetTrembles) {

@@ -338,7 +338,8 @@ TEST(PictureLoss, IsBetweenTheSizesByTheirLogarithm) {
                                             {16.0F, 0.1F + 0.2F / 3},
                                             {1e9F, 0.4F},
                                             {0.0F, 0.2F},
-                                            {-1.0F, 0.2F}})
+                                            {-1.0F, 0.2F},
+                                            {std::numeric_limits<float>::quiet_NaN(), 0.4F}})
         EXPECT_NEAR(loss_at(loss, size_px), expected, 1e-5F) << size_px;
 }
 

@@ -64,8 +64,8 @@ void add_compare(CLI::App& app, Context& context) {
         "Selectors walk in turns. After each walk, frames are drawn again and in full detail: PSNR is pooled over\n"
         "them, SSIM and FLIP are means. `popped` and `pops` compare one pose by a frame's cut and by the cut before it:\n"
         "the share of pixels that change visibly, and PSNR. `unused` is the mean time left, in ms, where the value\n"
-        "is below 0.99. `coarse` counts frames with coarser slices. `floor` counts frames that fell to the floor\n"
-        "although the cut before would have fitted. `value` is the share of the greatest value that the budget buys,\n"
+        "is below 0.99 or not known. `coarse` counts frames with coarser slices. `floor` counts frames that fell to the\n"
+        "floor although the cut before would have fitted. `value` is the share of the greatest value that the budget buys,\n"
         "found off line on frames of the path at full resolution. >= says that some optimum is not proven: the share is\n"
         "of an upper bound then.",
         a->json);

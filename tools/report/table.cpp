@@ -62,8 +62,8 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
                                          s.rest_frames, s.rested_frames, s.rest_ms, s.rest_samples));
     if (s.picture.frames > 0) table.row("picture", picture_words(s.picture));
     if (s.unused_ms.max > 0)
-        table.row("unused", fmt::format("{:.1f} ms of the period (mean), {:.1f} (p99), where the value is below 0.99",
-                                        s.unused_ms.mean, s.unused_ms.p99));
+        table.row("unused", fmt::format("{:.1f} ms of the period (mean), {:.1f} (p99), where value is missing", s.unused_ms.mean,
+                                        s.unused_ms.p99));
     std::string triangles =
         fmt::format("mean {}, most {}", short_number(s.triangles_mean), short_number(static_cast<double>(s.triangles_max)));
     if (s.model_triangles > 0)

@@ -39,9 +39,8 @@ struct ModelFit {
 
 /// Draws random views near the path at random budgets, in several rounds (measure::robust_frame_times). Every other view is used
 /// for the fit, the rest to measure its error. The fit adds a price of every pixel if that predicts clearly better.
-/// The table's cells do not change, as they are of single items. Models differ in how
-/// items overlap and hide each other. The null backend charges what the table says: a fit without GL, for tests. It shows
-/// nothing, so the blur keeps the table's figures.
+/// The table's cells do not change, as they are of single items. Models differ in how items overlap and hide each other. The null
+/// backend charges what the table says: a fit without GL, for tests. It shows nothing, so the blur keeps the table's figures.
 Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model::CostModel& table, const ModelFitOptions& options,
                               const Progress& progress);
 

@@ -101,7 +101,7 @@ private:
     double time_left_us_ = 0;           ///< until the limit, as the last submission began
     std::uint64_t walked_ = 0;          ///< frames so far, without the control's bare ones
     std::uint64_t path_slot_ = 0;       ///< position on the path, in periods; with a control it does not advance in bare blocks
-    bool filtered_ = false;             ///< the last cut has the second mip level
+    bool filtered_ = false;             ///< the last frame that was learnt from had the second mip level
     bool coarse_ = false;               ///< the last selection was Engine::select_last()
     const select::Cut* cut_ = nullptr;  ///< of the last selection
     double requested_budget_us_ = 0;    ///< what that selection was given
