@@ -44,6 +44,8 @@ TEST(KeepCosts, WhereTheWalksDoNotTellTheSmallerErrorOfHeldOutFramesDecides) {
         EXPECT_EQ(close.reason, KeepReason::prediction);
         const KeptCosts unsteady = decide(trial({36, 26}, 29), trial({30, 27}, 28.2), fit_error, 0.2);
         EXPECT_EQ(unsteady.fit, fit) << "one round each";
+        const KeptCosts overlapping = decide(trial({36, 29}, 31), trial({30, 27}, 28.2), fit_error, 0.2);
+        EXPECT_EQ(overlapping.fit, fit) << "better in both rounds, but by less than the rounds differ";
         EXPECT_EQ(unsteady.reason, KeepReason::prediction);
     }
 }

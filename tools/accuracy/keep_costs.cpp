@@ -35,13 +35,13 @@ double miss_share(const CostTrial& trial) {
     return static_cast<double>(trial.own_misses) / static_cast<double>(std::max<std::uint64_t>(1, trial.frames));
 }
 
-/// Rounds are neighbours in time: each is judged by itself.
-bool better_in_every_round(const CostTrial& a, const CostTrial& b) {
-    return std::equal(a.of_rounds.begin(), a.of_rounds.end(), b.of_rounds.begin(), b.of_rounds.end(), std::greater<>());
-}
-
+/// The machine's speed changes between walks. One walk of a candidate differs from its next by more than a decibel, so a
+/// difference counts only if it is larger than that spread.
 bool has_better_pictures(const CostTrial& a, const CostTrial& b) {
-    return a.psnr_db >= b.psnr_db + equal_psnr_db && better_in_every_round(a, b);
+    if (a.of_rounds.empty() || b.of_rounds.empty()) return false;
+    const double worst = *std::min_element(a.of_rounds.begin(), a.of_rounds.end());
+    const double best = *std::max_element(b.of_rounds.begin(), b.of_rounds.end());
+    return worst >= best + equal_psnr_db;
 }
 
 }  // namespace

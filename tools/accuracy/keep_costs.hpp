@@ -19,7 +19,7 @@ struct KeepRequest {
     walk::WalkRequest walk;  ///< its costs are replaced; pictures > 0, and a length
     std::shared_ptr<const model::CostModel> fit, table;
     double fit_error = 0, table_error = 0;  ///< of held-out frames: decide where the walks do not
-    std::uint32_t rounds = 2;               ///< walks with each; neighbours in time change their order
+    std::uint32_t rounds = 3;               ///< walks with each; neighbours in time change their order
 };
 
 /// Walks with one candidate.
@@ -34,7 +34,7 @@ struct CostTrial {
 /// Why one candidate is kept, in the order in which it is asked.
 enum class KeepReason : std::uint8_t {
     deadlines,   ///< the other one's frames were late more often
-    pictures,    ///< its pictures are nearer to full detail, in every round
+    pictures,    ///< its worst round shows a better picture than the best round of the other
     prediction,  ///< the walks do not tell: its error of held-out frames is smaller
 };
 std::string_view name_of(KeepReason reason);

@@ -377,8 +377,8 @@ void add_calibrate(CLI::App& app, Context& context) {
     c->add_option("--plot", a->plot, "SVG file for the plot of costs (else costs.svg in the state folder)");
     c->add_option(
          "--keep", a->keep,
-         "With a model: what later walks use. `better` walks 4 * 8 s (--quick: 2 * 4 s) along the path by the fit and by\n"
-         "the table, and keeps the one with fewer misses, else with better pictures; this takes about a minute")
+         "With a model: what later walks use. `better` walks 6 * 8 s (--quick: 2 * 4 s) along the path by the fit and by\n"
+         "the table, and keeps the one with fewer misses, else with better pictures; this takes a minute and a half")
         ->check(one_of(kept_costs))
         ->capture_default_str();
     c->add_flag("--quick", a->quick, "Measure fewer frames and classes: faster, with larger errors");
