@@ -29,6 +29,7 @@ public:
     }
     /// The same, with the pixels that it is predicted from: all that are rasterised, overdraw included.
     [[nodiscard]] ItemCost of(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& pixels) const;
+    [[nodiscard]] const PixelEstimator& estimator() const { return estimator_; }
 
 private:
     [[nodiscard]] ItemCost by_cells(Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale, float& pixels) const;

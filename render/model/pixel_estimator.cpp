@@ -26,6 +26,8 @@ bool within(float half_diagonals, const Box& box, const dvec3& eye) {
     return glm::dot(away, away) < half_diagonals * half_diagonals * glm::dot(half, half);
 }
 
+bool is_masked(const Material& material) { return (material.effects & effect_alpha_mask) != 0; }
+
 vec3 area_of(const vec3& a, const vec3& b, const vec3& c) { return 0.5F * glm::cross(b - a, c - a); }
 
 /// The n-th of a sequence that fills the unit square evenly, folded into a triangle.
@@ -68,7 +70,7 @@ struct Polygon {
 /// A view in the coordinates of a surface: x and y in the picture where they lie between -z and z.
 struct PixelEstimator::LocalView {
     vec3 eye{0}, x{0}, y{0}, z{0};
-    float side = 1;  ///< -1 where the placement mirrors
+    float side = 1;  ///< -1 where the placement mirrors: the front stays the front, as it is drawn
     float near_m = 0;
     float pixels = 0;        ///< of the picture
     float sample_scale = 0;  ///< pixels of a sample's area at depth 1, seen from ahead
@@ -169,24 +171,24 @@ void PixelEstimator::fill(const Model& model, const Representation& rep, Surface
         const float area = glm::length(facing);
         if (!(area > 0)) return;
         if (area > surface.whole_m2) {
-            triangles_.push_back({a, b, c, material.two_sided});
+            triangles_.push_back({a, b, c, material.two_sided, is_masked(material)});
             return;
         }
         passed += static_cast<double>(area);
         for (; n < surface.samples && (n + 0.5) * static_cast<double>(surface.sample_m2) < passed; ++n) {
             const vec2 place = place_in_triangle(n);
             samples_.push_back({a + place.x * (b - a) + place.y * (c - a), facing * (surface.sample_m2 / area),
-                                material.two_sided ? -1.0F : 0.0F});
+                                material.two_sided ? -1.0F : 0.0F, is_masked(material)});
         }
     });
     // Areas so small that their sum is not what their shares add up to.
-    for (; n < surface.samples; ++n) samples_.push_back({vec3(0), vec3(0), 0.0F});
+    for (; n < surface.samples; ++n) samples_.push_back({vec3(0), vec3(0), 0.0F, false});
 }
 
 float PixelEstimator::pixels_of(const Triangle& t, const LocalView& view) {
     Polygon p{{view.seen(t.a), view.seen(t.b), view.seen(t.c)}};
     const vec3 a = p.points[0], b = p.points[1], c = p.points[2];
-    const float towards = glm::dot(glm::cross(b - a, c - a), a);
+    const float towards = view.side * glm::dot(glm::cross(b - a, c - a), a);
     if (towards < 0 && !t.both_sides) return 0;
     const std::uint32_t beyond_a = view.beyond(a), beyond_b = view.beyond(b), beyond_c = view.beyond(c);
     if ((beyond_a & beyond_b & beyond_c) != 0) return 0;
@@ -209,7 +211,7 @@ float PixelEstimator::pixels_of(const Sample& s, float sample_m2, const LocalVie
     const vec3 d = s.at - view.eye;
     const float z = glm::dot(view.z, d);
     if (!(z > view.near_m) || std::abs(glm::dot(view.x, d)) > z || std::abs(glm::dot(view.y, d)) > z) return 0;
-    const float ahead = -view.side * glm::dot(s.area, d);
+    const float ahead = -glm::dot(s.area, d);
     const float square = glm::dot(d, d);
     // A patch as large as its distance covers less than it would far away: about what a disc of its area does.
     return std::max(ahead, ahead * s.back) * square / ((square + 0.5F * sample_m2) * z * z * z) * view.sample_scale;
@@ -260,18 +262,66 @@ bool PixelEstimator::part_pixels(const Model& model, Index r, const Box& node_bo
                                  std::span<float> of_part) const {
     const Representation& rep = model.reps[r];
     LocalView view;
-    if (r >= each_.size() || !each_[r] || rep.part_count > of_part.size() || node_box.empty() ||
-        !within(close_half_diagonals, node_box, eye) || !look(r, eye, scale, view))
-        return false;
+    if (rep.part_count > of_part.size() || !tests_each(model, r, node_box, eye) || !look(r, eye, scale, view)) return false;
     float sum = 0;
     for (std::uint32_t p = 0; p < rep.part_count; ++p) {
         of_part[p] = 0;
         for_triangles(model, rep.first_part + p, [&](const Material& material, const vec3& a, const vec3& b, const vec3& c) {
-            of_part[p] += pixels_of(Triangle{a, b, c, material.two_sided}, view);
+            of_part[p] += pixels_of(Triangle{a, b, c, material.two_sided, false}, view);
         });
         sum += of_part[p];
     }
     return std::isfinite(sum);
+}
+
+bool PixelEstimator::tests_each(const Model& model, Index r, const Box& node_box, const dvec3& eye) const {
+    return r < each_.size() && each_[r] && model.reps[r].part_count > 0 && !node_box.empty() &&
+           within(close_half_diagonals, node_box, eye);
+}
+
+/// `enlarged`: its area, about its middle.
+bool PixelEstimator::see(const Triangle& t, const LocalView& view, float enlarged, SeenPiece& out) {
+    std::array<vec3, 3>& at = out.at;
+    at = {view.seen(t.a), view.seen(t.b), view.seen(t.c)};
+    if (!t.both_sides && view.side * glm::dot(glm::cross(at[1] - at[0], at[2] - at[0]), at[0]) < 0) return false;
+    if (enlarged > 1.0F) {
+        const vec3 middle = (at[0] + at[1] + at[2]) / 3.0F;
+        for (vec3& corner : at) corner = middle + std::sqrt(enlarged) * (corner - middle);
+    }
+    out.pixels = 0;
+    out.masked = t.masked;
+    return (view.beyond(at[0]) & view.beyond(at[1]) & view.beyond(at[2])) == 0;
+}
+
+std::ptrdiff_t PixelEstimator::pieces(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale,
+                                      const Pieces& of, std::span<SeenPiece> out) const {
+    LocalView view;
+    if (out.empty() || !look(r, eye, scale, view)) return -1;
+    std::size_t count = 0;
+    const auto full = [&] { return count == out.size(); };
+    if (of.each_triangle && tests_each(model, r, node_box, eye)) {
+        for_triangles(model, model.reps[r], [&](const Material& material, const vec3& a, const vec3& b, const vec3& c) {
+            if (!full() && see({a, b, c, material.two_sided, is_masked(material)}, view, 1.0F, out[count])) ++count;
+        });
+        return static_cast<std::ptrdiff_t>(count);
+    }
+    const Surface& surface = surfaces_[placed_[r].surface];
+    const std::uint32_t kept = surface.triangles + surface.samples;
+    if (kept == 0) return -1;
+    const std::uint32_t every = (kept - 1) / std::max(1U, of.max_pieces) + 1;
+    const auto enlarged = static_cast<float>(every);
+    for (std::uint32_t i = 0; i < surface.triangles && !full(); i += every)
+        if (see(triangles_[surface.first_triangle + i], view, enlarged, out[count])) ++count;
+    for (std::uint32_t i = 0; i < surface.samples && !full(); i += every) {
+        const Sample& sample = samples_[surface.first_sample + i];
+        SeenPiece& piece = out[count];
+        piece.pixels = enlarged * pixels_of(sample, surface.sample_m2, view);
+        if (!(piece.pixels > 0)) continue;
+        piece.at[0] = view.seen(sample.at);
+        piece.masked = sample.masked;
+        ++count;
+    }
+    return static_cast<std::ptrdiff_t>(count);
 }
 
 }  // namespace surefoot::model

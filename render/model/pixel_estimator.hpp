@@ -2,6 +2,8 @@
 // are used, because it matters on which side of its box a wall stands. Very near, every triangle is used.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,6 +13,13 @@
 
 namespace surefoot::model {
 
+/// A piece of a surface as a view sees it. x and y lie between -z and z in the picture; z is the depth, m.
+struct SeenPiece {
+    std::array<vec3, 3> at{};  ///< a triangle's corners; of a sample its place, in the first
+    float pixels = 0;          ///< of a sample; 0: a triangle
+    bool masked = false;       ///< by an alpha test
+};
+
 /// Keeps at most 128 of the largest triangles of every representation, and at most 128 samples of equal area for the rest.
 /// Representations with the same parts share them. Every call must pass the model that this was made of.
 class PixelEstimator {
@@ -18,7 +27,7 @@ public:
     static constexpr std::uint32_t max_parts = 64;  ///< limit of part_pixels()
 
     PixelEstimator() = default;
-    /// Allocates at most 128 triangles of 40 bytes and 128 samples of 28 bytes for each different mesh (8.5 KiB). Passes twice
+    /// Allocates at most 128 triangles of 40 bytes and 128 samples of 32 bytes for each different mesh (9 KiB). Passes twice
     /// over the triangles: 50 to 60 ms a million.
     explicit PixelEstimator(const Model& model);
 
@@ -36,15 +45,25 @@ public:
     /// Pixels from triangles clipped to the view and samples inside it; culled back faces do not count.
     /// Negative if unknown: no triangles, or a placement without an inverse.
     [[nodiscard]] float surface_pixels(Index r, const dvec3& eye, const ViewScale& scale) const;
+    /// How a surface is taken to pieces.
+    struct Pieces {
+        bool each_triangle = false;      ///< where part_pixels() is available; else the kept triangles and the samples
+        std::uint32_t max_pieces = 256;  ///< of the kept ones: of more, only every n-th, enlarged n times
+    };
+    /// Writes the pieces that face the eye and are not beyond one side of the view to the front of `out`, as many as fit. Returns
+    /// their number. Triangles may begin before the near plane. Negative: no triangles, or a placement without an inverse.
+    std::ptrdiff_t pieces(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale,
+                          const Pieces& of, std::span<SeenPiece> out) const;
 
 private:
     struct Triangle {
         vec3 a, b, c;
-        bool both_sides;
+        bool both_sides, masked;
     };
     struct Sample {
         vec3 at, area;  ///< m^2 along the normal
         float back;     ///< its weight from behind: -1 all, 0 nothing
+        bool masked;
     };
     /// Of one run of parts, in their own coordinates.
     struct Surface {
@@ -62,6 +81,10 @@ private:
         float determinant = 0;  ///< 0: no inverse, so the box decides
     };
     struct LocalView;
+    /// False: it is not seen.
+    static bool see(const Triangle& triangle, const LocalView& view, float enlarged, SeenPiece& out);
+    /// Whether part_pixels() and pieces() look at each triangle.
+    [[nodiscard]] bool tests_each(const Model& model, Index r, const Box& node_box, const dvec3& eye) const;
     /// False if the placement has no inverse.
     bool look(Index r, const dvec3& eye, const ViewScale& scale, LocalView& view) const;
 

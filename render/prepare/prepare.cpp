@@ -318,7 +318,8 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
 }
 
 void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
-    const std::span<const float> shown_px = shown.run(weights, out.candidates, out.choices, view.wide, view.scale);
+    const std::span<const float> shown_px = shown.run(weights, out.candidates, out.choices, view.wide, view.scale,
+                                                      {&model, &evaluator.item_costs().estimator(), view.eye});
     values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model));
 }
 

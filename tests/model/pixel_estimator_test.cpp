@@ -138,6 +138,25 @@ TEST(PixelEstimator, AreWhereThePlacementPutsThem) {
     }
 }
 
+TEST(PixelEstimator, OfAMirroredWallIsItsOwnFront) {
+    const std::vector<dvec3> wall = {{-50, -50, -5}, {50, -50, -5}, {50, 50, -5}, {-50, -50, -5}, {50, 50, -5}, {-50, 50, -5}};
+    std::vector<dvec3> speckled = wall;  // so many triangles that they are sampled
+    for (int i = -30; i < 30; ++i) {
+        for (int j = -30; j < 30; ++j) {
+            const double x = 0.5 * i, y = 0.5 * j;
+            for (const dvec3& c : {dvec3(x, y, -5), dvec3(x + 0.5, y, -5), dvec3(x, y + 0.5, -5)}) speckled.push_back(c);
+        }
+    }
+    mat3 mirror(1.0F);
+    mirror[0][0] = -1;
+    for (const auto& corners : {wall, speckled}) {
+        const float in_front = pixels(model_of(corners), Pose{});
+        ASSERT_GT(in_front, 1000.0F);
+        EXPECT_NEAR(pixels(model_of(corners, false, mirror), Pose{}), in_front, 0.01F * in_front);
+        EXPECT_EQ(pixels(model_of(corners, false, mirror), turned({0, 0, -10}, pi)), 0.0F) << "from behind";
+    }
+}
+
 TEST(PixelEstimator, CountTwoThirdsNearbyAndNothingFarAwayOrWithoutTriangles) {
     const Model m = model_of(wall_and_speck());
     const Pose near = turned({0, 0, 30}, 0);  // half a diagonal is 15 m, three are 45

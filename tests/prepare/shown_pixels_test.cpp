@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -108,6 +109,76 @@ TEST(ShownPixels, OfAnOutlineBesideThePictureAreAsOfHalfALayerThere) {
     whole.picture = leaves.picture;
     whole.add(10, {-0.25F, -1, 0.25F, 1}, view_px / 4);
     EXPECT_NEAR(whole.run()[1], (1 - std::exp(-1.0)) * view_px / 4, 1) << "wholly in the picture nothing changes";
+}
+
+/// Leaves with surfaces, seen from 0 along -z.
+struct Solids {
+    model::Model model;
+    Leaves leaves;
+
+    Solids() {
+        model.placements.resize(1);
+        model.materials.resize(1);
+        model.nodes.resize(1);
+        model.reps.resize(1);
+    }
+    /// Rectangles that face +z: left, low, right, high, z.
+    void add(const std::vector<std::array<float, 5>>& rectangles, const Outline& outline, float nearest_m) {
+        const auto first = static_cast<std::uint32_t>(model.vertices.size());
+        const auto first_index = static_cast<std::uint32_t>(model.indices.size());
+        model::Node node;
+        for (const auto& [left, low, right, high, z] : rectangles) {
+            for (const vec3& at : {vec3(left, low, z), vec3(right, low, z), vec3(right, high, z), vec3(left, low, z),
+                                   vec3(right, high, z), vec3(left, high, z)}) {
+                model::Vertex v{};
+                for (int k = 0; k < 3; ++k) v.position[k] = at[k];
+                model.indices.push_back(static_cast<std::uint32_t>(model.vertices.size()) - first);
+                model.vertices.push_back(v);
+                node.box.grow(dvec3(at));
+            }
+        }
+        const auto count = static_cast<std::uint32_t>(6 * rectangles.size());
+        model.parts.push_back({0, first_index, count, first, count});
+        model::Representation rep;
+        rep.first_part = static_cast<Index>(model.parts.size() - 1);
+        rep.part_count = 1;
+        rep.triangles = count / 3;
+        model.reps.push_back(rep);
+        node.first_rep = static_cast<Index>(model.reps.size() - 1);
+        node.rep_count = 1;
+        model.nodes.push_back(node);
+        leaves.add(nearest_m, outline, view_px);
+        leaves.candidates.back().node = static_cast<Index>(model.nodes.size() - 1);
+        leaves.choices.back().rep = node.first_rep;
+    }
+    std::span<const float> run() {
+        const model::PixelEstimator estimator(model);
+        leaves.run();  // reserves
+        return leaves.shown.run(leaves.weights, leaves.candidates, leaves.choices, view, view, {&model, &estimator, dvec3(0.0)});
+    }
+};
+
+TEST(ShownPixels, WhatIsRoundTheEyeDoesNotHideWhatIsBeforeIt) {
+    Solids solids;
+    // A room: a wall far ahead, and a speck behind the eye, so that its box goes round the eye. A barrel fills a quarter.
+    solids.add({{-100, -100, 100, 100, -50}, {0, 0, 0.01F, 0.01F, 5}}, whole_view, 0.05F);
+    solids.add({{-1.28F, -0.72F, 1.28F, 0.72F, -4}}, {-0.5F, -0.5F, 0.5F, 0.5F}, 3.9F);
+    const auto shown = solids.run();
+    EXPECT_NEAR(shown[2], view_px / 4, 0.02F * view_px);
+    EXPECT_NEAR(shown[1], 3 * view_px / 4, 0.02F * view_px);
+}
+
+TEST(ShownPixels, BehindADrawnWallNothingIsShown) {
+    Solids solids;
+    solids.add({{-100, -100, 100, 100, -10}}, whole_view, 10);
+    solids.add({{-2, -2, 2, 2, -20}}, {-0.15F, -0.25F, 0.15F, 0.25F}, 20);
+    solids.add({{-0.1F, -0.1F, 0.1F, 0.1F, -20}}, {-0.008F, -0.014F, 0.008F, 0.014F}, 20);    // a small one behind it
+    solids.add({{-0.02F, -0.02F, 0.02F, 0.02F, -4}}, {-0.008F, -0.014F, 0.008F, 0.014F}, 4);  // and before it
+    const auto shown = solids.run();
+    EXPECT_EQ(shown[2], 0);
+    EXPECT_EQ(shown[3], 0);
+    EXPECT_NEAR(shown[4], 0.008F * 0.014F * view_px, 5);
+    EXPECT_NEAR(shown[1] + shown[4], view_px, 0.001F * view_px) << "the wall shows what the small one leaves open";
 }
 
 TEST(ShownPixels, OfPartsOfTilesAddUp) {
