@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t max_samples = 128;  // triangles, and samples, of a surface
 constexpr float near_half_diagonals = 3.0F, close_half_diagonals = 1.5F;
-constexpr std::uint32_t max_each = 2048;  // triangles that are looked at one by one
+constexpr auto max_each = static_cast<std::uint32_t>(PixelEstimator::max_pieces);  // triangles that are looked at one by one
 constexpr float surface_share = 2.0F / 3.0F;
 
 /// Nearer than so many half diagonals of the box.
@@ -26,7 +26,7 @@ bool within(float half_diagonals, const Box& box, const dvec3& eye) {
     return glm::dot(away, away) < half_diagonals * half_diagonals * glm::dot(half, half);
 }
 
-bool is_masked(const Material& material) { return (material.effects & effect_alpha_mask) != 0; }
+bool is_see_through(const Material& material) { return (material.effects & (effect_alpha_mask | effect_blend)) != 0; }
 
 vec3 area_of(const vec3& a, const vec3& b, const vec3& c) { return 0.5F * glm::cross(b - a, c - a); }
 
@@ -171,14 +171,14 @@ void PixelEstimator::fill(const Model& model, const Representation& rep, Surface
         const float area = glm::length(facing);
         if (!(area > 0)) return;
         if (area > surface.whole_m2) {
-            triangles_.push_back({a, b, c, material.two_sided, is_masked(material)});
+            triangles_.push_back({a, b, c, material.two_sided, is_see_through(material)});
             return;
         }
         passed += static_cast<double>(area);
         for (; n < surface.samples && (n + 0.5) * static_cast<double>(surface.sample_m2) < passed; ++n) {
             const vec2 place = place_in_triangle(n);
             samples_.push_back({a + place.x * (b - a) + place.y * (c - a), facing * (surface.sample_m2 / area),
-                                material.two_sided ? -1.0F : 0.0F, is_masked(material)});
+                                material.two_sided ? -1.0F : 0.0F, is_see_through(material)});
         }
     });
     // Areas so small that their sum is not what their shares add up to.
@@ -279,17 +279,12 @@ bool PixelEstimator::tests_each(const Model& model, Index r, const Box& node_box
            within(close_half_diagonals, node_box, eye);
 }
 
-/// `enlarged`: its area, about its middle.
-bool PixelEstimator::see(const Triangle& t, const LocalView& view, float enlarged, SeenPiece& out) {
+bool PixelEstimator::project(const Triangle& t, const LocalView& view, SeenPiece& out) {
     std::array<vec3, 3>& at = out.at;
     at = {view.seen(t.a), view.seen(t.b), view.seen(t.c)};
     if (!t.both_sides && view.side * glm::dot(glm::cross(at[1] - at[0], at[2] - at[0]), at[0]) < 0) return false;
-    if (enlarged > 1.0F) {
-        const vec3 middle = (at[0] + at[1] + at[2]) / 3.0F;
-        for (vec3& corner : at) corner = middle + std::sqrt(enlarged) * (corner - middle);
-    }
     out.pixels = 0;
-    out.masked = t.masked;
+    out.see_through = t.see_through;
     return (view.beyond(at[0]) & view.beyond(at[1]) & view.beyond(at[2])) == 0;
 }
 
@@ -300,25 +295,30 @@ std::ptrdiff_t PixelEstimator::pieces(const Model& model, Index r, const Box& no
     std::size_t count = 0;
     const auto full = [&] { return count == out.size(); };
     if (of.each_triangle && tests_each(model, r, node_box, eye)) {
+        std::uint32_t number = 0;
         for_triangles(model, model.reps[r], [&](const Material& material, const vec3& a, const vec3& b, const vec3& c) {
-            if (!full() && see({a, b, c, material.two_sided, is_masked(material)}, view, 1.0F, out[count])) ++count;
+            if (full()) return;
+            out[count].number = number++;
+            if (project({a, b, c, material.two_sided, is_see_through(material)}, view, out[count])) ++count;
         });
         return static_cast<std::ptrdiff_t>(count);
     }
     const Surface& surface = surfaces_[placed_[r].surface];
-    const std::uint32_t kept = surface.triangles + surface.samples;
-    if (kept == 0) return -1;
-    const std::uint32_t every = (kept - 1) / std::max(1U, of.max_pieces) + 1;
-    const auto enlarged = static_cast<float>(every);
-    for (std::uint32_t i = 0; i < surface.triangles && !full(); i += every)
-        if (see(triangles_[surface.first_triangle + i], view, enlarged, out[count])) ++count;
+    if (surface.triangles + surface.samples == 0) return -1;
+    for (std::uint32_t i = 0; i < surface.triangles && !full(); ++i) {
+        out[count].number = i;
+        if (project(triangles_[surface.first_triangle + i], view, out[count])) ++count;
+    }
+    const std::uint32_t limit = std::max(1U, of.max_samples);
+    const std::uint32_t every = std::max(1U, (surface.samples + limit - 1) / limit);
     for (std::uint32_t i = 0; i < surface.samples && !full(); i += every) {
         const Sample& sample = samples_[surface.first_sample + i];
         SeenPiece& piece = out[count];
-        piece.pixels = enlarged * pixels_of(sample, surface.sample_m2, view);
+        piece.pixels = static_cast<float>(every) * pixels_of(sample, surface.sample_m2, view);
         if (!(piece.pixels > 0)) continue;
         piece.at[0] = view.seen(sample.at);
-        piece.masked = sample.masked;
+        piece.see_through = sample.see_through;
+        piece.number = surface.triangles + i;
         ++count;
     }
     return static_cast<std::ptrdiff_t>(count);

@@ -17,7 +17,8 @@ namespace surefoot::model {
 struct SeenPiece {
     std::array<vec3, 3> at{};  ///< a triangle's corners; of a sample its place, in the first
     float pixels = 0;          ///< of a sample; 0: a triangle
-    bool masked = false;       ///< by an alpha test
+    bool see_through = false;  ///< masked or blended
+    std::uint32_t number = 0;  ///< of the piece in its surface: the same in every view
 };
 
 /// Keeps at most 128 of the largest triangles of every representation, and at most 128 samples of equal area for the rest.
@@ -47,9 +48,10 @@ public:
     [[nodiscard]] float surface_pixels(Index r, const dvec3& eye, const ViewScale& scale) const;
     /// How a surface is taken to pieces.
     struct Pieces {
-        bool each_triangle = false;      ///< where part_pixels() is available; else the kept triangles and the samples
-        std::uint32_t max_pieces = 256;  ///< of the kept ones: of more, only every n-th, enlarged n times
+        bool each_triangle = false;       ///< where part_pixels() is available; else the kept triangles and the samples
+        std::uint32_t max_samples = 128;  ///< of more, only every n-th, with n times its pixels
     };
+    static constexpr std::size_t max_pieces = 2048;  ///< of one surface
     /// Writes the pieces that face the eye and are not beyond one side of the view to the front of `out`, as many as fit. Returns
     /// their number. Triangles may begin before the near plane. Negative: no triangles, or a placement without an inverse.
     std::ptrdiff_t pieces(const Model& model, Index r, const Box& node_box, const dvec3& eye, const ViewScale& scale,
@@ -58,12 +60,12 @@ public:
 private:
     struct Triangle {
         vec3 a, b, c;
-        bool both_sides, masked;
+        bool both_sides, see_through;
     };
     struct Sample {
         vec3 at, area;  ///< m^2 along the normal
         float back;     ///< its weight from behind: -1 all, 0 nothing
-        bool masked;
+        bool see_through;
     };
     /// Of one run of parts, in their own coordinates.
     struct Surface {
@@ -81,9 +83,9 @@ private:
         float determinant = 0;  ///< 0: no inverse, so the box decides
     };
     struct LocalView;
-    /// False: it is not seen.
-    static bool see(const Triangle& triangle, const LocalView& view, float enlarged, SeenPiece& out);
-    /// Whether part_pixels() and pieces() look at each triangle.
+    /// False: it faces away, or is beyond one side of the view.
+    static bool project(const Triangle& triangle, const LocalView& view, SeenPiece& out);
+    /// Whether each triangle may be looked at.
     [[nodiscard]] bool tests_each(const Model& model, Index r, const Box& node_box, const dvec3& eye) const;
     /// False if the placement has no inverse.
     bool look(Index r, const dvec3& eye, const ViewScale& scale, LocalView& view) const;

@@ -22,13 +22,24 @@ public:
         float depth = std::numeric_limits<float>::max();  ///< m along the view's direction
         std::uint32_t item = none;
     };
+    /// Points, ends included. Empty: last < first.
+    struct Rectangle {
+        int x0 = 0, y0 = 0, x1 = columns - 1, y1 = rows - 1;
+    };
+    /// Whose pieces are drawn, and how.
+    struct Item {
+        std::uint32_t number = 0;
+        std::uint32_t seed = 0;    ///< of chance: the same in all frames
+        Rectangle within = {};     ///< nothing is filled outside
+        float point_px = 1;        ///< pixels of the view that a point stands for
+        std::uint32_t work = ~0U;  ///< points that may be tested
+    };
 
     ItemBuffer() : points_(static_cast<std::size_t>(columns) * rows) {}
     void clear();
-    /// Draws the pieces of an item. A sample fills a square of its pixels; a sample smaller than a point fills one or none. Of a
-    /// masked piece every second point is filled. Chance depends on item, piece and point alone. point_px: pixels of the view in
-    /// a point.
-    void draw(std::uint32_t item, std::span<const model::SeenPiece> pieces, float point_px);
+    /// Draws the pieces of an item, until its work is done. A sample fills a square of its pixels; a sample smaller than a point
+    /// fills one or none. Of a piece that lets light through, every second point is filled. Returns the tested points.
+    std::uint32_t draw(const Item& item, std::span<const model::SeenPiece> pieces);
     [[nodiscard]] std::span<const Point> points() const { return points_; }  ///< rows from below
     [[nodiscard]] const Point& at(int x, int y) const { return points_[static_cast<std::size_t>(y * columns + x)]; }
 
@@ -37,12 +48,13 @@ private:
     using Corner = vec3;
     /// What one piece fills the points with.
     struct Fill {
-        std::uint32_t item = 0, piece = 0;
-        bool masked = false;
+        const Item& item;
+        std::uint32_t piece = 0;
+        bool see_through = false;
     };
-    void draw_triangle(const std::array<vec3, 3>& at, const Fill& fill);
-    void fill_triangle(const Corner& a, const Corner& b, const Corner& c, const Fill& fill);
-    void draw_sample(const vec3& at, float points, const Fill& fill);
+    std::uint32_t draw_triangle(const std::array<vec3, 3>& at, const Fill& fill);
+    std::uint32_t fill_triangle(const Corner& a, const Corner& b, const Corner& c, const Fill& fill);
+    std::uint32_t draw_sample(const vec3& at, float points, const Fill& fill);
     void take(int x, int y, float depth, const Fill& fill);
 
     std::vector<Point> points_;

@@ -78,6 +78,7 @@ struct Preparer::Impl {
     PreparedFrame tried;                           ///< of value_at()
     double last_speed_mps = 0, last_turn_rps = 0;  ///< of the last run()
     ShownPixels shown;
+    std::span<const float> shown_px;  ///< of the last run()'s candidates
     ValuePass values;
     std::uint32_t choice_bound = 0;  ///< choices that the visits may need
     float used_factor = 1;           ///< of the last run(), for value_at() too
@@ -318,8 +319,6 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
 }
 
 void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
-    const std::span<const float> shown_px = shown.run(weights, out.candidates, out.choices, view.wide, view.scale,
-                                                      {&model, &evaluator.item_costs().estimator(), view.eye});
     values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model));
 }
 
@@ -390,6 +389,8 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.tried.viewport = viewport;
     s.tried.full_factor = out.full_factor;
     s.tried.coarse_factor = out.coarse_factor;
+    s.shown_px = s.shown.run(s.weights, out.candidates, out.choices, view.wide, view.scale,
+                             {&s.model, &s.evaluator.item_costs().estimator(), view.eye});
     s.set_values(view, out);
     propagate_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     enforce_monotone_benefit(out);

@@ -21,10 +21,10 @@ struct LeafSurfaces {
     dvec3 eye{0.0};
 };
 
-/// What is seen of a leaf that is large on the screen, the points of an item buffer tell. Small leaves go over it from near to
-/// far. Each point has a share that is still open. A small leaf's surface is taken to lie at random in its outline. So it covers
-/// the share 1 - exp(-surface / outline) of it, and shows that share of what is open there and not behind the drawn surface. Then
-/// each point counts for the leaf that is drawn there, as far as it is still open.
+/// The points of an item buffer give what a large leaf shows. Small leaves go over the same points from near to far.
+/// Each point has a share that is still open. A small leaf's surface is taken to lie at random in its outline. It covers the
+/// share 1 - exp(-surface / outline), and shows that share of what is open and not behind the drawn surface. Then each point
+/// counts for the leaf that is drawn there, as far as it is still open.
 ///
 /// The view is widened by the region's angle: what may come into it in the next frames has value. The part of a small leaf's
 /// outline that is beside the picture has no counted surface: half a layer is taken there.
@@ -41,24 +41,30 @@ public:
 
 private:
     static constexpr int across = ItemBuffer::columns, down = ItemBuffer::rows;
-    static constexpr std::size_t max_pieces = 4096;           ///< of one leaf
-    static constexpr std::size_t max_pieces_a_frame = 60000;  ///< more leaves count as small: 2 ms at most
+    static constexpr std::uint32_t max_work = 600'000;  ///< points and pieces looked at in a frame: about 3 ms
     /// The grid, and the part of it that is the picture.
-    struct Tiles {
-        float px = 0;  ///< of one
+    struct Grid {
+        float point_px = 0;  ///< pixels of one point
         float picture_x = 1, picture_y = 1;
     };
-    float show(const Outline& outline, float surface_px, float depth_m, const Tiles& tiles);
-    /// False: it is to be shown as a small one.
-    bool draw(std::uint32_t leaf, const Choice& finest, const Box& box, float points, const model::ViewScale& wide,
-              const Tiles& tiles, const LeafSurfaces& surfaces);
+    /// The share of its outline that a surface covers. points: of the outline.
+    static float cover(const Outline& outline, float surface_px, float points, const Grid& grid);
+    float show(const Outline& outline, float surface_px, float depth_m, const Grid& grid);
+    /// What is large and was not drawn, over blocks of points: it is behind all that was drawn, and hides what comes after.
+    float show_coarsely(const Outline& outline, float surface_px, const Grid& grid);
+    void begin_blocks();
+    void end_blocks();
+    /// False: its surface is unknown, or the frame's work is done.
+    bool draw(std::uint32_t leaf, const Candidate& candidate, const Choice& finest, const Outline& outline,
+              const model::ViewScale& wide, const Grid& grid, const LeafSurfaces& surfaces);
 
     std::vector<std::uint32_t> order_;  ///< leaves, near to far
     std::vector<float> shown_;
     std::vector<float> open_;  ///< [point]: share that no small leaf has covered yet
     ItemBuffer drawn_;
-    std::vector<model::SeenPiece> pieces_;  ///< of one leaf
-    std::size_t pieces_drawn_ = 0;          ///< in this frame
+    std::vector<float> blocks_, blocks_before_;  ///< [block]: share of its points that is open; empty: not begun
+    std::vector<model::SeenPiece> pieces_;       ///< of one leaf
+    std::uint32_t work_ = 0;                     ///< of this frame
 };
 
 }  // namespace surefoot::prepare

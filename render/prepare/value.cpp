@@ -25,9 +25,13 @@ float looks_right(float error_px, float surface_px, float leaves_surface_px) {
 }
 
 /// 0..1, by the measured loss. What is out of the view looks as in it.
-float looks_right_measured(float error_px, float loss, float of_missing) {
+float looks_right_measured(float error_px, float loss, float of_missing, float size_px) {
+    constexpr float of_shift = 0.12F, half_shifted_px = 16.0F;  // what is nearer than was measured: its texture has moved
     constexpr float of_error = 0.05F;
-    return 1.0F - of_error * error_px / (error_px + 256.0F) - (1.0F - of_error) * std::clamp(loss / of_missing, 0.0F, 1.0F);
+    const float nearer = std::max(0.0F, 1.0F - model::loss_sizes_px[0] / size_px);
+    const float shifted = of_shift * nearer * error_px / (error_px + half_shifted_px);
+    const float lost = std::clamp(loss / of_missing, 0.0F, 1.0F);
+    return 1.0F - of_error * error_px / (error_px + 256.0F) - (1.0F - of_error) * (lost + (1.0F - lost) * shifted);
 }
 
 float rate_of(std::uint32_t level) { return std::ldexp(top_rate, -static_cast<int>(level)); }
@@ -132,9 +136,9 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
     float value = 0.0F;
     for (Choice& choice : std::span(&frame.choices[candidate.first_choice], candidate.choice_count)) {
         const float error_px = choice.error_rad * seen.distance_m * per_m / pixel_angle_rad;
-        const float right = looks.losses.empty()
-                                ? looks_right(error_px, choice.surface_px, sums.surface_px)
-                                : looks_right_measured(error_px, loss_at(looks.losses[choice.rep], size_px), looks.of_missing);
+        const float right = looks.losses.empty() ? looks_right(error_px, choice.surface_px, sums.surface_px)
+                                                 : looks_right_measured(error_px, loss_at(looks.losses[choice.rep], size_px),
+                                                                        looks.of_missing, size_px);
         value = std::max(value, sums.weight * right);
         choice.value = value;
     }

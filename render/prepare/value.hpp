@@ -22,8 +22,9 @@ Looks looks_of(const model::Model& model);
 ///
 /// value = W * (1 - g). W of a leaf: the pixels that it shows (ShownPixels) * importance * focus * motion. W of a node: the sum
 /// of its leaves'. g, 0..1: how wrong the choice looks. A twentieth is by its error in pixels. The rest is the measured loss at
-/// the node's size on the screen, as a share of what a missing thing loses. Without losses, a quarter is by the error in pixels.
-/// Then the rest is the share of the leaves' surface that the choice lacks: a fence that is missing, a tree that is a shard.
+/// the node's size on the screen, as a share of what a missing thing loses. Nearer than was measured, an error in pixels counts
+/// more. Without losses, a quarter is by the error in pixels. Then the rest is the share of the leaves' surface that the choice
+/// lacks: a fence that is missing, a tree that is a shard.
 ///
 /// rate = value per us of the next step, where a step into the children counts all that follows below at that rate. It is the
 /// slope of the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a

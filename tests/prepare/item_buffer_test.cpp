@@ -26,6 +26,7 @@ Pieces sample(float x, float y, float depth, float pixels) {
     const vec3 at(x * depth, y * depth, depth);
     return {{{at, at, at}, pixels, false}};
 }
+ItemBuffer::Item item(std::uint32_t number) { return {.number = number, .seed = number, .point_px = 64}; }
 int count(const ItemBuffer& buffer, std::uint32_t item) {
     return static_cast<int>(
         std::count_if(buffer.points().begin(), buffer.points().end(), [&](const auto& p) { return p.item == item; }));
@@ -34,9 +35,9 @@ int count(const ItemBuffer& buffer, std::uint32_t item) {
 TEST(ItemBuffer, EachPointIsOfTheNearestInAnyOrder) {
     for (const bool near_first : {true, false}) {
         ItemBuffer buffer;
-        if (near_first) buffer.draw(1, square(-1, -1, 0, 1, 5), 64);
-        buffer.draw(2, square(-1, -1, 1, 1, 10), 64);
-        if (!near_first) buffer.draw(1, square(-1, -1, 0, 1, 5), 64);
+        if (near_first) buffer.draw(item(1), square(-1, -1, 0, 1, 5));
+        buffer.draw(item(2), square(-1, -1, 1, 1, 10));
+        if (!near_first) buffer.draw(item(1), square(-1, -1, 0, 1, 5));
         EXPECT_EQ(count(buffer, 1), points / 2);
         EXPECT_EQ(count(buffer, 2), points / 2);
         EXPECT_NEAR(buffer.at(3, 80).depth, 5, 1e-4);
@@ -49,38 +50,62 @@ TEST(ItemBuffer, EachPointIsOfTheNearestInAnyOrder) {
 TEST(ItemBuffer, DepthIsTrueAlongASlope) {
     ItemBuffer buffer;  // ground one metre below, from before the eye to far away; the picture is 2 m high at 1 m
     const float far = 1000;
-    buffer.draw(7,
-                Pieces{{{vec3(-far, -1, -1), vec3(far, -1, -1), vec3(far, -1, far)}},
-                       {{vec3(-far, -1, -1), vec3(far, -1, far), vec3(-far, -1, far)}}},
-                64);
+    buffer.draw(item(7), Pieces{{{vec3(-far, -1, -1), vec3(far, -1, -1), vec3(far, -1, far)}, 0, false, 0},
+                                {{vec3(-far, -1, -1), vec3(far, -1, far), vec3(-far, -1, far)}, 0, false, 1}});
     for (const int row : {0, 10, 30, 43}) {
         const float down = 1 - (static_cast<float>(row) + 0.5F) / 45;  // of one metre at one metre
         EXPECT_NEAR(buffer.at(80, row).depth, 1 / down, 2e-3 / down) << row;
         EXPECT_EQ(buffer.at(80, row).item, 7U);
     }
-    EXPECT_EQ(buffer.at(80, 46).item, ItemBuffer::none) << "above the horizon";
+    EXPECT_EQ(buffer.at(80, 45).item, ItemBuffer::none) << "above the horizon";
+    // Its right edge, one metre to the right of the eye, is where it is: straight below the middle it is at 45 degrees.
+    buffer.clear();
+    buffer.draw(item(8), Pieces{{{vec3(-far, -1, -far), vec3(1, -1, -far), vec3(1, -1, far)}, 0, false, 0},
+                                {{vec3(-far, -1, -far), vec3(1, -1, far), vec3(-far, -1, far)}, 0, false, 1}});
+    EXPECT_EQ(buffer.at(120, 5).item, 8U) << "within: half way to the right, nearly at the bottom";
+    EXPECT_EQ(buffer.at(150, 5).item, 8U);
+    EXPECT_EQ(buffer.at(150, 30).item, ItemBuffer::none) << "beyond the edge";
+    EXPECT_EQ(buffer.at(84, 43).item, ItemBuffer::none) << "beyond the edge, near the horizon";
+    EXPECT_EQ(buffer.at(79, 43).item, 8U);
 }
 
 TEST(ItemBuffer, ASampleFillsItsPixelsAndASmallOneAPointByChance) {
     ItemBuffer buffer;
-    buffer.draw(1, sample(0.1F, 0.1F, 5, 64 * 100), 64);
+    buffer.draw(item(1), sample(0.1F, 0.1F, 5, 64 * 100));
     EXPECT_NEAR(count(buffer, 1), 100, 21) << "ten by ten, and a row or a column";
     buffer.clear();
     Pieces dots;
     for (int i = 0; i < 400; ++i) {
         const float x = -0.95F + 0.09F * static_cast<float>(i % 20), y = -0.95F + 0.09F * static_cast<float>(i / 20);
-        dots.push_back(sample(x, y, 5, 16).front());  // a quarter of a point
+        dots.push_back(sample(x, y, 5, 16).front());
+        dots.back().number = static_cast<std::uint32_t>(i);  // a quarter of a point
     }
-    buffer.draw(2, dots, 64);
+    buffer.draw(item(2), dots);
     EXPECT_NEAR(count(buffer, 2), 100, 30);
 }
 
 TEST(ItemBuffer, OfAMaskedSurfaceHalfOfThePointsShowWhatIsBehind) {
     ItemBuffer buffer;
-    buffer.draw(1, square(-1, -1, 1, 1, 5, true), 64);
-    buffer.draw(2, square(-1, -1, 1, 1, 10), 64);
+    buffer.draw(item(1), square(-1, -1, 1, 1, 5, true));
+    buffer.draw(item(2), square(-1, -1, 1, 1, 10));
     EXPECT_NEAR(count(buffer, 1), points / 2, points / 50);
     EXPECT_EQ(count(buffer, 1) + count(buffer, 2), points);
+}
+
+TEST(ItemBuffer, StaysInItsRectangleAndEndsWithItsWork) {
+    ItemBuffer buffer;
+    ItemBuffer::Item some = item(1);
+    some.within = {10, 20, 29, 39};
+    buffer.draw(some, square(-1, -1, 1, 1, 5));
+    buffer.draw(some, sample(0, 0, 4, 64 * 1e6F));
+    EXPECT_EQ(count(buffer, 1), 20 * 20);
+    ItemBuffer::Item little = item(2);
+    little.work = 1000;
+    Pieces walls;
+    for (int i = 0; i < 100; ++i)
+        for (const auto& piece : square(-1, -1, 1, 1, 3)) walls.push_back(piece);
+    EXPECT_LE(buffer.draw(little, walls), 1000U + points + 1) << "the piece that it ends with is drawn whole";
+    EXPECT_GE(buffer.draw(item(3), walls), 100U * points);
 }
 
 TEST(ItemBuffer, OddPiecesFillNothingOrStayInThePicture) {
@@ -100,8 +125,8 @@ TEST(ItemBuffer, OddPiecesFillNothingOrStayInThePicture) {
             for (int k = 0; k < 3; ++k) v[k] = static_cast<float>(random.range(-1, 1) * std::pow(10.0, random.range(-6, 9)));
         odd.push_back(piece[0]);
     }
-    buffer.draw(3, odd, 64);
-    buffer.draw(4, square(-1, -1, 1, 1, 0.051F), 64);
+    buffer.draw(item(3), odd);
+    buffer.draw(item(4), square(-1, -1, 1, 1, 0.051F));
     for (const ItemBuffer::Point& p : buffer.points()) {
         if (p.item != ItemBuffer::none) {
             ASSERT_GT(p.depth, 0.0F);

@@ -122,6 +122,10 @@ TEST_F(ReportFiles, PageNeedsNothingOutsideItself) {
     s.degraded = {{rt::LackKind::fifo, "FIFO refused", "grant rtprio"}};
     s.control.ran = true;
     s.control.blocks.resize(4);
+    s.picture = {.frames = 2, .psnr_db = 31.25, .worst_psnr_db = 27.5, .worst_frame = 120, .ssim = 0.987, .flip = 0.021};
+    s.unused_ms = quantiles({4.0, 6.0});
+    s.coarse_frames = 17;
+    s.floor_frames = 3;
     const std::vector<ReportSnapshot> snapshots = {snapshot_of(0), snapshot_of(2)};
     ASSERT_TRUE(write_report(in("r"), s, records, snapshots).ok());
     const auto page = *read_text(in("r/index.html"));
@@ -135,6 +139,9 @@ TEST_F(ReportFiles, PageNeedsNothingOutsideItself) {
     EXPECT_NE(page.find("prefers-color-scheme:dark"), std::string::npos);
     EXPECT_NE(page.find("4 frames, 1 missed"), std::string::npos);
     EXPECT_NE(page.find("grant rtprio"), std::string::npos);
+    for (const auto* part : {"31.2", "SSIM 0.987, FLIP 0.021; worst 27.5 dB, frame 120", "Unused time", "5.0", "in 17 frames",
+                             "shown without need in 3"})
+        EXPECT_NE(page.find(part), std::string::npos) << part;
     EXPECT_TRUE(fs::exists(in("r/ledger.csv")));
     EXPECT_TRUE(nlohmann::json::accept(*read_text(in("r/walk.json"))));
 }

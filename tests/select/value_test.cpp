@@ -153,7 +153,16 @@ TEST(Value, ThresholdIsNearTheOptimumOfSmallTrees) {
 
 TEST(Value, OddCostsAndValuesStayFinite) {
     for (const float bad : {0.0F, std::nanf(""), std::numeric_limits<float>::infinity(), -1.0F}) {
-        for_small_trees(50, [&](Scene& s, Random&) {
+        for_small_trees(50, [&](Scene& s, Random& random) {
+            const prepare::PreparedFrame good = s.frame;
+            for (const std::string_view name : selector_names()) {
+                s.frame = good;
+                for (prepare::Choice& choice : s.frame.choices)
+                    if (random.unit() < 0.5) (random.unit() < 0.5 ? choice.cost.submit_us : choice.cost.raster_us) = bad;
+                s.frame.candidates[0].children_cost.raster_us = bad;
+                for (const double budget : {0.0, 1000.0, 1e9}) EXPECT_EQ(check_legal(s.frame, s.run(name, budget)), "") << name;
+            }
+            s.frame = good;
             for (prepare::Choice& choice : s.frame.choices) choice.value = choice.rate = bad;
             const Cut& cut = s.run("threshold", 1000);
             EXPECT_EQ(check_legal(s.frame, cut), "");

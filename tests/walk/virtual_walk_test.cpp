@@ -3,9 +3,11 @@
 
 #include <unistd.h>
 
+#include "render/measure/calibrate.hpp"
 #include "rt/base/file.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/walk/walk_fixture.hpp"
+#include "tools/walk/state.hpp"
 
 namespace surefoot {
 namespace {
@@ -114,6 +116,21 @@ TEST(VirtualWalk, SamplesThatTheDriverLacksAreFlaggedAndSaidOnce) {
         return note == "samples: The driver cannot draw 2 a pixel. It draws " + std::to_string(drawn) + ".";
     };
     EXPECT_EQ(std::count_if(outcome->notes.begin(), outcome->notes.end(), is_message), drawn != 2U ? 1 : 0);
+}
+
+TEST(VirtualWalk, ACostTableOfAnotherMachineIsReportedAndNoFrameIsLost) {
+    const test::TemporaryFolder folder;
+    model::CostModel costs = model::default_costs();
+    costs.calibrated = true;
+    costs.machine = "a machine elsewhere";
+    ASSERT_TRUE(measure::write_costs(walk::cost_table_file(folder.path()), costs).ok());
+    walk::WalkRequest request = test::Forest::get().virtual_request(3);
+    request.backend = "egl";
+    request.state_dir = folder.path();
+    const auto outcome = walk::run_walk(request, {}, {});
+    if (!outcome) GTEST_SKIP() << outcome.error().text();
+    EXPECT_EQ(outcome->records.size(), 3U);
+    EXPECT_NE(outcome->summary.uncalibrated.find("a machine elsewhere"), std::string::npos) << outcome->summary.uncalibrated;
 }
 
 TEST(VirtualWalk, ATourThatStartsAtSpeedIsPreparedForFromItsFirstFrame) {

@@ -39,9 +39,10 @@ double miss_share(const CostTrial& trial) {
 /// difference counts only if it is larger than that spread.
 bool has_better_pictures(const CostTrial& a, const CostTrial& b) {
     if (a.of_rounds.empty() || b.of_rounds.empty()) return false;
+    const double margin_db = a.of_rounds.size() > 1 ? equal_psnr_db : one_round_db;
     const double worst = *std::min_element(a.of_rounds.begin(), a.of_rounds.end());
     const double best = *std::max_element(b.of_rounds.begin(), b.of_rounds.end());
-    return worst >= best + equal_psnr_db;
+    return worst >= best + margin_db;
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ struct KeptCosts {
 
 /// Limits of the decision: shares of own misses, and dB, that count as equal.
 constexpr double equal_miss_share = 0.02, equal_psnr_db = 0.2;
+constexpr double one_round_db = 2;  ///< the same where there is one round only: its spread is not known
 
 /// Pure.
 KeptCosts decide(CostTrial of_fit, CostTrial of_table, double fit_error, double table_error);

@@ -125,6 +125,13 @@ std::string tiles(const WalkSummary& s) {
                 fmt::format("of {:.1f} ms a frame", s.budget_ms));
     out += tile("Accuracy", short_number(s.accuracy_mean), "rad⁻¹",
                 fmt::format("{} of error on average", accuracy_words(s.accuracy_mean)));
+    if (s.picture.frames > 0)
+        out += tile("Picture, PSNR", fmt::format("{:.1f}", s.picture.psnr_db), "dB",
+                    fmt::format("SSIM {:.3f}, FLIP {:.3f}; worst {:.1f} dB, frame {}", s.picture.ssim, s.picture.flip,
+                                s.picture.worst_psnr_db, s.picture.worst_frame));
+    if (s.unused_ms.max > 0)
+        out += tile("Unused time", fmt::format("{:.1f}", s.unused_ms.mean), "ms",
+                    fmt::format("where value is missing; p99 {:.1f}", s.unused_ms.p99));
     out += tile("Triangles", short_number(s.triangles_mean), "",
                 s.model_triangles > 0
                     ? fmt::format("a frame, of {} in the model", short_number(static_cast<double>(s.model_triangles)))
@@ -170,11 +177,12 @@ std::string figures_table(const WalkSummary& s) {
     if (s.input.given) out += row_of("Report to submitted frame, ms", s.input.age_ms, 1, 1);
     out += "</table></div>\n";
     out += fmt::format(
-        "<p class=\"sub\">{:.2f} switches a frame · {} slices drawn coarser than chosen · the floor was reached in {} frames · "
-        "cut "
-        "hash <code>{}</code></p>\n",
-        s.switches_per_frame, grouped(static_cast<double>(s.downgrades)), grouped(static_cast<double>(s.floor_bound_frames)),
+        "<p class=\"sub\">{:.2f} switches a frame · {} slices drawn coarser than chosen, in {} frames · cut hash "
+        "<code>{}</code></p>\n",
+        s.switches_per_frame, grouped(static_cast<double>(s.downgrades)), grouped(static_cast<double>(s.coarse_frames)),
         escaped(s.cut_hash));
+    out += fmt::format("<p class=\"sub\">The floor was reached in {} frames · shown without need in {}</p>\n",
+                       grouped(static_cast<double>(s.floor_bound_frames)), grouped(static_cast<double>(s.floor_frames)));
     if (s.input.given)
         out += fmt::format("<p class=\"sub\">Steered by {}: {}</p>\n", escaped(s.input.source), escaped(input_words(s.input)));
     return out;
@@ -208,7 +216,9 @@ std::string page_footer() {
            "that a frame may spend. "
            "<b>Cluster</b>: a node that stands for several objects. <b>Switch</b>: a node's form changed between two frames. "
            "<b>SNR</b>: variance of the walk's picture over its mean square difference from full detail (Pasman and Jansen "
-           "2002). <b>SSIM</b>: structural similarity of luma, 1 for equal pictures.</p></footer>\n";
+           "2002). <b>SSIM</b>: structural similarity of luma, 1 for equal pictures. "
+           "<b>PSNR</b>: peak signal-to-noise ratio of all compared pictures against full detail. "
+           "<b>FLIP</b>: difference that an eye sees flipping between both, 0 for equal pictures.</p></footer>\n";
 }
 
 }  // namespace surefoot::report
