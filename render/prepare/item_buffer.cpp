@@ -44,7 +44,7 @@ float slack(const vec3& from, const vec3& to, float share) {
 void ItemBuffer::clear() { std::fill(points_.begin(), points_.end(), Point{}); }
 
 void ItemBuffer::take(int x, int y, float depth, const Fill& fill) {
-    const auto at = static_cast<std::uint32_t>(y * columns + x);
+    const auto at = static_cast<std::uint32_t>(place(x, y));
     Point& point = points_[at];
     if (!(depth < point.depth)) return;
     if (fill.see_through && chance(fill.item.seed, fill.piece, at) >= see_through_share) return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -41,7 +42,10 @@ public:
     /// fills one or none. Of a piece that lets light through, every second point is filled. Returns the tested points.
     std::uint32_t draw(const Item& item, std::span<const model::SeenPiece> pieces);
     [[nodiscard]] std::span<const Point> points() const { return points_; }  ///< rows from below
-    [[nodiscard]] const Point& at(int x, int y) const { return points_[static_cast<std::size_t>(y * columns + x)]; }
+    static constexpr std::size_t place(int x, int y) {
+        return static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x);
+    }
+    [[nodiscard]] const Point& at(int x, int y) const { return points_[place(x, y)]; }
 
 private:
     /// Corner of a triangle: column, row and 1 / depth, linear over the picture.

@@ -15,8 +15,13 @@ constexpr float min_points = 12.0F;      // of an outline: a smaller leaf is not
 constexpr float large_points = 2000.0F;  // a seventh of the picture: each triangle is drawn
 constexpr float samples_a_point = 0.5F;
 constexpr std::uint32_t work_a_piece = 4;  // as many points take the same time
-constexpr int block = 10;                  // points a side
-constexpr float min_share = 0.001F;        // of a leaf's outline: what comes into sight next is ordered too
+constexpr int block = 10, blocks_across = ItemBuffer::columns / block, blocks_down = ItemBuffer::rows / block;  // points a side
+constexpr float min_share = 0.001F;  // of a leaf's outline: what comes into sight next is ordered too
+
+/// Of a point.
+std::size_t block_of(int x, int y) {
+    return static_cast<std::size_t>(y / block) * blocks_across + static_cast<std::size_t>(x / block);
+}
 
 float outline_points(const Outline& outline) {
     const auto inside = [](float low, float high) { return std::max(0.0F, std::min(high, 1.0F) - std::max(low, -1.0F)); };
@@ -70,12 +75,11 @@ float ShownPixels::cover(const Outline& outline, float surface_px, float points,
 }
 
 void ShownPixels::begin_blocks() {
-    blocks_.assign(static_cast<std::size_t>(across / block) * (down / block), 0.0F);
+    blocks_.assign(static_cast<std::size_t>(blocks_across) * blocks_down, 0.0F);
     constexpr float of_point = 1.0F / static_cast<float>(block * block);
     for (int y = 0; y < down; ++y)
         for (int x = 0; x < across; ++x)
-            if (drawn_.at(x, y).item == ItemBuffer::none)
-                blocks_[static_cast<std::size_t>(y / block * (across / block) + x / block)] += of_point;
+            if (drawn_.at(x, y).item == ItemBuffer::none) blocks_[block_of(x, y)] += of_point;
     blocks_before_ = blocks_;
 }
 
@@ -83,10 +87,9 @@ void ShownPixels::begin_blocks() {
 void ShownPixels::end_blocks() {
     for (int y = 0; y < down; ++y) {
         for (int x = 0; x < across; ++x) {
-            const auto at = static_cast<std::size_t>(y / block * (across / block) + x / block);
+            const std::size_t at = block_of(x, y);
             const float before = blocks_before_[at];
-            if (before > 0.0F && drawn_.at(x, y).item == ItemBuffer::none)
-                open_[static_cast<std::size_t>(y * across + x)] = blocks_[at] / before;
+            if (before > 0.0F && drawn_.at(x, y).item == ItemBuffer::none) open_[ItemBuffer::place(x, y)] = blocks_[at] / before;
         }
     }
 }
@@ -96,11 +99,11 @@ float ShownPixels::show_coarsely(const Outline& outline, float surface_px, const
     if (!(points > 0.0F)) return 0.0F;
     if (blocks_.empty()) begin_blocks();
     const float covered = cover(outline, surface_px, points, grid);
-    const Range x = range_of(outline.left, outline.right, across / block), y = range_of(outline.low, outline.high, down / block);
+    const Range x = range_of(outline.left, outline.right, blocks_across), y = range_of(outline.low, outline.high, blocks_down);
     float open = 0;
     for (int j = y.first; j <= y.last; ++j) {
         for (int i = x.first; i <= x.last; ++i) {
-            float& of_block = blocks_[static_cast<std::size_t>(j * (across / block) + i)];
+            float& of_block = blocks_[block_of(i * block, j * block)];
             const float taken = covered * x.share(i) * y.share(j) * of_block;
             open += taken;
             of_block -= taken;
@@ -116,8 +119,7 @@ float ShownPixels::show(const Outline& outline, float surface_px, float depth_m,
         for (int i = x.first; i <= x.last; ++i) {
             const float part = x.share(i) * y.share(j);
             area_sum += static_cast<double>(part);
-            if (depth_m < drawn_.at(i, j).depth)
-                open_sum += static_cast<double>(part * open_[static_cast<std::size_t>(j * across + i)]);
+            if (depth_m < drawn_.at(i, j).depth) open_sum += static_cast<double>(part * open_[ItemBuffer::place(i, j)]);
         }
     }
     const auto area = static_cast<float>(area_sum), open = static_cast<float>(open_sum);
@@ -125,8 +127,7 @@ float ShownPixels::show(const Outline& outline, float surface_px, float depth_m,
     const float covered = cover(outline, surface_px, area, grid);
     for (int j = y.first; j <= y.last; ++j)
         for (int i = x.first; i <= x.last; ++i)
-            if (depth_m < drawn_.at(i, j).depth)
-                open_[static_cast<std::size_t>(j * across + i)] *= 1.0F - covered * x.share(i) * y.share(j);
+            if (depth_m < drawn_.at(i, j).depth) open_[ItemBuffer::place(i, j)] *= 1.0F - covered * x.share(i) * y.share(j);
     return covered * open * grid.point_px;
 }
 

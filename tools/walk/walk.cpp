@@ -120,8 +120,10 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     rt::RealClock real;
     rt::VirtualClock virtual_time;
     rt::Clock& clock = s.virtual_clock ? static_cast<rt::Clock&>(virtual_time) : real;
-    // Far enough ahead that all threads are in place before the first slot.
-    s.grid.t0_ns = s.virtual_clock ? s.grid.period_ns : real.now_ns() + 300'000'000;
+    // Far enough ahead that all threads are in place before the first slot, and the first view is rehearsed.
+    constexpr std::int64_t in_place_ns = 300'000'000, max_rehearsal_ns = 1'000'000'000;
+    const std::int64_t ahead_ns = in_place_ns + std::min(rehearsed_frames * s.grid.period_ns, max_rehearsal_ns);
+    s.grid.t0_ns = s.virtual_clock ? s.grid.period_ns : real.now_ns() + ahead_ns;
     s.on_frame_core = on_frame_core(s.plan, s.rasterisers);
     const rt::FrameLoopOptions options = loop_options(s, progress);
 
@@ -150,6 +152,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
         if (!s.virtual_clock) rt::prefault_heap();
         WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, snapshots, s.kept, stages_options(s));
         s.engine->device().bind();
+        stages.rehearse(s.grid.t0_ns);
         s.burn_ns = rt::run_frame_loop(options, clock, stages, ring).burn_ns;
         s.engine->device().release();
         done.store(true);

@@ -71,6 +71,22 @@ double WalkStages::planned_us() const {
     return request_.in_frame_check ? std::min(options_.budget_us, options_.limit_us - margin_us()) : options_.budget_us;
 }
 
+void WalkStages::rehearse(std::int64_t until_ns) {
+    if (virtual_clock_ || !request_.correct_costs) return;
+    prepared_.refresh();
+    const prepare::PreparedFrame& set = prepared_.front();
+    for (int i = 0; i < rehearsed_frames && clock_.now_ns() < until_ns - 2 * options_.period_ns; ++i) {
+        SubmitLimits limits;
+        limits.limit_us = options_.limit_us;
+        limits.margin_us = margin_us();
+        limits.now_ns = clock_now;
+        limits.now_context = &clock_;
+        engine_.select(set, planned_us(), correction_at(set.resolution, false), options_.target_error_rad);
+        report_ = engine_.submit(set.region.centre, limits);
+        learn(report_.finished_us);
+    }
+}
+
 void WalkStages::sample(rt::FrameRecord& record) {
     inject(FramePhase::sample, record);
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;

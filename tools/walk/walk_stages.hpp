@@ -53,6 +53,9 @@ struct WalkStagesOptions {
     std::atomic<bool>* lost = nullptr;    ///< set when the graphics device is lost; may be null
 };
 
+/// Drawn of the first view before the walk: a correction is the median of about as many.
+constexpr int rehearsed_frames = 16;
+
 /// The stages of a walk. The frame thread calls all members.
 class WalkStages final : public rt::FrameStages {
 public:
@@ -60,6 +63,10 @@ public:
     WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock, rt::TripleBuffer<PoseSample>& poses,
                rt::TripleBuffer<prepare::PreparedFrame>& prepared, SnapshotStore& snapshots, KeptFrame& kept,
                const WalkStagesOptions& options);
+
+    /// Draws the prepared first view again and again, as frames of the walk. So corrections are known before the first frame.
+    /// Ends two periods before `until_ns` at the latest. Nothing on the virtual clock, or where costs are not corrected.
+    void rehearse(std::int64_t until_ns);
 
     void sample(rt::FrameRecord& record) override;
     void select(rt::FrameRecord& record) override;
