@@ -53,7 +53,7 @@ full_detail_ms() {
   full_ms=$(value frame_ms.p50) || return 1
 }
 
-# One walk and its pictures against old's full detail. Sets psnr, worst, ssim, missed and walked.
+# One walk and its pictures against old's full detail. Sets psnr, worst, ssim, missed, walked, and unused of new.
 picture_walk() { # LABEL BUILD STATE RATE NAME PATH LIFT
   local folder at=$picture_work/walks/$5-$1 every
   folder=$(picture_folder "$2")
@@ -62,7 +62,8 @@ picture_walk() { # LABEL BUILD STATE RATE NAME PATH LIFT
   mkdir -p "$at"
   measure "picture walk $1 $5" "$2/surefoot" walk "$folder/$5.walk" --path "$6" --lift "$7" --rate "$4" --seconds "$picture_seconds" \
     --state "$3" --ledger "$at/ledger.csv" --snap "$at/walk" --every "$every" --json || return 1
-  missed=$(value misses) walked=$(value frames)
+  missed=$(value misses) walked=$(value frames) unused=
+  [[ $2 == "$old" ]] || unused=$(awk "BEGIN { printf \"%.3f\", 0.1 * $4 * $(value unused_ms.mean) }")  # of the period, in per cent
   measure "picture poses $1 $5" "$build/tests/bench_ledger_poses" "$6" "$7" "$4" "$at/ledger.csv" "$every" "$at/poses.csv" || return 1
   local frames old_folder
   frames=$(value frames)
@@ -78,10 +79,10 @@ picture_walk() { # LABEL BUILD STATE RATE NAME PATH LIFT
 middle_of() { printf '%s\n' "$@" | sort -g | sed -n "$((($# + 1) / 2))p"; }
 min_and_max() { printf '%s\n' "$@" | sort -g | sed -n '1p;$p' | paste -sd ' ' | sed 's/ / to /'; }
 
-# Walks NAME in turns by every pass. Fills db, low and similar: [PASS] has a figure a turn. full_before and full_after are the machine's speed.
+# Walks NAME in turns by every pass. Fills db, low, similar, late and idle: [PASS] has a figure a turn. full_before and full_after are the machine's speed.
 picture_turns() { # NAME PATH LIFT
   local turn pass side state rate label stressed
-  db=() low=() similar=() late=()
+  db=() low=() similar=() late=() idle=()
   full_detail_ms || return 1
   full_before=$full_ms
   picture_rate=$(awk "BEGIN { printf \"%.4f\", 1000 / (1000 / 30 * $full_before / 65) }")
@@ -98,7 +99,7 @@ picture_turns() { # NAME PATH LIFT
       label=$pass-$turn
       picture_walk "$label" "$side" "$state" "$rate" "$1" "$2" "$3" || { [[ -z "$stressed" ]] || unload; return 1; }
       [[ -z "$stressed" ]] || unload
-      db[$pass]+=" $psnr" low[$pass]+=" $worst" similar[$pass]+=" $ssim" late[$pass]+=" $missed"
+      db[$pass]+=" $psnr" low[$pass]+=" $worst" similar[$pass]+=" $ssim" late[$pass]+=" $missed" idle[$pass]+=" $unused"
     done
   done
   full_detail_ms || return 1
@@ -132,6 +133,7 @@ picture_scene() { # NAME SCENE PATH LIFT
   keep_difference "$promise" "$1" new old
   keep picture_db "$(read -ra all <<<"${db[new]}"; middle_of "${all[@]}")" --scene "$1"
   keep picture_db "$(read -ra all <<<"${db[old]}"; middle_of "${all[@]}")" --scene "$1, old"
+  keep picture_unused "$(read -ra all <<<"${idle[new]}"; middle_of "${all[@]}")" --scene "$1" --note "In the turns:${idle[new]} %."
   local pass
   for pass in "${picture_passes[@]}"; do
     case $pass in
@@ -153,8 +155,8 @@ picture_group() {
   [[ -z "$picture_not_fitted" ]] || picture_passes+=(new-not-fitted)
   [[ -z "$picture_half" ]] || picture_passes+=(old-half new-half)
   [[ -z "$picture_loaded" ]] || picture_passes+=(new-loaded)
-  local -A db low similar late
-  local full_ms full_before full_after picture_rate psnr worst ssim missed walked
+  local -A db low similar late idle
+  local full_ms full_before full_after picture_rate psnr worst ssim missed walked unused
   mkdir -p "$picture_work"
   picture_generate forest 10 || { failed=1; return 0; }
   # The forest first: it is what says how fast the machine is.
