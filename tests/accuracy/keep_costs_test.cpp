@@ -34,6 +34,7 @@ TEST(KeepCosts, DeadlinesGoBeforePicturesAndPicturesBeforePrediction) {
     EXPECT_FALSE(table.fit);
     EXPECT_EQ(table.reason, KeepReason::pictures);
     EXPECT_EQ(table.of_table.psnr_db, 29.5);
+    EXPECT_EQ(decide(trial({32.1}, 32.1), trial({30}, 30), 0.2, 0.1).reason, KeepReason::pictures) << "one round, far apart";
 }
 
 TEST(KeepCosts, WhereTheWalksDoNotTellTheSmallerErrorOfHeldOutFramesDecides) {
@@ -44,9 +45,12 @@ TEST(KeepCosts, WhereTheWalksDoNotTellTheSmallerErrorOfHeldOutFramesDecides) {
         EXPECT_EQ(close.reason, KeepReason::prediction);
         const KeptCosts unsteady = decide(trial({36, 26}, 29), trial({30, 27}, 28.2), fit_error, 0.2);
         EXPECT_EQ(unsteady.fit, fit) << "one round each";
+        EXPECT_EQ(unsteady.reason, KeepReason::prediction);
         const KeptCosts overlapping = decide(trial({36, 29}, 31), trial({30, 27}, 28.2), fit_error, 0.2);
         EXPECT_EQ(overlapping.fit, fit) << "better in both rounds, but by less than the rounds differ";
-        EXPECT_EQ(unsteady.reason, KeepReason::prediction);
+        EXPECT_EQ(overlapping.reason, KeepReason::prediction);
+        const KeptCosts one_round = decide(trial({31.5}, 31.5), trial({30}, 30), fit_error, 0.2);
+        EXPECT_EQ(one_round.reason, KeepReason::prediction) << "one walk differs from the next by as much";
     }
 }
 

@@ -79,7 +79,8 @@ picture_walk() { # LABEL BUILD STATE RATE NAME PATH LIFT
 middle_of() { printf '%s\n' "$@" | sort -g | sed -n "$((($# + 1) / 2))p"; }
 min_and_max() { printf '%s\n' "$@" | sort -g | sed -n '1p;$p' | paste -sd ' ' | sed 's/ / to /'; }
 
-# Walks NAME in turns by every pass. Fills db, low, similar, late and idle: [PASS] has a figure a turn. full_before and full_after are the machine's speed.
+# Walks NAME in turns by every pass. Fills db, low, similar, late and idle: [PASS] has a figure a turn.
+# full_before and full_after are the machine's speed.
 picture_turns() { # NAME PATH LIFT
   local turn pass side state rate label stressed
   db=() low=() similar=() late=() idle=()

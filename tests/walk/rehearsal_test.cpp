@@ -1,0 +1,36 @@
+// The rehearsal before a walk: what frames cost is known from the first frame on. The null backend takes a part of what is
+// predicted.
+#include <gtest/gtest.h>
+
+#include "tests/walk/walk_fixture.hpp"
+
+namespace surefoot {
+namespace {
+
+using test::walk;
+
+float first_correction(rt::ClockKind clock, bool correct_costs) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(3);
+    request.clock = clock;
+    request.fifo = false;
+    request.rate_hz = 60;
+    request.in_frame_check = false;
+    request.correct_costs = correct_costs;
+    const walk::WalkOutcome outcome = walk(request);
+    EXPECT_EQ(outcome.records.size(), 3U);
+    return outcome.records.empty() ? 0 : outcome.records.front().correction;
+}
+
+TEST(Rehearsal, TheFirstFrameKnowsWhatFramesCost) {
+    const float correction = first_correction(rt::ClockKind::real, true);
+    EXPECT_GT(correction, 0.0F);
+    EXPECT_LT(correction, 0.9F) << "three frames alone would leave it at 1";
+}
+
+TEST(Rehearsal, ThereIsNoneOnTheVirtualClockOrWithoutCorrection) {
+    EXPECT_EQ(first_correction(rt::ClockKind::virtual_time, true), 1.0F);
+    EXPECT_EQ(first_correction(rt::ClockKind::real, false), 1.0F);
+}
+
+}  // namespace
+}  // namespace surefoot
