@@ -8,7 +8,9 @@
 //   3. With hysteresis, steps of the last frame may use all of the budget, new steps only a share of it. So try steps of the last
 //      frame behind the edge, in the same way, with what is left.
 // The first walk notes what it computed for each candidate, so that the second reads little more than the notes.
+// By rate, two things follow: cheaper steps that still fit, and the search once more from dear steps that were passed over.
 #include <algorithm>
+#include <array>
 
 #include "render/select/bucket_queue.hpp"
 #include "render/select/cut_builder.hpp"
@@ -47,7 +49,9 @@ public:
         const Edge both = common_edge(builder_.floor_sum());
         take_common(both);
         if (deferred_count_ > 0 && !closed_) take_deferred(refined_edge(both));
-        for (int round = 0; fill && round < fill_rounds && take_more(); ++round) {
+        if (fill) {
+            take_what_fits();
+            if (builder_.size() <= max_dear_candidates) try_dear_forms();
         }
         return taken_;
     }
@@ -57,6 +61,106 @@ private:
     template <class Use>
     bool for_steps(Index c, const Use& use) const {
         return select::for_steps(builder_, steps_, c, use);
+    }
+
+    /// A form of a candidate; `opening`: its children.
+    struct Target {
+        Index candidate = none;
+        std::uint32_t choice = 0;
+        bool operator==(const Target& other) const { return candidate == other.candidate && choice == other.choice; }
+    };
+    static constexpr std::uint32_t opening = none - 1;
+
+    void take_what_fits() {
+        for (int round = 0; round < fill_rounds && take_more(); ++round) {
+        }
+    }
+
+    /// Cheap steps may have filled the budget before a dear one that is worth more than they are. So the search starts again from
+    /// the dearest forms left, one after the other. It keeps those with which the cut has more value. A form that the last frame
+    /// showed may lose a little, another has to win as much: else frames would alternate.
+    void try_dear_forms() {
+        std::array<Target, max_dear> tried{}, kept{};
+        std::uint32_t tried_count = 0, kept_count = 0;
+        double best = builder_.value();
+        std::uint32_t best_taken = taken_;
+        builder_.save();
+        while (tried_count < max_dear) {
+            const Target next = dearest(std::span(tried).first(tried_count), static_cast<float>(min_gain * best));
+            if (next.candidate == none) break;
+            tried[tried_count++] = kept[kept_count] = next;
+            double value = 0;
+            if (start_from(std::span(kept).first(kept_count + 1))) {
+                take_what_fits();
+                value = builder_.value();
+            }
+            if (value > best * (was_shown(next) ? 1.0 - min_gain : 1.0 + min_gain)) {
+                ++kept_count;
+                best = value;
+                best_taken = taken_;
+                builder_.save();
+            } else {
+                builder_.restore();
+            }
+        }
+        taken_ = best_taken;
+    }
+
+    /// What adds most to the value: the next step of an item, or full detail of a leaf. None: nothing adds more than `above`.
+    [[nodiscard]] Target dearest(std::span<const Target> tried, float above) const {
+        Target found;
+        const auto consider = [&](float gain, const Target& target) {
+            if (!(gain > above) || std::find(tried.begin(), tried.end(), target) != tried.end()) return;
+            above = gain;
+            found = target;
+        };
+        for (Index c = 0; c < builder_.size(); ++c) {
+            const std::uint32_t now = builder_.chosen(c);
+            if (now == SelectState::opened) continue;
+            const auto choices = builder_.choices(c);
+            const auto last = static_cast<std::uint32_t>(choices.size()) - 1;
+            const float shown = now == none ? 0.0F : choices[now].value;
+            if (builder_.candidate(c).child_count == 0 && now != last && !steps_.has_target())
+                consider(choices[last].value - shown, {c, last});
+            if (now == none || !builder_.has_step(c) || !steps_.wanted(choices[now])) continue;
+            if (now < last)
+                consider(choices[now + 1].value - shown, {c, now + 1});
+            else
+                consider(builder_.children_value(c) - shown, {c, opening});
+        }
+        return found;
+    }
+    [[nodiscard]] bool was_shown(const Target& target) const {
+        const Index shown = steps_.shown(builder_.candidate(target.candidate).node);
+        if (shown == none || target.choice == opening) return shown == SelectState::opened;
+        return shown >= builder_.choices(target.candidate)[target.choice].rep;
+    }
+
+    /// From the floor to the targets, and what stands above them. False: they do not fit.
+    bool start_from(std::span<const Target> targets) {
+        builder_.take_floor();
+        sum_ = builder_.floor_sum();
+        taken_ = 0;
+        double share = 1.0;
+        for (const Target& target : targets) {
+            Index closed = builder_.candidate(target.candidate).parent;
+            while (closed != none && builder_.chosen(closed) != SelectState::opened) {
+                Index top = closed;  // the highest that is not opened yet is an item
+                while (builder_.chosen(top) == none) top = builder_.candidate(top).parent;
+                step_to(top, opening);
+            }
+            step_to(target.candidate, target.choice);
+            if (!was_shown(target)) share = share_;
+        }
+        return budget_.fits(sum_, share);
+    }
+    void step_to(Index c, std::uint32_t choice) {
+        const auto choices = builder_.choices(c);
+        for (std::uint32_t k = builder_.chosen(c); k < choice && k < choices.size(); ++k) {
+            const bool opens = k + 1 == choices.size();
+            sum_ = sum_.changed(choices[k].cost, opens ? builder_.candidate(c).children_cost : choices[k + 1].cost);
+            do_step(c, k, opens);
+        }
     }
 
     /// A step that does not fit has ended the search; others behind it may still fit. The same search among those that fit one by
@@ -189,6 +293,9 @@ private:
     }
 
     static constexpr int fill_rounds = 4;
+    static constexpr std::uint32_t max_dear = 4;
+    static constexpr std::uint32_t max_dear_candidates = 1U << 13U;  ///< a search of more would take too long to repeat
+    static constexpr double min_gain = 0.01;
 
     CutBuilder& builder_;
     const Budget& budget_;

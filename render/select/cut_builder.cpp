@@ -37,6 +37,7 @@ void SelectState::reserve(const model::Model& model, std::uint32_t max_candidate
     scratch_->links.resize(max_candidates);
     scratch_->queue_heads.resize(2 * BucketQueue::buckets);
     scratch_->step_sums.resize(4 * BucketQueue::buckets);
+    scratch_->saved.resize(max_candidates);
     scratch_->chosen.resize(max_candidates);
     scratch_->list.resize(max_candidates);
 }
@@ -64,6 +65,7 @@ CutBuilder::CutBuilder(const SelectInput& input, SelectState& state)
     : prepared_(*input.prepared),
       state_(state),
       chosen_(std::span(state.scratch().chosen).first(input.prepared->candidates.size())),
+      saved_(std::span(state.scratch().saved).first(input.prepared->candidates.size())),
       scratch_(std::span(state.scratch().list).first(input.prepared->candidates.size())),
       items_(input) {}
 
@@ -87,6 +89,22 @@ std::span<std::uint32_t> CutBuilder::take_floor() {
     }
     return scratch_.first(items);
 }
+
+double CutBuilder::value() const {
+    double sum = 0;
+    for (Index c = 0; c < chosen_.size(); ++c)
+        if (chosen_[c] < SelectState::opened) sum += static_cast<double>(current(c).value);
+    return sum;
+}
+
+float CutBuilder::children_value(Index c) const {
+    float sum = 0;
+    for (Index k = 0; k < candidate(c).child_count; ++k) sum += choices(candidate(c).first_child + k)[0].value;
+    return sum;
+}
+
+void CutBuilder::save() { std::copy(chosen_.begin(), chosen_.end(), saved_.begin()); }
+void CutBuilder::restore() { std::copy(saved_.begin(), saved_.end(), chosen_.begin()); }
 
 void CutBuilder::buy_items(Budget& budget) {
     if (items_.offered().empty()) return items_.count_refused();

@@ -38,6 +38,13 @@ public:
         return chosen_[c] + 1 < candidate(c).choice_count || candidate(c).child_count > 0;
     }
     void choose(Index c, std::uint32_t offset) { chosen_[c] = offset; }
+    /// Value of the items so far.
+    [[nodiscard]] double value() const;
+    /// Value of the children's first choices.
+    [[nodiscard]] float children_value(Index c) const;
+    /// Keeps the choices as they are, and takes them again.
+    void save();
+    void restore();
     void open(Index c) { chosen_[c] = SelectState::opened; }
     [[nodiscard]] std::span<std::uint32_t> scratch() { return scratch_; }
     /// Before the search: buys the items whose rate is above that of the steps where the budget ends. Takes the floor for it,
@@ -59,7 +66,7 @@ private:
 
     const prepare::PreparedFrame& prepared_;
     SelectState& state_;
-    std::span<std::uint32_t> chosen_, scratch_;
+    std::span<std::uint32_t> chosen_, saved_, scratch_;
     Sum floor_;
     ItemBuyer items_;
 };

@@ -236,5 +236,68 @@ TEST(Value, AFormThatIsHardlyCheaperThanTheNextFinerOneIsNoStopForTheDefault) {
     EXPECT_EQ(max_finest, leaves);
 }
 
+/// Twenty leaves that win 40 pixels for 2 us each, and one that wins 1000 for 60 us.
+prepare::PreparedFrame cheap_leaves_and_a_dear_one() {
+    constexpr model::Index leaves = 21;
+    prepare::PreparedFrame frame;
+    frame.candidates.resize(leaves + 1);
+    frame.choices.resize(2 * leaves + 1);
+    prepare::Candidate& root = frame.candidates[0];
+    root.first_child = 1;
+    root.child_count = leaves;
+    root.choice_count = 1;
+    root.children_cost.submit_us = leaves;
+    frame.choices[0].cost.submit_us = 1;
+    frame.choices[0].rate = 20;
+    for (model::Index leaf = 1; leaf <= leaves; ++leaf) {
+        const bool dear = leaf == leaves;
+        const model::Index first = 2 * leaf - 1;
+        prepare::Candidate& candidate = frame.candidates[leaf];
+        candidate.node = leaf;
+        candidate.parent = 0;
+        candidate.first_choice = first;
+        candidate.choice_count = 2;
+        for (std::uint32_t k = 0; k < 2; ++k) {
+            frame.choices[first + k].rep = 2 * leaf + k;
+            frame.choices[first + k].cost.submit_us = k == 0 ? 1.0F : dear ? 61.0F : 3.0F;
+        }
+        frame.choices[first].rate = dear ? 1000.0F / 60 : 20;
+        frame.choices[first + 1].value = dear ? 1000 : 40;
+        frame.full_cost.submit_us += dear ? 61.0F : 3.0F;
+    }
+    return frame;
+}
+
+TEST(Value, CheapStepsDoNotKeepADearOneOutThatIsWorthMore) {
+    const prepare::PreparedFrame frame = cheap_leaves_and_a_dear_one();
+    model::Model nodes_only;
+    nodes_only.nodes.resize(frame.candidates.size());
+    model::CostModel costs;
+    costs.combine = {0, 1, 0, 0};
+    costs.headroom = 1;
+    costs.slice_us = 0;
+    SelectState state;
+    Cut cut;
+    reserve(cut, 22);
+    const auto value_at = [&](double budget_us) {
+        find_selector(usual_selector)->run({&nodes_only, &frame, &costs, budget_us, 1.0, 0, 1000.0}, state, cut);
+        EXPECT_EQ(check_legal(frame, cut), "");
+        EXPECT_LE(static_cast<double>(cut.predicted_us), budget_us);
+        return cut.value;
+    };
+    state.hysteresis = 1;
+    state.reserve(nodes_only, 22);
+    EXPECT_EQ(value_at(80), 20 * 40) << "the dear one does not fit";
+    EXPECT_EQ(value_at(82), 1000) << "21 of coarse leaves, 60 for the dear one: alone worth more than all others";
+    EXPECT_EQ(value_at(90), 1000 + 4 * 40) << "what is left buys cheap ones";
+    EXPECT_EQ(value_at(200), 1000 + 20 * 40);
+    state.hysteresis = 1.25F;
+    state.reserve(nodes_only, 22);
+    EXPECT_EQ(value_at(82), 20 * 40) << "a step that is new may use 97 %";
+    EXPECT_EQ(value_at(85), 1000 + 40) << "and one that was shown before";
+    EXPECT_EQ(value_at(81.5), 1000) << "the dear one was shown before: it stays";
+    EXPECT_EQ(value_at(80), 20 * 40);
+}
+
 }  // namespace
 }  // namespace surefoot::select
