@@ -10,8 +10,11 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <thread>
 
+#include "render/bake/boxes.hpp"
 #include "render/bake/limits.hpp"
 #include "render/bake/materials.hpp"
 #include "render/bake/picture_loss.hpp"
@@ -23,6 +26,10 @@
 namespace surefoot::bake {
 
 namespace {
+
+constexpr std::uint32_t min_box_triangles = 64, min_plain_box_triangles = 500;  // fewer are cheaper than six faces
+constexpr std::uint32_t max_box_cell = 32, min_box_cell = 16;                   // texels of a face's picture, with its rim
+constexpr std::size_t max_box_bytes = std::size_t{128} << 20U;                  // of all boxes together while they are judged
 
 std::string place_of(const importer::Scene& scene) { return scene.sources.empty() ? "bake" : scene.sources.front(); }
 
@@ -80,17 +87,23 @@ struct BakeContext {
     std::vector<MeshForm> forms;
     ClusterTree tree;
     std::vector<ClusterForm> clusters;
-    std::vector<BoxForm> object_boxes;
-    std::vector<bool> cut_out;  ///< by material
+    std::vector<std::vector<std::uint32_t>> members;  ///< by cluster: the objects below it
+    std::vector<std::uint32_t> entities;              ///< by node: the object, or after these the cluster
+    std::vector<bool> cut_out;                        ///< by material
 
     ProxyInput proxy_input() const;
     void place_objects();
     void adopt_forms(std::vector<std::vector<MeshForm>> by_mesh);
     bool make_forms();
     bool make_clusters();
-    bool make_object_boxes();
+    bool shows_pictures() const;
+    bool wants_box(std::uint32_t entity) const;
     void emit();
+    void bound(model::Index n, BoxForm& box) const;
+    std::optional<PlacedBoxes> add_boxes();
+    void measure_areas();
     bool measure_pictures();
+    void find_effects();
     void emit_object(model::Index node, std::uint32_t object, const std::vector<EmittedChain>& chains);
     void emit_cluster(model::Index node, std::uint32_t cluster, std::vector<std::pair<model::Index, std::uint32_t>>& open);
     model::Index add_name(const std::string& name);
@@ -138,7 +151,6 @@ ProxyInput BakeContext::proxy_input() const {
     input.proxy_material = proxy_or_none;
     for (const model::Material& m : model.materials) input.two_sided.push_back(m.two_sided);
     input.cut_out = cut_out;
-    for (const importer::Material& m : scene.materials) input.textured_boxes |= m.image != importer::none;
     input.slack = chain_options(options, proxy_or_none).slack;
     return input;
 }
@@ -224,7 +236,8 @@ bool BakeContext::make_clusters() {
     tree = grow_clusters(boxes, 8);
     clusters.resize(tree.clusters.size());
     const auto n = static_cast<std::uint32_t>(objects.size());
-    std::vector<std::vector<std::uint32_t>> members(tree.clusters.size()), by_height;
+    std::vector<std::vector<std::uint32_t>> by_height;
+    members.resize(tree.clusters.size());
     std::vector<std::uint32_t> height(tree.clusters.size(), 0);
     for (std::uint32_t c = 0; c < tree.clusters.size(); ++c) {  // children come first
         for (const std::uint32_t e : tree.clusters[c].children) {
@@ -252,19 +265,16 @@ bool BakeContext::make_clusters() {
     return go;
 }
 
-bool BakeContext::make_object_boxes() {
-    object_boxes.resize(objects.size());
-    const ProxyInput input = proxy_input();
-    Stage stage(progress, "boxes", objects.size());
-    std::atomic<bool> go{true};
-    for_all(objects.size(), [&](std::size_t i) {
-        if (!go) return;
-        const MeshForm& form = forms[objects[i].mesh];
-        if (form.triangles > 500 && form.chain.levels.front().triangles > 12)
-            object_boxes[i] = make_object_box(input, objects[i], 16);
-        if (!stage.step()) go = false;
-    });
-    return go;
+bool BakeContext::shows_pictures() const {
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [](const importer::Material& m) { return m.image != importer::none; });
+}
+
+/// A box carries its colours in vertices or a picture: in a scene that calls for neither it would be the only one to.
+bool BakeContext::wants_box(std::uint32_t entity) const {
+    if (proxy_or_none == model::none) return false;
+    if (entity >= objects.size()) return true;
+    return forms[objects[entity].mesh].triangles > (shows_pictures() ? min_box_triangles : min_plain_box_triangles);
 }
 
 model::Index BakeContext::add_name(const std::string& name) {
@@ -273,12 +283,6 @@ model::Index BakeContext::add_name(const std::string& name) {
     model.names += name;
     model.names.push_back('\0');
     return at;
-}
-
-std::uint32_t faces_of(const BoxForm& box) {
-    std::uint32_t faces = 0;
-    for (const FaceCapture& face : box.faces) faces += face.covered > 0 ? 1 : 0;
-    return faces;
 }
 
 void BakeContext::emit_object(model::Index index, std::uint32_t which, const std::vector<EmittedChain>& chains) {
@@ -292,13 +296,6 @@ void BakeContext::emit_object(model::Index index, std::uint32_t which, const std
     node.triangles = form.triangles;
     node.name = add_name(object.name);
     node.first_rep = static_cast<model::Index>(model.reps.size());
-    const Level& coarsest = form.chain.levels.front();
-    const BoxForm& box = object_boxes[which];
-    const std::uint32_t faces = faces_of(box);
-    const auto coarsest_error_m = static_cast<float>(coarsest.error_m * largest_stretch(dmat3(object.world)));
-    // A box carries its colours in vertices or a picture: in a scene that calls for neither it would be the only one to.
-    if (proxy_or_none != model::none && faces > 0 && 2 * faces < coarsest.triangles && box.error_m > coarsest_error_m)
-        emit_box(box, proxy, model);
     emit_representations(chains[object.mesh], object.world, model);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
 }
@@ -309,9 +306,6 @@ void BakeContext::emit_cluster(model::Index index, std::uint32_t which,
     const ClusterForm& form = clusters[which];
     model.nodes[index].box = cluster.box;
     model.nodes[index].first_rep = static_cast<model::Index>(model.reps.size());
-    const std::uint32_t faces = faces_of(form.box);
-    if (proxy_or_none != model::none && form.has_box && faces > 0 && 2 * faces < form.chain.levels.front().triangles)
-        emit_box(form.box, proxy, model);
     emit_representations(emit_chain(form.chain, model), dmat4(1.0), model);
     model.nodes[index].rep_count = static_cast<std::uint32_t>(model.reps.size()) - model.nodes[index].first_rep;
     const auto first = static_cast<model::Index>(model.nodes.size());
@@ -327,13 +321,8 @@ void BakeContext::emit_cluster(model::Index index, std::uint32_t which,
 void BakeContext::emit() {
     model.names.assign(1, '\0');
     std::vector<EmittedChain> chains(forms.size());
-    std::vector<std::uint64_t> material_triangles(scene.materials.size(), 0);
     for (std::size_t m = 0; m < forms.size(); ++m) {
         if (forms[m].triangles > 0) chains[m] = emit_chain(forms[m].chain, model);
-    }
-    for (const PlacedObject& object : objects) {
-        for (const GeometryPart& part : forms[object.mesh].chain.levels.back().parts)
-            material_triangles[part.material] += part.indices.size() / 3;
     }
     model.object_count = object_count;
     model.nodes.resize(1);
@@ -346,19 +335,70 @@ void BakeContext::emit() {
             emit_cluster(node, entity - static_cast<std::uint32_t>(objects.size()), open);
         }
     }
+    for (const auto& [node, entity] : open) entities.push_back(entity);
     for (std::size_t i = model.nodes.size(); i-- > 1;) {  // children come after their parents
         model::Node& node = model.nodes[i];
         model::Node& parent = model.nodes[node.parent];
         if (parent.kind == model::NodeKind::cluster) parent.triangles += node.triangles;
         parent.box.grow(node.box);
     }
+}
+
+/// Bounds a node's box. A box that cannot be its coarsest form loses its faces.
+void BakeContext::bound(model::Index n, BoxForm& box) const {
+    if (box.shown_faces() == 0) return;
+    const ProxyInput input = proxy_input();
+    const auto clusters_from = static_cast<std::uint32_t>(objects.size());
+    const std::uint32_t entity = entities[n];
+    box.error_m = entity < clusters_from
+                      ? bound_box(input, objects[entity], box)
+                      : bound_box(input, tree.clusters[entity - clusters_from], members[entity - clusters_from], box);
+    const model::Representation& coarsest = model.reps[model.nodes[n].first_rep];
+    // Faces of one colour hide what is behind them, and look like nothing: they stand before a dearer mesh that is nearer to the
+    // truth.
+    if (!box.textured && (box.error_m <= coarsest.error_m || 2 * box.shown_faces() >= coarsest.triangles)) box.faces = {};
+    // Forms go from a large error to a small one. A bound may be larger than need be.
+    box.error_m = std::max(box.error_m, std::nextafter(coarsest.error_m, std::numeric_limits<float>::infinity()));
+}
+
+std::optional<PlacedBoxes> BakeContext::add_boxes() {
+    BoxRequest request;
+    request.textured = shows_pictures();
+    for (const std::uint32_t entity : entities) request.wanted.push_back(wants_box(entity));
+    const auto count = static_cast<std::size_t>(std::count(request.wanted.begin(), request.wanted.end(), true));
+    std::uint32_t cell = request.textured ? max_box_cell : min_box_cell;
+    if (std::size_t{32} * cell * cell * count > max_box_bytes) cell = min_box_cell;  // six faces of four bytes, and mip levels
+    request.pixels = face_pixels(cell);
+    const auto all = [](std::size_t n, const std::function<void(std::size_t)>& body) { for_all(n, body); };
+    Stage stage(progress, "boxes", box_steps(model, request) + entities.size());
+    std::vector<BoxForm> boxes = capture_boxes(model, request, all, [&] { return stage.step(); });
+    if (boxes.empty()) return {};
+    std::atomic<bool> go{true};
+    for_all(boxes.size(), [&](std::size_t n) {
+        if (!go) return;
+        bound(static_cast<model::Index>(n), boxes[n]);
+        if (!stage.step()) go = false;
+    });
+    if (!go) return {};
+    return PlacedBoxes(std::move(boxes), proxy, model);
+}
+
+void BakeContext::measure_areas() {
     for_all(model.reps.size(), [&](std::size_t r) { model.reps[r].area_m2 = model::rasterised_area(model, model.reps[r]); });
+}
+
+void BakeContext::find_effects() {
+    std::vector<std::uint64_t> material_triangles(scene.materials.size(), 0);
+    for (const PlacedObject& object : objects) {
+        for (const GeometryPart& part : forms[object.mesh].chain.levels.back().parts)
+            material_triangles[part.material] += part.indices.size() / 3;
+    }
     std::vector<bool> used(model.materials.size(), false);
     for (const model::Part& part : model.parts) used[part.material] = true;
     for (std::size_t m = 0; m < used.size(); ++m) {  // what nothing is drawn with calls for nothing
         if (!used[m]) model.materials[m].effects = 0;
     }
-    model.effects = find_effects(model, material_triangles);
+    model.effects = bake::find_effects(model, material_triangles);
 }
 
 bool BakeContext::measure_pictures() {
@@ -374,7 +414,7 @@ bool BakeContext::measure_pictures() {
 }  // namespace
 
 Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& options, const Progress& progress) {
-    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}};
+    BakeContext context{scene, options, progress, {}, 0, 0, {}, 0, {}, {}, {}, {}, {}, {}};
     context.cut_out = cut_out_materials(scene);
     context.proxy = add_materials(scene, context.model);
     mark_vertex_colours(scene, context.model);
@@ -390,18 +430,30 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     tbb::task_arena arena(workers);
     arena.execute([&] {
         done = context.make_forms();
-        if (done && !context.objects.empty()) done = context.make_clusters() && context.make_object_boxes();
+        if (done && !context.objects.empty()) done = context.make_clusters();
     });
     if (!done) return stopped_by_user(scene);
     if (context.objects.empty()) {
         return Error{place_of(scene), "The scene holds nothing to draw", "Check that its nodes have meshes with triangles",
                      ErrorKind::damaged};
     }
-    if (auto ok = check_limits(counts_of(context.proxy_input(), context.object_boxes), place_of(scene), options.max_counts); !ok)
+    std::size_t max_boxes = 0;
+    for (std::uint32_t e = 0; e < context.objects.size() + context.clusters.size(); ++e)
+        max_boxes += context.wants_box(e) ? 1 : 0;
+    if (auto ok = check_limits(counts_of(context.proxy_input(), max_boxes), place_of(scene), options.max_counts); !ok)
         return ok.error();
     arena.execute([&] {
         context.emit();
+        std::optional<PlacedBoxes> boxes = context.add_boxes();
+        done = boxes.has_value();
+        if (!done) return;
+        context.measure_areas();
         done = context.measure_pictures();
+        if (!done) return;
+        const model::CostModel fallback = model::default_costs();
+        boxes->drop_idle(fallback);
+        context.measure_areas();
+        context.find_effects();
     });
     if (!done) return stopped_by_user(scene);
     progress.update("write", 0.0);

@@ -86,19 +86,6 @@ void add_triangle(const model::Model& model, const model::Texture& texture, cons
 
 }  // namespace
 
-float share_shown(const model::Model& model, const model::Material& material, const std::array<vec2, 3>& uv) {
-    if (material.alpha != model::AlphaMode::mask || material.texture == model::none) return 1;
-    const MipLevel level = level_for(model, model.textures[material.texture], uv);
-    float shown = 0, all = 0;
-    each_sample([&](const std::array<float, 3>& share) {
-        const std::byte alpha = level.texel(share[0] * uv[0] + share[1] * uv[1] + share[2] * uv[2])[3];
-        shown +=
-            material.colour[3] * static_cast<float>(std::to_integer<int>(alpha)) / 255.0F >= material.alpha_cutoff ? 1.0F : 0.0F;
-        all += 1;
-    });
-    return shown / all;
-}
-
 std::vector<std::array<std::uint8_t, 4>> baked_colours(const model::Model& model, const importer::Primitive& primitive,
                                                        std::span<const model::Vertex> vertices) {
     const model::Material& material = model.materials[primitive.material];

@@ -16,7 +16,4 @@ namespace surefoot::bake {
 std::vector<std::array<std::uint8_t, 4>> baked_colours(const model::Model& model, const importer::Primitive& primitive,
                                                        std::span<const model::Vertex> vertices);
 
-/// Share of a triangle that passes the alpha test, 0..1, sampled. 1 for a material without alpha test.
-float share_shown(const model::Model& model, const model::Material& material, const std::array<vec2, 3>& uv);
-
 }  // namespace surefoot::bake

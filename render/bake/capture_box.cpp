@@ -1,4 +1,4 @@
-// Six orthographic captures by a small depth-buffered rasteriser: deterministic, and on any core.
+// A texel is the mean of the samples in it, and as opaque as many of them are covered.
 #include "render/bake/capture_box.hpp"
 
 #include <algorithm>
@@ -8,99 +8,102 @@ namespace surefoot::bake {
 
 namespace {
 
-struct Canvas {
-    std::uint32_t pixels;
-    float deepest;
-    std::vector<float> depth;
-    std::vector<std::uint8_t> rgba;
+/// The samples of a row or column of texels: from `first` on, at least one.
+struct Span {
+    std::uint32_t first = 0, count = 1;
 };
 
-float edge(const vec2& a, const vec2& b, const vec2& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
-
-/// 0..1, other for every pixel and triangle: layers of leaves fill each other's holes, as they do in sight.
-float scattered(std::size_t pixel, std::size_t triangle) {
-    std::uint64_t x = (static_cast<std::uint64_t>(triangle) << 24U) + pixel + 1;
-    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;  // splitmix64
-    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
-    return static_cast<float>((x ^ (x >> 31U)) >> 40U) / static_cast<float>(1U << 24U);
+/// Texels of one axis of a face, over the samples of a picture. low_px: where the face begins, in samples. reversed: its samples
+/// run against its texels.
+std::vector<Span> spans_of(double low_px, double texel_px, std::uint32_t pixels, std::uint32_t samples, bool reversed) {
+    std::vector<Span> spans(pixels);
+    for (std::uint32_t i = 0; i < pixels; ++i) {
+        const double from = low_px + i * texel_px, to = from + texel_px, last = std::max(1U, samples) - 1.0;
+        double first = std::ceil(from), end = std::ceil(to);
+        if (end <= first) first = std::round(0.5 * (from + to)), end = first + 1;  // texels that are smaller than samples
+        first = std::clamp(first, 0.0, last);
+        end = std::clamp(end, first + 1, last + 1);
+        spans[reversed ? pixels - 1 - i : i] = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - first)};
+    }
+    return spans;
 }
 
-/// p: corners in pixels and depth behind the face.
-void fill(Canvas& canvas, std::array<vec3, 3> p, const ColouredTriangle& triangle, std::size_t number) {
-    const std::array<std::array<std::uint8_t, 4>, 3>& colours = triangle.colours;
-    const vec2 a(p[0]), b(p[1]), c(p[2]);
-    const float area = edge(a, b, c);
-    if (std::abs(area) < 1e-12F) return;
-    const float last = static_cast<float>(canvas.pixels - 1);
-    const auto lo = [&](float u, float v, float w) {
-        return static_cast<std::uint32_t>(std::clamp(std::floor(std::min({u, v, w})), 0.0F, last));
-    };
-    const auto hi = [&](float u, float v, float w) {
-        return static_cast<std::uint32_t>(std::clamp(std::ceil(std::max({u, v, w})), 0.0F, last));
-    };
-    const std::uint32_t x0 = lo(a.x, b.x, c.x), x1 = hi(a.x, b.x, c.x), y1 = hi(a.y, b.y, c.y);
-    for (std::uint32_t y = lo(a.y, b.y, c.y); y <= y1; ++y) {
-        for (std::uint32_t x = x0; x <= x1; ++x) {
-            const vec2 at(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-            const float wa = edge(b, c, at) / area, wb = edge(c, a, at) / area, wc = 1 - wa - wb;
-            if (wa < 0 || wb < 0 || wc < 0) continue;
-            const float depth = wa * p[0].z + wb * p[1].z + wc * p[2].z;
-            const std::size_t pixel = y * canvas.pixels + x;
-            if (depth >= canvas.depth[pixel] || depth > canvas.deepest) continue;
-            if (triangle.shown < 1 && scattered(pixel, number) >= triangle.shown) continue;
-            canvas.depth[pixel] = depth;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const float value = wa * static_cast<float>(colours[0][k]) + wb * static_cast<float>(colours[1][k]) +
-                                    wc * static_cast<float>(colours[2][k]);
-                canvas.rgba[pixel * 4 + k] = static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F));
-            }
-            canvas.rgba[pixel * 4 + 3] = 255;
-        }
-    }
-}
-
-FaceCapture capture_face(std::span<const ColouredTriangle> triangles, const vec3& half, std::uint32_t pixels, int face) {
-    const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const float side = face % 2 == 1 ? 1.0F : -1.0F;
-    // Only the near half: the far one is on the opposite face, seen through the holes of this. It halves the parallax.
-    Canvas canvas{pixels, half[axis] * 1.001F, std::vector<float>(pixels * pixels, 1e30F),
-                  std::vector<std::uint8_t>(pixels * pixels * 4, 0)};
-    const auto project = [&](const vec3& p) {
-        const float n = static_cast<float>(pixels);
-        return vec3((p[u] + half[u]) / std::max(2 * half[u], 1e-9F) * n, (p[v] + half[v]) / std::max(2 * half[v], 1e-9F) * n,
-                    half[axis] - side * p[axis]);
-    };
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const ColouredTriangle& t = triangles[i];
-        fill(canvas, {project(t.corners[0]), project(t.corners[1]), project(t.corners[2])}, t, i);
-    }
-    FaceCapture out;
-    std::array<std::uint64_t, 3> sum{};
+/// What is added up over samples.
+struct Sums {
+    std::array<std::uint64_t, 3> rgb{};
     std::uint64_t covered = 0;
-    for (std::size_t i = 0; i < canvas.depth.size(); ++i) {
-        if (canvas.rgba[i * 4 + 3] == 0) continue;
+    void add(const FormSample& sample) {
         ++covered;
-        out.depth_m = std::max(out.depth_m, canvas.depth[i]);
-        for (std::size_t k = 0; k < 3; ++k) sum[k] += canvas.rgba[i * 4 + k];
+        for (std::size_t k = 0; k < 3; ++k) rgb[k] += sample.rgb[1][k];
     }
-    for (std::size_t k = 0; k < 3; ++k) out.mean[k] = static_cast<std::uint8_t>(covered == 0 ? 0 : sum[k] / covered);
-    out.mean[3] = covered == 0 ? 0 : 255;
-    out.covered = static_cast<float>(covered) / static_cast<float>(canvas.depth.size());
-    // Transparent texels take the mean colour: filtering must not mix in black at the edges.
-    for (std::size_t i = 0; i < canvas.depth.size(); ++i) {
-        if (canvas.rgba[i * 4 + 3] == 0)
-            std::copy_n(out.mean.begin(), 3, canvas.rgba.begin() + static_cast<std::ptrdiff_t>(i * 4));
+    void add(const Sums& more) {
+        covered += more.covered;
+        for (std::size_t k = 0; k < 3; ++k) rgb[k] += more.rgb[k];
     }
-    out.rgba = std::move(canvas.rgba);
-    return out;
-}
+    void mean(std::uint8_t* to) const {
+        for (std::size_t k = 0; k < 3; ++k) to[k] = static_cast<std::uint8_t>(covered == 0 ? 0 : rgb[k] / covered);
+    }
+};
 
 }  // namespace
 
-std::array<FaceCapture, 6> capture_faces(std::span<const ColouredTriangle> triangles, const vec3& half, std::uint32_t pixels) {
-    std::array<FaceCapture, 6> faces;
-    for (int face = 0; face < 6; ++face) faces[static_cast<std::size_t>(face)] = capture_face(triangles, half, pixels, face);
-    return faces;
+Direction direction_of_face(std::uint32_t face) {
+    const int axis = static_cast<int>(face / 2), u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const bool high = face % 2 == 1;
+    Direction from{vec3(0), vec3(0), vec3(0)};
+    from.towards[axis] = high ? 1.0F : -1.0F;
+    from.right[u] = high ? 1.0F : -1.0F;  // right-handed: seen from the low side, the first axis runs to the left
+    from.up[v] = 1.0F;
+    return from;
+}
+
+FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t face, std::uint32_t pixels) {
+    FaceCapture out;
+    out.rgba.assign(std::size_t{4} * pixels * pixels, 0);
+    const FormView& view = seen.view;
+    if (seen.samples.empty()) return out;
+    const Direction& from = view.direction;
+    const double pixel_m = std::ldexp(1.0, view.exponent);
+    const dvec3 half = glm::max(box.half(), dvec3(1e-9)), centre = box.centre() - view.middle;
+    const int axis = static_cast<int>(face / 2), u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto low_px = [&](const vec3& along, int in_plane, std::int64_t first) {
+        return (glm::dot(centre, dvec3(along)) - half[in_plane]) / pixel_m - static_cast<double>(first);
+    };
+    const std::vector<Span> columns =
+        spans_of(low_px(from.right, u, view.left), 2 * half[u] / pixel_m / pixels, pixels, view.width, face % 2 == 0);
+    const std::vector<Span> rows =
+        spans_of(low_px(from.up, v, view.low), 2 * half[v] / pixel_m / pixels, pixels, view.height, false);
+    const auto ends = [&](double low, int in_plane) { return low + 2 * half[in_plane] / pixel_m; };
+    if (ends(low_px(from.right, u, view.left), u) > view.width + 1.0 || ends(low_px(from.up, v, view.low), v) > view.height + 1.0)
+        return out;  // very long: the picture does not show all of it
+    const double front = glm::dot(centre, dvec3(from.towards)) + half[axis];
+    Sums all;
+    std::uint64_t samples = 0;
+    for (std::uint32_t y = 0; y < pixels; ++y) {
+        for (std::uint32_t x = 0; x < pixels; ++x) {
+            Sums texel;
+            const Span &row = rows[y], &column = columns[x];
+            for (std::uint32_t sy = row.first; sy < row.first + row.count; ++sy) {
+                for (std::uint32_t sx = column.first; sx < column.first + column.count; ++sx) {
+                    const FormSample& sample = seen.samples[static_cast<std::size_t>(sy) * view.width + sx];
+                    const double depth = front - static_cast<double>(sample.depth);
+                    if (!sample.covered() || depth > 1.001 * half[axis]) continue;
+                    out.depth_m = std::max(out.depth_m, static_cast<float>(depth));
+                    texel.add(sample);
+                }
+            }
+            const std::uint64_t count = std::uint64_t{row.count} * column.count;
+            std::uint8_t* rgba = &out.rgba[std::size_t{4} * (static_cast<std::size_t>(y) * pixels + x)];
+            texel.mean(rgba);
+            rgba[3] = static_cast<std::uint8_t>((255 * texel.covered + count / 2) / count);
+            all.add(texel);
+            samples += count;
+        }
+    }
+    all.mean(out.mean.data());
+    out.mean[3] = all.covered == 0 ? 0 : 255;
+    out.covered = static_cast<float>(all.covered) / static_cast<float>(std::max<std::uint64_t>(samples, 1));
+    return out;
 }
 
 }  // namespace surefoot::bake

@@ -1,31 +1,30 @@
-// Box impostors: six orthographic captures of the actual objects, one a face (Maciel 1994, 3.4.2 and 3.6).
+// Faces of box impostors: each is a picture of full detail, seen along its axis without perspective (Maciel 1994, 3.4.2, 3.6).
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "rt/base/geometry.hpp"
+#include "render/bake/form_picture.hpp"
 
 namespace surefoot::bake {
 
-/// A triangle to be captured, with a colour at each corner.
-struct ColouredTriangle {
-    std::array<vec3, 3> corners;  ///< relative to the box's centre
-    std::array<std::array<std::uint8_t, 4>, 3> colours;
-    float shown = 1;  ///< share that passes the alpha test; that share of its texels is painted, scattered
-};
-
-/// One face, as an orthographic camera on its axis sees it. Row 0 lies at the low end of the second in-plane axis.
+/// One face, as an orthographic camera on its axis sees the near half of the box. Row 0 lies at the low end of the second
+/// in-plane axis, column 0 at the low end of the first. They are (axis + 1) % 3 and (axis + 2) % 3.
 struct FaceCapture {
-    std::vector<std::uint8_t> rgba;      ///< pixels x pixels; alpha 0 where nothing is
-    std::array<std::uint8_t, 4> mean{};  ///< of the covered texels
+    std::vector<std::uint8_t> rgba;      ///< pixels x pixels, lit; alpha: how much of the texel is covered
+    std::array<std::uint8_t, 4> mean{};  ///< of what is covered
     float depth_m = 0;                   ///< the deepest captured point behind the face
     float covered = 0;                   ///< share of the face
 };
 
-/// Faces in the order -x, +x, -y, +y, -z, +z; in-plane axes are (axis + 1) % 3 and (axis + 2) % 3.
-std::array<FaceCapture, 6> capture_faces(std::span<const ColouredTriangle> triangles, const vec3& half, std::uint32_t pixels);
+/// Faces in the order -x, +x, -y, +y, -z, +z.
+constexpr std::uint32_t box_faces = 6;
+/// Where a face is seen from.
+Direction direction_of_face(std::uint32_t face);
+
+/// seen: full detail from direction_of_face(face), of about 2 * pixels samples across. The far half is left to the opposite face,
+/// which shows it through this one's holes. That halves the parallax.
+FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t face, std::uint32_t pixels);
 
 }  // namespace surefoot::bake

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/bake/alpha_bleed.hpp"
 #include "render/bake/materials.hpp"
 #include "render/bake/objects.hpp"
 
@@ -56,46 +57,76 @@ void emit_representations(const EmittedChain& emitted, const dmat4& world, model
 
 namespace {
 
+constexpr std::uint32_t columns = 3, rows = 2;  // of faces in a picture
+constexpr float shown_alpha = 0.5F;
+
+/// The cell of a face, and the rim about it.
+struct Cells {
+    std::uint32_t cell, rim;
+    explicit Cells(std::uint32_t pixels) : cell(pixels * 8 / 7), rim((cell - pixels) / 2) {}
+};
+
 /// A material that shows the box's six pictures.
-model::Index add_box_material(const BoxForm& form, model::Index proxy, model::Model& model) {
-    // Six pictures in one: three columns, two rows; no mip levels, they would mix the faces.
-    const std::uint32_t n = form.pixels;
-    std::vector<std::uint8_t> atlas(static_cast<std::size_t>(n) * n * 6 * 4);
-    for (std::uint32_t f = 0; f < 6; ++f) {
-        for (std::uint32_t y = 0; y < n; ++y) {
-            const std::uint8_t* row = form.faces[f].rgba.data() + static_cast<std::size_t>(y) * n * 4;
-            const std::size_t pixel = std::size_t{(f / 3) * n + y} * 3 * n + std::size_t{f % 3} * n;
-            std::copy_n(row, n * 4, atlas.begin() + static_cast<std::ptrdiff_t>(pixel * 4));
+model::Index add_box_material(const BoxForm& form, model::Model& model) {
+    const Cells cells(form.pixels);
+    const std::uint32_t n = form.pixels, width = columns * cells.cell, height = rows * cells.cell;
+    std::vector<std::uint8_t> atlas(std::size_t{4} * width * height);
+    for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const FaceCapture& face = form.faces[y / cells.cell * columns + x / cells.cell];
+            const auto inside = [&](std::uint32_t at) {
+                return std::clamp(at % cells.cell, cells.rim, cells.rim + n - 1) - cells.rim;
+            };
+            const std::size_t from = static_cast<std::size_t>(inside(y)) * n + inside(x);
+            std::copy_n(&face.rgba[4 * from], 4, &atlas[4 * (static_cast<std::size_t>(y) * width + x)]);
         }
     }
+    bleed_colours(atlas, width, height, true, 0);
+    std::uint32_t levels = 1;
+    while (cells.rim >> levels != 0) ++levels;
     model::Material m;
-    m.texture = add_texture(model, atlas, 3 * n, 2 * n, true, 1);
+    m.texture = add_texture(model, atlas, width, height, true, levels, 255 * shown_alpha);
     m.alpha = model::AlphaMode::mask;
     m.two_sided = true;  // the far half shows through this one's holes
-    m.alpha_cutoff = 0.5F;
-    m.effects = model::effect_texture | model::effect_alpha_mask | (model.materials[proxy].effects & model::effect_sun);
+    m.alpha_cutoff = shown_alpha;
+    m.effects = model::effect_texture | model::effect_alpha_mask;
     model.materials.push_back(m);
     return static_cast<model::Index>(model.materials.size() - 1);
 }
 
-/// One face: four vertices and two triangles. `f`: down and up along x, y, z.
+/// The texels of a face that show something: columns and rows, from and to.
+std::array<std::uint32_t, 4> shown_texels(const FaceCapture& face, std::uint32_t n) {
+    std::array<std::uint32_t, 4> range{n, n, 0, 0};
+    for (std::uint32_t y = 0; y < n; ++y) {
+        for (std::uint32_t x = 0; x < n; ++x) {
+            if (face.rgba[std::size_t{4} * (static_cast<std::size_t>(y) * n + x) + 3] == 0) continue;
+            range = {std::min(range[0], x), std::min(range[1], y), std::max(range[2], x + 1), std::max(range[3], y + 1)};
+        }
+    }
+    return range;
+}
+
+/// One face: four vertices and two triangles. `f`: down and up along x, y, z. Only its part that shows something.
 void emit_face(const BoxForm& form, std::uint32_t f, model::Model& model, model::Part& part) {
     const vec3 half(form.box.half());
     const int axis = static_cast<int>(f) / 2, u = (axis + 1) % 3, w = (axis + 2) % 3;
     const bool high = f % 2 == 1;
     const std::uint32_t base = part.vertex_count;
+    const Cells cells(std::max(form.pixels, 8U));
+    const auto n = static_cast<float>(form.pixels);
+    const std::array<std::uint32_t, 4> shown =
+        form.textured ? shown_texels(form.faces[f], form.pixels) : std::array<std::uint32_t, 4>{0, 0, form.pixels, form.pixels};
     for (int corner = 0; corner < 4; ++corner) {
         const bool cu = (corner == 1 || corner == 2) == high, cw = corner >= 2;  // counter-clockwise from outside
+        const auto x = static_cast<float>(shown[cu ? 2 : 0]), y = static_cast<float>(shown[cw ? 3 : 1]);
         model::Vertex v{};
         v.position[axis] = high ? half[axis] : -half[axis];
-        v.position[u] = cu ? half[u] : -half[u];
-        v.position[w] = cw ? half[w] : -half[w];
+        v.position[u] = half[u] * (2 * x / n - 1);
+        v.position[w] = half[w] * (2 * y / n - 1);
         v.normal[axis] = high ? 127 : -127;
         for (std::size_t k = 0; k < 4; ++k) v.colour[k] = form.textured ? 255 : form.faces[f].mean[k];
-        const float inset = 0.5F / static_cast<float>(std::max(1U, form.pixels));  // half a texel: neighbours stay out
-        const auto column = f % 3, row = f / 3;
-        v.uv[0] = (static_cast<float>(column) + (cu ? 1 - inset : inset)) / 3.0F;
-        v.uv[1] = (static_cast<float>(row) + (cw ? 1 - inset : inset)) / 2.0F;
+        v.uv[0] = (static_cast<float>(f % columns * cells.cell + cells.rim) + x) / static_cast<float>(columns * cells.cell);
+        v.uv[1] = (static_cast<float>(f / columns * cells.cell + cells.rim) + y) / static_cast<float>(rows * cells.cell);
         model.vertices.push_back(v);
     }
     part.vertex_count += 4;
@@ -106,7 +137,7 @@ void emit_face(const BoxForm& form, std::uint32_t f, model::Model& model, model:
 }  // namespace
 
 void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
-    const model::Index material = form.textured ? add_box_material(form, proxy, model) : proxy;
+    const model::Index material = form.textured ? add_box_material(form, model) : proxy;
     model::Representation rep;
     rep.kind = form.textured ? model::RepKind::textured_box : model::RepKind::colour_box;
     rep.everywhere = false;
@@ -119,7 +150,7 @@ void emit_box(const BoxForm& form, model::Index proxy, model::Model& model) {
     rep.effects = model.materials[material].effects;
     model::Part part{material, static_cast<std::uint32_t>(model.indices.size()), 0,
                      static_cast<std::uint32_t>(model.vertices.size()), 0};
-    for (std::uint32_t f = 0; f < 6; ++f) {
+    for (std::uint32_t f = 0; f < box_faces; ++f) {
         if (form.faces[f].covered > 0) emit_face(form, f, model, part);
     }
     rep.triangles = part.index_count / 3;

@@ -1,6 +1,7 @@
 // Geometry and representations into the model's flat arrays.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -31,12 +32,18 @@ void emit_representations(const EmittedChain& emitted, const dmat4& world, model
 
 /// A box impostor in the world frame, for a node with box `box`.
 struct BoxForm {
-    std::array<FaceCapture, 6> faces;
+    std::array<FaceCapture, box_faces> faces;
     Box box;
     float error_m = 0;
-    bool textured = false;
-    std::uint32_t pixels = 0;
+    bool textured = false;     ///< else each face has one colour
+    std::uint32_t pixels = 0;  ///< of a face's side
+    [[nodiscard]] std::uint32_t shown_faces() const {
+        return static_cast<std::uint32_t>(
+            std::count_if(faces.begin(), faces.end(), [](const FaceCapture& f) { return f.covered > 0; }));
+    }
 };
+/// Texels of a face in a cell of a picture of six, whose rim keeps mip levels from mixing faces.
+constexpr std::uint32_t face_pixels(std::uint32_t cell) { return cell - cell / 8; }
 /// Adds the representation of the box. proxy: the material of plain boxes.
 void emit_box(const BoxForm& form, model::Index proxy, model::Model& model);
 

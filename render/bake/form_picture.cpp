@@ -80,7 +80,7 @@ struct Painter {
         vec4 colour(material.colour[0], material.colour[1], material.colour[2], material.colour[3]);
         if ((material.effects & model::effect_vertex_colour) != 0)
             colour *= vec4(v.colour[0], v.colour[1], v.colour[2], v.colour[3]) / 255.0F;
-        if ((material.effects & model::effect_sun) == 0) return colour;
+        if (!picture.lit || (material.effects & model::effect_sun) == 0) return colour;
         vec3 n = cofactor * vec3(v.normal[0], v.normal[1], v.normal[2]);
         n *= (mirrored ? -1.0F : 1.0F) / std::sqrt(std::max(glm::dot(n, n), 1e-30F));
         if (material.two_sided && glm::dot(n, picture.view.direction.towards) < 0.0F) n = -n;
@@ -205,8 +205,9 @@ FormView view_of(const Box& box, const Direction& direction, const dvec3& middle
     return view;
 }
 
-void FormPicture::clear(const FormView& of) {
+void FormPicture::clear(const FormView& of, bool by_the_sun) {
     view = of;
+    lit = by_the_sun;
     samples.assign(static_cast<std::size_t>(view.width) * view.height, {});
 }
 

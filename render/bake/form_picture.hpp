@@ -45,8 +45,9 @@ struct FormSample {
 /// Row 0 is the lowest.
 struct FormPicture {
     FormView view;
+    bool lit = true;  ///< by sun and sky, where a material is
     std::vector<FormSample> samples;
-    void clear(const FormView& of);
+    void clear(const FormView& of, bool by_the_sun = true);
 };
 
 /// Draws a form over what the picture holds. Blended surfaces show in as many samples as they are opaque.

@@ -11,7 +11,7 @@ namespace surefoot::bake {
 using model::check_limits;
 using model::Counts;
 
-/// Upper bounds of what the model will hold: all levels emitted, and every box with all its faces.
-Counts counts_of(const ProxyInput& input, std::span<const BoxForm> object_boxes);
+/// Upper bounds of what the model will hold: all levels emitted, and so many boxes with all their faces.
+Counts counts_of(const ProxyInput& input, std::size_t boxes);
 
 }  // namespace surefoot::bake

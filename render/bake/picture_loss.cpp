@@ -1,4 +1,4 @@
-// First the leaves, then the clusters bottom-up. A cluster's full detail is put together from its children's pictures.
+// First the leaves, then the clusters, whose full detail is put together from their children's pictures.
 #include "render/bake/picture_loss.hpp"
 
 #include <algorithm>
@@ -19,7 +19,6 @@ using model::PictureLoss;
 using model::RepKind;
 
 constexpr std::uint32_t pixels_across = 64;
-constexpr std::uint32_t clusters_a_task = 128;  // their pictures are made one after the other, and few are held
 
 /// Round about, mostly as a walker sees things, and some from above and below.
 constexpr std::array<std::array<double, 2>, 6> directions = {
@@ -29,9 +28,6 @@ constexpr std::array<std::array<double, 2>, 6> directions = {
 struct Plan {
     std::vector<Index> leaves;                  ///< one for all of one mesh
     std::vector<std::pair<Index, Index>> same;  ///< each leaf, and the number of the measured leaf with the same forms
-    std::vector<Index> task_roots;              ///< clusters below which nothing else is a task's
-    std::vector<std::vector<Index>> upper;      ///< the other clusters, by height; low ones first
-    std::size_t clusters = 0;
 };
 
 void plan_leaves(const Model& model, Plan& plan) {
@@ -49,56 +45,27 @@ void plan_leaves(const Model& model, Plan& plan) {
     }
 }
 
-void plan_clusters(const Model& model, Plan& plan) {
-    std::vector<std::uint32_t> below(model.nodes.size(), 0), height(model.nodes.size(), 0);
-    for (std::size_t n = model.nodes.size(); n-- > 0;) {  // children come after their parents
-        const Node& node = model.nodes[n];
-        if (node.child_count == 0) continue;
-        ++plan.clusters;
-        ++below[n];
-        if (below[n] > clusters_a_task) {
-            if (plan.upper.size() <= height[n]) plan.upper.resize(height[n] + 1);
-            plan.upper[height[n]].push_back(static_cast<Index>(n));
-        }
-        if (node.parent == none) continue;
-        below[node.parent] += below[n];
-        if (below[n] > clusters_a_task) height[node.parent] = std::max(height[node.parent], height[n] + 1);
-    }
-    for (std::size_t n = 0; n < model.nodes.size(); ++n) {
-        const Node& node = model.nodes[n];
-        const bool root = node.parent == none || below[node.parent] > clusters_a_task;
-        if (node.child_count > 0 && root && below[n] <= clusters_a_task) plan.task_roots.push_back(static_cast<Index>(n));
-    }
-}
-
 Plan plan_of(const Model& model) {
     Plan plan;
     plan_leaves(model, plan);
-    plan_clusters(model, plan);
     return plan;
 }
 
 struct Measuring {
     const Model& model;
     Plan plan;
-    dvec3 middle;
+    PictureTree tree;
     std::size_t levels = picture_levels;
     std::vector<PictureDifference> differences;  ///< by form
     std::vector<PictureDifference> shown;        ///< by measured leaf: full detail against nothing
-    std::vector<FormPicture> pictures;           ///< by node: of clusters whose parent is still to come
-    Direction from;
 
-    explicit Measuring(const Model& m)
-        : model(m), plan(plan_of(m)), middle(m.nodes.empty() ? dvec3(0.0) : m.nodes[0].box.centre()) {
+    explicit Measuring(const Model& m) : model(m), plan(plan_of(m)), tree(m) {
         if (m.textures.empty()) levels = 1;
         differences.resize(m.reps.size());
         shown.resize(plan.leaves.size());
-        pictures.resize(m.nodes.size());
     }
     void compare(Index node, std::uint32_t forms, const FormPicture& full, FormPicture& form);
     void measure_leaf(std::size_t i);
-    void measure_cluster(Index node);
-    [[nodiscard]] std::vector<Index> clusters_below(Index root) const;
     [[nodiscard]] ColourSpread colours() const;
     [[nodiscard]] MeasuredLosses losses() const;
 };
@@ -117,41 +84,12 @@ void Measuring::measure_leaf(std::size_t i) {
     const Node& node = model.nodes[index];
     FormPicture full, form;
     for (const auto& [azimuth_rad, elevation_rad] : directions) {
-        full.clear(view_of(node.box, direction_of(azimuth_rad, elevation_rad), middle, pixels_across));
+        full.clear(view_of(node.box, direction_of(azimuth_rad, elevation_rad), tree.middle(), pixels_across));
         form.clear(full.view);
         draw_form(model, model.reps[node.first_rep + node.rep_count - 1], full);
         shown[i].add(full, form, levels);
         compare(index, node.rep_count - 1, full, form);
     }
-}
-
-void Measuring::measure_cluster(Index index) {
-    const Node& node = model.nodes[index];
-    FormPicture& full = pictures[index];
-    full.clear(view_of(node.box, from, middle, pixels_across));
-    for (Index c = node.first_child; c < node.first_child + node.child_count; ++c) {
-        const Node& child = model.nodes[c];
-        if (child.child_count == 0) draw_form(model, model.reps[child.first_rep + child.rep_count - 1], full);
-        if (child.child_count > 0) draw_picture(pictures[c], full);
-        pictures[c] = {};
-    }
-    FormPicture form;
-    compare(index, node.rep_count, full, form);
-}
-
-/// Children first.
-std::vector<Index> Measuring::clusters_below(Index root) const {
-    std::vector<Index> open{root}, found;
-    while (!open.empty()) {
-        const Index at = open.back();
-        const Node& node = model.nodes[at];
-        open.pop_back();
-        if (node.child_count == 0) continue;
-        found.push_back(at);
-        for (Index c = node.first_child; c < node.first_child + node.child_count; ++c) open.push_back(c);
-    }
-    std::reverse(found.begin(), found.end());
-    return found;
 }
 
 /// Each leaf counts by its size.
@@ -242,8 +180,7 @@ PictureLoss PictureDifference::loss(const model::ColourSpread& of_model) const {
 }
 
 std::size_t loss_steps(const Model& model) {
-    const Plan plan = plan_of(model);
-    return plan.leaves.size() + directions.size() * plan.clusters;
+    return plan_of(model).leaves.size() + directions.size() * PictureTree(model).clusters();
 }
 
 MeasuredLosses measure_losses(const Model& model, const ForAll& for_all, const std::function<bool()>& step) {
@@ -254,19 +191,14 @@ MeasuredLosses measure_losses(const Model& model, const ForAll& for_all, const s
         measuring.measure_leaf(i);
         if (!step()) go = false;
     });
-    const auto measure_clusters = [&](const std::vector<Index>& nodes) {
-        for (const Index node : nodes) {
-            if (!go) return;
-            measuring.measure_cluster(node);
-            if (!step()) go = false;
-        }
-    };
     for (const auto& [azimuth_rad, elevation_rad] : directions) {
-        measuring.from = direction_of(azimuth_rad, elevation_rad);
-        for_all(measuring.plan.task_roots.size(),
-                [&](std::size_t i) { measure_clusters(measuring.clusters_below(measuring.plan.task_roots[i])); });
-        for (const std::vector<Index>& same : measuring.plan.upper)
-            for_all(same.size(), [&](std::size_t i) { measure_clusters({same[i]}); });
+        if (!go) break;
+        const auto compare = [&](Index node, const FormPicture& full) {
+            FormPicture form;
+            measuring.compare(node, model.nodes[node].rep_count, full, form);
+            return step();
+        };
+        if (!measuring.tree.look({direction_of(azimuth_rad, elevation_rad), pixels_across}, for_all, compare)) go = false;
     }
     return go ? measuring.losses() : MeasuredLosses{};
 }

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "render/bake/form_picture.hpp"
+#include "render/bake/picture_tree.hpp"
 #include "render/model/picture_loss.hpp"
 
 namespace surefoot::bake {
@@ -24,9 +24,6 @@ struct PictureDifference {
     ByLevel squares{};                                   ///< squares of bytes, where only one covers
     std::array<ByLevel, 3> sums{};                       ///< of bytes there, by channel
 };
-
-/// Calls body(0) to body(count - 1) in any order, on any threads; each result is of its index alone.
-using ForAll = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
 
 /// What measure_losses() found.
 struct MeasuredLosses {

@@ -46,7 +46,7 @@ void add_face(Squares& to, const BoxForm& form, std::size_t face, const vec3& ha
     for (std::uint32_t y = 0; y < n; ++y) {
         for (std::uint32_t x = 0; x < n; ++x) {
             std::uint32_t end = x;
-            while (end < n && rgba[4ULL * (static_cast<std::size_t>(y) * n + end) + 3] != 0) ++end;
+            while (end < n && rgba[4ULL * (static_cast<std::size_t>(y) * n + end) + 3] >= 128) ++end;
             if (end == x) continue;
             to.add(corner + (static_cast<float>(x) * texel) * along + (static_cast<float>(y) * texel) * up,
                    (static_cast<float>(end - x) * texel) * along, texel * up);
@@ -58,7 +58,8 @@ void add_face(Squares& to, const BoxForm& form, std::size_t face, const vec3& ha
 /// The geometric error of a box impostor: how far its captured faces lie from the surface. Upper bound: the larger of parallax
 /// and distance, plus one texel. Parallax: the deepest captured point behind its face. Distance: two-sided, between opaque texels
 /// and surface. `shown` is relative to the box's centre. `slack`: as in ChainOptions.
-float box_error(const BoxForm& form, const Geometry& shown, const vec3& half, float slack) {
+float box_error(const BoxForm& form, const Geometry& shown, float slack) {
+    const vec3 half(glm::max(form.box.half(), dvec3(1e-4)));
     Squares box;
     float depth = 0;
     for (std::size_t face = 0; face < 6; ++face) {
@@ -118,25 +119,6 @@ void append(Geometry& to, const LodChain& chain, std::span<const GeometryPart* c
             same->indices.push_back(base + static_cast<std::uint32_t>(at));
         }
     }
-}
-
-std::vector<ColouredTriangle> coloured(const Geometry& g, const ProxyInput& input) {
-    std::vector<ColouredTriangle> out;
-    for (const GeometryPart& part : g.parts) {
-        for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
-            ColouredTriangle t;
-            std::array<vec2, 3> uv;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const model::Vertex& v = g.vertices[part.indices[i + k]];
-                t.corners[k] = position_of(v);
-                t.colours[k] = g.baked[part.indices[i + k]];
-                uv[k] = {v.uv[0], v.uv[1]};
-            }
-            if (input.is_cut_out(part.material)) t.shown = share_shown(*input.model, input.model->materials[part.material], uv);
-            out.push_back(t);
-        }
-    }
-    return out;
 }
 
 /// Several objects merged into one frame, with the error of their coarse forms.
@@ -209,16 +191,11 @@ Merged merge_children(const ProxyInput& input, const ClusterTree::Cluster& clust
     return merged;
 }
 
-/// Captured from merged geometry whose frame is centred on the box.
-BoxForm make_box(const Merged& merged, const Box& box, std::uint32_t pixels, const ProxyInput& input) {
-    BoxForm form;
-    form.box = box;
-    form.pixels = pixels;
-    form.textured = input.textured_boxes;
-    const vec3 half(glm::max(box.half(), dvec3(1e-4)));
-    form.faces = capture_faces(coloured(merged.geometry, input), half, pixels);
-    form.error_m = box_error(form, merged.geometry, half, input.slack) + merged.error_m;
-    return form;
+/// Whether the objects of a cluster are too many to be merged one by one.
+bool too_many(const ProxyInput& input, std::span<const std::uint32_t> members) { return 16 * members.size() > input.max_input; }
+
+Merged merge(const ProxyInput& input, const ClusterTree::Cluster& cluster, std::span<const std::uint32_t> members) {
+    return too_many(input, members) ? merge_children(input, cluster) : merge_objects(input, cluster.box, members);
 }
 
 /// Clusters the solid parts by a grid, and thins cards out to their share of the triangles.
@@ -252,8 +229,7 @@ LodChain cluster_chain(Merged& merged, const ProxyInput& input, const Clustering
 ClusterForm make_cluster(const ProxyInput& input, const ClusterTree::Cluster& cluster, std::span<const std::uint32_t> members) {
     std::uint32_t children_coarsest = 0;
     for (const std::uint32_t e : cluster.children) children_coarsest += chain_of(input, e).levels.front().triangles;
-    Merged merged =
-        16 * members.size() > input.max_input ? merge_children(input, cluster) : merge_objects(input, cluster.box, members);
+    Merged merged = merge(input, cluster, members);
     ClusteringLimits limits;
     limits.max_triangles = std::clamp(children_coarsest * 7 / 10, 12U, 2000U);
     limits.min_triangles = std::clamp(static_cast<std::uint32_t>(4 * members.size()), 32U, 128U);
@@ -266,14 +242,19 @@ ClusterForm make_cluster(const ProxyInput& input, const ClusterTree::Cluster& cl
         level.error_m = std::max(level.error_m + merged.error_m, min_m);
         min_m = std::nextafter(level.error_m, std::numeric_limits<float>::infinity());
     }
-    out.box = make_box(merged, cluster.box, members.size() > 64 ? 32 : 24, input);
-    out.has_box = out.box.error_m > out.chain.levels.front().error_m && out.chain.levels.front().triangles > 12;
     return out;
 }
 
-BoxForm make_object_box(const ProxyInput& input, const PlacedObject& object, std::uint32_t pixels) {
+float bound_box(const ProxyInput& input, const PlacedObject& object, const BoxForm& box) {
     const auto self = static_cast<std::uint32_t>(&object - input.objects.data());
-    return make_box(merge_objects(input, object.box, std::span(&self, 1)), object.box, pixels, input);
+    const Merged merged = merge_objects(input, object.box, std::span(&self, 1));
+    return box_error(box, merged.geometry, input.slack) + merged.error_m;
+}
+
+float bound_box(const ProxyInput& input, const ClusterTree::Cluster& cluster, std::span<const std::uint32_t> members,
+                const BoxForm& box) {
+    const Merged merged = merge(input, cluster, members);
+    return box_error(box, merged.geometry, input.slack) + merged.error_m;
 }
 
 }  // namespace surefoot::bake

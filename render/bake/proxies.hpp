@@ -1,4 +1,4 @@
-// Cluster meshes, valid from everywhere: the objects of a cluster, merged and strongly simplified.
+// Cluster meshes, valid from everywhere: the objects of a cluster, merged and strongly simplified. And bounds of boxes.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,9 @@
 
 namespace surefoot::bake {
 
-/// The forms of one cluster.
+/// The meshes of one cluster.
 struct ClusterForm {
     LodChain chain;  ///< world frame; full has the levels' vertices and no triangles
-    BoxForm box;
-    bool has_box = false;
 };
 
 /// What all clusters are made from. Read by several threads at once.
@@ -27,8 +25,7 @@ struct ProxyInput {
     model::Index proxy_material = 0;
     std::vector<bool> two_sided;  ///< by material
     std::vector<bool> cut_out;    ///< by material: alpha-tested cards, which keep their material (cards.hpp)
-    bool textured_boxes = false;
-    float slack = 0.25F;  ///< relative gap allowed between upper and lower bound
+    float slack = 0.25F;          ///< relative gap allowed between upper and lower bound
     std::uint32_t max_input =
         24000;  ///< maximum triangles merged; objects enter at coarser levels to fit, and their errors are added
 
@@ -39,7 +36,9 @@ struct ProxyInput {
 /// The finest level has fewer triangles than the children's coarsest together, so a parent costs less (Maciel 1994, 3.1).
 ClusterForm make_cluster(const ProxyInput& input, const ClusterTree::Cluster& cluster, std::span<const std::uint32_t> members);
 
-/// A box for one object, from a level of its chain.
-BoxForm make_object_box(const ProxyInput& input, const PlacedObject& object, std::uint32_t pixels);
+/// Upper bound of a box's error: of its captured faces to what it stands for, and back. The box's frame is its centre's.
+float bound_box(const ProxyInput& input, const PlacedObject& object, const BoxForm& box);
+float bound_box(const ProxyInput& input, const ClusterTree::Cluster& cluster, std::span<const std::uint32_t> members,
+                const BoxForm& box);
 
 }  // namespace surefoot::bake

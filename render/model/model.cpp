@@ -144,7 +144,8 @@ Check check_node_reps(const Model& m, std::size_t i) {
         if (k == 0) continue;
         const Representation& coarser = m.reps[node.first_rep + k - 1];
         if (!(rep.error_m < coarser.error_m)) return wrong("nodes", i, "The errors of the forms do not fall");
-        if (rep.triangles < coarser.triangles) return wrong("nodes", i, "The triangle counts of the forms fall");
+        const bool meshes = rep.kind == RepKind::mesh && coarser.kind == RepKind::mesh;
+        if (meshes && rep.triangles < coarser.triangles) return wrong("nodes", i, "The triangle counts of the meshes fall");
     }
     if (!everywhere) return wrong("nodes", i, "No form is valid from everywhere");
     if (node.child_count == 0 && !m.reps[node.first_rep + node.rep_count - 1].everywhere) {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "render/bake/baked_colours.hpp"
-#include "render/bake/capture_box.hpp"
 #include "render/bake/corners.hpp"
 #include "render/bake/materials.hpp"
 #include "render/bake/objects.hpp"
@@ -192,49 +191,6 @@ TEST(Corners, ThatAreBentInTheFullDetailStayBent) {
     const std::vector<std::uint32_t> before = part.indices;
     repair_corners(g, coincident, part);
     EXPECT_EQ(part.indices, before);
-}
-
-TEST(Masks, ShowTheShareOfATriangleThatIsNotCutOut) {
-    model::Model m;
-    std::vector<std::uint8_t> rgba;  // the left half shown, the right one cut out
-    for (int i = 0; i < 64 * 64; ++i) rgba.insert(rgba.end(), {10, 90, 20, static_cast<std::uint8_t>(i % 64 < 32 ? 255 : 0)});
-    add_texture(m, rgba, 64, 64, true, 32, 127.5F);
-    model::Material mask;
-    mask.colour = {1, 1, 1, 1};
-    mask.texture = 0;
-    mask.alpha = model::AlphaMode::mask;
-    const std::array<vec2, 3> left = {vec2(0, 0), vec2(0.45F, 0), vec2(0, 1)}, right = {vec2(0.55F, 0), vec2(1, 0), vec2(1, 1)};
-    EXPECT_EQ(share_shown(m, mask, left), 1);
-    EXPECT_EQ(share_shown(m, mask, right), 0);
-    EXPECT_NEAR(share_shown(m, mask, {vec2(0, 0), vec2(1, 0), vec2(0, 1)}), 0.75, 0.06);
-    mask.alpha_cutoff = 0;
-    EXPECT_EQ(share_shown(m, mask, right), 1) << "from alpha 0 on everything is shown";
-    mask.alpha = model::AlphaMode::blend;
-    mask.alpha_cutoff = 0.5F;
-    EXPECT_EQ(share_shown(m, mask, right), 1) << "no mask";
-}
-
-TEST(Masks, AreAsFullOfHolesInABoxesPictures) {
-    const auto layer = [](float z, float shown) {
-        ColouredTriangle a, b;
-        a.corners = {vec3(-1, -1, z), vec3(1, -1, z), vec3(1, 1, z)};
-        b.corners = {vec3(-1, -1, z), vec3(1, 1, z), vec3(-1, 1, z)};
-        a.colours.fill({20, 90, 30, 255});
-        b.colours = a.colours;
-        a.shown = b.shown = shown;
-        return std::array{a, b};
-    };
-    std::vector<ColouredTriangle> triangles;
-    double open = 1;
-    for (const float z : {0.9F, 0.5F, 0.2F}) {
-        for (const ColouredTriangle& t : layer(z, 0.3F)) triangles.push_back(t);
-        open *= 0.7;
-        EXPECT_NEAR(capture_faces(triangles, vec3(1), 32)[5].covered, 1 - open, 0.04) << "layers fill each other's holes";
-    }
-    for (ColouredTriangle& t : triangles) t.shown = 1;
-    EXPECT_EQ(capture_faces(triangles, vec3(1), 32)[5].covered, 1);
-    for (ColouredTriangle& t : triangles) t.shown = 0;
-    EXPECT_EQ(capture_faces(triangles, vec3(1), 32)[5].covered, 0);
 }
 
 }  // namespace

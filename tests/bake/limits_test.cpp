@@ -84,10 +84,7 @@ TEST(Limits, WhatIsCountedBeforehandIsWhatEmittingAdds) {
     input.model = &model;
     input.objects = objects;
     input.forms = forms;
-    std::vector<BoxForm> boxes(3);
-    const Counts counts = counts_of(input, boxes);
-    boxes[1].box.grow(dvec3(1));
-    const Counts with_a_box = counts_of(input, boxes);
+    const Counts counts = counts_of(input, 0), with_a_box = counts_of(input, 1);
 
     const EmittedChain chain = emit_chain(forms[0].chain, model);
     for (const PlacedObject& object : objects) emit_representations(chain, object.world, model);
@@ -102,9 +99,11 @@ TEST(Limits, WhatIsCountedBeforehandIsWhatEmittingAdds) {
     EXPECT_EQ(counts.textures, model.textures.size());
     EXPECT_EQ(counts.drawn_parts, model::counts_of(model).drawn_parts);
 
-    BoxForm& box = boxes[1];
-    box.textured = true, box.pixels = 1;
-    for (FaceCapture& face : box.faces) face.covered = 1, face.rgba.assign(4, 255);
+    BoxForm box;
+    box.box.grow(dvec3(0));
+    box.box.grow(dvec3(1));
+    box.textured = true, box.pixels = face_pixels(8);
+    for (FaceCapture& face : box.faces) face.covered = 1, face.rgba.assign(std::size_t{4} * box.pixels * box.pixels, 255);
     emit_box(box, 0, model);
     EXPECT_EQ(with_a_box.vertices, model.vertices.size());
     EXPECT_EQ(with_a_box.indices, model.indices.size());

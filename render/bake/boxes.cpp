@@ -1,0 +1,155 @@
+// Leaves are drawn one by one; clusters are put together from their children's pictures, a face after the other.
+#include "render/bake/boxes.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace surefoot::bake {
+
+namespace {
+
+using model::Index;
+using model::Node;
+
+std::vector<Index> wanted_leaves(const model::Model& model, const BoxRequest& request) {
+    std::vector<Index> leaves;
+    for (Index n = 0; n < model.nodes.size(); ++n)
+        if (model.nodes[n].child_count == 0 && request.wanted[n]) leaves.push_back(n);
+    return leaves;
+}
+
+}  // namespace
+
+std::size_t box_steps(const model::Model& model, const BoxRequest& request) {
+    return wanted_leaves(model, request).size() + box_faces * PictureTree(model).clusters();
+}
+
+std::vector<BoxForm> capture_boxes(const model::Model& model, const BoxRequest& request, const ForAll& for_all,
+                                   const std::function<bool()>& step) {
+    PictureTree tree(model);
+    const std::uint32_t samples = 2 * request.pixels;
+    std::vector<BoxForm> boxes(model.nodes.size());
+    for (Index n = 0; n < model.nodes.size(); ++n) {
+        boxes[n].box = model.nodes[n].box;
+        boxes[n].textured = request.textured;
+        boxes[n].pixels = request.pixels;
+    }
+    std::atomic<bool> go{true};
+    const std::vector<Index> leaves = wanted_leaves(model, request);
+    for_all(leaves.size(), [&](std::size_t i) {
+        if (!go) return;
+        const Node& node = model.nodes[leaves[i]];
+        FormPicture seen;
+        for (std::uint32_t face = 0; face < box_faces; ++face) {
+            seen.clear(view_of(node.box, direction_of_face(face), tree.middle(), samples), request.textured);
+            draw_form(model, model.reps[node.first_rep + node.rep_count - 1], seen);
+            boxes[leaves[i]].faces[face] = capture_face(seen, node.box, face, request.pixels);
+        }
+        if (!step()) go = false;
+    });
+    for (std::uint32_t face = 0; face < box_faces && go; ++face) {
+        const auto use = [&](Index n, const FormPicture& seen) {
+            if (request.wanted[n]) boxes[n].faces[face] = capture_face(seen, model.nodes[n].box, face, request.pixels);
+            return step();
+        };
+        if (!tree.look({direction_of_face(face), samples, request.textured}, for_all, use)) go = false;
+    }
+    return go ? std::move(boxes) : std::vector<BoxForm>();
+}
+
+PlacedBoxes::PlacedBoxes(std::vector<BoxForm> boxes, Index proxy, model::Model& model)
+    : model_(model),
+      boxes_(std::move(boxes)),
+      proxy_(proxy),
+      meshes_(std::move(model.reps)),
+      vertices_(model.vertices.size()),
+      indices_(model.indices.size()),
+      parts_(model.parts.size()),
+      placements_(model.placements.size()),
+      materials_(model.materials.size()),
+      textures_(model.textures.size()),
+      texels_(model.texels.size()) {
+    for (const Node& node : model.nodes) ranges_.emplace_back(node.first_rep, node.rep_count);
+    insert();
+}
+
+void PlacedBoxes::insert() {
+    model_.reps.clear();
+    for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
+        Node& node = model_.nodes[n];
+        const auto first = static_cast<Index>(model_.reps.size());
+        if (boxes_[n].shown_faces() > 0) emit_box(boxes_[n], proxy_, model_);
+        const auto from = meshes_.begin() + ranges_[n].first;
+        model_.reps.insert(model_.reps.end(), from, from + ranges_[n].second);
+        node.first_rep = first;
+        node.rep_count = static_cast<std::uint32_t>(model_.reps.size()) - first;
+    }
+}
+
+/// Compared by the octaves of sizes for which losses are measured. A form is best for some price of a loss, if it lies on the
+/// lower convex hull of cost and loss.
+bool PlacedBoxes::is_best_somewhere(const Node& node, const model::CostModel& costs) const {
+    const vec3 half(node.box.half());
+    const float size_m = std::sqrt(2.0F * (half.x * half.y + half.y * half.z + half.z * half.x));
+    for (float size_px = model::loss_sizes_px.front(); size_px >= model::loss_sizes_px.back(); size_px *= 0.5F) {
+        const float px_per_m = size_px / std::max(size_m, 1e-6F);
+        struct Point {
+            float cost, loss;
+        };
+        const auto point = [&](Index r) {
+            const model::Representation& rep = model_.reps[r];
+            const float pixels = (rep.area_m2[0] + rep.area_m2[1] + rep.area_m2[2]) / 3 * px_per_m * px_per_m;
+            const model::ItemCost cost = costs.item(static_cast<float>(rep.triangles), pixels, costs.grid_for(rep.effects));
+            return Point{cost.submit_us + cost.raster_us, model::loss_at(model_.losses[r], size_px)};
+        };
+        const Point box = point(node.first_rep);
+        bool best = true;
+        for (Index a = node.first_rep + 1; a < node.first_rep + node.rep_count && best; ++a) {
+            const Point cheap = point(a);
+            if (cheap.cost > box.cost) continue;
+            if (0.9F * cheap.loss <= box.loss) best = false;
+            for (Index b = node.first_rep + 1; b < node.first_rep + node.rep_count && best; ++b) {
+                const Point dear = point(b);
+                if (dear.cost <= box.cost || dear.loss >= cheap.loss) continue;
+                const float at = (box.cost - cheap.cost) / (dear.cost - cheap.cost);
+                best = box.loss < 0.9F * (cheap.loss + at * (dear.loss - cheap.loss));
+            }
+        }
+        if (best) return true;
+    }
+    return false;
+}
+
+std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs) {
+    std::vector<model::PictureLoss> losses;
+    std::size_t left = 0;
+    for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
+        const Node& node = model_.nodes[n];
+        const bool had = boxes_[n].shown_faces() > 0;
+        const bool keeps = had && is_best_somewhere(node, costs);
+        if (had && !keeps) boxes_[n].faces = {};
+        left += keeps ? 1 : 0;
+        for (Index r = node.first_rep + (had && !keeps ? 1 : 0); r < node.first_rep + node.rep_count; ++r)
+            losses.push_back(model_.losses[r]);
+    }
+    // Meshes have their area by now.
+    for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
+        const Node& node = model_.nodes[n];
+        const Index boxes = node.rep_count - ranges_[n].second;
+        for (std::uint32_t k = 0; k < ranges_[n].second; ++k)
+            meshes_[ranges_[n].first + k].area_m2 = model_.reps[node.first_rep + boxes + k].area_m2;
+    }
+    model_.vertices.resize(vertices_);
+    model_.indices.resize(indices_);
+    model_.parts.resize(parts_);
+    model_.placements.resize(placements_);
+    model_.materials.resize(materials_);
+    model_.textures.resize(textures_);
+    model_.texels.resize(texels_);
+    insert();
+    model_.losses = std::move(losses);
+    return left;
+}
+
+}  // namespace surefoot::bake

@@ -1,0 +1,194 @@
+// Boxes with pictures of full detail: each face shows what is there, the right way round; a box that is best nowhere goes.
+#include "render/bake/boxes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "render/bake/picture_loss.hpp"
+#include "tests/bake/squares.hpp"
+
+namespace surefoot::bake {
+namespace {
+
+void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body) {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+}
+bool go_on() { return true; }
+
+/// A rectangle from `corner` along `u` and `v`, in one colour; faces to u x v.
+void add_rectangle(model::Model& m, const vec3& corner, const vec3& u, const vec3& v, const std::array<float, 4>& colour) {
+    model::Material material;
+    material.colour = colour;
+    model::Part part{static_cast<model::Index>(m.materials.size()), static_cast<std::uint32_t>(m.indices.size()), 6,
+                     static_cast<std::uint32_t>(m.vertices.size()), 4};
+    m.materials.push_back(material);
+    for (const vec3& p : {corner, corner + u, corner + u + v, corner + v}) {
+        model::Vertex vertex{};
+        for (int k = 0; k < 3; ++k) vertex.position[k] = p[k];
+        m.vertices.push_back(vertex);
+    }
+    for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) m.indices.push_back(i);
+    m.parts.push_back(part);
+}
+
+/// All parts so far as the one form of a leaf that is the whole model.
+void make_leaf(model::Model& m) {
+    m.placements.emplace_back();
+    model::Representation rep;
+    rep.part_count = static_cast<std::uint32_t>(m.parts.size());
+    rep.triangles = 2 * rep.part_count;
+    m.reps.push_back(rep);
+    model::Node node;
+    node.rep_count = 1;
+    for (const model::Vertex& v : m.vertices) node.box.grow(dvec3(v.position[0], v.position[1], v.position[2]));
+    m.nodes.push_back(node);
+}
+
+/// A block whose six sides have a quarter of another colour each way: 24 colours.
+model::Model painted_block(const vec3& size) {
+    model::Model m;
+    for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+        for (int quarter = 0; quarter < 4; ++quarter) {
+            vec3 corner(0), along(0), up(0);
+            corner[axis] = face % 2 == 1 ? size[axis] : 0;
+            corner[u] = 0.5F * size[u] * static_cast<float>(quarter % 2);
+            corner[v] = 0.5F * size[v] * static_cast<float>(quarter / 2);
+            along[u] = 0.5F * size[u];
+            up[v] = 0.5F * size[v];
+            if (face % 2 == 0) std::swap(along, up);
+            const std::array<float, 4> colour{static_cast<float>(1 + face) / 6, static_cast<float>(quarter) / 3,
+                                              static_cast<float>((face + quarter) % 3) / 2, 1};
+            add_rectangle(m, corner, along, up, colour);
+        }
+    }
+    make_leaf(m);
+    return m;
+}
+
+std::vector<BoxForm> boxes_of(const model::Model& m, std::uint32_t pixels = 28) {
+    std::vector<BoxForm> boxes = capture_boxes(m, {std::vector<bool>(m.nodes.size(), true), true, pixels}, one_by_one, go_on);
+    for (BoxForm& box : boxes) box.error_m = 1;
+    return boxes;
+}
+
+TEST(Boxes, OfABlockLookLikeItFromEverySide) {
+    for (const vec3& size : {vec3(2, 2, 2), vec3(1, 3, 2), vec3(4, 1, 1)}) {
+        model::Model m = painted_block(size);
+        const PlacedBoxes placed(boxes_of(m), 0, m);
+        ASSERT_EQ(m.nodes[0].rep_count, 2U);
+        ASSERT_EQ(m.reps[0].triangles, 12U);
+        for (const auto& [azimuth, elevation] :
+             {std::pair{0.4, 0.3}, {2.0, -0.4}, {3.6, 0.2}, {5.2, -0.3}, {1.0, 1.2}, {4.0, -1.2}}) {
+            FormPicture full, box;
+            full.clear(view_of(m.nodes[0].box, direction_of(azimuth, elevation), m.nodes[0].box.centre(), 64));
+            box.clear(full.view);
+            draw_form(m, m.reps[1], full);
+            draw_form(m, m.reps[0], box);
+            std::size_t either = 0, equal = 0;
+            for (std::size_t i = 0; i < full.samples.size(); ++i) {
+                const FormSample &a = full.samples[i], &b = box.samples[i];
+                if (!a.covered() && !b.covered()) continue;
+                ++either;
+                int off = 0;
+                for (std::size_t k = 0; k < 3; ++k) off = std::max(off, std::abs(a.rgb[1][k] - b.rgb[1][k]));
+                if (a.covered() == b.covered() && off < 8) ++equal;
+            }
+            EXPECT_GT(either, 500U);
+            EXPECT_GT(static_cast<double>(equal), 0.85 * static_cast<double>(either)) << azimuth << ' ' << elevation;
+        }
+    }
+}
+
+TEST(Boxes, HoldAReadablePicture) {
+    model::Model m;
+    add_board(m, 8);
+    add_rectangle(m, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1, 1});
+    m.materials[0].texture = 0;
+    m.materials[0].effects = model::effect_texture;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        m.vertices[corner].uv[0] = corner == 1 || corner == 2 ? 1.0F : 0.0F;
+        m.vertices[corner].uv[1] = corner >= 2 ? 1.0F : 0.0F;
+    }
+    make_leaf(m);
+    m.nodes[0].box.grow(dvec3(0.5, 0.5, -0.1));
+    constexpr std::uint32_t pixels = 32;
+    const FaceCapture face = boxes_of(m, pixels)[0].faces[5];
+    EXPECT_EQ(face.covered, 1);
+    for (std::uint32_t y = 0; y < 8; ++y) {
+        for (std::uint32_t x = 0; x < 8; ++x) {
+            const std::size_t texel = (4 * y + 2) * pixels + 4 * x + 2;
+            EXPECT_NEAR(face.rgba[4 * texel], (x + y) % 2 * 255, 60) << x << ' ' << y;
+        }
+    }
+}
+
+TEST(Boxes, ShowOnEachFaceTheNearHalfAlone) {
+    model::Model m;
+    add_rectangle(m, {0, 0, 0.25F}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0, 1});  // to +z, in the far half of that face
+    m.materials[0].two_sided = true;
+    make_leaf(m);
+    m.nodes[0].box.grow(dvec3(0, 0, 1));
+    m.nodes[0].box.grow(dvec3(0));
+    const BoxForm box = boxes_of(m)[0];
+    EXPECT_EQ(box.faces[5].covered, 0);
+    EXPECT_EQ(box.faces[4].covered, 1) << "the opposite face shows it, seen from behind through this one";
+    EXPECT_NEAR(box.faces[4].depth_m, 0.25, 1e-3);
+    EXPECT_EQ(box.faces[4].mean[0], 255);
+    EXPECT_EQ(box.shown_faces(), 1U) << "from its edge it shows nothing";
+}
+
+TEST(Boxes, OfVeryLongThingsAreLeftOut) {
+    const model::Model m = painted_block({400, 0.5, 0.5});
+    EXPECT_EQ(boxes_of(m, 28)[0].faces[2].covered, 1);
+    EXPECT_EQ(boxes_of(m, 56)[0].faces[2].covered, 0) << "twice the samples are more than the picture holds";
+}
+
+TEST(Boxes, ThatAreBestAtNoSizeAreTakenOutAgain) {
+    // Two leaves below a root, each with a coarse mesh of two triangles and full detail.
+    model::Model m = squares({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {5, 0, 1}, {5, 0, 1}});
+    m.nodes.resize(3);
+    m.nodes[0].first_rep = 0, m.nodes[0].rep_count = 1, m.nodes[0].first_child = 1, m.nodes[0].child_count = 2;
+    for (model::Index leaf = 1; leaf < 3; ++leaf) {
+        m.nodes[leaf].parent = 0;
+        m.nodes[leaf].first_rep = 2 * leaf - 1, m.nodes[leaf].rep_count = 2;
+        m.nodes[leaf].box = Box{dvec3(leaf == 1 ? 0 : 5, 0, -0.5), dvec3(leaf == 1 ? 1 : 6, 1, 0.5)};
+        m.nodes[0].box.grow(m.nodes[leaf].box);
+        m.reps[2 * leaf].triangles = 5000;
+    }
+    for (model::Representation& rep : m.reps) rep.area_m2 = {1, 1, 1};
+    std::vector<BoxForm> boxes = capture_boxes(m, {{false, true, true}, true, 28}, one_by_one, go_on);
+    ASSERT_EQ(boxes.size(), 3U);
+    const std::size_t texels = m.texels.size(), textures = m.textures.size();
+    PlacedBoxes placed(std::move(boxes), 0, m);
+    ASSERT_EQ(m.reps.size(), 7U);
+    ASSERT_EQ(m.textures.size(), textures + 2);
+    for (const model::Index leaf : {1U, 2U}) m.reps[m.nodes[leaf].first_rep].area_m2 = {2, 2, 2};
+    m.losses.resize(m.reps.size());
+    const auto lose = [&](model::Index form, float loss) { m.losses[form].colour.fill(loss); };
+    lose(m.nodes[1].first_rep, 0.1F);
+    lose(m.nodes[1].first_rep + 1, 0.5F);
+    lose(m.nodes[2].first_rep, 0.5F);
+    lose(m.nodes[2].first_rep + 1, 0.1F);
+    EXPECT_EQ(placed.drop_idle(model::default_costs()), 1U);
+    EXPECT_EQ(m.reps.size(), 6U);
+    EXPECT_EQ(m.losses.size(), 6U);
+    EXPECT_EQ(m.nodes[1].rep_count, 3U);
+    EXPECT_EQ(m.reps[m.nodes[1].first_rep].kind, model::RepKind::textured_box);
+    EXPECT_EQ(m.losses[m.nodes[1].first_rep].colour[0], 0.1F);
+    EXPECT_EQ(m.nodes[2].rep_count, 2U);
+    EXPECT_EQ(m.losses[m.nodes[2].first_rep].colour[0], 0.1F);
+    EXPECT_EQ(m.textures.size(), textures + 1);
+    EXPECT_LT(m.texels.size(), texels + 2 * (m.texels.size() - texels)) << "what it alone used is gone";
+    EXPECT_EQ(m.parts[m.reps[m.nodes[1].first_rep].first_part].material, m.materials.size() - 1);
+}
+
+TEST(Boxes, StopWhenTheyAreToldTo) {
+    const model::Model m = painted_block({1, 1, 1});
+    EXPECT_TRUE(capture_boxes(m, {{true}, true, 28}, one_by_one, [] { return false; }).empty());
+}
+
+}  // namespace
+}  // namespace surefoot::bake
