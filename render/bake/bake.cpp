@@ -29,7 +29,9 @@ namespace {
 
 constexpr std::uint32_t min_box_triangles = 64, min_plain_box_triangles = 500;  // fewer are cheaper than six faces
 constexpr std::uint32_t max_box_cell = 32, min_box_cell = 16;                   // texels of a face's picture, with its rim
-constexpr std::size_t max_box_bytes = std::size_t{128} << 20U;                  // of all boxes together while they are judged
+constexpr std::size_t max_box_bytes = std::size_t{128} << 20U;                  // of all pictures of boxes while they are judged
+/// Six faces of four bytes a texel, and mip levels.
+constexpr std::size_t box_bytes(std::uint32_t cell) { return std::size_t{32} * cell * cell; }
 
 std::string place_of(const importer::Scene& scene) { return scene.sources.empty() ? "bake" : scene.sources.front(); }
 
@@ -99,7 +101,8 @@ struct BakeContext {
     bool shows_pictures() const;
     bool wants_box(std::uint32_t entity) const;
     void emit();
-    void bound(model::Index n, BoxForm& box) const;
+    std::vector<bool> wanted_boxes() const;
+    void bound(const ProxyInput& input, model::Index n, BoxForm& box) const;
     std::optional<PlacedBoxes> add_boxes();
     void measure_areas();
     bool measure_pictures();
@@ -127,10 +130,13 @@ ChainOptions chain_options(const BakeOptions& options, model::Index proxy) {
     return chain;
 }
 
+model::CostModel costs_of(const BakeOptions& options) {
+    return options.costs != nullptr && !options.costs->grids.empty() ? *options.costs : model::default_costs();
+}
+
 /// The 1/16-frame rule: as many triangles as fit, seen near and over a quarter of the picture.
 std::uint32_t max_triangles(const BakeOptions& options) {
-    const model::CostModel fallback = model::default_costs();
-    const model::CostModel& costs = options.costs != nullptr && !options.costs->grids.empty() ? *options.costs : fallback;
+    const model::CostModel costs = costs_of(options);
     const double limit_us = options.frame_us / 16.0;
     const model::CostGrid& grid = costs.grid_for(model::effect_texture | model::effect_sun);
     std::uint32_t max_found = 256;
@@ -345,9 +351,8 @@ void BakeContext::emit() {
 }
 
 /// Bounds a node's box. A box that cannot be its coarsest form loses its faces.
-void BakeContext::bound(model::Index n, BoxForm& box) const {
+void BakeContext::bound(const ProxyInput& input, model::Index n, BoxForm& box) const {
     if (box.shown_faces() == 0) return;
-    const ProxyInput input = proxy_input();
     const auto clusters_from = static_cast<std::uint32_t>(objects.size());
     const std::uint32_t entity = entities[n];
     box.error_m = entity < clusters_from
@@ -361,22 +366,36 @@ void BakeContext::bound(model::Index n, BoxForm& box) const {
     box.error_m = std::max(box.error_m, std::nextafter(coarsest.error_m, std::numeric_limits<float>::infinity()));
 }
 
+/// Where all would take too much memory, what has most triangles goes first, and so clusters before what is in them.
+std::vector<bool> BakeContext::wanted_boxes() const {
+    std::vector<model::Index> nodes;
+    for (model::Index n = 0; n < entities.size(); ++n)
+        if (wants_box(entities[n])) nodes.push_back(n);
+    std::stable_sort(nodes.begin(), nodes.end(),
+                     [&](model::Index a, model::Index b) { return model.nodes[a].triangles > model.nodes[b].triangles; });
+    nodes.resize(std::min(nodes.size(), max_box_bytes / box_bytes(min_box_cell)));
+    std::vector<bool> wanted(entities.size(), false);
+    for (const model::Index n : nodes) wanted[n] = true;
+    return wanted;
+}
+
 std::optional<PlacedBoxes> BakeContext::add_boxes() {
     BoxRequest request;
     request.textured = shows_pictures();
-    for (const std::uint32_t entity : entities) request.wanted.push_back(wants_box(entity));
+    request.wanted = wanted_boxes();
     const auto count = static_cast<std::size_t>(std::count(request.wanted.begin(), request.wanted.end(), true));
     std::uint32_t cell = request.textured ? max_box_cell : min_box_cell;
-    if (std::size_t{32} * cell * cell * count > max_box_bytes) cell = min_box_cell;  // six faces of four bytes, and mip levels
+    if (box_bytes(cell) * count > max_box_bytes) cell = min_box_cell;
     request.pixels = face_pixels(cell);
     const auto all = [](std::size_t n, const std::function<void(std::size_t)>& body) { for_all(n, body); };
     Stage stage(progress, "boxes", box_steps(model, request) + entities.size());
     std::vector<BoxForm> boxes = capture_boxes(model, request, all, [&] { return stage.step(); });
     if (boxes.empty()) return {};
+    const ProxyInput input = proxy_input();
     std::atomic<bool> go{true};
     for_all(boxes.size(), [&](std::size_t n) {
         if (!go) return;
-        bound(static_cast<model::Index>(n), boxes[n]);
+        bound(input, static_cast<model::Index>(n), boxes[n]);
         if (!stage.step()) go = false;
     });
     if (!go) return {};
@@ -450,8 +469,7 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         context.measure_areas();
         done = context.measure_pictures();
         if (!done) return;
-        const model::CostModel fallback = model::default_costs();
-        boxes->drop_idle(fallback);
+        boxes->drop_idle(costs_of(options));
         context.measure_areas();
         context.find_effects();
     });

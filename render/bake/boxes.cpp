@@ -55,6 +55,12 @@ std::vector<BoxForm> capture_boxes(const model::Model& model, const BoxRequest& 
         };
         if (!tree.look({direction_of_face(face), samples, request.textured}, for_all, use)) go = false;
     }
+    for (BoxForm& box : boxes) {
+        // A box without one of its sides would be a hole from there.
+        if (!std::all_of(box.faces.begin(), box.faces.end(), [](const FaceCapture& f) { return f.whole; })) box.faces = {};
+        for (FaceCapture& face : box.faces)
+            if (!box.textured) face.rgba = {};
+    }
     return go ? std::move(boxes) : std::vector<BoxForm>();
 }
 
@@ -101,7 +107,7 @@ bool PlacedBoxes::is_best_somewhere(const Node& node, const model::CostModel& co
             const model::Representation& rep = model_.reps[r];
             const float pixels = (rep.area_m2[0] + rep.area_m2[1] + rep.area_m2[2]) / 3 * px_per_m * px_per_m;
             const model::ItemCost cost = costs.item(static_cast<float>(rep.triangles), pixels, costs.grid_for(rep.effects));
-            return Point{cost.submit_us + cost.raster_us, model::loss_at(model_.losses[r], size_px)};
+            return Point{costs.combine.frame_us(cost.submit_us, cost.raster_us), model::loss_at(model_.losses[r], size_px)};
         };
         const Point box = point(node.first_rep);
         bool best = true;
@@ -132,13 +138,6 @@ std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs) {
         left += keeps ? 1 : 0;
         for (Index r = node.first_rep + (had && !keeps ? 1 : 0); r < node.first_rep + node.rep_count; ++r)
             losses.push_back(model_.losses[r]);
-    }
-    // Meshes have their area by now.
-    for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
-        const Node& node = model_.nodes[n];
-        const Index boxes = node.rep_count - ranges_[n].second;
-        for (std::uint32_t k = 0; k < ranges_[n].second; ++k)
-            meshes_[ranges_[n].first + k].area_m2 = model_.reps[node.first_rep + boxes + k].area_m2;
     }
     model_.vertices.resize(vertices_);
     model_.indices.resize(indices_);

@@ -14,9 +14,9 @@ namespace surefoot::bake {
 
 /// Which boxes are captured, and how.
 struct BoxRequest {
-    std::vector<bool> wanted;  ///< by node
-    bool textured = false;     ///< pictures; else one colour a face, without light
-    std::uint32_t pixels = 56;
+    std::vector<bool> wanted;   ///< by node
+    bool textured = false;      ///< pictures; else one colour a face, without light
+    std::uint32_t pixels = 28;  ///< of a face's side: face_pixels()
 };
 
 /// A box a node; those that are not wanted have no faces. Errors are not bounded yet. Empty: step() said to stop.

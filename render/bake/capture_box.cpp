@@ -2,7 +2,9 @@
 #include "render/bake/capture_box.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
+#include <functional>
 
 namespace surefoot::bake {
 
@@ -45,6 +47,20 @@ struct Sums {
     }
 };
 
+/// Scales the alphas of texels so that this share of them is opaque: thin things stay as wide as they are. False: none is.
+bool keep_share(std::vector<std::uint8_t>& rgba, double share) {
+    std::vector<std::uint8_t> alphas;
+    for (std::size_t at = 3; at < rgba.size(); at += 4) alphas.push_back(rgba[at]);
+    const auto opaque = static_cast<std::size_t>(std::llround(share * static_cast<double>(alphas.size())));
+    if (opaque == 0) return false;
+    const auto last = alphas.begin() + static_cast<std::ptrdiff_t>(opaque - 1);
+    std::nth_element(alphas.begin(), last, alphas.end(), std::greater<>());
+    if (*last == 0) return false;
+    for (std::size_t at = 3; at < rgba.size(); at += 4)
+        rgba[at] = static_cast<std::uint8_t>(std::min(255U, (rgba[at] * std::uint32_t{opaque_alpha} + *last - 1U) / *last));
+    return true;
+}
+
 }  // namespace
 
 Direction direction_of_face(std::uint32_t face) {
@@ -75,8 +91,10 @@ FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t 
         spans_of(low_px(from.up, v, view.low), 2 * half[v] / pixel_m / pixels, pixels, view.height, false);
     const auto ends = [&](double low, int in_plane) { return low + 2 * half[in_plane] / pixel_m; };
     if (ends(low_px(from.right, u, view.left), u) > view.width + 1.0 || ends(low_px(from.up, v, view.low), v) > view.height + 1.0)
-        return out;  // very long: the picture does not show all of it
+        return out.whole = false, out;
     const double front = glm::dot(centre, dvec3(from.towards)) + half[axis];
+    // A depth is a float, in metres from the middle of the model.
+    const double near_half_m = 1.001 * half[axis] + 4.0 * FLT_EPSILON * (std::abs(front) + 2 * half[axis]);
     Sums all;
     std::uint64_t samples = 0;
     for (std::uint32_t y = 0; y < pixels; ++y) {
@@ -87,7 +105,7 @@ FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t 
                 for (std::uint32_t sx = column.first; sx < column.first + column.count; ++sx) {
                     const FormSample& sample = seen.samples[static_cast<std::size_t>(sy) * view.width + sx];
                     const double depth = front - static_cast<double>(sample.depth);
-                    if (!sample.covered() || depth > 1.001 * half[axis]) continue;
+                    if (!sample.covered() || depth > near_half_m) continue;
                     out.depth_m = std::max(out.depth_m, static_cast<float>(depth));
                     texel.add(sample);
                 }
@@ -102,7 +120,8 @@ FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t 
     }
     all.mean(out.mean.data());
     out.mean[3] = all.covered == 0 ? 0 : 255;
-    out.covered = static_cast<float>(all.covered) / static_cast<float>(std::max<std::uint64_t>(samples, 1));
+    const double share = static_cast<double>(all.covered) / static_cast<double>(std::max<std::uint64_t>(samples, 1));
+    out.covered = keep_share(out.rgba, share) ? static_cast<float>(share) : 0.0F;
     return out;
 }
 

@@ -12,11 +12,13 @@ namespace surefoot::bake {
 /// One face, as an orthographic camera on its axis sees the near half of the box. Row 0 lies at the low end of the second
 /// in-plane axis, column 0 at the low end of the first. They are (axis + 1) % 3 and (axis + 2) % 3.
 struct FaceCapture {
-    std::vector<std::uint8_t> rgba;      ///< pixels x pixels, lit; alpha: how much of the texel is covered
+    std::vector<std::uint8_t> rgba;  ///< pixels x pixels, lit. As many texels are opaque (alpha >= opaque_alpha) as are covered.
     std::array<std::uint8_t, 4> mean{};  ///< of what is covered
     float depth_m = 0;                   ///< the deepest captured point behind the face
-    float covered = 0;                   ///< share of the face
+    float covered = 0;                   ///< share of the face; 0: it has no opaque texel
+    bool whole = true;                   ///< false: the face is too long for the picture that it was captured from
 };
+constexpr std::uint8_t opaque_alpha = 128;
 
 /// Faces in the order -x, +x, -y, +y, -z, +z.
 constexpr std::uint32_t box_faces = 6;

@@ -99,7 +99,7 @@ std::array<std::uint32_t, 4> shown_texels(const FaceCapture& face, std::uint32_t
     std::array<std::uint32_t, 4> range{n, n, 0, 0};
     for (std::uint32_t y = 0; y < n; ++y) {
         for (std::uint32_t x = 0; x < n; ++x) {
-            if (face.rgba[std::size_t{4} * (static_cast<std::size_t>(y) * n + x) + 3] == 0) continue;
+            if (face.rgba[std::size_t{4} * (static_cast<std::size_t>(y) * n + x) + 3] < opaque_alpha) continue;
             range = {std::min(range[0], x), std::min(range[1], y), std::max(range[2], x + 1), std::max(range[3], y + 1)};
         }
     }

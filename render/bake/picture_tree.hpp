@@ -25,7 +25,7 @@ public:
         std::uint32_t pixels = 64;
         bool lit = true;
     };
-    /// All clusters. False: use() stopped it.
+    /// All clusters. False: use() stopped it. One call at a time.
     bool look(const View& view, const ForAll& for_all, const Use& use);
 
     [[nodiscard]] std::size_t clusters() const { return clusters_; }

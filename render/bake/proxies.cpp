@@ -1,11 +1,10 @@
-// A cluster's mesh, valid from everywhere, and boxes: merged from the actual objects.
+// A cluster's mesh, valid from everywhere, merged from the actual objects; and how far a box is off them.
 #include "render/bake/proxies.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "render/bake/baked_colours.hpp"
 #include "render/bake/cluster_cards.hpp"
 #include "render/bake/mesh_surface.hpp"
 #include "render/bake/vertex_clusters.hpp"
@@ -46,7 +45,7 @@ void add_face(Squares& to, const BoxForm& form, std::size_t face, const vec3& ha
     for (std::uint32_t y = 0; y < n; ++y) {
         for (std::uint32_t x = 0; x < n; ++x) {
             std::uint32_t end = x;
-            while (end < n && rgba[4ULL * (static_cast<std::size_t>(y) * n + end) + 3] >= 128) ++end;
+            while (end < n && rgba[4ULL * (static_cast<std::size_t>(y) * n + end) + 3] >= opaque_alpha) ++end;
             if (end == x) continue;
             to.add(corner + (static_cast<float>(x) * texel) * along + (static_cast<float>(y) * texel) * up,
                    (static_cast<float>(end - x) * texel) * along, texel * up);

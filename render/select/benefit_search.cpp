@@ -45,10 +45,8 @@ public:
 
     /// Returns the number of steps taken.
     std::uint32_t run(bool fill) {
-        sum_steps(builder_, steps_, sums_, scan_state_);
-        const Edge both = common_edge(builder_.floor_sum());
-        take_common(both);
-        if (deferred_count_ > 0 && !closed_) take_deferred(refined_edge(both));
+        sum_ = builder_.floor_sum();
+        search();
         if (fill) {
             take_what_fits();
             if (builder_.size() <= max_dear_candidates) try_dear_forms();
@@ -76,37 +74,49 @@ private:
         }
     }
 
+    /// All steps behind what is chosen, by their sums: up to the edge.
+    void search() {
+        sum_steps(builder_, steps_, sums_, scan_state_);
+        const Edge both = common_edge(sum_);
+        take_common(both);
+        if (deferred_count_ > 0 && !closed_) take_deferred(refined_edge(both));
+    }
+
     /// Cheap steps may have filled the budget before a dear one that is worth more than they are. So the search starts again from
-    /// the dearest forms left, one after the other. It keeps those with which the cut has more value. A form that the last frame
+    /// the forms that add most, one after the other. It keeps those with which the cut has more value. A form that the last frame
     /// showed may lose a little, another has to win as much: else frames would alternate.
     void try_dear_forms() {
-        std::array<Target, max_dear> tried{}, kept{};
-        std::uint32_t tried_count = 0, kept_count = 0;
+        std::array<Target, 2 * max_dear> tried{};
+        std::array<Target, max_dear> kept{};
+        std::uint32_t tried_count = 0, searches = 0, kept_count = 0, kept_taken = taken_;
         double best = builder_.value();
-        std::uint32_t best_taken = taken_;
         builder_.save();
-        while (tried_count < max_dear) {
+        while (tried_count < tried.size() && searches < max_dear) {
             const Target next = dearest(std::span(tried).first(tried_count), static_cast<float>(min_gain * best));
             if (next.candidate == none) break;
             tried[tried_count++] = kept[kept_count] = next;
-            double value = 0;
+            bool better = false;
             if (start_from(std::span(kept).first(kept_count + 1))) {
+                ++searches;
+                search();
                 take_what_fits();
-                value = builder_.value();
+                const double value = builder_.value();
+                better = value > best * (was_shown(next) ? 1.0 - min_gain : 1.0 + min_gain);
+                if (better) best = std::max(best, value);
             }
-            if (value > best * (was_shown(next) ? 1.0 - min_gain : 1.0 + min_gain)) {
+            if (better) {
                 ++kept_count;
-                best = value;
-                best_taken = taken_;
+                kept_taken = taken_;
                 builder_.save();
             } else {
                 builder_.restore();
             }
         }
-        taken_ = best_taken;
+        taken_ = kept_taken;
     }
 
     /// What adds most to the value: the next step of an item, or full detail of a leaf. None: nothing adds more than `above`.
+    /// A leaf below an item counts by the share of its value that the item lacks.
     [[nodiscard]] Target dearest(std::span<const Target> tried, float above) const {
         Target found;
         const auto consider = [&](float gain, const Target& target) {
@@ -114,19 +124,19 @@ private:
             above = gain;
             found = target;
         };
+        const std::span<float> lacks = builder_.what_items_lack();
         for (Index c = 0; c < builder_.size(); ++c) {
             const std::uint32_t now = builder_.chosen(c);
             if (now == SelectState::opened) continue;
             const auto choices = builder_.choices(c);
             const auto last = static_cast<std::uint32_t>(choices.size()) - 1;
-            const float shown = now == none ? 0.0F : choices[now].value;
             if (builder_.candidate(c).child_count == 0 && now != last && !steps_.has_target())
-                consider(choices[last].value - shown, {c, last});
+                consider(lacks[c] * choices[last].value, {c, last});
             if (now == none || !builder_.has_step(c) || !steps_.wanted(choices[now])) continue;
             if (now < last)
-                consider(choices[now + 1].value - shown, {c, now + 1});
+                consider(choices[now + 1].value - choices[now].value, {c, now + 1});
             else
-                consider(builder_.children_value(c) - shown, {c, opening});
+                consider(builder_.children_value(c) - choices[now].value, {c, opening});
         }
         return found;
     }
@@ -139,8 +149,10 @@ private:
     /// From the floor to the targets, and what stands above them. False: they do not fit.
     bool start_from(std::span<const Target> targets) {
         builder_.take_floor();
+        sums_.clear();
         sum_ = builder_.floor_sum();
-        taken_ = 0;
+        taken_ = deferred_count_ = 0;
+        closed_ = false;
         double share = 1.0;
         for (const Target& target : targets) {
             Index closed = builder_.candidate(target.candidate).parent;
@@ -228,6 +240,7 @@ private:
             const auto choices = builder_.choices(c);
             const Index shown = steps_.shown(builder_.candidate(c).node);
             for_steps(c, [&](std::uint32_t k, bool opens) {
+                if (k < builder_.chosen(c)) return true;  // a form that the search starts from
                 const StepPlace step = step_of(choices[k], shown);
                 bool take = step.bucket < edge.bucket;
                 if (step.bucket == edge.bucket && !closed_ && (step.refined || !fresh_closed)) {
@@ -249,7 +262,8 @@ private:
         const std::uint32_t steps = candidate.choice_count - (opens ? 0U : 1U);
         if (steps == 0) return true;
         if ((scan_state_[c] & last_bucket) >= edge.bucket) return false;
-        taken_ += steps - 1;
+        if (builder_.chosen(c) == steps) return true;  // the finest form of a leaf, from which the search starts
+        taken_ += steps - 1 - builder_.chosen(c);
         return do_step(c, steps - 1, opens);
     }
 

@@ -38,6 +38,7 @@ void SelectState::reserve(const model::Model& model, std::uint32_t max_candidate
     scratch_->queue_heads.resize(2 * BucketQueue::buckets);
     scratch_->step_sums.resize(4 * BucketQueue::buckets);
     scratch_->saved.resize(max_candidates);
+    scratch_->lacks.resize(max_candidates);
     scratch_->chosen.resize(max_candidates);
     scratch_->list.resize(max_candidates);
 }
@@ -67,6 +68,7 @@ CutBuilder::CutBuilder(const SelectInput& input, SelectState& state)
       chosen_(std::span(state.scratch().chosen).first(input.prepared->candidates.size())),
       saved_(std::span(state.scratch().saved).first(input.prepared->candidates.size())),
       scratch_(std::span(state.scratch().list).first(input.prepared->candidates.size())),
+      lacks_(std::span(state.scratch().lacks).first(input.prepared->candidates.size())),
       items_(input) {}
 
 // Candidates are in breadth-first order, so a first-in first-out walk meets them ascending.
@@ -101,6 +103,21 @@ float CutBuilder::children_value(Index c) const {
     float sum = 0;
     for (Index k = 0; k < candidate(c).child_count; ++k) sum += choices(candidate(c).first_child + k)[0].value;
     return sum;
+}
+
+std::span<float> CutBuilder::what_items_lack() {
+    for (std::size_t c = chosen_.size(); c-- > 0;) {  // first: the value of full detail
+        const prepare::Candidate& at = candidate(static_cast<Index>(c));
+        lacks_[c] = at.child_count == 0 ? choices(static_cast<Index>(c)).back().value : 0.0F;
+        for (Index k = 0; k < at.child_count; ++k) lacks_[c] += lacks_[at.first_child + k];
+    }
+    for (Index c = 0; c < chosen_.size(); ++c) {
+        if (chosen_[c] == SelectState::opened) continue;
+        lacks_[c] = chosen_[c] == none ? lacks_[candidate(c).parent]
+                    : lacks_[c] > 0.0F ? std::clamp(1.0F - current(c).value / lacks_[c], 0.0F, 1.0F)
+                                       : 0.0F;
+    }
+    return lacks_;
 }
 
 void CutBuilder::save() { std::copy(chosen_.begin(), chosen_.end(), saved_.begin()); }

@@ -42,6 +42,8 @@ public:
     [[nodiscard]] double value() const;
     /// Value of the children's first choices.
     [[nodiscard]] float children_value(Index c) const;
+    /// By candidate, 0..1: the share of its leaves' value that the item which shows it lacks. Of opened ones nothing is said.
+    std::span<float> what_items_lack();
     /// Keeps the choices as they are, and takes them again.
     void save();
     void restore();
@@ -67,6 +69,7 @@ private:
     const prepare::PreparedFrame& prepared_;
     SelectState& state_;
     std::span<std::uint32_t> chosen_, saved_, scratch_;
+    std::span<float> lacks_;
     Sum floor_;
     ItemBuyer items_;
 };

@@ -60,7 +60,7 @@ constexpr std::uint32_t last_bucket = key_buckets - 1;  ///< mask: the bucket of
 constexpr std::uint32_t opens_below = 1U << 16U;        ///< its children may be opened: the target error allows all its steps
 constexpr std::uint32_t refined_before = 1U << 17U;     ///< its first step was taken in the last frame
 
-/// Adds up all steps from the floor, which the builder holds. notes: one a candidate.
+/// Adds up all steps behind what the builder holds: the floor, or forms that a search starts from. notes: one a candidate.
 inline void sum_steps(const CutBuilder& builder, const Steps& steps, StepSums& sums, std::span<std::uint32_t> notes) {
     for (Index c = 0; c < builder.size(); ++c) {
         if (builder.chosen(c) == SelectState::opened) continue;  // above the floor
@@ -73,7 +73,9 @@ inline void sum_steps(const CutBuilder& builder, const Steps& steps, StepSums& s
             continue;
         }
         std::uint32_t last = 0;
+        const std::uint32_t from = builder.chosen(c) == none ? 0 : builder.chosen(c);
         const bool passed = for_steps(builder, steps, c, [&](std::uint32_t k, bool opens) {
+            if (k < from) return true;
             const StepPlace step = place_of(steps, choices[k], shown);
             last = step.bucket;
             sums.add(step.bucket, step.refined, choices[k].cost, opens ? candidate.children_cost : choices[k + 1].cost);
