@@ -113,6 +113,7 @@ void emit_face(const BoxForm& form, std::uint32_t f, model::Model& model, model:
     const bool high = f % 2 == 1;
     const std::uint32_t base = part.vertex_count;
     const Cells cells(std::max(form.pixels, 8U));
+    const std::uint32_t left = f % columns * cells.cell + cells.rim, low = f / columns * cells.cell + cells.rim;
     const auto n = static_cast<float>(form.pixels);
     const std::array<std::uint32_t, 4> shown =
         form.textured ? shown_texels(form.faces[f], form.pixels) : std::array<std::uint32_t, 4>{0, 0, form.pixels, form.pixels};
@@ -125,8 +126,8 @@ void emit_face(const BoxForm& form, std::uint32_t f, model::Model& model, model:
         v.position[w] = half[w] * (2 * y / n - 1);
         v.normal[axis] = high ? 127 : -127;
         for (std::size_t k = 0; k < 4; ++k) v.colour[k] = form.textured ? 255 : form.faces[f].mean[k];
-        v.uv[0] = (static_cast<float>(f % columns * cells.cell + cells.rim) + x) / static_cast<float>(columns * cells.cell);
-        v.uv[1] = (static_cast<float>(f / columns * cells.cell + cells.rim) + y) / static_cast<float>(rows * cells.cell);
+        v.uv[0] = (static_cast<float>(left) + x) / static_cast<float>(columns * cells.cell);
+        v.uv[1] = (static_cast<float>(low) + y) / static_cast<float>(rows * cells.cell);
         model.vertices.push_back(v);
     }
     part.vertex_count += 4;

@@ -55,7 +55,7 @@ model::Model painted_block(const vec3& size) {
             vec3 corner(0), along(0), up(0);
             corner[axis] = face % 2 == 1 ? size[axis] : 0;
             corner[u] = 0.5F * size[u] * static_cast<float>(quarter % 2);
-            corner[v] = 0.5F * size[v] * static_cast<float>(quarter / 2);
+            corner[v] = quarter < 2 ? 0.0F : 0.5F * size[v];
             along[u] = 0.5F * size[u];
             up[v] = 0.5F * size[v];
             if (face % 2 == 0) std::swap(along, up);

@@ -52,7 +52,7 @@ inline model::Model squares(const std::vector<Square>& list) {
         for (int corner = 0; corner < 4; ++corner) {
             model::Vertex v{};
             v.uv[0] = static_cast<float>(corner % 2);
-            v.uv[1] = static_cast<float>(corner / 2);
+            v.uv[1] = corner < 2 ? 0.0F : 1.0F;
             v.position[0] = square.x + square.size * v.uv[0];
             v.position[1] = square.size * v.uv[1];
             v.position[2] = square.z;
