@@ -359,8 +359,8 @@ void BakeContext::bound(const ProxyInput& input, model::Index n, BoxForm& box) c
                       ? bound_box(input, objects[entity], box)
                       : bound_box(input, tree.clusters[entity - clusters_from], members[entity - clusters_from], box);
     const model::Representation& coarsest = model.reps[model.nodes[n].first_rep];
-    // Faces of one colour hide what is behind them, and look like nothing: they stand before a dearer mesh that is nearer to the
-    // truth.
+    // Faces of one colour show little, and hide what is behind them. They are for nodes whose mesh is dearer and has a smaller
+    // error.
     if (!box.textured && (box.error_m <= coarsest.error_m || 2 * box.shown_faces() >= coarsest.triangles)) box.faces = {};
     // Forms go from a large error to a small one. A bound may be larger than need be.
     box.error_m = std::max(box.error_m, std::nextafter(coarsest.error_m, std::numeric_limits<float>::infinity()));

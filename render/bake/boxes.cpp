@@ -12,6 +12,8 @@ namespace {
 using model::Index;
 using model::Node;
 
+constexpr float clearly = 0.9F;  // of another form's loss for the same time: else the box is not worth its place in the file
+
 std::vector<Index> wanted_leaves(const model::Model& model, const BoxRequest& request) {
     std::vector<Index> leaves;
     for (Index n = 0; n < model.nodes.size(); ++n)
@@ -93,8 +95,8 @@ void PlacedBoxes::insert() {
     }
 }
 
-/// Compared by the octaves of sizes for which losses are measured. A form is best for some price of a loss, if it lies on the
-/// lower convex hull of cost and loss.
+/// Compared at the octaves of the sizes for which losses are measured. A form is best for some price of a loss, if it lies on the
+/// lower convex hull of time and loss. The box has to lie a tenth below the hull of the others, or to be the cheapest form.
 bool PlacedBoxes::is_best_somewhere(const Node& node, const model::CostModel& costs) const {
     const vec3 half(node.box.half());
     const float size_m = std::sqrt(2.0F * (half.x * half.y + half.y * half.z + half.z * half.x));
@@ -114,12 +116,12 @@ bool PlacedBoxes::is_best_somewhere(const Node& node, const model::CostModel& co
         for (Index a = node.first_rep + 1; a < node.first_rep + node.rep_count && best; ++a) {
             const Point cheap = point(a);
             if (cheap.cost > box.cost) continue;
-            if (0.9F * cheap.loss <= box.loss) best = false;
+            if (clearly * cheap.loss <= box.loss) best = false;
             for (Index b = node.first_rep + 1; b < node.first_rep + node.rep_count && best; ++b) {
                 const Point dear = point(b);
                 if (dear.cost <= box.cost || dear.loss >= cheap.loss) continue;
                 const float at = (box.cost - cheap.cost) / (dear.cost - cheap.cost);
-                best = box.loss < 0.9F * (cheap.loss + at * (dear.loss - cheap.loss));
+                best = box.loss < clearly * (cheap.loss + at * (dear.loss - cheap.loss));
             }
         }
         if (best) return true;

@@ -22,12 +22,15 @@ struct BoxRequest {
 /// A box a node; those that are not wanted have no faces. Errors are not bounded yet. Empty: step() said to stop.
 std::vector<BoxForm> capture_boxes(const model::Model& model, const BoxRequest& request, const ForAll& for_all,
                                    const std::function<bool()>& step);
+/// How many steps there are.
+std::size_t box_steps(const model::Model& model, const BoxRequest& request);
+
 /// Nodes take the boxes that have faces, as their coarsest forms. proxy: the material of boxes without pictures.
 class PlacedBoxes {
 public:
     PlacedBoxes(std::vector<BoxForm> boxes, model::Index proxy, model::Model& model);
-    /// Takes out the boxes that are best at no size on the screen: others look as good for no more. Call it once
-    /// the losses are measured. Returns how many are left.
+    /// Takes out the boxes that are best at no size on the screen: others look about as good for no more time. Call it once the
+    /// losses are measured. Returns how many are left.
     std::size_t drop_idle(const model::CostModel& costs);
 
 private:
@@ -41,8 +44,5 @@ private:
     std::vector<std::pair<model::Index, std::uint32_t>> ranges_;                           ///< by node: its forms in meshes_
     std::size_t vertices_, indices_, parts_, placements_, materials_, textures_, texels_;  ///< of the model without boxes
 };
-
-/// How many steps there are.
-std::size_t box_steps(const model::Model& model, const BoxRequest& request);
 
 }  // namespace surefoot::bake

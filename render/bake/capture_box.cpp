@@ -90,8 +90,9 @@ FaceCapture capture_face(const FormPicture& seen, const Box& box, std::uint32_t 
     const std::vector<Span> rows =
         spans_of(low_px(from.up, v, view.low), 2 * half[v] / pixel_m / pixels, pixels, view.height, false);
     const auto ends = [&](double low, int in_plane) { return low + 2 * half[in_plane] / pixel_m; };
-    if (ends(low_px(from.right, u, view.left), u) > view.width + 1.0 || ends(low_px(from.up, v, view.low), v) > view.height + 1.0)
-        return out.whole = false, out;
+    out.whole = ends(low_px(from.right, u, view.left), u) <= view.width + 1.0 &&
+                ends(low_px(from.up, v, view.low), v) <= view.height + 1.0;
+    if (!out.whole) return out;
     const double front = glm::dot(centre, dvec3(from.towards)) + half[axis];
     // A depth is a float, in metres from the middle of the model.
     const double near_half_m = 1.001 * half[axis] + 4.0 * FLT_EPSILON * (std::abs(front) + 2 * half[axis]);

@@ -135,7 +135,7 @@ void expect_near_the_optimum(std::uint64_t trees) {
     std::printf("share of the optimum: threshold %.4f (least %.2f), two-stage %.4f, %.0f trees, at most %.0f steps\n",
                 threshold / n, min_share, two_stage / n, n, static_cast<double>(steps));
     EXPECT_GT(count, trees / 3);
-    EXPECT_GE(threshold / n, 0.95);
+    EXPECT_GE(threshold / n, 0.99);
     EXPECT_GT(threshold, two_stage);
 }
 
