@@ -67,7 +67,7 @@ Cause blame(const FrameRecord& record, const BlameLimits& limits) {
         if (other.over_ns > largest.over_ns) largest = other;
     }
     // The coarse levels of the last complete set were drawn: nobody had chosen them for this frame's budget.
-    if (record.prepared_age > limits.oldest_prepared && was_drawing(largest.cause)) return Cause::prepared_too_old;
+    if (record.prepared_age > oldest_prepared(limits.period_ns) && was_drawing(largest.cause)) return Cause::prepared_too_old;
     return largest.cause;
 }
 

@@ -1,13 +1,20 @@
 // The one cause of a missed frame, from the evidence in its record. A pure function.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "rt/frame/record.hpp"
 
 namespace surefoot::rt {
 
-constexpr std::uint32_t oldest_prepared = 3;  ///< frames; older sets are not used
+/// For how many frames a prepared set is used: three, and more where those are less than 50 ms. A large model's preparation takes
+/// several periods of a high rate.
+constexpr std::uint32_t oldest_prepared(std::int64_t period_ns) {
+    constexpr std::int64_t span_ns = 50'000'000;
+    return static_cast<std::uint32_t>(
+        std::clamp<std::int64_t>((span_ns + period_ns / 2) / std::max<std::int64_t>(period_ns, 1), 3, 64));
+}
 
 /// Limits of the phases, as shares of the period, and thresholds of the evidence.
 struct BlameLimits {
@@ -18,7 +25,6 @@ struct BlameLimits {
     double submit_share = 0.40;  ///< without uploads
     double raster_share = 0.40;
     double present_share = 0.05;
-    std::uint32_t oldest_prepared = rt::oldest_prepared;
     std::int64_t minor_fault_ns = 1000;  ///< maximum cost of one: 0.25 us native to 2 us in a guest; see minor_fault_cost_ns()
     bool fifo = true;                    ///< the frame thread has SCHED_FIFO, so the platform causes late wake-ups
 };

@@ -42,6 +42,16 @@ void delay_from(FrameRecord& r, int phase, std::int64_t ns) {
     r.missed = r.presented_ns > r.deadline_ns;
 }
 
+TEST(OldestPrepared, IsThreeFramesAndAtLeastFiftyMilliseconds) {
+    const auto at = [](double rate_hz) { return oldest_prepared(static_cast<std::int64_t>(1e9 / rate_hz)); };
+    EXPECT_EQ(at(1), 3U);
+    EXPECT_EQ(at(30), 3U);
+    EXPECT_EQ(at(60), 3U);
+    EXPECT_EQ(at(120), 6U);
+    EXPECT_EQ(at(240), 12U);
+    EXPECT_EQ(oldest_prepared(0), 64U) << "no period";
+}
+
 TEST(Blame, NamesTheInjectedCauseInNineteenOfTwenty) {
     Random random(11);
     const BlameLimits limits;

@@ -131,7 +131,7 @@ TEST(LoopBlame, AnUploadIsSeparatedFromTheSubmissionAroundIt) {
 TEST(LoopBlame, DrawingWhatNobodyChoseForThisFrameIsTheOldSetsDoing) {
     Walk walk;
     walk.stages.in_submit = [&] { walk.clock.advance(20 * ms); };
-    walk.stages.prepared_age = 4;
+    walk.stages.prepared_age = 6;
     walk.expect_miss(Cause::prepared_too_old, true);
 }
 

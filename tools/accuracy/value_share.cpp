@@ -91,7 +91,7 @@ Result<ValueShares> value_shares(const model::Model& model, const model::CostMod
         progress.update("best cuts", static_cast<double>(i) / request.frames);
         const double at_s = path.duration_s() * (i + 0.5) / request.frames;
         const Pose now = sample_path(path, at_s), before = sample_path(path, std::max(0.0, at_s - request.period_s));
-        const prepare::Region region = predict_region(before, now, request.period_s, walk::horizon_periods * request.period_s);
+        const prepare::Region region = predict_region(before, now, request.period_s, walk::horizon_s(request.period_s));
         const double speed_mps = glm::length(now.position - before.position) / request.period_s;
         const double w = std::min(1.0, std::abs(glm::dot(now.orientation, before.orientation)));
         for (int k = 0; k < preparations; ++k)

@@ -31,7 +31,8 @@ FramePose PathPoses::sample(const FrameTime& time) {
     out.before = time.path_slot > 0 ? pose_at(path_, now_s - period_s_) : mirrored(pose_at(path_, period_s_), out.pose);
     // A set that is prepared now serves until the horizon, and is begun a frame before it is used.
     Pose from = out.pose;
-    for (int i = 1; i <= static_cast<int>(horizon_periods) + 1; ++i) {
+    const auto periods = static_cast<int>(std::lround(horizon_s(period_s_) / period_s_)) + 1;
+    for (int i = 1; i <= periods; ++i) {
         const Pose to = pose_at(path_, now_s + i * period_s_);
         out.turn_ahead_rad_s = std::max(out.turn_ahead_rad_s, angle_between(from, to) / period_s_);
         from = to;

@@ -13,11 +13,12 @@
 #include "rt/base/thread_annotations.hpp"
 #include "rt/clock/grid.hpp"
 #include "rt/exchange/triple_buffer.hpp"
+#include "rt/frame/blame.hpp"
 #include "rt/threads/placement.hpp"
 
 namespace surefoot::walk {
 
-/// Where the eye can be until `horizon_periods` from now, if its input knows that.
+/// Where the eye can be until `horizon_s()` from now, if its input knows that.
 struct PredictedRegion {
     bool known = false;
     prepare::Region region;  ///< the pose if the hand stays as it is, and how far from it the limits of motion allow
@@ -36,8 +37,8 @@ struct PoseSample {
     bool valid = false;
 };
 
-/// Sets are prepared for this many periods ahead of the newest pose. A set older than 3 frames is not used.
-constexpr double horizon_periods = 3.0;
+/// Sets are prepared for this long ahead of the newest pose: until they are too old to be used.
+constexpr double horizon_s(double period_s) { return rt::oldest_prepared(static_cast<std::int64_t>(period_s * 1e9)) * period_s; }
 
 /// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.
 void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out);

@@ -39,7 +39,7 @@ FramePose SteeredPoses::pose_of(const FrameTime& time) const {
     out.stamp_ns = s.nav.stamp_ns;
     out.reports = s.reports;
     if (s.touring) return out;  // the limits say nothing about a path: the last two poses do
-    const double ahead_s = horizon_periods * static_cast<double>(period_ns_) * 1e-9 + static_cast<double>(carry_limit_ns) * 1e-9;
+    const double ahead_s = horizon_s(static_cast<double>(period_ns_) * 1e-9) + static_cast<double>(carry_limit_ns) * 1e-9;
     const input::Prediction ahead = input::predict(s.nav, limits_, ahead_s);
     out.predicted.known = true;
     out.predicted.region = {ahead.pose, ahead.uncertainty_m, ahead.uncertainty_rad};

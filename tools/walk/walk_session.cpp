@@ -262,7 +262,7 @@ void warm_up(Session& s) {
     // Ready for the first frame: a complete set for where the path begins.
     const double period_s = period_us * 1e-6;
     const FramePose first = PathPoses(s.path.path, s.grid.period_ns).sample({});
-    prepare::Region region = predict_region(first.before, first.pose, period_s, horizon_periods * period_s);
+    prepare::Region region = predict_region(first.before, first.pose, period_s, horizon_s(period_s));
     region.radius_m = std::max(region.radius_m, 0.5);
     region.angle_rad = std::max(region.angle_rad, 0.2);
     prepare_at_worker_priority(s, region, s.prepared.back());

@@ -158,7 +158,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.cost_scale = static_cast<float>(request_.cost_scale);
     record.correction = static_cast<float>(correction_at(set.resolution, filtered_).factor);
     record.budget_us = static_cast<float>(planned_us());
-    coarse_ = age > rt::oldest_prepared || !covers(set.region, now_.pose, set.viewport);
+    coarse_ = age > rt::oldest_prepared(options_.period_ns) || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_last();
         return;
