@@ -34,7 +34,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
         floor.add(drawn.back(), candidate.pixels, finer && item.choice == candidate.first_choice);
         const model::ItemCost drawn_as = drawn_cost(item.rep, choice.cost);
         cost += drawn_as;
-        const bool full = model::is_full_detail(model.nodes[item.node], item.rep);
+        const bool full = model::is_full_detail(model.nodes[item.node], item.rep, model.reps[item.rep].error_m);
         const model::FrameCombine& combine = costs.combine;
         const double item_us = static_cast<double>(combine.frame_us(drawn_as.submit_us, drawn_as.raster_us) - combine.fixed_us);
         (full ? report.full_us : report.coarse_us) +=

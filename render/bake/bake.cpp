@@ -19,6 +19,7 @@
 #include "render/bake/materials.hpp"
 #include "render/bake/picture_loss.hpp"
 #include "render/bake/proxies.hpp"
+#include "render/bake/trim_masks.hpp"
 #include "render/model/pixels.hpp"
 #include "rt/base/fork_join.hpp"
 #include "rt/base/mutex.hpp"
@@ -456,6 +457,12 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         return Error{place_of(scene), "The scene holds nothing to draw", "Check that its nodes have meshes with triangles",
                      ErrorKind::damaged};
     }
+    std::vector<MaskShape> shapes(context.model.materials.size());
+    arena.execute([&] {
+        for_all(shapes.size(), [&](std::size_t m) { shapes[m] = mask_shape(context.model, context.model.materials[m]); });
+        for_all(context.forms.size(), [&](std::size_t m) { trim_levels(context.forms[m].chain, shapes); });
+        for_all(context.clusters.size(), [&](std::size_t c) { trim_levels(context.clusters[c].chain, shapes); });
+    });
     std::size_t max_boxes = 0;
     for (std::uint32_t e = 0; e < context.objects.size() + context.clusters.size(); ++e)
         max_boxes += context.wants_box(e) ? 1 : 0;

@@ -96,9 +96,12 @@ struct Node {
     std::uint64_t triangles = 0;  ///< full detail below
 };
 
-/// Whether the representation is the node's full detail: the finest of a leaf.
-inline bool is_full_detail(const Node& node, Index rep) {
-    return node.child_count == 0 && rep + 1 == node.first_rep + node.rep_count;
+/// Error, before placing, of a leaf's full detail without what its masks hide. It shows the same, and yet errors fall.
+constexpr float trimmed_error_m = 1e-9F, max_trimmed_error_m = 1e-6F;
+
+/// Whether the representation shows the node's full detail: the finest of a leaf, or the same without what its masks hide.
+inline bool is_full_detail(const Node& node, Index rep, float error_m) {
+    return node.child_count == 0 && (rep + 1 == node.first_rep + node.rep_count || error_m <= max_trimmed_error_m);
 }
 
 /// Sources, warnings and quality of the bake. Shown by `inspect`.

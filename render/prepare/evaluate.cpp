@@ -139,7 +139,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
     const auto fill = [&](Choice& choice, Index r, float error_rad) {
         choice.rep = r;
         choice.cost = item_costs_.of(r, node.box, eye, view.scale, choice.surface_px) *
-                      (model::is_full_detail(node, r) ? view.full_factor : view.coarse_factor);
+                      (model::is_full_detail(node, r, model_.reps[r].error_m) ? view.full_factor : view.coarse_factor);
         choice.surface_px *= view.wide.viewport_pixels / view.scale.viewport_pixels;  // of full resolution
         choice.error_rad = error_rad;
         choice.benefit =
@@ -150,6 +150,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
     const auto error_of = [&](Index r) { return std::clamp(model_.reps[r].error_m / distance, 0.0F, largest_error_rad); };
 
     std::uint32_t count = 0;
+    bool enough = false;
     for (Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
         if (!legal(model_.reps[r], nearest_m)) continue;
         const float error_rad = error_of(r);
@@ -157,9 +158,12 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
         Choice choice;
         fill(choice, r, error_rad);
         const float metric = cost_metric(costs_.combine, choice.cost);
+        if (enough && metric > cost_metric(costs_.combine, choices[count - 1].cost)) break;
         while (count > 0 && metric <= cost_metric(costs_.combine, choices[count - 1].cost)) --count;  // better and no dearer
         choices[count++] = choice;
-        if (error_rad <= view.target_error_rad && !view.full_depth) break;
+        if (!(error_rad <= view.target_error_rad) || view.full_depth) continue;
+        if (!model::is_full_detail(node, r, model_.reps[r].error_m)) break;
+        enough = true;  // what follows shows the same: it is offered where it is cheaper
     }
     if (count == 0) {  // a model that breaks its promise of an everywhere-legal form is still drawn
         fill(choices[0], node.first_rep, error_of(node.first_rep));

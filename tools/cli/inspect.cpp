@@ -85,7 +85,7 @@ double median_loss(const model::Model& m, bool leaves) {
     for (const model::Node& node : m.nodes) {
         if ((node.child_count == 0) != leaves) continue;
         for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r)
-            if (!model::is_full_detail(node, r)) losses.push_back(static_cast<double>(m.losses[r].colour[1]));
+            if (!model::is_full_detail(node, r, m.reps[r].error_m)) losses.push_back(static_cast<double>(m.losses[r].colour[1]));
     }
     return losses.empty() ? 0 : median_of(losses);
 }
