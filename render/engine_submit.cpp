@@ -31,10 +31,10 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
         if (!push_within(drawn, {item.node, item.rep})) break;
         const prepare::Candidate& candidate = prepared->candidates[item.candidate];
         const bool finer = candidate.choice_count > 1 || candidate.child_count > 0;
-        floor.add(drawn.back(), candidate.pixels, finer && item.choice == candidate.first_choice);
+        const bool full = model::is_full_detail(model.nodes[item.node], item.rep, model.reps[item.rep].error_m);
+        floor.add(drawn.back(), candidate.pixels, finer && !full && item.choice == candidate.first_choice);
         const model::ItemCost drawn_as = drawn_cost(item.rep, choice.cost);
         cost += drawn_as;
-        const bool full = model::is_full_detail(model.nodes[item.node], item.rep, model.reps[item.rep].error_m);
         const model::FrameCombine& combine = costs.combine;
         const double item_us = static_cast<double>(combine.frame_us(drawn_as.submit_us, drawn_as.raster_us) - combine.fixed_us);
         (full ? report.full_us : report.coarse_us) +=

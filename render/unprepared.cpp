@@ -19,7 +19,8 @@ constexpr std::uint32_t no_group = ~0U;
 model::Index everywhere_rep(const model::Model& model, model::Index node) {
     const model::Node& n = model.nodes[node];
     for (model::Index r = n.first_rep; r < n.first_rep + n.rep_count; ++r) {
-        if (model.reps[r].everywhere) return r;
+        if (!model.reps[r].everywhere) continue;
+        return model::is_full_detail(n, r, model.reps[r].error_m) ? n.first_rep + n.rep_count - 1 : r;
     }
     return n.first_rep;
 }

@@ -99,6 +99,7 @@ struct BakeContext {
     void adopt_forms(std::vector<std::vector<MeshForm>> by_mesh);
     bool make_forms();
     bool make_clusters();
+    bool trim_masks();
     bool shows_pictures() const;
     bool wants_box(std::uint32_t entity) const;
     void emit();
@@ -269,6 +270,18 @@ bool BakeContext::make_clusters() {
             if (!stage.step()) go = false;
         });
     }
+    return go;
+}
+
+bool BakeContext::trim_masks() {
+    const MaskShapes shapes(model, cut_out);
+    Stage stage(progress, "masks", forms.size() + clusters.size());
+    std::atomic<bool> go{true};
+    for_all(forms.size() + clusters.size(), [&](std::size_t i) {
+        if (!go) return;
+        trim_levels(i < forms.size() ? forms[i].chain : clusters[i - forms.size()].chain, shapes);
+        if (!stage.step()) go = false;
+    });
     return go;
 }
 
@@ -450,19 +463,13 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     tbb::task_arena arena(workers);
     arena.execute([&] {
         done = context.make_forms();
-        if (done && !context.objects.empty()) done = context.make_clusters();
+        if (done && !context.objects.empty()) done = context.make_clusters() && context.trim_masks();
     });
     if (!done) return stopped_by_user(scene);
     if (context.objects.empty()) {
         return Error{place_of(scene), "The scene holds nothing to draw", "Check that its nodes have meshes with triangles",
                      ErrorKind::damaged};
     }
-    std::vector<MaskShape> shapes(context.model.materials.size());
-    arena.execute([&] {
-        for_all(shapes.size(), [&](std::size_t m) { shapes[m] = mask_shape(context.model, context.model.materials[m]); });
-        for_all(context.forms.size(), [&](std::size_t m) { trim_levels(context.forms[m].chain, shapes); });
-        for_all(context.clusters.size(), [&](std::size_t c) { trim_levels(context.clusters[c].chain, shapes); });
-    });
     std::size_t max_boxes = 0;
     for (std::uint32_t e = 0; e < context.objects.size() + context.clusters.size(); ++e)
         max_boxes += context.wants_box(e) ? 1 : 0;

@@ -43,6 +43,7 @@ void emit_representations(const EmittedChain& emitted, const dmat4& world, model
     for (const EmittedChain::Level& level : emitted.levels) {
         model::Representation rep;
         rep.error_m = static_cast<float>(level.error_m * stretch);
+        if (level.error_m == model::trimmed_error_m) rep.error_m = std::min(rep.error_m, model::max_trimmed_error_m);
         // Rounding may make two errors equal: then the finer level gains nothing.
         if (!first && rep.error_m >= model.reps.back().error_m) continue;
         first = false;

@@ -35,7 +35,8 @@ struct Level {
     float error_m = 0;
 };
 
-/// Levels from coarse to fine; the last is the full detail with error 0. Errors fall and triangles rise, both strictly.
+/// Levels from coarse to fine; the last is the full detail with error 0. Errors fall and triangles rise, both strictly. Only the
+/// full detail may have fewer triangles than the level before it, which is cut to what its masks show.
 struct LodChain {
     Geometry full;
     std::vector<Level> levels;

@@ -141,7 +141,7 @@ void append(Merged& to, const LodChain& chain, const Level& level, const dmat4& 
 /// The coarsest level within the error; the full detail where none is.
 const Level& level_for(const LodChain& chain, double error_m) {
     for (const Level& level : chain.levels) {
-        if (level.error_m <= error_m) return level;
+        if (level.error_m <= error_m && level.error_m != model::trimmed_error_m) return level;
     }
     return chain.levels.back();
 }

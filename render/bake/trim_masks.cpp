@@ -15,11 +15,11 @@ namespace {
 
 using Polygon = std::vector<dvec2>;  // convex, counter-clockwise
 
-constexpr std::uint32_t shape_levels = 4;  // mip levels whose shapes are kept
 constexpr std::size_t max_corners = 8;
 constexpr int max_divisions = 4;
 constexpr double overlap_texels = 0.25;
-constexpr double max_texels = 4e6;  // of a triangle: one that repeats its picture too often is left alone
+constexpr double max_repeats = 4;   // of a picture over a card each way: one that repeats it more often is left alone
+constexpr double max_texel = 1e7;   // of a place: what lies farther has no exact texel
 constexpr double min_saving = 0.1;  // of the area
 constexpr double coarse_price = 0.04;
 
@@ -110,12 +110,26 @@ public:
     }
 
 private:
-    [[nodiscard]] bool shows(std::int64_t x, std::int64_t y) const {
-        const auto wrapped = [](std::int64_t i, std::uint32_t n) {
-            const std::int64_t m = i % std::int64_t{n};
-            return static_cast<std::size_t>(m < 0 ? m + std::int64_t{n} : m);
-        };
-        return shape_.shows[wrapped(y, shape_.height) * shape_.width + wrapped(x, shape_.width)];
+    static std::int64_t repeat_of(std::int64_t i, std::uint32_t n) { return i >= 0 ? i / n : -((n - 1 - i) / n); }
+    [[nodiscard]] std::size_t row_of(std::int64_t y) const {
+        return static_cast<std::size_t>(y - repeat_of(y, shape_.height) * shape_.height) * shape_.width;
+    }
+    /// The first texel of a row that shows, within [first, last]; last + 1: none does.
+    [[nodiscard]] std::int64_t first_shown(std::int64_t y, std::int64_t first, std::int64_t last) const {
+        for (std::int64_t begin = repeat_of(first, shape_.width) * shape_.width; begin <= last; begin += shape_.width) {
+            const std::uint16_t x = shape_.next[row_of(y) + static_cast<std::size_t>(std::max(first - begin, std::int64_t{0}))];
+            if (x < shape_.width) return std::min(begin + x, last + 1);
+        }
+        return last + 1;
+    }
+    [[nodiscard]] std::int64_t last_shown(std::int64_t y, std::int64_t first, std::int64_t last) const {
+        for (std::int64_t begin = repeat_of(last, shape_.width) * shape_.width; begin + shape_.width > first;
+             begin -= shape_.width) {
+            const std::int64_t at = std::min(last - begin, std::int64_t{shape_.width} - 1);
+            const std::uint16_t x = shape_.last[row_of(y) + static_cast<std::size_t>(at)];
+            if (x < shape_.width) return begin + x;
+        }
+        return first;
     }
     /// The hull of the texels that show and touch the polygon, within the polygon.
     [[nodiscard]] Polygon what_shows(const Polygon& p) const {
@@ -135,9 +149,9 @@ private:
             }
             if (!(right >= left)) continue;
             auto first = static_cast<std::int64_t>(std::floor(left)), last = static_cast<std::int64_t>(std::ceil(right)) - 1;
-            while (first <= last && !shows(first, y)) ++first;
-            while (last > first && !shows(last, y)) --last;
+            first = first_shown(y, first, last);
             if (first > last) continue;
+            last = last_shown(y, first, last);
             for (const double at : {row, row + 1})
                 for (const std::int64_t x : {first, last + 1}) corners.emplace_back(static_cast<double>(x), at);
         }
@@ -200,6 +214,8 @@ private:
     [[nodiscard]] dvec3 place_of(std::uint32_t vertex) const { return dvec3(position_of(g_.vertices[vertex])); }
     [[nodiscard]] std::vector<Card> cards_of(const GeometryPart& part) const;
     [[nodiscard]] std::optional<Card> joined(const Card& a, std::span<const std::uint32_t> b) const;
+    [[nodiscard]] bool continues(std::uint32_t opposite, std::uint32_t from, std::uint32_t to, std::uint32_t other, double s,
+                                 double t) const;
     void cut(const Card& card, GeometryPart& to);
     void keep(const Card& card, GeometryPart& to) const {
         for (std::size_t k = 0; k < card.triangles(); ++k)
@@ -213,7 +229,7 @@ private:
     std::map<std::vector<double>, std::vector<Polygon>> pieces_of_;  ///< by outline
 };
 
-/// The card with the triangle that shares an edge with it, if both are flat and their picture goes on.
+/// The card of both triangles, if they share an edge, lie in one plane and show one picture.
 std::optional<Card> Trimmer::joined(const Card& a, std::span<const std::uint32_t> b) const {
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
@@ -223,11 +239,13 @@ std::optional<Card> Trimmer::joined(const Card& a, std::span<const std::uint32_t
             const dvec3 origin = place_of(opposite), u = place_of(from) - origin, v = place_of(to) - origin;
             const dvec3 normal = glm::cross(u, v), w = place_of(other) - origin;
             const double square = glm::dot(normal, normal);
-            if (!(square > 0) || std::abs(glm::dot(w, normal)) > 1e-4 * glm::length(normal) * glm::length(w)) return {};
+            if (!(square > 0) || std::abs(glm::dot(w, normal)) > 1e-5 * glm::length(normal) * glm::length(w)) return {};
             const double s = glm::dot(glm::cross(w, v), normal) / square, t = glm::dot(glm::cross(u, w), normal) / square;
             const dvec2 texel =
                 texel_of(opposite) + s * (texel_of(from) - texel_of(opposite)) + t * (texel_of(to) - texel_of(opposite));
-            if (s <= 0 || t <= 0 || glm::length(texel - texel_of(other)) > 0.05) return {};  // not convex, or another picture
+            // Not convex, another picture, or other colours and normals than these go on to.
+            if (s <= 0 || t <= 0 || s + t <= 1 || glm::length(texel - texel_of(other)) > 0.05) return {};
+            if (!continues(opposite, from, to, other, s, t)) return {};
             Card card;
             card.corners = {opposite, from, other, to};
             card.count = 4;
@@ -235,6 +253,18 @@ std::optional<Card> Trimmer::joined(const Card& a, std::span<const std::uint32_t
         }
     }
     return {};
+}
+
+/// Whether colour and normal of `other` are what those of the other three make them there, but for rounding.
+bool Trimmer::continues(std::uint32_t opposite, std::uint32_t from, std::uint32_t to, std::uint32_t other, double s,
+                        double t) const {
+    const model::Vertex &o = g_.vertices[opposite], &a = g_.vertices[from], &b = g_.vertices[to], &d = g_.vertices[other];
+    const auto off = [&](int oo, int aa, int bb, int dd) { return std::abs(oo + s * (aa - oo) + t * (bb - oo) - dd); };
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (off(o.colour[k], a.colour[k], b.colour[k], d.colour[k]) > 3) return false;
+        if (k < 3 && off(o.normal[k], a.normal[k], b.normal[k], d.normal[k]) > 3) return false;
+    }
+    return true;
 }
 
 std::vector<Card> Trimmer::cards_of(const GeometryPart& part) const {
@@ -307,13 +337,18 @@ void Trimmer::cut(const Card& card, GeometryPart& to) {
     dvec2 low(1e300), high(-1e300);
     for (const dvec2& at : outline) low = glm::min(low, at), high = glm::max(high, at);
     const dvec2 size = high - low;
-    if (!(texels > 1) || !(size.x * size.y < max_texels)) {  // NaN too
+    const bool near = std::max({-low.x, -low.y, high.x, high.y}) < max_texel;
+    const bool seldom = size.x <= max_repeats * shape_.width && size.y <= max_repeats * shape_.height;
+    if (!(texels > 1) || !near || !seldom) {  // NaN too
         left += card_m2;
         return keep(card, to);
     }
     if (turned < 0) std::reverse(outline.begin(), outline.end());
     const Cutter cutter(shape_, price_.of_card * texels);
-    std::vector<double> key;  // most cards show the same part of their picture
+    // Most cards show the same part of their picture, or the same of another repeat.
+    const dvec2 picture(shape_.width, shape_.height), repeat = glm::floor(low / picture) * picture;
+    for (dvec2& at : outline) at -= repeat;
+    std::vector<double> key;
     for (const dvec2& at : outline) key.insert(key.end(), {at.x, at.y});
     const auto [known, fresh] = pieces_of_.try_emplace(std::move(key));
     if (fresh) known->second = cutter.pieces(outline);
@@ -328,87 +363,27 @@ void Trimmer::cut(const Card& card, GeometryPart& to) {
     left += card_m2 * std::max(sum, 0.0) / texels;
     for (const Polygon& piece : pieces) {
         std::vector<std::uint32_t> corners;
-        for (const dvec2& at : piece) corners.push_back(vertex_at(card, at));
+        for (const dvec2& at : piece) corners.push_back(vertex_at(card, at + repeat));
         if (turned < 0) std::reverse(corners.begin(), corners.end());
         for (std::size_t k = 2; k < corners.size(); ++k)
             for (const std::uint32_t corner : {corners[0], corners[k - 1], corners[k]}) to.indices.push_back(corner);
     }
 }
 
-/// Between which two texels of `count` the middle, both ends of each of `parts` equal parts lie, and how near to the second.
-struct Between {
-    std::uint32_t first = 0, second = 0;
-    float share = 0;
-};
-std::vector<Between> places_between(std::uint32_t parts, std::uint32_t count) {
-    std::vector<Between> places(std::size_t{2} * parts + 1);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const double at = static_cast<double>(i) / (2.0 * parts) * count - 0.5, below = std::floor(at);
-        const auto first = static_cast<std::uint32_t>((static_cast<std::int64_t>(below) + count) % count);
-        places[i] = {first, (first + 1) % count, static_cast<float>(at - below)};
-    }
-    return places;
-}
-
-/// Marks the texels in which a mip level's alpha is `needed` somewhere. It is bilinear between the texels' middles, so it is
-/// highest at a texel's middle, on the middle of an edge, or in a corner.
-void mark(const std::byte* rgba, std::uint32_t width, std::uint32_t height, float needed, MaskShape& shape) {
-    const std::vector<Between> columns = places_between(shape.width, width), rows = places_between(shape.height, height);
-    std::vector<bool> reached(columns.size() * rows.size());
-    for (std::size_t y = 0; y < rows.size(); ++y) {
-        const std::byte *low = rgba + std::size_t{4} * rows[y].first * width,
-                        *high = rgba + std::size_t{4} * rows[y].second * width;
-        for (std::size_t x = 0; x < columns.size(); ++x) {
-            const Between& c = columns[x];
-            const auto along = [&](const std::byte* row) {
-                const auto a = static_cast<float>(std::to_integer<int>(row[std::size_t{4} * c.first + 3]));
-                const auto b = static_cast<float>(std::to_integer<int>(row[std::size_t{4} * c.second + 3]));
-                return a + (b - a) * c.share;
-            };
-            const float below = along(low);
-            reached[y * columns.size() + x] = below + (along(high) - below) * rows[y].share >= needed;
-        }
-    }
-    for (std::size_t y = 0; y < shape.height; ++y) {
-        for (std::size_t x = 0; x < shape.width; ++x) {
-            for (std::size_t at = 0; at < 9; ++at) {
-                if (reached[(2 * y + at / 3) * columns.size() + 2 * x + at % 3]) shape.shows[y * shape.width + x] = true;
-            }
-        }
-    }
-}
-
 }  // namespace
 
-MaskShape mask_shape(const model::Model& model, const model::Material& material) {
-    if (material.alpha != model::AlphaMode::mask || material.texture == model::none) return {};
-    const model::Texture& texture = model.textures[material.texture];
-    if (texture.clamp) return {};  // beyond its border the picture goes on for ever
-    constexpr float rounding = 0.5F;
-    const float needed = 255.0F * material.alpha_cutoff / std::max(material.colour[3], 1e-6F) - rounding;
-    MaskShape shape{texture.width, texture.height, std::vector<bool>(std::size_t{texture.width} * texture.height, false)};
-    std::uint64_t first = texture.first_byte;
-    std::uint32_t width = texture.width, height = texture.height;
-    for (std::uint32_t level = 0; level < std::min(shape_levels, texture.levels); ++level) {
-        mark(model.texels.data() + first, width, height, needed, shape);
-        first += std::uint64_t{4} * width * height;
-        width = std::max(1U, width / 2);
-        height = std::max(1U, height / 2);
-    }
-    return shape;
-}
-
-std::vector<GeometryPart> trimmed(Geometry& g, const std::vector<GeometryPart>& parts, const std::vector<MaskShape>& shapes,
+std::vector<GeometryPart> trimmed(Geometry& g, const std::vector<GeometryPart>& parts, const MaskShapes& shapes,
                                   const TrimPrice& price) {
     const std::size_t vertices = g.vertices.size();
     std::vector<GeometryPart> out;
     double area = 0, left = 0;
     for (const GeometryPart& part : parts) {
-        if (part.material >= shapes.size() || shapes[part.material].width == 0) {
+        const MaskShape* const shape = shapes.of(part.material);
+        if (shape == nullptr) {
             out.push_back(part);
             continue;
         }
-        Trimmer trimmer(g, shapes[part.material], price);
+        Trimmer trimmer(g, *shape, price);
         GeometryPart cut{part.material, {}};
         trimmer.cut(part, cut);
         area += trimmer.area;
@@ -421,38 +396,43 @@ std::vector<GeometryPart> trimmed(Geometry& g, const std::vector<GeometryPart>& 
     return {};
 }
 
-void trim_levels(LodChain& chain, const std::vector<MaskShape>& shapes) {
+void trim_levels(LodChain& chain, const MaskShapes& shapes) {
     const auto count_of = [](const std::vector<GeometryPart>& parts) {
         std::size_t indices = 0;
         for (const GeometryPart& part : parts) indices += part.indices.size();
         return static_cast<std::uint32_t>(indices / 3);
     };
-    if (chain.levels.empty()) return;
-    std::uint32_t finer = ~0U;  // triangles of the next finer level: counts rise
-    if (chain.levels.back().error_m == 0) {
-        std::vector<GeometryPart> cut = trimmed(chain.full, chain.levels.back().parts, shapes, {});
-        const std::uint32_t triangles = count_of(cut);
-        finer = chain.levels.back().triangles;
-        const float coarser_m = chain.levels.size() > 1 ? chain.levels[chain.levels.size() - 2].error_m : 1.0F;
-        if (!cut.empty() && coarser_m > model::trimmed_error_m) {
-            chain.levels.insert(chain.levels.end() - 1, Level{std::move(cut), triangles, model::trimmed_error_m});
-            finer = triangles;
+    // A level whose triangles stay between those of its neighbours.
+    const auto cut = [&](const std::vector<GeometryPart>& parts, std::uint32_t above, std::uint32_t below,
+                         const TrimPrice& price) {
+        const std::size_t vertices = chain.full.vertices.size();
+        Level level{trimmed(chain.full, parts, shapes, price), 0, 0};
+        level.triangles = count_of(level.parts);
+        if (!level.parts.empty() && level.triangles > above && level.triangles < below) return std::optional(std::move(level));
+        chain.full.vertices.resize(vertices);
+        chain.full.baked.resize(vertices);
+        return std::optional<Level>();
+    };
+    std::uint32_t finer = ~0U;
+    if (!chain.levels.empty() && chain.levels.back().error_m == 0) {
+        const std::size_t last = chain.levels.size() - 1;
+        finer = chain.levels[last].triangles;
+        const bool only = last == 0, room = only || chain.levels[last - 1].error_m > model::trimmed_error_m;
+        auto level = room ? cut(chain.levels[last].parts, only ? 0 : chain.levels[last - 1].triangles, ~0U, {}) : std::nullopt;
+        if (level) {
+            finer = level->triangles;
+            level->error_m = model::trimmed_error_m;
+            chain.levels.insert(chain.levels.end() - 1, std::move(*level));
         }
     }
     for (std::size_t i = chain.levels.size(); i-- > 1;) {  // the coarsest is for what is small
-        Level& level = chain.levels[i];
-        if (level.error_m <= model::trimmed_error_m) continue;
-        const std::size_t vertices = chain.full.vertices.size();
-        std::vector<GeometryPart> cut = trimmed(chain.full, level.parts, shapes, {coarse_price});
-        const std::uint32_t triangles = count_of(cut);
-        if (!cut.empty() && triangles <= finer) {
-            level.parts = std::move(cut);
-            level.triangles = triangles;
-        } else {
-            chain.full.vertices.resize(vertices);
-            chain.full.baked.resize(vertices);
+        Level& now = chain.levels[i];
+        if (now.error_m <= model::trimmed_error_m) continue;
+        if (auto level = cut(now.parts, chain.levels[i - 1].triangles, finer, {coarse_price}); level) {
+            now.parts = std::move(level->parts);
+            now.triangles = level->triangles;
         }
-        finer = level.triangles;
+        finer = now.triangles;
     }
 }
 

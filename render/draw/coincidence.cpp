@@ -153,11 +153,18 @@ DepthBiasRanks depth_bias_ranks(const model::Model& m) {
     for (const model::Node& node : m.nodes) {
         if (node.child_count > 0 || node.rep_count == 0) continue;
         const Index finest = node.first_rep + node.rep_count - 1;
+        const model::Representation& full = m.reps[finest];
+        const auto material_of = [&](const model::Representation& rep, std::uint32_t k) {
+            return m.parts[rep.first_part + k].material;
+        };
         for (Index r = node.first_rep; r < finest; ++r) {
-            const bool alike = m.reps[r].part_count == m.reps[finest].part_count;
-            for (std::uint32_t k = 0; k < m.reps[r].part_count; ++k)
-                out.ranks[out.first_of_rep[r] + k] =
-                    m.reps[finest].part_count == 0 ? 0 : out.ranks[out.first_of_rep[finest] + (alike ? k : 0)];
+            const model::Representation& rep = m.reps[r];
+            for (std::uint32_t k = 0; k < rep.part_count; ++k) {
+                std::uint32_t as = rep.part_count == full.part_count ? k : 0;  // of the same material, else in the same place
+                for (std::uint32_t j = 0; j < full.part_count && material_of(full, as) != material_of(rep, k); ++j)
+                    if (material_of(full, j) == material_of(rep, k)) as = j;
+                out.ranks[out.first_of_rep[r] + k] = full.part_count == 0 ? 0 : out.ranks[out.first_of_rep[finest] + as];
+            }
         }
     }
     return out;

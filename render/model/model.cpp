@@ -145,7 +145,7 @@ Check check_node_reps(const Model& m, std::size_t i) {
         const Representation& coarser = m.reps[node.first_rep + k - 1];
         if (!(rep.error_m < coarser.error_m)) return wrong("nodes", i, "The errors of the forms do not fall");
         const bool meshes = rep.kind == RepKind::mesh && coarser.kind == RepKind::mesh;
-        const bool whole = coarser.error_m <= max_trimmed_error_m;  // which was cut, and has more triangles
+        const bool whole = coarser.error_m <= max_trimmed_error_m;  // cut masks have more triangles than full detail
         if (meshes && !whole && rep.triangles < coarser.triangles)
             return wrong("nodes", i, "The triangle counts of the meshes fall");
     }

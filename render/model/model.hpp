@@ -96,7 +96,8 @@ struct Node {
     std::uint64_t triangles = 0;  ///< full detail below
 };
 
-/// Error, before placing, of a leaf's full detail without what its masks hide. It shows the same, and yet errors fall.
+/// Error, before placing, of a leaf's full detail without what its masks hide. It shows the same. The error is there because
+/// errors fall from form to form.
 constexpr float trimmed_error_m = 1e-9F, max_trimmed_error_m = 1e-6F;
 
 /// Whether the representation shows the node's full detail: the finest of a leaf, or the same without what its masks hide.

@@ -8,8 +8,8 @@
 
 namespace surefoot::rt {
 
-/// For how many frames a prepared set is used: three, and more where those are less than 50 ms. A large model's preparation takes
-/// several periods of a high rate.
+/// For how many frames a prepared set is used: three, and as many as are about 50 ms where those are more. A large model's
+/// preparation takes several periods of a high rate.
 constexpr std::uint32_t oldest_prepared(std::int64_t period_ns) {
     constexpr std::int64_t span_ns = 50'000'000;
     return static_cast<std::uint32_t>(

@@ -77,9 +77,7 @@ double area(const Geometry& g, const std::vector<GeometryPart>& parts) {
 bool oval(double u, double v) { return std::hypot(u - 0.3, v - 0.4) < 0.15; }
 bool cross_of_twigs(double u, double v) { return std::abs(u - v) < 0.04 || std::abs(u + v - 1) < 0.04; }
 
-std::vector<GeometryPart> cut(Geometry& g, const model::Model& m) {
-    return trimmed(g, g.parts, {mask_shape(m, m.materials[0])}, {});
-}
+std::vector<GeometryPart> cut(Geometry& g, const model::Model& m) { return trimmed(g, g.parts, MaskShapes(m, {true}), {}); }
 
 TEST(TrimMasks, KeepsAllThatShowsAndLittleElse) {
     for (const auto& opaque : {oval, cross_of_twigs}) {
@@ -117,6 +115,7 @@ TEST(TrimMasks, VerticesLieOnTheCardAndShowTheSame) {
         EXPECT_NEAR(v.uv[1], v.position[1], 1e-5);
         EXPECT_EQ(v.position[2], 0);
         EXPECT_EQ(v.normal[2], 127);
+        EXPECT_NEAR(v.colour[0], 100 + 100 * v.position[1], 1);
     }
 }
 
@@ -158,12 +157,68 @@ TEST(TrimMasks, ACoarserMipLevelShowsWhereTheFinestDoesNot) {
     EXPECT_TRUE(cut(g, m).empty());
 }
 
+TEST(TrimMasks, LevelsKeepTheirOrder) {
+    const model::Model m = masked(oval);
+    for (const std::uint32_t hidden : {0U, 90U, 99U}) {  // of 100 cards, in a corner of the picture where nothing shows
+        LodChain chain;
+        for (std::uint32_t i = 0; i < 100; ++i) {
+            Geometry one = card(i < hidden ? 0.1F : 1.0F);
+            for (model::Vertex& v : one.vertices) v.position[2] = static_cast<float>(i);
+            chain.full.vertices.insert(chain.full.vertices.end(), one.vertices.begin(), one.vertices.end());
+            chain.full.baked.resize(chain.full.vertices.size());
+        }
+        for (const std::uint32_t cards : {8U, 13U, 40U, 100U}) {
+            GeometryPart part;
+            for (std::uint32_t i = 0; i < cards; ++i)
+                for (const std::uint32_t corner : {0U, 1U, 2U, 0U, 2U, 3U})
+                    part.indices.push_back(4 * (i * 100 / cards) + corner);
+            chain.levels.push_back({{part}, 2 * cards, cards < 100 ? 1.0F / static_cast<float>(cards) : 0.0F});
+        }
+        trim_levels(chain, MaskShapes(m, {true}));
+        for (std::size_t i = 1; i < chain.levels.size(); ++i) {
+            EXPECT_LT(chain.levels[i].error_m, chain.levels[i - 1].error_m);
+            EXPECT_TRUE(chain.levels[i].error_m == 0 || chain.levels[i].triangles > chain.levels[i - 1].triangles)
+                << hidden << ' ' << i;
+        }
+        EXPECT_EQ(chain.levels.back().triangles, 200U);
+    }
+}
+
+TEST(TrimMasks, OfAHugePictureKeepAllThatShows) {
+    model::Model m;
+    m.textures.push_back({2048, 8, 1, 0, false});
+    m.texels.assign(std::size_t{4} * 2048 * 8, std::byte{0});
+    m.texels[4 * (3 * 2048 + 1000) + 3] = std::byte{255};  // one texel shows
+    model::Material material;
+    material.texture = 0;
+    material.alpha = model::AlphaMode::mask;
+    m.materials.push_back(material);
+    Geometry g = card();
+    const std::vector<GeometryPart> parts = cut(g, m);
+    ASSERT_EQ(parts.size(), 1U);
+    EXPECT_GE(covers(g, parts, {1000.5F / 2048, 3.5F / 8}), 1);
+    EXPECT_LT(area(g, parts), 0.02);
+}
+
+TEST(TrimMasks, TrianglesThatFoldOverAreNoCard) {
+    const model::Model m = masked(oval);
+    Geometry g = card();
+    g.vertices[3] = g.vertices[0];  // the second triangle lies upon the first, seen from behind
+    g.vertices[3].position[0] = g.vertices[3].uv[0] = 0.6F;
+    g.vertices[3].position[1] = g.vertices[3].uv[1] = 0.2F;
+    const auto before = area(g, g.parts);
+    const std::vector<GeometryPart> parts = cut(g, m);
+    EXPECT_TRUE(parts.empty() || area(g, parts) < before);
+    for (const GeometryPart& part : parts)
+        for (const std::uint32_t index : part.indices) EXPECT_TRUE(std::isfinite(g.vertices[index].position[0]));
+}
+
 TEST(TrimMasks, FullDetailGetsACheaperTwinThatShowsTheSame) {
     const model::Model m = masked(oval);
     LodChain chain;
     chain.full = card();
     chain.levels.push_back({chain.full.parts, 2, 0.0F});
-    trim_levels(chain, {mask_shape(m, m.materials[0])});
+    trim_levels(chain, MaskShapes(m, {true}));
     ASSERT_EQ(chain.levels.size(), 2U);
     EXPECT_EQ(chain.levels[0].error_m, model::trimmed_error_m);
     EXPECT_GT(chain.levels[0].triangles, 2U);

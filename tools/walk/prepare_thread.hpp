@@ -38,7 +38,9 @@ struct PoseSample {
 };
 
 /// Sets are prepared for this long ahead of the newest pose: until they are too old to be used.
-constexpr double horizon_s(double period_s) { return rt::oldest_prepared(static_cast<std::int64_t>(period_s * 1e9)) * period_s; }
+constexpr double horizon_s(double period_s) {
+    return rt::oldest_prepared(static_cast<std::int64_t>(period_s * 1e9 + 0.5)) * period_s;
+}
 
 /// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.
 void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out);
