@@ -66,8 +66,8 @@ void add_level(const std::byte* rgba, std::uint32_t width, std::uint32_t height,
             constexpr float rounding = 0.5F;
             const float below = along(low);
             if (below + (along(high) - below) * down[y].share < needed - rounding) continue;
-            for (std::size_t j = y > 0 ? (y - 1) / 2 : 0; j <= y / 2 && j < marks.height;
-                 ++j)  // one texel, or those on both sides
+            // A place within a texel, or between two.
+            for (std::size_t j = y > 0 ? (y - 1) / 2 : 0; j <= y / 2 && j < marks.height; ++j)
                 for (std::size_t i = x > 0 ? (x - 1) / 2 : 0; i <= x / 2 && i < marks.width; ++i)
                     marks.shows[j * marks.width + i] = true;
         }

@@ -176,6 +176,7 @@ function write_page(    p, g, groups, group_list, has_figures, count, with, whol
   line("")
   line("Written by `tests/bench/report` from [results.jsonl](results.jsonl). Do not edit it by hand. Every figure: [history.csv](history.csv).")
   line("What a promise means: [promises.tsv](promises.tsv). Hard rows without their safeguard: [mutations.csv](mutations.csv). Walks are 1280×720 at 30 Hz.")
+  line("A GPU walks at 60 Hz; its scene of 21 M is a forest of 21 million triangles.")
   line("A figure in bold misses its target. Where the host names no kernel, the commit is the one that brought the figure to this page.")
   line("")
   line("**" whole + 0 " of " with + 0 " promises hold** in every scene; " held + 0 " of " all + 0 " newest figures hold.")
