@@ -298,18 +298,22 @@ bool covers(const prepare::Region& region, const Pose& pose, model::Viewport vie
     return moved <= region.radius_m + 1e-9 && turned + grown <= region.angle_rad + 1e-6;
 }
 
-prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s, double turn_ahead_rps) {
+prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s) {
     const double dt = std::max(dt_s, 1e-4);
     const dvec3 velocity = (now.position - before.position) / dt;
-    const double w = std::min(1.0, std::abs(glm::dot(before.orientation, now.orientation)));
-    const double turn_rps = 2.0 * std::acos(w) / dt;
+    dquat turn = now.orientation * glm::conjugate(before.orientation);
+    if (turn.w < 0.0) turn = -turn;
+    const double turned = 2.0 * std::acos(std::min(1.0, turn.w));
     prepare::Region region;
+    // Half the way on is the centre; the region reaches both ends, and half as far again for a change of speed.
+    const double travel = glm::length(velocity) * horizon_s, angle = turned / dt * horizon_s;
     region.centre = now;
     region.centre.position = now.position + velocity * (0.5 * horizon_s);
-    // Half the way on is the centre; the radius reaches both ends, and half as far again for a change of speed.
-    const double travel = glm::length(velocity) * horizon_s;
+    const dvec3 axis(turn.x, turn.y, turn.z);
+    if (const double length = glm::length(axis); length > 1e-9 && angle < 2.0)
+        region.centre.orientation = glm::normalize(glm::angleAxis(0.5 * angle, axis / length) * now.orientation);
     region.radius_m = 0.75 * travel + 0.25;
-    region.angle_rad = std::min(1.0, 1.5 * std::max(turn_rps, turn_ahead_rps) * horizon_s + 0.06);
+    region.angle_rad = std::min(1.0, 0.75 * angle + 0.06);
     return region;
 }
 

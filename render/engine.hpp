@@ -160,7 +160,6 @@ private:
 bool covers(const prepare::Region& region, const Pose& pose, model::Viewport viewport);
 
 /// The region for the next frames, from the last two samples: extrapolated by `horizon_s`, widened by possible changes.
-/// turn_ahead_rps: the largest turn rate until then, where the input knows it.
-prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s, double turn_ahead_rps = 0);
+prepare::Region predict_region(const Pose& before, const Pose& now, double dt_s, double horizon_s);
 
 }  // namespace surefoot

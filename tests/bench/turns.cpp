@@ -170,12 +170,15 @@ int print_figures(const walk::WalkRequest& request, const walk::WalkOutcome& out
     const report::WalkSummary& s = outcome.summary;
     fmt::print(
         "{{\"model\": \"{}\", \"selector\": \"{}\", \"clock\": \"{}\", \"turns\": {}, \"frames\": {}, \"misses\": {}, "
-        "\"coarse_frames\": {}, \"floor_frames\": {}, \"turn_frames\": {}, \"psnr_db\": {{\"p50\": {:.2f}, \"min\": {:.2f}}}, "
+        "\"coarse_frames\": {}, \"floor_frames\": {}, \"turn_frames\": {}, "
+        "\"psnr_db\": {{\"p50\": {:.2f}, \"min\": {:.2f}, \"worst_frame\": {}}}, "
         "\"drop_db\": {{\"p50\": {:.2f}, \"p99\": {:.2f}, \"max\": {:.2f}}}, \"over_6_db\": {}, \"over_6_db_still\": {}, "
         "\"over_6_db_of_any_psnr\": {}, "
         "\"frames_over\": [{}]}}\n",
         request.model_file, s.selector, s.clock, count, s.frames, s.misses, s.coarse_frames, s.floor_frames, drops.size(),
-        quantile_of(psnr_db, 0.5), quantile_of(psnr_db, 0), quantile_of(db, 0.5), quantile_of(db, 0.99),
+        quantile_of(psnr_db, 0.5), quantile_of(psnr_db, 0),
+        outcome.records[static_cast<std::size_t>(std::min_element(psnr_db.begin(), psnr_db.end()) - psnr_db.begin())].frame,
+        quantile_of(db, 0.5), quantile_of(db, 0.99),
         *std::max_element(db.begin(), db.end()), over.size(), still_over, raw, fmt::join(over, ", "));
     return 0;
 }

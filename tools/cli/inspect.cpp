@@ -1,11 +1,13 @@
-// surefoot inspect: what is in a .walk model.
+// surefoot inspect: what is in a .walk model, in figures or in pictures.
 #include <fmt/format.h>
 
 #include "render/effects/effects.hpp"
 #include "render/model/model.hpp"
 #include "render/model/walk_file.hpp"
 #include "rt/base/statistics.hpp"
+#include "tools/accuracy/form_pictures.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/options.hpp"
 
 namespace surefoot::cli {
 
@@ -14,6 +16,8 @@ struct InspectArguments {
     std::string file;
     bool tree = false;
     bool json = false;
+    std::string pictures;                  ///< folder of the page; empty: none
+    accuracy::FormPicturesRequest request;  ///< its model is `file`
 };
 
 const char* kind_name(model::NodeKind kind) {
@@ -90,7 +94,30 @@ double median_loss(const model::Model& m, bool leaves) {
     return losses.empty() ? 0 : median_of(losses);
 }
 
-int run_inspect(const InspectArguments& a) {
+int run_pictures(InspectArguments& a, const Context& context) {
+    a.request.model_file = a.file;
+    gl::prepare_process(0);
+    if (auto ok = accuracy::probe_forms_page(a.pictures); !ok) return fail(ok.error());
+    auto drawn = accuracy::draw_forms(a.request, terminal_progress(context));
+    end_progress(context);
+    if (!drawn) return fail(drawn.error());
+    if (!drawn->uncalibrated.empty()) notify("The figures are uncalibrated: " + drawn->uncalibrated + ".");
+    if (auto w = accuracy::write_forms_page(a.pictures, *drawn); !w) return fail(w.error());
+    const std::string page = a.pictures + "/index.html";
+    std::size_t forms = 0;
+    for (const accuracy::DrawnNode& node : drawn->drawn) forms += node.forms.size();
+    if (a.json) {
+        print_json({{"page", page}, {"nodes", drawn->nodes}, {"distinct", drawn->distinct}, {"drawn", drawn->drawn.size()},
+                    {"forms", forms}, {"renderer", drawn->renderer}});
+    } else {
+        fmt::print("{} forms of {} nodes, of {} with forms of their own\npage: {}\n", forms, drawn->drawn.size(), drawn->distinct,
+                   page);
+    }
+    return exit_success;
+}
+
+int run_inspect(InspectArguments& a, const Context& context) {
+    if (!a.pictures.empty()) return run_pictures(a, context);
     model::WalkFileInfo info;
     auto m = model::read_walk(a.file, &info);
     if (!m) return fail(m.error());
@@ -134,12 +161,22 @@ int run_inspect(const InspectArguments& a) {
 void add_inspect(CLI::App& app, Context& context) {
     auto a = std::make_shared<InspectArguments>();
     CLI::App* c =
-        add_command(app, "inspect", "Print the contents of a .walk model as JSON", "surefoot inspect town.walk", a->json);
+        add_command(app, "inspect", "Print the contents of a .walk model as JSON", "surefoot inspect town.walk\n  surefoot inspect town.walk --pictures forms", a->json);
     c->add_option("model", a->file, "The .walk model")->required();
     c->add_flag("--tree", a->tree,
                 "Print the hierarchy instead: one line per node, with its forms as kind:triangles@error. With --json: a list "
                 "with parents");
-    c->callback([&context, a] { context.run = [a] { return run_inspect(*a); }; });
+    c->add_option("--pictures", a->pictures,
+                  "Folder for a page instead: each form drawn beside full detail, with its error, look, cost and bytes");
+    c->add_option("--nodes", a->request.max_nodes, "Of --pictures: the number of nodes, spread over the levels; 0: all")
+        ->check(whole_number_within(0, 1'000'000))
+        ->capture_default_str();
+    c->add_option("--node", a->request.name, "Of --pictures: only nodes whose name contains this");
+    c->add_option("--backend", a->request.backend, "Of --pictures: backend that draws: " + gl::drawing_backends())
+        ->check(drawing_backend())
+        ->capture_default_str();
+    c->add_option("--state", a->request.state_dir, "Of --pictures: folder of the calibrated cost table");
+    c->callback([&context, a] { context.run = [a, &context] { return run_inspect(*a, context); }; });
 }
 
 }  // namespace surefoot::cli

@@ -22,6 +22,12 @@ double angle_between(const Pose& a, const Pose& b) {
     return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a.orientation, b.orientation))));
 }
 
+/// By how much a view is wider than another on any side, at most.
+double widened_rad(const Pose& view, const Pose& than) { return 2.0 * std::max(0.0, view.fov_y_rad - than.fov_y_rad); }
+
+/// Of the poses from the next frame on. A late frame may be a little off them.
+constexpr double margin_m = 0.05, margin_rad = 0.03;
+
 }  // namespace
 
 FramePose PathPoses::sample(const FrameTime& time) {
@@ -29,14 +35,19 @@ FramePose PathPoses::sample(const FrameTime& time) {
     const double now_s = static_cast<double>(time.path_slot) * period_s_;
     out.pose = pose_at(path_, now_s);
     out.before = time.path_slot > 0 ? pose_at(path_, now_s - period_s_) : mirrored(pose_at(path_, period_s_), out.pose);
-    // A set that is prepared now serves until the horizon, and is begun a frame before it is used.
-    Pose from = out.pose;
-    const auto periods = static_cast<int>(std::lround(horizon_s(period_s_) / period_s_)) + 1;
-    for (int i = 1; i <= periods; ++i) {
-        const Pose to = pose_at(path_, now_s + i * period_s_);
-        out.turn_ahead_rad_s = std::max(out.turn_ahead_rad_s, angle_between(from, to) / period_s_);
-        from = to;
+    // A set that is prepared now is first used in the next frame, the walk's first one at once. It serves until the horizon.
+    const int first = time.path_slot > 0 ? 1 : 0;
+    const auto last = static_cast<int>(std::lround(horizon_s(period_s_) / period_s_)) + 1;
+    prepare::Region region{pose_at(path_, now_s + 0.5 * (first + last) * period_s_), margin_m, margin_rad};
+    for (int i = first; i <= last; ++i) {
+        const Pose next = pose_at(path_, now_s + i * period_s_);
+        region.radius_m = std::max(region.radius_m, glm::length(next.position - region.centre.position) + margin_m);
+        region.angle_rad = std::max(region.angle_rad, 
+                                    angle_between(next, region.centre) + widened_rad(next, region.centre) + margin_rad);
     }
+    region.angle_rad = std::min(region.angle_rad, 1.0);
+    out.predicted = {true, region, glm::length(out.pose.position - out.before.position) / period_s_,
+                     angle_between(out.pose, out.before) / period_s_};
     return out;
 }
 

@@ -13,7 +13,6 @@ struct FramePose {
     Pose pose;
     Pose before;                  ///< one period earlier by the same motion; used if no frame has shown it
     PredictedRegion predicted;    ///< possible poses of the next frames, if the source knows more than its last two poses
-    double turn_ahead_rad_s = 0;  ///< largest turn rate of the next frames, if the source knows it
     bool jumped = false;          ///< a jump since the last frame: the last pose says nothing about this motion
     bool stopped = false;         ///< stands still: emergency stop or dead-man
     std::int64_t stamp_ns = 0;    ///< of the newest report in it; 0: none
@@ -36,7 +35,7 @@ public:
     virtual bool latch(const FrameTime& time, FramePose& newest) = 0;
 };
 
-/// Poses of a recorded path, forwards and backwards in turn.
+/// Poses of a recorded path, forwards and backwards in turn. Those of the next frames are known, and so is their region.
 class PathPoses final : public PoseSource {
 public:
     PathPoses(const Path& path, std::int64_t period_ns) : path_(path), period_s_(static_cast<double>(period_ns) * 1e-9) {}

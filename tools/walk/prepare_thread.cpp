@@ -14,7 +14,7 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
         return;
     }
     const double dt_s = std::max(sample.dt_s, 1e-3);
-    const prepare::Region region = predict_region(sample.before, sample.pose, dt_s, horizon_s(period_s), sample.turn_ahead_rad_s);
+    const prepare::Region region = predict_region(sample.before, sample.pose, dt_s, horizon_s(period_s));
     const double speed_mps = glm::length(sample.pose.position - sample.before.position) / dt_s;
     const double w = std::min(1.0, std::abs(glm::dot(sample.pose.orientation, sample.before.orientation)));
     engine.prepare(region, sample.frame, speed_mps, 2.0 * std::acos(w) / dt_s, out, sample.hints);
@@ -51,7 +51,6 @@ void PrepareThread::prepare_newest() {
         sample.before = jump_poses_->front().before;
         sample.dt_s = jump_poses_->front().dt_s;
         sample.predicted = {};
-        sample.turn_ahead_rad_s = 0;
     }
     seen_ = sample.frame;
     prepare_after(engine_, sample, period_s, prepared_.back());

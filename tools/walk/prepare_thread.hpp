@@ -21,7 +21,7 @@ namespace surefoot::walk {
 /// Where the eye can be until `horizon_s()` from now, if its input knows that.
 struct PredictedRegion {
     bool known = false;
-    prepare::Region region;  ///< the pose if the hand stays as it is, and how far from it the limits of motion allow
+    prepare::Region region;  ///< a path's next poses; or the hand's, and how far from it the limits of motion allow
     double speed_m_s = 0, turn_rad_s = 0;
 };
 
@@ -31,8 +31,7 @@ struct PoseSample {
     std::int64_t time_ns = 0;  ///< when it was due
     Pose pose, before;         ///< now, and one frame ago
     double dt_s = 0;
-    PredictedRegion predicted;    ///< not known: the last two poses say where the walk goes
-    double turn_ahead_rad_s = 0;  ///< largest turn rate until the horizon, if the source knows it
+    PredictedRegion predicted;  ///< not known: the last two poses say where the walk goes
     PrepareHints hints;
     bool valid = false;
 };

@@ -101,7 +101,6 @@ void WalkStages::sample(rt::FrameRecord& record) {
             now_.pose = newest.pose;
             now_.before = newest.before;
             now_.predicted = newest.predicted;
-            now_.turn_ahead_rad_s = newest.turn_ahead_rad_s;
             now_.dt_s = period_s;
         }
         prepare_inline();
@@ -109,7 +108,6 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.before = unseen ? newest.before : now_.pose;
     now_.dt_s = period_s * (1.0 + (request_.control || unseen ? 0 : record.skipped_before));
     now_.predicted = newest.predicted;
-    now_.turn_ahead_rad_s = newest.turn_ahead_rad_s;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
     now_.hints = {};
