@@ -28,9 +28,10 @@ namespace surefoot::bake {
 
 namespace {
 
-constexpr std::uint32_t min_box_triangles = 64, min_plain_box_triangles = 500;  // fewer are cheaper than six faces
-constexpr std::uint32_t max_box_cell = 32, min_box_cell = 16;                   // texels of a face's picture, with its rim
-constexpr std::size_t max_box_bytes = std::size_t{128} << 20U;                  // of all pictures of boxes while they are judged
+constexpr std::uint32_t min_box_triangles = 64, min_piece_box_triangles = 256,
+                        min_plain_box_triangles = 500;          // fewer are cheaper
+constexpr std::uint32_t max_box_cell = 32, min_box_cell = 16;   // texels of a face's picture, with its rim
+constexpr std::size_t max_box_bytes = std::size_t{128} << 20U;  // of all pictures of boxes while they are judged
 /// Six faces of four bytes a texel, and mip levels.
 constexpr std::size_t box_bytes(std::uint32_t cell) { return std::size_t{32} * cell * cell; }
 
@@ -181,19 +182,18 @@ bool BakeContext::make_forms() {
     std::vector<double> stretch(scene.meshes.size(), 0.0);
     Box world;
     std::vector<Box> mesh_boxes(scene.meshes.size());
-    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-        for (const importer::Primitive& p : scene.meshes[m].primitives) {
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        for (const importer::Primitive& p : scene.meshes[m].primitives)
             for (const vec3& v : p.positions) mesh_boxes[m].grow(dvec3(v));
-        }
-    }
     std::erase_if(objects, [&](const PlacedObject& o) { return mesh_boxes[o.mesh].empty(); });
+    std::vector<std::uint32_t> placements(scene.meshes.size(), 0);
     for (PlacedObject& object : objects) {
+        ++placements[object.mesh];
         object.box = placed_box(mesh_boxes[object.mesh], object.world);
         world.grow(object.box);
         stretch[object.mesh] = std::max(stretch[object.mesh], largest_stretch(dmat3(object.world)));
     }
     const dvec3 extent = world.max - world.min;
-    const double longest_m = std::max({extent.x, extent.y, extent.z}) / 8.0;
     const std::uint32_t max_item_triangles = max_triangles(options);
     Stage stage(progress, "levels of detail", scene.meshes.size());
     std::atomic<bool> go{true};
@@ -207,10 +207,10 @@ bool BakeContext::make_forms() {
     }
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
-        CutLimits limits;
-        limits.max_triangles = max_item_triangles;
-        limits.longest_m = longest_m / stretch[m];
-        by_mesh[m] = bake::make_forms(mesh_geometry(scene.meshes[m], model), limits, chain);
+        Geometry geometry = mesh_geometry(scene.meshes[m], model);
+        const CutLimits limits = cut_limits(std::max({extent.x, extent.y, extent.z}), stretch[m],
+                                            std::uint64_t{placements[m]} * geometry.triangles(), max_item_triangles);
+        by_mesh[m] = bake::make_forms(std::move(geometry), limits, chain);
         if (!stage.step()) go = false;
     });
     if (go) adopt_forms(std::move(by_mesh));
@@ -294,7 +294,8 @@ bool BakeContext::shows_pictures() const {
 bool BakeContext::wants_box(std::uint32_t entity) const {
     if (proxy_or_none == model::none) return false;
     if (entity >= objects.size()) return true;
-    return forms[objects[entity].mesh].triangles > (shows_pictures() ? min_box_triangles : min_plain_box_triangles);
+    const std::uint32_t above = shows_pictures() ? min_box_triangles : min_plain_box_triangles;
+    return forms[objects[entity].mesh].triangles > (objects[entity].piece ? std::max(above, min_piece_box_triangles) : above);
 }
 
 model::Index BakeContext::add_name(const std::string& name) {

@@ -102,14 +102,25 @@ bool is_cut(std::span<const Loose> triangles, const Geometry& whole, bool few, c
 }
 
 Geometry gather(const Geometry& whole, std::span<const Loose> triangles) {
+    std::vector<std::uint32_t> used;  // ascending; a piece's place in it is its new number
+    used.reserve(3 * triangles.size());
+    for (const Loose& t : triangles) used.insert(used.end(), t.corner, t.corner + 3);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
     Geometry piece;
     piece.centre = whole.centre;
-    piece.vertices = whole.vertices;  // optimise() drops what is not used
-    piece.baked = whole.baked;
+    for (const std::uint32_t vertex : used) {
+        piece.vertices.push_back(whole.vertices[vertex]);
+        piece.baked.push_back(whole.baked[vertex]);
+    }
     for (std::uint32_t p = 0; p < whole.parts.size(); ++p) {
         GeometryPart part{whole.parts[p].material, {}};
         for (const Loose& t : triangles) {
-            if (t.part == p) part.indices.insert(part.indices.end(), t.corner, t.corner + 3);
+            if (t.part != p) continue;
+            for (const std::uint32_t corner : t.corner) {
+                const auto at = std::lower_bound(used.begin(), used.end(), corner);
+                part.indices.push_back(static_cast<std::uint32_t>(at - used.begin()));
+            }
         }
         if (!part.indices.empty()) piece.parts.push_back(std::move(part));
     }
@@ -134,6 +145,17 @@ void cut_range(const Geometry& whole, std::span<Loose> triangles, bool few, cons
 }
 
 }  // namespace
+
+CutLimits cut_limits(double extent_m, double stretch, std::uint64_t placed_triangles, std::uint32_t max_triangles) {
+    constexpr double parts_of_scene = 8, parts_if_fine = 100;
+    constexpr std::uint64_t max_fine_triangles = 1U << 17U;  // about 2000 pieces
+    CutLimits limits;
+    limits.max_triangles = max_triangles;
+    const bool fine = placed_triangles <= max_fine_triangles;
+    limits.longest_m = extent_m / (fine ? parts_if_fine : parts_of_scene) / stretch;
+    if (fine) limits.min_triangles = 64;
+    return limits;
+}
 
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits) {
     std::vector<Loose> triangles;

@@ -32,8 +32,8 @@ struct PlacedObject {
 struct CutLimits {
     std::uint32_t max_triangles = 8192;  ///< of a piece; keeps its cost below 1/16 of a frame
     double longest_m = 1e30;             ///< of a piece, mesh frame; limits what is drawn for one corner in view
-    std::uint32_t min_triangles =
-        512;  ///< geometry below twice this is not cut for length alone: a draw costs as much as 50 triangles
+    /// Geometry below twice this is not cut for length alone: a draw costs as much as 50 triangles.
+    std::uint32_t min_triangles = 512;
     /// Replaces min_triangles for few triangles in several layers (the walls of a storey). Drawn whole, most of its pixels
     /// lie behind its own front, and an extra layer costs more than extra draws.
     std::uint32_t min_hidden = 32;
@@ -44,6 +44,9 @@ struct CutLimits {
 double largest_stretch(const dmat3& linear);
 
 Geometry mesh_geometry(const importer::Mesh& mesh, const model::Model& model);
+/// Limits of a mesh in a scene that is `extent_m` long. Cut finely, only what shows of it has to be drawn. That is done unless
+/// the pieces of all its placements would be too many. placed_triangles: of all placements; stretch: the largest of any.
+CutLimits cut_limits(double extent_m, double stretch, std::uint64_t placed_triangles, std::uint32_t max_triangles);
 /// Pieces within the limits, cut at medians of the triangle centres. Empty if the whole is within the limits.
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
 /// One form, or one a piece if the geometry exceeds the limits. Pieces keep their common borders.

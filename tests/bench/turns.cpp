@@ -178,8 +178,8 @@ int print_figures(const walk::WalkRequest& request, const walk::WalkOutcome& out
         request.model_file, s.selector, s.clock, count, s.frames, s.misses, s.coarse_frames, s.floor_frames, drops.size(),
         quantile_of(psnr_db, 0.5), quantile_of(psnr_db, 0),
         outcome.records[static_cast<std::size_t>(std::min_element(psnr_db.begin(), psnr_db.end()) - psnr_db.begin())].frame,
-        quantile_of(db, 0.5), quantile_of(db, 0.99),
-        *std::max_element(db.begin(), db.end()), over.size(), still_over, raw, fmt::join(over, ", "));
+        quantile_of(db, 0.5), quantile_of(db, 0.99), *std::max_element(db.begin(), db.end()), over.size(), still_over, raw,
+        fmt::join(over, ", "));
     return 0;
 }
 

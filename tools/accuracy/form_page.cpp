@@ -29,8 +29,8 @@ std::string form_figure(const DrawnForm& form) {
     const std::string what = form.full_detail ? "full detail" : form.kind;
     std::string out = fmt::format("<figure>{}<figcaption><b>{}</b>, {} triangles<br>error {} m, {} KiB<br>close: {}, ",
                                   image(form.close, what + ", close"), what, report::grouped(form.triangles),
-                                  report::short_number(form.error_m), report::short_number(static_cast<double>(form.bytes) / 1024),
-                                  microseconds(form.close_us));
+                                  report::short_number(form.error_m),
+                                  report::short_number(static_cast<double>(form.bytes) / 1024), microseconds(form.close_us));
     out += std::isfinite(form.close_psnr_db) ? fmt::format("{:.1f} dB", form.close_psnr_db) : std::string("as full detail");
     if (!form.full_detail)
         out += fmt::format("<br>colour loss {}, {}, {}<br>coverage off {:.0f} %", report::short_number(form.loss.colour[0]),
@@ -38,9 +38,9 @@ std::string form_figure(const DrawnForm& form) {
                            100 * static_cast<double>(form.loss.coverage));
     out += "</figcaption>";
     if (!form.served.empty())
-        out += fmt::format("{}{}<figcaption>from {} m: {}; full detail (right): {}</figcaption>", image(form.served, what + ", far"),
-                           image(form.full, "full detail, far"), report::short_number(form.served_m), microseconds(form.served_us),
-                           microseconds(form.full_us));
+        out += fmt::format("{}{}<figcaption>from {} m: {}; full detail (right): {}</figcaption>",
+                           image(form.served, what + ", far"), image(form.full, "full detail, far"),
+                           report::short_number(form.served_m), microseconds(form.served_us), microseconds(form.full_us));
     return out + "</figure>\n";
 }
 
@@ -59,10 +59,12 @@ std::string node_card(const DrawnNode& node) {
 }
 
 std::string body_of(const FormPictures& p) {
-    std::string out = std::string(rules) + "<header>\n<p class=\"brand\"><b>Surefoot</b> forms</p>\n<h1>How each part is drawn</h1>\n";
-    out += fmt::format("<p class=\"lead\"><b>{}</b>: {} of {} nodes with forms of their own, of {} nodes in all, on {}.</p>\n</header>\n",
-                       report::escaped(std::filesystem::path(p.model).filename().string()), p.drawn.size(), p.distinct, p.nodes,
-                       report::escaped(p.renderer));
+    std::string out =
+        std::string(rules) + "<header>\n<p class=\"brand\"><b>Surefoot</b> forms</p>\n<h1>How each part is drawn</h1>\n";
+    out += fmt::format(
+        "<p class=\"lead\"><b>{}</b>: {} of {} nodes with forms of their own, of {} nodes in all, on {}.</p>\n</header>\n",
+        report::escaped(std::filesystem::path(p.model).filename().string()), p.drawn.size(), p.distinct, p.nodes,
+        report::escaped(p.renderer));
     if (!p.uncalibrated.empty())
         out += fmt::format("<ul class=\"notes\"><li><b>Uncalibrated: {}</b></li></ul>\n", report::escaped(p.uncalibrated));
     out +=
@@ -96,10 +98,12 @@ std::string forms_csv(const FormPictures& pictures) {
         "colour_loss_512,colour_loss_64,colour_loss_8,served_m,served_us,full_us,bytes\n";
     for (const DrawnNode& n : pictures.drawn)
         for (const DrawnForm& f : n.forms)
-            out += fmt::format("{},{},{},{},{},{:.6g},{},{},{},{:.6g},{:.6g},{:.3f},{:.3f},{:.5f},{:.6f},{:.6f},{:.6f},{:.6g},{:.3f},{:.3f},{}\n",
-                               n.level, n.node, n.kind, field(n.name), n.same, n.size_m, f.kind, f.triangles, f.full_detail ? 1 : 0,
-                               f.error_m, n.close_m, f.close_us, f.close_psnr_db, f.loss.coverage, f.loss.colour[0],
-                               f.loss.colour[1], f.loss.colour[2], f.served_m, f.served_us, f.full_us, f.bytes);
+            out += fmt::format(
+                "{},{},{},{},{},{:.6g},{},{},{},{:.6g},{:.6g},{:.3f},{:.3f},{:.5f},{:.6f},{:.6f},{:.6f},{:.6g},{:.3f},{:.3f},{}"
+                "\n",
+                n.level, n.node, n.kind, field(n.name), n.same, n.size_m, f.kind, f.triangles, f.full_detail ? 1 : 0, f.error_m,
+                n.close_m, f.close_us, f.close_psnr_db, f.loss.coverage, f.loss.colour[0], f.loss.colour[1], f.loss.colour[2],
+                f.served_m, f.served_us, f.full_us, f.bytes);
     return out;
 }
 

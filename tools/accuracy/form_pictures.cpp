@@ -30,7 +30,7 @@ namespace {
 using model::Index;
 
 constexpr double side_px = form_picture_px;
-constexpr double filled_px = 160;    // of the picture's side, by the sphere round the node
+constexpr double filled_px = 160;  // of the picture's side, by the sphere round the node
 constexpr double served_error_px = 2;
 constexpr double min_served_px = 6;  // below, nothing can be told
 constexpr int jpeg_quality = 92;
@@ -129,7 +129,8 @@ std::uint64_t bytes_of(const model::Model& model, const model::Representation& r
     std::uint64_t bytes = 0;
     for (Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
         const model::Part& part = model.parts[p];
-        bytes += std::uint64_t{part.vertex_count} * sizeof(model::Vertex) + std::uint64_t{part.index_count} * sizeof(std::uint32_t);
+        bytes +=
+            std::uint64_t{part.vertex_count} * sizeof(model::Vertex) + std::uint64_t{part.index_count} * sizeof(std::uint32_t);
         const Index of = model.materials[part.material].texture;
         if (rep.kind != model::RepKind::textured_box || of == model::none) continue;
         const model::Texture& texture = model.textures[of];
@@ -168,7 +169,8 @@ private:
     Result<gl::PixelImage> picture(const Pose& pose, std::span<const gl::DrawItem> items);
     /// Predicted, of a walk's picture from there.
     double cost_us(const Pose& pose, std::span<const gl::DrawItem> items) const;
-    Result<void> draw_served(const model::Node& node, std::span<const gl::DrawItem> full, const gl::DrawItem& item, DrawnForm& form);
+    Result<void> draw_served(const model::Node& node, std::span<const gl::DrawItem> full, const gl::DrawItem& item,
+                             DrawnForm& form);
 
     const model::Model& model_;
     gl::Device& device_;
@@ -213,7 +215,8 @@ Result<void> FormDrawer::draw_served(const model::Node& node, std::span<const gl
     form.served_us = cost_us(pose, {&item, 1});
     form.full_us = cost_us(pose, full);
     form.served_px = std::min(form_picture_px, (static_cast<std::uint32_t>(px) + 8) / 2 * 2);
-    for (const auto& [to, items] : {std::pair{&form.served, std::span<const gl::DrawItem>(&item, 1)}, std::pair{&form.full, full}}) {
+    for (const auto& [to, items] :
+         {std::pair{&form.served, std::span<const gl::DrawItem>(&item, 1)}, std::pair{&form.full, full}}) {
         auto image = picture(pose, items);
         if (!image) return image.error();
         *to = report::jpeg_data_uri(middle_of(*image, form.served_px), form.served_px, form.served_px, jpeg_quality);
@@ -301,10 +304,11 @@ Result<FormPictures> draw_forms(const FormPicturesRequest& request, const Progre
     all.distinct = static_cast<std::uint32_t>(distinct.size());
     FormDrawer drawer(*model, **device, *costs);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-        if (progress.stopped()) return Error{request.model_file,
-                         fmt::format("The drawing was stopped by the user after {} of {} nodes, so no page is written", i,
-                                     chosen.size()),
-                         "", ErrorKind::stopped};
+        if (progress.stopped())
+            return Error{
+                request.model_file,
+                fmt::format("The drawing was stopped by the user after {} of {} nodes, so no page is written", i, chosen.size()),
+                "", ErrorKind::stopped};
         progress.update("forms", static_cast<double>(i) / static_cast<double>(chosen.size()));
         auto drawn = drawer.draw(chosen[i]);
         if (!drawn) return drawn.error();

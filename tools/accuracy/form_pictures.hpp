@@ -24,30 +24,30 @@ struct FormPicturesRequest {
 
 /// One form of a node. Costs are predicted for a walk at 1280x720, in us.
 struct DrawnForm {
-    std::string kind;                   ///< of model::forms
+    std::string kind;  ///< of model::forms
     std::uint32_t triangles = 0;
     double error_m = 0;
     bool full_detail = false;
-    model::PictureLoss loss;            ///< zero where the model has none
+    model::PictureLoss loss;                 ///< zero where the model has none
     double close_us = 0, close_psnr_db = 0;  ///< from DrawnNode::close_m; infinite: equal to full detail
-    double served_m = 0;                ///< eye to box: where error_m is two pixels; 0: not drawn there
-    double served_us = 0, full_us = 0;  ///< there, and of full detail there
-    std::uint64_t bytes = 0;            ///< vertices, indices, and the textures of a box with pictures
-    std::string close, served, full;    ///< pictures as data URIs: close, at served_m, and full detail there; may be empty
-    std::uint32_t served_px = 0;        ///< side of the last two
+    double served_m = 0;                     ///< eye to box: where error_m is two pixels; 0: not drawn there
+    double served_us = 0, full_us = 0;       ///< there, and of full detail there
+    std::uint64_t bytes = 0;                 ///< vertices, indices, and the textures of a box with pictures
+    std::string close, served, full;         ///< pictures as data URIs: close, at served_m, and full detail there; may be empty
+    std::uint32_t served_px = 0;             ///< side of the last two
 };
 
 /// A node with its forms, coarse to fine.
 struct DrawnNode {
     model::Index node = 0;
     std::string name, kind;
-    std::uint32_t level = 0;     ///< of the tree, from 0
+    std::uint32_t level = 0;      ///< of the tree, from 0
     std::uint64_t triangles = 0;  ///< of full detail
-    double size_m = 0;           ///< the diagonal of its box
-    double close_m = 0;          ///< eye to box: where the node fills the picture
-    std::uint32_t same = 1;      ///< nodes of this level with these forms: instances of one mesh
-    std::string full;            ///< full detail from close_m, a data URI
-    double full_us = 0;          ///< its predicted cost
+    double size_m = 0;            ///< the diagonal of its box
+    double close_m = 0;           ///< eye to box: where the node fills the picture
+    std::uint32_t same = 1;       ///< nodes of this level with these forms: instances of one mesh
+    std::string full;             ///< full detail from close_m, a data URI
+    double full_us = 0;           ///< its predicted cost
     std::vector<DrawnForm> forms;
 };
 

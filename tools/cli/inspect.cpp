@@ -16,7 +16,7 @@ struct InspectArguments {
     std::string file;
     bool tree = false;
     bool json = false;
-    std::string pictures;                  ///< folder of the page; empty: none
+    std::string pictures;                   ///< folder of the page; empty: none
     accuracy::FormPicturesRequest request;  ///< its model is `file`
 };
 
@@ -107,8 +107,12 @@ int run_pictures(InspectArguments& a, const Context& context) {
     std::size_t forms = 0;
     for (const accuracy::DrawnNode& node : drawn->drawn) forms += node.forms.size();
     if (a.json) {
-        print_json({{"page", page}, {"nodes", drawn->nodes}, {"distinct", drawn->distinct}, {"drawn", drawn->drawn.size()},
-                    {"forms", forms}, {"renderer", drawn->renderer}});
+        print_json({{"page", page},
+                    {"nodes", drawn->nodes},
+                    {"distinct", drawn->distinct},
+                    {"drawn", drawn->drawn.size()},
+                    {"forms", forms},
+                    {"renderer", drawn->renderer}});
     } else {
         fmt::print("{} forms of {} nodes, of {} with forms of their own\npage: {}\n", forms, drawn->drawn.size(), drawn->distinct,
                    page);
@@ -160,8 +164,8 @@ int run_inspect(InspectArguments& a, const Context& context) {
 
 void add_inspect(CLI::App& app, Context& context) {
     auto a = std::make_shared<InspectArguments>();
-    CLI::App* c =
-        add_command(app, "inspect", "Print the contents of a .walk model as JSON", "surefoot inspect town.walk\n  surefoot inspect town.walk --pictures forms", a->json);
+    CLI::App* c = add_command(app, "inspect", "Print the contents of a .walk model as JSON",
+                              "surefoot inspect town.walk\n  surefoot inspect town.walk --pictures forms", a->json);
     c->add_option("model", a->file, "The .walk model")->required();
     c->add_flag("--tree", a->tree,
                 "Print the hierarchy instead: one line per node, with its forms as kind:triangles@error. With --json: a list "

@@ -42,8 +42,8 @@ FramePose PathPoses::sample(const FrameTime& time) {
     for (int i = first; i <= last; ++i) {
         const Pose next = pose_at(path_, now_s + i * period_s_);
         region.radius_m = std::max(region.radius_m, glm::length(next.position - region.centre.position) + margin_m);
-        region.angle_rad = std::max(region.angle_rad, 
-                                    angle_between(next, region.centre) + widened_rad(next, region.centre) + margin_rad);
+        region.angle_rad =
+            std::max(region.angle_rad, angle_between(next, region.centre) + widened_rad(next, region.centre) + margin_rad);
     }
     region.angle_rad = std::min(region.angle_rad, 1.0);
     out.predicted = {true, region, glm::length(out.pose.position - out.before.position) / period_s_,
