@@ -28,8 +28,7 @@ namespace surefoot::bake {
 
 namespace {
 
-constexpr std::uint32_t min_box_triangles = 64, min_piece_box_triangles = 256,
-                        min_plain_box_triangles = 500;          // fewer are cheaper
+constexpr std::uint32_t min_box_triangles = 64, min_piece_box_triangles = 256, min_plain_box_triangles = 500;
 constexpr std::uint32_t max_box_cell = 32, min_box_cell = 16;   // texels of a face's picture, with its rim
 constexpr std::size_t max_box_bytes = std::size_t{128} << 20U;  // of all pictures of boxes while they are judged
 /// Six faces of four bytes a texel, and mip levels.
@@ -208,15 +207,15 @@ bool BakeContext::make_forms() {
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
         Geometry geometry = mesh_geometry(scene.meshes[m], model);
-        const CutLimits limits = cut_limits(std::max({extent.x, extent.y, extent.z}), stretch[m],
-                                            std::uint64_t{placements[m]} * geometry.triangles(), max_item_triangles);
+        const CutLimits limits =
+            cut_limits({std::max({extent.x, extent.y, extent.z}), stretch[m], std::uint64_t{placements[m]} * geometry.triangles(),
+                        has_pictures(geometry, chain), max_item_triangles});
         by_mesh[m] = bake::make_forms(std::move(geometry), limits, chain);
         if (!stage.step()) go = false;
     });
     if (go) adopt_forms(std::move(by_mesh));
     return go;
 }
-
 /// Forms get their places in one list; an object of several forms becomes as many pieces.
 void BakeContext::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
     std::vector<std::uint32_t> first(by_mesh.size()), count(by_mesh.size());
@@ -290,7 +289,8 @@ bool BakeContext::shows_pictures() const {
                        [](const importer::Material& m) { return m.image != importer::none; });
 }
 
-/// A box carries its colours in vertices or a picture: in a scene that calls for neither it would be the only one to.
+/// A box carries its colours in vertices or a picture: in a scene that calls for neither it would be the only one to. Few
+/// triangles are cheaper than six faces.
 bool BakeContext::wants_box(std::uint32_t entity) const {
     if (proxy_or_none == model::none) return false;
     if (entity >= objects.size()) return true;
@@ -453,9 +453,8 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     context.proxy = add_materials(scene, context.model);
     mark_vertex_colours(scene, context.model);
     bool coloured = false;
-    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
         coloured |= (context.model.materials[m].effects & (model::effect_texture | model::effect_vertex_colour)) != 0;
-    }
     context.proxy_or_none = coloured ? context.proxy : model::none;
     context.place_objects();
     bool done = true;

@@ -146,13 +146,18 @@ void cut_range(const Geometry& whole, std::span<Loose> triangles, bool few, cons
 
 }  // namespace
 
-CutLimits cut_limits(double extent_m, double stretch, std::uint64_t placed_triangles, std::uint32_t max_triangles) {
+bool has_pictures(const Geometry& geometry, const ChainOptions& options) {
+    return std::any_of(geometry.parts.begin(), geometry.parts.end(),
+                       [&](const GeometryPart& part) { return options.pictures[part.material] != Picture::none; });
+}
+
+CutLimits cut_limits(const MeshInScene& mesh) {
     constexpr double parts_of_scene = 8, parts_if_fine = 100;
     constexpr std::uint64_t max_fine_triangles = 1U << 17U;  // about 2000 pieces
     CutLimits limits;
-    limits.max_triangles = max_triangles;
-    const bool fine = placed_triangles <= max_fine_triangles;
-    limits.longest_m = extent_m / (fine ? parts_if_fine : parts_of_scene) / stretch;
+    limits.max_triangles = mesh.max_triangles;
+    const bool fine = mesh.textured && mesh.placed_triangles <= max_fine_triangles;
+    limits.longest_m = mesh.scene_m / (fine ? parts_if_fine : parts_of_scene) / mesh.stretch;
     if (fine) limits.min_triangles = 64;
     return limits;
 }

@@ -44,9 +44,20 @@ struct CutLimits {
 double largest_stretch(const dmat3& linear);
 
 Geometry mesh_geometry(const importer::Mesh& mesh, const model::Model& model);
-/// Limits of a mesh in a scene that is `extent_m` long. Cut finely, only what shows of it has to be drawn. That is done unless
-/// the pieces of all its placements would be too many. placed_triangles: of all placements; stretch: the largest of any.
-CutLimits cut_limits(double extent_m, double stretch, std::uint64_t placed_triangles, std::uint32_t max_triangles);
+/// Whether any of its materials has a texture. options.pictures: one a material.
+bool has_pictures(const Geometry& geometry, const ChainOptions& options);
+
+/// A mesh in its scene.
+struct MeshInScene {
+    double scene_m = 0;                  ///< longest side of the scene
+    double stretch = 1;                  ///< largest_stretch of its placements
+    std::uint64_t placed_triangles = 0;  ///< of all placements
+    bool textured = false;               ///< its pixels are dear, and its triangles are not
+    std::uint32_t max_triangles = 8192;  ///< CutLimits::max_triangles
+};
+/// Cut finely, only what shows of a mesh has to be drawn. That is done for meshes with textures, unless the pieces of all
+/// placements would be too many.
+CutLimits cut_limits(const MeshInScene& mesh);
 /// Pieces within the limits, cut at medians of the triangle centres. Empty if the whole is within the limits.
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
 /// One form, or one a piece if the geometry exceeds the limits. Pieces keep their common borders.

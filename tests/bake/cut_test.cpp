@@ -18,7 +18,7 @@ std::vector<Geometry> pieces_of(importer::Primitive primitive, bool many_times) 
     Geometry whole = mesh_geometry(mesh, model);
     const dvec3 size = whole.box().max - whole.box().min;
     const std::uint64_t placed = many_times ? 1'000'000 : whole.triangles();
-    std::vector<Geometry> pieces = cut(whole, cut_limits(std::max({size.x, size.y, size.z}), 1, placed, 8192));
+    std::vector<Geometry> pieces = cut(whole, cut_limits({std::max({size.x, size.y, size.z}), 1, placed, true, 8192}));
     if (pieces.empty()) pieces.push_back(whole);
     std::uint64_t held = 0;
     for (const Geometry& piece : pieces) held += piece.triangles();
@@ -66,10 +66,12 @@ TEST(Cut, WhatIsPlacedOnceHasSmallPieces) {
 }
 
 TEST(Cut, AHundredthOfTheSceneIsShortEnough) {
-    EXPECT_EQ(cut_limits(500, 1, 1000, 8192).longest_m, 5);
-    EXPECT_EQ(cut_limits(500, 2, 1000, 8192).longest_m, 2.5) << "a mesh that is placed twice as large";
-    EXPECT_EQ(cut_limits(500, 1, 131'073, 8192).longest_m, 62.5) << "many placements";
-    EXPECT_EQ(cut_limits(500, 1, 131'073, 4096).max_triangles, 4096U);
+    EXPECT_EQ(cut_limits({500, 1, 1000, true, 8192}).longest_m, 5);
+    EXPECT_EQ(cut_limits({500, 2, 1000, true, 8192}).longest_m, 2.5) << "a mesh that is placed twice as large";
+    EXPECT_EQ(cut_limits({500, 1, 131'072, true, 8192}).longest_m, 5);
+    EXPECT_EQ(cut_limits({500, 1, 131'073, true, 8192}).longest_m, 62.5) << "many placements";
+    EXPECT_EQ(cut_limits({500, 1, 1000, false, 8192}).longest_m, 62.5) << "of plain colours";
+    EXPECT_EQ(cut_limits({500, 1, 131'073, true, 4096}).max_triangles, 4096U);
 }
 
 }  // namespace
