@@ -38,7 +38,8 @@ struct PoseSample {
 
 /// Sets are prepared for this long ahead of the newest pose: until they are too old to be used.
 constexpr double horizon_s(double period_s) {
-    return rt::oldest_prepared(static_cast<std::int64_t>(period_s * 1e9 + 0.5)) * period_s;
+    const auto period_ns = static_cast<std::int64_t>(period_s * 1e9 + 0.5);  // NOLINT(bugprone-incorrect-roundings): above 0
+    return rt::oldest_prepared(period_ns) * period_s;
 }
 
 /// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.
