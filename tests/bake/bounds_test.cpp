@@ -194,7 +194,7 @@ TEST(BakeByHand, PiecesJoinWithoutCracks) {
 TEST(BakeByHand, OneObjectAloneIsTheRoot) {
     importer::Scene scene;
     scene.materials.resize(1);
-    place(scene, add_mesh(scene, ball(5, 1), "ball"), {1, 2, 3});  // 100 triangles: not cut
+    place(scene, add_mesh(scene, ball(12, 1), "ball"), {1, 2, 3});
     const model::Model m = baked(scene);
     ASSERT_EQ(m.nodes.size(), 1U);
     EXPECT_EQ(m.nodes[0].kind, model::NodeKind::object);

@@ -3,27 +3,32 @@
 
 #include <algorithm>
 
+#include "render/bake/bake.hpp"
 #include "render/bake/objects.hpp"
 #include "tests/bake/scenes.hpp"
 
 namespace surefoot::bake {
 namespace {
 
-/// Pieces of a thing that is a scene by itself, placed once or many times. They hold all of its triangles.
-std::vector<Geometry> pieces_of(importer::Primitive primitive, bool many_times) {
-    importer::Mesh mesh;
-    mesh.primitives.push_back(std::move(primitive));
-    model::Model model;
-    model.materials.resize(1);
-    Geometry whole = mesh_geometry(mesh, model);
-    const dvec3 size = whole.box().max - whole.box().min;
-    const std::uint64_t placed = many_times ? 1'000'000 : whole.triangles();
-    std::vector<Geometry> pieces = cut(whole, cut_limits({std::max({size.x, size.y, size.z}), 1, placed, true, 8192}));
-    if (pieces.empty()) pieces.push_back(whole);
+/// Leaves of a scene of one thing, which hold all of its triangles.
+std::size_t leaves_of(importer::Primitive primitive) {
+    importer::Scene scene;
+    scene.sources = {"by hand"};
+    scene.materials.resize(1);
+    const std::uint64_t triangles = primitive.indices.size() / 3;
+    place(scene, add_mesh(scene, std::move(primitive), "thing"), dvec3(0));
+    const auto model = bake(scene, {}, {});
+    EXPECT_TRUE(model.ok()) << (model.ok() ? "" : model.error().text());
+    if (!model.ok()) return 0;
+    std::size_t leaves = 0;
     std::uint64_t held = 0;
-    for (const Geometry& piece : pieces) held += piece.triangles();
-    EXPECT_EQ(held, whole.triangles());
-    return pieces;
+    for (const model::Node& node : model->nodes) {
+        if (node.child_count > 0) continue;
+        ++leaves;
+        held += model->reps[node.first_rep + node.rep_count - 1].triangles;
+    }
+    EXPECT_EQ(held, triangles);
+    return leaves;
 }
 
 importer::Primitive walls(int count) {
@@ -39,30 +44,42 @@ importer::Primitive walls(int count) {
     return all;
 }
 
-importer::Primitive sheet(int across, int up) {
-    return grid_surface(across, up, [](float u, float v) { return vec3(20 * u, 3 * v, 0); });
-}
-
 TEST(Cut, WallsBehindWallsAreThingsOfTheirOwn) {
-    EXPECT_GE(pieces_of(walls(8), true).size(), 3U);
-    EXPECT_GE(pieces_of(walls(80), true).size(), 5U);  // 1600 triangles: two things by their length alone
+    EXPECT_GE(leaves_of(walls(8)), 3U);
+    EXPECT_GE(leaves_of(walls(80)), 5U);  // 1600 triangles: two things by their length alone
 }
 
-TEST(Cut, ASheetAndABallOfManyPlacementsAreLeftWhole) {
-    EXPECT_EQ(pieces_of(sheet(40, 2), true).size(), 1U);
-    EXPECT_EQ(pieces_of(ball(10, 2), true).size(), 1U);
-    EXPECT_EQ(pieces_of(walls(3), true).size(), 1U) << "few triangles, however deep";
+TEST(Cut, ASheetAndABallAreLeftWhole) {
+    EXPECT_EQ(leaves_of(grid_surface(40, 2, [](float u, float v) { return vec3(20 * u, 3 * v, 0); })), 1U);
+    EXPECT_EQ(leaves_of(ball(10, 2)), 1U);
 }
 
-TEST(Cut, WhatIsPlacedOnceHasSmallPieces) {
-    const std::vector<Geometry> pieces = pieces_of(sheet(64, 32), false);
+TEST(Cut, ThingsOfFewTrianglesAreLeftWholeHoweverDeep) { EXPECT_EQ(leaves_of(walls(3)), 1U); }
+
+/// Pieces of a textured sheet that is a scene by itself. They hold all of its triangles.
+std::vector<Geometry> pieces_of_sheet(int across, int up) {
+    importer::Mesh mesh;
+    mesh.primitives.push_back(grid_surface(across, up, [](float u, float v) { return vec3(20 * u, 3 * v, 0); }));
+    model::Model model;
+    model.materials.resize(1);
+    const Geometry whole = mesh_geometry(mesh, model);
+    std::vector<Geometry> pieces = cut(whole, cut_limits({20, 1, whole.triangles(), true, 8192}));
+    if (pieces.empty()) pieces.push_back(whole);
+    std::uint64_t held = 0;
+    for (const Geometry& piece : pieces) held += piece.triangles();
+    EXPECT_EQ(held, whole.triangles());
+    return pieces;
+}
+
+TEST(Cut, WhatHasTexturesHasSmallPieces) {
+    const std::vector<Geometry> pieces = pieces_of_sheet(64, 32);
     EXPECT_GE(pieces.size(), 4096U / 127);
     for (const Geometry& piece : pieces) {
         EXPECT_GE(piece.triangles(), 64U);
         EXPECT_LT(piece.triangles(), 128U);
         EXPECT_LT(piece.vertices.size(), 3 * piece.triangles()) << "corners are shared, and others are not kept";
     }
-    EXPECT_EQ(pieces_of(sheet(31, 2), false).size(), 1U) << "124 triangles";
+    EXPECT_EQ(pieces_of_sheet(31, 2).size(), 1U) << "124 triangles";
 }
 
 TEST(Cut, AHundredthOfTheSceneIsShortEnough) {

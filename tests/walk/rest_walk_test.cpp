@@ -35,7 +35,7 @@ walk::WalkOutcome walked(double rest_after_ms, std::string_view selector) {
 }
 
 TEST(RestWalk, RestsWhereItStandsAndChangesNothingElse) {
-    // Frames at rest teach the correction nothing. Afterwards its fourth digit differs, and so may a cut.
+    // Frames at rest teach the correction nothing. Afterwards its sixth digit differs; this selector is not so fine.
     const auto with = walked(500, "two-stage"), without = walked(0, "two-stage");
     ASSERT_EQ(with.records.size(), 420U);
     ASSERT_EQ(without.records.size(), 420U);
@@ -46,10 +46,7 @@ TEST(RestWalk, RestsWhereItStandsAndChangesNothingElse) {
         const bool stands = i >= 60 + 15 && i <= 360;  // the last of them is a hair before the path goes on
         ASSERT_EQ(f.at_rest, stands && f.at_rest) << "frame " << i << " moves";
         ASSERT_FALSE(g.at_rest);
-        const bool before = i <= 360;
-        if (before) {
-            ASSERT_EQ(f.cut_hash, g.cut_hash) << i;
-        }
+        ASSERT_EQ(f.cut_hash, g.cut_hash) << i;
         ASSERT_EQ(f.missed, g.missed) << i;
         ASSERT_EQ(f.guard_violations, 0U);
         ASSERT_EQ(f.skipped_before, g.skipped_before);
@@ -60,10 +57,8 @@ TEST(RestWalk, RestsWhereItStandsAndChangesNothingElse) {
             samples = f.rest_samples;
             ASSERT_TRUE(f.rest_samples == 0 || std::isinf(f.accuracy));
         } else {
-            if (before) {
-                ASSERT_EQ(f.items, g.items) << i;
-                ASSERT_EQ(f.triangles, g.triangles) << i;
-            }
+            ASSERT_EQ(f.items, g.items) << i;
+            ASSERT_EQ(f.triangles, g.triangles) << i;
             ASSERT_EQ(f.resolution, g.resolution) << i;
             ASSERT_EQ(f.rest_samples, 0U);
         }
@@ -86,8 +81,8 @@ TEST(RestWalk, ChangesPredictionsHardlyWhereTheWalkGoesOn) {
     for (std::size_t i = 0; i < with.records.size(); ++i) {
         const rt::FrameRecord &f = with.records[i], &g = without.records[i];
         ASSERT_TRUE(i > 360 || f.cut_hash == g.cut_hash) << i;
-        ASSERT_NEAR(f.correction, g.correction, 1e-3) << i;
-        ASSERT_TRUE(f.at_rest || std::abs(f.predicted_us - g.predicted_us) <= 0.02F * g.predicted_us) << i;
+        ASSERT_NEAR(f.correction, g.correction, 1e-4) << i;
+        ASSERT_TRUE(f.at_rest || std::abs(f.predicted_us - g.predicted_us) <= 0.01F * g.predicted_us) << i;
     }
 }
 

@@ -13,8 +13,7 @@
 
 #include <fmt/format.h>
 
-#include "render/effects/effects.hpp"
-#include "render/gl/device.hpp"
+#include "render/engine.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/measure/image_metrics.hpp"
 #include "render/model/item_costs.hpp"
@@ -160,8 +159,8 @@ double psnr_db(const gl::PixelImage& a, const gl::PixelImage& b) {
 /// Draws a model's forms with one device.
 class FormDrawer {
 public:
-    FormDrawer(const model::Model& m, gl::Device& device, const model::CostModel& costs)
-        : model_(m), device_(device), costs_(costs), item_costs_(m, costs) {}
+    FormDrawer(Engine& engine, const model::CostModel& costs)
+        : engine_(engine), model_(engine.model()), costs_(costs), item_costs_(model_, costs) {}
 
     Result<DrawnNode> draw(const Chosen& chosen);
 
@@ -172,24 +171,16 @@ private:
     Result<void> draw_served(const model::Node& node, std::span<const gl::DrawItem> full, const gl::DrawItem& item,
                              DrawnForm& form);
 
+    Engine& engine_;
     const model::Model& model_;
-    gl::Device& device_;
     const model::CostModel& costs_;
     model::ItemCosts item_costs_;
 };
 
 Result<gl::PixelImage> FormDrawer::picture(const Pose& pose, std::span<const gl::DrawItem> items) {
-    device_.draws.plays();
-    device_.begin_frame(pose);
-    constexpr std::size_t chunk = 4096;
-    for (std::size_t at = 0; at < items.size(); at += chunk) {
-        device_.draw(items.subspan(at, std::min(chunk, items.size() - at)));
-        device_.end_slice();
-        device_.wait_slices(1);
-    }
-    device_.end_items();
-    device_.finish_frame();
-    return device_.read_pixels();
+    engine_.device().draws.plays();
+    engine_.draw_unbudgeted(pose, items);
+    return engine_.device().read_pixels();
 }
 
 double FormDrawer::cost_us(const Pose& pose, std::span<const gl::DrawItem> items) const {
@@ -262,20 +253,17 @@ Result<DrawnNode> FormDrawer::draw(const Chosen& chosen) {
     return drawn;
 }
 
-Result<std::unique_ptr<gl::Device>> open_drawing_device(const FormPicturesRequest& request, const model::Model& model) {
+Result<std::unique_ptr<Engine>> open_drawing_engine(const FormPicturesRequest& request, model::Model model,
+                                            const model::CostModel& costs) {
     const auto backend = gl::backend_named(request.backend);
     if (!backend) return backend.error();
     if (!(*backend)->draws())
         return Error{"--backend " + request.backend, "This backend draws no pictures", "Use one of: " + gl::drawing_backends(),
                      ErrorKind::misuse};
-    gl::DeviceOptions options;
-    options.kind = (*backend)->kind;
-    options.viewport = {form_picture_px, form_picture_px};
-    auto device = gl::open_device(options);
-    if (!device) return device.error();
-    (*device)->draws.plays();
-    if (auto ok = (*device)->load(model, effects::assemble_program); !ok) return ok.error();
-    return device;
+    EngineOptions options;
+    options.device.kind = (*backend)->kind;
+    options.device.viewport = {form_picture_px, form_picture_px};
+    return Engine::open(std::move(model), costs, options);
 }
 
 }  // namespace
@@ -296,13 +284,13 @@ Result<FormPictures> draw_forms(const FormPicturesRequest& request, const Progre
         return Error{"--node " + request.name, "No node of " + request.model_file + " has a name with this text",
                      "List the names with `surefoot inspect --tree`", ErrorKind::misuse};
     const std::vector<Chosen> chosen = spread_over_levels(distinct, request.max_nodes);
-    auto device = open_drawing_device(request, *model);
-    if (!device) return device.error();
-    all.renderer = (*device)->renderer();
-    all.machine = measure::machine_identity(all.renderer, 0);
     all.nodes = static_cast<std::uint32_t>(model->nodes.size());
     all.distinct = static_cast<std::uint32_t>(distinct.size());
-    FormDrawer drawer(*model, **device, *costs);
+    auto engine = open_drawing_engine(request, std::move(*model), *costs);
+    if (!engine) return engine.error();
+    all.renderer = (*engine)->device().renderer();
+    all.machine = measure::machine_identity(all.renderer, 0);
+    FormDrawer drawer(**engine, *costs);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         if (progress.stopped())
             return Error{

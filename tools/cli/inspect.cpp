@@ -167,19 +167,23 @@ void add_inspect(CLI::App& app, Context& context) {
     CLI::App* c = add_command(app, "inspect", "Print the contents of a .walk model as JSON",
                               "surefoot inspect town.walk\n  surefoot inspect town.walk --pictures forms", a->json);
     c->add_option("model", a->file, "The .walk model")->required();
-    c->add_flag("--tree", a->tree,
-                "Print the hierarchy instead: one line per node, with its forms as kind:triangles@error. With --json: a list "
-                "with parents");
-    c->add_option("--pictures", a->pictures,
-                  "Folder for a page instead: each form drawn beside full detail, with its error, look, cost and bytes");
+    CLI::Option* tree = c->add_flag("--tree", a->tree,
+                                    "Print the hierarchy instead: one line per node, with its forms as kind:triangles@error. "
+                                    "With --json: a list with parents");
+    CLI::Option* pictures =
+        c->add_option("--pictures", a->pictures,
+                      "Folder for a page instead: each form drawn beside full detail, with its error, look, cost and bytes");
+    pictures->excludes(tree);
     c->add_option("--nodes", a->request.max_nodes, "Of --pictures: the number of nodes, spread over the levels; 0: all")
         ->check(whole_number_within(0, 1'000'000))
-        ->capture_default_str();
-    c->add_option("--node", a->request.name, "Of --pictures: only nodes whose name contains this");
+        ->capture_default_str()
+        ->needs(pictures);
+    c->add_option("--node", a->request.name, "Of --pictures: only nodes whose name contains this")->needs(pictures);
     c->add_option("--backend", a->request.backend, "Of --pictures: backend that draws: " + gl::drawing_backends())
         ->check(drawing_backend())
-        ->capture_default_str();
-    c->add_option("--state", a->request.state_dir, "Of --pictures: folder of the calibrated cost table");
+        ->capture_default_str()
+        ->needs(pictures);
+    c->add_option("--state", a->request.state_dir, "Of --pictures: folder of the calibrated cost table")->needs(pictures);
     c->callback([&context, a] { context.run = [a, &context] { return run_inspect(*a, context); }; });
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/engine.hpp"
 #include "tools/walk/tour_controller.hpp"
 
 namespace surefoot::walk {
@@ -25,8 +26,8 @@ double angle_between(const Pose& a, const Pose& b) {
 /// By how much a view is wider than another on any side, at most.
 double widened_rad(const Pose& view, const Pose& than) { return 2.0 * std::max(0.0, view.fov_y_rad - than.fov_y_rad); }
 
-/// Of the poses from the next frame on. A late frame may be a little off them.
-constexpr double margin_m = 0.05, margin_rad = 0.03;
+/// A late frame may look a little past the next views.
+constexpr double margin_rad = 0.06;
 
 }  // namespace
 
@@ -35,15 +36,19 @@ FramePose PathPoses::sample(const FrameTime& time) {
     const double now_s = static_cast<double>(time.path_slot) * period_s_;
     out.pose = pose_at(path_, now_s);
     out.before = time.path_slot > 0 ? pose_at(path_, now_s - period_s_) : mirrored(pose_at(path_, period_s_), out.pose);
-    // A set that is prepared now is first used in the next frame, the walk's first one at once. It serves until the horizon.
+    // Where the eye will be is extrapolated: so costs are predicted alike where it stands and where it walks. Where it will look
+    // is known. A set that is prepared now is first used in the next frame, the walk's first one at once. It serves until the
+    // horizon.
+    prepare::Region region = predict_region(out.before, out.pose, period_s_, horizon_s(period_s_));
     const int first = time.path_slot > 0 ? 1 : 0;
     const auto last = static_cast<int>(std::lround(horizon_s(period_s_) / period_s_)) + 1;
-    prepare::Region region{pose_at(path_, now_s + 0.5 * (first + last) * period_s_), margin_m, margin_rad};
+    const Pose middle = pose_at(path_, now_s + 0.5 * (first + last) * period_s_);
+    region.centre.orientation = middle.orientation;
+    region.centre.fov_y_rad = middle.fov_y_rad;
+    region.angle_rad = margin_rad;
     for (int i = first; i <= last; ++i) {
         const Pose next = pose_at(path_, now_s + i * period_s_);
-        region.radius_m = std::max(region.radius_m, glm::length(next.position - region.centre.position) + margin_m);
-        region.angle_rad =
-            std::max(region.angle_rad, angle_between(next, region.centre) + widened_rad(next, region.centre) + margin_rad);
+        region.angle_rad = std::max(region.angle_rad, angle_between(next, middle) + widened_rad(next, middle) + margin_rad);
     }
     region.angle_rad = std::min(region.angle_rad, 1.0);
     out.predicted = {true, region, glm::length(out.pose.position - out.before.position) / period_s_,

@@ -35,7 +35,7 @@ public:
     virtual bool latch(const FrameTime& time, FramePose& newest) = 0;
 };
 
-/// Poses of a recorded path, forwards and backwards in turn. Those of the next frames are known, and so is their region.
+/// Poses of a recorded path, forwards and backwards in turn. Where the next frames look is known.
 class PathPoses final : public PoseSource {
 public:
     PathPoses(const Path& path, std::int64_t period_ns) : path_(path), period_s_(static_cast<double>(period_ns) * 1e-9) {}
