@@ -34,7 +34,7 @@ TEST(PathPoses, TheRegionCoversAllPosesUntilTheHorizonAndLittleElse) {
         for (std::uint64_t k = 1; k <= 4; ++k)
             EXPECT_TRUE(covers(now.predicted.region, poses.sample({slot + k, 0, 0}).pose, path_viewport)) << slot << " + " << k;
         EXPECT_LT(now.predicted.region.radius_m, 0.37) << "0.15 m of way in three periods, and a margin";
-        EXPECT_LT(now.predicted.region.angle_rad, 0.165) << "11.3 degrees in three periods, and a margin";
+        EXPECT_LT(now.predicted.region.angle_rad, 0.135) << "11.3 degrees in three periods, and a margin";
     }
 }
 

@@ -1,4 +1,6 @@
 // surefoot inspect: what is in a .walk model, in figures or in pictures.
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "render/effects/effects.hpp"
@@ -16,7 +18,7 @@ struct InspectArguments {
     std::string file;
     bool tree = false;
     bool json = false;
-    std::string pictures;                   ///< folder of the page; empty: none
+    std::optional<std::string> pictures;    ///< folder of the page
     accuracy::FormPicturesRequest request;  ///< its model is `file`
 };
 
@@ -97,13 +99,13 @@ double median_loss(const model::Model& m, bool leaves) {
 int run_pictures(InspectArguments& a, const Context& context) {
     a.request.model_file = a.file;
     gl::prepare_process(0);
-    if (auto ok = accuracy::probe_forms_page(a.pictures); !ok) return fail(ok.error());
+    if (auto ok = accuracy::probe_forms_page(*a.pictures); !ok) return fail(ok.error());
     auto drawn = accuracy::draw_forms(a.request, terminal_progress(context));
     end_progress(context);
     if (!drawn) return fail(drawn.error());
     if (!drawn->uncalibrated.empty()) notify("The figures are uncalibrated: " + drawn->uncalibrated + ".");
-    if (auto w = accuracy::write_forms_page(a.pictures, *drawn); !w) return fail(w.error());
-    const std::string page = a.pictures + "/index.html";
+    if (auto w = accuracy::write_forms_page(*a.pictures, *drawn); !w) return fail(w.error());
+    const std::string page = *a.pictures + "/index.html";
     std::size_t forms = 0;
     for (const accuracy::DrawnNode& node : drawn->drawn) forms += node.forms.size();
     if (a.json) {
@@ -121,7 +123,7 @@ int run_pictures(InspectArguments& a, const Context& context) {
 }
 
 int run_inspect(InspectArguments& a, const Context& context) {
-    if (!a.pictures.empty()) return run_pictures(a, context);
+    if (a.pictures) return run_pictures(a, context);
     model::WalkFileInfo info;
     auto m = model::read_walk(a.file, &info);
     if (!m) return fail(m.error());

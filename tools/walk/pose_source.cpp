@@ -27,7 +27,7 @@ double angle_between(const Pose& a, const Pose& b) {
 double widened_rad(const Pose& view, const Pose& than) { return 2.0 * std::max(0.0, view.fov_y_rad - than.fov_y_rad); }
 
 /// A late frame may look a little past the next views.
-constexpr double margin_rad = 0.06;
+constexpr double margin_rad = 0.03;
 
 }  // namespace
 
