@@ -254,7 +254,7 @@ Result<DrawnNode> FormDrawer::draw(const Chosen& chosen) {
 }
 
 Result<std::unique_ptr<Engine>> open_drawing_engine(const FormPicturesRequest& request, model::Model model,
-                                            const model::CostModel& costs) {
+                                                    const model::CostModel& costs) {
     const auto backend = gl::backend_named(request.backend);
     if (!backend) return backend.error();
     if (!(*backend)->draws())

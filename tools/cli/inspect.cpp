@@ -97,6 +97,8 @@ double median_loss(const model::Model& m, bool leaves) {
 }
 
 int run_pictures(InspectArguments& a, const Context& context) {
+    if (a.pictures->empty())
+        return misuse({"--pictures ''", "The folder has no name", "Name the folder of the page", ErrorKind::misuse});
     a.request.model_file = a.file;
     gl::prepare_process(0);
     if (auto ok = accuracy::probe_forms_page(*a.pictures); !ok) return fail(ok.error());
