@@ -43,6 +43,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     const auto candidates =
         static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_candidates, impl->model.nodes.size()));
     impl->options.prepare.max_candidates = candidates;
+    impl->options.prepare.sky = options.device.sky;
     impl->options.prepare.max_choices =
         static_cast<std::uint32_t>(std::min<std::size_t>(options.prepare.max_choices, impl->model.reps.size()));
     impl->best_filter = impl->device->filter();

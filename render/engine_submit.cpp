@@ -60,7 +60,9 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     };
     const double scale = correction.factor * headroom;
     select::CheckInput check;
-    check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + static_cast<double>(p.in_flight_us) * correction.factor;
+    check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us;
+    // A device's charged time has what is in flight in it; a clock has not.
+    if (limits.now_ns != nullptr) check.elapsed_us += static_cast<double>(p.in_flight_us) * correction.factor;
     check.predicted_so_far_us = limits.elapsed_us + static_cast<double>(so_far_us + bought_us) * correction.factor;
     check.next_us = with(p.next) * scale;
     check.next_stand_in_us = with(p.stand_in) * scale;
@@ -85,7 +87,9 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     for (const select::Slice& slice : plan.slices) {
         rest_stand_in.submit_us -= slice.stand_in_cost.submit_us + costs.slice_us;
         rest_stand_in.raster_us -= slice.stand_in_cost.raster_us;
-        full = full && in_time({so_far, slice.cost, slice.stand_in_cost, rest_stand_in, in_flight_us}, limits, start_us);
+        const model::ItemCost next{slice.cost.submit_us + costs.slice_us, slice.cost.raster_us};
+        const model::ItemCost stand_in{slice.stand_in_cost.submit_us + costs.slice_us, slice.stand_in_cost.raster_us};
+        full = full && in_time({so_far, next, stand_in, rest_stand_in, in_flight_us}, limits, start_us);
         const model::ItemCost cost = draw_slice(full ? order.subspan(slice.first_item, slice.item_count)
                                                      : stand_ins.subspan(slice.first_stand_in, slice.stand_in_count),
                                                 report);

@@ -70,7 +70,20 @@ Seen look(const RegionView& view, const Box& box, const dvec3& eye) {
     return seen;
 }
 
-/// What is beside the eye counts as at the near plane. What is wholly behind it has none.
+float mean_size_m(const Box& box) {
+    const vec3 half(box.half());
+    return std::sqrt(2.0F * std::max(half.x * half.y + half.y * half.z + half.z * half.x, 0.0F));
+}
+
+/// What moves fast across the view is blurred (Maciel 1994, section 3.3.2): down to a half, since walking towards a thing does
+/// not blur it.
+float motion_factor(const RegionView& view, float distance_m) {
+    const float omega = view.speed_mps / distance_m + view.turn_rps;
+    return 1.0F - 0.5F * omega / (omega + 4.0F);
+}
+
+}  // namespace
+
 Outline outline_of(const RegionView& view, const Box& box) {
     const model::ViewScale& s = view.wide;
     constexpr float far_out = 1e9F;
@@ -87,20 +100,6 @@ Outline outline_of(const RegionView& view, const Box& box) {
     }
     return deepest > near_m ? outline : Outline{};
 }
-
-float mean_size_m(const Box& box) {
-    const vec3 half(box.half());
-    return std::sqrt(2.0F * std::max(half.x * half.y + half.y * half.z + half.z * half.x, 0.0F));
-}
-
-/// What moves fast across the view is blurred (Maciel 1994, section 3.3.2): down to a half, since walking towards a thing does
-/// not blur it.
-float motion_factor(const RegionView& view, float distance_m) {
-    const float omega = view.speed_mps / distance_m + view.turn_rps;
-    return 1.0F - 0.5F * omega / (omega + 4.0F);
-}
-
-}  // namespace
 
 float nearest_distance(const RegionView& view, const Box& box) {
     const double distance = box.distance(view.eye) - view.radius_m;

@@ -41,6 +41,9 @@ struct Outline {
     float left = 1, low = 1, right = -1, high = -1;
 };
 
+/// What is beside the eye counts as at the near plane. What is wholly behind it has none.
+Outline outline_of(const RegionView& view, const Box& box);
+
 /// What all choices of a node share.
 /// Source of the factors: Funkhouser & Séquin 1993, as in Maciel 1994, 3.3.2. The accuracy factor is accuracy_gain().
 struct Weight {

@@ -46,9 +46,11 @@ void ItemBuffer::clear() { std::fill(points_.begin(), points_.end(), Point{}); }
 void ItemBuffer::take(int x, int y, float depth, const Fill& fill) {
     const auto at = static_cast<std::uint32_t>(place(x, y));
     Point& point = points_[at];
+    point.cover(fill.item.rank);
     if (!(depth < point.depth)) return;
     if (fill.see_through && chance(fill.item.seed, fill.piece, at) >= see_through_share) return;
-    point = {depth, fill.item.number};
+    point.depth = depth;
+    point.item = fill.item.number;
 }
 
 std::uint32_t ItemBuffer::fill_triangle(const Corner& a, const Corner& b, const Corner& c, const Fill& fill) {

@@ -1,6 +1,8 @@
-// A coarse picture of the leaves' surfaces: which leaf each point of the view shows, and how far away.
+// A coarse picture of the leaves' surfaces: which leaf each point of the view shows, and how far away. Each point also has the
+// range of all leaves that cover it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +24,11 @@ public:
     struct Point {
         float depth = std::numeric_limits<float>::max();  ///< m along the view's direction
         std::uint32_t item = none;
+        std::uint32_t first = none, last = 0;  ///< ranks of all items that cover the point, shown or not; first > last: none
+        void cover(std::uint32_t rank) {
+            first = std::min(first, rank);
+            last = std::max(last, rank);
+        }
     };
     /// Points, ends included. Empty: last < first.
     struct Rectangle {
@@ -34,6 +41,7 @@ public:
         Rectangle within = {};     ///< nothing is filled outside
         float point_px = 1;        ///< pixels of the view that a point stands for
         std::uint32_t work = ~0U;  ///< points that may be tested
+        std::uint32_t rank = 0;    ///< its place among all items: see Point::cover
     };
 
     ItemBuffer() : points_(static_cast<std::size_t>(columns) * rows) {}
@@ -42,6 +50,7 @@ public:
     /// fills one or none. Of a piece that lets light through, every second point is filled. Returns the tested points.
     std::uint32_t draw(const Item& item, std::span<const model::SeenPiece> pieces);
     [[nodiscard]] std::span<const Point> points() const { return points_; }  ///< rows from below
+    void cover(int x, int y, std::uint32_t rank) { points_[place(x, y)].cover(rank); }
     static constexpr std::size_t place(int x, int y) {
         return static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x);
     }

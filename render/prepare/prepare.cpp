@@ -39,6 +39,7 @@ struct NodeVisit {
 };
 
 constexpr std::uint32_t parents_a_chunk = 64, visits_a_chunk = 512;
+constexpr std::size_t max_hidden = 4096;        // whose outlines are kept
 constexpr std::uint32_t min_slots = 1U << 15U;  // children looked at before they are closed up: bounds the room for them
 
 double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
@@ -69,8 +70,9 @@ struct Preparer::Impl {
     Workers workers;
 
     std::vector<NodeVisit> visits;
-    std::vector<NodeVisit> slots;  ///< children of a block of parents, before they are closed up
-    std::vector<Index> block;      ///< the block's parents that are opened
+    std::vector<NodeVisit> slots;          ///< children of a block of parents, before they are closed up
+    std::vector<Index> block;              ///< the block's parents that are opened
+    std::vector<Outline> hidden_outlines;  ///< of nodes that others hide
     std::vector<std::uint32_t> slot_first, slot_count, slot_hidden;
     std::vector<Index> candidate_of;  ///< a visit
     std::vector<std::uint32_t> chunk_choice, chunk_candidate, chunk_count;
@@ -92,7 +94,7 @@ struct Preparer::Impl {
     NodeVisit visit_of(const RegionView& view, Index node, Index parent, PlaneMask mask) const;
     void visit_children(const RegionView& view, const model::Frustum& frustum, std::uint32_t j);
     void expand_level(const RegionView& view, const model::Frustum& frustum, Index begin, Index end, PreparedFrame& out);
-    void close_up_block(PreparedFrame& out);
+    void close_up_block(const RegionView& view, PreparedFrame& out);
     void drop_false_positives(PreparedFrame& out);
     void make_room(PreparedFrame& out);
     void evaluate_all(const RegionView& view, PreparedFrame& out);
@@ -119,6 +121,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     visits.reserve(max_nodes);
     slots.resize(std::max<std::size_t>(std::min<std::size_t>(min_slots, m.nodes.size()), max_children));
     block.reserve(slots.size());
+    hidden_outlines.reserve(max_hidden);
     slot_first.resize(slots.size());
     slot_count.resize(slots.size());
     slot_hidden.resize(slots.size());
@@ -199,7 +202,7 @@ void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum
         const PlaneMask mask = cull_planes(frustum, model.nodes[child].box, parent.mask);
         if (mask == culled) continue;
         if (occlusion.hides(model.nodes[child].box))
-            ++hidden;
+            slots[slot_first[j] + node.child_count - ++hidden].node = child;
         else
             slots[at++] = visit_of(view, child, block[j], mask);
     }
@@ -208,10 +211,13 @@ void Preparer::Impl::visit_children(const RegionView& view, const model::Frustum
 }
 
 // Children of the block are appended in order; a parent whose children no longer fit keeps its own choices.
-void Preparer::Impl::close_up_block(PreparedFrame& out) {
+void Preparer::Impl::close_up_block(const RegionView& view, PreparedFrame& out) {
     for (std::uint32_t j = 0; j < block.size(); ++j) {
         NodeVisit& parent = visits[block[j]];
         out.hidden += slot_hidden[j];
+        const std::uint32_t end = slot_first[j] + model.nodes[parent.node].child_count;
+        for (std::uint32_t k = 1; k <= slot_hidden[j] && hidden_outlines.size() < hidden_outlines.capacity(); ++k)
+            hidden_outlines.push_back(outline_of(view, model.nodes[slots[end - k].node].box));
         std::uint32_t reps = 0;
         for (std::uint32_t k = 0; k < slot_count[j]; ++k) reps += slots[slot_first[j] + k].rep_count;
         if (visits.size() + slot_count[j] > candidate_of.size() || choice_bound + reps > options.max_choices) {
@@ -247,7 +253,7 @@ void Preparer::Impl::expand_level(const RegionView& view, const model::Frustum& 
             const std::uint32_t last = std::min(parents, (chunk + 1) * parents_a_chunk);
             for (std::uint32_t j = chunk * parents_a_chunk; j < last; ++j) visit_children(view, frustum, j);
         });
-        close_up_block(out);
+        close_up_block(view, out);
     }
 }
 
@@ -319,7 +325,7 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
 }
 
 void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
-    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model));
+    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model, options.sky), shown.before_sky());
 }
 
 // A band between raising and lowering, so that the target does not swing while the eye stands still.
@@ -351,6 +357,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     const std::int64_t cpu_start = rt::own_cpu_ns(), wall_start = rt::monotonic_ns();
     s.worker_cpu_ns.store(0, std::memory_order_relaxed);
     s.visits.clear();
+    s.hidden_outlines.clear();
     out.frame = frame;
     out.viewport = viewport;
     out.candidates.clear();
@@ -390,7 +397,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     s.tried.full_factor = out.full_factor;
     s.tried.coarse_factor = out.coarse_factor;
     s.shown_px = s.shown.run(s.weights, out.candidates, out.choices, view.wide, view.scale,
-                             {&s.model, &s.evaluator.item_costs().estimator(), view.eye});
+                             {&s.model, &s.evaluator.item_costs().estimator(), view.eye}, s.hidden_outlines);
     s.set_values(view, out);
     propagate_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     enforce_monotone_benefit(out);

@@ -57,6 +57,7 @@ Range range_of(float low, float high, int points) {
 void ShownPixels::reserve(std::uint32_t max_candidates) {
     order_.reserve(max_candidates);
     shown_.resize(max_candidates);
+    sky_.reserve(max_candidates);
     open_.resize(static_cast<std::size_t>(across) * down);
     pieces_.resize(model::PixelEstimator::max_pieces);
     blocks_.reserve(open_.size());
@@ -112,13 +113,14 @@ float ShownPixels::show_coarsely(const Outline& outline, float surface_px, const
     return open * static_cast<float>(block * block) * grid.point_px;
 }
 
-float ShownPixels::show(const Outline& outline, float surface_px, float depth_m, const Grid& grid) {
+float ShownPixels::show(const Outline& outline, float surface_px, float depth_m, std::uint32_t rank, const Grid& grid) {
     const Range x = range_of(outline.left, outline.right, across), y = range_of(outline.low, outline.high, down);
     double area_sum = 0, open_sum = 0;  // of thousands of points
     for (int j = y.first; j <= y.last; ++j) {
         for (int i = x.first; i <= x.last; ++i) {
             const float part = x.share(i) * y.share(j);
             area_sum += static_cast<double>(part);
+            drawn_.cover(i, j, rank);
             if (depth_m < drawn_.at(i, j).depth) open_sum += static_cast<double>(part * open_[ItemBuffer::place(i, j)]);
         }
     }
@@ -142,15 +144,31 @@ bool ShownPixels::draw(std::uint32_t leaf, const Candidate& candidate, const Cho
         *surfaces.model, finest.rep, surfaces.model->nodes[candidate.node].box, surfaces.eye, wide, of, std::span(pieces_));
     if (count < 0) return false;
     const Range x = range_of(outline.left, outline.right, across), y = range_of(outline.low, outline.high, down);
-    const ItemBuffer::Item item{
-        leaf, candidate.node, {x.first, y.first, x.last, y.last}, grid.point_px, work_ < max_work ? max_work - work_ : 0U};
+    const ItemBuffer::Item item{leaf,
+                                candidate.node,
+                                {x.first, y.first, x.last, y.last},
+                                grid.point_px,
+                                work_ < max_work ? max_work - work_ : 0U,
+                                sky_.rank(leaf)};
     work_ += drawn_.draw(item, std::span(pieces_).first(static_cast<std::size_t>(count)));
     return true;
 }
 
+/// A small leaf is judged at the middle of its outline.
+void ShownPixels::show_before_sky(std::uint32_t leaf, const Weight& of) {
+    const auto point = [](float low, float high, int count) {
+        const float middle = 0.5F * (std::clamp(low, -1.0F, 1.0F) + std::clamp(high, -1.0F, 1.0F));
+        return std::min(count - 1, static_cast<int>(0.5F * (middle + 1.0F) * static_cast<float>(count)));
+    };
+    const Outline& o = of.outline;
+    if (o.right > o.left && o.high > o.low)
+        sky_.show(leaf, shown_[leaf], of.pixel_weight, drawn_, point(o.left, o.right, across), point(o.low, o.high, down));
+}
+
 std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::span<const Candidate> candidates,
                                         std::span<const Choice> choices, const model::ViewScale& wide,
-                                        const model::ViewScale& picture, const LeafSurfaces& surfaces) {
+                                        const model::ViewScale& picture, const LeafSurfaces& surfaces,
+                                        std::span<const Outline> hidden) {
     const float focal_px = wide.pixels_per_radian;
     const Grid grid{4.0F * wide.tan_half_x * wide.tan_half_y * focal_px * focal_px / static_cast<float>(across * down),
                     picture.tan_half_x / wide.tan_half_x, picture.tan_half_y / wide.tan_half_y};
@@ -161,6 +179,8 @@ std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::sp
     drawn_.clear();
     work_ = 0;
     blocks_.clear();
+    sky_.begin(candidates);
+    for (const Outline& outline : hidden) sky_.cover_with_hidden(outline);
     for (std::uint32_t i = 0; i < candidates.size(); ++i)
         if (candidates[i].child_count == 0) order_.push_back(i);
     std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -176,8 +196,10 @@ std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::sp
             shown_[i] = min_share * outline_points(outline) * grid.point_px;
             if (outline_points(outline) < min_points)
                 order_[small++] = i;
-            else if (!draw(i, candidates[i], finest(i), outline, wide, grid, surfaces))
+            else if (!draw(i, candidates[i], finest(i), outline, wide, grid, surfaces)) {
                 shown_[i] += show_coarsely(outline, finest(i).surface_px, grid);
+                sky_.cover(outline, sky_.rank(i));
+            }
         }
         order_.resize(small);
         if (!blocks_.empty()) end_blocks();
@@ -189,11 +211,18 @@ std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::sp
             depth_m =
                 glm::dot(wide.forward, vec3(box.centre() - surfaces.eye)) - glm::dot(glm::abs(wide.forward), vec3(box.half()));
         }
-        shown_[i] += show(weights[i].outline, finest(i).surface_px, depth_m, grid);
+        shown_[i] += show(weights[i].outline, finest(i).surface_px, depth_m, sky_.rank(i), grid);
     }
-    const std::span<const ItemBuffer::Point> points = drawn_.points();
-    for (std::size_t p = 0; p < points.size(); ++p)
-        if (points[p].item != ItemBuffer::none) shown_[points[p].item] += open_[p] * grid.point_px;
+    for (const std::uint32_t i : order_) show_before_sky(i, weights[i]);
+    for (int y = 0; y < down; ++y) {
+        for (int x = 0; x < across; ++x) {
+            const std::uint32_t i = drawn_.at(x, y).item;
+            if (i == ItemBuffer::none) continue;
+            const float pixels = open_[ItemBuffer::place(x, y)] * grid.point_px;
+            shown_[i] += pixels;
+            sky_.show(i, pixels, weights[i].pixel_weight, drawn_, x, y);
+        }
+    }
     return std::span(shown_).first(candidates.size());
 }
 

@@ -8,6 +8,7 @@
 #include "render/model/model.hpp"
 #include "render/model/pixel_estimator.hpp"
 #include "render/model/pixels.hpp"
+#include "render/prepare/before_sky.hpp"
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/item_buffer.hpp"
 #include "render/prepare/prepared.hpp"
@@ -34,10 +35,12 @@ public:
     void reserve(std::uint32_t max_candidates);
     /// [candidate]: pixels of the finest choice; 0 of candidates with children. All are >= 0, and together they are at most those
     /// of the wide view. Valid until the next call. weights: one a candidate, as Evaluator::evaluate made them. picture: the view
-    /// that surfaces are counted in.
+    /// that surfaces are counted in. hidden: outlines of nodes that are no candidates, since others hide them.
     std::span<const float> run(std::span<const Weight> weights, std::span<const Candidate> candidates,
                                std::span<const Choice> choices, const model::ViewScale& wide, const model::ViewScale& picture,
-                               const LeafSurfaces& surfaces = {});
+                               const LeafSurfaces& surfaces = {}, std::span<const Outline> hidden = {});
+    /// Of the last run(): those with nothing but the sky behind. They are valid until the next.
+    [[nodiscard]] SkyPixels before_sky() const { return sky_.pixels(); }
 
 private:
     static constexpr int across = ItemBuffer::columns, down = ItemBuffer::rows;
@@ -49,9 +52,10 @@ private:
     };
     /// The share of its outline that a surface covers. points: of the outline.
     static float cover(const Outline& outline, float surface_px, float points, const Grid& grid);
-    float show(const Outline& outline, float surface_px, float depth_m, const Grid& grid);
+    float show(const Outline& outline, float surface_px, float depth_m, std::uint32_t rank, const Grid& grid);
     /// What is large and was not drawn, over blocks of points: it is behind all that was drawn, and hides what comes after.
     float show_coarsely(const Outline& outline, float surface_px, const Grid& grid);
+    void show_before_sky(std::uint32_t leaf, const Weight& of);
     void begin_blocks();
     void end_blocks();
     /// False: its surface is unknown, or the frame's work is done.
@@ -62,6 +66,7 @@ private:
     std::vector<float> shown_;
     std::vector<float> open_;  ///< [point]: share that no small leaf has covered yet
     ItemBuffer drawn_;
+    BeforeSky sky_;
     std::vector<float> blocks_, blocks_before_;  ///< [block]: share of its points that is open; empty: not begun
     std::vector<model::SeenPiece> pieces_;       ///< of one leaf
     std::uint32_t work_ = 0;                     ///< of this frame

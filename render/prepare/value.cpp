@@ -24,13 +24,17 @@ float looks_right(float error_px, float surface_px, float leaves_surface_px) {
     return 1.0F - of_error * error - (1.0F - of_error) * lacks;
 }
 
+/// 0..0.5: losses are measured from outside. Of a form that is off by more than its distance, half of the pixels show other
+/// things.
+float elsewhere(float error_rad) { return 0.5F * error_rad * error_rad / (1.0F + error_rad * error_rad); }
+
 /// 0..1, by the measured loss. What is out of the view looks as in it.
-float looks_right_measured(float error_px, float loss, float of_missing, float size_px) {
+float looks_right_measured(float error_px, float error_rad, float loss, float of_missing, float size_px) {
     constexpr float of_shift = 0.12F, half_shifted_px = 16.0F;  // what is nearer than was measured: its texture has moved
     constexpr float of_error = 0.05F;
     const float nearer = std::max(0.0F, 1.0F - model::loss_sizes_px[0] / size_px);
     const float shifted = of_shift * nearer * error_px / (error_px + half_shifted_px);
-    const float lost = std::clamp(loss / of_missing, 0.0F, 1.0F);
+    const float lost = std::max(std::clamp(loss / of_missing, 0.0F, 1.0F), elsewhere(error_rad));
     return 1.0F - of_error * error_px / (error_px + 256.0F) - (1.0F - of_error) * (lost + (1.0F - lost) * shifted);
 }
 
@@ -75,9 +79,16 @@ std::span<const std::uint32_t> hull_of(const model::FrameCombine& combine, std::
 }  // namespace
 
 /// Two colours of the model that have nothing to do with each other differ by twice the variance, in square.
-Looks looks_of(const model::Model& model) {
+Looks looks_of(const model::Model& model, const std::array<float, 3>& sky) {
     constexpr float min_variance = 0.005F;  // of a model of one colour
-    return {model.losses, 2.0F * std::max(model.colours.variance, min_variance)};
+    const float variance = std::max(model.colours.variance, min_variance);
+    float apart = 0;
+    for (std::size_t i = 0; i < sky.size(); ++i) {
+        const float difference = sky[i] - model.colours.mean[i];
+        apart += difference * difference / static_cast<float>(sky.size());
+    }
+    const float before_sky = model.losses.empty() ? 1.0F : std::max(1.0F, (apart + variance) / (2.0F * variance));
+    return {model.losses, 2.0F * variance, before_sky};
 }
 
 float ValueCurve::value_at(float cost_us) const {
@@ -117,16 +128,21 @@ void ValuePass::add(Index parent, std::uint32_t level, float value, float cost) 
 
 /// What a leaf weighs, and the value of each choice of a candidate.
 void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame,
-                           const Looks& looks) {
+                           const Looks& looks, const SkyPixels& sky) {
     const Candidate& candidate = frame.candidates[i];
     Sums& sums = sums_[i];
+    const float more = looks.before_sky - 1.0F;  // than before other things
     if (candidate.child_count == 0) {
         sums.weight = seen.pixel_weight * shown_px;
         sums.surface_px = frame.choices[candidate.first_choice + candidate.choice_count - 1].surface_px;
         sums.weight_per_m = sums.weight / seen.distance_m;
+        sums.full = sums.weight + (sky.of_leaf.empty() ? 0.0F : more * seen.pixel_weight * sky.of_leaf[i]);
     }
+    if (i > 0 && !sky.at.empty()) sums.sky += sky.at[i];
     if (candidate.parent != none) {
         sums_[candidate.parent].weight += sums.weight;
+        sums_[candidate.parent].sky += sums.sky;
+        sums_[candidate.parent].full += sums.full;
         sums_[candidate.parent].weight_per_m += sums.weight_per_m;
         sums_[candidate.parent].surface_px += sums.surface_px;
     }
@@ -135,11 +151,14 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
     const float size_px = seen.size_m * per_m / pixel_angle_rad;
     float value = 0.0F;
     for (Choice& choice : std::span(&frame.choices[candidate.first_choice], candidate.choice_count)) {
-        const float error_px = choice.error_rad * seen.distance_m * per_m / pixel_angle_rad;
-        const float right = looks.losses.empty() ? looks_right(error_px, choice.surface_px, sums.surface_px)
-                                                 : looks_right_measured(error_px, loss_at(looks.losses[choice.rep], size_px),
-                                                                        looks.of_missing, size_px);
-        value = std::max(value, sums.weight * right);
+        const float error_rad = choice.error_rad * seen.distance_m * per_m, error_px = error_rad / pixel_angle_rad;
+        const float right = looks.losses.empty()
+                                ? looks_right(error_px, choice.surface_px, sums.surface_px)
+                                : looks_right_measured(error_px, error_rad, loss_at(looks.losses[choice.rep], size_px),
+                                                       looks.of_missing, size_px);
+        const float uncovered =
+            looks.losses.empty() ? 0.0F : std::max(std::min(1.0F, looks.losses[choice.rep].coverage), elsewhere(error_rad));
+        value = std::max(value, sums.full - sums.weight * (1.0F - right) - more * sums.sky * uncovered);
         choice.value = value;
     }
 }
@@ -219,13 +238,13 @@ void ValuePass::enforce_falling_rates(PreparedFrame& frame) {
 }
 
 void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
-                    std::span<const float> shown_px, PreparedFrame& frame, const Looks& looks) {
+                    std::span<const float> shown_px, PreparedFrame& frame, const Looks& looks, const SkyPixels& sky) {
     frame.curve = {};
     frame.full_value = 0;
     const std::size_t n = frame.candidates.size();
     if (n == 0) return;
     CHECK(n <= sums_.size(), "Values are made for no more candidates than were reserved");
-    std::fill_n(sums_.begin(), n, Sums{0, 0, 0, none});
+    std::fill_n(sums_.begin(), n, Sums{});
     free_.clear();
     for (std::uint32_t i = static_cast<std::uint32_t>(curves_.size()); i-- > 0;) free_.push_back(i);
     std::array<std::uint32_t, max_choices> room{};
@@ -233,7 +252,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
     for (std::size_t i = n; i-- > 0;) {
         const Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
-        set_values(i, pixel_angle_rad, weights[i], shown_px[i], frame, looks);
+        set_values(i, pixel_angle_rad, weights[i], shown_px[i], frame, looks, sky);
         const OwnChoices own{combine, choices, hull_of(combine, choices, room)};
         if (candidate.child_count == 0) full_value += static_cast<double>(choices.back().value);
         const bool inner = candidate.child_count > 0 && sums_[i].curve != none;
@@ -249,7 +268,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
         }
     }
     frame.full_value = full_value;
-    frame.curve.full_value = sums_[0].weight;
+    frame.curve.full_value = sums_[0].full;
     enforce_falling_rates(frame);
 }
 

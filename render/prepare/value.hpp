@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "render/prepare/before_sky.hpp"
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/prepared.hpp"
 
@@ -15,13 +16,17 @@ namespace surefoot::prepare {
 struct Looks {
     std::span<const model::PictureLoss> losses;  ///< by form; empty: not measured
     float of_missing = 1;                        ///< colour loss of a missing thing, on average
+    float before_sky = 1;                        ///< what a missing thing loses before the sky, as a multiple of that; 1 or more
 };
-Looks looks_of(const model::Model& model);
+/// sky: its colour, 0..1.
+Looks looks_of(const model::Model& model, const std::array<float, 3>& sky);
 
 /// Fills Choice::value, Choice::rate and PreparedFrame::full_value.
 ///
-/// value = W * (1 - g). W of a leaf: the pixels that it shows (ShownPixels) * importance * focus * motion. W of a node: the sum
-/// of its leaves'. g, 0..1: how wrong the choice looks. A twentieth is by its error in pixels. The rest is the measured loss at
+/// value = W * (1 - g) + (K - 1) * (S' - S * u). W of a leaf: the pixels that it shows (ShownPixels) * importance * focus *
+/// motion. W of a node: the sum of its leaves'. S: those of W with nothing but the sky behind the node, u: the share of them that
+/// the choice leaves uncovered. S' is of the leaves, in any node below the root. K: Looks::before_sky.
+/// g, 0..1: how wrong the choice looks. A twentieth is by its error in pixels. The rest is the measured loss at
 /// the node's size on the screen, as a share of what a missing thing loses. Nearer than was measured, an error in pixels counts
 /// more. Without losses, a quarter is by the error in pixels. Then the rest is the share of the leaves' surface that the choice
 /// lacks: a fence that is missing, a tree that is a shard.
@@ -40,14 +45,16 @@ public:
     /// weights: one a candidate, as Evaluator::evaluate made them. Call it before propagate_up(), which replaces them.
     /// shown_px: one a candidate, read of leaves alone.
     void run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
-             std::span<const float> shown_px, PreparedFrame& frame, const Looks& looks = {});
+             std::span<const float> shown_px, PreparedFrame& frame, const Looks& looks = {}, const SkyPixels& sky = {});
 
 private:
     struct Sums {
-        float weight = 0;         ///< W, px
-        float surface_px = 0;     ///< of the leaves' finest choices, overdraw included
-        float weight_per_m = 0;   ///< sum of W / distance of the leaves
-        std::uint32_t curve = 0;  ///< of the children, while they are summed up; none: not yet
+        float weight = 0;            ///< W, px
+        float sky = 0;               ///< of these, before nothing but the sky
+        float full = 0;              ///< value of full detail, px
+        float surface_px = 0;        ///< of the leaves' finest choices, overdraw included
+        float weight_per_m = 0;      ///< sum of W / distance of the leaves
+        std::uint32_t curve = none;  ///< of the children, while they are summed up; none: not yet
     };
     /// By level of the rate. While children are added: the change of value and cost at that level. Then: the best cut's.
     struct Curve {
@@ -63,7 +70,7 @@ private:
     std::uint32_t take_curve();
     void add(Index parent, std::uint32_t level, float value, float cost);
     void set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame,
-                    const Looks& looks);
+                    const Looks& looks, const SkyPixels& sky);
     void add_own(const Candidate& candidate, const OwnChoices& own);
     static void own_curve(const OwnChoices& own, ValueCurve& curve);
     void merge_curve(Index parent, Curve& curve, const OwnChoices& own);

@@ -252,7 +252,7 @@ TEST(Value, IsByShownPixelsAndLostSurface) {
     for (Index r = 0; r < 3; ++r) frame.choices[r].rep = r;
     const auto value_again = [&] {
         pass.run({.fixed_us = 0, .submit_weight = 1, .raster_weight = 0, .max_weight = 0}, 1e-3F, weights, shown_px, frame,
-                 looks_of(looks));
+                 looks_of(looks, {}));
     };
     value_again();
     EXPECT_NEAR(frame.choices[2].value, 300, 1e-3);
