@@ -12,12 +12,13 @@
 namespace surefoot {
 namespace {
 
-/// Allocations a frame of the walk below, as recorded on Debian 12 (Mesa 22.3), by the renderer's name.
+/// Allocations a frame of the walk below, as recorded on Debian 12 (Mesa 22.3), by the renderer's name. It draws full detail, so
+/// that neither values nor forms change it: f25674b had 2096.
 struct Baseline {
     std::string_view renderer;
     double allocations = 0;
 };
-constexpr std::array<Baseline, 1> baselines{{{"llvmpipe (LLVM 15.0.6, 256 bits)", 1754}}};
+constexpr std::array<Baseline, 1> baselines{{{"llvmpipe (LLVM 15.0.6, 256 bits)", 2077}}};
 
 TEST(DriverBaseline, AFramesAllocationsInTheDriverDoNotGrow) {
 #ifdef SUREFOOT_SANITIZED
@@ -27,8 +28,9 @@ TEST(DriverBaseline, AFramesAllocationsInTheDriverDoNotGrow) {
     request.backend = "egl";
     request.width = 320;
     request.height = 240;
+    request.selector = "flat";  // as many draws, whatever a cut is worth
+    request.in_frame_check = false;
     request.rasterisers = 2;
-    request.budget_ms = 0.8 * 1e3 / request.rate_hz;  // of the recorded walk, whatever a walk's own budget is
     walk::prepare_process(request);
     const auto outcome = walk::run_walk(request, {}, {});
     if (!outcome && outcome.error().text().find("libEGL") != std::string::npos) GTEST_SKIP() << outcome.error().text();
