@@ -60,10 +60,12 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     };
     const double scale = correction.factor * headroom;
     select::CheckInput check;
-    check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us;
-    // A device's charged time has what is in flight in it; a clock has not.
-    if (limits.now_ns != nullptr) check.elapsed_us += static_cast<double>(p.in_flight_us) * correction.factor;
     check.predicted_so_far_us = limits.elapsed_us + static_cast<double>(so_far_us + bought_us) * correction.factor;
+    check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + static_cast<double>(p.pending_us) * correction.factor;
+    if (limits.now_ns != nullptr)
+        check.elapsed_us += static_cast<double>(p.in_flight_us) * correction.factor;
+    else if (!device->charges())  // what a charging device has in flight is charged; for another one predictions count
+        check.elapsed_us = check.predicted_so_far_us;
     check.next_us = with(p.next) * scale;
     check.next_stand_in_us = with(p.stand_in) * scale;
     check.rest_stand_in_us = (with(p.rest) + static_cast<double>(enlarge_us())) * correction.factor;  // of many: little spread
@@ -139,8 +141,8 @@ void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, dou
         rest_stand_in.submit_us -= group.stand_in.cost.submit_us;
         rest_stand_in.raster_us -= group.stand_in.cost.raster_us;
         const model::ItemCost rest{rest_stand_in.submit_us + costs.slice_us, rest_stand_in.raster_us};
-        const float unfinished_us = in_flight_us + slice.submit_us + slice.raster_us;
-        full = full && in_time({so_far, group.cost, group.stand_in.cost, rest, unfinished_us}, limits, start_us);
+        const float pending_us = slice.submit_us + slice.raster_us;
+        full = full && in_time({so_far, group.cost, group.stand_in.cost, rest, in_flight_us, pending_us}, limits, start_us);
         if (full) {
             for (const UnpreparedItem& item : unprepared.items().subspan(group.first, group.count)) push(item, report);
         } else {

@@ -61,7 +61,7 @@ struct DeviceOptions {
     int rasterisers = 0;                  ///< threads of software GL, as given to prepare_process(); 0: the measured default
     std::uint32_t max_items = 1U << 16U;  ///< draw commands a frame; arrays are sized once
     std::string window_title = "Surefoot";
-    std::array<float, 3> sky{0.62F, 0.72F, 0.82F};
+    std::array<float, 3> sky = model::usual_sky;
     NullOptions null;           ///< of the null backend
     bool rest = false;          ///< has targets for a picture at rest
     std::uint32_t samples = 1;  ///< of a pixel: 1, 2 or 4; see Device::samples()
@@ -158,6 +158,8 @@ public:
 
     /// Virtual time charged so far, us (null backend); 0 elsewhere.
     [[nodiscard]] virtual double charged_us() const REQUIRES(draws) { return 0; }
+    /// Whether it charges time for draws.
+    [[nodiscard]] virtual bool charges() const REQUIRES(draws) { return false; }
 };
 
 /// How the device draws, and by which filter `costs` were measured: unless they name it, by the one that is automatic here.

@@ -8,6 +8,9 @@
 
 namespace surefoot::model {
 
+/// The sky's colour, 0..1, where no setting names another.
+constexpr std::array<float, 3> usual_sky = {0.62F, 0.72F, 0.82F};
+
 /// The sizes for which forms are compared: square root of the outline's pixels, fine to coarse. Textures blur towards the last.
 constexpr std::array<float, 3> loss_sizes_px = {512.0F, 64.0F, 8.0F};
 

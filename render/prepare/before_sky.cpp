@@ -20,33 +20,39 @@ Middles middles(float low, float high, int count) {
 
 }  // namespace
 
-void BeforeSky::reserve(std::uint32_t max_candidates) {
+void BeforeSky::reserve(std::uint32_t max_candidates, std::uint32_t max_hidden) {
     first_.resize(max_candidates);
     count_.resize(max_candidates);
-    leaf_at_.resize(max_candidates);
+    hidden_.resize(max_candidates);
+    at_rank_.resize(std::size_t{max_candidates} + max_hidden);
     of_leaf_.resize(max_candidates);
     at_.resize(max_candidates);
     blocks_.resize(static_cast<std::size_t>(across) * down);
 }
 
-void BeforeSky::begin(std::span<const Candidate> candidates) {
+void BeforeSky::begin(std::span<const Candidate> candidates, std::span<const HiddenNode> hidden) {
     candidates_ = candidates;
     const std::size_t n = candidates.size();
     std::fill_n(of_leaf_.begin(), n, 0.0F);
     std::fill_n(at_.begin(), n, 0.0F);
+    std::fill_n(hidden_.begin(), n, 0U);
     std::fill(blocks_.begin(), blocks_.end(), ItemBuffer::Point{});
-    for (std::size_t i = 0; i < n; ++i) count_[i] = candidates[i].child_count == 0 ? 1 : 0;
+    if (n == 0) return;
+    for (const HiddenNode& node : hidden) ++hidden_[node.parent];
+    for (std::size_t i = 0; i < n; ++i) count_[i] = hidden_[i] + (candidates[i].child_count == 0 ? 1U : 0U);
     for (std::size_t i = n; i-- > 1;) count_[candidates[i].parent] += count_[i];
-    if (n > 0) first_[0] = 0;
+    first_[0] = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
-        std::uint32_t next = first_[i];
-        if (candidates[i].child_count == 0) leaf_at_[next] = i;
+        const std::uint32_t own = hidden_[i] + (candidates[i].child_count == 0 ? 1U : 0U);
+        std::fill_n(at_rank_.begin() + first_[i], own, i);
+        std::uint32_t next = first_[i] + own;
         for (Index k = 0; k < candidates[i].child_count; ++k) {
             const Index child = candidates[i].first_child + k;
             first_[child] = next;
             next += count_[child];
         }
     }
+    for (const HiddenNode& node : hidden) cover(node.outline, first_[node.parent]);
 }
 
 void BeforeSky::cover(const Outline& outline, std::uint32_t rank) {
@@ -56,15 +62,8 @@ void BeforeSky::cover(const Outline& outline, std::uint32_t rank) {
             blocks_[static_cast<std::size_t>(j) * across + static_cast<std::size_t>(i)].cover(rank);
 }
 
-void BeforeSky::cover_with_hidden(const Outline& outline) {
-    if (candidates_.empty()) return;
-    cover(outline, 0);
-    cover(outline, count_[0]);  // beyond the last leaf
-}
-
 std::uint32_t BeforeSky::common_ancestor(std::uint32_t first, std::uint32_t last) const {
-    if (last >= count_[0]) return 0;
-    std::uint32_t a = leaf_at_[first], b = leaf_at_[last];
+    std::uint32_t a = at_rank_[first], b = at_rank_[last];
     while (a != b) {  // parents have smaller numbers
         if (a > b)
             a = candidates_[a].parent;

@@ -39,7 +39,7 @@ struct NodeVisit {
 };
 
 constexpr std::uint32_t parents_a_chunk = 64, visits_a_chunk = 512;
-constexpr std::size_t max_hidden = 4096;        // whose outlines are kept
+constexpr std::uint32_t max_hidden = 4096;      // of which outlines are kept
 constexpr std::uint32_t min_slots = 1U << 15U;  // children looked at before they are closed up: bounds the room for them
 
 double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
@@ -72,7 +72,7 @@ struct Preparer::Impl {
     std::vector<NodeVisit> visits;
     std::vector<NodeVisit> slots;          ///< children of a block of parents, before they are closed up
     std::vector<Index> block;              ///< the block's parents that are opened
-    std::vector<Outline> hidden_outlines;  ///< of nodes that others hide
+    std::vector<HiddenNode> hidden_nodes;  ///< parents are visits, then candidates
     std::vector<std::uint32_t> slot_first, slot_count, slot_hidden;
     std::vector<Index> candidate_of;  ///< a visit
     std::vector<std::uint32_t> chunk_choice, chunk_candidate, chunk_count;
@@ -97,6 +97,7 @@ struct Preparer::Impl {
     void close_up_block(const RegionView& view, PreparedFrame& out);
     void drop_false_positives(PreparedFrame& out);
     void make_room(PreparedFrame& out);
+    void find_hidden_parents();
     void evaluate_all(const RegionView& view, PreparedFrame& out);
     void set_values(const RegionView& view, PreparedFrame& out);
     void adapt(const PreparedFrame& out);
@@ -121,7 +122,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     visits.reserve(max_nodes);
     slots.resize(std::max<std::size_t>(std::min<std::size_t>(min_slots, m.nodes.size()), max_children));
     block.reserve(slots.size());
-    hidden_outlines.reserve(max_hidden);
+    hidden_nodes.reserve(max_hidden);
     slot_first.resize(slots.size());
     slot_count.resize(slots.size());
     slot_hidden.resize(slots.size());
@@ -131,7 +132,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     chunk_candidate.resize(chunks);
     chunk_count.resize(chunks);
     weights.resize(max_nodes);
-    shown.reserve(static_cast<std::uint32_t>(max_nodes));
+    shown.reserve(static_cast<std::uint32_t>(max_nodes), max_hidden);
     values.reserve(static_cast<std::uint32_t>(max_nodes));
 }
 
@@ -215,9 +216,6 @@ void Preparer::Impl::close_up_block(const RegionView& view, PreparedFrame& out) 
     for (std::uint32_t j = 0; j < block.size(); ++j) {
         NodeVisit& parent = visits[block[j]];
         out.hidden += slot_hidden[j];
-        const std::uint32_t end = slot_first[j] + model.nodes[parent.node].child_count;
-        for (std::uint32_t k = 1; k <= slot_hidden[j] && hidden_outlines.size() < hidden_outlines.capacity(); ++k)
-            hidden_outlines.push_back(outline_of(view, model.nodes[slots[end - k].node].box));
         std::uint32_t reps = 0;
         for (std::uint32_t k = 0; k < slot_count[j]; ++k) reps += slots[slot_first[j] + k].rep_count;
         if (visits.size() + slot_count[j] > candidate_of.size() || choice_bound + reps > options.max_choices) {
@@ -226,6 +224,9 @@ void Preparer::Impl::close_up_block(const RegionView& view, PreparedFrame& out) 
             continue;
         }
         choice_bound += reps;
+        const std::uint32_t end = slot_first[j] + model.nodes[parent.node].child_count;  // what is hidden stands there
+        for (std::uint32_t k = 1; k <= slot_hidden[j] && hidden_nodes.size() < max_hidden; ++k)
+            hidden_nodes.push_back({outline_of(view, model.nodes[slots[end - k].node].box), block[j]});
         parent.first_child = static_cast<Index>(visits.size());
         parent.child_count = slot_count[j];
         const auto first = slots.begin() + slot_first[j];
@@ -286,6 +287,16 @@ void Preparer::Impl::make_room(PreparedFrame& out) {
     }
     out.candidates.resize(candidate);
     out.choices.resize(choice);
+}
+
+/// Of what is hidden, the nearest ancestor that is a candidate.
+void Preparer::Impl::find_hidden_parents() {
+    if (visits.empty() || !visits[0].live) hidden_nodes.clear();
+    for (HiddenNode& hidden : hidden_nodes) {
+        Index visit = hidden.parent;
+        while (!visits[visit].live) visit = visits[visit].parent;
+        hidden.parent = candidate_of[visit];
+    }
 }
 
 void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
@@ -357,7 +368,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
     const std::int64_t cpu_start = rt::own_cpu_ns(), wall_start = rt::monotonic_ns();
     s.worker_cpu_ns.store(0, std::memory_order_relaxed);
     s.visits.clear();
-    s.hidden_outlines.clear();
+    s.hidden_nodes.clear();
     out.frame = frame;
     out.viewport = viewport;
     out.candidates.clear();
@@ -391,13 +402,14 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
         end = static_cast<Index>(s.visits.size());
     }
     s.drop_false_positives(out);
+    s.find_hidden_parents();
     s.evaluate_all(view, out);
     s.tried.region = out.region;
     s.tried.viewport = viewport;
     s.tried.full_factor = out.full_factor;
     s.tried.coarse_factor = out.coarse_factor;
     s.shown_px = s.shown.run(s.weights, out.candidates, out.choices, view.wide, view.scale,
-                             {&s.model, &s.evaluator.item_costs().estimator(), view.eye}, s.hidden_outlines);
+                             {&s.model, &s.evaluator.item_costs().estimator(), view.eye}, s.hidden_nodes);
     s.set_values(view, out);
     propagate_up(s.costs.combine, view.pixel_angle_rad, s.weights, out);
     enforce_monotone_benefit(out);

@@ -114,7 +114,7 @@ struct PrepareOptions {
     /// occlusion. After a frame with more visits, the next frames raise target_error_rad by at least a tenth each. They lower it
     /// when there is room. 0: no limit.
     std::uint32_t max_visits = 18000;
-    std::array<float, 3> sky{0.62F, 0.72F, 0.82F};  ///< its colour, 0..1: what is missing before it shows it
+    std::array<float, 3> sky = model::usual_sky;  ///< what is missing before it shows this colour
 };
 
 /// Prepares frames in its own oneTBB arena, level by level. The arrays are bit-equal at any worker count.

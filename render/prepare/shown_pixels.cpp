@@ -54,10 +54,11 @@ Range range_of(float low, float high, int points) {
 
 }  // namespace
 
-void ShownPixels::reserve(std::uint32_t max_candidates) {
+void ShownPixels::reserve(std::uint32_t max_candidates, std::uint32_t max_hidden) {
     order_.reserve(max_candidates);
     shown_.resize(max_candidates);
-    sky_.reserve(max_candidates);
+    coarse_.reserve(max_candidates);
+    sky_.reserve(max_candidates, max_hidden);
     open_.resize(static_cast<std::size_t>(across) * down);
     pieces_.resize(model::PixelEstimator::max_pieces);
     blocks_.reserve(open_.size());
@@ -154,7 +155,7 @@ bool ShownPixels::draw(std::uint32_t leaf, const Candidate& candidate, const Cho
     return true;
 }
 
-/// A small leaf is judged at the middle of its outline.
+/// A leaf without points is judged at the middle of its outline.
 void ShownPixels::show_before_sky(std::uint32_t leaf, const Weight& of) {
     const auto point = [](float low, float high, int count) {
         const float middle = 0.5F * (std::clamp(low, -1.0F, 1.0F) + std::clamp(high, -1.0F, 1.0F));
@@ -168,7 +169,7 @@ void ShownPixels::show_before_sky(std::uint32_t leaf, const Weight& of) {
 std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::span<const Candidate> candidates,
                                         std::span<const Choice> choices, const model::ViewScale& wide,
                                         const model::ViewScale& picture, const LeafSurfaces& surfaces,
-                                        std::span<const Outline> hidden) {
+                                        std::span<const HiddenNode> hidden) {
     const float focal_px = wide.pixels_per_radian;
     const Grid grid{4.0F * wide.tan_half_x * wide.tan_half_y * focal_px * focal_px / static_cast<float>(across * down),
                     picture.tan_half_x / wide.tan_half_x, picture.tan_half_y / wide.tan_half_y};
@@ -179,8 +180,8 @@ std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::sp
     drawn_.clear();
     work_ = 0;
     blocks_.clear();
-    sky_.begin(candidates);
-    for (const Outline& outline : hidden) sky_.cover_with_hidden(outline);
+    sky_.begin(candidates, hidden);
+    coarse_.clear();
     for (std::uint32_t i = 0; i < candidates.size(); ++i)
         if (candidates[i].child_count == 0) order_.push_back(i);
     std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -199,6 +200,7 @@ std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::sp
             else if (!draw(i, candidates[i], finest(i), outline, wide, grid, surfaces)) {
                 shown_[i] += show_coarsely(outline, finest(i).surface_px, grid);
                 sky_.cover(outline, sky_.rank(i));
+                coarse_.push_back(i);
             }
         }
         order_.resize(small);
@@ -214,6 +216,7 @@ std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::sp
         shown_[i] += show(weights[i].outline, finest(i).surface_px, depth_m, sky_.rank(i), grid);
     }
     for (const std::uint32_t i : order_) show_before_sky(i, weights[i]);
+    for (const std::uint32_t i : coarse_) show_before_sky(i, weights[i]);
     for (int y = 0; y < down; ++y) {
         for (int x = 0; x < across; ++x) {
             const std::uint32_t i = drawn_.at(x, y).item;

@@ -31,14 +31,14 @@ struct LeafSurfaces {
 /// outline that is beside the picture has no counted surface: half a layer is taken there.
 class ShownPixels {
 public:
-    /// Reserves for this many candidates. run() allocates nothing below that.
-    void reserve(std::uint32_t max_candidates);
+    /// Reserves for this many candidates and hidden nodes. run() allocates nothing below that.
+    void reserve(std::uint32_t max_candidates, std::uint32_t max_hidden = 0);
     /// [candidate]: pixels of the finest choice; 0 of candidates with children. All are >= 0, and together they are at most those
     /// of the wide view. Valid until the next call. weights: one a candidate, as Evaluator::evaluate made them. picture: the view
-    /// that surfaces are counted in. hidden: outlines of nodes that are no candidates, since others hide them.
+    /// that surfaces are counted in. hidden: what is behind, though no candidate.
     std::span<const float> run(std::span<const Weight> weights, std::span<const Candidate> candidates,
                                std::span<const Choice> choices, const model::ViewScale& wide, const model::ViewScale& picture,
-                               const LeafSurfaces& surfaces = {}, std::span<const Outline> hidden = {});
+                               const LeafSurfaces& surfaces = {}, std::span<const HiddenNode> hidden = {});
     /// Of the last run(): those with nothing but the sky behind. They are valid until the next.
     [[nodiscard]] SkyPixels before_sky() const { return sky_.pixels(); }
 
@@ -62,7 +62,8 @@ private:
     bool draw(std::uint32_t leaf, const Candidate& candidate, const Choice& finest, const Outline& outline,
               const model::ViewScale& wide, const Grid& grid, const LeafSurfaces& surfaces);
 
-    std::vector<std::uint32_t> order_;  ///< leaves, near to far
+    std::vector<std::uint32_t> order_;   ///< leaves, near to far
+    std::vector<std::uint32_t> coarse_;  ///< those of show_coarsely()
     std::vector<float> shown_;
     std::vector<float> open_;  ///< [point]: share that no small leaf has covered yet
     ItemBuffer drawn_;

@@ -138,7 +138,7 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
         sums.weight_per_m = sums.weight / seen.distance_m;
         sums.full = sums.weight + (sky.of_leaf.empty() ? 0.0F : more * seen.pixel_weight * sky.of_leaf[i]);
     }
-    if (i > 0 && !sky.at.empty()) sums.sky += sky.at[i];
+    if (!sky.at.empty()) sums.sky += sky.at[i];
     if (candidate.parent != none) {
         sums_[candidate.parent].weight += sums.weight;
         sums_[candidate.parent].sky += sums.sky;

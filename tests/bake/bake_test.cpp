@@ -140,7 +140,7 @@ TEST(Bake, TwoBakesOfOneSceneAreTheSameFile) {
 }
 
 TEST(Bake, EveryTriangleOfTheSceneIsInTheLeaves) {
-    for (const char* name : {"forest", "room", "town"}) {
+    for (const char* name : {"forest", "room", "town", "garden"}) {
         const importer::Scene scene = scene_of(name, small_scale);
         const model::Model m = bake_of(scene);
         std::uint64_t leaves = 0;

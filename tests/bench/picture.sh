@@ -3,10 +3,12 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154 # work, top, data, build, failed: of run
 
-# NAME SCENE PATH LIFT, a line a scene. Both builds import the same files; generated scenes are made by OLD.
+# NAME SCENE PATH LIFT, a line a scene. Both builds import the same files; generated scenes are made by OLD, and the garden by NEW:
+# older builds may not have it.
 picture_sources() {
   echo "forest $picture_work/forest.glb $picture_work/forest.path.csv 0"
   echo "town $picture_work/town.glb $picture_work/town.path.csv 0"
+  echo "garden $picture_work/garden.glb $picture_work/garden.path.csv 0"
   [[ -d "$data" ]] || return 0
   echo "hospital $data/interior/hospital/hospital_three_floors.glb $top/tests/bench/paths/hospital-tour.csv 0"
   echo "keflavik $data/outdoor/flightgear-keflavik/keflavik.glb $top/tests/bench/paths/keflavik-tour.csv 0"
@@ -15,8 +17,8 @@ picture_sources() {
   echo "cocoa $data/outdoor/cocoa-temple/cocoa_temple.glb $data/outdoor/cocoa-temple/recorded_path.csv 1.5"
 }
 
-picture_generate() { # NAME SCALE
-  [[ -f "$picture_work/$1.glb" && -f "$picture_work/$1.path.csv" ]] || "$old/surefoot" scene "$1" --scale "$2" --seed 1 -o "$picture_work/$1.glb" >&2
+picture_generate() { # NAME SCALE BUILD
+  [[ -f "$picture_work/$1.glb" && -f "$picture_work/$1.path.csv" ]] || "$3/surefoot" scene "$1" --scale "$2" --seed 1 -o "$picture_work/$1.glb" >&2
 }
 
 # The work of a build: another program has another folder, so its bakes and fits are its own.
@@ -159,13 +161,14 @@ picture_group() {
   local -A db low similar late idle
   local full_ms full_before full_after picture_rate psnr worst ssim missed walked unused
   mkdir -p "$picture_work"
-  picture_generate forest 10 || { failed=1; return 0; }
+  picture_generate forest 10 "$old" || { failed=1; return 0; }
   # The forest first: it is what says how fast the machine is.
   picture_set_up "$old" forest "$picture_work/forest.glb" "$picture_work/forest.path.csv" 0 || { failed=1; return 0; }
   local chosen=" ${chosen_scenes[*]} "
   while read -r name scene path lift <&3; do
     [[ $chosen == "  " || $chosen == *" $name "* ]] || continue
-    [[ $name != town ]] || picture_generate town 1 || { failed=1; continue; }
+    [[ $name != town ]] || picture_generate town 1 "$old" || { failed=1; continue; }
+    [[ $name != garden ]] || picture_generate garden 1 "$new" || { failed=1; continue; }
     picture_scene "$name" "$scene" "$path" "$lift"
     chosen=${chosen/" $name "/" $name: done "}
   done 3< <(picture_sources)

@@ -31,8 +31,8 @@ constexpr std::uint32_t wood = 1, house = 2, tree_a = 3, tree_b = 4;
 TEST(BeforeSky, APointBelongsToTheDeepestNodeThatHoldsAllThatCoversIt) {
     const std::vector<Candidate> candidates = wood_and_house();
     BeforeSky sky;
-    sky.reserve(5);
-    sky.begin(candidates);
+    sky.reserve(5, 4);
+    sky.begin(candidates, {});
     ItemBuffer buffer;
     buffer.clear();
     buffer.cover(0, 0, sky.rank(tree_a));  // alone
@@ -47,22 +47,66 @@ TEST(BeforeSky, APointBelongsToTheDeepestNodeThatHoldsAllThatCoversIt) {
     EXPECT_EQ(pixels.at[0], 0);
     EXPECT_EQ(pixels.of_leaf[tree_a], 128);
     EXPECT_EQ(pixels.of_leaf[tree_b], 0) << "it shows nothing";
-    sky.begin(candidates);
+    sky.begin(candidates, {});
     EXPECT_EQ(sky.pixels().of_leaf[tree_a], 0);
 }
 
 TEST(BeforeSky, WhatOthersHideIsBehindThem) {
     const std::vector<Candidate> candidates = wood_and_house();
     BeforeSky sky;
-    sky.reserve(5);
-    sky.begin(candidates);
-    sky.cover_with_hidden({-1, -1, 0, 1});  // the left half
-    sky.cover_with_hidden({1, 1, -1, -1});  // an empty outline
+    sky.reserve(5, 4);
+    const std::array<HiddenNode, 3> hidden{HiddenNode{{-1, -1, 0, 1}, 0},       // the left half, below the root
+                                           HiddenNode{{0.5F, -1, 1, 1}, wood},  // a third tree, on the right
+                                           HiddenNode{{1, 1, -1, -1}, 0}};      // an empty outline
+    sky.begin(candidates, hidden);
     ItemBuffer buffer;
     buffer.clear();
-    for (const int x : {10, 150}) sky.show(house, 64, 1, buffer, x, 45);
-    EXPECT_EQ(sky.pixels().of_leaf[house], 64) << "the right point alone";
-    EXPECT_EQ(sky.pixels().at[house], 64);
+    for (const std::uint32_t leaf : {tree_a, tree_b, house}) {
+        for (const int x : {10, 100, 150}) sky.show(leaf, 64, 1, buffer, x, 45);
+    }
+    const SkyPixels pixels = sky.pixels();
+    EXPECT_EQ(pixels.of_leaf[house], 64) << "in the middle alone";
+    EXPECT_EQ(pixels.at[house], 64);
+    EXPECT_EQ(pixels.of_leaf[tree_a], 128) << "in the middle, and before the hidden tree";
+    EXPECT_EQ(pixels.at[tree_a], 64);
+    EXPECT_EQ(pixels.at[wood], 128) << "if the wood is missing, so is its hidden tree";
+}
+
+TEST(BeforeSky, ALoneRootIsBeforeTheSky) {
+    std::vector<Candidate> root(1);
+    root[0].choice_count = 1;
+    BeforeSky sky;
+    sky.reserve(1, 0);
+    sky.begin(root, {});
+    ItemBuffer buffer;
+    buffer.clear();
+    sky.show(0, 64, 0.5F, buffer, 3, 4);
+    EXPECT_EQ(sky.pixels().of_leaf[0], 64);
+    EXPECT_EQ(sky.pixels().at[0], 32);
+    sky.begin({}, {});
+    EXPECT_TRUE(sky.pixels().at.empty());
+}
+
+TEST(BeforeSky, DrawnSurfacesCountAlsoWhereANearerOneShows) {
+    const std::vector<Candidate> candidates = wood_and_house();
+    for (const bool near_first : {true, false}) {
+        BeforeSky sky;
+        sky.reserve(5, 0);
+        sky.begin(candidates, {});
+        ItemBuffer buffer;
+        buffer.clear();
+        const auto draw = [&](std::uint32_t leaf, float depth) {  // a square of 16 x 9 points in the middle
+            model::SeenPiece piece;
+            piece.at[0] = {0, 0, depth};
+            piece.pixels = 64 * 144;
+            buffer.draw({.number = leaf, .seed = leaf, .point_px = 64, .rank = sky.rank(leaf)}, std::span(&piece, 1));
+        };
+        draw(near_first ? tree_a : house, near_first ? 5 : 9);
+        draw(near_first ? house : tree_a, near_first ? 9 : 5);
+        ASSERT_EQ(buffer.at(80, 45).item, tree_a);
+        sky.show(tree_a, 64, 1, buffer, 80, 45);
+        EXPECT_EQ(sky.pixels().of_leaf[tree_a], 0) << "the house is behind, whichever was drawn first";
+    }
 }
 
 /// 1280 x 720 pixels.

@@ -255,5 +255,27 @@ TEST(Occlusion, PreparingLeavesOutWhatIsHiddenAndCountsIt) {
     }
 }
 
+TEST(Occlusion, WhatIsHiddenStillKeepsTheSkyFromWhatIsBeforeIt) {
+    model::Model alone = model_of({wall, upright(-1, 1, -1, 1, 8)}), before = model_of({wall, upright(-3.2, 3.2, -3.2, 3.2, -8)});
+    std::array<float, 2> wall_value{};
+    for (model::Model* m : {&alone, &before}) {
+        m->losses.assign(m->reps.size(), {});
+        m->colours = {{0.1F, 0.1F, 0.1F}, 0.01F};
+        const model::CostModel costs = model::default_costs();
+        prepare::PrepareOptions options;
+        options.full_depth = true;
+        prepare::Preparer preparer(*m, costs, options);
+        prepare::PreparedFrame frame;
+        preparer.reserve(frame);
+        preparer.run({}, {1280, 720}, 0, 0, 0, frame);
+        EXPECT_EQ(frame.hidden, m == &before ? 1U : 0U);
+        ASSERT_GE(frame.candidates.size(), 2U);
+        const prepare::Candidate& of_wall = frame.candidates[1];
+        wall_value[m == &before ? 1 : 0] = frame.choices[of_wall.first_choice + of_wall.choice_count - 1].value;
+    }
+    EXPECT_LT(wall_value[1], 0.6F * wall_value[0]) << "something is behind most of it";
+    EXPECT_GT(wall_value[1], 0);
+}
+
 }  // namespace
 }  // namespace surefoot

@@ -131,6 +131,62 @@ TEST(Prepare, ArraysAreEqualWithOneTwoAndFourWorkers) {
     EXPECT_GT(largest, 1000U);
 }
 
+/// Coarse forms look wrong, and cover a third too little or too much.
+void measure_losses(model::Model& m) {
+    m.colours = {{0.2F, 0.2F, 0.2F}, 0.02F};
+    m.losses.assign(m.reps.size(), {0.33F, {0.01F, 0.012F, 0.015F}});
+    for (const model::Node& node : m.nodes)
+        if (node.child_count == 0) m.losses[node.first_rep + node.rep_count - 1] = {};
+}
+
+TEST(Prepare, ValuesBeforeTheSkyAreSoundAndEqualAtAnyWorkerCount) {
+    model::Model m = test::town(7);
+    measure_losses(m);
+    Random random(5);
+    double before_sky = 0, as_the_things = 0;
+    for (int i = 0; i < 20; ++i) {
+        const Region region{random_pose(random, 200), 0.5, 0.05};
+        std::vector<PreparedFrame> frames;
+        PrepareOptions options;
+        for (const int workers : {1, 2, 4}) {
+            options.workers = workers;
+            frames.push_back(prepared(m, region, options));
+        }
+        EXPECT_TRUE(same(frames[0], frames[1]));
+        EXPECT_TRUE(same(frames[0], frames[2]));
+        const PreparedFrame& f = frames[0];
+        double leaves = 0;
+        for (const Candidate& c : f.candidates) {
+            const std::span<const Choice> choices(&f.choices[c.first_choice], c.choice_count);
+            EXPECT_GE(choices[0].value, 0);
+            for (std::size_t k = 1; k < choices.size(); ++k) {
+                EXPECT_GE(choices[k].value, choices[k - 1].value);
+                EXPECT_LE(choices[k].rate, choices[k - 1].rate);
+            }
+            if (c.child_count == 0) leaves += static_cast<double>(choices.back().value);
+        }
+        EXPECT_NEAR(leaves, f.full_value, 1e-4 * f.full_value);
+        EXPECT_NEAR(f.curve.full_value, f.full_value, 1e-2 * f.full_value) << "but for nodes that are fine enough unopened";
+        before_sky += f.full_value;
+        options.sky = {0.2F, 0.2F, 0.2F};  // of the things' own colour
+        as_the_things += prepared(m, region, options).full_value;
+    }
+    EXPECT_GT(before_sky, 1.05 * as_the_things) << "or the sky counts for nothing";
+}
+
+TEST(Prepare, AnotherResolutionKnowsTheSkyToo) {
+    model::Model m = test::town(7);
+    measure_losses(m);
+    Random random(5);
+    Preparer preparer(m, costs, {});
+    PreparedFrame frame;
+    preparer.reserve(frame);
+    for (int i = 0; i < 5; ++i) {
+        preparer.run({random_pose(random, 200), 0.5, 0.05}, {640, 360}, 1, 1.0, 0.1, frame);
+        EXPECT_EQ(preparer.value_at(1).full_value, frame.curve.full_value);
+    }
+}
+
 TEST(Prepare, EveryLeafThatAnyEyeOfTheRegionSeesIsCovered) {
     Random random(11);
     for (std::uint64_t seed = 0; seed < 150; ++seed) {

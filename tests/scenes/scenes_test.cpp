@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <map>
 
 #include "render/model/view.hpp"
 #include "tests/temporary_folder.hpp"
@@ -39,6 +40,7 @@ TEST(Scenes, HaveThePromisedSizes) {
     EXPECT_NEAR(static_cast<double>(made("forest", 10).scene.triangles()), 1050000, 20);
     EXPECT_NEAR(static_cast<double>(made("room", 1).scene.triangles()), 60000, 6000);
     EXPECT_NEAR(static_cast<double>(made("town", 1).scene.triangles()), 1.0e6, 1.2e5);
+    EXPECT_NEAR(static_cast<double>(made("garden", 1).scene.triangles()), 143000, 7000);
 }
 
 TEST(Scenes, GrowWithScale) {
@@ -115,6 +117,27 @@ TEST(Scenes, TownCallsForTexturesMasksAndBlending) {
     }
     EXPECT_TRUE(masked && blended);
     for (const importer::Material& material : made("forest", 0.1).scene.materials) EXPECT_EQ(material.image, none);
+}
+
+TEST(Scenes, TheGardenIsOfMaskedCardsAndOfThinThings) {
+    const GeneratedScene garden = made("garden", 1);
+    std::uint64_t cards = 0, all = 0;
+    std::size_t masks = 0;
+    for (const importer::Material& material : garden.scene.materials)
+        masks += material.alpha == model::AlphaMode::mask && material.image != none;
+    std::map<std::string, std::size_t> named;
+    for (const importer::Node& node : garden.scene.nodes) {
+        if (node.mesh == none) continue;
+        ++named[node.name.substr(0, node.name.find_first_of("0123456789 "))];
+        for (const importer::Primitive& p : garden.scene.meshes[node.mesh].primitives) {
+            all += p.indices.size() / 3;
+            if (garden.scene.materials[p.material].alpha == model::AlphaMode::mask) cards += p.indices.size() / 3;
+        }
+    }
+    EXPECT_EQ(masks, 5U) << "four of plants, one of wire";
+    EXPECT_GT(2 * cards, all);
+    for (const char* kind : {"apple", "hedge", "fern", "rose", "tuft", "front", "back", "left", "right", "wire"})
+        EXPECT_GT(named[kind], 8U) << kind;
 }
 
 TEST(Scenes, FurnitureInterpenetrates) {
@@ -194,8 +217,14 @@ Nearest nearest_solid(const GeneratedScene& generated) {
 }
 
 TEST(Paths, KeepClearOfWallsTrunksAndFurniture) {
-    for (const auto& [name, scale] :
-         {std::pair{"forest", 1.0}, {"forest", 4.0}, {"room", 1.0}, {"room", 3.0}, {"town", 1.0}, {"town", 0.1}}) {
+    for (const auto& [name, scale] : {std::pair{"forest", 1.0},
+                                      {"forest", 4.0},
+                                      {"room", 1.0},
+                                      {"room", 3.0},
+                                      {"town", 1.0},
+                                      {"town", 0.1},
+                                      {"garden", 1.0},
+                                      {"garden", 0.2}}) {
         for (const std::uint64_t seed : {1U, 2U, 3U}) {
             const Nearest nearest = nearest_solid(made(name, scale, seed));
             std::cout << name << " at " << scale << ", seed " << seed << ": nearest " << nearest.distance << " m ('"
@@ -257,7 +286,7 @@ Views views_of(const GeneratedScene& generated) {
 }
 
 TEST(Paths, PassNearClutterAndFarViewsTheSimpleAndTheComplex) {
-    for (const auto& [name, far_m] : {std::pair{"forest", 40.0}, {"room", 5.0}, {"town", 100.0}}) {
+    for (const auto& [name, far_m] : {std::pair{"forest", 40.0}, {"room", 5.0}, {"town", 100.0}, {"garden", 25.0}}) {
         const Views v = views_of(made(name, 1));
         std::cout << name << ": " << v.nearest_m << " to " << v.farthest_m << " m; at most " << v.max_near
                   << " things within 3 m, of " << v.min_triangles_passed << " to " << v.max_triangles_passed << " triangles; "

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/settings.hpp"
 #include "render/engine.hpp"
 #include "render/model/walk_file.hpp"
 #include "tools/walk/path_source.hpp"
@@ -77,6 +78,7 @@ Result<ValueShares> value_shares(const model::Model& model, const model::CostMod
     constexpr int preparations = 4;  // until the visits of a frame are limited as in a walk
     prepare::PrepareOptions options;
     options.workers = request.workers;
+    options.sky = request.sky;
     options.max_candidates = static_cast<std::uint32_t>(std::min<std::size_t>(options.max_candidates, model.nodes.size()));
     prepare::Preparer preparer(model, costs, options);
     prepare::PreparedFrame frame;
@@ -120,6 +122,7 @@ Result<ValueShares> value_shares_of_walk(const walk::WalkRequest& walk, ShareReq
     request.viewport = {walk.width, walk.height, walk.shift_x, walk.shift_y};
     request.period_s = 1.0 / walk.rate_hz;
     request.slice_us = walk.slice_us;
+    request.sky = config::colour_of(walk.sky);
     request.workers = std::max(1, walk.workers);
     return value_shares(*model, *costs, path->path, request, progress);
 }

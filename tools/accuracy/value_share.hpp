@@ -1,6 +1,7 @@
 // How much of the greatest value that a budget buys each selector shows. Off line, on frames prepared along a path.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -43,6 +44,7 @@ struct ShareRequest {
     double period_s = 1.0 / 30;  ///< from one pose to the next
     double slice_us = 1000;
     int workers = 1;
+    std::array<float, 3> sky = model::usual_sky;
     model::Viewport viewport;
     select::OracleLimits limits;
 };

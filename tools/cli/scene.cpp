@@ -54,7 +54,8 @@ void add_scene(CLI::App& app, Context& context) {
                               "surefoot scene town --scale 1 --seed 1 -o town.glb", a->json);
     const std::vector<std::string> words = scenes::scene_names();
     const std::vector<std::string_view> names(words.begin(), words.end());
-    c->add_option("name", a->name, "Scene: forest (100 trees at scale 1), room, or town (about 1 M triangles at scale 1)")
+    c->add_option("name", a->name,
+                  "Scene: forest (100 trees at scale 1), room, town (about 1 M triangles at scale 1), or garden (masked plants)")
         ->required()
         ->check(one_of(names));
     c->add_option("--scale", a->scale, "Factor on the size of the scene")

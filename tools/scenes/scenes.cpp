@@ -11,6 +11,7 @@
 #include "render/import/ostf.hpp"
 #include "rt/base/named.hpp"
 #include "tools/scenes/forest.hpp"
+#include "tools/scenes/garden.hpp"
 #include "tools/scenes/room.hpp"
 #include "tools/scenes/town.hpp"
 
@@ -22,7 +23,8 @@ struct Maker {
     GeneratedScene (*make)(double scale, std::uint64_t seed);
 };
 
-constexpr std::array makers{Maker{"forest", make_forest}, Maker{"room", make_room}, Maker{"town", make_town}};
+constexpr std::array makers{Maker{"forest", make_forest}, Maker{"room", make_room}, Maker{"town", make_town},
+                            Maker{"garden", make_garden}};
 
 struct Writer {
     std::string_view name;  ///< the ending of its files

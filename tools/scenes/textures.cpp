@@ -207,6 +207,62 @@ image::Image leaves(std::uint64_t seed, const Colour& dark, const Colour& light)
     });
 }
 
+image::Image frond(std::uint64_t seed, const Colour& dark, const Colour& light) {
+    return paint("frond", 64, 256, [&](double u, double v) {
+        const double x = 2 * std::abs(u - 0.5), y = 1 - v;  // from the rib, from the root
+        const double half = 0.95 * std::sin(pi * std::pow(y, 0.7)) * (1 - 0.4 * y);
+        const double leaflet = fraction(y * 22 - 0.8 * x);
+        const bool shows = x < 0.06 || (x < half && leaflet < 0.72 - 0.3 * x / std::max(half, 0.01));
+        Colour c = mix(dark, light, 0.3 + 0.5 * y + 0.2 * noise(u * 8, v * 32, seed));
+        c[3] = shows ? 255 : 0;
+        return c;
+    });
+}
+
+image::Image blades(std::uint64_t seed, const Colour& dark, const Colour& light) {
+    struct Blade {
+        double root, tip, height, half, tone;
+    };
+    Random random(seed);
+    std::vector<Blade> tuft;
+    for (int i = 0; i < 26; ++i) {
+        const double root = random.range(0.3, 0.7), tip = root + random.range(-0.3, 0.3);
+        const double height = random.range(0.5, 0.98), half = random.range(0.01, 0.02);
+        tuft.push_back({root, tip, height, half, random.unit()});
+    }
+    return paint("blades of grass", 128, 128, [&](double u, double v) {
+        Colour c = mix(dark, light, 0.5);
+        c[3] = 0;
+        const double y = 1 - v;
+        for (const Blade& blade : tuft) {
+            const double f = y / blade.height;
+            if (f > 1 || std::abs(u - glm::mix(blade.root, blade.tip, f * f)) > blade.half * (1.1 - f)) continue;
+            c = mix(dark, light, 0.6 * blade.tone + 0.4 * f);
+        }
+        return c;
+    });
+}
+
+image::Image petals(std::uint64_t seed, const Colour& dark, const Colour& light) {
+    return paint("petals", 64, 64, [&](double u, double v) {
+        const double x = u - 0.5, y = v - 0.5, r = 2 * std::hypot(x, y), angle = std::atan2(y, x);
+        const double rim = 0.82 + 0.12 * std::cos(5 * angle + 2.2 * r);
+        const double fold = 0.5 + 0.5 * std::cos(5 * angle + 9 * r);
+        Colour c = r < 0.16 ? rgb(232, 190, 70) : mix(dark, light, 0.55 * r + 0.3 * fold + 0.1 * noise(u * 16, v * 16, seed));
+        c[3] = r < rim ? 255 : 0;
+        return c;
+    });
+}
+
+image::Image wire_mesh(const Colour& wire) {
+    return paint("wire mesh", 64, 64, [&](double u, double v) {
+        const double x = std::abs(fraction(u * 4) - 0.5), y = std::abs(fraction(v * 4) - 0.5);
+        Colour c = shade(wire, x < 0.07 && y < 0.07 ? 1.15 : 0.95);
+        c[3] = x < 0.07 || y < 0.07 ? 255 : 0;
+        return c;
+    });
+}
+
 image::Image book_spines(std::uint64_t seed) {
     return paint("book spine", 32, 128, [&](double u, double v) {
         const double round = 0.75 + 0.3 * std::sin(u * pi);

@@ -18,6 +18,10 @@ image::Image wallpaper(std::uint64_t seed, const Colour& a, const Colour& b);   
 image::Image painting(std::uint64_t seed, int kind);  ///< landscape, abstract, still life, portrait of a house
 image::Image glass();                                 ///< mostly clear
 image::Image leaves(std::uint64_t seed, const Colour& dark, const Colour& light);  ///< a spray of leaves; clear between
+image::Image frond(std::uint64_t seed, const Colour& dark, const Colour& light);   ///< of a fern, its root below; clear between
+image::Image blades(std::uint64_t seed, const Colour& dark, const Colour& light);  ///< of grass, from below; clear between
+image::Image petals(std::uint64_t seed, const Colour& dark, const Colour& light);  ///< one flower from the front; clear around
+image::Image wire_mesh(const Colour& wire);                                        ///< four by four square meshes; clear between
 image::Image book_spines(std::uint64_t seed);                                      ///< bands and lettering, to be tinted
 
 }  // namespace surefoot::scenes

@@ -25,6 +25,7 @@ WalkStagesOptions stages_options(Session& s) {
     o.period_ns = s.grid.period_ns;
     o.budget_us = s.request.budget_ms > 0 ? s.request.budget_ms * 1e3 : frame_share * period_us;
     o.limit_us = frame_share * period_us;
+    o.shared_cores = !s.virtual_clock && s.plan.fifo && !s.rasterisers.empty() ? s.plan.all.count() : 0;
     o.target_error_rad = s.request.accuracy > 0 ? 1.0 / s.request.accuracy : 0;
     if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
     o.capture_missed = s.request.capture_file.empty() && s.observer.on_missed_frame;

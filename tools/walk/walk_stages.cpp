@@ -49,6 +49,7 @@ WalkStages::WalkStages(Engine& engine, PoseSource& pose_source, rt::Clock& clock
       kept_(kept),
       options_(options),
       request_(options.request),
+      limit_(options.limit_us, static_cast<double>(options.period_ns) * 1e-3, options.shared_cores),
       virtual_clock_(options.request.clock == rt::ClockKind::virtual_time) {}
 
 void WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
@@ -64,11 +65,11 @@ Correction WalkStages::correction_at(float resolution, bool filtered) const {
     return {controller.factor(), controller.headroom(static_cast<double>(of_table))};
 }
 
-double WalkStages::margin_us() const { return std::min(overshoot_.margin_us(), max_margin_share * options_.limit_us); }
+double WalkStages::margin_us() const { return std::min(overshoot_.margin_us(), max_margin_share * limit_.us()); }
 
 /// A cut that the in-frame check would not let through is not planned.
 double WalkStages::planned_us() const {
-    return request_.in_frame_check ? std::min(options_.budget_us, options_.limit_us - margin_us()) : options_.budget_us;
+    return request_.in_frame_check ? std::min(options_.budget_us, limit_.us() - margin_us()) : options_.budget_us;
 }
 
 void WalkStages::rehearse(std::int64_t until_ns) {
@@ -77,7 +78,7 @@ void WalkStages::rehearse(std::int64_t until_ns) {
     const prepare::PreparedFrame& set = prepared_.front();
     for (int i = 0; i < rehearsed_frames && clock_.now_ns() < until_ns - 2 * options_.period_ns; ++i) {
         SubmitLimits limits;
-        limits.limit_us = options_.limit_us;
+        limits.limit_us = limit_.us();
         limits.margin_us = margin_us();
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
@@ -153,6 +154,7 @@ void WalkStages::select(rt::FrameRecord& record) {
     const prepare::PreparedFrame& set = prepared_.front();
     const std::uint64_t age = now_.frame - std::min(set.frame, now_.frame);
     record.prepared_age = static_cast<std::uint32_t>(age);
+    limit_.count(set);
     record.cost_scale = static_cast<float>(request_.cost_scale);
     record.correction = static_cast<float>(correction_at(set.resolution, filtered_).factor);
     record.budget_us = static_cast<float>(planned_us());
@@ -206,7 +208,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
     SubmitLimits limits;
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
-    limits.limit_us = options_.limit_us;
+    limits.limit_us = limit_.us();
     limits.margin_us = margin_us();
     limits.frame_ns = record.due_ns;
     if (!virtual_clock_) {

@@ -13,6 +13,7 @@
 #include "rt/frame/form_correction.hpp"
 #include "rt/frame/loop.hpp"
 #include "rt/frame/overshoot.hpp"
+#include "tools/walk/frame_limit.hpp"
 #include "tools/walk/pose_source.hpp"
 #include "tools/walk/prepare_thread.hpp"
 #include "tools/walk/snapshots.hpp"
@@ -46,6 +47,7 @@ struct WalkStagesOptions {
     std::int64_t period_ns = 0;
     double budget_us = 0;  ///< of the whole frame, from its due time
     double limit_us = 0;   ///< of the in-frame check, from the due time
+    int shared_cores = 0;  ///< of real-time rasterisers and workers: FrameLimit; 0: they share none
     double target_error_rad = 0;
     std::uint64_t capture_frame = ~0ULL;  ///< number of the frame to keep
     bool capture_missed = false;          ///< also keep missed frames, one at a time
@@ -99,6 +101,7 @@ private:
     KeptFrame& kept_;
     WalkStagesOptions options_;
     const WalkRequest& request_;
+    FrameLimit limit_;
     const bool virtual_clock_;     ///< prepare on this thread, and add the device's virtual time to the clock
     rt::Corrections corrections_;  ///< by step of resolution, then those with the second mip level
     rt::Overshoot overshoot_;

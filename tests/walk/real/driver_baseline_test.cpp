@@ -35,6 +35,7 @@ TEST(DriverBaseline, AFramesAllocationsInTheDriverDoNotGrow) {
     const auto outcome = walk::run_walk(request, {}, {});
     if (!outcome && outcome.error().text().find("libEGL") != std::string::npos) GTEST_SKIP() << outcome.error().text();
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+    for (const rt::FrameRecord& r : outcome->records) ASSERT_EQ(r.value, 1.0F) << "full detail, frame " << r.frame;
     const report::WalkSummary& s = outcome->summary;
     std::cout << s.renderer << ": " << s.driver_allocations_per_frame << " allocations a frame\n";
     const auto known =

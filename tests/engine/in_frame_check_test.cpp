@@ -1,0 +1,49 @@
+// The in-frame check without a clock: what a charging device has charged counts once, and the next slice counts whole.
+#include <gtest/gtest.h>
+
+#include "tests/engine/forest_engine.hpp"
+
+namespace surefoot {
+namespace {
+
+using test::ample_us;
+
+struct InFrameCheck : testing::Test {
+    std::unique_ptr<Engine> engine = test::forest_engine();
+    prepare::PreparedFrame prepared;
+    Pose pose;
+
+    void SetUp() override {
+        ASSERT_NE(engine, nullptr);
+        engine->reserve(prepared);
+        pose = test::forest_pose(*engine);
+        engine->prepare({pose, 0.1, 0.06}, 0, 0, 0, prepared);
+    }
+    SubmitReport draw(double limit_us) {
+        engine->select(prepared, ample_us, {1, 1}, 0);
+        return engine->submit(pose, {.elapsed_us = 0, .limit_us = limit_us});
+    }
+    SubmitReport draw_last(double limit_us) {
+        engine->select_last();
+        return engine->submit(pose, {.elapsed_us = 0, .limit_us = limit_us});
+    }
+};
+
+TEST_F(InFrameCheck, LetsThroughWhatEndsAtTheLimitAndNotWhatEndsBeyondIt) {
+    const SubmitReport whole = draw(ample_us);
+    ASSERT_GT(whole.slices, 5U);
+    ASSERT_EQ(whole.downgraded_slices, 0U);
+    EXPECT_EQ(draw(whole.predicted_us * (1 + 1e-5)).downgraded_slices, 0U) << "costs are as predicted";
+    EXPECT_GT(draw(0.97 * whole.predicted_us).downgraded_slices, 0U);
+}
+
+TEST_F(InFrameCheck, DoesSoForTheFormsOfTheLastCut) {
+    draw(ample_us);
+    const SubmitReport whole = draw_last(ample_us);
+    ASSERT_GT(whole.slices, 5U);
+    EXPECT_GT(draw_last(0.97 * whole.predicted_us).downgraded_slices, 0U) << "groups that wait for their slice's end count";
+    EXPECT_EQ(draw_last(whole.predicted_us + 2 * engine->options().slice_us).downgraded_slices, 0U);
+}
+
+}  // namespace
+}  // namespace surefoot

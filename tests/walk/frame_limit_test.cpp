@@ -1,0 +1,37 @@
+// What preparing takes from frames that share its cores.
+#include <gtest/gtest.h>
+
+#include "tools/walk/frame_limit.hpp"
+
+namespace surefoot::walk {
+namespace {
+
+prepare::PreparedFrame set_of(std::uint64_t frame, double cpu_us) {
+    prepare::PreparedFrame set;
+    set.frame = frame;
+    set.cpu_us = cpu_us;
+    return set;
+}
+
+TEST(FrameLimit, LeavesTheKernelItsShareOfEachCore) {
+    FrameLimit limit(29'000, 33'000, 2);
+    EXPECT_EQ(limit.us(), 29'000) << "nothing is prepared yet";
+    for (std::uint64_t frame = 0; frame < 300; ++frame) limit.count(set_of(frame, 8'000));
+    EXPECT_NEAR(limit.us(), 0.92 * 33'000 - 4'000, 1) << "both cores together prepare";
+    for (std::uint64_t frame = 300; frame < 900; ++frame) limit.count(set_of(frame / 2, 8'000));
+    EXPECT_NEAR(limit.us(), 0.92 * 33'000 - 2'000, 150) << "a set that serves twice costs half";
+    for (std::uint64_t frame = 900; frame < 1500; ++frame) limit.count(set_of(frame, 100));
+    EXPECT_EQ(limit.us(), 29'000) << "cheap sets take nothing";
+}
+
+TEST(FrameLimit, TakesNoMoreThanHalfOfThePeriodAndNothingWhereNoCoreIsShared) {
+    FrameLimit heavy(29'000, 33'000, 2), alone(29'000, 33'000, 0), short_one(10'000, 33'000, 2);
+    for (std::uint64_t frame = 0; frame < 300; ++frame)
+        for (FrameLimit* limit : {&heavy, &alone, &short_one}) limit->count(set_of(frame, 1e6));
+    EXPECT_EQ(heavy.us(), 16'500);
+    EXPECT_EQ(alone.us(), 29'000);
+    EXPECT_EQ(short_one.us(), 10'000) << "a limit that is lower stays";
+}
+
+}  // namespace
+}  // namespace surefoot::walk

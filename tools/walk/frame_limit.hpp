@@ -1,0 +1,47 @@
+// By when a frame is to be done, so that the real-time threads together leave the kernel its share of each core.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "render/prepare/prepared.hpp"
+
+namespace surefoot::walk {
+
+/// Linux gives ordinary threads 5 % of each core (fair server from 6.12, real-time throttling before). If real-time threads leave
+/// them less, it takes the rest by force, in one piece of up to 50 ms a second, and a frame is late. Rasterisers and workers
+/// share cores: what preparing takes, frames may not. The frame thread calls all members.
+class FrameLimit {
+public:
+    static constexpr double real_time_share = 0.92;  ///< of a core
+    static constexpr double min_share = 0.5;         ///< of the period: preparing may not take more from frames
+
+    /// limit_us: without preparing, from the due time. shared_cores: of rasterisers and workers; 0: they share none.
+    FrameLimit(double limit_us, double period_us, int shared_cores)
+        : limit_us_(limit_us), period_us_(period_us), shared_cores_(shared_cores) {}
+
+    /// Call it once a frame, with the set that it has: a set that is new has cost its CPU time.
+    void count(const prepare::PreparedFrame& set) {
+        const bool fresh = !any_ || set.frame != newest_;
+        const double spent_us = fresh ? set.cpu_us : 0.0;
+        mean_us_ = any_ ? mean_us_ + (spent_us - mean_us_) / frames : spent_us;
+        newest_ = set.frame;
+        any_ = true;
+    }
+    [[nodiscard]] double us() const {
+        if (shared_cores_ <= 0) return limit_us_;
+        const double left_us = real_time_share * period_us_ - mean_us_ / shared_cores_;
+        return std::min(limit_us_, std::max(left_us, min_share * period_us_));
+    }
+
+private:
+    static constexpr double frames = 32;  ///< that the mean is of, about: the kernel counts by seconds
+
+    double limit_us_, period_us_;
+    int shared_cores_;
+    double mean_us_ = 0;  ///< CPU time of preparing, a frame
+    std::uint64_t newest_ = 0;
+    bool any_ = false;
+};
+
+}  // namespace surefoot::walk
