@@ -100,33 +100,34 @@ function shown(n,    text) {
 }
 
 # Where the whole group has one command, its heading names it.
-function row(promise, first, list, held, all, n,    command) {
+function row(promise, first, list, held, all, n, commits,    command) {
   command = one_command != "" ? "" : first ? " `" cell(command_of[promise]) "` |" : " |"
   return (first ? "| " promise " | " cell(target_of[promise]) : "| |") " | " list " | " (held == all ? "yes" : held == 0 ? "**no**" : held " of " all) \
-    " | " commit_of[n] " | " host_letter(host_of[n]) " | " substr(time_of[n], 1, 10) " |" command
+    " | " commits " | " host_letter(host_of[n]) " | " substr(time_of[n], 1, 10) " |" command
 }
 
-# Rows of one promise: scenes of the same commit, host and day share one, as long as it fits.
-function promise_rows(promise,    scenes, count, i, j, n, m, used, list, more, held, all, first) {
+# Rows of one promise: scenes of the same host and day share one, as long as it fits. Their commits stand in the order of the scenes.
+function promise_rows(promise,    scenes, count, i, j, n, m, used, list, more, commits, more_commits, held, all, first) {
   count = scenes_of(promise, scenes)
   first = 1
   for (i = 1; i <= count; ++i) {
     n = newest[promise, scenes[i]]
     if (n in used) continue
-    list = ""; held = all = 0
+    list = commits = ""; held = all = 0
     for (j = i; j <= count; ++j) {
       m = newest[promise, scenes[j]]
-      if ((m in used) || commit_of[m] != commit_of[n] || host_of[m] != host_of[n] || substr(time_of[m], 1, 10) != substr(time_of[n], 1, 10)) continue
+      if ((m in used) || host_of[m] != host_of[n] || substr(time_of[m], 1, 10) != substr(time_of[n], 1, 10)) continue
       more = list (list == "" ? "" : ", ") shown(m)
-      if (list != "" && width(row(promise, first, more, 10, 11, n)) > max_width) {
-        line(row(promise, first, list, held, all, n))
+      more_commits = index(commits, commit_of[m]) ? commits : commits (commits == "" ? "" : ", ") commit_of[m]
+      if (list != "" && width(row(promise, first, more, 10, 11, n, more_commits)) > max_width) {
+        line(row(promise, first, list, held, all, n, commits))
         first = held = all = 0
-        more = shown(m)
+        more = shown(m); more_commits = commit_of[m]
       }
-      list = more; used[m] = 1; ++all
+      list = more; commits = more_commits; used[m] = 1; ++all
       if (judged_of[m] == "true") ++held
     }
-    line(row(promise, first, list, held, all, n))
+    line(row(promise, first, list, held, all, n, commits))
     first = 0
   }
 }

@@ -45,6 +45,18 @@ has_text made/history.csv 'late,wood,3,' "old figures stay in the CSV"
 has_text made/trend.svg "late, target" "the trend"
 has_text made/trend.svg "2 of 3, 67 %" "the trend"
 
+# ---- scenes of one day share a row, whatever their commits ----
+cp figures.jsonl before.jsonl
+{
+  figure 2026-01-06T00:00:00Z late hill 1 '<=2' true ''
+  figure 2026-01-06T01:00:00Z late lake 2 '<=2' true '' | sed 's/abc1234/def5678/'
+  figure 2026-01-06T02:00:00Z late moor 2 '<=2' true ''
+} >>figures.jsonl
+report || { fault "figures of two commits are refused"; cat output; }
+has_text made/RESULTS.md "hill: 1, lake: 2, moor: 2 | yes | abc1234, def5678 |" "each commit once, in the order of the scenes"
+mv before.jsonl figures.jsonl
+report || fault "making it again"
+
 # ---- --check ----
 report --check || { fault "--check refuses what was just made"; cat output; }
 echo >>made/RESULTS.md
