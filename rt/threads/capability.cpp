@@ -130,7 +130,8 @@ std::vector<Lack> find_lacking(const Capabilities& c, int wanted_priority) {
                  : fmt::format("Boot with isolcpus=managed_irq,domain,{0} nohz_full={0}, or make a cpuset partition",
                                c.allowed.cpus().back())});
     }
-    // All FIFO work together leaves 8 % of each core (the rule of the session): throttling at 95 % never bites, below 90 % it does.
+    // All FIFO work together leaves a tenth of each core (the rule of the session): throttling at 95 % never bites, below 90 % it
+    // does.
     if (c.rt_runtime_us >= 0 && c.rt_runtime_us * 10 < c.rt_period_us * 9) {
         lacking.push_back({LackKind::throttled,
                            fmt::format("Real-time threads are throttled to {} of {} us", c.rt_runtime_us, c.rt_period_us),

@@ -64,7 +64,7 @@ Finding throttling(const Machine& m) {
     if (*runtime < 0) return pass("no throttling of real-time threads (sched_rt_runtime_us is -1)");
     const std::int64_t period = m.number("/proc/sys/kernel/sched_rt_period_us").value_or(1'000'000);
     std::string evidence = fmt::format("real-time threads get {} of {} us (sched_rt_runtime_us)", *runtime, period);
-    // All FIFO work together leaves 8 % of each core: a limit of 95 % never bites, one below 90 % does.
+    // All FIFO work together leaves a tenth of each core: a limit of 95 % never bites, one below 90 % does.
     if (*runtime * 10 >= period * 9) return pass(std::move(evidence));
     return fail(
         std::move(evidence),

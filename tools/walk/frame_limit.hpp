@@ -13,7 +13,7 @@ namespace surefoot::walk {
 /// share cores: what preparing takes, frames may not. The frame thread calls all members.
 class FrameLimit {
 public:
-    static constexpr double real_time_share = 0.92;  ///< of a core
+    static constexpr double real_time_share = 0.90;  ///< of a core
     static constexpr double min_share = 0.5;         ///< of the period: preparing may not take more from frames
 
     /// limit_us: without preparing, from the due time. shared_cores: of rasterisers and workers; 0: they share none.
