@@ -155,15 +155,22 @@ bool ShownPixels::draw(std::uint32_t leaf, const Candidate& candidate, const Cho
     return true;
 }
 
-/// A leaf without points is judged at the middle of its outline.
-void ShownPixels::show_before_sky(std::uint32_t leaf, const Weight& of) {
+void ShownPixels::show_before_sky(std::uint32_t leaf, float pixels, const Weight& of, int x, int y, const Grid& grid) {
+    const auto beside = [](int i, int points, float picture) {
+        return std::abs((static_cast<float>(2 * i + 1) / static_cast<float>(points)) - 1.0F) > picture;
+    };
+    if (!beside(x, across, grid.picture_x) && !beside(y, down, grid.picture_y))
+        sky_.show(leaf, pixels, of.pixel_weight, drawn_, x, y);
+}
+
+void ShownPixels::show_before_sky(std::uint32_t leaf, const Weight& of, const Grid& grid) {
     const auto point = [](float low, float high, int count) {
         const float middle = 0.5F * (std::clamp(low, -1.0F, 1.0F) + std::clamp(high, -1.0F, 1.0F));
         return std::min(count - 1, static_cast<int>(0.5F * (middle + 1.0F) * static_cast<float>(count)));
     };
     const Outline& o = of.outline;
     if (o.right > o.left && o.high > o.low)
-        sky_.show(leaf, shown_[leaf], of.pixel_weight, drawn_, point(o.left, o.right, across), point(o.low, o.high, down));
+        show_before_sky(leaf, shown_[leaf], of, point(o.left, o.right, across), point(o.low, o.high, down), grid);
 }
 
 std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::span<const Candidate> candidates,
@@ -215,15 +222,15 @@ std::span<const float> ShownPixels::run(std::span<const Weight> weights, std::sp
         }
         shown_[i] += show(weights[i].outline, finest(i).surface_px, depth_m, sky_.rank(i), grid);
     }
-    for (const std::uint32_t i : order_) show_before_sky(i, weights[i]);
-    for (const std::uint32_t i : coarse_) show_before_sky(i, weights[i]);
+    for (const std::uint32_t i : order_) show_before_sky(i, weights[i], grid);
+    for (const std::uint32_t i : coarse_) show_before_sky(i, weights[i], grid);
     for (int y = 0; y < down; ++y) {
         for (int x = 0; x < across; ++x) {
             const std::uint32_t i = drawn_.at(x, y).item;
             if (i == ItemBuffer::none) continue;
             const float pixels = open_[ItemBuffer::place(x, y)] * grid.point_px;
             shown_[i] += pixels;
-            sky_.show(i, pixels, weights[i].pixel_weight, drawn_, x, y);
+            show_before_sky(i, pixels, weights[i], x, y, grid);
         }
     }
     return std::span(shown_).first(candidates.size());

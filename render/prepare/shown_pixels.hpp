@@ -55,7 +55,10 @@ private:
     float show(const Outline& outline, float surface_px, float depth_m, std::uint32_t rank, const Grid& grid);
     /// What is large and was not drawn, over blocks of points: it is behind all that was drawn, and hides what comes after.
     float show_coarsely(const Outline& outline, float surface_px, const Grid& grid);
-    void show_before_sky(std::uint32_t leaf, const Weight& of);
+    /// Pixels of a leaf at a point. What is beside the picture is not before the sky yet.
+    void show_before_sky(std::uint32_t leaf, float pixels, const Weight& of, int x, int y, const Grid& grid);
+    /// A leaf without points is judged at the middle of its outline.
+    void show_before_sky(std::uint32_t leaf, const Weight& of, const Grid& grid);
     void begin_blocks();
     void end_blocks();
     /// False: its surface is unknown, or the frame's work is done.
