@@ -9,8 +9,8 @@
 namespace surefoot::walk {
 
 /// Linux gives ordinary threads 5 % of each core (fair server from 6.12, real-time throttling before). If real-time threads leave
-/// them less, it takes the rest by force: in one piece of up to 50 ms a second, so that a frame is late. Rasterisers and workers
-/// share cores: what preparing takes, frames may not. The frame thread calls all members.
+/// them less, it takes the rest by force. It does so in one piece of up to 50 ms a second, and a frame is late. Rasterisers and
+/// workers share cores: what preparing takes, frames may not. The frame thread calls all members.
 class FrameLimit {
 public:
     static constexpr double real_time_share = 0.90;  ///< of a core
