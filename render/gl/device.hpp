@@ -159,7 +159,7 @@ public:
     /// Virtual time charged so far, us (null backend); 0 elsewhere.
     [[nodiscard]] virtual double charged_us() const REQUIRES(draws) { return 0; }
     /// Whether it charges time for draws.
-    [[nodiscard]] virtual bool charges() const REQUIRES(draws) { return false; }
+    [[nodiscard]] virtual bool charges() const { return false; }
 };
 
 /// How the device draws, and by which filter `costs` were measured: unless they name it, by the one that is automatic here.
