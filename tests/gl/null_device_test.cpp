@@ -136,9 +136,12 @@ TEST(NullDevice, takes_a_table_as_measured_by_the_filter_that_it_names) {
         gl::DeviceOptions how;
         how.filter = drawn;
         auto device = gl::open_null_device(how, options);
-        EXPECT_TRUE(device.ok() && (*device)->load(scene.model, effects::assemble_program).ok());
-        EXPECT_NE((*device)->filter(), rt::TextureFilter::automatic);
-        return charge_of(**device, scene, 1);
+        EXPECT_TRUE(device.ok());
+        gl::Device& opened = **device;
+        opened.draws.plays();
+        EXPECT_TRUE(opened.load(scene.model, effects::assemble_program).ok());
+        EXPECT_NE(opened.filter(), rt::TextureFilter::automatic);
+        return charge_of(opened, scene, 1);
     };
     using rt::TextureFilter;
     const double table = charged(TextureFilter::automatic, TextureFilter::automatic);
