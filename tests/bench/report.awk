@@ -72,7 +72,7 @@ function paragraph(text, indent,    words, count, w, now) {
   count = split(text, words, " ")
   now = words[1]
   for (w = 2; w <= count; ++w) {
-    if (width(now " " words[w]) > max_width - 10) { line(now); now = indent words[w] } else now = now " " words[w]
+    if (width(now " " words[w]) > max_width) { line(now); now = indent words[w] } else now = now " " words[w]
   }
   line(now)
 }

@@ -7,6 +7,7 @@
 #include "render/prepare/before_sky.hpp"
 #include "render/prepare/shown_pixels.hpp"
 #include "render/prepare/value.hpp"
+#include "tests/prepare/plain_view.hpp"
 
 namespace surefoot::prepare {
 namespace {
@@ -109,15 +110,6 @@ TEST(BeforeSky, DrawnSurfacesCountAlsoWhereANearerOneShows) {
     }
 }
 
-/// 1280 x 720 pixels.
-const model::ViewScale view_of_sky = [] {
-    model::ViewScale scale;
-    scale.tan_half_x = 0.64F;
-    scale.tan_half_y = 0.36F;
-    scale.pixels_per_radian = 1000.0F;
-    return scale;
-}();
-
 TEST(BeforeSky, SmallLeavesAreJudgedAtTheirMiddle) {
     const std::vector<Candidate> candidates = wood_and_house();
     std::vector<Choice> choices(5);
@@ -132,12 +124,20 @@ TEST(BeforeSky, SmallLeavesAreJudgedAtTheirMiddle) {
     weights[tree_b].outline = {0.2F, 0.2F, 0.4F, 0.4F};  // before the sky
     ShownPixels shown;
     shown.reserve(5);
+    const model::ViewScale view_of_sky = test::plain_view();
     const auto px = shown.run(weights, candidates, choices, view_of_sky, view_of_sky);
     const SkyPixels sky = shown.before_sky();
     EXPECT_EQ(sky.of_leaf[tree_a], 0);
     EXPECT_GT(px[tree_b], 0);
     EXPECT_EQ(sky.of_leaf[tree_b], px[tree_b]);
     EXPECT_EQ(sky.at[tree_b], px[tree_b]);
+
+    model::ViewScale quarter = view_of_sky;  // of the wide view: the tree may come into it
+    quarter.tan_half_x *= 0.25F;
+    quarter.tan_half_y *= 0.25F;
+    const auto beside = shown.run(weights, candidates, choices, view_of_sky, quarter);
+    EXPECT_GT(beside[tree_b], 0);
+    EXPECT_EQ(shown.before_sky().of_leaf[tree_b], 0) << "not in the picture yet";
 }
 
 TEST(BeforeSky, WhatIsUncoveredThereLosesAsManyTimesMore) {

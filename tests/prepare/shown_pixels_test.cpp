@@ -11,20 +11,14 @@
 
 #include "render/prepare/value.hpp"
 #include "rt/base/random.hpp"
+#include "tests/prepare/plain_view.hpp"
 #include "tests/prepare/random_model.hpp"
 
 namespace surefoot::prepare {
 namespace {
 
 constexpr float view_px = 1280.0F * 720.0F;
-/// 1280 x 720 pixels.
-const model::ViewScale view = [] {
-    model::ViewScale scale;
-    scale.tan_half_x = 0.64F;
-    scale.tan_half_y = 0.36F;
-    scale.pixels_per_radian = 1000.0F;
-    return scale;
-}();
+const model::ViewScale view = test::plain_view();
 constexpr Outline whole_view{-1, -1, 1, 1};
 
 /// Leaves below one root, each with one choice.

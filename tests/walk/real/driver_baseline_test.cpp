@@ -12,13 +12,12 @@
 namespace surefoot {
 namespace {
 
-/// Allocations a frame of the walk below, as recorded on Debian 12 (Mesa 22.3), by the renderer's name. It draws full detail, so
-/// that neither values nor forms change it: f25674b had 2096.
+/// Allocations a frame of the walk below, as recorded on Debian 12 (Mesa 22.3), by the renderer's name.
 struct Baseline {
     std::string_view renderer;
     double allocations = 0;
 };
-constexpr std::array<Baseline, 1> baselines{{{"llvmpipe (LLVM 15.0.6, 256 bits)", 2077}}};
+constexpr std::array<Baseline, 1> baselines{{{"llvmpipe (LLVM 15.0.6, 256 bits)", 1754}}};
 
 TEST(DriverBaseline, AFramesAllocationsInTheDriverDoNotGrow) {
 #ifdef SUREFOOT_SANITIZED
@@ -28,16 +27,18 @@ TEST(DriverBaseline, AFramesAllocationsInTheDriverDoNotGrow) {
     request.backend = "egl";
     request.width = 320;
     request.height = 240;
-    request.selector = "flat";  // as many draws, whatever a cut is worth
-    request.in_frame_check = false;
     request.rasterisers = 2;
+    request.budget_ms = 0.7 * 1e3 / request.rate_hz;  // today's forms give about as many draws as the recorded walk had
     walk::prepare_process(request);
     const auto outcome = walk::run_walk(request, {}, {});
     if (!outcome && outcome.error().text().find("libEGL") != std::string::npos) GTEST_SKIP() << outcome.error().text();
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
-    for (const rt::FrameRecord& r : outcome->records) ASSERT_EQ(r.value, 1.0F) << "full detail, frame " << r.frame;
     const report::WalkSummary& s = outcome->summary;
     std::cout << s.renderer << ": " << s.driver_allocations_per_frame << " allocations a frame\n";
+    double draws = 0;
+    for (const rt::FrameRecord& r : outcome->records) draws += r.draws;
+    constexpr double recorded_draws = 770;  // a frame: f25674b made 1820 allocations for them
+    EXPECT_GE(draws, recorded_draws * static_cast<double>(outcome->records.size())) << "or less work is compared";
     const auto known =
         std::find_if(baselines.begin(), baselines.end(), [&](const Baseline& b) { return b.renderer == s.renderer; });
     if (known == baselines.end()) GTEST_SKIP() << "no baseline of this renderer is recorded";
