@@ -34,7 +34,7 @@ struct Settings {
     double shift_x = 0, shift_y = 0;           ///< off-axis projection, in half widths and half heights of the image
     double budget_ms = 0;                      ///< 0: what the rate allows
     double accuracy = 0;                       ///< rad^-1 to stop at; 0: as far as the budget goes
-    double resolution_pct = 100;               ///< of the sides at which frames are drawn; a step of 12.5; 0: chosen
+    double resolution_pct = 0;                 ///< of the sides at which frames are drawn; a step of 12.5; 0: chosen
     std::uint32_t samples = 1;                 ///< of a pixel: 1, 2 or 4
     rt::TextureFilter filter = rt::TextureFilter::automatic;
     double cost_scale = 1;          ///< factor on predicted costs (real clock) or on charged ones (virtual clock)

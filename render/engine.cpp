@@ -32,6 +32,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->options.device.null.rest_pass_us = static_cast<double>(costs.rest_pass_us(options.device.viewport));
     impl->options.resolution = model::stepped(options.resolution);
     if (impl->options.resolution > 0.0F) impl->drawn_resolution = impl->options.resolution;
+    impl->options.device.smaller = impl->options.resolution < 1.0F;
     auto device = gl::open_device(impl->options.device);
     if (!device) return device.error();
     impl->device = std::move(*device);
@@ -121,7 +122,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
             static_cast<double>(e.costs.combine_at(at, viewport).fixed_us + e.costs.enlarge_us(at, viewport)) + slice_end_us;
         const double planned_us = hints.planned_us[model::resolution_step(at)];
         const double items_us = (planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us));
-        return prepare::picture_loss(prepare::lost_share(curve, items_us)) + static_cast<double>(e.costs.blur_loss_at(at));
+        return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(at));
     };
     const float other = e.resolution.trial();
     if (other > 0.0F) e.resolution.judge(lost(out.curve, out.resolution), lost(e.preparer->value_at(other), other));

@@ -83,6 +83,7 @@ namespace surefoot::gl {
     X(RenderbufferStorageMultisample, PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC) \
     X(ShaderSource, PFNGLSHADERSOURCEPROC)                                     \
     X(TexImage2D, PFNGLTEXIMAGE2DPROC)                                         \
+    X(TexParameterf, PFNGLTEXPARAMETERFPROC)                                   \
     X(TexParameteri, PFNGLTEXPARAMETERIPROC)                                   \
     X(TexStorage3D, PFNGLTEXSTORAGE3DPROC)                                     \
     X(TexSubImage3D, PFNGLTEXSUBIMAGE3DPROC)                                   \

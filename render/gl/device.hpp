@@ -66,6 +66,7 @@ struct DeviceOptions {
     bool rest = false;          ///< has targets for a picture at rest
     std::uint32_t samples = 1;  ///< of a pixel: 1, 2 or 4; see Device::samples()
     rt::TextureFilter filter = rt::TextureFilter::automatic;
+    bool smaller = false;        ///< frames below full resolution show the mip levels of the whole one; prepared by load()
     bool second_filter = false;  ///< prepares set_filter(), where `filter` is automatic and the driver is software
 };
 

@@ -2,6 +2,7 @@
 #include "render/gl/gl_device.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -84,6 +85,14 @@ void GlDevice::set_filter(rt::TextureFilter filter) {
     state_known_ = false;
 }
 
+/// A smaller picture is enlarged: it shows the mip levels of the whole one.
+void GlDevice::set_texture_detail(std::size_t step) {
+    if (step == detail_step_ || !options_.smaller) return;
+    detail_step_ = step;
+    set_mip_bias(gl_, tables_.textures, resources_, std::log2(model::resolution_steps[step]));
+    state_known_ = false;
+}
+
 Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& programs) {
     free_resources(gl_, resources_);
     tables_ = draw::make_tables(model);
@@ -92,6 +101,7 @@ Result<void> GlDevice::load(const model::Model& model, const ProgramFactory& pro
     if (!resources) return resources.error();
     resources_ = std::move(*resources);
     set_filter_ = filter();
+    detail_step_ = 0;
     sun_direction_ = vec3(glm::normalize(model.sun_direction));
     warm_up();
     if (lost_)
@@ -119,10 +129,11 @@ void GlDevice::warm_up() {
     const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
     kinds.erase(std::unique(kinds.begin(), kinds.end(), same), kinds.end());
 
-    for (const bool second : {true, false}) {  // the filter of the first frame comes last
-        if (second && !switches_filter()) continue;
-        set_filter(second ? rt::TextureFilter::trilinear : filter());
-        begin_frame(Pose{});
+    constexpr unsigned second = 2, smaller = 1;
+    for (unsigned way = 4; way-- > 0;) {  // that of the first frame comes last
+        if (((way & second) != 0 && !switches_filter()) || ((way & smaller) != 0 && !options_.smaller)) continue;
+        set_filter((way & second) != 0 ? rt::TextureFilter::trilinear : filter());
+        begin_frame(Pose{}, (way & smaller) != 0 ? model::resolution_steps.back() : 1.0F);
         for (auto& [state, pending] : kinds) {
             if (used_instances_ >= frame_.instances.size()) break;
             set_blending(tables_.parts[pending.part].blended);
@@ -243,6 +254,7 @@ void GlDevice::begin_rest(const Pose& pose, const dvec2& offset_px) {
         }
     }
     if (lost_ || rest_.picture.framebuffer == 0) return;
+    set_texture_detail(0);
     rest_resolved_ = false;
     draw_into(drawn_into(rest_.picture, 0));
     clear_target();

@@ -73,6 +73,7 @@ private:
     void warm_up() REQUIRES(draws);
     void warm_up_passes() REQUIRES(draws);
     void start_picture(const Pose& pose) REQUIRES(draws);
+    void set_texture_detail(std::size_t step) REQUIRES(draws);
     void draw_into(const Target& target) REQUIRES(draws);
     [[nodiscard]] const Target& drawn_into(const Target& shown, std::size_t step) const REQUIRES(draws) {
         return samples_.samples > 1 ? samples_.steps[step] : shown;
@@ -106,6 +107,8 @@ private:
     Resources resources_;
     draw::DrawTables tables_;
     rt::TextureFilter set_filter_ GUARDED_BY(draws) = rt::TextureFilter::bilinear;  ///< in the parameters of all textures
+
+    std::size_t detail_step_ GUARDED_BY(draws) = 0;  ///< the step for which all textures choose their mip levels
 
     Pose pose_ GUARDED_BY(draws);
     mat4 view_projection_ GUARDED_BY(draws){1.0F};

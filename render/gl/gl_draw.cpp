@@ -38,6 +38,7 @@ void GlDevice::begin_frame(const Pose& pose, float resolution) {
     stats_.samples = samples();
     stats_.filter = set_filter_;
     if (lost_) return;
+    set_texture_detail(step_);
     draw_into(drawn_into(targets_.steps[step_], step_));
     clear_target();
 }

@@ -135,6 +135,14 @@ void set_mip_levels(const Api& gl, const draw::TextureLayout& layout, const Reso
     }
 }
 
+void set_mip_bias(const Api& gl, const draw::TextureLayout& layout, const Resources& resources, float levels) {
+    for (std::size_t i = 0; i < resources.textures.size(); ++i) {
+        if (layout.arrays[i].levels < 2) continue;
+        gl.BindTexture(GL_TEXTURE_2D_ARRAY, resources.textures[i]);
+        gl.TexParameterf(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_LOD_BIAS, levels);
+    }
+}
+
 void free_resources(const Api& gl, Resources& resources) {
     for (Program& program : resources.programs) delete_program(gl, program);
     if (!resources.textures.empty())

@@ -46,6 +46,8 @@ Result<Resources> load_resources(const Api& gl, const model::Model& model, std::
 void free_resources(const Api& gl, Resources& resources);
 /// Textures are read from their two nearest mip levels, or from the nearest one. Leaves another texture bound.
 void set_mip_levels(const Api& gl, const draw::TextureLayout& layout, const Resources& resources, bool two);
+/// Mip levels are chosen as for a picture of 2^-levels times the size. Leaves another texture bound.
+void set_mip_bias(const Api& gl, const draw::TextureLayout& layout, const Resources& resources, float levels);
 
 /// An Error naming `place` if GL has recorded an error since the last check.
 Result<void> check_errors(const Api& gl, const std::string& place, const std::string& remedy);

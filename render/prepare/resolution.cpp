@@ -13,21 +13,10 @@ double lost_share(const ValueCurve& curve, double items_us) {
     return std::isfinite(lost) ? std::clamp(lost, 0.0, 1.0) : 0.0;
 }
 
-constexpr double loss_of_all = 0.4;  // of the picture, where all value is lost
-
-double picture_loss(double lost_share) { return loss_of_all * std::sqrt(std::max(lost_share, 0.0)); }
-
-double share_that_looks_lost(double picture_loss) {
-    const double root = std::clamp(picture_loss / loss_of_all, 0.0, 1.0);
-    return root * root;
-}
-
-float ResolutionChooser::gain() const {
-    return at_ == 0 ? 0.0F : static_cast<float>(share_that_looks_lost(lost_[0]) - share_that_looks_lost(lost_[at_]));
-}
+float ResolutionChooser::gain() const { return at_ == 0 ? 0.0F : static_cast<float>(lost_[0] - lost_[at_]); }
 
 float ResolutionChooser::trial() {
-    if (++frame_ % every != 0) return 0.0F;
+    if (++frame_ % every != 0 && decided_) return 0.0F;
     tried_ = (tried_ + 1) % model::resolution_steps.size();
     if (tried_ == at_) tried_ = (tried_ + 1) % model::resolution_steps.size();
     return model::resolution_steps[tried_];
@@ -42,7 +31,8 @@ void ResolutionChooser::judge(double lost_now, double lost_tried) {
     if (tried_ != last) return;
     const auto best = static_cast<std::uint32_t>(std::min_element(lost_.begin(), lost_.end()) - lost_.begin());
     const bool wins = lost_[best] < lost_now * (1.0 - margin) - unseen;
-    if (wins && best == best_before_) at_ = best;
+    if (wins && (best == best_before_ || !decided_)) at_ = best;
+    decided_ = true;
     best_before_ = wins ? best : at_;
 }
 

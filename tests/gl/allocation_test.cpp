@@ -145,6 +145,32 @@ TEST(Allocation, a_change_of_the_filter_makes_none_and_compiles_nothing) {
     EXPECT_EQ(counted, 0);
 }
 
+TEST(Allocation, a_change_of_the_resolution_makes_none_and_compiles_nothing) {
+    if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
+    test::SmallModel small;
+    model::Material picture = test::plain(1, 1, 1, 1, model::effect_texture);
+    picture.texture = small.texture({255, 0, 0, 255}, {0, 0, 255, 255}, 64);
+    const auto material = small.material(picture);
+    Counted scene;
+    for (int i = 0; i < 100; ++i) {
+        const auto node = small.square(material, test::at(0.02 * i - 1, 0, 8.0 - 0.01 * i), 0.1F);
+        scene.items.push_back({node, node - 1});
+    }
+    scene.model = small.finish();
+    gl::DeviceOptions options;
+    options.viewport = {64, 64};
+    options.smaller = true;
+    auto device = gl::open_device(options);
+    if (!device) GTEST_SKIP() << device.error().text();
+    (*device)->draws.plays();
+    ASSERT_TRUE((*device)->load(scene.model, effects::assemble_program).ok());
+    counted = 0;
+    counting = true;
+    for (const float resolution : {1.0F, 0.5F, 0.75F, 1.0F, 0.875F}) frame(**device, scene.items, resolution);
+    counting = false;
+    EXPECT_EQ(counted, 0);
+}
+
 TEST(Allocation, a_picture_at_rest_makes_none_and_compiles_nothing) {
     if (!can_count()) GTEST_SKIP() << "built with sanitizers: operator new is theirs";
     const auto scene = many_squares();

@@ -160,6 +160,22 @@ TEST_F(ResourceObjects, a_change_of_the_filter_takes_two_calls_for_each_array_wi
     EXPECT_EQ(blended, 2);
 }
 
+TEST_F(ResourceObjects, a_bias_of_mip_levels_is_set_for_each_array_that_has_them) {
+    static int biased;
+    biased = 0;
+    gl::Api api = test::fake_api();
+    api.TexParameterf = [](GLenum, GLenum what, GLfloat value) {
+        biased += what == GL_TEXTURE_LOD_BIAS && value == -0.5F ? 1 : 0;
+    };
+    draw::TextureLayout layout;
+    layout.arrays.resize(3);
+    for (const auto& [i, levels] : {std::pair{0U, 4U}, {1U, 1U}, {2U, 7U}}) layout.arrays[i].levels = levels;
+    gl::Resources resources;
+    resources.textures = {11, 12, 13};
+    gl::set_mip_bias(api, layout, resources, -0.5F);
+    EXPECT_EQ(biased, 2);
+}
+
 TEST_F(ResourceObjects, fewer_samples_are_tried_where_more_do_not_fit_and_nothing_is_left_of_them) {
     FakeGl::get().bad_framebuffer = 3;  // of those with four
     auto targets = gl::make_sample_targets(test::fake_api(), {64, 64}, 4);

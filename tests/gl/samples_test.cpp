@@ -225,5 +225,28 @@ TEST(Filter, trilinear_blends_two_mip_levels_and_bilinear_shows_one) {
     EXPECT_EQ(automatic, drawn == rt::TextureFilter::trilinear ? blended : nearest);
 }
 
+TEST(Filter, a_smaller_picture_shows_the_mip_levels_of_the_whole_one) {
+    test::SmallModel small;
+    model::Material material = test::plain(1, 1, 1);
+    material.texture = small.texture({255, 255, 255, 255}, {255, 255, 255, 255}, 64);
+    material.effects = model::effect_texture;
+    const auto node = small.square(small.material(material), test::at(0, 0, -1.7));  // 56 pixels: level 0
+    QualityScene scene{small.finish(), {{node, node - 1}}};
+    const auto first = scene.model.texels.begin() + static_cast<std::ptrdiff_t>(scene.model.textures[0].first_byte);
+    std::fill(first + 4 * 64 * 64, scene.model.texels.end(), std::byte{0});  // levels 1 and up are black
+    gl::DeviceOptions options;
+    options.viewport = samples_size;
+    options.filter = rt::TextureFilter::bilinear;
+    for (const bool smaller : {false, true}) {
+        options.smaller = smaller;
+        const auto device = opened(scene, options);
+        if (!device) GTEST_SKIP() << "no EGL";
+        EXPECT_EQ(red_at(frame_of(*device, scene), 80, 48), 255);
+        EXPECT_EQ(red_at(frame_of(*device, scene, 0.5F), 80, 48), smaller ? 255 : 0);
+        EXPECT_EQ(red_at(frame_of(*device, scene, 0.625F), 80, 48), smaller ? 255 : 0);
+        EXPECT_EQ(red_at(frame_of(*device, scene), 80, 48), 255);
+    }
+}
+
 }  // namespace
 }  // namespace surefoot
