@@ -125,7 +125,10 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
         return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(at));
     };
     const float other = e.resolution.trial();
-    if (other > 0.0F) e.resolution.judge(lost(out.curve, out.resolution), lost(e.preparer->value_at(other), other));
+    if (other > 0.0F) {
+        e.resolution.judge(lost(out.curve, out.resolution), lost(e.preparer->value_at(other), other));
+        out.cpu_us += e.preparer->value_at_us();
+    }
     out.resolution_value = e.resolution.gain() * out.curve.full_value;
 }
 

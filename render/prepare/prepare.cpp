@@ -420,12 +420,17 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
 
 const ValueCurve& Preparer::value_at(float resolution) {
     Impl& s = *impl_;
+    const std::int64_t cpu_start = rt::own_cpu_ns();
+    s.worker_cpu_ns.store(0, std::memory_order_relaxed);
     s.tried.resolution = resolution;
     s.make_room(s.tried);
     const RegionView view = s.view_of(s.tried, s.last_speed_mps, s.last_turn_rps);
     s.evaluate_all(view, s.tried);
     s.set_values(view, s.tried);
+    s.tried.cpu_us = 1e-3 * static_cast<double>(rt::own_cpu_ns() - cpu_start + s.worker_cpu_ns.load());
     return s.tried.curve;
 }
+
+double Preparer::value_at_us() const { return impl_->tried.cpu_us; }
 
 }  // namespace surefoot::prepare

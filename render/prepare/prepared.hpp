@@ -135,6 +135,7 @@ public:
              PreparedFrame& out);
     /// The same frame's values and costs at another resolution, without a new search for what is visible.
     const ValueCurve& value_at(float resolution);
+    [[nodiscard]] double value_at_us() const;  ///< CPU time of the last value_at(), all workers together
 
     /// Predicts the costs of the choices.
     [[nodiscard]] const model::ItemCosts& item_costs() const;

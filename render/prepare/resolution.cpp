@@ -23,15 +23,15 @@ float ResolutionChooser::trial() {
 }
 
 void ResolutionChooser::judge(double lost_now, double lost_tried) {
-    constexpr double margin = 0.4;  // of what is lost now: a softer picture must win clearly
+    constexpr double softer = 0.4, sharper = 0.1;  // of what is lost now, by which another must win
     constexpr double unseen = 5e-4;
     lost_[at_] = lost_now;
     lost_[tried_] = lost_tried;
-    const std::size_t last = at_ + 1 == lost_.size() ? at_ - 1 : lost_.size() - 1;
-    if (tried_ != last) return;
+    if (++judged_ + 1 < lost_.size()) return;
+    judged_ = 0;
     const auto best = static_cast<std::uint32_t>(std::min_element(lost_.begin(), lost_.end()) - lost_.begin());
-    const bool wins = lost_[best] < lost_now * (1.0 - margin) - unseen;
-    if (wins && (best == best_before_ || !decided_)) at_ = best;
+    const bool wins = lost_[best] < lost_now * (1.0 - (best > at_ ? softer : sharper)) - unseen;
+    if (wins && (best == best_before_ || !decided_)) at_ = tried_ = best;
     decided_ = true;
     best_before_ = wins ? best : at_;
 }

@@ -9,10 +9,10 @@
 
 namespace surefoot::prepare {
 
-/// Compares what the budget buys at each resolution. Every third frame one other resolution is evaluated, in turns. When all have
-/// been, the best one is taken if it wins by a margin, and won the round before too. The first round takes each frame, and
-/// decides alone. Deterministic. Source: dynamic video resolution, Montrym et al. 1997 (InfiniteReality); here it is priced like
-/// any form.
+/// Compares what the budget buys at each resolution. With every third set one other resolution is evaluated, in turns. When all
+/// have been, the best one is taken if it wins by a margin, and won the round before too. The margin is larger for a softer
+/// picture. The first round takes each set, and decides alone. Deterministic.
+/// Source: dynamic video resolution, Montrym et al. 1997 (InfiniteReality); here it is priced like any form.
 class ResolutionChooser {
 public:
     [[nodiscard]] float resolution() const { return model::resolution_steps[at_]; }
@@ -28,7 +28,8 @@ private:
     static constexpr std::uint32_t every = 3;
     std::uint32_t at_ = 0, tried_ = 0, best_before_ = 0, frame_ = 0;
     std::array<double, model::resolution_steps.size()> lost_{};
-    bool decided_ = false;  ///< once
+    std::uint32_t judged_ = 0;  ///< of this round
+    bool decided_ = false;      ///< once
 };
 
 /// Share of the value that is lost where `items_us` may be spent on items, 0..1.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "rt/frame/controller.hpp"
 
@@ -19,9 +20,19 @@ public:
     void update(std::size_t state, double predicted_us, double actual_us) {
         state = std::min(state, states - 1);
         if (!known_[state]) of_[state] = of_[last_];
+        in_state_ = known_[state] && state == last_ ? in_state_ + 1 : 0;
         known_[state] = true;
         last_ = state;
+        const double before = of_[state].factor();
         of_[state].update(predicted_us, actual_us);
+        if (in_state_ > learnt_after) drift_ *= of_[state].factor() / before;
+        left_[state] = drift_;
+    }
+    /// The factor of a state, as it may be by now: what has changed since in the state that was drawn is the machine's doing.
+    [[nodiscard]] double expected(std::size_t state) const {
+        state = std::min(state, states - 1);
+        if (!known_[state]) return of_[last_].factor();
+        return std::clamp(of_[state].factor() * drift_ / left_[state], CostController::lowest, CostController::highest);
     }
     /// What the states from `first` on have learnt is old: they start again as if no frame had been drawn in them. The last
     /// frame's state must not be one of them.
@@ -33,8 +44,13 @@ public:
 
 private:
     std::array<CostController, states> of_{};
+    static constexpr std::uint32_t learnt_after = 32;  // frames after which a state's own error is learnt
+
     std::array<bool, states> known_{};
+    std::array<double, states> left_{};  ///< drift_ when it was drawn last
     std::size_t last_ = 0;
+    std::uint32_t in_state_ = 0;  ///< frames
+    double drift_ = 1;            ///< of the drawn state's factor, once its own error was learnt
 };
 
 }  // namespace surefoot::rt

@@ -237,6 +237,7 @@ TEST(Filter, a_smaller_picture_shows_the_mip_levels_of_the_whole_one) {
     gl::DeviceOptions options;
     options.viewport = samples_size;
     options.filter = rt::TextureFilter::bilinear;
+    options.rest = true;
     for (const bool smaller : {false, true}) {
         options.smaller = smaller;
         const auto device = opened(scene, options);
@@ -244,7 +245,19 @@ TEST(Filter, a_smaller_picture_shows_the_mip_levels_of_the_whole_one) {
         EXPECT_EQ(red_at(frame_of(*device, scene), 80, 48), 255);
         EXPECT_EQ(red_at(frame_of(*device, scene, 0.5F), 80, 48), smaller ? 255 : 0);
         EXPECT_EQ(red_at(frame_of(*device, scene, 0.625F), 80, 48), smaller ? 255 : 0);
-        EXPECT_EQ(red_at(frame_of(*device, scene), 80, 48), 255);
+        const gl::PixelImage full = frame_of(*device, scene);
+        EXPECT_EQ(red_at(full, 80, 48), 255);
+        frame_of(*device, scene, 0.5F);
+        device->draws.plays();
+        device->bind();
+        if (device->rest_support() == gl::RestSupport::none) continue;
+        device->begin_rest(straight_ahead(), dvec2(0));
+        device->draw_rest(scene.items, gl::Parts::all);
+        device->show_rest(1);
+        device->finish_rest_frame();
+        const auto rested = device->read_pixels();
+        ASSERT_TRUE(rested.ok());
+        EXPECT_EQ(rested->rgba, full.rgba) << "at rest, after a smaller picture";
     }
 }
 

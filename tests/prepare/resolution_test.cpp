@@ -1,6 +1,9 @@
 // The choice of the picture's resolution.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "render/prepare/resolution.hpp"
 
 namespace surefoot::prepare {
@@ -34,6 +37,33 @@ TEST(ResolutionChooser, NeitherASmallGainNorAShortOneChangesAnything) {
         walk(chooser, 12, [](float) { return 0.1; });
     }
     EXPECT_EQ(chooser.resolution(), 1.0F);
+}
+
+TEST(ResolutionChooser, ASofterPictureNeedsMoreThanASharperOne) {
+    ResolutionChooser chooser;
+    walk(chooser, 60, [](float r) { return r == 1.0F ? 0.1 : 0.07; });
+    EXPECT_EQ(chooser.resolution(), 1.0F) << "three tenths less are not enough";
+    walk(chooser, 60, [](float r) { return r == 0.5F ? 0.05 : 0.1; });
+    EXPECT_EQ(chooser.resolution(), 0.5F);
+    walk(chooser, 60, [](float r) { return r == 0.5F ? 0.05 : 0.047; });
+    EXPECT_EQ(chooser.resolution(), 0.5F);
+    walk(chooser, 60, [](float r) { return r == 1.0F ? 0.04 : 0.05; });
+    EXPECT_EQ(chooser.resolution(), 1.0F) << "a fifth less is";
+}
+
+TEST(ResolutionChooser, ARoundTriesAllOthersAfterAChangeToo) {
+    ResolutionChooser chooser;
+    walk(chooser, 4, [](float r) { return r == 0.5F ? 0.02 : 0.1; });
+    ASSERT_EQ(chooser.resolution(), 0.5F);
+    std::vector<float> tried;
+    for (int i = 0; i < 12; ++i) {
+        const float other = chooser.trial();
+        if (!(other > 0.0F)) continue;
+        tried.push_back(other);
+        chooser.judge(0.02, 0.1);
+    }
+    std::sort(tried.begin(), tried.end());
+    EXPECT_EQ(tried, (std::vector<float>{0.625F, 0.75F, 0.875F, 1.0F}));
 }
 
 TEST(ResolutionChooser, DecidesAtOnceInTheBeginning) {

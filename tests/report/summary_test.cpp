@@ -252,6 +252,9 @@ TEST(Summary, UnusedTimeIsOfFramesThatDetailCouldImprove) {
     EXPECT_EQ(s.coarse_frames, 1U);
     summarize(frames, period_ns, s);
     EXPECT_EQ(s.coarse_frames, 1U) << "a summary is made anew";
+    frames[0].resolution = 0.5F;
+    summarize(frames, period_ns, s);
+    EXPECT_NEAR(s.unused_ms.mean, 16.0 / 3, 1e-9) << "all of its detail, but smaller";
 }
 
 TEST(Pictures, PsnrIsPooledAndTheWorstFrameIsNamed) {

@@ -176,6 +176,22 @@ TEST(Corrections, EachStateKeepsItsOwnAndStartsWithTheLastOnes) {
     EXPECT_NEAR(c.of(0).factor(), 1.5, 1e-9);
 }
 
+TEST(Corrections, WhatSlowsTheDrawnStateSlowsTheOthers) {
+    Corrections c;
+    for (int i = 0; i < 100; ++i) c.update(0, 100, 100);
+    EXPECT_NEAR(c.expected(4), 1, 1e-9) << "not drawn yet: as the last state";
+    for (int i = 0; i < 100; ++i) c.update(4, 100, 120);
+    EXPECT_NEAR(c.expected(4), 1.2, 1e-9);
+    EXPECT_NEAR(c.expected(0), 1, 1e-9) << "its own prices were learnt, the machine is as before";
+    for (int i = 0; i < 100; ++i) c.update(4, 100, 180);
+    EXPECT_NEAR(c.expected(0), 1.5, 1e-9) << "half as much again in what is drawn";
+    EXPECT_NEAR(c.of(0).factor(), 1, 1e-9);
+    for (int i = 0; i < 100; ++i) c.update(4, 100, 120);
+    EXPECT_NEAR(c.expected(0), 1, 1e-9) << "and back";
+    for (int i = 0; i < 100; ++i) c.update(4, 100, 1000);
+    EXPECT_LE(c.expected(0), CostController::highest);
+}
+
 TEST(Overshoot, IsTheUpperTwentiethOfRecentFrames) {
     Overshoot o;
     EXPECT_EQ(o.margin_us(), 0);

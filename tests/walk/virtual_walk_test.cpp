@@ -41,6 +41,7 @@ TEST(VirtualWalk, EverySlotIsRunOrSkippedExactly) {
 
 TEST(VirtualWalk, RecordsAndLedgerSayWhatWasBoughtBesideForms) {
     walk::WalkRequest request = test::Forest::get().virtual_request(20);
+    request.resolution_pct = 100;
     for (const rt::FrameRecord& r : walk(request).records) {
         EXPECT_EQ(r.bought_items + r.refused_items, 0U);
         EXPECT_EQ(r.bought_us, 0.0F);
@@ -56,6 +57,31 @@ TEST(VirtualWalk, RecordsAndLedgerSayWhatWasBoughtBesideForms) {
     const auto ledger = read_text(request.ledger_file);
     ASSERT_TRUE(ledger.ok());
     EXPECT_NE(ledger->find(",bought_items,bought_us,refused_items,"), std::string::npos);
+}
+
+TEST(VirtualWalk, ChoosesTheResolutionWhereTimeIsShortAndAlikeAtAnyWorkerCount) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(60);
+    auto costs = std::make_shared<model::CostModel>(model::default_costs());
+    costs->combine.submit_weight *= 0.1F;
+    costs->combine.raster_weight *= 20.0F;  // pixels are dear, and a softer picture loses little
+    for (float& loss : costs->blur_loss) loss *= 0.2F;
+    request.given_costs = costs;
+    request.workers = 1;
+    const walk::WalkOutcome chosen = walk(request);
+    EXPECT_LT(chosen.summary.resolution_min, 1);
+    for (const int workers : {2, 4}) {
+        request.workers = workers;
+        EXPECT_EQ(walk(request).summary.cut_hash, chosen.summary.cut_hash) << workers << " workers";
+    }
+    request.workers = 1;
+    request.resolution_pct = 100;
+    EXPECT_EQ(walk(request).summary.resolution_min, 1) << "as asked for";
+    request.resolution_pct = 0;
+    request.accuracy = 10;
+    EXPECT_EQ(walk(request).summary.resolution_min, 1) << "an accuracy is asked for, not all that time buys";
+    request.accuracy = 0;
+    request.selector = "two-stage";
+    EXPECT_EQ(walk(request).summary.resolution_min, 1) << "it knows no value";
 }
 
 TEST(VirtualWalk, PlansUpToTheLimitOfTheInFrameCheck) {

@@ -40,6 +40,7 @@ int run_compare_command(CompareArguments& a, const Context& context) {
     if (auto ok = config::check(*read); !ok) return misuse(ok.error());
     walk::WalkRequest& r = a.request.walk;
     walk::apply_settings(*read, r);
+    r.resolution_pct = 100;  // forms are compared
     if (r.frames > 0 && r.seconds > 0)
         return misuse({"--seconds", "--seconds and --frames both set the length", "Remove one of them", ErrorKind::misuse});
     if (auto ok = walk::check_request(r); !ok) return misuse(ok.error());
@@ -61,7 +62,8 @@ void add_compare(CLI::App& app, Context& context) {
     CLI::App* c = add_command(
         app, "compare", "Compare selectors by the pictures and times of one walk",
         "surefoot compare town.walk --seconds 20 --rounds 3\n\n"
-        "Selectors walk in turns. After each walk, frames are drawn again and in full detail: PSNR is pooled over\n"
+        "Selectors walk in turns, at full resolution. After each walk, frames are drawn again and in full detail: PSNR is pooled "
+        "over\n"
         "them, SSIM and FLIP are means. `popped` and `pops` compare one pose by a frame's cut and by the cut before it:\n"
         "the share of pixels that change visibly, and PSNR. `unused` is the mean time left, in ms, where the value\n"
         "is below 0.99 or not known. `coarse` counts frames with coarser slices. `floor` counts frames that fell to the\n"

@@ -89,7 +89,7 @@ void unused_time(std::span<const FrameRecord* const> frames, WalkSummary& s) {
     constexpr float whole_value = 0.99F;
     std::vector<double> left_ms;
     for (const FrameRecord* f : frames)
-        if (f->value < whole_value)
+        if (f->value < whole_value || f->resolution < 1)
             left_ms.push_back(static_cast<double>(std::max<std::int64_t>(0, f->deadline_ns - f->rastered_ns)) * 1e-6);
     s.unused_ms = quantiles(std::move(left_ms));
 }

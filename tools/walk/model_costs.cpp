@@ -57,6 +57,7 @@ Result<ModelFit> fit_to_model(model::Model model, const Path& path, const model:
     EngineOptions engine_options;
     engine_options.device = options.device;
     engine_options.in_frame_check = false;  // whole cuts are timed
+    engine_options.resolution = 0;          // smaller pictures come too, for their blur; without hints none is chosen
     auto opened = Engine::open(std::move(model), table, engine_options);
     if (!opened) return opened.error();
     Engine& engine = **opened;

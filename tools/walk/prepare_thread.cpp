@@ -21,12 +21,14 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
 }
 
 PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
-                             rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, rt::Placement placement)
+                             rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, rt::Placement placement,
+                             bool shares_cores)
     : engine_(engine),
       grid_(grid),
       poses_(poses),
       prepared_(prepared),
       jump_poses_(jump_poses),
+      rhythm_(shares_cores ? 2 : 1),
       placement_(std::move(placement)),
       thread_([this] { run(); }) {
     placed_.wait();
@@ -45,6 +47,7 @@ void PrepareThread::prepare_newest() {
     bool jump = jump_poses_ != nullptr && jump_poses_->refresh();
     jump = jump && poses_.front().valid && jump_poses_->front().time_ns > poses_.front().time_ns;  // else a frame has it already
     if (!frame && !jump) return;
+    if (!jump && !rhythm_.due(poses_.front())) return;
     PoseSample sample = poses_.front();
     if (jump) {  // the next frame is drawn there
         sample.pose = jump_poses_->front().pose;
@@ -54,6 +57,7 @@ void PrepareThread::prepare_newest() {
     }
     seen_ = sample.frame;
     prepare_after(engine_, sample, period_s, prepared_.back());
+    rhythm_.prepared(prepared_.back());
     prepared_.publish();
 }
 

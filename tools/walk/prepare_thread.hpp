@@ -48,13 +48,37 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
 /// Poses that the eye jumps to (buttons), from the input thread. Only poses and times are used.
 using JumpBuffer = rt::TripleBuffer<PoseSample>;
 
-/// Runs preparation on a thread of its own, once a frame.
+/// When the next set is prepared. Rasterisers and workers may share cores: what preparing takes there, frames lose. Then one set
+/// serves for two frames, if it was ready before the second one and covers its pose.
+class PrepareRhythm {
+public:
+    explicit PrepareRhythm(std::uint64_t frames_a_set) : frames_a_set_(frames_a_set) {}
+    /// Whether to prepare after this frame.
+    [[nodiscard]] bool due(const PoseSample& now) const {
+        return !any_ || now.frame < last_ || now.frame - last_ >= frames_a_set_ || !covers(region_, now.pose, viewport_);
+    }
+    void prepared(const prepare::PreparedFrame& set) {
+        last_ = set.frame;
+        region_ = set.region;
+        viewport_ = set.viewport;
+        any_ = true;
+    }
+
+private:
+    std::uint64_t frames_a_set_, last_ = 0;
+    prepare::Region region_;
+    model::Viewport viewport_;
+    bool any_ = false;
+};
+
+/// Runs preparation on a thread of its own, at most once a frame.
 class PrepareThread {
 public:
     /// Start from a neutral thread; the thread is in its place when this returns. The buffers must outlive it. `jump_poses`: null
-    /// if the eye never jumps; else it is read eight times a period.
+    /// if the eye never jumps; else it is read eight times a period. shares_cores: with the rasterisers.
     PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
-                  rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, rt::Placement placement);
+                  rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, rt::Placement placement,
+                  bool shares_cores);
     ~PrepareThread();
     PrepareThread(const PrepareThread&) = delete;
     PrepareThread& operator=(const PrepareThread&) = delete;
@@ -71,6 +95,7 @@ private:
     rt::TripleBuffer<PoseSample>& poses_;
     rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
     JumpBuffer* jump_poses_;
+    PrepareRhythm rhythm_ GUARDED_BY(prepares_);
     std::uint64_t seen_ GUARDED_BY(prepares_) = ~0ULL;  ///< frame prepared after last
     const rt::Placement placement_;
     std::optional<Error> misplaced_;  ///< written before placed_

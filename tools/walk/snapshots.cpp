@@ -131,7 +131,7 @@ Result<report::ReportSnapshot> render_snapshot(Engine& engine, const FrameSnapsh
     auto reference = engine.device().read_pixels();
     if (!reference) return reference.error();
     if (!snapshot.last_items.empty()) {
-        engine.draw_unbudgeted(snapshot.pose, last_cut_at(engine.model(), snapshot), 1, snapshot.last_filter);
+        engine.draw_unbudgeted(snapshot.pose, last_cut_at(engine.model(), snapshot), snapshot.resolution, snapshot.last_filter);
         auto before = engine.device().read_pixels();
         if (!before) return before.error();
         out.pops_compared = true;

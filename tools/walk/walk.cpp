@@ -19,13 +19,16 @@ namespace surefoot::walk {
 
 namespace {
 
+/// Of real-time rasterisers and workers; 0: they share none.
+int shared_cores(const Session& s) { return !s.virtual_clock && s.plan.fifo && !s.rasterisers.empty() ? s.plan.all.count() : 0; }
+
 WalkStagesOptions stages_options(Session& s) {
     const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
     WalkStagesOptions o{s.request};
     o.period_ns = s.grid.period_ns;
     o.budget_us = s.request.budget_ms > 0 ? s.request.budget_ms * 1e3 : frame_share * period_us;
     o.limit_us = frame_share * period_us;
-    o.shared_cores = !s.virtual_clock && s.plan.fifo && !s.rasterisers.empty() ? s.plan.all.count() : 0;
+    o.shared_cores = shared_cores(s);
     o.target_error_rad = s.request.accuracy > 0 ? 1.0 / s.request.accuracy : 0;
     if (!s.request.capture_file.empty()) o.capture_frame = s.request.capture_frame;
     o.capture_missed = s.request.capture_file.empty() && s.observer.on_missed_frame;
@@ -131,8 +134,8 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     std::unique_ptr<PrepareThread> preparing;
     JumpBuffer* jump_poses = s.input ? s.input->jump_poses() : nullptr;
     if (!s.virtual_clock) {
-        preparing =
-            std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, jump_poses, prepare_placement(s.plan));
+        preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, jump_poses, prepare_placement(s.plan),
+                                                    shared_cores(s) > 0);
         if (const auto& refused = preparing->misplaced())
             s.facts.degraded.push_back({rt::LackKind::placing, refused->what, refused->remedy});
     }

@@ -9,6 +9,7 @@
 #include "render/gl/backends.hpp"
 #include "render/measure/calibrate.hpp"
 #include "render/model/walk_file.hpp"
+#include "render/select/registry.hpp"
 #include "tools/walk/pose_source.hpp"
 #include "tools/walk/real_time.hpp"
 #include "tools/walk/settings_request.hpp"
@@ -82,7 +83,9 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
     options.reserve_share = static_cast<float>(r.reserve_pct * 0.01);
-    options.resolution = static_cast<float>(r.resolution_pct * 0.01);
+    // A cut that stops at an accuracy leaves time, and no other selector buys by value: a softer picture would gain nothing.
+    const bool may_choose = r.accuracy == 0 && r.selector == select::usual_selector;
+    options.resolution = r.resolution_pct == 0 && !may_choose ? 1.0F : static_cast<float>(r.resolution_pct * 0.01);
     options.in_frame_check = r.in_frame_check;
     options.rest_after_ms = r.rest_after_ms;
     return options;

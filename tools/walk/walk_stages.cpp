@@ -112,9 +112,12 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
     now_.hints = {};
+    // One headroom for all: that of a resolution that is not drawn says nothing of these frames.
+    const Correction drawn = correction_at(report_.resolution, filtered_);
     for (std::size_t step = 0; step < now_.hints.planned_us.size(); ++step) {
-        const Correction correction = correction_at(model::resolution_steps[step], filtered_);
-        now_.hints.planned_us[step] = planned_us() / (correction.factor * correction.headroom);
+        const double factor =
+            request_.correct_costs ? corrections_.expected(state_of(model::resolution_steps[step], filtered_)) : drawn.factor;
+        now_.hints.planned_us[step] = planned_us() / (factor * drawn.headroom);
     }
     if (request_.correct_costs) now_.hints.form_ratio = forms_.ratio();
     now_.valid = true;
