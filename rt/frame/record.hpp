@@ -68,7 +68,7 @@ struct FrameRecord {
     float prepare_cpu_us = 0;
     float bought_us = 0;         ///< of predicted_us, without correction: what bought_items cost
     float accuracy = 0;          ///< rad^-1
-    float value = 0;             ///< share of full detail's value that is drawn, 0..1; 0: not known, no prepared frame is
+    float value = 0;             ///< share of full detail's value that is drawn, 0..1, without blur; 0: no prepared frame is known
     float floor_share = 0;       ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones
     bool floor_frame = false;    ///< over half of the picture fell to floor forms, although the cut before would have fitted
     float resolution = 1;        ///< share of the picture's sides at which it was drawn
