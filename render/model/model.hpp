@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/model/effects.hpp"
@@ -80,6 +81,8 @@ struct Representation {
 };
 
 enum class NodeKind : std::uint8_t { cluster, object, piece };
+inline constexpr std::array<std::string_view, 3> node_kinds = {"cluster", "object", "piece"};  ///< in the order of NodeKind
+constexpr std::string_view name_of(NodeKind kind) { return node_kinds[static_cast<std::size_t>(kind)]; }
 
 /// A node of the hierarchy. Children are contiguous and come after their parent; node 0 is the root.
 struct Node {

@@ -69,6 +69,8 @@ TEST(VirtualWalk, ChoosesTheResolutionWhereTimeIsShortAndAlikeAtAnyWorkerCount) 
     request.workers = 1;
     const walk::WalkOutcome chosen = walk(request);
     EXPECT_LT(chosen.summary.resolution_min, 1);
+    ASSERT_FALSE(chosen.records.empty());
+    EXPECT_LT(chosen.records.front().resolution, 1) << "compared before the walk begins";
     for (const int workers : {2, 4}) {
         request.workers = workers;
         EXPECT_EQ(walk(request).summary.cut_hash, chosen.summary.cut_hash) << workers << " workers";

@@ -220,7 +220,7 @@ Result<DrawnNode> FormDrawer::draw(const Chosen& chosen) {
     DrawnNode drawn;
     drawn.node = chosen.node;
     drawn.name = model_.name_of(node);
-    drawn.kind = node.kind == model::NodeKind::cluster ? "cluster" : node.kind == model::NodeKind::object ? "object" : "piece";
+    drawn.kind = model::name_of(node.kind);
     drawn.level = chosen.level;
     drawn.same = chosen.same;
     drawn.triangles = node.triangles;

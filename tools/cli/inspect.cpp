@@ -22,9 +22,6 @@ struct InspectArguments {
     accuracy::FormPicturesRequest request;  ///< its model is `file`
 };
 
-const char* kind_name(model::NodeKind kind) {
-    return kind == model::NodeKind::cluster ? "cluster" : kind == model::NodeKind::object ? "object" : "piece";
-}
 std::string rep_name(model::RepKind kind) { return std::string(model::form_of(kind).name); }
 
 void print_tree(const model::Model& m) {
@@ -37,7 +34,7 @@ void print_tree(const model::Model& m) {
         const Open at = open.back();
         open.pop_back();
         const model::Node& node = m.nodes[at.node];
-        fmt::print("{:{}}{} {} {} triangles", "", at.depth * 2, kind_name(node.kind), m.name_of(node), node.triangles);
+        fmt::print("{:{}}{} {} {} triangles", "", at.depth * 2, model::name_of(node.kind), m.name_of(node), node.triangles);
         for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
             fmt::print("  {}:{}@{:.3g}m", rep_name(m.reps[r].kind), m.reps[r].triangles, m.reps[r].error_m);
         }
@@ -67,7 +64,7 @@ void print_tree_json(const std::string& file, const model::Model& m) {
             parents[n] == model::none ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(parents[n]);
         const nlohmann::ordered_json one = {{"id", n},
                                             {"parent", parent},
-                                            {"kind", kind_name(node.kind)},
+                                            {"kind", model::name_of(node.kind)},
                                             {"name", std::string(m.name_of(node))},
                                             {"triangles", node.triangles},
                                             {"representations", reps}};

@@ -238,9 +238,19 @@ Result<void> open_session(Session& s, const Progress& progress) {
 
 namespace {
 
-void prepare_at_worker_priority(Session& s, const prepare::Region& region, prepare::PreparedFrame& out) {
+void prepare_at_worker_priority(Session& s, const prepare::Region& region, prepare::PreparedFrame& out,
+                                const PrepareHints& hints = {}) {
     const ScopedWorkerPriority at_worker_priority(s.plan);
-    s.engine->prepare(region, 0, 0, 0, out);
+    s.engine->prepare(region, 0, 0, 0, out, hints);
+}
+
+/// What a frame may take before any has been drawn: by the cost table alone.
+PrepareHints first_hints(const Session& s) {
+    const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
+    const double budget_us = s.request.budget_ms > 0 ? 1e3 * s.request.budget_ms : frame_share * period_us;
+    PrepareHints hints;
+    hints.planned_us.fill(budget_us / static_cast<double>(s.engine->costs().headroom));
+    return hints;
 }
 
 }  // namespace
@@ -262,13 +272,15 @@ void warm_up(Session& s) {
         engine.submit(pose, {});  // no time: its stand-ins
     }
     engine.device().release();
-    // Ready for the first frame: a complete set for where the path begins.
+    // Ready for the first frame: a complete set for where the path begins, at a resolution that was compared with all others.
     const double period_s = period_us * 1e-6;
     const FramePose first = PathPoses(s.path.path, s.grid.period_ns).sample({});
     prepare::Region region = predict_region(first.before, first.pose, period_s, horizon_s(period_s));
     region.radius_m = std::max(region.radius_m, 0.5);
     region.angle_rad = std::max(region.angle_rad, 0.2);
-    prepare_at_worker_priority(s, region, s.prepared.back());
+    const PrepareHints hints = first_hints(s);
+    for (std::size_t tried = 0; tried < model::resolution_steps.size(); ++tried)
+        prepare_at_worker_priority(s, region, s.prepared.back(), hints);
     s.prepared.publish();
 }
 
