@@ -127,7 +127,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
     const float other = e.resolution.trial();
     if (other > 0.0F) {
         e.resolution.judge(lost(out.curve, out.resolution), lost(e.preparer->value_at(other), other));
-        out.cpu_us += e.preparer->value_at_us();
+        e.preparer->add_value_time(out);
     }
     out.resolution_value = e.resolution.gain() * out.curve.full_value;
 }

@@ -130,7 +130,7 @@ void GlDevice::warm_up() {
     kinds.erase(std::unique(kinds.begin(), kinds.end(), same), kinds.end());
 
     constexpr unsigned second = 2, smaller = 1;
-    for (unsigned way = 4; way-- > 0;) {  // that of the first frame comes last
+    for (unsigned way = 4; way-- > 0;) {  // the filter of the first frame comes last
         if (((way & second) != 0 && !switches_filter()) || ((way & smaller) != 0 && !options_.smaller)) continue;
         set_filter((way & second) != 0 ? rt::TextureFilter::trilinear : filter());
         begin_frame(Pose{}, (way & smaller) != 0 ? model::resolution_steps.back() : 1.0F);

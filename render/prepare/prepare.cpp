@@ -420,7 +420,7 @@ void Preparer::run(const Region& region, model::Viewport viewport, std::uint64_t
 
 const ValueCurve& Preparer::value_at(float resolution) {
     Impl& s = *impl_;
-    const std::int64_t cpu_start = rt::own_cpu_ns();
+    const std::int64_t cpu_start = rt::own_cpu_ns(), wall_start = rt::monotonic_ns();
     s.worker_cpu_ns.store(0, std::memory_order_relaxed);
     s.tried.resolution = resolution;
     s.make_room(s.tried);
@@ -428,9 +428,13 @@ const ValueCurve& Preparer::value_at(float resolution) {
     s.evaluate_all(view, s.tried);
     s.set_values(view, s.tried);
     s.tried.cpu_us = 1e-3 * static_cast<double>(rt::own_cpu_ns() - cpu_start + s.worker_cpu_ns.load());
+    s.tried.wall_us = 1e-3 * static_cast<double>(rt::monotonic_ns() - wall_start);
     return s.tried.curve;
 }
 
-double Preparer::value_at_us() const { return impl_->tried.cpu_us; }
+void Preparer::add_value_time(PreparedFrame& out) const {
+    out.cpu_us += impl_->tried.cpu_us;
+    out.wall_us += impl_->tried.wall_us;
+}
 
 }  // namespace surefoot::prepare

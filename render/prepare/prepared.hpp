@@ -102,7 +102,7 @@ struct WorkerHooks {
 
 /// Limits and weights of preparation, fixed when the Preparer is made.
 struct PrepareOptions {
-    double target_error_rad = 0;  ///< do not open nodes whose error is below this (0: an eighth of a pixel)
+    double target_error_rad = 0;  ///< do not open nodes whose error is below this (0: an eighth of a drawn pixel)
     std::uint32_t max_candidates = 1U << 18U;
     std::uint32_t max_choices = 1U << 20U;
     double focus_strength = 0.5;  ///< 0: the periphery counts as much as the centre
@@ -135,7 +135,8 @@ public:
              PreparedFrame& out);
     /// The same frame's values and costs at another resolution, without a new search for what is visible.
     const ValueCurve& value_at(float resolution);
-    [[nodiscard]] double value_at_us() const;  ///< CPU time of the last value_at(), all workers together
+    /// Adds the time of the last value_at() to that of `out`.
+    void add_value_time(PreparedFrame& out) const;
 
     /// Predicts the costs of the choices.
     [[nodiscard]] const model::ItemCosts& item_costs() const;

@@ -21,6 +21,7 @@ public:
         state = std::min(state, states - 1);
         if (!known_[state]) of_[state] = of_[last_];
         in_state_ = known_[state] && state == last_ ? in_state_ + 1 : 0;
+        if (in_state_ == 0) restart_drift();
         known_[state] = true;
         last_ = state;
         const double before = of_[state].factor();
@@ -43,6 +44,13 @@ public:
     }
 
 private:
+    /// With each change of the state, so that what adds up over months stays a small number.
+    void restart_drift() {
+        constexpr double max_drift = 2;  // an older figure says no more
+        for (double& left : left_) left = std::clamp(left / drift_, 1 / max_drift, max_drift);
+        drift_ = 1;
+    }
+
     std::array<CostController, states> of_{};
     static constexpr std::uint32_t learnt_after = 32;  // frames after which a state's own error is learnt
 

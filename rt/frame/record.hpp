@@ -66,13 +66,13 @@ struct FrameRecord {
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;
     float cost_scale = 1;  ///< the setting's factor in predicted_us (real clock) or in actual_us (virtual clock)
     float prepare_cpu_us = 0;
-    float bought_us = 0;         ///< of predicted_us, without correction: what bought_items cost
-    float accuracy = 0;          ///< rad^-1
-    float value = 0;             ///< share of full detail's value that is drawn, 0..1, without blur; 0: no prepared frame is known
-    float floor_share = 0;       ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones
-    bool floor_frame = false;    ///< over half of the picture fell to floor forms, although the cut before would have fitted
-    float resolution = 1;        ///< share of the picture's sides at which it was drawn
-    std::uint32_t samples = 1;   ///< of a pixel
+    float bought_us = 0;        ///< of predicted_us, without correction: what bought_items cost
+    float accuracy = 0;         ///< rad^-1
+    float value = 0;            ///< share of full detail's value that is drawn, 0..1, without blur; 0: not known, no set was used
+    float floor_share = 0;      ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones
+    bool floor_frame = false;   ///< over half of the picture fell to floor forms, although the cut before would have fitted
+    float resolution = 1;       ///< share of the picture's sides at which it was drawn
+    std::uint32_t samples = 1;  ///< of a pixel
     bool other_samples = false;  ///< the driver lacks the requested number
     TextureFilter filter = TextureFilter::bilinear;
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;

@@ -192,6 +192,18 @@ TEST(Corrections, WhatSlowsTheDrawnStateSlowsTheOthers) {
     EXPECT_LE(c.expected(0), CostController::highest);
 }
 
+TEST(Corrections, MonthsOfChangesKeepWhatIsExpectedNearWhatWasLearnt) {
+    Corrections c;
+    for (int visit = 0; visit < 3000; ++visit) {  // dear after a while, in both states alike: each visit adds to what has drifted
+        for (const std::size_t state : {std::size_t{0}, std::size_t{4}})
+            for (int i = 0; i < 80; ++i) c.update(state, 100, i < 40 ? 90 : 130);
+    }
+    for (const std::size_t state : {std::size_t{0}, std::size_t{4}}) {
+        EXPECT_GE(c.expected(state), 0.3 * c.of(state).factor()) << state;  // not 0, infinite, or no number
+        EXPECT_LE(c.expected(state), 3 * c.of(state).factor()) << state;
+    }
+}
+
 TEST(Overshoot, IsTheUpperTwentiethOfRecentFrames) {
     Overshoot o;
     EXPECT_EQ(o.margin_us(), 0);

@@ -18,11 +18,12 @@ prepare::PreparedFrame set_after(std::uint64_t frame) {
     set.frame = frame;
     set.viewport = {1280, 720};
     set.region = {sample_of(frame).pose, 1, 0.1};
+    set.wall_us = 20'000;
     return set;
 }
 
 TEST(PrepareRhythm, OneSetServesForTwoFramesWhereCoresAreShared) {
-    PrepareRhythm rhythm(2);
+    PrepareRhythm rhythm(2, 33'000);
     EXPECT_TRUE(rhythm.due(sample_of(0))) << "the first one";
     rhythm.prepared(set_after(0));
     EXPECT_FALSE(rhythm.due(sample_of(0)));
@@ -31,18 +32,29 @@ TEST(PrepareRhythm, OneSetServesForTwoFramesWhereCoresAreShared) {
     rhythm.prepared(set_after(7));
     EXPECT_FALSE(rhythm.due(sample_of(8)));
     EXPECT_TRUE(rhythm.due(sample_of(11))) << "preparing took longer";
-    EXPECT_TRUE(rhythm.due(sample_of(3))) << "another walk";
 }
 
 TEST(PrepareRhythm, APoseThatTheSetDoesNotCoverIsPreparedAtOnce) {
-    PrepareRhythm rhythm(2);
+    PrepareRhythm rhythm(2, 33'000);
     rhythm.prepared(set_after(0));
     EXPECT_FALSE(rhythm.due(sample_of(1, 0.9)));
     EXPECT_TRUE(rhythm.due(sample_of(1, 1.1)));
 }
 
+TEST(PrepareRhythm, AfterASlowSetOrAJumpTheNextFrameIsPrepared) {
+    PrepareRhythm rhythm(2, 33'000);
+    prepare::PreparedFrame slow = set_after(0);
+    slow.wall_us = 30'000;
+    rhythm.prepared(slow);
+    EXPECT_TRUE(rhythm.due(sample_of(1))) << "the second frame might have begun without it";
+    rhythm.prepared(set_after(1));
+    EXPECT_FALSE(rhythm.due(sample_of(2)));
+    rhythm.forget();
+    EXPECT_TRUE(rhythm.due(sample_of(2)));
+}
+
 TEST(PrepareRhythm, EachFrameHasASetWhereCoresAreItsOwn) {
-    PrepareRhythm rhythm(1);
+    PrepareRhythm rhythm(1, 33'000);
     rhythm.prepared(set_after(0));
     EXPECT_TRUE(rhythm.due(sample_of(1)));
 }

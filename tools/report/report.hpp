@@ -102,7 +102,9 @@ struct WalkSummary {
     std::uint64_t trilinear_frames = 0;
     std::uint64_t coarse_frames = 0;  ///< with a slice that the in-frame check drew coarser
     std::uint64_t floor_frames = 0;   ///< over half of the picture fell to floor forms, although the cut before would have fitted
-    Quantiles unused_ms;  ///< time between the end of drawing and the deadline, of frames whose value is below 0.99 or not known
+    /// Time between the end of drawing and the deadline, of frames below full resolution or whose value is below 0.99 or not
+    /// known.
+    Quantiles unused_ms;
     std::uint64_t triangles_max = 0, downgrades = 0, floor_bound_frames = 0, model_triangles = 0;
     std::string cut_hash;  ///< 16 hex digits over all frames
     double steal_ms = 0;   ///< as the host says, set before summarize; at least what the frames lost

@@ -28,7 +28,7 @@ PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<Pos
       poses_(poses),
       prepared_(prepared),
       jump_poses_(jump_poses),
-      rhythm_(shares_cores ? 2 : 1),
+      rhythm_(shares_cores ? 2 : 1, 1e-3 * static_cast<double>(grid.period_ns)),
       placement_(std::move(placement)),
       thread_([this] { run(); }) {
     placed_.wait();
@@ -58,6 +58,7 @@ void PrepareThread::prepare_newest() {
     seen_ = sample.frame;
     prepare_after(engine_, sample, period_s, prepared_.back());
     rhythm_.prepared(prepared_.back());
+    if (jump) rhythm_.forget();  // its region is of a standing eye
     prepared_.publish();
 }
 

@@ -49,23 +49,27 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
 using JumpBuffer = rt::TripleBuffer<PoseSample>;
 
 /// When the next set is prepared. Rasterisers and workers may share cores: what preparing takes there, frames lose. Then one set
-/// serves for two frames, if it was ready before the second one and covers its pose.
+/// serves for two frames, if the last one was ready before the second frame, and if it covers the pose.
 class PrepareRhythm {
 public:
-    explicit PrepareRhythm(std::uint64_t frames_a_set) : frames_a_set_(frames_a_set) {}
+    PrepareRhythm(std::uint64_t frames_a_set, double period_us) : frames_a_set_(frames_a_set), period_us_(period_us) {}
     /// Whether to prepare after this frame.
     [[nodiscard]] bool due(const PoseSample& now) const {
-        return !any_ || now.frame < last_ || now.frame - last_ >= frames_a_set_ || !covers(region_, now.pose, viewport_);
+        return !any_ || now.frame - last_ >= frames_a_set_ || !covers(region_, now.pose, viewport_);
     }
     void prepared(const prepare::PreparedFrame& set) {
+        constexpr double ready = 0.9;  // of the period
         last_ = set.frame;
         region_ = set.region;
         viewport_ = set.viewport;
-        any_ = true;
+        any_ = set.wall_us < ready * period_us_;
     }
+    /// The next frame is prepared whatever the last set was.
+    void forget() { any_ = false; }
 
 private:
     std::uint64_t frames_a_set_, last_ = 0;
+    double period_us_;
     prepare::Region region_;
     model::Viewport viewport_;
     bool any_ = false;

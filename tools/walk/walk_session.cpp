@@ -247,7 +247,8 @@ void prepare_at_worker_priority(Session& s, const prepare::Region& region, prepa
 /// What a frame may take before any has been drawn: by the cost table alone.
 PrepareHints first_hints(const Session& s) {
     const double period_us = static_cast<double>(s.grid.period_ns) * 1e-3;
-    const double budget_us = s.request.budget_ms > 0 ? 1e3 * s.request.budget_ms : frame_share * period_us;
+    const double asked_us = s.request.budget_ms > 0 ? 1e3 * s.request.budget_ms : frame_share * period_us;
+    const double budget_us = s.request.in_frame_check ? std::min(asked_us, frame_share * period_us) : asked_us;
     PrepareHints hints;
     hints.planned_us.fill(budget_us / static_cast<double>(s.engine->costs().headroom));
     return hints;
@@ -279,8 +280,8 @@ void warm_up(Session& s) {
     region.radius_m = std::max(region.radius_m, 0.5);
     region.angle_rad = std::max(region.angle_rad, 0.2);
     const PrepareHints hints = first_hints(s);
-    for (std::size_t tried = 0; tried < model::resolution_steps.size(); ++tried)
-        prepare_at_worker_priority(s, region, s.prepared.back(), hints);
+    const std::size_t sets = engine.options().resolution > 0 ? 1 : model::resolution_steps.size();
+    for (std::size_t i = 0; i < sets; ++i) prepare_at_worker_priority(s, region, s.prepared.back(), hints);
     s.prepared.publish();
 }
 

@@ -113,7 +113,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.time_ns = record.due_ns;
     now_.hints = {};
     // One headroom for all: that of a resolution that is not drawn says nothing of these frames.
-    const Correction drawn = correction_at(report_.resolution, filtered_);
+    const Correction drawn = correction_at(learnt_resolution_, filtered_);
     for (std::size_t step = 0; step < now_.hints.planned_us.size(); ++step) {
         const double factor =
             request_.correct_costs ? corrections_.expected(state_of(model::resolution_steps[step], filtered_)) : drawn.factor;
@@ -248,6 +248,7 @@ void WalkStages::learn(double actual_us) {
     // The correction is of the machine's own figures: it must not take back an overhead that the user asked for.
     const double overhead = virtual_clock_ ? 1.0 : request_.cost_scale;
     const bool had_filter = filtered_;
+    learnt_resolution_ = report_.resolution;
     filtered_ = engine_.device().switches_filter() && report_.filter == rt::TextureFilter::trilinear;
     corrections_.update(state_of(report_.resolution, filtered_), report_.predicted_us / overhead, actual_us);
     if (had_filter && !filtered_) corrections_.forget_from(steps);  // until it is bought again, the machine may be another

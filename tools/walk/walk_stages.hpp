@@ -108,6 +108,7 @@ private:
     rt::FormCorrection forms_;
     PoseSample now_;
     SubmitReport report_;
+    float learnt_resolution_ = 1;       ///< of the last frame that drew a selected cut; the picture at rest is another
     double time_left_us_ = 0;           ///< until the limit, as the last submission began
     std::uint64_t walked_ = 0;          ///< frames so far, without the control's bare ones
     std::uint64_t path_slot_ = 0;       ///< position on the path, in periods; with a control it does not advance in bare blocks
