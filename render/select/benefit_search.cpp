@@ -48,7 +48,7 @@ public:
         sum_ = builder_.floor_sum();
         search();
         if (fill) {
-            take_what_fits();
+            fill_up();
             if (builder_.size() <= max_dear_candidates) try_dear_forms();
         }
         return taken_;
@@ -69,9 +69,11 @@ private:
     };
     static constexpr std::uint32_t opening = none - 1;
 
-    void take_what_fits() {
+    /// Takes what still fits. A dear step may follow others that lose value by themselves: if it did not fit, they are undone.
+    void fill_up() {
         for (int round = 0; round < fill_rounds && take_more(); ++round) {
         }
+        if (!steps_.has_target()) builder_.undo_losses(1.0F + static_cast<float>(min_gain));
     }
 
     /// All steps behind what is chosen, by their sums: up to the edge.
@@ -99,7 +101,7 @@ private:
             if (start_from(std::span(kept).first(kept_count + 1))) {
                 ++searches;
                 search();
-                take_what_fits();
+                fill_up();
                 const double value = builder_.value();
                 better = value > best * (was_shown(next) ? 1.0 - min_gain : 1.0 + min_gain);
                 if (better) best = std::max(best, value);

@@ -39,6 +39,7 @@ void SelectState::reserve(const model::Model& model, std::uint32_t max_candidate
     scratch_->step_sums.resize(4 * BucketQueue::buckets);
     scratch_->saved.resize(max_candidates);
     scratch_->lacks.resize(max_candidates);
+    scratch_->below.resize(max_candidates);
     scratch_->chosen.resize(max_candidates);
     scratch_->list.resize(max_candidates);
 }
@@ -69,6 +70,7 @@ CutBuilder::CutBuilder(const SelectInput& input, SelectState& state)
       saved_(std::span(state.scratch().saved).first(input.prepared->candidates.size())),
       scratch_(std::span(state.scratch().list).first(input.prepared->candidates.size())),
       lacks_(std::span(state.scratch().lacks).first(input.prepared->candidates.size())),
+      below_(std::span(state.scratch().below).first(input.prepared->candidates.size())),
       items_(input) {}
 
 // Candidates are in breadth-first order, so a first-in first-out walk meets them ascending.
@@ -118,6 +120,45 @@ std::span<float> CutBuilder::what_items_lack() {
                                        : 0.0F;
     }
     return lacks_;
+}
+
+// Values of different nodes come from pictures of different distances, so a small difference between them says little.
+void CutBuilder::undo_losses(float shown_counts) {
+    constexpr float clearly = 1.3F;
+    const auto costs_more = [](const model::ItemCost& a, const model::ItemCost& b) {
+        return a.submit_us > b.submit_us || a.raster_us > b.raster_us;
+    };
+    bool any = false;
+    for (auto c = static_cast<Index>(chosen_.size()); c-- > 0;) {
+        float& value = lacks_[c] = 0;
+        model::ItemCost& cost = below_[c] = {};
+        if (chosen_[c] == none) continue;
+        const auto own = choices(c);
+        const auto take = [&](std::uint32_t k) {
+            value = own[k].value;
+            cost = own[k].cost;
+        };
+        if (chosen_[c] != SelectState::opened) {
+            take(chosen_[c]);
+            continue;
+        }
+        const prepare::Candidate& at = candidate(c);
+        for (Index child = at.first_child; child < at.first_child + at.child_count; ++child) {
+            value += lacks_[child];
+            cost = {cost.submit_us + below_[child].submit_us, cost.raster_us + below_[child].raster_us};
+        }
+        const float keeps = value * clearly * (state_.shown[at.node] == SelectState::opened ? shown_counts : 1.0F);
+        for (std::uint32_t k = at.choice_count; k-- > 0;) {  // the finest first
+            if (costs_more(own[k].cost, cost) || !(own[k].value > keeps)) continue;
+            choose(c, k);
+            take(k);
+            any = true;
+            break;
+        }
+    }
+    if (!any) return;
+    for (Index c = 1; c < chosen_.size(); ++c)
+        if (chosen_[candidate(c).parent] != SelectState::opened) chosen_[c] = none;
 }
 
 void CutBuilder::save() { std::copy(chosen_.begin(), chosen_.end(), saved_.begin()); }

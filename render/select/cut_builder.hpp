@@ -44,6 +44,9 @@ public:
     [[nodiscard]] float children_value(Index c) const;
     /// By candidate, 0..1: the share of its leaves' value that the item which shows it lacks. Of opened ones nothing is said.
     std::span<float> what_items_lack();
+    /// Shows a form in place of the items below it where it has clearly more value and costs no more.
+    /// `shown_counts`: what the items count where the last frame showed them.
+    void undo_losses(float shown_counts);
     /// Keeps the choices as they are, and takes them again.
     void save();
     void restore();
@@ -70,6 +73,7 @@ private:
     SelectState& state_;
     std::span<std::uint32_t> chosen_, saved_, scratch_;
     std::span<float> lacks_;
+    std::span<model::ItemCost> below_;
     Sum floor_;
     ItemBuyer items_;
 };

@@ -300,5 +300,52 @@ TEST(Value, CheapStepsDoNotKeepADearOneOutThatIsWorthMore) {
     EXPECT_EQ(value_at(80), 20 * 40);
 }
 
+/// A root whose form shows 500 pixels; opened, a wall shows 10 in its coarse form and 1000 in its fine one, and a lamp shows 5.
+prepare::PreparedFrame wall_that_is_worse_coarse() {
+    prepare::PreparedFrame frame;
+    frame.candidates.resize(3);
+    frame.choices.resize(4);
+    prepare::Candidate& root = frame.candidates[0];
+    root.first_child = 1;
+    root.child_count = 2;
+    root.choice_count = 1;
+    root.children_cost.submit_us = 4;
+    add_leaf(frame, 1, 1, 2);
+    add_leaf(frame, 2, 3, 1);
+    const std::array<float, 4> costs{2, 2, 60, 2}, values{500, 10, 1000, 5}, rates{505.0F / 60, 505.0F / 60, 0, 0};
+    for (std::size_t k = 0; k < 4; ++k) {
+        frame.choices[k].rep = static_cast<model::Index>(k);
+        frame.choices[k].cost.submit_us = costs[k];
+        frame.choices[k].value = values[k];
+        frame.choices[k].rate = rates[k];
+    }
+    frame.full_cost.submit_us = 62;
+    return frame;
+}
+
+TEST(Value, StepsThatLoseAreUndoneWhereTheDearOneBehindThemDoesNotFit) {
+    const prepare::PreparedFrame frame = wall_that_is_worse_coarse();
+    model::Model nodes_only;
+    nodes_only.nodes.resize(frame.candidates.size());
+    model::CostModel costs;
+    costs.combine = {0, 1, 0, 0};
+    costs.headroom = 1;
+    costs.slice_us = 0;
+    SelectState state;
+    state.hysteresis = 1;
+    state.reserve(nodes_only, 3);
+    Cut cut;
+    reserve(cut, 3);
+    const auto value_at = [&](double budget_us) {
+        find_selector(usual_selector)->run({&nodes_only, &frame, &costs, budget_us, 1.0, 0, 1000.0}, state, cut);
+        EXPECT_EQ(check_legal(frame, cut), "");
+        EXPECT_LE(static_cast<double>(cut.predicted_us), budget_us);
+        return cut.value;
+    };
+    EXPECT_EQ(value_at(61), 500) << "opened, it would show 15";
+    EXPECT_EQ(value_at(63), 1005);
+    EXPECT_EQ(value_at(61), 500);
+}
+
 }  // namespace
 }  // namespace surefoot::select
