@@ -132,6 +132,11 @@ for option in --ledger --trace --capture; do
 done
 expect 2 'seconds and --frames both' compare f.walk --frames 3 --seconds 2
 expect 2 'null: The value draws nothing' compare f.walk --backend null
+expect 2 'backend=null: null: The value draws nothing' compare f.walk --with backend=null
+expect 2 'resolution: This is no KEY=VALUE' compare f.walk --with resolution
+expect 2 "key 'resolutoin' is unknown. Did you mean 'resolution'" compare f.walk --with resolutoin=50
+expect 2 'resolution = 120: The value is not allowed. Use a number from 0 to 100' compare f.walk --with hysteresis=1,resolution=120
+expect 2 'model names a file' compare f.walk --with model=x.walk
 expect 1 "pictures 2: The null backend draws no pictures. Remove --pictures" walk f.walk --backend null --pictures 2
 expect 1 '^surefoot: --report .*f.glb is a file' walk f.walk $virtual --frames 4000000 --report f.glb
 expect 1 '^surefoot: --snap .*f.glb is a file' walk f.walk --snap f.glb

@@ -18,8 +18,10 @@ struct FakeWalks {
     std::vector<double> psnr_db;
     std::uint32_t pictures = 7;
 
+    std::vector<double> resolutions_pct = {};
     [[nodiscard]] Result<walk::WalkOutcome> operator()(const walk::WalkRequest& request) {
         const std::size_t number = walked.size();
+        resolutions_pct.push_back(request.resolution_pct);
         walked.push_back(request.selector);
         walk::WalkOutcome outcome;
         report::WalkSummary& s = outcome.summary;
@@ -139,6 +141,28 @@ TEST(Compare, WithoutASearchForTheGreatestValueNoShareIsStated) {
     ASSERT_TRUE(c.ok());
     EXPECT_TRUE(nlohmann::json::parse(compare_json(*c))["selectors"][0]["value_share"].is_null());
     EXPECT_EQ(c->value.frames, 0U);
+}
+
+TEST(Compare, SettingsWalkInTurnsUnderTheirNamesAndNoValueIsShared) {
+    FakeWalks walks{{}, {20, 40, 30, 42}};
+    CompareRequest request = request_of({"flat"}, 2);
+    request.walk.selector = "threshold";
+    request.settings = {{"as set", request.walk}, {"resolution=50,hysteresis=1.5", request.walk}};
+    request.settings[1].walk.resolution_pct = 50;
+    std::vector<std::string> names;
+    const auto c = compare(walks, request, {}, shares_of(4, names));
+    ASSERT_TRUE(c.ok());
+    EXPECT_EQ(walks.walked, (std::vector<std::string>(4, "threshold"))) << "the selectors of the request do not walk";
+    EXPECT_EQ(walks.resolutions_pct, (std::vector<double>{0, 50, 0, 50}));
+    EXPECT_TRUE(names.empty());
+    const auto json = nlohmann::json::parse(compare_json(*c));
+    EXPECT_FALSE(json.contains("selectors"));
+    EXPECT_EQ(json["settings"][0]["setting"], "as set");
+    EXPECT_EQ(json["settings"][0]["psnr_db"], 25);
+    EXPECT_EQ(json["settings"][1]["setting"], "resolution=50,hysteresis=1.5");
+    EXPECT_EQ(json["settings"][1]["psnr_db"], 41);
+    const std::string table = compare_table(*c);
+    EXPECT_NE(table.find("resolution=50,hysteresis=1.5"), std::string::npos) << table;
 }
 
 TEST(Compare, AWalkWithoutPicturesAndAStopAreErrors) {

@@ -1,4 +1,4 @@
-// Selectors side by side: the same walk by each in turn, its pictures against full detail, and its times.
+// Selectors or settings side by side: the same walk by each in turn, its pictures against full detail, and its times.
 #include "tools/accuracy/compare.hpp"
 
 #include <algorithm>
@@ -94,6 +94,17 @@ nlohmann::ordered_json value_json(const Comparison& c, const ComparedSelector& s
             {"of_bound", {{"mean", rounded(s.value.of_bound)}, {"min", rounded(s.value.min_of_bound)}}}};
 }
 
+/// All walks of a round, in order.
+std::vector<NamedWalk> walks_of(const CompareRequest& request) {
+    if (!request.settings.empty()) return request.settings;
+    std::vector<NamedWalk> walks;
+    for (const std::string& selector : request.selectors) {
+        walks.push_back({selector, request.walk});
+        walks.back().walk.selector = selector;
+    }
+    return walks;
+}
+
 }  // namespace
 
 Progress part_of(const Progress& progress, const std::string& stage, double number, double count) {
@@ -107,14 +118,14 @@ Progress part_of(const Progress& progress, const std::string& stage, double numb
 
 Result<Comparison> compare_selectors(const CompareRequest& request, const RunWalk& run_walk, const FindShares& find_shares,
                                      const Progress& progress) {
-    std::vector<Summaries> rounds(request.selectors.size());
-    const auto count = static_cast<double>(request.selectors.size() * request.rounds);
+    const std::vector<NamedWalk> walks = walks_of(request);
+    std::vector<Summaries> rounds(walks.size());
+    const auto count = static_cast<double>(walks.size() * request.rounds);
     double number = 0;
     for (std::uint32_t round = 0; round < request.rounds; ++round) {
-        for (std::size_t i = 0; i < request.selectors.size(); ++i) {
-            walk::WalkRequest one = request.walk;
-            one.selector = request.selectors[i];
-            auto outcome = run_walk(one, part_of(progress, one.selector, number++, count));
+        for (std::size_t i = 0; i < walks.size(); ++i) {
+            const walk::WalkRequest& one = walks[i].walk;
+            auto outcome = run_walk(one, part_of(progress, walks[i].name, number++, count));
             if (!outcome) return outcome.error();
             if (outcome->stopped || progress.stopped())
                 return Error{one.model_file, "The comparison was stopped by the user", "", ErrorKind::stopped};
@@ -138,7 +149,9 @@ Result<Comparison> compare_selectors(const CompareRequest& request, const RunWal
     c.budget_ms = first.budget_ms;
     c.rounds = request.rounds;
     c.pictures = first.picture.frames;
-    for (std::size_t i = 0; i < rounds.size(); ++i) c.selectors.push_back(medians(request.selectors[i], rounds[i]));
+    for (std::size_t i = 0; i < rounds.size(); ++i) c.selectors.push_back(medians(walks[i].name, rounds[i]));
+    c.of_settings = !request.settings.empty();
+    if (c.of_settings) return c;
     if (auto shared = add_shares(find_shares, progress, c); !shared) return shared.error();
     return c;
 }
@@ -148,7 +161,7 @@ std::string compare_json(const Comparison& c) {
     using Json = nlohmann::ordered_json;
     Json selectors = Json::array();
     for (const ComparedSelector& s : c.selectors)
-        selectors.push_back({{"selector", s.selector},
+        selectors.push_back({{c.of_settings ? "setting" : "selector", s.selector},
                              {"psnr_db", rounded(s.psnr_db)},
                              {"psnr_db_rounds", {{"min", rounded(s.min_psnr_db)}, {"max", rounded(s.max_psnr_db)}}},
                              {"worst_psnr_db", rounded(s.worst_psnr_db)},
@@ -181,7 +194,7 @@ std::string compare_json(const Comparison& c) {
                          {"proven", c.value.proven},
                          {"at_the_floor", c.value.floor_frames},
                          {"in_full_detail", c.value.full_frames}}},
-                       {"selectors", selectors}};
+                       {c.of_settings ? "settings" : "selectors", selectors}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -191,7 +204,10 @@ std::string compare_table(const Comparison& c) {
                     c.rate_hz, c.budget_ms, c.pictures, c.rounds, c.rounds == 1 ? "round" : "rounds, medians");
     const auto text = [](double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); };
     const auto accuracy = [&](double value) { return std::isfinite(value) ? text(value, 1) : "exact"; };
-    const report::Columns pictures({{"selector", 18},
+    std::size_t name_columns = 18;
+    for (const ComparedSelector& s : c.selectors) name_columns = std::clamp(s.selector.size(), name_columns, std::size_t{24});
+    const report::TextColumn name{c.of_settings ? "setting" : "selector", static_cast<int>(name_columns)};
+    const report::Columns pictures({name,
                                     {"PSNR dB", -8},
                                     {"worst", -6},
                                     {"SSIM", -6},
@@ -207,7 +223,7 @@ std::string compare_table(const Comparison& c) {
                           s.pops_compared ? text(100 * s.popped_share, 2) : "-", s.pops_compared ? text(s.pop_psnr_db, 1) : "-",
                           accuracy(s.accuracy_mean), accuracy(s.accuracy_min)}) +
             "\n";
-    const report::Columns frames({{"selector", 18},
+    const report::Columns frames({name,
                                   {"p50 ms", -8},
                                   {"p99 ms", -8},
                                   {"unused", -8},

@@ -1,4 +1,4 @@
-// Selectors side by side: the same walk by each in turn, its pictures against full detail, and its times.
+// Selectors or settings side by side: the same walk by each in turn, its pictures against full detail, and its times.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,23 @@
 
 namespace surefoot::accuracy {
 
+/// A walk with other settings.
+struct NamedWalk {
+    std::string name;  ///< as the user wrote the settings
+    walk::WalkRequest walk;
+};
+
 /// What is walked, by whom, and how often.
 struct CompareRequest {
     walk::WalkRequest walk;              ///< its selector is replaced; pictures > 0
     std::vector<std::string> selectors;  ///< names of the registry; at least one
-    std::uint32_t rounds = 1;            ///< all selectors walk in turns, so often
+    std::vector<NamedWalk> settings;     ///< not empty: these are compared, and no selectors
+    std::uint32_t rounds = 1;            ///< all walk in turns, so often
 };
 
 /// Medians over the rounds, and sums where said.
 struct ComparedSelector {
-    std::string selector;
+    std::string selector;  ///< or the name of settings
     double psnr_db = 0, worst_psnr_db = 0, ssim = 0, flip = 0;
     double min_psnr_db = 0, max_psnr_db = 0;     ///< of the rounds: the spread
     double accuracy_mean = 0, accuracy_min = 0;  ///< rad^-1; infinite: exact
@@ -39,6 +46,7 @@ struct Comparison {
     std::string model, path, renderer, machine, uncalibrated;
     std::uint32_t width = 0, height = 0, rounds = 0, pictures = 0;
     double rate_hz = 0, budget_ms = 0;
+    bool of_settings = false;                 ///< CompareRequest::settings were compared
     ValueShares value;                        ///< frames 0: not compared, or none had anything to choose
     std::vector<ComparedSelector> selectors;  ///< in the order of the request
 };

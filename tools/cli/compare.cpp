@@ -1,8 +1,10 @@
-// surefoot compare: the same walk by every selector, with pictures against full detail and times, as a table.
+// surefoot compare: the same walk by every selector, or with other settings: pictures against full detail and times, as a table.
 #include <fmt/format.h>
 
+#include "config/values.hpp"
 #include "render/gl/backends.hpp"
 #include "render/select/registry.hpp"
+#include "rt/base/text.hpp"
 #include "tools/accuracy/compare.hpp"
 #include "tools/accuracy/sweep.hpp"
 #include "tools/cli/command.hpp"
@@ -17,12 +19,13 @@ namespace {
 struct CompareArguments {
     accuracy::CompareRequest request;
     std::uint32_t value_frames = 20;
+    std::vector<std::string> with;  ///< KEY=VALUE[,KEY=VALUE...], a walk each
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool json = false;
 };
 
 accuracy::FindShares find_shares(const CompareArguments& a) {
-    if (a.value_frames == 0) return nullptr;
+    if (a.value_frames == 0 || !a.with.empty()) return nullptr;
     return [&a](std::span<const std::string> selectors, double budget_us, const Progress& progress) {
         accuracy::ShareRequest request;
         request.selectors.assign(selectors.begin(), selectors.end());
@@ -34,17 +37,62 @@ accuracy::FindShares find_shares(const CompareArguments& a) {
     };
 }
 
+/// A setting that is checked as an option of the command line would be. Files and folders are not compared.
+Result<SettingArguments::Setting> setting_of(const std::string& pair) {
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string::npos || equals == 0)
+        return Error{"--with " + pair, "This is no KEY=VALUE", "Write for example --with resolution=100", ErrorKind::misuse};
+    SettingArguments::Setting setting{"--with " + pair.substr(0, equals) + " =", pair.substr(0, equals), pair.substr(equals + 1)};
+    const config::Schema& schema = walk::settings_schema();
+    const config::Entry* entry = schema.find(setting.key);
+    if (entry == nullptr) return config::unknown_key(schema, "--with", setting.key);
+    if (entry->key == "backend")
+        if (std::string text = setting.text, refused = drawing_backend()(text); !refused.empty())
+            return Error{"--with " + pair, refused, "Use " + gl::drawing_backends(), ErrorKind::misuse};
+    if (entry->kind == config::Kind::file)
+        return Error{"--with " + pair, fmt::format("{} names a file, and no way of walking", entry->key),
+                     "Name it by its own option", ErrorKind::misuse};
+    return setting;
+}
+
+/// The walk with the settings that `text` adds to those of all.
+Result<walk::WalkRequest> walk_with(const CompareArguments& a, const std::string& text) {
+    SettingArguments settings = *a.settings;
+    for (const std::string_view pair : split(text, ",")) {
+        if (pair.empty()) continue;
+        auto setting = setting_of(std::string(pair));
+        if (!setting) return setting.error();
+        settings.values.push_back(std::move(*setting));
+    }
+    auto read = read_settings(settings);
+    if (!read) return read.error();
+    if (auto ok = config::check(*read); !ok) return ok.error();
+    walk::WalkRequest request = a.request.walk;
+    walk::apply_settings(*read, request);
+    if (auto ok = walk::check_request(request); !ok) return ok.error();
+    return request;
+}
+
+/// Selectors at full resolution; or the walk as it is set, and with each of --with.
+Result<void> fill_request(CompareArguments& a) {
+    if (a.request.walk.frames > 0 && a.request.walk.seconds > 0)
+        return Error{"--seconds", "--seconds and --frames both set the length", "Remove one of them", ErrorKind::misuse};
+    auto base = walk_with(a, {});
+    if (!base) return base.error();
+    if (!a.with.empty()) a.request.settings.push_back({"as set", *base});
+    for (const std::string& text : a.with) {
+        auto walk = walk_with(a, text);
+        if (!walk) return walk.error();
+        a.request.settings.push_back({text, std::move(*walk)});
+    }
+    a.request.walk = std::move(*base);
+    if (a.with.empty()) a.request.walk.resolution_pct = 100;  // forms are compared
+    return {};
+}
+
 int run_compare_command(CompareArguments& a, const Context& context) {
-    auto read = read_settings(*a.settings);
-    if (!read) return misuse(read.error());
-    if (auto ok = config::check(*read); !ok) return misuse(ok.error());
-    walk::WalkRequest& r = a.request.walk;
-    walk::apply_settings(*read, r);
-    r.resolution_pct = 100;  // forms are compared
-    if (r.frames > 0 && r.seconds > 0)
-        return misuse({"--seconds", "--seconds and --frames both set the length", "Remove one of them", ErrorKind::misuse});
-    if (auto ok = walk::check_request(r); !ok) return misuse(ok.error());
-    walk::prepare_process(r);
+    if (auto ok = fill_request(a); !ok) return misuse(ok.error());
+    walk::prepare_process(a.request.walk);
     auto comparison = accuracy::compare_selectors(
         a.request, [](const walk::WalkRequest& one, const Progress& progress) { return walk::run_walk(one, progress, {}); },
         find_shares(a), terminal_progress(context));
@@ -60,8 +108,9 @@ int run_compare_command(CompareArguments& a, const Context& context) {
 void add_compare(CLI::App& app, Context& context) {
     auto a = std::make_shared<CompareArguments>();
     CLI::App* c = add_command(
-        app, "compare", "Compare selectors by the pictures and times of one walk",
-        "surefoot compare town.walk --seconds 20 --rounds 3\n\n"
+        app, "compare", "Compare selectors or settings by the pictures and times of one walk",
+        "surefoot compare town.walk --seconds 20 --rounds 3\n"
+        "surefoot compare town.walk --with resolution=100 --with hysteresis=1,reserve=0\n\n"
         "Selectors walk in turns, at full resolution. After each walk, frames are drawn again and in full detail: PSNR is pooled "
         "over\n"
         "them, SSIM and FLIP are means. `popped` and `pops` compare one pose by a frame's cut and by the cut before it:\n"
@@ -79,6 +128,11 @@ void add_compare(CLI::App& app, Context& context) {
     c->add_option("--selector", a->request.selectors, "Selectors to compare")
         ->check(one_of(select::selector_names()))
         ->capture_default_str();
+    c->add_option("--with", a->with,
+                  "Compare settings, not selectors: one walk as it is set, and one with each KEY=VALUE, or KEY=VALUE,KEY=VALUE. "
+                  "Keys are those of surefoot config")
+        ->type_name("KEY=VALUE")
+        ->excludes("--selector");
     c->add_option("--seconds", r.seconds, "Length of each walk in seconds (else as the path is long)")
         ->check(number_within(0.001, 1e6, "s"));
     c->add_option("--frames", r.frames, "Length of each walk in frames, instead of --seconds")

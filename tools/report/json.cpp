@@ -99,6 +99,20 @@ Json picture_of(const PictureSummary& p) {
             {"popping", popping}};
 }
 
+Json worst_forms_of(const std::vector<WorstForm>& forms) {
+    Json list = Json::array();
+    for (const WorstForm& f : forms)
+        list.push_back({{"node", f.node},
+                        {"name", f.name},
+                        {"kind", f.node_kind},
+                        {"form", f.form},
+                        {"triangles", f.triangles},
+                        {"error_share", rounded(f.error_share)},
+                        {"pictures", f.pictures},
+                        {"frame", f.frame}});
+    return list;
+}
+
 }  // namespace
 
 std::string to_json(const WalkSummary& s) {
@@ -154,6 +168,8 @@ std::string to_json(const WalkSummary& s) {
         {"control", control_of(s.control)},
         {"input", input_of(s.input)},
         {"picture", picture_of(s.picture)},
+        {"worst_forms", worst_forms_of(s.worst_forms)},
+        {"resolution_error_share", rounded(s.resolution_error_share)},
     };
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -164,6 +164,30 @@ std::string snapshot_cards(const WalkSummary& s, std::span<const double> time_s,
     return out;
 }
 
+std::string worst_form_cards(const WalkSummary& s) {
+    if (s.worst_forms.empty()) return {};
+    std::string out =
+        "<h2>Forms that cost most</h2>\n<p class=\"sub\">Each was drawn in full detail in turn, while all else stayed. The share "
+        "is what that takes away of the squared error of all pictures above. Shares need not add up: one form may hide another.";
+    if (s.resolution_error_share > 0)
+        out += fmt::format(" Full detail at the same resolutions would have {:.1f} % of that error.",
+                           100 * s.resolution_error_share);
+    out += "</p>\n<div class=\"two\">\n";
+    for (const WorstForm& f : s.worst_forms) {
+        const std::string title =
+            fmt::format("{} {}{}: {}", f.node_kind, f.node, f.name.empty() ? "" : " “" + f.name + "”", f.form);
+        const std::string words =
+            fmt::format("{:.1f} % of the error, in {} picture{}; {} triangles. Here: frame {}", 100 * f.error_share, f.pictures,
+                        f.pictures == 1 ? "" : "s", grouped(static_cast<double>(f.triangles)), f.frame);
+        out += fmt::format("<div class=\"card\"><h3>{}</h3><p>{}</p>", escaped(title), escaped(words));
+        for (const auto& [name, pixels] : {std::pair{"the walk", &f.walk}, std::pair{"full detail", &f.full}})
+            out += fmt::format("<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>",
+                               jpeg_data_uri(*pixels, f.width, f.height, 85), escaped(title + ", " + name), name);
+        out += "</div>\n";
+    }
+    return out + "</div>\n";
+}
+
 std::string figures_table(const WalkSummary& s) {
     std::string out =
         "<h2>Figures</h2>\n<div class=\"card "

@@ -18,6 +18,8 @@ std::string degraded_notes(const WalkSummary& summary);
 std::string tiles(const WalkSummary& summary);
 /// Pictures along the path, each with its top view; empty without snapshots. time_s: one a snapshot.
 std::string snapshot_cards(const WalkSummary& summary, std::span<const double> time_s, std::span<const ReportSnapshot> snapshots);
+/// The forms that cost the pictures most, each beside full detail; empty without any.
+std::string worst_form_cards(const WalkSummary& summary);
 /// All percentiles, for who wants them.
 std::string figures_table(const WalkSummary& summary);
 std::string machine_table(const WalkSummary& summary);

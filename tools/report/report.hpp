@@ -72,6 +72,18 @@ struct PictureSummary {
     double worst_popped_share = 0;
     double pop_psnr_db = 0;  ///< as psnr_db
 };
+/// A form that was drawn where full detail would show more. Its share of the error is measured: it is drawn in full detail, while
+/// all else stays. Shares of several forms need not add up: one may hide another.
+struct WorstForm {
+    std::uint32_t node = 0;             ///< of the model
+    std::string name, node_kind, form;  ///< the node's name, may be empty; cluster, object or piece; the kind of form
+    std::uint64_t triangles = 0;
+    double error_share = 0;      ///< of the squared error of all compared pictures
+    std::uint32_t pictures = 0;  ///< in which it costs something
+    std::uint64_t frame = 0;     ///< where it costs most
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> walk, full;  ///< RGBA8: that part of that frame's picture, and of full detail
+};
 /// A change of R, G or B by more is taken to be visible: 3 % of full scale.
 constexpr int visible_steps = 8;
 /// PSNR of equal pictures: no other pair of 8-bit pictures below 4000 x 4000 pixels reaches it.
@@ -118,6 +130,8 @@ struct WalkSummary {
     ControlSummary control;
     InputSummary input;
     PictureSummary picture;
+    std::vector<WorstForm> worst_forms;  ///< what costs the pictures most, first; empty without a report
+    double resolution_error_share = 0;   ///< of the squared error: what full detail has too at those resolutions; with a report
 };
 
 /// Pure: quantiles and sums over the records (control blocks' bare frames excluded from the walk's figures).

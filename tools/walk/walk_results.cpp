@@ -8,6 +8,7 @@
 
 #include "render/capture/capture.hpp"
 #include "rt/base/file.hpp"
+#include "tools/walk/worst_forms.hpp"
 
 namespace surefoot::walk {
 
@@ -56,15 +57,18 @@ Result<void> write_capture(const WalkRequest& request, const KeptFrame& kept, co
     return capture::write_capture(request.capture_file, capture_of(kept, request, engine));
 }
 
+constexpr std::size_t worst_forms_listed = 8;
+
 /// How many pictures are compared with full detail.
 std::uint64_t pictures_wanted(const WalkRequest& request) {
     constexpr std::uint64_t on_a_page = 7;
     return request.pictures > 0 ? request.pictures : request.report_dir.empty() ? 0 : on_a_page;
 }
 
-/// Draws the wanted snapshots and full detail, and compares. Stopped: fewer are better than none.
+/// Draws the wanted snapshots and full detail, and compares. Stopped: fewer are better than none. `worst`: for the report.
 Result<std::vector<report::ReportSnapshot>> render_snapshots(const WalkRequest& request, Engine& engine,
-                                                             const SnapshotStore& snapshots, const Progress& progress) {
+                                                             const SnapshotStore& snapshots, WorstForms& worst,
+                                                             const Progress& progress) {
     std::vector<report::ReportSnapshot> rendered;
     const std::uint64_t wanted = pictures_wanted(request);
     if (wanted == 0) return rendered;
@@ -74,6 +78,8 @@ Result<std::vector<report::ReportSnapshot>> render_snapshots(const WalkRequest& 
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(snapshots.used()));
         auto snapshot = render_snapshot(engine, snapshots.snapshots()[i]);
         if (!snapshot) return snapshot.error();
+        if (!request.report_dir.empty())
+            if (auto ok = worst.add(snapshots.snapshots()[i], *snapshot); !ok) return ok.error();
         rendered.push_back(std::move(*snapshot));
     }
     return rendered;
@@ -124,13 +130,16 @@ void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& en
     put(request.capture_file, [&] { return write_capture(request, kept, engine); });
     if (!outcome.lost) put(request.snap_dir, [&] { return write_snaps(engine, snapshots, request.snap_dir, progress); });
     std::vector<report::ReportSnapshot> rendered;
+    WorstForms worst(engine);
     if (!outcome.lost) {
-        if (auto drawn = render_snapshots(request, engine, snapshots, progress); drawn)
+        if (auto drawn = render_snapshots(request, engine, snapshots, worst, progress); drawn)
             rendered = std::move(*drawn);
         else
             outcome.failures.push_back(drawn.error());
     }
     outcome.summary.picture = report::compare_pictures(rendered);
+    outcome.summary.worst_forms = worst.list(worst_forms_listed);
+    outcome.summary.resolution_error_share = worst.resolution_share();
     put(request.report_dir, [&]() -> Result<void> {
         if (auto written = report::write_report(request.report_dir, outcome.summary, outcome.records, rendered); !written)
             return written;

@@ -1,0 +1,97 @@
+// Which forms cost the pictures most: what stands in for an item, where a box shows, and what a walk's report says of it.
+#include "tools/walk/worst_forms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "rt/base/file.hpp"
+#include "tests/walk/walk_fixture.hpp"
+
+namespace surefoot {
+namespace {
+
+using walk::PixelRect;
+
+/// Root 0 over 1 and 2; 1 over 3 and 4. Each has a coarse form and a fine one: node n has the forms 2n and 2n + 1.
+model::Model tree_of_two_forms() {
+    model::Model model;
+    model.nodes.resize(5);
+    model.reps.resize(10);
+    for (model::Index n = 0; n < 5; ++n) {
+        model.nodes[n].first_rep = 2 * n;
+        model.nodes[n].rep_count = 2;
+        model.reps[2 * n].error_m = 1;
+    }
+    for (const auto& [child, parent] : {std::pair{1U, 0U}, {2U, 0U}, {3U, 1U}, {4U, 1U}}) {
+        model.nodes[child].parent = parent;
+        ++model.nodes[parent].child_count;
+    }
+    return model;
+}
+
+TEST(WorstForms, FullDetailStandsInForWhatIsBelowTheItem) {
+    const model::Model model = tree_of_two_forms();
+    const std::vector<gl::DrawItem> full{{2, 5}, {3, 7}, {4, 9}};
+    const auto below = walk::full_detail_below(model, std::vector<gl::DrawItem>{{1, 3}, {2, 4}}, full);
+    ASSERT_EQ(below.size(), 2U);
+    ASSERT_EQ(below[0].size(), 2U) << "the leaves of the cluster, even for its finest form";
+    EXPECT_EQ(below[0][0].rep, 7U);
+    EXPECT_EQ(below[0][1].rep, 9U);
+    ASSERT_EQ(below[1].size(), 1U);
+    EXPECT_EQ(below[1][0].rep, 5U);
+    const auto leaves = walk::full_detail_below(model, std::vector<gl::DrawItem>{{2, 5}, {3, 6}, {4, 9}}, {&full[1], 2});
+    EXPECT_TRUE(leaves[0].empty()) << "full detail already";
+    EXPECT_EQ(leaves[1].size(), 1U);
+    EXPECT_TRUE(leaves[2].empty());
+}
+
+TEST(WorstForms, ABoxShowsWhereItIsProjected) {
+    const Pose pose;  // at the origin, looks along -z
+    const model::Viewport viewport{200, 100};
+    const PixelRect ahead = walk::pixels_of({{-1, -1, -101}, {1, 1, -99}}, pose, viewport);
+    EXPECT_LT(ahead.x0, 100U);
+    EXPECT_GT(ahead.x1, 100U);
+    EXPECT_LT(ahead.x1 - ahead.x0, 10U);
+    EXPECT_LT(ahead.y1 - ahead.y0, 10U);
+    const PixelRect high = walk::pixels_of({{-1, 20, -101}, {1, 22, -99}}, pose, viewport);
+    EXPECT_LT(high.y1, ahead.y0) << "rows count from the top";
+    const PixelRect around = walk::pixels_of({{-1, -1, -1}, {1, 1, 1}}, pose, viewport);
+    EXPECT_EQ(around.x1 - around.x0, 200U);
+    EXPECT_EQ(around.y1 - around.y0, 100U);
+    const PixelRect beside = walk::pixels_of({{500, -1, -101}, {502, 1, -99}}, pose, viewport);
+    EXPECT_EQ(beside.x0, beside.x1);
+}
+
+TEST(WorstForms, OfAWalkStandInItsReportAndCostWhatTheyCost) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(24);
+    request.backend = "egl";
+    request.width = 320;
+    request.height = 180;
+    request.budget_ms = 2;
+    request.pictures = 2;
+    request.report_dir = test::Forest::get().dir + "/worst";
+    const auto outcome = walk::run_walk(request, {}, {});
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+    const auto& forms = outcome->summary.worst_forms;
+    ASSERT_FALSE(forms.empty());
+    for (std::size_t i = 0; i < forms.size(); ++i) {
+        EXPECT_GT(forms[i].error_share, 0);
+        EXPECT_LE(forms[i].error_share, 1);
+        EXPECT_GE(forms[i].pictures, 1U);
+        if (i > 0) {
+            EXPECT_LE(forms[i].error_share, forms[i - 1].error_share);
+        }
+        EXPECT_EQ(forms[i].walk.size(), std::size_t{4} * forms[i].width * forms[i].height);
+        EXPECT_EQ(forms[i].full.size(), forms[i].walk.size());
+    }
+    EXPECT_GE(outcome->summary.resolution_error_share, 0);
+    const auto json = nlohmann::json::parse(*read_text(request.report_dir + "/walk.json"));
+    EXPECT_EQ(json["worst_forms"].size(), forms.size());
+    EXPECT_EQ(json["worst_forms"][0]["node"], forms[0].node);
+    EXPECT_NE(read_text(request.report_dir + "/index.html")->find("Forms that cost most"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace surefoot
