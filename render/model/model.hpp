@@ -101,6 +101,8 @@ struct Node {
 
 /// Error, before placing, of a leaf's full detail without what its masks hide. It shows the same. The error is there because
 /// errors fall from form to form.
+/// Angular errors below this count as none: a hundredth of the smallest pixel, and the error of trimmed forms from 1 mm on.
+constexpr float exact_below_rad = 1e-6F;
 constexpr float trimmed_error_m = 1e-9F, max_trimmed_error_m = 1e-6F;
 
 /// Whether the representation shows the node's full detail: the finest of a leaf, or the same without what its masks hide.

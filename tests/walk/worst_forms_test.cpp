@@ -74,7 +74,7 @@ TEST(WorstForms, OfAWalkStandInItsReportAndCostWhatTheyCost) {
     request.report_dir = test::Forest::get().dir + "/worst";
     const auto outcome = walk::run_walk(request, {}, {});
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
-    const auto& forms = outcome->summary.worst_forms;
+    const auto& forms = outcome->summary.picture.worst_forms;
     ASSERT_FALSE(forms.empty());
     for (std::size_t i = 0; i < forms.size(); ++i) {
         EXPECT_GT(forms[i].error_share, 0);
@@ -86,10 +86,10 @@ TEST(WorstForms, OfAWalkStandInItsReportAndCostWhatTheyCost) {
         EXPECT_EQ(forms[i].walk.size(), std::size_t{4} * forms[i].width * forms[i].height);
         EXPECT_EQ(forms[i].full.size(), forms[i].walk.size());
     }
-    EXPECT_GE(outcome->summary.resolution_error_share, 0);
+    EXPECT_GE(outcome->summary.picture.resolution_error_share, 0);
     const auto json = nlohmann::json::parse(*read_text(request.report_dir + "/walk.json"));
-    EXPECT_EQ(json["worst_forms"].size(), forms.size());
-    EXPECT_EQ(json["worst_forms"][0]["node"], forms[0].node);
+    EXPECT_EQ(json["picture"]["worst_forms"].size(), forms.size());
+    EXPECT_EQ(json["picture"]["worst_forms"][0]["node"], forms[0].node);
     EXPECT_NE(read_text(request.report_dir + "/index.html")->find("Forms that cost most"), std::string::npos);
 }
 

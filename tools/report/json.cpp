@@ -81,24 +81,6 @@ Json input_of(const InputSummary& in) {
     };
 }
 
-/// Null where no picture was compared.
-Json picture_of(const PictureSummary& p) {
-    if (p.frames == 0) return nullptr;
-    // Shares of pixels keep their digits: a thousandth of a picture is seen.
-    const Json popping = p.pop_frames == 0 ? Json(nullptr)
-                                           : Json({{"frames", p.pop_frames},
-                                                   {"pixels", p.popped_share},
-                                                   {"worst_pixels", p.worst_popped_share},
-                                                   {"psnr_db", rounded(p.pop_psnr_db)}});
-    return {{"frames", p.frames},
-            {"psnr_db", rounded(p.psnr_db)},
-            {"worst_psnr_db", rounded(p.worst_psnr_db)},
-            {"worst_frame", p.worst_frame},
-            {"ssim", rounded(p.ssim)},
-            {"flip", rounded(p.flip)},
-            {"popping", popping}};
-}
-
 Json worst_forms_of(const std::vector<WorstForm>& forms) {
     Json list = Json::array();
     for (const WorstForm& f : forms)
@@ -111,6 +93,29 @@ Json worst_forms_of(const std::vector<WorstForm>& forms) {
                         {"pictures", f.pictures},
                         {"frame", f.frame}});
     return list;
+}
+
+/// Null where no picture was compared.
+Json picture_of(const PictureSummary& p) {
+    if (p.frames == 0) return nullptr;
+    // Shares of pixels keep their digits: a thousandth of a picture is seen.
+    const Json popping = p.pop_frames == 0 ? Json(nullptr)
+                                           : Json({{"frames", p.pop_frames},
+                                                   {"pixels", p.popped_share},
+                                                   {"worst_pixels", p.worst_popped_share},
+                                                   {"psnr_db", rounded(p.pop_psnr_db)}});
+    Json json = {{"frames", p.frames},
+                 {"psnr_db", rounded(p.psnr_db)},
+                 {"worst_psnr_db", rounded(p.worst_psnr_db)},
+                 {"worst_frame", p.worst_frame},
+                 {"ssim", rounded(p.ssim)},
+                 {"flip", rounded(p.flip)},
+                 {"popping", popping}};
+    if (p.forms_compared) {
+        json["worst_forms"] = worst_forms_of(p.worst_forms);
+        json["resolution_error_share"] = rounded(p.resolution_error_share);
+    }
+    return json;
 }
 
 }  // namespace
@@ -168,8 +173,6 @@ std::string to_json(const WalkSummary& s) {
         {"control", control_of(s.control)},
         {"input", input_of(s.input)},
         {"picture", picture_of(s.picture)},
-        {"worst_forms", worst_forms_of(s.worst_forms)},
-        {"resolution_error_share", rounded(s.resolution_error_share)},
     };
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

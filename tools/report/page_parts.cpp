@@ -165,15 +165,15 @@ std::string snapshot_cards(const WalkSummary& s, std::span<const double> time_s,
 }
 
 std::string worst_form_cards(const WalkSummary& s) {
-    if (s.worst_forms.empty()) return {};
+    if (s.picture.worst_forms.empty()) return {};
     std::string out =
         "<h2>Forms that cost most</h2>\n<p class=\"sub\">Each was drawn in full detail in turn, while all else stayed. The share "
         "is what that takes away of the squared error of all pictures above. Shares need not add up: one form may hide another.";
-    if (s.resolution_error_share > 0)
+    if (s.picture.resolution_error_share > 0)
         out += fmt::format(" Full detail at the same resolutions would have {:.1f} % of that error.",
-                           100 * s.resolution_error_share);
+                           100 * s.picture.resolution_error_share);
     out += "</p>\n<div class=\"two\">\n";
-    for (const WorstForm& f : s.worst_forms) {
+    for (const WorstForm& f : s.picture.worst_forms) {
         const std::string title =
             fmt::format("{} {}{}: {}", f.node_kind, f.node, f.name.empty() ? "" : " “" + f.name + "”", f.form);
         const std::string words =

@@ -59,19 +59,6 @@ struct InputSummary {
     std::uint64_t guard_violations = 0;                                ///< of the input thread
 };
 
-/// Pictures of the walk against full detail, drawn after the walk.
-struct PictureSummary {
-    std::uint32_t frames = 0;       ///< compared; 0: none, and no figure holds
-    double psnr_db = 0;             ///< of the mean squared error over all of them; at most max_psnr_db
-    double worst_psnr_db = 0;       ///< of one frame
-    std::uint64_t worst_frame = 0;  ///< its number
-    double ssim = 0, flip = 0;      ///< means
-    /// Popping: pictures of one pose by this frame's cut and by the cut of the frame before.
-    std::uint32_t pop_frames = 0;  ///< compared so; 0: none, and no figure holds
-    double popped_share = 0;       ///< mean share of pixels that change by over visible_steps
-    double worst_popped_share = 0;
-    double pop_psnr_db = 0;  ///< as psnr_db
-};
 /// A form that was drawn where full detail would show more. Its share of the error is measured: it is drawn in full detail, while
 /// all else stays. Shares of several forms need not add up: one may hide another.
 struct WorstForm {
@@ -83,6 +70,24 @@ struct WorstForm {
     std::uint64_t frame = 0;     ///< where it costs most
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> walk, full;  ///< RGBA8: that part of that frame's picture, and of full detail
+};
+/// Pictures of the walk against full detail, drawn after the walk.
+struct PictureSummary {
+    std::uint32_t frames = 0;       ///< compared; 0: none, and no figure holds
+    double psnr_db = 0;             ///< of the mean squared error over all of them; at most max_psnr_db
+    double worst_psnr_db = 0;       ///< of one frame
+    std::uint64_t worst_frame = 0;  ///< its number
+    double ssim = 0, flip = 0;      ///< means
+    /// Popping: pictures of one pose by this frame's cut and by the cut of the frame before.
+    std::uint32_t pop_frames = 0;  ///< compared so; 0: none, and no figure holds
+    double popped_share = 0;       ///< mean share of pixels that change by over visible_steps
+    double worst_popped_share = 0;
+    double pop_psnr_db = 0;       ///< as psnr_db
+    bool forms_compared = false;  ///< with a report; else the next two hold nothing, and JSON lacks them
+    /// What costs the pictures most, first.
+    std::vector<WorstForm> worst_forms = {};
+    /// Of the squared error, what full detail has too at the frames' resolutions.
+    double resolution_error_share = 0;
 };
 /// A change of R, G or B by more is taken to be visible: 3 % of full scale.
 constexpr int visible_steps = 8;
@@ -130,8 +135,6 @@ struct WalkSummary {
     ControlSummary control;
     InputSummary input;
     PictureSummary picture;
-    std::vector<WorstForm> worst_forms;  ///< what costs the pictures most, first; empty without a report
-    double resolution_error_share = 0;   ///< of the squared error: what full detail has too at those resolutions; with a report
 };
 
 /// Pure: quantiles and sums over the records (control blocks' bare frames excluded from the walk's figures).

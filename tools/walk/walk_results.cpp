@@ -138,8 +138,9 @@ void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& en
             outcome.failures.push_back(drawn.error());
     }
     outcome.summary.picture = report::compare_pictures(rendered);
-    outcome.summary.worst_forms = worst.list(worst_forms_listed);
-    outcome.summary.resolution_error_share = worst.resolution_share();
+    outcome.summary.picture.forms_compared = !request.report_dir.empty();
+    outcome.summary.picture.worst_forms = worst.list(worst_forms_listed);
+    outcome.summary.picture.resolution_error_share = worst.resolution_share();
     put(request.report_dir, [&]() -> Result<void> {
         if (auto written = report::write_report(request.report_dir, outcome.summary, outcome.records, rendered); !written)
             return written;

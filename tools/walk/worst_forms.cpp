@@ -136,8 +136,8 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, const report::Report
         Total& total = totals_[{item.node, item.rep}];
         total.squared_error += less;
         ++total.form.pictures;
-        if (less <= total.most) continue;
-        total.most = less;
+        if (less <= total.max_squared_error) continue;
+        total.max_squared_error = less;
         const PixelRect part = changed_pixels(picture.walk, with->rgba, width, height);
         total.form.frame = picture.frame;
         total.form.width = part.x1 - part.x0;

@@ -30,7 +30,7 @@ public:
 
 private:
     struct Total {
-        double squared_error = 0, most = 0;
+        double squared_error = 0, max_squared_error = 0;  ///< of all pictures, of one
         report::WorstForm form;
     };
 
