@@ -132,7 +132,9 @@ for option in --ledger --trace --capture; do
 done
 expect 2 'seconds and --frames both' compare f.walk --frames 3 --seconds 2
 expect 2 'null: The value draws nothing' compare f.walk --backend null
-expect 2 'backend=null: null: The value draws nothing' compare f.walk --with backend=null
+expect 2 'backend is the same for all walks' compare f.walk --with backend=null
+expect 2 'rasterisers is the same for all walks' compare f.walk --with reserve=0,rasterisers=2
+expect 2 'selector excludes --with' compare f.walk --selector flat --with reserve=0
 expect 2 'resolution: This is no KEY=VALUE' compare f.walk --with resolution
 expect 2 "key 'resolutoin' is unknown. Did you mean 'resolution'" compare f.walk --with resolutoin=50
 expect 2 'resolution = 120: The value is not allowed. Use a number from 0 to 100' compare f.walk --with hysteresis=1,resolution=120

@@ -440,8 +440,7 @@ bool BakeContext::measure_pictures() {
     MeasuredLosses measured = measure_losses(
         model, [](std::size_t count, const std::function<void(std::size_t)>& body) { for_all(count, body); },
         [&] { return stage.step(); });
-    model.losses = std::move(measured.forms);
-    model.colours = measured.colours;
+    measured.move_to(model);
     return !model.losses.empty();
 }
 

@@ -1,6 +1,8 @@
 // Leaves are drawn one by one; clusters are put together from their children's pictures, a face after the other.
 #include "render/bake/boxes.hpp"
 
+#include "render/model/loss_groups.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -130,7 +132,9 @@ bool PlacedBoxes::is_best_somewhere(const Node& node, const model::CostModel& co
 }
 
 std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs) {
+    const model::LossGroups groups(model_);
     std::vector<model::PictureLoss> losses;
+    std::vector<model::LossOfGroup> group_losses;
     std::size_t left = 0;
     for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
         const Node& node = model_.nodes[n];
@@ -140,6 +144,11 @@ std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs) {
         left += keeps ? 1 : 0;
         for (Index r = node.first_rep + (had && !keeps ? 1 : 0); r < node.first_rep + node.rep_count; ++r)
             losses.push_back(model_.losses[r]);
+        if (model_.group_losses.empty()) continue;
+        const auto cluster = static_cast<Index>(n);
+        const auto end = model_.group_losses.begin() + static_cast<std::ptrdiff_t>(groups.first(cluster + 1));
+        const std::size_t kept = (node.rep_count - (had && !keeps ? 1U : 0U)) * std::size_t{groups.count(cluster)};
+        group_losses.insert(group_losses.end(), end - static_cast<std::ptrdiff_t>(kept), end);
     }
     model_.vertices.resize(vertices_);
     model_.indices.resize(indices_);
@@ -150,6 +159,7 @@ std::size_t PlacedBoxes::drop_idle(const model::CostModel& costs) {
     model_.texels.resize(texels_);
     insert();
     model_.losses = std::move(losses);
+    model_.group_losses = std::move(group_losses);
     return left;
 }
 

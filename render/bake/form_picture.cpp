@@ -158,6 +158,7 @@ void Painter::put(const Triangle& triangle, const vec3& w, float depth, std::uin
     if (material.alpha == model::AlphaMode::mask && alpha < material.alpha_cutoff) return;
     if (material.alpha == model::AlphaMode::blend && alpha < threshold_of(view.left + x, view.low + y)) return;
     sample.depth = depth;
+    sample.owner = picture.owner;
     for (std::size_t k = 0; k < picture_levels; ++k) sample.rgb[k] = bytes_of(colours[k]);
 }
 
@@ -253,6 +254,7 @@ void draw_picture(const FormPicture& from, FormPicture& picture) {
             FormSample& sample = picture.samples[static_cast<std::size_t>(y) * b.width + x];
             if (!(seen.depth > sample.depth)) continue;
             sample.depth = seen.depth;
+            sample.owner = seen.owner;
             mix_levels(seen, octaves, sample);
         }
     }

@@ -39,13 +39,15 @@ struct FormSample {
     static constexpr float nothing = -std::numeric_limits<float>::infinity();
     float depth = nothing;  ///< metres from the middle towards the eye
     std::array<std::array<std::uint8_t, 3>, picture_levels> rgb{};
+    model::Index owner = model::none;  ///< FormPicture::owner as it was drawn
     [[nodiscard]] bool covered() const { return depth > nothing; }
 };
 
 /// Row 0 is the lowest.
 struct FormPicture {
     FormView view;
-    bool lit = true;  ///< by sun and sky, where a material is
+    bool lit = true;                   ///< by sun and sky, where a material is
+    model::Index owner = model::none;  ///< the leaf whose form is drawn next; a picture that is drawn brings its owners
     std::vector<FormSample> samples;
     void clear(const FormView& of, bool by_the_sun = true);
 };

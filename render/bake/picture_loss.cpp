@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "render/model/loss_groups.hpp"
+
 namespace surefoot::bake {
 
 namespace {
@@ -55,27 +57,63 @@ struct Measuring {
     const Model& model;
     Plan plan;
     PictureTree tree;
+    model::LossGroups groups;
     std::size_t levels = picture_levels;
     std::vector<PictureDifference> differences;  ///< by form
+    std::vector<PictureDifference> of_groups;    ///< as Model::group_losses, where full detail covers
+    std::vector<PictureDifference> beside;       ///< by form, where only it covers
     std::vector<PictureDifference> shown;        ///< by measured leaf: full detail against nothing
 
-    explicit Measuring(const Model& m) : model(m), plan(plan_of(m)), tree(m) {
+    explicit Measuring(const Model& m) : model(m), plan(plan_of(m)), tree(m), groups(m) {
         if (m.textures.empty()) levels = 1;
         differences.resize(m.reps.size());
+        beside.resize(m.reps.size());
+        of_groups.resize(groups.size());
         shown.resize(plan.leaves.size());
     }
     void compare(Index node, std::uint32_t forms, const FormPicture& full, FormPicture& form);
+    void compare_groups(Index node, Index form_number, const std::vector<Index>& slots, const FormPicture& full,
+                        const FormPicture& form);
+    [[nodiscard]] std::vector<Index> slots_of(Index node, const FormPicture& full) const;
     void measure_leaf(std::size_t i);
+    [[nodiscard]] std::vector<model::LossOfGroup> group_losses(const ColourSpread& colours) const;
     [[nodiscard]] ColourSpread colours() const;
     [[nodiscard]] MeasuredLosses losses() const;
 };
 
 void Measuring::compare(Index index, std::uint32_t forms, const FormPicture& full, FormPicture& form) {
     const Node& node = model.nodes[index];
+    const std::vector<Index> slots = slots_of(index, full);
     for (Index r = node.first_rep; r < node.first_rep + forms; ++r) {
         form.clear(full.view);
         draw_form(model, model.reps[r], form);
         differences[r].add(full, form, levels);
+        if (!slots.empty()) compare_groups(index, r - node.first_rep, slots, full, form);
+    }
+}
+
+/// By sample of a cluster's full detail, the group that shows there; empty for a leaf.
+std::vector<Index> Measuring::slots_of(Index node, const FormPicture& full) const {
+    std::vector<Index> slots;
+    if (groups.count(node) == 0) return slots;
+    slots.reserve(full.samples.size());
+    Index owner = none, slot = none;
+    for (const FormSample& sample : full.samples) {
+        if (sample.owner != owner) slot = groups.slot_of(owner = sample.owner, node);
+        slots.push_back(slot);
+    }
+    return slots;
+}
+
+void Measuring::compare_groups(Index node, Index form_number, const std::vector<Index>& slots, const FormPicture& full,
+                               const FormPicture& form) {
+    PictureDifference* const of_form = &of_groups[groups.first(node) + std::size_t{form_number} * groups.count(node)];
+    PictureDifference& alone = beside[model.nodes[node].first_rep + form_number];
+    for (std::size_t i = 0; i < full.samples.size(); ++i) {
+        if (full.samples[i].covered())
+            of_form[slots[i]].add(full.samples[i], form.samples[i], levels);
+        else
+            alone.add(full.samples[i], form.samples[i], levels);
     }
 }
 
@@ -118,8 +156,34 @@ ColourSpread Measuring::colours() const {
     return spread;
 }
 
+/// What a form shows beside full detail counts on all groups alike.
+std::vector<model::LossOfGroup> Measuring::group_losses(const ColourSpread& of_model) const {
+    std::vector<model::LossOfGroup> out(of_groups.size());
+    for (Index n = 0; n < model.nodes.size(); ++n) {
+        const Index count = groups.count(n);
+        for (std::uint32_t k = 0; count > 0 && k < model.nodes[n].rep_count; ++k) {
+            const Index r = model.nodes[n].first_rep + k;
+            PictureDifference alone = beside[r];
+            alone.end(levels);
+            alone.full_detail = differences[r].full_detail;
+            const PictureLoss more = alone.loss(of_model);
+            for (std::size_t i = groups.first(n) + std::size_t{k} * count; i < groups.first(n) + (std::size_t{k} + 1) * count;
+                 ++i) {
+                PictureDifference of = of_groups[i];
+                of.end(levels);
+                // Not seen from anywhere: as the whole.
+                const PictureLoss loss = of.full_detail > 0 ? of.loss(of_model) : differences[r].loss(of_model);
+                for (std::size_t s = 0; s < out[i].colour.size(); ++s)
+                    out[i].colour[s] = of.full_detail > 0 ? std::min(1.0F, loss.colour[s] + more.colour[s]) : loss.colour[s];
+            }
+        }
+    }
+    return out;
+}
+
 MeasuredLosses Measuring::losses() const {
-    MeasuredLosses out{std::vector<PictureLoss>(model.reps.size()), colours()};
+    MeasuredLosses out{std::vector<PictureLoss>(model.reps.size()), {}, colours()};
+    out.groups = group_losses(out.colours);
     for (const auto& [leaf, as] : plan.same) {
         const Node &node = model.nodes[leaf], &measured = model.nodes[plan.leaves[as]];
         for (std::uint32_t k = 0; k + 1 < node.rep_count; ++k)
@@ -134,27 +198,38 @@ MeasuredLosses Measuring::losses() const {
 
 }  // namespace
 
+void MeasuredLosses::move_to(model::Model& model) {
+    model.losses = std::move(forms);
+    model.group_losses = std::move(groups);
+    model.colours = colours;
+}
+
 void PictureDifference::add(const FormPicture& full, const FormPicture& form, std::size_t levels) {
-    for (std::size_t i = 0; i < full.samples.size(); ++i) {
-        const FormSample &a = full.samples[i], &b = form.samples[i];
-        const bool in_a = a.covered(), in_b = b.covered();
-        if (!in_a && !in_b) continue;
-        ++either;
-        full_detail += in_a ? 1 : 0;
-        one += in_a != in_b ? 1 : 0;
-        for (std::size_t k = 0; k < levels; ++k) {
-            for (std::size_t c = 0; c < 3; ++c) {
-                if (in_a && in_b) {
-                    const int off = a.rgb[k][c] - b.rgb[k][c];
-                    both[k] += static_cast<std::uint64_t>(off * off);
-                } else {
-                    const std::uint64_t seen = in_a ? a.rgb[k][c] : b.rgb[k][c];
-                    squares[k] += seen * seen;
-                    sums[c][k] += seen;
-                }
+    for (std::size_t i = 0; i < full.samples.size(); ++i) add(full.samples[i], form.samples[i], levels);
+    end(levels);
+}
+
+void PictureDifference::add(const FormSample& a, const FormSample& b, std::size_t levels) {
+    const bool in_a = a.covered(), in_b = b.covered();
+    if (!in_a && !in_b) return;
+    ++either;
+    full_detail += in_a ? 1 : 0;
+    one += in_a != in_b ? 1 : 0;
+    for (std::size_t k = 0; k < levels; ++k) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (in_a && in_b) {
+                const int off = a.rgb[k][c] - b.rgb[k][c];
+                both[k] += static_cast<std::uint64_t>(off * off);
+            } else {
+                const std::uint64_t seen = in_a ? a.rgb[k][c] : b.rgb[k][c];
+                squares[k] += seen * seen;
+                sums[c][k] += seen;
             }
         }
     }
+}
+
+void PictureDifference::end(std::size_t levels) {
     for (std::size_t k = levels; k < picture_levels; ++k) {
         both[k] = both[0];
         squares[k] = squares[0];

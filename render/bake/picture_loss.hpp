@@ -15,6 +15,10 @@ namespace surefoot::bake {
 struct PictureDifference {
     /// Pictures of one view. levels: 1 where textures do not differ by level.
     void add(const FormPicture& full, const FormPicture& form, std::size_t levels = picture_levels);
+    /// A sample of both. Call end() after the last.
+    void add(const FormSample& full, const FormSample& form, std::size_t levels);
+    /// Where textures do not differ by level, all levels are the first.
+    void end(std::size_t levels);
     /// Zero where neither picture shows anything.
     [[nodiscard]] model::PictureLoss loss(const model::ColourSpread& of_model) const;
 
@@ -27,8 +31,10 @@ struct PictureDifference {
 
 /// What measure_losses() found.
 struct MeasuredLosses {
-    std::vector<model::PictureLoss> forms;  ///< one a form of the model; empty: stopped
+    std::vector<model::PictureLoss> forms;   ///< one a form of the model; empty: stopped
+    std::vector<model::LossOfGroup> groups;  ///< as Model::group_losses
     model::ColourSpread colours;
+    void move_to(model::Model& model);
 };
 
 /// Objects of one mesh share what the first of them shows. The same bits, whatever the threads. step(): false: stop.

@@ -60,6 +60,7 @@ void PictureTree::draw(Index index, const View& view) {
     full.clear(view_of(node.box, view.from, middle_, view.pixels), view.lit);
     for (Index c = node.first_child; c < node.first_child + node.child_count; ++c) {
         const Node& child = model_.nodes[c];
+        full.owner = c;
         if (child.child_count == 0) draw_form(model_, model_.reps[child.first_rep + child.rep_count - 1], full);
         if (child.child_count > 0) draw_picture(pictures_[c], full);
         pictures_[c] = {};

@@ -1,6 +1,8 @@
 // Checks of a model: whatever the renderer relies on is proven here once, so that no frame has to ask.
 #include "render/model/model.hpp"
 
+#include "render/model/loss_groups.hpp"
+
 #include <cmath>
 
 #include <fmt/format.h>
@@ -133,6 +135,19 @@ Check check_losses(const Model& m) {
     return {};
 }
 
+/// Needs a tree that was checked.
+Check check_group_losses(const Model& m) {
+    if (m.group_losses.empty()) return {};
+    if (m.losses.empty() || m.group_losses.size() != LossGroups(m).size())
+        return Error{"losses of groups", "The losses are not one for every form and group", "Bake the model again",
+                     ErrorKind::damaged};
+    for (std::size_t i = 0; i < m.group_losses.size(); ++i) {
+        for (const float colour : m.group_losses[i].colour)
+            if (!within_one(colour)) return wrong("losses of groups", i, "The loss is not within 0 to 1");
+    }
+    return {};
+}
+
 Check check_node_reps(const Model& m, std::size_t i) {
     const Node& node = m.nodes[i];
     if (node.rep_count == 0 || !in_range(node.first_rep, node.rep_count, m.reps.size()))
@@ -224,8 +239,8 @@ EffectMask Model::called_for() const {
 
 Result<void> validate(const Model& model) {
     if (auto fits = check_limits(counts_of(model), "model"); !fits) return fits;
-    for (const auto check :
-         {check_textures, check_materials, check_parts, check_placements, check_reps, check_losses, check_tree, check_rest}) {
+    for (const auto check : {check_textures, check_materials, check_parts, check_placements, check_reps, check_losses, check_tree,
+                             check_group_losses, check_rest}) {
         if (Check result = check(model); !result) return result;
     }
     return {};

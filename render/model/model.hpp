@@ -101,9 +101,9 @@ struct Node {
 
 /// Error, before placing, of a leaf's full detail without what its masks hide. It shows the same. The error is there because
 /// errors fall from form to form.
-/// Angular errors below this count as none: a hundredth of the smallest pixel, and the error of trimmed forms from 1 mm on.
-constexpr float exact_below_rad = 1e-6F;
 constexpr float trimmed_error_m = 1e-9F, max_trimmed_error_m = 1e-6F;
+/// Angular errors up to this count as none. Trimmed forms have no more at any distance; a pixel has a hundred times as much.
+constexpr float exact_up_to_rad = 2e-5F;
 
 /// Whether the representation shows the node's full detail: the finest of a leaf, or the same without what its masks hide.
 inline bool is_full_detail(const Node& node, Index rep, float error_m) {
@@ -121,8 +121,9 @@ struct Provenance {
 struct Model {
     std::vector<Node> nodes;
     std::vector<Representation> reps;
-    std::vector<PictureLoss> losses;  ///< one a representation; empty: not measured
-    ColourSpread colours;             ///< of what the leaves show, as measured with the losses
+    std::vector<PictureLoss> losses;        ///< one a representation; empty: not measured
+    std::vector<LossOfGroup> group_losses;  ///< of clusters' forms, by LossGroups; empty: not measured
+    ColourSpread colours;                   ///< of what the leaves show, as measured with the losses
     std::vector<Part> parts;
     std::vector<Placement> placements;
     std::vector<Material> materials;

@@ -22,6 +22,11 @@ struct PictureLoss {
     std::array<float, loss_sizes_px.size()> colour{};
 };
 
+/// Of one form on a part of its node, as PictureLoss.
+struct LossOfGroup {
+    std::array<float, loss_sizes_px.size()> colour{};
+};
+
 /// The colours that the leaves of a model show, 0..1.
 struct ColourSpread {
     std::array<float, 3> mean{};

@@ -92,6 +92,12 @@ void fields(Archive& a, LossT& l) {
     for (auto& colour : l.colour) a(colour);
 }
 
+template <class Archive, class LossT>
+requires std::is_same_v<std::remove_const_t<LossT>, LossOfGroup>
+void fields(Archive& a, LossT& l) {
+    for (auto& colour : l.colour) a(colour);
+}
+
 template <class Archive, class SpreadT>
 requires std::is_same_v<std::remove_const_t<SpreadT>, ColourSpread>
 void fields(Archive& a, SpreadT& s) {

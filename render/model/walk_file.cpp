@@ -132,6 +132,7 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
         case losses_section:
             walk::fields(put, m.colours);
             put.list(m.losses);
+            if (!m.group_losses.empty()) put.list(m.group_losses);
             break;
         default:
             walk::rest(put, m);
@@ -257,6 +258,7 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
         case losses_section:
             walk::fields(take, m.colours);
             take.list(m.losses);
+            if (take.reader.left() != 0) take.list(m.group_losses);  // older files end here
             break;
         default:
             walk::rest(take, m);

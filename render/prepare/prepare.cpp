@@ -82,6 +82,7 @@ struct Preparer::Impl {
     ShownPixels shown;
     std::span<const float> shown_px;  ///< of the last run()'s candidates
     ValuePass values;
+    model::LossGroups groups;
     std::uint32_t choice_bound = 0;  ///< choices that the visits may need
     float used_factor = 1;           ///< of the last run(), for value_at() too
     float target_factor = 1;         ///< of the error target, raised while frames look at too many nodes
@@ -110,7 +111,8 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
       evaluator(m, c),
       occluders(o.occlusion ? find_occluders(m) : Occluders{}),
       occlusion(occluders),
-      workers(o.workers, o.worker_hooks) {
+      workers(o.workers, o.worker_hooks),
+      groups(m) {
     options.max_candidates = std::max(1U, options.max_candidates);
     std::uint32_t max_children = 0, max_reps = 1;
     for (const model::Node& node : m.nodes) {
@@ -133,7 +135,7 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     chunk_count.resize(chunks);
     weights.resize(max_nodes);
     shown.reserve(static_cast<std::uint32_t>(max_nodes), max_hidden);
-    values.reserve(static_cast<std::uint32_t>(max_nodes));
+    values.reserve(static_cast<std::uint32_t>(max_nodes), std::min<std::size_t>(options.max_choices, m.reps.size()));
 }
 
 template <class Body>
@@ -336,7 +338,8 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
 }
 
 void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
-    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model, options.sky), shown.before_sky());
+    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model, options.sky, &groups),
+               shown.before_sky());
 }
 
 // A band between raising and lowering, so that the target does not swing while the eye stands still.

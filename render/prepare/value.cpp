@@ -79,7 +79,7 @@ std::span<const std::uint32_t> hull_of(const model::FrameCombine& combine, std::
 }  // namespace
 
 /// Two colours of the model that have nothing to do with each other differ by twice the variance, in square.
-Looks looks_of(const model::Model& model, const std::array<float, 3>& sky) {
+Looks looks_of(const model::Model& model, const std::array<float, 3>& sky, const model::LossGroups* groups) {
     constexpr float min_variance = 0.005F;  // of a model of one colour
     const float variance = std::max(model.colours.variance, min_variance);
     float apart = 0;
@@ -88,7 +88,15 @@ Looks looks_of(const model::Model& model, const std::array<float, 3>& sky) {
         apart += difference * difference / static_cast<float>(sky.size());
     }
     const float before_sky = model.losses.empty() ? 1.0F : std::max(1.0F, (apart + variance) / (2.0F * variance));
-    return {model.losses, 2.0F * variance, before_sky};
+    Looks looks;
+    looks.losses = model.losses;
+    looks.of_missing = 2.0F * variance;
+    looks.before_sky = before_sky;
+    if (groups == nullptr || model.group_losses.empty()) return looks;
+    looks.groups = groups;
+    looks.of_groups = model.group_losses;
+    looks.nodes = model.nodes;
+    return looks;
 }
 
 float ValueCurve::value_at(float cost_us) const {
@@ -101,8 +109,9 @@ float ValueCurve::value_at(float cost_us) const {
     return value.back();
 }
 
-void ValuePass::reserve(std::uint32_t max_candidates) {
+void ValuePass::reserve(std::uint32_t max_candidates, std::size_t max_choices) {
     sums_.resize(max_candidates);
+    lost_.resize(max_choices);
     // Curves are held for one level of the tree at a time, and only for nodes that have children in the frame.
     const std::uint32_t curves = std::min(max_candidates / 2 + 1, 1U << 15U);
     curves_.resize(curves);
@@ -150,16 +159,41 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
     const float per_m = sums.weight > 0.0F ? sums.weight_per_m / sums.weight : 0.0F;
     const float size_px = seen.size_m * per_m / pixel_angle_rad;
     float value = 0.0F;
-    for (Choice& choice : std::span(&frame.choices[candidate.first_choice], candidate.choice_count)) {
+    const float known = sums.weight > 0.0F ? std::min(1.0F, sums.grouped / sums.weight) : 0.0F;
+    for (Index k = candidate.first_choice; k < candidate.first_choice + candidate.choice_count; ++k) {
+        Choice& choice = frame.choices[k];
+        model::PictureLoss loss = looks.losses.empty() ? model::PictureLoss{} : looks.losses[choice.rep];
+        for (std::size_t s = 0; known > 0.0F && s < loss.colour.size(); ++s)
+            loss.colour[s] = lost_[k].colour[s] / sums.weight + (1.0F - known) * loss.colour[s];
         const float error_rad = choice.error_rad * seen.distance_m * per_m, error_px = error_rad / pixel_angle_rad;
         const float right = looks.losses.empty()
                                 ? looks_right(error_px, choice.surface_px, sums.surface_px)
-                                : looks_right_measured(error_px, error_rad, loss_at(looks.losses[choice.rep], size_px),
-                                                       looks.of_missing, size_px);
-        const float uncovered =
-            looks.losses.empty() ? 0.0F : std::max(std::min(1.0F, looks.losses[choice.rep].coverage), elsewhere(error_rad));
+                                : looks_right_measured(error_px, error_rad, loss_at(loss, size_px), looks.of_missing, size_px);
+        const float uncovered = looks.losses.empty() ? 0.0F : std::max(std::min(1.0F, loss.coverage), elsewhere(error_rad));
         value = std::max(value, sums.full - sums.weight * (1.0F - right) - more * sums.sky * uncovered);
         choice.value = value;
+    }
+}
+
+/// To the clusters above that know what their forms lose on this candidate.
+void ValuePass::add_to_groups(std::size_t i, const PreparedFrame& frame, const Looks& looks) {
+    const float weight = sums_[i].weight;
+    if (looks.groups == nullptr || !(weight > 0.0F)) return;
+    const model::LossGroups::Above above = looks.groups->above(frame.candidates[i].node);
+    Index at = static_cast<Index>(i);
+    for (std::uint32_t up = 0; up < above.skipped + above.slots.size(); ++up) {
+        at = frame.candidates[at].parent;
+        if (at == none) return;
+        if (up < above.skipped) continue;
+        const Candidate& cluster = frame.candidates[at];
+        sums_[at].grouped += weight;
+        for (Index k = cluster.first_choice; k < cluster.first_choice + cluster.choice_count; ++k) {
+            const Index form = frame.choices[k].rep - looks.nodes[cluster.node].first_rep;
+            const std::size_t entry = looks.groups->first(cluster.node) + std::size_t{form} * looks.groups->count(cluster.node) +
+                                      above.slots[up - above.skipped];
+            for (std::size_t s = 0; s < lost_[k].colour.size(); ++s)
+                lost_[k].colour[s] += weight * looks.of_groups[entry].colour[s];
+        }
     }
 }
 
@@ -245,6 +279,10 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
     if (n == 0) return;
     CHECK(n <= sums_.size(), "Values are made for no more candidates than were reserved");
     std::fill_n(sums_.begin(), n, Sums{});
+    if (looks.groups != nullptr) {
+        CHECK(frame.choices.size() <= lost_.size(), "Values are made for no more choices than were reserved");
+        std::fill_n(lost_.begin(), frame.choices.size(), model::LossOfGroup{});
+    }
     free_.clear();
     for (std::uint32_t i = static_cast<std::uint32_t>(curves_.size()); i-- > 0;) free_.push_back(i);
     std::array<std::uint32_t, max_choices> room{};
@@ -253,6 +291,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
         const Candidate& candidate = frame.candidates[i];
         const std::span<Choice> choices(&frame.choices[candidate.first_choice], candidate.choice_count);
         set_values(i, pixel_angle_rad, weights[i], shown_px[i], frame, looks, sky);
+        add_to_groups(i, frame, looks);
         const OwnChoices own{combine, choices, hull_of(combine, choices, room)};
         if (candidate.child_count == 0) full_value += static_cast<double>(choices.back().value);
         const bool inner = candidate.child_count > 0 && sums_[i].curve != none;
@@ -284,7 +323,7 @@ void estimate_values(const model::FrameCombine& combine, PreparedFrame& frame) {
         shown_px.push_back(std::max(candidate.pixels, 0.0F));
     }
     ValuePass pass;
-    pass.reserve(static_cast<std::uint32_t>(frame.candidates.size()));
+    pass.reserve(static_cast<std::uint32_t>(frame.candidates.size()), frame.choices.size());
     pass.run(combine, static_cast<float>(model::pixel_angle(frame.region.centre, frame.viewport)), weights, shown_px, frame);
 }
 

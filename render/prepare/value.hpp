@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "render/model/loss_groups.hpp"
 #include "render/prepare/before_sky.hpp"
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/prepared.hpp"
@@ -14,12 +15,15 @@ namespace surefoot::prepare {
 
 /// How far the forms' pictures are off full detail, as the bake measured it.
 struct Looks {
-    std::span<const model::PictureLoss> losses;  ///< by form; empty: not measured
-    float of_missing = 1;                        ///< colour loss of a missing thing, on average
-    float before_sky = 1;                        ///< what a missing thing loses before the sky, as a multiple of that; 1 or more
+    std::span<const model::PictureLoss> losses;     ///< by form; empty: not measured
+    float of_missing = 1;                           ///< colour loss of a missing thing, on average
+    const model::LossGroups* groups = nullptr;      ///< null: forms lose the same on all that they show
+    std::span<const model::LossOfGroup> of_groups;  ///< as Model::group_losses
+    std::span<const model::Node> nodes;
+    float before_sky = 1;  ///< what a missing thing loses before the sky, as a multiple of that; 1 or more
 };
 /// sky: its colour, 0..1.
-Looks looks_of(const model::Model& model, const std::array<float, 3>& sky);
+Looks looks_of(const model::Model& model, const std::array<float, 3>& sky, const model::LossGroups* groups = nullptr);
 
 /// Fills Choice::value, Choice::rate and PreparedFrame::full_value.
 ///
@@ -40,8 +44,8 @@ public:
     /// Rates are told apart by octaves while they are summed up: from 2^20 down to 2^-19 px/us.
     static constexpr std::uint32_t levels = value_levels;
 
-    /// Reserves for this many candidates. run() allocates nothing below that.
-    void reserve(std::uint32_t max_candidates);
+    /// Reserves for this many candidates, and choices where losses of groups are known. run() allocates nothing below that.
+    void reserve(std::uint32_t max_candidates, std::size_t max_choices = 0);
     /// weights: one a candidate, as Evaluator::evaluate made them. Call it before propagate_up(), which replaces them.
     /// shown_px: one a candidate, read of leaves alone.
     void run(const model::FrameCombine& combine, float pixel_angle_rad, std::span<const Weight> weights,
@@ -52,6 +56,7 @@ private:
         float weight = 0;            ///< W, px
         float sky = 0;               ///< of these, before nothing but the sky
         float full = 0;              ///< value of full detail, px
+        float grouped = 0;           ///< of W: in groups whose losses are known
         float surface_px = 0;        ///< of the leaves' finest choices, overdraw included
         float weight_per_m = 0;      ///< sum of W / distance of the leaves
         std::uint32_t curve = none;  ///< of the children, while they are summed up; none: not yet
@@ -71,6 +76,7 @@ private:
     void add(Index parent, std::uint32_t level, float value, float cost);
     void set_values(std::size_t i, float pixel_angle_rad, const Weight& seen, float shown_px, PreparedFrame& frame,
                     const Looks& looks, const SkyPixels& sky);
+    void add_to_groups(std::size_t i, const PreparedFrame& frame, const Looks& looks);
     void add_own(const Candidate& candidate, const OwnChoices& own);
     static void own_curve(const OwnChoices& own, ValueCurve& curve);
     void merge_curve(Index parent, Curve& curve, const OwnChoices& own);
@@ -78,6 +84,7 @@ private:
     static void enforce_falling_rates(PreparedFrame& frame);
 
     std::vector<Sums> sums_;
+    std::vector<model::LossOfGroup> lost_;  ///< by choice: W of its groups, times their losses
     std::vector<Curve> curves_;
     std::vector<std::uint32_t> free_;
 };

@@ -8,7 +8,8 @@
 //   3. With hysteresis, steps of the last frame may use all of the budget, new steps only a share of it. So try steps of the last
 //      frame behind the edge, in the same way, with what is left.
 // The first walk notes what it computed for each candidate, so that the second reads little more than the notes.
-// By rate, two things follow: cheaper steps that still fit, and the search once more from dear steps that were passed over.
+// By rate, three things follow: cheaper steps that still fit, lossy steps undone, and the search once more from dear steps that
+// were passed over.
 #include <algorithm>
 #include <array>
 
@@ -70,6 +71,7 @@ private:
     static constexpr std::uint32_t opening = none - 1;
 
     /// Takes what still fits. A dear step may follow others that lose value by themselves: if it did not fit, they are undone.
+    /// `sum_` and `taken_` still count them. Nothing is bought after that: the room that is left stays.
     void fill_up() {
         for (int round = 0; round < fill_rounds && take_more(); ++round) {
         }

@@ -125,18 +125,16 @@ std::span<float> CutBuilder::what_items_lack() {
 // Values of different nodes come from pictures of different distances, so a small difference between them says little.
 void CutBuilder::undo_losses(float shown_counts) {
     constexpr float clearly = 1.3F;
-    const auto costs_more = [](const model::ItemCost& a, const model::ItemCost& b) {
-        return a.submit_us > b.submit_us || a.raster_us > b.raster_us;
-    };
     bool any = false;
     for (auto c = static_cast<Index>(chosen_.size()); c-- > 0;) {
         float& value = lacks_[c] = 0;
-        model::ItemCost& cost = below_[c] = {};
+        Sum& cost = below_[c] = {};
         if (chosen_[c] == none) continue;
         const auto own = choices(c);
         const auto take = [&](std::uint32_t k) {
             value = own[k].value;
-            cost = own[k].cost;
+            cost = {};
+            cost.add(own[k].cost);
         };
         if (chosen_[c] != SelectState::opened) {
             take(chosen_[c]);
@@ -145,11 +143,14 @@ void CutBuilder::undo_losses(float shown_counts) {
         const prepare::Candidate& at = candidate(c);
         for (Index child = at.first_child; child < at.first_child + at.child_count; ++child) {
             value += lacks_[child];
-            cost = {cost.submit_us + below_[child].submit_us, cost.raster_us + below_[child].raster_us};
+            cost = cost + below_[child];
         }
-        const float keeps = value * clearly * (state_.shown[at.node] == SelectState::opened ? shown_counts : 1.0F);
+        const float keeps =
+            value * clearly * (state_.hysteresis > 1.0F && state_.shown[at.node] == SelectState::opened ? shown_counts : 1.0F);
         for (std::uint32_t k = at.choice_count; k-- > 0;) {  // the finest first
-            if (costs_more(own[k].cost, cost) || !(own[k].value > keeps)) continue;
+            const auto [submit_us, raster_us] = own[k].cost;
+            if (static_cast<double>(submit_us) > cost.submit_us || static_cast<double>(raster_us) > cost.raster_us) continue;
+            if (!(own[k].value > keeps)) continue;
             choose(c, k);
             take(k);
             any = true;

@@ -73,7 +73,7 @@ private:
     SelectState& state_;
     std::span<std::uint32_t> chosen_, saved_, scratch_;
     std::span<float> lacks_;
-    std::span<model::ItemCost> below_;
+    std::span<Sum> below_;
     Sum floor_;
     ItemBuyer items_;
 };

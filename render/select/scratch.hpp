@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/select/budget.hpp"
 #include "render/select/select.hpp"
 
 namespace surefoot::select {
@@ -14,8 +15,8 @@ struct SelectState::Scratch {
     std::vector<std::uint32_t> list;         ///< by candidate: CutBuilder's walk, then the search's stack or scan state
     std::vector<std::uint32_t> links;        ///< by candidate: the queue's links, or deferred steps
     std::vector<std::uint32_t> saved;        ///< by candidate: the choices of the best cut so far
-    std::vector<float> lacks;                ///< by candidate: CutBuilder::what_items_lack()
-    std::vector<model::ItemCost> below;      ///< by candidate: CutBuilder::undo_losses()
+    std::vector<float> lacks;                ///< by candidate: CutBuilder::what_items_lack() and undo_losses()
+    std::vector<Sum> below;                  ///< by candidate: CutBuilder::undo_losses()
     std::vector<std::uint32_t> queue_heads;  ///< the queue's buckets
     std::vector<double> step_sums;           ///< two costs a bucket: of new steps, and of those shown before
 };

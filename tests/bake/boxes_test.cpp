@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "render/bake/picture_loss.hpp"
+#include "render/model/loss_groups.hpp"
 #include "tests/bake/squares.hpp"
 
 namespace surefoot::bake {
@@ -238,6 +239,39 @@ TEST(Boxes, ThatAreBestAtNoSizeAreTakenOutAgain) {
     EXPECT_EQ(m.textures.size(), textures + 1);
     EXPECT_EQ(m.texels.size() - texels, (with_both - texels) / 2) << "what it alone used is gone";
     EXPECT_EQ(m.parts[m.reps[m.nodes[1].first_rep].first_part].material, m.materials.size() - 1);
+}
+
+TEST(Boxes, OfAClusterTakeTheirLossesOfGroupsWithThem) {
+    // Two leaves below a root that has a mesh of its own.
+    model::Model m = squares({{0, 0, 1}, {0, 0, 1}, {5, 0, 1}});
+    m.nodes.resize(3);
+    m.nodes[0].first_rep = 0, m.nodes[0].rep_count = 1, m.nodes[0].first_child = 1, m.nodes[0].child_count = 2;
+    for (model::Index leaf = 1; leaf < 3; ++leaf) {
+        m.nodes[leaf].parent = 0;
+        m.nodes[leaf].first_rep = leaf, m.nodes[leaf].rep_count = 1;
+        m.nodes[leaf].box = Box{dvec3(leaf == 1 ? 0 : 5, 0, -0.5), dvec3(leaf == 1 ? 1 : 6, 1, 0.5)};
+        m.nodes[0].box.grow(m.nodes[leaf].box);
+    }
+    for (model::Representation& rep : m.reps) rep.area_m2 = {1, 1, 1};
+    for (const float box_loss : {0.01F, 0.5F}) {
+        model::Model with = m;
+        std::vector<BoxForm> boxes = capture_boxes(with, {{true, false, false}, true, 28}, one_by_one, go_on);
+        ASSERT_EQ(boxes.size(), 3U);
+        ASSERT_GT(boxes[0].shown_faces(), 0U);
+        PlacedBoxes placed(std::move(boxes), 0, with);
+        ASSERT_EQ(with.nodes[0].rep_count, 2U);
+        with.reps[0].area_m2 = {2, 2, 2};
+        with.losses.resize(with.reps.size());
+        with.losses[0].colour.fill(box_loss);
+        with.losses[1].colour.fill(0.1F);
+        with.group_losses = {{{0.9F, 0.9F, 0.9F}}, {{0.8F, 0.8F, 0.8F}}, {{0.1F, 0.1F, 0.1F}}, {{0.2F, 0.2F, 0.2F}}};
+        ASSERT_EQ(with.group_losses.size(), model::LossGroups(with).size());
+        const std::size_t left = placed.drop_idle(model::default_costs());
+        EXPECT_EQ(left, box_loss < 0.1F ? 1U : 0U);
+        ASSERT_EQ(with.group_losses.size(), model::LossGroups(with).size());
+        EXPECT_EQ(with.group_losses.front().colour[0], left > 0 ? 0.9F : 0.1F);
+        EXPECT_EQ(with.group_losses.back().colour[0], 0.2F);
+    }
 }
 
 TEST(Boxes, StopWhenTheyAreToldTo) {

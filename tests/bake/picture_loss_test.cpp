@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "render/model/loss_groups.hpp"
 #include "tests/bake/squares.hpp"
 
 namespace surefoot::bake {
@@ -119,6 +120,22 @@ TEST(PictureLoss, OfLeavesIsSharedAndOfFullDetailIsNone) {
     }
     for (model::Index n = 1; n < 3; ++n) EXPECT_GT(losses[m.nodes[n].first_rep].coverage, 0.4) << "one square of two, in green";
     EXPECT_GT(losses[m.nodes[0].first_rep].coverage, losses[m.nodes[1].first_rep].coverage) << "one of four";
+}
+
+TEST(PictureLoss, OfGroupsIsWhatAClusterLacksOfEach) {
+    const model::Model m = small_tree();
+    const auto measured = measure_losses(m, serial, [] { return true; });
+    const model::LossGroups groups(m);
+    ASSERT_EQ(measured.groups.size(), groups.size());
+    ASSERT_EQ(groups.count(1), 2U);
+    const auto of = [&](model::Index cluster, model::Index leaf) {
+        return measured.groups[groups.first(cluster) + groups.slot_of(leaf, cluster)].colour[0];
+    };
+    const float whole = measured.forms[m.nodes[1].first_rep].colour[0];
+    EXPECT_NEAR(of(1, 3), 2.0 / 3, 0.03) << "in green where it is white";
+    EXPECT_GT(std::abs(of(1, 3) - of(1, 4)), 0.1F) << "the other is missing: before white things that loses nothing";
+    EXPECT_NEAR((of(1, 3) + of(1, 4)) / 2, whole, 0.02) << "both squares show alike, so their mean is the cluster's";
+    EXPECT_NEAR(of(0, 3), of(1, 3), 0.05) << "seen as a part of more";
 }
 
 TEST(PictureLoss, IsTheSameOnAnyNumberOfThreads) {

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/model/loss_groups.hpp"
 #include "rt/base/file.hpp"
 #include "rt/base/hash.hpp"
 #include "rt/base/random.hpp"
@@ -326,6 +327,45 @@ TEST_F(OpenTable, LossesComeBackAndWithoutThemTheModelIsTheSame) {
     const auto dropped = read_walk(file);
     ASSERT_TRUE(dropped.ok()) << dropped.error().text();
     EXPECT_TRUE(dropped->losses.empty());
+}
+
+TEST_F(OpenTable, LossesOfGroupsComeBackAndOlderFilesHaveNone) {
+    model.losses.assign(model.reps.size(), {});
+    const Sections older = sections_of_model();
+    const std::size_t entries = LossGroups(model).size();
+    ASSERT_GT(entries, 0U);
+    model.group_losses.assign(entries, {{0.25F, 0.5F, 0.75F}});
+    const Sections newer = sections_of_model();
+    const auto read = read_walk(file);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    ASSERT_EQ(read->group_losses.size(), entries);
+    EXPECT_EQ(read->group_losses.back().colour, model.group_losses.back().colour);
+    EXPECT_EQ(newer.file().size(), older.file().size() + 8 + 12 * entries);
+    put(older.file());
+    const auto without = read_walk(file);
+    ASSERT_TRUE(without.ok()) << without.error().text();
+    EXPECT_TRUE(without->group_losses.empty());
+}
+
+TEST_F(OpenTable, LossesOfGroupsThatAreNoSharesOrTooManyAreRefused) {
+    model.losses.assign(model.reps.size(), {});
+    const std::size_t entries = LossGroups(model).size();
+    for (const float bad : {-0.1F, 1.1F, std::numeric_limits<float>::quiet_NaN()}) {
+        model.group_losses.assign(entries, {});
+        model.group_losses.back().colour[1] = bad;
+        ASSERT_TRUE(write_walk(file, model).ok());
+        const auto read = read_walk(file);
+        ASSERT_FALSE(read.ok()) << bad;
+        EXPECT_NE(read.error().place.find("losses of groups"), std::string::npos) << read.error().text();
+    }
+    for (const std::size_t wrong : {entries - 1, entries + 1}) {
+        model.group_losses.assign(wrong, {});
+        ASSERT_TRUE(write_walk(file, model).ok());
+        EXPECT_EQ(read_walk(file).ok(), wrong == 0) << wrong;
+    }
+    model.group_losses.assign(entries, {});
+    model.losses.clear();
+    EXPECT_FALSE(validate(model).ok()) << "losses of groups without those of forms";
 }
 
 TEST(PictureLoss, IsBetweenTheSizesByTheirLogarithm) {

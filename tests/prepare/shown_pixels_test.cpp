@@ -257,6 +257,55 @@ TEST(Value, IsByShownPixelsAndLostSurface) {
     EXPECT_NEAR(frame.choices[0].value, 300 * (1 - 0.05 * 0.5 - 0.95), 1e-2) << "no worse than missing";
 }
 
+TEST(Value, OfAClustersFormGoesByTheGroupsThatAreSeen) {
+    model::Model m;  // a cluster of two leaves; its form is right on the first and shows nothing of the second
+    m.nodes.resize(3);
+    m.nodes[0].child_count = 2;
+    m.nodes[0].first_child = 1;
+    for (Index i = 0; i < 3; ++i) {
+        m.nodes[i].first_rep = i;
+        m.nodes[i].rep_count = 1;
+        if (i > 0) m.nodes[i].parent = 0;
+    }
+    m.losses = {{0.5F, {0.2F, 0.2F, 0.2F}}, {}, {}};
+    m.colours.variance = 0.2F;
+    m.group_losses = {{{0, 0, 0}}, {{0.4F, 0.4F, 0.4F}}};
+    PreparedFrame frame;
+    frame.candidates.resize(3);
+    frame.choices.resize(3);
+    for (Index i = 0; i < 3; ++i) {
+        frame.candidates[i].node = i;
+        frame.candidates[i].first_choice = i;
+        frame.candidates[i].choice_count = 1;
+        frame.choices[i].rep = i;
+        if (i > 0) frame.candidates[i].parent = 0;
+    }
+    frame.candidates[0].first_child = 1;
+    frame.candidates[0].child_count = 2;
+    std::vector<Weight> weights(3);
+    for (Weight& weight : weights) weight.distance_m = 10, weight.pixel_weight = 1, weight.size_m = 1;
+    const model::LossGroups groups(m);
+    ValuePass pass;
+    pass.reserve(3, 3);
+    const auto value_where = [&](float first_px, float second_px, const model::LossGroups* by) {
+        pass.run({.fixed_us = 0, .submit_weight = 1, .raster_weight = 0, .max_weight = 0}, 1e-3F, weights,
+                 std::vector<float>{0, first_px, second_px}, frame, looks_of(m, {}, by));
+        return frame.choices[0].value;
+    };
+    EXPECT_NEAR(value_where(500, 500, nullptr), 1000 * (1 - 0.95 * 0.5), 1e-1) << "the cluster's mean";
+    EXPECT_NEAR(value_where(500, 500, &groups), 1000 * (1 - 0.95 * 0.5), 1e-1) << "is that of its groups";
+    EXPECT_NEAR(value_where(900, 100, &groups), 1000 * (1 - 0.95 * 0.1), 1e-1);
+    EXPECT_NEAR(value_where(0, 100, &groups), 100 * (1 - 0.95), 1e-1) << "only what is missing is seen";
+    EXPECT_NEAR(value_where(100, 0, &groups), 100, 1e-1);
+    frame.candidates[0].child_count = 0;  // cut off by a limit: its groups are not known
+    frame.candidates.resize(1);
+    frame.choices.resize(1);
+    weights.resize(1);
+    pass.run({.fixed_us = 0, .submit_weight = 1, .raster_weight = 0, .max_weight = 0}, 1e-3F, weights, std::vector<float>{1000},
+             frame, looks_of(m, {}, &groups));
+    EXPECT_NEAR(frame.choices[0].value, 1000 * (1 - 0.95 * 0.5), 1e-1);
+}
+
 TEST(ShownPixels, BehindTheEyeThereIsNoOutline) {
     const model::Model m = test::town(3);
     const model::CostModel prices = model::default_costs();

@@ -323,28 +323,72 @@ prepare::PreparedFrame wall_that_is_worse_coarse() {
     return frame;
 }
 
-TEST(Value, StepsThatLoseAreUndoneWhereTheDearOneBehindThemDoesNotFit) {
-    const prepare::PreparedFrame frame = wall_that_is_worse_coarse();
-    model::Model nodes_only;
-    nodes_only.nodes.resize(frame.candidates.size());
+/// What a selection of these three nodes needs: costs are sums of submission.
+struct Selecting {
+    model::Model model;
     model::CostModel costs;
-    costs.combine = {0, 1, 0, 0};
-    costs.headroom = 1;
-    costs.slice_us = 0;
     SelectState state;
-    state.hysteresis = 1;
-    state.reserve(nodes_only, 3);
     Cut cut;
-    reserve(cut, 3);
-    const auto value_at = [&](double budget_us) {
-        find_selector(usual_selector)->run({&nodes_only, &frame, &costs, budget_us, 1.0, 0, 1000.0}, state, cut);
+    Selecting() {
+        model.nodes.resize(3);
+        costs.combine = {0, 1, 0, 0};
+        costs.headroom = 1;
+        costs.slice_us = 0;
+        state.hysteresis = 1;
+        state.reserve(model, 3);
+        reserve(cut, 3);
+    }
+    double value_of(const prepare::PreparedFrame& frame, double budget_us) {
+        find_selector(usual_selector)->run({&model, &frame, &costs, budget_us, 1.0, 0, 1000.0}, state, cut);
         EXPECT_EQ(check_legal(frame, cut), "");
         EXPECT_LE(static_cast<double>(cut.predicted_us), budget_us);
         return cut.value;
-    };
+    }
+};
+double value_of(const prepare::PreparedFrame& frame, double budget_us) { return Selecting().value_of(frame, budget_us); }
+
+/// At 61 us, after a frame of `before_us`.
+double value_after(const prepare::PreparedFrame& frame, double before_us, float hysteresis) {
+    Selecting one;
+    one.state.hysteresis = hysteresis;
+    one.state.reserve_share = 0;
+    one.value_of(frame, before_us);
+    return one.value_of(frame, 61);
+}
+
+TEST(Value, StepsThatLoseAreUndoneWhereTheDearOneBehindThemDoesNotFit) {
+    const prepare::PreparedFrame frame = wall_that_is_worse_coarse();
+    Selecting selecting;
+    const auto value_at = [&](double budget_us) { return selecting.value_of(frame, budget_us); };
     EXPECT_EQ(value_at(61), 500) << "opened, it would show 15";
     EXPECT_EQ(value_at(63), 1005);
     EXPECT_EQ(value_at(61), 500);
+
+    prepare::PreparedFrame changed = frame;
+    changed.choices[0].value = 15 * 1.29F;
+    EXPECT_EQ(value_of(changed, 61), 15) << "not clearly worse";
+    changed.choices[0].value = 15 * 1.31F;
+    EXPECT_EQ(value_of(changed, 61), changed.choices[0].value);
+    changed = frame;
+    changed.choices[0].cost.submit_us = 5;  // the coarse children cost 4
+    EXPECT_EQ(value_of(changed, 61), 15) << "it may not cost more";
+}
+
+TEST(Value, WhatWasOpenedStaysUnlessTheFormAboveIsClearlyBetter) {
+    prepare::PreparedFrame frame = wall_that_is_worse_coarse();
+    frame.choices[0].value = 15 * 1.305F;
+    EXPECT_EQ(value_after(frame, 63, 1.25F), 15) << "the last frame showed the children: they count 1 % more";
+    EXPECT_EQ(value_after(frame, 63, 1), frame.choices[0].value) << "without hysteresis the last frame is forgotten";
+    EXPECT_EQ(value_after(frame, 61, 1.25F), frame.choices[0].value) << "the last frame showed the root";
+}
+
+TEST(Value, ATargetAccuracyIsNotUndone) {
+    prepare::PreparedFrame frame = wall_that_is_worse_coarse();
+    frame.choices[0].error_rad = frame.choices[1].error_rad = 1;
+    Selecting one;
+    Cut& cut = one.cut;
+    find_selector(usual_selector)->run({&one.model, &frame, &one.costs, 61, 1.0, 1e-9, 1000.0}, one.state, cut);
+    EXPECT_EQ(cut.value, 15) << "the children were asked for";
 }
 
 }  // namespace

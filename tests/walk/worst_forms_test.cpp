@@ -57,6 +57,11 @@ TEST(WorstForms, ABoxShowsWhereItIsProjected) {
     EXPECT_LT(ahead.y1 - ahead.y0, 10U);
     const PixelRect high = walk::pixels_of({{-1, 20, -101}, {1, 22, -99}}, pose, viewport);
     EXPECT_LT(high.y1, ahead.y0) << "rows count from the top";
+    const PixelRect behind = walk::pixels_of({{-1, -1, 99}, {1, 1, 101}}, pose, viewport);
+    EXPECT_TRUE(behind.empty());
+    const PixelRect right = walk::pixels_of({{1, -1, -101}, {3, 1, 5}}, pose, viewport);  // reaches past the eye
+    EXPECT_GT(right.x0, 99U) << "what is before the eye lies to the right";
+    EXPECT_EQ(right.x1, 200U);
     const PixelRect around = walk::pixels_of({{-1, -1, -1}, {1, 1, 1}}, pose, viewport);
     EXPECT_EQ(around.x1 - around.x0, 200U);
     EXPECT_EQ(around.y1 - around.y0, 100U);
@@ -73,6 +78,7 @@ TEST(WorstForms, OfAWalkStandInItsReportAndCostWhatTheyCost) {
     request.pictures = 2;
     request.report_dir = test::Forest::get().dir + "/worst";
     const auto outcome = walk::run_walk(request, {}, {});
+    if (!outcome.ok() && outcome.error().text().find("libEGL") != std::string::npos) GTEST_SKIP() << outcome.error().text();
     ASSERT_TRUE(outcome.ok()) << outcome.error().text();
     const auto& forms = outcome->summary.picture.worst_forms;
     ASSERT_FALSE(forms.empty());
@@ -83,6 +89,9 @@ TEST(WorstForms, OfAWalkStandInItsReportAndCostWhatTheyCost) {
         if (i > 0) {
             EXPECT_LE(forms[i].error_share, forms[i - 1].error_share);
         }
+        EXPECT_GT(forms[i].width, 0U);
+        EXPECT_GT(forms[i].height, 0U);
+        EXPECT_NE(forms[i].walk, forms[i].full) << "the part shows what is wrong";
         EXPECT_EQ(forms[i].walk.size(), std::size_t{4} * forms[i].width * forms[i].height);
         EXPECT_EQ(forms[i].full.size(), forms[i].walk.size());
     }

@@ -65,7 +65,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
     const auto n = static_cast<double>(stations.size());
     for (const Station& station : stations) {
         const select::Cut& cut = engine.select(station.prepared, budget_us, {}, target_error_rad);
-        if (cut.worst_error_rad > model::exact_below_rad) {
+        if (cut.worst_error_rad > model::exact_up_to_rad) {
             accuracy += 1.0 / cut.worst_error_rad;
         } else {
             ++point.exact;  // no finite accuracy: left out of the mean, as in a walk's summary

@@ -1,6 +1,9 @@
 // surefoot compare: the same walk by every selector, or with other settings: pictures against full detail and times, as a table.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "config/values.hpp"
 #include "render/gl/backends.hpp"
 #include "render/select/registry.hpp"
@@ -37,7 +40,11 @@ accuracy::FindShares find_shares(const CompareArguments& a) {
     };
 }
 
-/// A setting that is checked as an option of the command line would be. Files and folders are not compared.
+/// Settings of the comparison itself: the same for all walks, set by their own options.
+constexpr std::array of_all = {"rasterisers", "width",   "height",  "rate_hz", "backend",
+                               "clock",       "shift_x", "shift_y", "lift_m",  "control"};
+
+/// A setting that is checked as an option of the command line would be.
 Result<SettingArguments::Setting> setting_of(const std::string& pair) {
     const std::size_t equals = pair.find('=');
     if (equals == std::string::npos || equals == 0)
@@ -46,18 +53,20 @@ Result<SettingArguments::Setting> setting_of(const std::string& pair) {
     const config::Schema& schema = walk::settings_schema();
     const config::Entry* entry = schema.find(setting.key);
     if (entry == nullptr) return config::unknown_key(schema, "--with", setting.key);
-    if (entry->key == "backend")
-        if (std::string text = setting.text, refused = drawing_backend()(text); !refused.empty())
-            return Error{"--with " + pair, refused, "Use " + gl::drawing_backends(), ErrorKind::misuse};
     if (entry->kind == config::Kind::file)
         return Error{"--with " + pair, fmt::format("{} names a file, and no way of walking", entry->key),
                      "Name it by its own option", ErrorKind::misuse};
+    if (std::find(of_all.begin(), of_all.end(), entry->key) != of_all.end())
+        return Error{"--with " + pair, fmt::format("{} is the same for all walks of a comparison", entry->key),
+                     "Set it by its own option, and compare twice", ErrorKind::misuse};
     return setting;
 }
 
 /// The walk with the settings that `text` adds to those of all.
 Result<walk::WalkRequest> walk_with(const CompareArguments& a, const std::string& text) {
     SettingArguments settings = *a.settings;
+    if (settings.no_fifo) settings.values.push_back({"--no-fifo", "fifo", "false"});  // so that --with comes last
+    settings.no_fifo = false;
     for (const std::string_view pair : split(text, ",")) {
         if (pair.empty()) continue;
         auto setting = setting_of(std::string(pair));
@@ -118,7 +127,8 @@ void add_compare(CLI::App& app, Context& context) {
         "is below 0.99 or not known. `coarse` counts frames with coarser slices. `floor` counts frames that fell to the\n"
         "floor although the cut before would have fitted. `value` is the share of the greatest value that the budget buys,\n"
         "found off line on frames of the path at full resolution. >= says that some optimum is not proven: the share is\n"
-        "of an upper bound then.",
+        "of an upper bound then.\n"
+        "With --with, settings walk in turns instead, at the resolution that each chooses; no value is shared.",
         a->json);
     walk::WalkRequest& r = a->request.walk;
     r.pictures = 7;

@@ -167,7 +167,9 @@ std::string snapshot_cards(const WalkSummary& s, std::span<const double> time_s,
 std::string worst_form_cards(const WalkSummary& s) {
     if (s.picture.worst_forms.empty()) return {};
     std::string out =
-        "<h2>Forms that cost most</h2>\n<p class=\"sub\">Each was drawn in full detail in turn, while all else stayed. The share "
+        "<h2>Forms that cost most</h2>\n<p class=\"sub\">In each picture, those before which most is wrong were drawn in full "
+        "detail "
+        "in turn, while all else stayed. The share "
         "is what that takes away of the squared error of all pictures above. Shares need not add up: one form may hide another.";
     if (s.picture.resolution_error_share > 0)
         out += fmt::format(" Full detail at the same resolutions would have {:.1f} % of that error.",
@@ -177,8 +179,8 @@ std::string worst_form_cards(const WalkSummary& s) {
         const std::string title =
             fmt::format("{} {}{}: {}", f.node_kind, f.node, f.name.empty() ? "" : " “" + f.name + "”", f.form);
         const std::string words =
-            fmt::format("{:.1f} % of the error, in {} picture{}; {} triangles. Here: frame {}", 100 * f.error_share, f.pictures,
-                        f.pictures == 1 ? "" : "s", grouped(static_cast<double>(f.triangles)), f.frame);
+            fmt::format("{:.1f} % of the error, tried in {} picture{}; {} triangles. Here: frame {}", 100 * f.error_share,
+                        f.pictures, f.pictures == 1 ? "" : "s", grouped(static_cast<double>(f.triangles)), f.frame);
         out += fmt::format("<div class=\"card\"><h3>{}</h3><p>{}</p>", escaped(title), escaped(words));
         for (const auto& [name, pixels] : {std::pair{"the walk", &f.walk}, std::pair{"full detail", &f.full}})
             out += fmt::format("<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>",

@@ -59,14 +59,14 @@ struct InputSummary {
     std::uint64_t guard_violations = 0;                                ///< of the input thread
 };
 
-/// A form that was drawn where full detail would show more. Its share of the error is measured: it is drawn in full detail, while
-/// all else stays. Shares of several forms need not add up: one may hide another.
+/// A form that was drawn where full detail would show more. Its share of the error is measured in the pictures where it was
+/// tried: there it is drawn in full detail, while all else stays. Shares of several forms need not add up: one may hide another.
 struct WorstForm {
     std::uint32_t node = 0;             ///< of the model
     std::string name, node_kind, form;  ///< the node's name, may be empty; cluster, object or piece; the kind of form
     std::uint64_t triangles = 0;
     double error_share = 0;      ///< of the squared error of all compared pictures
-    std::uint32_t pictures = 0;  ///< in which it costs something
+    std::uint32_t pictures = 0;  ///< in which it was tried
     std::uint64_t frame = 0;     ///< where it costs most
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> walk, full;  ///< RGBA8: that part of that frame's picture, and of full detail

@@ -65,10 +65,9 @@ std::uint64_t pictures_wanted(const WalkRequest& request) {
     return request.pictures > 0 ? request.pictures : request.report_dir.empty() ? 0 : on_a_page;
 }
 
-/// Draws the wanted snapshots and full detail, and compares. Stopped: fewer are better than none. `worst`: for the report.
+/// Draws the wanted snapshots and full detail, and compares. Stopped: fewer are better than none.
 Result<std::vector<report::ReportSnapshot>> render_snapshots(const WalkRequest& request, Engine& engine,
-                                                             const SnapshotStore& snapshots, WorstForms& worst,
-                                                             const Progress& progress) {
+                                                             const SnapshotStore& snapshots, const Progress& progress) {
     std::vector<report::ReportSnapshot> rendered;
     const std::uint64_t wanted = pictures_wanted(request);
     if (wanted == 0) return rendered;
@@ -78,11 +77,27 @@ Result<std::vector<report::ReportSnapshot>> render_snapshots(const WalkRequest& 
         progress.update("pictures", static_cast<double>(i) / static_cast<double>(snapshots.used()));
         auto snapshot = render_snapshot(engine, snapshots.snapshots()[i]);
         if (!snapshot) return snapshot.error();
-        if (!request.report_dir.empty())
-            if (auto ok = worst.add(snapshots.snapshots()[i], *snapshot); !ok) return ok.error();
         rendered.push_back(std::move(*snapshot));
     }
     return rendered;
+}
+
+/// Which forms cost the rendered pictures most.
+Result<void> find_worst_forms(Engine& engine, const SnapshotStore& snapshots, std::span<const report::ReportSnapshot> rendered,
+                              report::PictureSummary& picture, const Progress& progress) {
+    WorstForms worst(engine);
+    std::size_t number = 0;
+    for (std::size_t i = 0; i < snapshots.used() && number < rendered.size() && !progress.stopped(); ++i) {
+        const FrameSnapshot& snapshot = snapshots.snapshots()[i];
+        if (snapshot.frame != rendered[number].frame) continue;
+        progress.update("worst forms", static_cast<double>(number) / static_cast<double>(rendered.size()));
+        if (auto ok = worst.add(snapshot, rendered, number, progress); !ok) return ok;
+        ++number;
+    }
+    picture.forms_compared = true;
+    picture.worst_forms = worst.list(worst_forms_listed, rendered);
+    picture.resolution_error_share = worst.resolution_share();
+    return {};
 }
 
 }  // namespace
@@ -130,17 +145,14 @@ void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& en
     put(request.capture_file, [&] { return write_capture(request, kept, engine); });
     if (!outcome.lost) put(request.snap_dir, [&] { return write_snaps(engine, snapshots, request.snap_dir, progress); });
     std::vector<report::ReportSnapshot> rendered;
-    WorstForms worst(engine);
     if (!outcome.lost) {
-        if (auto drawn = render_snapshots(request, engine, snapshots, worst, progress); drawn)
+        if (auto drawn = render_snapshots(request, engine, snapshots, progress); drawn)
             rendered = std::move(*drawn);
         else
             outcome.failures.push_back(drawn.error());
     }
     outcome.summary.picture = report::compare_pictures(rendered);
-    outcome.summary.picture.forms_compared = !request.report_dir.empty();
-    outcome.summary.picture.worst_forms = worst.list(worst_forms_listed);
-    outcome.summary.picture.resolution_error_share = worst.resolution_share();
+    put(request.report_dir, [&] { return find_worst_forms(engine, snapshots, rendered, outcome.summary.picture, progress); });
     put(request.report_dir, [&]() -> Result<void> {
         if (auto written = report::write_report(request.report_dir, outcome.summary, outcome.records, rendered); !written)
             return written;

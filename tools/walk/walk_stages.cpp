@@ -269,7 +269,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.bought_items = report_.bought_items;
     record.refused_items = report_.refused_items;
     record.bought_us = static_cast<float>(report_.bought_us);
-    record.accuracy = report_.worst_error_rad > model::exact_below_rad ? 1.0F / report_.worst_error_rad
+    record.accuracy = report_.worst_error_rad > model::exact_up_to_rad ? 1.0F / report_.worst_error_rad
                                                                        : std::numeric_limits<float>::infinity();
     record.value = static_cast<float>(report_.value);
     record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);

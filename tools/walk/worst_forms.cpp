@@ -2,6 +2,7 @@
 #include "tools/walk/worst_forms.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <span>
@@ -12,34 +13,47 @@ namespace {
 
 using Pixels = std::span<const std::uint8_t>;  // RGBA
 
-double squared_error(Pixels a, Pixels b, std::uint32_t width, const PixelRect& in) {
-    double sum = 0;
-    for (std::uint32_t y = in.y0; y < in.y1; ++y) {
-        const std::size_t row = std::size_t{4} * width * y;
-        std::uint64_t of_row = 0;
-        for (std::size_t i = row + std::size_t{4} * in.x0; i < row + std::size_t{4} * in.x1; ++i) {
-            if (i % 4 == 3) continue;
-            const int d = int{a[i]} - int{b[i]};
-            of_row += static_cast<std::uint64_t>(d * d);
+/// Squared errors of R, G and B between two pictures, summed over any rectangle at once: a summed-area table.
+class SquaredErrors {
+public:
+    SquaredErrors(Pixels a, Pixels b, std::uint32_t width, std::uint32_t height)
+        : columns_(std::size_t{width} + 1), sums_(columns_ * (std::size_t{height} + 1), 0) {
+        for (std::uint32_t y = 0; y < height; ++y) {
+            std::uint64_t row = 0;
+            for (std::uint32_t x = 0; x < width; ++x) {
+                const std::size_t i = 4 * (std::size_t{width} * y + x);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const int off = int{a[i + k]} - int{b[i + k]};
+                    row += static_cast<std::uint64_t>(off * off);
+                }
+                sums_[columns_ * (y + 1) + x + 1] = sums_[columns_ * y + x + 1] + row;
+            }
         }
-        sum += static_cast<double>(of_row);
     }
-    return sum;
-}
+    [[nodiscard]] double in(const PixelRect& r) const {
+        return static_cast<double>(at(r.x1, r.y1) - at(r.x0, r.y1) - at(r.x1, r.y0) + at(r.x0, r.y0));
+    }
+    [[nodiscard]] double all() const { return static_cast<double>(sums_.back()); }
 
-/// Where two pictures differ visibly, and a little around it.
-PixelRect changed_pixels(Pixels a, Pixels b, std::uint32_t width, std::uint32_t height) {
+private:
+    [[nodiscard]] std::uint64_t at(std::uint32_t x, std::uint32_t y) const { return sums_[columns_ * y + x]; }
+    std::size_t columns_;
+    std::vector<std::uint64_t> sums_;
+};
+
+/// Where two pictures differ by more than `over` steps, and a little around it.
+PixelRect changed_pixels(Pixels a, Pixels b, std::uint32_t width, std::uint32_t height, int over) {
     constexpr std::uint32_t around = 12;
     PixelRect rect{width, height, 0, 0};
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
             const std::size_t i = 4 * (std::size_t{width} * y + x);
-            const auto differs = [&](std::size_t k) { return std::abs(int{a[i + k]} - int{b[i + k]}) > report::visible_steps; };
+            const auto differs = [&](std::size_t k) { return std::abs(int{a[i + k]} - int{b[i + k]}) > over; };
             if (!differs(0) && !differs(1) && !differs(2)) continue;
             rect = {std::min(rect.x0, x), std::min(rect.y0, y), std::max(rect.x1, x + 1), std::max(rect.y1, y + 1)};
         }
     }
-    if (rect.x0 >= rect.x1) return {};
+    if (rect.empty()) return {};
     return {rect.x0 - std::min(rect.x0, around), rect.y0 - std::min(rect.y0, around), std::min(width, rect.x1 + around),
             std::min(height, rect.y1 + around)};
 }
@@ -74,56 +88,65 @@ std::vector<std::vector<gl::DrawItem>> full_detail_below(const model::Model& mod
 }
 
 PixelRect pixels_of(const Box& box, const Pose& pose, model::Viewport viewport) {
-    const PixelRect all{0, 0, viewport.width, viewport.height};
-    const mat4 rotation = model::view_rotation(pose);
-    const mat4 projection = model::projection(pose, viewport);
+    const mat4 to_clip = model::projection(pose, viewport) * model::view_rotation(pose);
+    std::array<vec4, 8> corners;
+    for (unsigned c = 0; c < corners.size(); ++c) {
+        const dvec3 at{(c & 1U) != 0 ? box.max.x : box.min.x, (c & 2U) != 0 ? box.max.y : box.min.y,
+                       (c & 4U) != 0 ? box.max.z : box.min.z};
+        corners[c] = to_clip * vec4(vec3(at - pose.position), 1.0F);
+    }
+    constexpr auto near = static_cast<float>(model::near_plane_m);
     double left = 1, right = -1, bottom = 1, top = -1;
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        const dvec3 at{(corner & 1U) != 0 ? box.max.x : box.min.x, (corner & 2U) != 0 ? box.max.y : box.min.y,
-                       (corner & 4U) != 0 ? box.max.z : box.min.z};
-        const vec4 clip = projection * rotation * vec4(vec3(at - pose.position), 1.0F);
-        if (!(static_cast<double>(clip.w) > model::near_plane_m)) return all;
+    const auto show = [&](const vec4& clip) {
         const double x = static_cast<double>(clip.x / clip.w), y = static_cast<double>(clip.y / clip.w);
         left = std::min(left, x);
         right = std::max(right, x);
         bottom = std::min(bottom, y);
         top = std::max(top, y);
+    };
+    for (unsigned c = 0; c < corners.size(); ++c) {
+        if (corners[c].w >= near) show(corners[c]);
+        for (unsigned axis = 1; axis < corners.size(); axis *= 2) {  // edges that cross the near plane
+            const vec4 &a = corners[c], &b = corners[c | axis];
+            if ((a.w >= near) != (b.w >= near)) show(glm::mix(a, b, (near - a.w) / (b.w - a.w)));
+        }
     }
     const auto pixel = [](double ndc, std::uint32_t size, auto round) {
         return static_cast<std::uint32_t>(std::clamp(round((ndc + 1) / 2 * size), 0.0, static_cast<double>(size)));
     };
     const auto floor = [](double v) { return std::floor(v); };
     const auto ceil = [](double v) { return std::ceil(v); };
-    PixelRect rect{pixel(left, viewport.width, floor), pixel(-top, viewport.height, floor), pixel(right, viewport.width, ceil),
-                   pixel(-bottom, viewport.height, ceil)};
-    if (rect.x0 >= rect.x1 || rect.y0 >= rect.y1) return {};
-    return rect;
+    const PixelRect rect{pixel(left, viewport.width, floor), pixel(-top, viewport.height, floor),
+                         pixel(right, viewport.width, ceil), pixel(-bottom, viewport.height, ceil)};
+    return rect.empty() ? PixelRect{} : rect;
 }
 
-Result<void> WorstForms::add(const FrameSnapshot& snapshot, const report::ReportSnapshot& picture) {
+Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const report::ReportSnapshot> pictures, std::size_t number,
+                             const Progress& progress) {
+    const report::ReportSnapshot& picture = pictures[number];
     const std::uint32_t width = picture.width, height = picture.height;
     if (picture.walk.empty() || picture.full.empty()) return {};
-    const double wrong = squared_error(picture.walk, picture.full, width, {0, 0, width, height});
-    squared_error_ += wrong;
+    const SquaredErrors wrong(picture.walk, picture.full, width, height);
+    squared_error_ += wrong.all();
     const model::Model& model = engine_.model();
     const std::vector<gl::DrawItem> full = engine_.full_detail(snapshot.pose);
     if (snapshot.resolution < 1) {
         engine_.draw_unbudgeted(snapshot.pose, full, snapshot.resolution, snapshot.filter);
         auto blurred = engine_.device().read_pixels();
         if (!blurred) return blurred.error();
-        of_resolution_ += squared_error(blurred->rgba, picture.full, width, {0, 0, width, height});
+        of_resolution_ += SquaredErrors(blurred->rgba, picture.full, width, height).all();
     }
     const auto below = full_detail_below(model, snapshot.items, full);
     std::vector<std::pair<double, std::size_t>> tried;
     for (std::size_t i = 0; i < snapshot.items.size(); ++i) {
         if (below[i].empty()) continue;
         const Box& box = model.nodes[snapshot.items[i].node].box;
-        const PixelRect rect = pixels_of(box, snapshot.pose, engine_.options().device.viewport);
-        tried.emplace_back(squared_error(picture.walk, picture.full, width, rect), i);
+        tried.emplace_back(wrong.in(pixels_of(box, snapshot.pose, engine_.options().device.viewport)), i);
     }
     std::sort(tried.rbegin(), tried.rend());
     tried.resize(std::min(tried.size(), forms_tried));
     for (const auto& [unused, i] : tried) {
+        if (progress.stopped()) break;
         const gl::DrawItem& item = snapshot.items[i];
         std::vector<gl::DrawItem> items = snapshot.items;
         items.erase(items.begin() + static_cast<std::ptrdiff_t>(i));
@@ -131,42 +154,47 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, const report::Report
         engine_.draw_unbudgeted(snapshot.pose, items, snapshot.resolution, snapshot.filter);
         auto with = engine_.device().read_pixels();
         if (!with) return with.error();
-        const double less = wrong - squared_error(with->rgba, picture.full, width, {0, 0, width, height});
-        if (!(less > 0)) continue;
+        const double goes = wrong.all() - SquaredErrors(with->rgba, picture.full, width, height).all();
         Total& total = totals_[{item.node, item.rep}];
-        total.squared_error += less;
-        ++total.form.pictures;
-        if (less <= total.max_squared_error) continue;
-        total.max_squared_error = less;
-        const PixelRect part = changed_pixels(picture.walk, with->rgba, width, height);
-        total.form.frame = picture.frame;
-        total.form.width = part.x1 - part.x0;
-        total.form.height = part.y1 - part.y0;
-        total.form.walk = part_of_picture(picture.walk, width, part);
-        total.form.full = part_of_picture(picture.full, width, part);
+        total.squared_error += goes;
+        ++total.pictures;
+        if (goes <= total.max_squared_error) continue;
+        total.max_squared_error = goes;
+        total.shown_in = number;
+        total.part = changed_pixels(picture.walk, with->rgba, width, height, report::visible_steps);
+        if (total.part.empty()) total.part = changed_pixels(picture.walk, with->rgba, width, height, 0);
     }
     return {};
 }
 
-double WorstForms::resolution_share() const { return squared_error_ > 0 ? of_resolution_ / squared_error_ : 0; }
-
-std::vector<report::WorstForm> WorstForms::list(std::size_t count) const {
+std::vector<report::WorstForm> WorstForms::list(std::size_t count, std::span<const report::ReportSnapshot> pictures) const {
+    using Entry = std::pair<const std::pair<model::Index, model::Index>, Total>;
+    std::vector<const Entry*> worst;
+    for (const Entry& entry : totals_)
+        if (entry.second.squared_error > 0) worst.push_back(&entry);
+    std::stable_sort(worst.begin(), worst.end(),
+                     [](const Entry* a, const Entry* b) { return a->second.squared_error > b->second.squared_error; });
+    worst.resize(std::min(worst.size(), count));
     std::vector<report::WorstForm> forms;
     const model::Model& model = engine_.model();
-    for (const auto& [key, total] : totals_) {
-        const auto& [n, rep] = key;
-        const model::Node& node = model.nodes[n];
-        report::WorstForm form = total.form;
-        form.node = n;
+    for (const Entry* entry : worst) {
+        const auto& [key, total] = *entry;
+        const model::Node& node = model.nodes[key.first];
+        const report::ReportSnapshot& picture = pictures[total.shown_in];
+        report::WorstForm& form = forms.emplace_back();
+        form.node = key.first;
         form.name = model.name_of(node);
         form.node_kind = model::name_of(node.kind);
-        form.form = model::form_of(model.reps[rep].kind).name;
-        form.triangles = model.reps[rep].triangles;
+        form.form = model::form_of(model.reps[key.second].kind).name;
+        form.triangles = model.reps[key.second].triangles;
         form.error_share = total.squared_error / squared_error_;
-        forms.push_back(std::move(form));
+        form.pictures = total.pictures;
+        form.frame = picture.frame;
+        form.width = total.part.x1 - total.part.x0;
+        form.height = total.part.y1 - total.part.y0;
+        form.walk = part_of_picture(picture.walk, picture.width, total.part);
+        form.full = part_of_picture(picture.full, picture.width, total.part);
     }
-    std::sort(forms.begin(), forms.end(), [](const auto& a, const auto& b) { return a.error_share > b.error_share; });
-    if (forms.size() > count) forms.resize(count);
     return forms;
 }
 

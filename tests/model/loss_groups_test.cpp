@@ -1,0 +1,82 @@
+// Groups of a cluster's leaves: they part the leaves, and none is larger than a 32nd unless it is a leaf.
+#include "render/model/loss_groups.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "rt/base/random.hpp"
+
+namespace surefoot::model {
+namespace {
+
+/// Nodes in the order of their depth, children together; one or two forms each.
+Model random_tree(Random& random, Index nodes) {
+    Model model;
+    model.nodes.resize(1);
+    for (Index at = 0; at < model.nodes.size() && model.nodes.size() < nodes; ++at) {
+        const auto children = static_cast<std::uint32_t>(random.unit() * 9);
+        if (children == 0 && at > 0) continue;
+        model.nodes[at].first_child = static_cast<Index>(model.nodes.size());
+        model.nodes[at].child_count = std::max(1U, children);
+        for (std::uint32_t c = 0; c < model.nodes[at].child_count; ++c) model.nodes.emplace_back().parent = at;
+    }
+    for (Node& node : model.nodes) node.rep_count = random.unit() < 0.5 ? 1 : 2;
+    return model;
+}
+
+TEST(LossGroups, PartTheLeavesOfEveryCluster) {
+    Random random(7);
+    for (const Index nodes : {1U, 2U, 30U, 400U, 3000U}) {
+        const Model model = random_tree(random, nodes);
+        const LossGroups groups(model);
+        const auto n = static_cast<Index>(model.nodes.size());
+        std::vector<std::size_t> leaves(n, 0);
+        for (Index i = n; i-- > 0;) {
+            if (model.nodes[i].child_count == 0) leaves[i] = 1;
+            if (i > 0) leaves[model.nodes[i].parent] += leaves[i];
+        }
+        std::vector<std::map<Index, std::size_t>> shown(n);  // by cluster: leaves by slot
+        for (Index leaf = 0; leaf < n; ++leaf) {
+            if (model.nodes[leaf].child_count > 0) continue;
+            for (Index a = model.nodes[leaf].parent; a != none; a = model.nodes[a].parent) ++shown[a][groups.slot_of(leaf, a)];
+        }
+        std::size_t entries = 0;
+        for (Index a = 0; a < n; ++a) {
+            EXPECT_EQ(groups.count(a), shown[a].size()) << "every slot holds leaves";
+            EXPECT_EQ(shown[a].count(none), 0U) << "every leaf has a slot";
+            for (const auto& [slot, in] : shown[a]) {
+                EXPECT_LT(slot, groups.count(a));
+                if (in > 1) {
+                    EXPECT_LE(in * LossGroups::parts, leaves[a]);
+                }
+            }
+            EXPECT_EQ(groups.first(a), entries);
+            entries += std::size_t{groups.count(a)} * model.nodes[a].rep_count;
+        }
+        EXPECT_EQ(groups.size(), entries);
+    }
+}
+
+TEST(LossGroups, OfALeafAreThoseOfItsAncestorsFromTheParentOn) {
+    Model model;  // 0 over 1 and 2, 1 over 3 and 4
+    model.nodes.resize(5);
+    for (const auto& [child, parent] : {std::pair{1U, 0U}, {2U, 0U}, {3U, 1U}, {4U, 1U}}) {
+        model.nodes[child].parent = parent;
+        ++model.nodes[parent].child_count;
+    }
+    const LossGroups groups(model);
+    EXPECT_EQ(groups.count(0), 3U) << "three leaves; the cluster has more than a 32nd of them";
+    EXPECT_EQ(groups.count(1), 2U);
+    EXPECT_EQ(groups.count(2), 0U);
+    EXPECT_EQ(groups.above(1).skipped, 1U);
+    EXPECT_TRUE(groups.above(1).slots.empty());
+    EXPECT_EQ(groups.above(3).skipped, 0U);
+    EXPECT_EQ(std::vector<Index>(groups.above(3).slots.begin(), groups.above(3).slots.end()), (std::vector<Index>{0, 1}));
+    EXPECT_EQ(groups.slot_of(4, 1), 1U);
+    EXPECT_EQ(groups.slot_of(4, 0), 2U);
+    EXPECT_EQ(groups.slot_of(2, 0), 0U) << "in the order of nodes";
+}
+
+}  // namespace
+}  // namespace surefoot::model
