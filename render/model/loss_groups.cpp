@@ -11,6 +11,10 @@ LossGroups::LossGroups(const Model& model)
       skipped_(model.nodes.size(), 0),
       depth_(model.nodes.size(), 0) {
     const auto n = static_cast<Index>(nodes_.size());
+    for (Index i = 0; i < n; ++i) {  // parents come first
+        if (nodes_[i].parent != none) depth_[i] = depth_[nodes_[i].parent] + 1;
+        if (depth_[i] > max_depth) return;
+    }
     std::vector<std::uint64_t> leaves(n, 0);
     for (Index i = n; i-- > 0;) {  // children come after their parents
         if (nodes_[i].child_count == 0) leaves[i] = 1;
@@ -19,7 +23,6 @@ LossGroups::LossGroups(const Model& model)
     const auto small = [&](Index node, Index cluster) { return leaves[node] * parts <= leaves[cluster]; };
     for (Index i = 0; i < n; ++i) {
         const Index parent = nodes_[i].parent;
-        if (parent != none) depth_[i] = depth_[parent] + 1;
         for (Index a = parent; a != none && (a == parent || !small(parent, a)); a = nodes_[a].parent) {
             if (nodes_[i].child_count == 0 || small(i, a))
                 slots_.push_back(count_[a]++);

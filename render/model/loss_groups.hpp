@@ -13,7 +13,10 @@ namespace surefoot::model {
 /// Model::group_losses has an entry for each cluster, form and group, in this order; groups are in the order of nodes.
 class LossGroups {
 public:
+    /// The tree must be valid. One that is deeper than max_depth has no groups: a chain would have a slot for each pair of nodes.
     explicit LossGroups(const Model& model);
+    explicit LossGroups(Model&&) = delete;  ///< it reads the model's nodes as long as it lives
+    static constexpr std::uint32_t max_depth = 128;
 
     /// Groups of a cluster; 0 of a leaf.
     [[nodiscard]] Index count(Index cluster) const { return count_[cluster]; }

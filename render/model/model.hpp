@@ -102,7 +102,8 @@ struct Node {
 /// Error, before placing, of a leaf's full detail without what its masks hide. It shows the same. The error is there because
 /// errors fall from form to form.
 constexpr float trimmed_error_m = 1e-9F, max_trimmed_error_m = 1e-6F;
-/// Angular errors up to this count as none. Trimmed forms have no more at any distance; a pixel has a hundred times as much.
+/// Angular errors up to this count as none. Trimmed forms have no more at any distance. A pixel of 1280 x 720 has 70 times as
+/// much.
 constexpr float exact_up_to_rad = 2e-5F;
 
 /// Whether the representation shows the node's full detail: the finest of a leaf, or the same without what its masks hide.

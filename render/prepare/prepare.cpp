@@ -82,10 +82,10 @@ struct Preparer::Impl {
     ShownPixels shown;
     std::span<const float> shown_px;  ///< of the last run()'s candidates
     ValuePass values;
-    model::LossGroups groups;
-    std::uint32_t choice_bound = 0;  ///< choices that the visits may need
-    float used_factor = 1;           ///< of the last run(), for value_at() too
-    float target_factor = 1;         ///< of the error target, raised while frames look at too many nodes
+    std::unique_ptr<model::LossGroups> groups;  ///< null: no losses of groups are known
+    std::uint32_t choice_bound = 0;             ///< choices that the visits may need
+    float used_factor = 1;                      ///< of the last run(), for value_at() too
+    float target_factor = 1;                    ///< of the error target, raised while frames look at too many nodes
     std::atomic<std::int64_t> worker_cpu_ns{0};
 
     Impl(const model::Model& m, const model::CostModel& c, const PrepareOptions& o);
@@ -112,12 +112,14 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
       occluders(o.occlusion ? find_occluders(m) : Occluders{}),
       occlusion(occluders),
       workers(o.workers, o.worker_hooks),
-      groups(m) {
+      groups(m.group_losses.empty() ? nullptr : std::make_unique<model::LossGroups>(m)) {
     options.max_candidates = std::max(1U, options.max_candidates);
     std::uint32_t max_children = 0, max_reps = 1;
+    std::size_t max_forms = 0;  // nodes may share some
     for (const model::Node& node : m.nodes) {
         max_children = std::max(max_children, node.child_count);
         max_reps = std::max(max_reps, node.rep_count);
+        max_forms += node.rep_count;
     }
     options.max_choices = std::max(options.max_choices, max_reps);
     const std::size_t max_nodes = std::min<std::size_t>(options.max_candidates, std::max<std::size_t>(m.nodes.size(), 1));
@@ -135,7 +137,8 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     chunk_count.resize(chunks);
     weights.resize(max_nodes);
     shown.reserve(static_cast<std::uint32_t>(max_nodes), max_hidden);
-    values.reserve(static_cast<std::uint32_t>(max_nodes), std::min<std::size_t>(options.max_choices, m.reps.size()));
+    values.reserve(static_cast<std::uint32_t>(max_nodes),
+                   groups == nullptr ? 0 : std::min<std::size_t>(options.max_choices, max_forms));
 }
 
 template <class Body>
@@ -338,7 +341,7 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
 }
 
 void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
-    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model, options.sky, &groups),
+    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model, options.sky, groups.get()),
                shown.before_sky());
 }
 

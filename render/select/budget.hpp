@@ -20,6 +20,7 @@ struct Sum {
                 raster_us + (static_cast<double>(in.raster_us) - static_cast<double>(away.raster_us))};
     }
 };
+inline Sum operator+(const Sum& a, const Sum& b) { return {a.submit_us + b.submit_us, a.raster_us + b.raster_us}; }
 
 /// Whole-frame prediction: (FrameCombine of the sums + cost of ending slices) x correction x headroom.
 class Budget {

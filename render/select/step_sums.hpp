@@ -12,7 +12,6 @@ namespace surefoot::select {
 
 constexpr std::uint32_t key_buckets = BucketQueue::buckets;
 
-inline Sum operator+(const Sum& a, const Sum& b) { return {a.submit_us + b.submit_us, a.raster_us + b.raster_us}; }
 inline bool nothing(const Sum& sum) { return sum.submit_us == 0.0 && sum.raster_us == 0.0; }
 
 /// Cost changes of all steps by bucket of their key: those that are new, and those that were shown in the last frame.

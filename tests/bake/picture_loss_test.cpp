@@ -136,23 +136,30 @@ TEST(PictureLoss, OfGroupsIsWhatAClusterLacksOfEach) {
     EXPECT_GT(std::abs(of(1, 3) - of(1, 4)), 0.1F) << "the other is missing: before white things that loses nothing";
     EXPECT_NEAR((of(1, 3) + of(1, 4)) / 2, whole, 0.02) << "both squares show alike, so their mean is the cluster's";
     EXPECT_NEAR(of(0, 3), of(1, 3), 0.05) << "seen as a part of more";
+    for (const model::LossOfGroup& group : measured.groups) {
+        EXPECT_EQ(group.colour[1], group.colour[0]) << "without textures, size makes no difference";
+        EXPECT_EQ(group.colour[2], group.colour[0]);
+    }
 }
 
 TEST(PictureLoss, IsTheSameOnAnyNumberOfThreads) {
     const model::Model m = small_tree();
-    const auto one = measure_losses(m, serial, [] { return true; }).forms;
+    const MeasuredLosses by_one = measure_losses(m, serial, [] { return true; });
+    const auto& one = by_one.forms;
     for (const int threads : {2, 4}) {
         tbb::task_arena arena(threads);
-        std::vector<model::PictureLoss> losses;
+        MeasuredLosses measured;
         arena.execute([&] {
-            losses = measure_losses(
-                         m,
-                         [](std::size_t count, const std::function<void(std::size_t)>& body) {
-                             tbb::parallel_for(std::size_t{0}, count, body);
-                         },
-                         [] { return true; })
-                         .forms;
+            measured = measure_losses(
+                m,
+                [](std::size_t count, const std::function<void(std::size_t)>& body) {
+                    tbb::parallel_for(std::size_t{0}, count, body);
+                },
+                [] { return true; });
         });
+        const std::vector<model::PictureLoss>& losses = measured.forms;
+        ASSERT_EQ(measured.groups.size(), by_one.groups.size());
+        for (std::size_t i = 0; i < by_one.groups.size(); ++i) EXPECT_EQ(measured.groups[i].colour, by_one.groups[i].colour);
         ASSERT_EQ(losses.size(), one.size());
         for (std::size_t r = 0; r < one.size(); ++r) {
             EXPECT_EQ(losses[r].coverage, one[r].coverage);

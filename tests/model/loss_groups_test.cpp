@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <map>
 
 #include "rt/base/random.hpp"
@@ -41,6 +42,14 @@ TEST(LossGroups, PartTheLeavesOfEveryCluster) {
             if (model.nodes[leaf].child_count > 0) continue;
             for (Index a = model.nodes[leaf].parent; a != none; a = model.nodes[a].parent) ++shown[a][groups.slot_of(leaf, a)];
         }
+        const std::function<std::size_t(Index, Index)> groups_below = [&](Index node, Index cluster) {
+            std::size_t found = 0;
+            for (Index c = model.nodes[node].first_child; c < model.nodes[node].first_child + model.nodes[node].child_count; ++c)
+                found += model.nodes[c].child_count == 0 || leaves[c] * LossGroups::parts <= leaves[cluster]
+                             ? 1
+                             : groups_below(c, cluster);
+            return found;
+        };
         std::size_t entries = 0;
         for (Index a = 0; a < n; ++a) {
             EXPECT_EQ(groups.count(a), shown[a].size()) << "every slot holds leaves";
@@ -51,10 +60,25 @@ TEST(LossGroups, PartTheLeavesOfEveryCluster) {
                     EXPECT_LE(in * LossGroups::parts, leaves[a]);
                 }
             }
+            EXPECT_EQ(groups.count(a), model.nodes[a].child_count == 0 ? 0 : groups_below(a, a)) << "the highest that are small";
             EXPECT_EQ(groups.first(a), entries);
             entries += std::size_t{groups.count(a)} * model.nodes[a].rep_count;
         }
         EXPECT_EQ(groups.size(), entries);
+    }
+}
+
+TEST(LossGroups, OfAChainThatIsTooDeepAreNone) {
+    for (const Index depth : {LossGroups::max_depth, LossGroups::max_depth + 1}) {
+        Model model;
+        model.nodes.resize(1 + std::size_t{2} * depth);  // each cluster holds a leaf and the next cluster
+        for (Index i = 0; i < depth; ++i)
+            for (const Index child : {2 * i + 1, 2 * i + 2}) model.nodes[child].parent = 2 * i, ++model.nodes[2 * i].child_count;
+        for (Node& node : model.nodes) node.rep_count = 1;
+        const LossGroups groups(model);
+        EXPECT_EQ(groups.size() > 0, depth == LossGroups::max_depth);
+        EXPECT_EQ(groups.count(0) > 0, depth == LossGroups::max_depth);
+        EXPECT_EQ(groups.above(1).slots.empty(), depth > LossGroups::max_depth);
     }
 }
 

@@ -306,6 +306,74 @@ TEST(Value, OfAClustersFormGoesByTheGroupsThatAreSeen) {
     EXPECT_NEAR(frame.choices[0].value, 1000 * (1 - 0.95 * 0.5), 1e-1);
 }
 
+/// A tree of clusters of up to eight, breadth first, with two forms a cluster, and losses of its groups. Each node is a
+/// candidate.
+struct GroupedTree {
+    model::Model m;
+    PreparedFrame frame;
+    explicit GroupedTree(Random& random, std::size_t nodes) {
+        m.nodes.resize(1);
+        for (Index at = 0; at < m.nodes.size() && m.nodes.size() < nodes; ++at) {
+            const auto children = static_cast<std::uint32_t>(random.unit() * 9);
+            if (children == 0 && at > 0) continue;
+            m.nodes[at].first_child = static_cast<Index>(m.nodes.size());
+            m.nodes[at].child_count = std::max(1U, children);
+            for (std::uint32_t c = 0; c < m.nodes[at].child_count; ++c) m.nodes.emplace_back().parent = at;
+        }
+        for (Index n = 0; n < m.nodes.size(); ++n) {
+            model::Node& node = m.nodes[n];
+            node.first_rep = static_cast<Index>(m.losses.size());
+            node.rep_count = node.child_count > 0 ? 2 : 1;
+            m.losses.resize(m.losses.size() + node.rep_count);
+            Candidate& candidate = frame.candidates.emplace_back();
+            candidate.node = n;
+            candidate.parent = n == 0 ? none : node.parent;
+            candidate.first_child = node.child_count > 0 ? node.first_child : none;
+            candidate.child_count = node.child_count;
+            candidate.first_choice = static_cast<Index>(frame.choices.size());
+            candidate.choice_count = 1;  // of two forms the second: choices are some of the forms
+            frame.choices.emplace_back().rep = node.first_rep + node.rep_count - 1;
+        }
+        m.colours.variance = 0.5F;
+        m.group_losses.resize(model::LossGroups(m).size());
+        for (model::LossOfGroup& loss : m.group_losses) loss.colour.fill(static_cast<float>(random.unit()));
+    }
+};
+
+TEST(Value, OfAClustersFormIsTheMeanOverItsGroupsInAnyTree) {
+    Random random(11);
+    const GroupedTree tree(random, 900);
+    const model::LossGroups groups(tree.m);
+    const auto n = static_cast<Index>(tree.m.nodes.size());
+    std::vector<float> shown_px(n, 0);
+    std::vector<Weight> weights(n);
+    for (Index i = 0; i < n; ++i) {
+        weights[i].distance_m = 10, weights[i].pixel_weight = 1, weights[i].size_m = 1;
+        if (tree.m.nodes[i].child_count == 0 && random.unit() < 0.7) shown_px[i] = static_cast<float>(100 * random.unit());
+    }
+    std::vector<double> weight(n, 0), lost(n, 0);
+    for (Index leaf = 0; leaf < n; ++leaf) {
+        for (Index a = tree.m.nodes[leaf].parent; shown_px[leaf] > 0 && a != none; a = tree.m.nodes[a].parent) {
+            const std::size_t entry = groups.first(a) + groups.count(a) + groups.slot_of(leaf, a);  // of the second form
+            weight[a] += static_cast<double>(shown_px[leaf]);
+            lost[a] += static_cast<double>(shown_px[leaf]) * static_cast<double>(tree.m.group_losses[entry].colour[0]);
+        }
+    }
+    PreparedFrame frame = tree.frame;
+    ValuePass pass;
+    pass.reserve(n, frame.choices.size());
+    pass.run({.fixed_us = 0, .submit_weight = 1, .raster_weight = 0, .max_weight = 0}, 1e-3F, weights, shown_px, frame,
+             looks_of(tree.m, {}, &groups));
+    std::size_t compared = 0;
+    for (Index a = 0; a < n; ++a) {
+        if (tree.m.nodes[a].child_count == 0 || weight[a] == 0) continue;
+        EXPECT_NEAR(frame.choices[a].value, weight[a] - 0.95 * lost[a], 1e-3 * weight[a]) << a;
+        ++compared;
+    }
+    EXPECT_GT(compared, 50U);
+    EXPECT_LT(groups.count(0), 8 * model::LossGroups::parts * 2) << "the root's groups are clusters";
+}
+
 TEST(ShownPixels, BehindTheEyeThereIsNoOutline) {
     const model::Model m = test::town(3);
     const model::CostModel prices = model::default_costs();

@@ -94,6 +94,7 @@ Result<void> find_worst_forms(Engine& engine, const SnapshotStore& snapshots, st
         if (auto ok = worst.add(snapshot, rendered, number, progress); !ok) return ok;
         ++number;
     }
+    if (number == 0 || number < rendered.size() || progress.stopped()) return {};
     picture.forms_compared = true;
     picture.worst_forms = worst.list(worst_forms_listed, rendered);
     picture.resolution_error_share = worst.resolution_share();

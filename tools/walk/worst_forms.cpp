@@ -13,7 +13,22 @@ namespace {
 
 using Pixels = std::span<const std::uint8_t>;  // RGBA
 
-/// Squared errors of R, G and B between two pictures, summed over any rectangle at once: a summed-area table.
+/// Of R, G and B of pixel number `pixel`.
+std::uint64_t squared_error(Pixels a, Pixels b, std::size_t pixel) {
+    std::uint64_t sum = 0;
+    for (std::size_t i = 4 * pixel; i < 4 * pixel + 3; ++i) {
+        const int off = int{a[i]} - int{b[i]};
+        sum += static_cast<std::uint64_t>(off * off);
+    }
+    return sum;
+}
+double squared_error(Pixels a, Pixels b) {
+    std::uint64_t sum = 0;
+    for (std::size_t pixel = 0; pixel < a.size() / 4; ++pixel) sum += squared_error(a, b, pixel);
+    return static_cast<double>(sum);
+}
+
+/// The same, summed over any rectangle at once: a summed-area table.
 class SquaredErrors {
 public:
     SquaredErrors(Pixels a, Pixels b, std::uint32_t width, std::uint32_t height)
@@ -21,11 +36,7 @@ public:
         for (std::uint32_t y = 0; y < height; ++y) {
             std::uint64_t row = 0;
             for (std::uint32_t x = 0; x < width; ++x) {
-                const std::size_t i = 4 * (std::size_t{width} * y + x);
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const int off = int{a[i + k]} - int{b[i + k]};
-                    row += static_cast<std::uint64_t>(off * off);
-                }
+                row += squared_error(a, b, std::size_t{width} * y + x);
                 sums_[columns_ * (y + 1) + x + 1] = sums_[columns_ * y + x + 1] + row;
             }
         }
@@ -134,7 +145,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
         engine_.draw_unbudgeted(snapshot.pose, full, snapshot.resolution, snapshot.filter);
         auto blurred = engine_.device().read_pixels();
         if (!blurred) return blurred.error();
-        of_resolution_ += SquaredErrors(blurred->rgba, picture.full, width, height).all();
+        of_resolution_ += squared_error(blurred->rgba, picture.full);
     }
     const auto below = full_detail_below(model, snapshot.items, full);
     std::vector<std::pair<double, std::size_t>> tried;
@@ -154,7 +165,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
         engine_.draw_unbudgeted(snapshot.pose, items, snapshot.resolution, snapshot.filter);
         auto with = engine_.device().read_pixels();
         if (!with) return with.error();
-        const double goes = wrong.all() - SquaredErrors(with->rgba, picture.full, width, height).all();
+        const double goes = wrong.all() - squared_error(with->rgba, picture.full);
         Total& total = totals_[{item.node, item.rep}];
         total.squared_error += goes;
         ++total.pictures;
