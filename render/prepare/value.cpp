@@ -13,7 +13,7 @@ namespace surefoot::prepare {
 namespace {
 
 constexpr float top_rate = 0x1p20F;      // px/us, of level 0
-constexpr std::size_t max_choices = 32;  // of one candidate on its hull; more are left out of it
+constexpr std::size_t max_on_hull = 32;  // of one candidate on its hull; more are left out of it
 
 /// 0..1. What is out of the view has no surface there: only its error counts.
 float looks_right(float error_px, float surface_px, float leaves_surface_px) {
@@ -57,7 +57,7 @@ float slope(float value, float cost) {
 
 /// The upper convex hull of a candidate's choices. Fills the rates; returns the offsets of the choices on the hull.
 std::span<const std::uint32_t> hull_of(const model::FrameCombine& combine, std::span<Choice> choices,
-                                       std::array<std::uint32_t, max_choices>& on) {
+                                       std::array<std::uint32_t, max_on_hull>& on) {
     std::size_t count = 0;
     const auto between = [&](std::uint32_t a, std::uint32_t b) {
         return slope(choices[b].value - choices[a].value,
@@ -285,7 +285,7 @@ void ValuePass::run(const model::FrameCombine& combine, float pixel_angle_rad, s
     }
     free_.clear();
     for (std::uint32_t i = static_cast<std::uint32_t>(curves_.size()); i-- > 0;) free_.push_back(i);
-    std::array<std::uint32_t, max_choices> room{};
+    std::array<std::uint32_t, max_on_hull> room{};
     double full_value = 0;
     for (std::size_t i = n; i-- > 0;) {
         const Candidate& candidate = frame.candidates[i];

@@ -31,10 +31,10 @@ Looks looks_of(const model::Model& model, const std::array<float, 3>& sky, const
 /// motion. W of a node: the sum of its leaves'. S: those of W with nothing but the sky behind the node, u: the share of
 /// pixels that the choice covers wrongly, measured. S' is of the leaves, in any node below the root. K: Looks::before_sky.
 /// g, 0..1: how wrong the choice looks. A twentieth is by its error in pixels. The rest is the measured loss at
-/// the node's size on the screen, as a share of what a missing thing loses. For a cluster it is the mean over groups of leaves by
-/// the W of each; what is in no known group counts by the form's whole loss. Nearer than was measured, an error in pixels counts
-/// more. Without losses, a quarter is by the error in pixels. Then the rest is the share of the leaves' surface that the choice
-/// lacks: a fence that is missing, a tree that is a shard.
+/// the node's size on the screen, as a share of what a missing thing loses. For a cluster it is the mean over groups of leaves,
+/// by the W of each. What is in no known group counts by the form's whole loss. Nearer than was measured, an error in pixels
+/// counts more. Without losses, a quarter is by the error in pixels. Then the rest is the share of the leaves' surface that the
+/// choice lacks: a fence that is missing, a tree that is a shard.
 ///
 /// rate = value per us of the next step, where a step into the children counts all that follows below at that rate. It is the
 /// slope of the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a
