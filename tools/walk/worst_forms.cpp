@@ -137,6 +137,7 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
     const report::ReportSnapshot& picture = pictures[number];
     const std::uint32_t width = picture.width, height = picture.height;
     if (picture.walk.empty() || picture.full.empty()) return {};
+    engine_.device().draws.plays();
     const SquaredErrors wrong(picture.walk, picture.full, width, height);
     squared_error_ += wrong.all();
     const model::Model& model = engine_.model();
