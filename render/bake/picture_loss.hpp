@@ -34,6 +34,7 @@ struct MeasuredLosses {
     std::vector<model::PictureLoss> forms;   ///< one a form of the model; empty: stopped
     std::vector<model::LossOfGroup> groups;  ///< as Model::group_losses
     model::ColourSpread colours;
+    /// To the model that was measured. Leaves this empty.
     void move_to(model::Model& model);
 };
 

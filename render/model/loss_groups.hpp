@@ -9,7 +9,8 @@
 
 namespace surefoot::model {
 
-/// The groups of a cluster part its leaves. A group is a leaf below it, or the highest node with a 32nd of its leaves or less.
+/// Each leaf of a cluster is in one of its groups. Go down from the cluster: the first node that has a 32nd of its leaves or less
+/// is a group, and so is a leaf.
 /// Model::group_losses has an entry for each cluster, form and group, in this order; groups are in the order of nodes.
 class LossGroups {
 public:
@@ -25,7 +26,8 @@ public:
     /// Entries of all clusters.
     [[nodiscard]] std::size_t size() const { return first_.back(); }
 
-    /// The clusters of which a node is a group: `skipped` of its ancestors are not, the parent first; then one slot an ancestor.
+    /// The ancestors of which a node is a group. Count them from the parent up: of the first `skipped` it is none, since they are
+    /// too small. Of each after them it is one, by the slot that is listed.
     struct Above {
         std::uint32_t skipped = 0;
         std::span<const Index> slots;

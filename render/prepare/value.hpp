@@ -22,7 +22,7 @@ struct Looks {
     std::span<const model::Node> nodes;
     float before_sky = 1;  ///< what a missing thing loses before the sky, as a multiple of that; 1 or more
 };
-/// sky: its colour, 0..1.
+/// sky: its colour, 0..1. groups: of this model, and they must outlive the result; null: forms lose the same on all they show.
 Looks looks_of(const model::Model& model, const std::array<float, 3>& sky, const model::LossGroups* groups = nullptr);
 
 /// Fills Choice::value, Choice::rate and PreparedFrame::full_value.

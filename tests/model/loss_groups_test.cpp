@@ -6,22 +6,14 @@
 #include <functional>
 #include <map>
 
-#include "rt/base/random.hpp"
+#include "tests/model/random_tree.hpp"
 
 namespace surefoot::model {
 namespace {
 
-/// Nodes in the order of their depth, children together; one or two forms each.
-Model random_tree(Random& random, Index nodes) {
-    Model model;
-    model.nodes.resize(1);
-    for (Index at = 0; at < model.nodes.size() && model.nodes.size() < nodes; ++at) {
-        const auto children = static_cast<std::uint32_t>(random.unit() * 9);
-        if (children == 0 && at > 0) continue;
-        model.nodes[at].first_child = static_cast<Index>(model.nodes.size());
-        model.nodes[at].child_count = std::max(1U, children);
-        for (std::uint32_t c = 0; c < model.nodes[at].child_count; ++c) model.nodes.emplace_back().parent = at;
-    }
+/// One or two forms a node.
+Model tree_of(Random& random, std::size_t nodes) {
+    Model model = test::random_tree(random, nodes);
     for (Node& node : model.nodes) node.rep_count = random.unit() < 0.5 ? 1 : 2;
     return model;
 }
@@ -29,7 +21,7 @@ Model random_tree(Random& random, Index nodes) {
 TEST(LossGroups, PartTheLeavesOfEveryCluster) {
     Random random(7);
     for (const Index nodes : {1U, 2U, 30U, 400U, 3000U}) {
-        const Model model = random_tree(random, nodes);
+        const Model model = tree_of(random, nodes);
         const LossGroups groups(model);
         const auto n = static_cast<Index>(model.nodes.size());
         std::vector<std::size_t> leaves(n, 0);

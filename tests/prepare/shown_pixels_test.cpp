@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "render/prepare/value.hpp"
-#include "rt/base/random.hpp"
+#include "tests/model/random_tree.hpp"
 #include "tests/prepare/plain_view.hpp"
 #include "tests/prepare/random_model.hpp"
 
@@ -311,15 +311,7 @@ TEST(Value, OfAClustersFormGoesByTheGroupsThatAreSeen) {
 struct GroupedTree {
     model::Model m;
     PreparedFrame frame;
-    explicit GroupedTree(Random& random, std::size_t nodes) {
-        m.nodes.resize(1);
-        for (Index at = 0; at < m.nodes.size() && m.nodes.size() < nodes; ++at) {
-            const auto children = static_cast<std::uint32_t>(random.unit() * 9);
-            if (children == 0 && at > 0) continue;
-            m.nodes[at].first_child = static_cast<Index>(m.nodes.size());
-            m.nodes[at].child_count = std::max(1U, children);
-            for (std::uint32_t c = 0; c < m.nodes[at].child_count; ++c) m.nodes.emplace_back().parent = at;
-        }
+    explicit GroupedTree(Random& random, std::size_t nodes) : m(test::random_tree(random, nodes)) {
         for (Index n = 0; n < m.nodes.size(); ++n) {
             model::Node& node = m.nodes[n];
             node.first_rep = static_cast<Index>(m.losses.size());

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "render/model/walk_file.hpp"
 #include "rt/base/file.hpp"
+#include "rt/base/path.hpp"
 #include "tests/walk/walk_fixture.hpp"
 
 namespace surefoot {
@@ -67,6 +69,54 @@ TEST(WorstForms, ABoxShowsWhereItIsProjected) {
     EXPECT_EQ(around.y1 - around.y0, 100U);
     const PixelRect beside = walk::pixels_of({{500, -1, -101}, {502, 1, -99}}, pose, viewport);
     EXPECT_EQ(beside.x0, beside.x1);
+}
+
+/// A frame of these items, drawn as a report does.
+struct DrawnFrame {
+    walk::FrameSnapshot snapshot;
+    std::vector<report::ReportSnapshot> pictures;
+    DrawnFrame(Engine& engine, const Pose& pose, std::vector<gl::DrawItem> items, float resolution) {
+        snapshot.pose = pose;
+        snapshot.resolution = resolution;
+        snapshot.items = std::move(items);
+        auto drawn = walk::render_snapshot(engine, snapshot);
+        EXPECT_TRUE(drawn.ok());
+        pictures.push_back(std::move(*drawn));
+    }
+};
+
+TEST(WorstForms, TheOnlyFormHasAllOfTheErrorAndFullDetailOnlyTheResolutions) {
+    const auto path = read_path(test::Forest::get().path_file);
+    ASSERT_TRUE(path.ok());
+    const Pose pose = sample_path(*path, 1);
+    auto model = model::read_walk(test::Forest::get().model_file);
+    ASSERT_TRUE(model.ok());
+    EngineOptions options;
+    options.device.viewport = {320, 180};
+    auto engine = Engine::open(std::move(*model), model::default_costs(), options);
+    if (!engine.ok() && engine.error().text().find("libEGL") != std::string::npos) GTEST_SKIP() << engine.error().text();
+    ASSERT_TRUE(engine.ok()) << engine.error().text();
+    (*engine)->device().bind();
+    (*engine)->device().draws.plays();
+
+    const gl::DrawItem root{0, (*engine)->model().nodes[0].first_rep};
+    const DrawnFrame coarse(**engine, pose, {root}, 1);
+    ASSERT_GT(coarse.pictures[0].mse, 0);
+    walk::WorstForms of_root(**engine);
+    ASSERT_TRUE(of_root.add(coarse.snapshot, coarse.pictures, 0, {}).ok());
+    const auto forms = of_root.list(8, coarse.pictures);
+    ASSERT_EQ(forms.size(), 1U);
+    EXPECT_EQ(forms[0].node, 0U);
+    EXPECT_DOUBLE_EQ(forms[0].error_share, 1) << "in its place, full detail has no error";
+    EXPECT_EQ(forms[0].pictures, 1U);
+    EXPECT_EQ(of_root.resolution_share(), 0);
+
+    const DrawnFrame soft(**engine, pose, (*engine)->full_detail(pose), 0.5F);
+    ASSERT_GT(soft.pictures[0].mse, 0);
+    walk::WorstForms of_full_detail(**engine);
+    ASSERT_TRUE(of_full_detail.add(soft.snapshot, soft.pictures, 0, {}).ok());
+    EXPECT_TRUE(of_full_detail.list(8, soft.pictures).empty());
+    EXPECT_DOUBLE_EQ(of_full_detail.resolution_share(), 1) << "all of it is blur";
 }
 
 TEST(WorstForms, OfAWalkStandInItsReportAndCostWhatTheyCost) {

@@ -171,7 +171,8 @@ void add_outputs(CLI::App* c, WalkArguments& a) {
     c->add_option("--state", r.state_dir, "Folder of the calibrated cost table");
     c->add_option("--ledger", r.ledger_file, "CSV file with one row per frame")->check(names_something());
     c->add_option("--trace", r.trace_file, "Trace file for ui.perfetto.dev")->check(names_something());
-    c->add_option("--report", r.report_dir, "Folder for a report: index.html")->check(names_something());
+    c->add_option("--report", r.report_dir, "Folder for a report: index.html, with pictures and the forms that cost them most")
+        ->check(names_something());
     c->add_option(
          "--pictures", r.pictures,
          "Number of frames that are compared with full detail after the walk, evenly spread. They give PSNR, SSIM and FLIP "

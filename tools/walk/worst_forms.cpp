@@ -7,28 +7,15 @@
 #include <cstdlib>
 #include <span>
 
+#include "render/measure/image_metrics.hpp"
+
 namespace surefoot::walk {
 
 namespace {
 
 using Pixels = std::span<const std::uint8_t>;  // RGBA
 
-/// Of R, G and B of pixel number `pixel`.
-std::uint64_t squared_error(Pixels a, Pixels b, std::size_t pixel) {
-    std::uint64_t sum = 0;
-    for (std::size_t i = 4 * pixel; i < 4 * pixel + 3; ++i) {
-        const int off = int{a[i]} - int{b[i]};
-        sum += static_cast<std::uint64_t>(off * off);
-    }
-    return sum;
-}
-double squared_error(Pixels a, Pixels b) {
-    std::uint64_t sum = 0;
-    for (std::size_t pixel = 0; pixel < a.size() / 4; ++pixel) sum += squared_error(a, b, pixel);
-    return static_cast<double>(sum);
-}
-
-/// The same, summed over any rectangle at once: a summed-area table.
+/// Squared errors of R, G and B between two pictures, summed over any rectangle at once: a summed-area table.
 class SquaredErrors {
 public:
     SquaredErrors(Pixels a, Pixels b, std::uint32_t width, std::uint32_t height)
@@ -36,7 +23,11 @@ public:
         for (std::uint32_t y = 0; y < height; ++y) {
             std::uint64_t row = 0;
             for (std::uint32_t x = 0; x < width; ++x) {
-                row += squared_error(a, b, std::size_t{width} * y + x);
+                const std::size_t first = 4 * (std::size_t{width} * y + x);
+                for (std::size_t i = first; i < first + 3; ++i) {
+                    const int off = int{a[i]} - int{b[i]};
+                    row += static_cast<std::uint64_t>(off * off);
+                }
                 sums_[columns_ * (y + 1) + x + 1] = sums_[columns_ * y + x + 1] + row;
             }
         }
@@ -44,7 +35,6 @@ public:
     [[nodiscard]] double in(const PixelRect& r) const {
         return static_cast<double>(at(r.x1, r.y1) - at(r.x0, r.y1) - at(r.x1, r.y0) + at(r.x0, r.y0));
     }
-    [[nodiscard]] double all() const { return static_cast<double>(sums_.back()); }
 
 private:
     [[nodiscard]] std::uint64_t at(std::uint32_t x, std::uint32_t y) const { return sums_[columns_ * y + x]; }
@@ -139,14 +129,14 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
     if (picture.walk.empty() || picture.full.empty()) return {};
     engine_.device().draws.plays();
     const SquaredErrors wrong(picture.walk, picture.full, width, height);
-    squared_error_ += wrong.all();
+    mse_ += picture.mse;
     const model::Model& model = engine_.model();
     const std::vector<gl::DrawItem> full = engine_.full_detail(snapshot.pose);
     if (snapshot.resolution < 1) {
         engine_.draw_unbudgeted(snapshot.pose, full, snapshot.resolution, snapshot.filter);
         auto blurred = engine_.device().read_pixels();
         if (!blurred) return blurred.error();
-        of_resolution_ += squared_error(blurred->rgba, picture.full);
+        of_resolution_ += measure::snr(blurred->rgba, picture.full).mse;
     }
     const auto below = full_detail_below(model, snapshot.items, full);
     std::vector<std::pair<double, std::size_t>> tried;
@@ -166,12 +156,12 @@ Result<void> WorstForms::add(const FrameSnapshot& snapshot, std::span<const repo
         engine_.draw_unbudgeted(snapshot.pose, items, snapshot.resolution, snapshot.filter);
         auto with = engine_.device().read_pixels();
         if (!with) return with.error();
-        const double goes = wrong.all() - squared_error(with->rgba, picture.full);
+        const double goes = picture.mse - measure::snr(with->rgba, picture.full).mse;
         Total& total = totals_[{item.node, item.rep}];
-        total.squared_error += goes;
+        total.mse += goes;
         ++total.pictures;
-        if (goes <= total.max_squared_error) continue;
-        total.max_squared_error = goes;
+        if (goes <= total.max_mse) continue;
+        total.max_mse = goes;
         total.shown_in = number;
         total.part = changed_pixels(picture.walk, with->rgba, width, height, report::visible_steps);
         if (total.part.empty()) total.part = changed_pixels(picture.walk, with->rgba, width, height, 0);
@@ -183,9 +173,8 @@ std::vector<report::WorstForm> WorstForms::list(std::size_t count, std::span<con
     using Entry = std::pair<const std::pair<model::Index, model::Index>, Total>;
     std::vector<const Entry*> worst;
     for (const Entry& entry : totals_)
-        if (entry.second.squared_error > 0) worst.push_back(&entry);
-    std::stable_sort(worst.begin(), worst.end(),
-                     [](const Entry* a, const Entry* b) { return a->second.squared_error > b->second.squared_error; });
+        if (entry.second.mse > 0) worst.push_back(&entry);
+    std::stable_sort(worst.begin(), worst.end(), [](const Entry* a, const Entry* b) { return a->second.mse > b->second.mse; });
     worst.resize(std::min(worst.size(), count));
     std::vector<report::WorstForm> forms;
     const model::Model& model = engine_.model();
@@ -199,7 +188,7 @@ std::vector<report::WorstForm> WorstForms::list(std::size_t count, std::span<con
         form.node_kind = model::name_of(node.kind);
         form.form = model::form_of(model.reps[key.second].kind).name;
         form.triangles = model.reps[key.second].triangles;
-        form.error_share = total.squared_error / squared_error_;
+        form.error_share = total.mse / mse_;
         form.pictures = total.pictures;
         form.frame = picture.frame;
         form.width = total.part.x1 - total.part.x0;

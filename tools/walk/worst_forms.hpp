@@ -32,7 +32,7 @@ public:
                      const Progress& progress);
     /// Share of the squared error that full detail has too, at the resolutions and by the filter of the snapshots below full
     /// resolution. Errors of forms may cancel it in part: then it is above 1.
-    [[nodiscard]] double resolution_share() const { return squared_error_ > 0 ? of_resolution_ / squared_error_ : 0; }
+    [[nodiscard]] double resolution_share() const { return mse_ > 0 ? of_resolution_ / mse_ : 0; }
     /// At most `count`, the one that costs most first; none that costs nothing. pictures: as add() had them.
     [[nodiscard]] std::vector<report::WorstForm> list(std::size_t count, std::span<const report::ReportSnapshot> pictures) const;
 
@@ -40,14 +40,14 @@ public:
 
 private:
     struct Total {
-        double squared_error = 0, max_squared_error = 0;  ///< that goes in all pictures where it was tried, in one
+        double mse = 0, max_mse = 0;  ///< mean squared error that goes: summed over the pictures where it was tried; in one
         std::uint32_t pictures = 0;
         std::size_t shown_in = 0;  ///< the picture where it costs most
         PixelRect part;            ///< of that picture
     };
 
     Engine& engine_;
-    double squared_error_ = 0, of_resolution_ = 0;  ///< of all pictures
+    double mse_ = 0, of_resolution_ = 0;  ///< summed over all pictures
     std::map<std::pair<model::Index, model::Index>, Total> totals_;
 };
 
