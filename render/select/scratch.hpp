@@ -27,6 +27,7 @@ struct SlicePlan::Scratch {
     std::vector<std::uint32_t> item;   ///< by candidate: its index in the cut's items, or none
     std::vector<std::uint32_t> units;  ///< subtrees that fit a slice
     std::vector<std::uint32_t> stack;
+    std::vector<float> distance_m;  ///< by candidate: of its box from the eye; of units only
 };
 
 }  // namespace surefoot::select

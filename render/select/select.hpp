@@ -52,7 +52,7 @@ struct SelectInput {
     double budget_us = 0;             ///< whole frame; infinity: full detail
     double correction = 1;            ///< online factor on predictions
     double target_error_rad = 0;      ///< stop refining at this error; 0: refine as far as the budget goes
-    double slice_us = 1000;           ///< predicted length of a slice; the prediction includes the cost of ending slices
+    double slice_us = 1000;           ///< of the shortest slices; the prediction includes the cost of ending slices of this length
     double headroom = 0;              ///< headroom on corrected predictions; 0: that of the cost table
     const ItemList* items = nullptr;  ///< what else may be bought; null: nothing
 };
@@ -118,7 +118,7 @@ struct Slice {
 
 /// The cut, grouped into slices.
 struct SlicePlan {
-    std::vector<Slice> slices;   ///< in submission order: most beneficial subtrees first
+    std::vector<Slice> slices;   ///< in submission order: nearest subtrees first
     std::vector<CutItem> order;  ///< the cut's items, grouped by slice
     std::vector<CutItem> stand_ins;
 
@@ -134,7 +134,8 @@ private:
     std::unique_ptr<Scratch> scratch_;
 };
 
-/// Groups the cut into slices of about slice_us predicted each. Allocates nothing.
+/// Groups the cut into slices of at least slice_us predicted each, the last one excepted. Each takes a quarter of what is left, up
+/// to eight times slice_us. Allocates nothing.
 void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, SlicePlan& plan);
 
 /// Input of the in-frame check: whether the next slice may still be drawn in full. It may, as long as all slices after it would

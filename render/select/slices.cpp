@@ -1,6 +1,6 @@
-// The slice plan and the in-frame check. The plan groups subtrees of the cut, most beneficial first, into slices of about equal
-// time. Each slice has a coarser stand-in for exactly the same leaves. The check tests whether the next slice still fits in full,
-// from the error of the frame's prediction so far.
+// The slice plan and the in-frame check. The plan groups subtrees of the cut, nearest first, into slices: long ones first, short
+// ones where the frame may have to end. Each slice has a coarser stand-in for exactly the same leaves. The check tests whether
+// the next slice still fits in full, from the error of the frame's prediction so far.
 #include <algorithm>
 #include <cmath>
 
@@ -14,6 +14,10 @@ namespace surefoot::select {
 namespace {
 
 constexpr std::size_t max_slices = 4096;
+/// A slice takes this share of what is left of the frame. Between slices rasterisers wait for each other.
+constexpr float share_of_rest = 0.25F;
+/// But no more than this times the shortest: what is submitted in one piece is not rasterised meanwhile.
+constexpr float max_stretch = 8.0F;
 
 /// Predicted time as a linear measure, so that parts add up to the whole: the larger sum carries the max term.
 struct Measure {
@@ -68,13 +72,17 @@ private:
 };
 
 /// Subtrees that fit a slice, or single items: an antichain that covers the cut. Written to the front of `room`, whose rest
-/// serves as the walk's stack; most beneficial first, ties by number.
-std::span<std::uint32_t> find_units(const CutTree& tree, float slice_us, std::span<std::uint32_t> room) {
+/// serves as the walk's stack. Nearest first, because what is drawn behind costs less. What holds the eye has no distance: there
+/// the most beneficial come first, and the lowest number breaks ties. distance_m: by candidate, for the units.
+std::span<std::uint32_t> find_units(const SelectInput& input, const CutTree& tree, float slice_us, std::span<std::uint32_t> room,
+                                    std::span<float> distance_m) {
+    const dvec3 eye = input.prepared->region.centre.position;
     std::size_t units = 0, bottom = room.size();
     if (tree.size() > 0) room[--bottom] = 0;
     while (bottom < room.size()) {
         const Index c = room[bottom++];
         if (tree.is_item(c) || tree.below_us(c) <= slice_us) {
+            distance_m[c] = static_cast<float>(input.model->nodes[tree.candidate(c).node].box.distance(eye));
             room[units++] = c;
             continue;
         }
@@ -83,6 +91,7 @@ std::span<std::uint32_t> find_units(const CutTree& tree, float slice_us, std::sp
     }
     const auto found = room.first(units);
     std::sort(found.begin(), found.end(), [&](std::uint32_t a, std::uint32_t b) {
+        if (distance_m[a] != distance_m[b]) return distance_m[a] < distance_m[b];
         const float ba = tree.benefit(a), bb = tree.benefit(b);
         return ba != bb ? ba > bb : a < b;
     });
@@ -128,6 +137,7 @@ void SlicePlan::reserve(std::uint32_t max_candidates) {
     order.reserve(max_candidates);
     stand_ins.reserve(max_candidates);
     scratch_->below_us.resize(max_candidates);
+    scratch_->distance_m.resize(max_candidates);
     for (auto* each : {&scratch_->item, &scratch_->units, &scratch_->stack}) each->resize(max_candidates);
 }
 
@@ -139,21 +149,26 @@ void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, Slic
     SlicePlan::Scratch& room = plan.scratch();
     if (!CHECK_RARE(cut.items.back().candidate < room.item.size(), "A cut has no more candidates than were reserved")) return;
     const Measure measure = measure_of(input.costs->combine, cut.sum);
-    const float target_us = slice_us > 0.0 ? static_cast<float>(slice_us) : 1000.0F;
+    const float min_us = slice_us > 0.0 ? static_cast<float>(slice_us) : 1000.0F;
     const CutTree tree(*input.prepared, cut, measure, room);
-    const auto units = find_units(tree, target_us, room.units);
+    const auto units = find_units(input, tree, min_us, room.units, room.distance_m);
+    float left_us = measure.of(cut.sum);
+    const auto length_us = [&] { return std::clamp(share_of_rest * left_us, min_us, max_stretch * min_us); };
+    float target_us = length_us();
     Slice slice;
     const auto close = [&] {
         slice.item_count = static_cast<std::uint32_t>(plan.order.size()) - slice.first_item;
         slice.stand_in_count = static_cast<std::uint32_t>(plan.stand_ins.size()) - slice.first_stand_in;
         plan.slices.push_back(slice);
+        left_us -= measure.of(slice.cost);
+        target_us = length_us();
         slice = {};
         slice.first_item = static_cast<std::uint32_t>(plan.order.size());
         slice.first_stand_in = static_cast<std::uint32_t>(plan.stand_ins.size());
     };
     for (std::size_t i = 0; i < units.size(); ++i) {
         append_unit(tree, units[i], room.stack, slice, plan);
-        // Every slice but the last reaches its time, so their number is at most 1 + total / slice_us, as the budget counts.
+        // Every slice but the last reaches min_us, so their number is at most 1 + total / slice_us, as the budget counts.
         const bool full = measure.of(slice.cost) >= target_us && plan.slices.size() + 1 < plan.slices.capacity();
         if (full || i + 1 == units.size()) close();
     }

@@ -92,7 +92,7 @@ TEST(Slices, HoldExactlyTheCutAndStandInsForTheSameLeaves) {
     }
 }
 
-TEST(Slices, MostBeneficialSubtreesComeFirst) {
+TEST(Slices, NearestSubtreesComeFirst) {
     Scene s(test::town(6));
     prepare::Region region;
     region.centre.position = dvec3(0, 3, 100);
