@@ -100,7 +100,7 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
              &S::occlusion),
         flag("control", "Alternate the walk with a bare loop of the same cost, as a control for misses.", &S::control),
         integer("frame_core", "", -1, 4095, "Core of the frame thread; -1: chosen for the machine.", &S::frame_core),
-        number("slice_us", "us", 50, 100000, "Predicted length of a slice of submission.", &S::slice_us),
+        number("slice_us", "us", 50, 100000, "Predicted length of the shortest slices of submission.", &S::slice_us),
         number("hysteresis", "", 1, 10, "Factor by which a form must be better to replace the one on screen.", &S::hysteresis),
         number("reserve", "%", 0, 50,
                "Share of the budget that new forms leave free, so that others need not change. No effect at hysteresis 1.",

@@ -52,7 +52,7 @@ struct SelectInput {
     double budget_us = 0;             ///< whole frame; infinity: full detail
     double correction = 1;            ///< online factor on predictions
     double target_error_rad = 0;      ///< stop refining at this error; 0: refine as far as the budget goes
-    double slice_us = 1000;           ///< of the shortest slices; the prediction includes the cost of ending slices of this length
+    double slice_us = 1000;           ///< of the shortest slices; the prediction counts as if all were so short
     double headroom = 0;              ///< headroom on corrected predictions; 0: that of the cost table
     const ItemList* items = nullptr;  ///< what else may be bought; null: nothing
 };
@@ -134,8 +134,8 @@ private:
     std::unique_ptr<Scratch> scratch_;
 };
 
-/// Groups the cut into slices of at least slice_us predicted each, the last one excepted. Each takes a quarter of what is left, up
-/// to eight times slice_us. Allocates nothing.
+/// Groups the cut into slices. Each takes a quarter of what is left, from slice_us to eight times that. The last one may be
+/// shorter. Allocates nothing.
 void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, SlicePlan& plan);
 
 /// Input of the in-frame check: whether the next slice may still be drawn in full. It may, as long as all slices after it would

@@ -108,6 +108,48 @@ TEST(Slices, NearestSubtreesComeFirst) {
         return d;
     };
     EXPECT_LT(nearest(s.plan.slices.front()), nearest(s.plan.slices.back()));
+    plan_slices(s.input(20000), s.cut, 1e-3, s.plan);  // so short that no two items are one subtree
+    ASSERT_EQ(s.plan.order.size(), s.cut.items.size());
+    float before_m = 0;
+    for (const CutItem& item : s.plan.order) {
+        const auto m = static_cast<float>(s.model.nodes[item.node].box.distance(region.centre.position));
+        EXPECT_LE(before_m, m);
+        before_m = m;
+    }
+    EXPECT_GT(before_m, 50.0F);
+}
+
+TEST(Slices, TakeAQuarterOfWhatIsLeftFromOneToEightTimesTheShortest) {
+    Random random(57);
+    std::size_t long_ones = 0, shortest_ones = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        Scene s(test::random_model(seed, 80));
+        s.look({test::random_pose(random, 30), 0.1, 0.02});
+        if (s.frame.candidates.empty()) continue;
+        s.run("flat", infinity);
+        const model::FrameCombine& w = s.costs.combine;
+        const bool submits = s.cut.sum.submit_us > s.cut.sum.raster_us;
+        const auto time_us = [&](const model::ItemCost& c) {  // adds up over slices
+            return static_cast<double>((w.submit_weight + (submits ? w.max_weight : 0)) * c.submit_us +
+                                       (w.raster_weight + (submits ? 0 : w.max_weight)) * c.raster_us);
+        };
+        const double all_us = time_us(s.cut.sum), slice_us = all_us / std::exp(random.range(0, 4));
+        double largest_us = slice_us;  // of what is not divided: an item, or a subtree within the shortest slice
+        for (const CutItem& item : s.cut.items) largest_us = std::max(largest_us, time_us(s.frame.choices[item.choice].cost));
+        plan_slices(s.input(infinity), s.cut, slice_us, s.plan);
+        EXPECT_LE(static_cast<double>(s.plan.slices.size()), 6.001 + all_us / (4 * slice_us));
+        double left_us = all_us;
+        for (std::size_t k = 0; k + 1 < s.plan.slices.size(); ++k) {
+            const double wanted_us = std::clamp(0.25 * left_us, slice_us, 8 * slice_us), is_us = time_us(s.plan.slices[k].cost);
+            EXPECT_GE(is_us, wanted_us - 1e-4 * all_us);
+            EXPECT_LE(is_us, wanted_us + largest_us + 1e-4 * all_us);
+            long_ones += wanted_us > 2 * slice_us ? 1 : 0;
+            shortest_ones += wanted_us <= slice_us ? 1 : 0;
+            left_us -= is_us;
+        }
+    }
+    EXPECT_GT(long_ones, 20U);
+    EXPECT_GT(shortest_ones, 20U);
 }
 
 TEST(StillFits, ZeroCasesAreDefined) {
