@@ -28,7 +28,7 @@ struct EngineOptions {
     gl::DeviceOptions device;  ///< the costs of the null backend are the engine's
     prepare::PrepareOptions prepare;
     std::string selector{select::usual_selector};
-    double slice_us = 1000;  ///< predicted length of a slice
+    double slice_us = 1000;  ///< predicted length of the shortest slices
     float hysteresis = 1.25F;
     float reserve_share = 0.03F;  ///< SelectState::reserve_share
     /// Share of the picture's width and height that is drawn, then enlarged; 0: chosen frame by frame.

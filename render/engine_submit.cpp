@@ -62,9 +62,10 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     select::CheckInput check;
     check.predicted_so_far_us = limits.elapsed_us + static_cast<double>(so_far_us + bought_us) * correction.factor;
     check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + static_cast<double>(p.pending_us) * correction.factor;
-    if (limits.now_ns != nullptr)
-        check.elapsed_us += static_cast<double>(p.in_flight_us) * correction.factor;
-    else if (!device->charges())  // what a charging device has in flight is charged; for another one predictions count
+    if (limits.now_ns != nullptr) {
+        check.in_flight_us = static_cast<double>(p.in_flight_us) * correction.factor;
+        check.elapsed_us += check.in_flight_us;
+    } else if (!device->charges())  // what a charging device has in flight is charged; for another one predictions count
         check.elapsed_us = check.predicted_so_far_us;
     check.next_us = with(p.next) * scale;
     check.next_stand_in_us = with(p.stand_in) * scale;

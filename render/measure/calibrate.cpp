@@ -21,7 +21,7 @@ namespace surefoot::measure {
 
 namespace {
 
-constexpr double slice_target_us = 1000;  // the engine's
+constexpr double slice_target_us = 1000;  // as the engine's shortest
 
 double now_s() { return 1e-9 * static_cast<double>(rt::monotonic_ns()); }
 

@@ -27,7 +27,7 @@ private:
     rt::ThreadClocks clocks_;
 };
 
-/// Draws the items in slices of slice_items, at most one slice ahead of the rasterisers, as the engine does.
+/// Draws the items in slices of slice_items, at most one slice ahead of the rasterisers. The engine's slices are longer.
 FrameTiming run_frame(gl::Device& device, RasteriserClocks& rasterisers, const Pose& pose, std::span<const gl::DrawItem> items,
                       std::size_t slice_items, float resolution = 1) REQUIRES(device.draws);
 

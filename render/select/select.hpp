@@ -134,16 +134,17 @@ private:
     std::unique_ptr<Scratch> scratch_;
 };
 
-/// Groups the cut into slices. Each takes a quarter of what is left, from slice_us to eight times that. The last one may be
-/// shorter. Allocates nothing.
+/// Groups the cut into slices, nearest first. Each takes at least an eighth of what is left, from slice_us to four times that,
+/// before correction. Its last subtree may exceed this, and the last slice may be shorter. Allocates nothing.
 void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, SlicePlan& plan);
 
 /// Input of the in-frame check: whether the next slice may still be drawn in full. It may, as long as all slices after it would
-/// still fit as stand-ins. So a frame loses detail from its least beneficial end, and no earlier than necessary.
+/// still fit as stand-ins. So a frame loses detail from its far end, by whole slices.
 /// (Testing whether the rest fits in full would draw most of a frame coarse for an error of a few per cent.)
 struct CheckInput {
     double elapsed_us = 0;           ///< since the frame was due, work in flight included
     double predicted_so_far_us = 0;  ///< of the slices drawn in that time
+    double in_flight_us = 0;         ///< part of both: predicted, not finished yet
     double next_us = 0;              ///< the next slice in full, with headroom
     double next_stand_in_us = 0;     ///< the next slice as its stand-in
     double rest_stand_in_us = 0;     ///< all slices after it as stand-ins, expected
@@ -153,7 +154,7 @@ struct CheckInput {
 /// When the frame would end, us since it was due, if the slice is drawn in full and all after it as stand-ins. NaN: unknown.
 double forecast_us(const CheckInput& input);
 /// True: draw the slice in full. False: draw this and all later slices as stand-ins. Pure.
-/// Predictions are multiplied by a factor of 1..8: elapsed / predicted time of the frame so far. A few early slices must not
+/// Predictions are multiplied by a factor of 1..8: elapsed / predicted time of what is finished. A few early slices must not
 /// decide alone. So a prior time is added to both: 1/20 of the limit, and half of the rest's cost times the share of time left.
 bool still_fits(const CheckInput& input);
 

@@ -14,10 +14,10 @@ namespace surefoot::select {
 namespace {
 
 constexpr std::size_t max_slices = 4096;
-/// A slice takes this share of what is left of the frame. Between slices rasterisers wait for each other.
-constexpr float share_of_rest = 0.25F;
-/// But no more than this times the shortest: what is submitted in one piece is not rasterised meanwhile.
-constexpr float max_stretch = 8.0F;
+/// A slice takes this share of what is left of the frame. Between slices rasterisers wait for each other, so few are better.
+/// But while one is in flight, the in-frame check knows nothing of it.
+constexpr float share_of_rest = 0.125F;
+constexpr float max_stretch = 4.0F;  ///< times the shortest, at most
 
 /// Predicted time as a linear measure, so that parts add up to the whole: the larger sum carries the max term.
 struct Measure {
@@ -62,7 +62,10 @@ public:
         const prepare::Candidate& candidate = prepared_.candidates[c];
         return {c, candidate.node, prepared_.choices[candidate.first_choice].rep, candidate.first_choice};
     }
-    [[nodiscard]] float benefit(Index c) const { return prepared_.choices[candidate(c).first_choice].subtree_benefit; }
+    /// NaN has none: what is sorted has an order.
+    [[nodiscard]] float benefit(Index c) const {
+        return std::max(0.0F, prepared_.choices[candidate(c).first_choice].subtree_benefit);
+    }
 
 private:
     const prepare::PreparedFrame& prepared_;
@@ -72,8 +75,8 @@ private:
 };
 
 /// Subtrees that fit a slice, or single items: an antichain that covers the cut. Written to the front of `room`, whose rest
-/// serves as the walk's stack. Nearest first, because what is drawn behind costs less. What holds the eye has no distance: there
-/// the most beneficial come first, and the lowest number breaks ties. distance_m: by candidate, for the units.
+/// serves as the walk's stack. Nearest to the region's centre first, because what is drawn behind costs less. What holds the eye
+/// has no distance: there the most beneficial come first, and the lowest number breaks ties. distance_m: by candidate, of units.
 std::span<std::uint32_t> find_units(const SelectInput& input, const CutTree& tree, float slice_us, std::span<std::uint32_t> room,
                                     std::span<float> distance_m) {
     const dvec3 eye = input.prepared->region.centre.position;
@@ -153,7 +156,10 @@ void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, Slic
     const CutTree tree(*input.prepared, cut, measure, room);
     const auto units = find_units(input, tree, min_us, room.units, room.distance_m);
     float left_us = measure.of(cut.sum);
-    const auto length_us = [&] { return std::clamp(share_of_rest * left_us, min_us, max_stretch * min_us); };
+    const auto length_us = [&] {
+        const float wanted_us = std::min(share_of_rest * left_us, max_stretch * min_us);
+        return wanted_us > min_us ? wanted_us : min_us;  // NaN too
+    };
     float target_us = length_us();
     Slice slice;
     const auto close = [&] {
@@ -179,9 +185,12 @@ double forecast_us(const CheckInput& input) {
     const double rest_us = std::isfinite(input.rest_stand_in_us) ? std::max(input.rest_stand_in_us, 0.0) : 0.0;
     const double time_left = std::clamp(1.0 - input.elapsed_us / input.limit_us, 0.0, 1.0);  // NaN stays one: does not fit
     const double prior_us = 0.05 * input.limit_us + 0.5 * rest_us * time_left;
-    const double wrong = (input.elapsed_us + prior_us) / (input.predicted_so_far_us + prior_us);
+    // What is in flight counts as predicted: it says nothing of how wrong the frame is, and may be as wrong.
+    const double finished_us = input.elapsed_us - input.in_flight_us;
+    const double predicted_us = std::max(input.predicted_so_far_us - input.in_flight_us, 0.0);
+    const double wrong = (finished_us + prior_us) / (predicted_us + prior_us);
     const double factor = std::clamp(std::isfinite(wrong) ? wrong : 8.0, 1.0, 8.0);
-    return input.elapsed_us + (input.next_us + input.rest_stand_in_us) * factor * input.margin;
+    return finished_us + input.in_flight_us * factor + (input.next_us + input.rest_stand_in_us) * factor * input.margin;
 }
 
 bool still_fits(const CheckInput& input) {
