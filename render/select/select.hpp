@@ -134,8 +134,9 @@ private:
     std::unique_ptr<Scratch> scratch_;
 };
 
-/// Groups the cut into slices, nearest first. Each takes at least an eighth of what is left, from slice_us to four times that,
-/// before correction. Its last subtree may exceed this, and the last slice may be shorter. Allocates nothing.
+/// Groups the cut into slices, nearest first. The first takes slice_us; the others up to twice the one before, an eighth of what
+/// is left, and four times slice_us. The last subtree of a slice may exceed this. Lengths are before correction. Allocates
+/// nothing.
 void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, SlicePlan& plan);
 
 /// Input of the in-frame check: whether the next slice may still be drawn in full. It may, as long as all slices after it would

@@ -18,6 +18,7 @@ constexpr std::size_t max_slices = 4096;
 /// But while one is in flight, the in-frame check knows nothing of it.
 constexpr float share_of_rest = 0.125F;
 constexpr float max_stretch = 4.0F;  ///< times the shortest, at most
+constexpr float max_growth = 2.0F;   ///< times the one before: rasterisers begin when the first slice ends
 
 /// Predicted time as a linear measure, so that parts add up to the whole: the larger sum carries the max term.
 struct Measure {
@@ -156,18 +157,18 @@ void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, Slic
     const CutTree tree(*input.prepared, cut, measure, room);
     const auto units = find_units(input, tree, min_us, room.units, room.distance_m);
     float left_us = measure.of(cut.sum);
-    const auto length_us = [&] {
-        const float wanted_us = std::min(share_of_rest * left_us, max_stretch * min_us);
+    float target_us = min_us;
+    const auto next_us = [&] {
+        const float wanted_us = std::min({share_of_rest * left_us, max_growth * target_us, max_stretch * min_us});
         return wanted_us > min_us ? wanted_us : min_us;  // NaN too
     };
-    float target_us = length_us();
     Slice slice;
     const auto close = [&] {
         slice.item_count = static_cast<std::uint32_t>(plan.order.size()) - slice.first_item;
         slice.stand_in_count = static_cast<std::uint32_t>(plan.stand_ins.size()) - slice.first_stand_in;
         plan.slices.push_back(slice);
         left_us -= measure.of(slice.cost);
-        target_us = length_us();
+        target_us = next_us();
         slice = {};
         slice.first_item = static_cast<std::uint32_t>(plan.order.size());
         slice.first_stand_in = static_cast<std::uint32_t>(plan.stand_ins.size());
