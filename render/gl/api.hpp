@@ -86,6 +86,7 @@ namespace surefoot::gl {
     X(TexParameterf, PFNGLTEXPARAMETERFPROC)                                   \
     X(TexParameteri, PFNGLTEXPARAMETERIPROC)                                   \
     X(TexStorage3D, PFNGLTEXSTORAGE3DPROC)                                     \
+    X(TexSubImage2D, PFNGLTEXSUBIMAGE2DPROC)                                   \
     X(TexSubImage3D, PFNGLTEXSUBIMAGE3DPROC)                                   \
     X(Uniform1i, PFNGLUNIFORM1IPROC)                                           \
     X(Uniform3f, PFNGLUNIFORM3FPROC)                                           \

@@ -66,8 +66,9 @@ struct DeviceOptions {
     bool rest = false;          ///< has targets for a picture at rest
     std::uint32_t samples = 1;  ///< of a pixel: 1, 2 or 4; see Device::samples()
     rt::TextureFilter filter = rt::TextureFilter::automatic;
-    bool smaller = false;        ///< frames below full resolution show the mip levels of the whole one; prepared by load()
-    bool second_filter = false;  ///< prepares set_filter(), where `filter` is automatic and the driver is software
+    bool smaller = false;            ///< frames below full resolution show the mip levels of the whole one; prepared by load()
+    bool processor_enlarges = true;  ///< on a software driver: smaller frames are enlarged by the processor, not by a pass
+    bool second_filter = false;      ///< prepares set_filter(), where `filter` is automatic and the driver is software
 };
 
 /// Counts and times of one drawn frame.

@@ -55,6 +55,7 @@ Result<void> GlDevice::set_up() {
     auto targets = make_targets(gl_, options_.viewport);
     if (!targets) return targets.error();
     targets_ = *targets;
+    if (software_ && options_.processor_enlarges) make_enlargers();
     if (options_.rest) rest_ = make_rest_targets(gl_, targets_);
     samples_ = make_sample_targets(gl_, options_.viewport, options_.samples);
     auto frame = make_frame_buffers(gl_, std::max(1U, options_.max_items));
@@ -205,10 +206,32 @@ void GlDevice::wait_slices(std::uint32_t in_flight) {
 
 void GlDevice::finish_frame() {
     if (!lost_) resolve(targets_.steps[step_], step_);
-    if (step_ > 0 && !lost_) enlarge(gl_, targets_, step_);
+    if (step_ > 0 && !lost_ && enlargers_.empty()) enlarge(gl_, targets_, step_);
     end_slice();
     wait_slices(0);
+    if (step_ > 0 && !lost_ && !enlargers_.empty()) enlarge_by_processor();
     present();
+}
+
+void GlDevice::make_enlargers() {
+    for (std::size_t step = 1; step < targets_.steps.size(); ++step)
+        enlargers_.emplace_back(model::viewport_of_step(options_.viewport, step), options_.viewport);
+    shown_pixels_.resize(std::size_t{options_.viewport.width} * options_.viewport.height);
+    small_pixels_.resize(shown_pixels_.size());
+}
+
+/// A software driver's pictures lie in memory. Their order of channels is the targets' own, so reading and writing only copy.
+void GlDevice::enlarge_by_processor() {
+    const Target &small = targets_.steps[step_], &shown = targets_.steps.front();
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, small.framebuffer);
+    gl_.ReadPixels(0, 0, small.width, small.height, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, small_pixels_.data());
+    const std::size_t count = static_cast<std::size_t>(small.width) * static_cast<std::size_t>(small.height);
+    enlargers_[step_ - 1].enlarge(std::span(small_pixels_).first(count), shown_pixels_);
+    gl_.BindTexture(GL_TEXTURE_2D, shown.colour);
+    gl_.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, shown.width, shown.height, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV,
+                      shown_pixels_.data());
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, shown.framebuffer);
+    state_known_ = false;
 }
 
 /// The picture of a step, out of its samples.

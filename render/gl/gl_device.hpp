@@ -9,6 +9,7 @@
 
 #include "render/draw/tables.hpp"
 #include "render/gl/context.hpp"
+#include "render/gl/enlarge_pixels.hpp"
 #include "render/gl/resources.hpp"
 #include "render/gl/rest_targets.hpp"
 #include "render/gl/sample_targets.hpp"
@@ -80,6 +81,8 @@ private:
     }
     void resolve(const Target& shown, std::size_t step) REQUIRES(draws);
     void resolve_rest() REQUIRES(draws);
+    void make_enlargers() REQUIRES(draws);
+    void enlarge_by_processor() REQUIRES(draws);
     void set_coverage(bool on) REQUIRES(draws);
     void clear_target() REQUIRES(draws);
     void draw_parts(std::span<const DrawItem> items, Parts parts) REQUIRES(draws);
@@ -103,6 +106,8 @@ private:
     bool rest_resolved_ GUARDED_BY(draws) = false;  ///< the second picture is out of its samples
     SampleTargets samples_;                         ///< of frames and of the second picture, which never alternate within one
     std::size_t step_ GUARDED_BY(draws) = 0;        ///< of this frame, in model::resolution_steps
+    std::vector<PixelEnlarger> enlargers_ GUARDED_BY(draws);  ///< of the steps below the first; none: a pass enlarges
+    std::vector<std::uint32_t> small_pixels_ GUARDED_BY(draws), shown_pixels_ GUARDED_BY(draws);
     FrameBuffers frame_ GUARDED_BY(draws);
     Resources resources_;
     draw::DrawTables tables_;

@@ -10,7 +10,8 @@
 
 namespace surefoot::gl {
 
-/// A colour texture with a framebuffer. 8 bits a channel in the order B, G, R, A: llvmpipe enlarges this order twice as fast.
+/// A colour texture with a framebuffer. 8 bits a channel in the order B, G, R, A: llvmpipe copies and enlarges this order
+/// fastest.
 struct Target {
     GLuint framebuffer = 0, colour = 0;
     GLsizei width = 0, height = 0;
