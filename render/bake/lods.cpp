@@ -1,4 +1,4 @@
-// Levels of detail of one geometry: meshoptimizer proposes them, mesh_distance bounds their errors.
+// Levels of detail of one geometry: edges collapse or cards are thinned out, and mesh_distance bounds the errors.
 #include <meshoptimizer.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include "render/bake/cards.hpp"
 #include "render/bake/corners.hpp"
+#include "render/bake/edge_collapse.hpp"
 #include "render/bake/geometry.hpp"
 #include "render/bake/mesh_surface.hpp"
 #include "render/bake/picture_shift.hpp"
@@ -52,22 +53,15 @@ void optimise(Geometry& geometry) {
 
 namespace {
 
-/// Simplifies one material's triangles to about `share` of their number. The simplifier gets a mesh that was recentred in double,
-/// with the vertices of full detail.
-std::vector<std::uint32_t> simplify_part(const Geometry& g, std::size_t vertices, const GeometryPart& part, double share,
-                                         bool lock, bool sloppy) {
+/// Leaves at most `share` of one material's triangles, and merges what is apart: for what edge collapses no longer make smaller.
+std::vector<std::uint32_t> merge_apart(const Geometry& g, std::size_t vertices, const GeometryPart& part, double share) {
     const std::size_t triangles = part.indices.size() / 3;
     const std::size_t target = std::max<std::size_t>(2, static_cast<std::size_t>(static_cast<double>(triangles) * share)) * 3;
     if (target >= part.indices.size()) return part.indices;
     std::vector<std::uint32_t> out(part.indices.size());
     float unused = 0;  // its own error is no bound
-    const float* positions = g.vertices[0].position;
-    const std::size_t n = sloppy ? meshopt_simplifySloppy(out.data(), part.indices.data(), part.indices.size(), positions,
-                                                          vertices, sizeof(model::Vertex), target, 1.0F, &unused)
-                                 : meshopt_simplify(out.data(), part.indices.data(), part.indices.size(), positions, vertices,
-                                                    sizeof(model::Vertex), target, 1.0F,
-                                                    lock ? static_cast<unsigned>(meshopt_SimplifyLockBorder) : 0U, &unused);
-    out.resize(n);
+    out.resize(meshopt_simplifySloppy(out.data(), part.indices.data(), part.indices.size(), g.vertices[0].position, vertices,
+                                      sizeof(model::Vertex), target, 1.0F, &unused));
     return out;
 }
 
@@ -120,24 +114,48 @@ void optimise_order(GeometryPart& part, const Geometry& g) {
     meshopt_optimizeVertexCache(part.indices.data(), part.indices.data(), part.indices.size(), g.vertices.size());
 }
 
-Level simplify(const Geometry& g, std::size_t vertices, const Thinned& thinned, const std::vector<GeometryPart>& from,
-               double share, bool lock, bool sloppy) {
-    Level level;
+/// How a level is made from the next finer one.
+enum class Step : std::uint8_t { fixed_borders, free_borders, sloppy };
+
+/// About `share` of the solid triangles of `from`.
+std::vector<GeometryPart> collapse_solids(const Geometry& g, const Thinned& thinned, const std::vector<GeometryPart>& from,
+                                          double share, bool fixed_borders) {
+    std::vector<GeometryPart> solids;
+    std::uint32_t target = 0;
     for (const GeometryPart& part : from) {
-        GeometryPart smaller{part.material, {}};
+        if (thinned.contains(part.material)) continue;
+        solids.push_back(part);
+        const double left = solid_share(thinned, share) * static_cast<double>(part.indices.size() / 3);
+        target += std::max(2U, static_cast<std::uint32_t>(left));
+    }
+    if (solids.empty()) return solids;
+    CollapseOptions options;
+    options.fixed_borders = fixed_borders;
+    EdgeCollapse mesh(g.vertices, solids, options);
+    mesh.reduce_to(target);
+    return mesh.parts();
+}
+
+/// About `share` of the triangles of `from`, which has some of those of g. vertices: those of full detail.
+Level simplify(const Geometry& g, std::size_t vertices, const Thinned& thinned, const std::vector<GeometryPart>& from,
+               double share, Step step) {
+    Level level;
+    if (step != Step::sloppy) level.parts = collapse_solids(g, thinned, from, share, step == Step::fixed_borders);
+    for (const GeometryPart& part : from) {
+        const auto cards = thinned.cards.find(part.material);
+        if (cards == thinned.cards.end() && step != Step::sloppy) continue;
         const auto all =
             std::find_if(g.parts.begin(), g.parts.end(), [&](const GeometryPart& p) { return p.material == part.material; });
         const double left = static_cast<double>(part.indices.size()) / static_cast<double>(all->indices.size());
-        if (const auto cards = thinned.cards.find(part.material); cards != thinned.cards.end())
-            smaller.indices = some_cards(cards->second, share * left);
-        else if (sloppy)  // it takes a mesh with its seams whole
-            smaller.indices = simplify_part(g, vertices, *all, solid_share(thinned, share) * left, lock, sloppy);
-        else
-            smaller.indices = simplify_part(g, vertices, part, solid_share(thinned, share), lock, sloppy);
-        if (smaller.indices.empty()) continue;
-        if (!thinned.contains(part.material)) optimise_order(smaller, g);
-        level.triangles += static_cast<std::uint32_t>(smaller.indices.size() / 3);
-        level.parts.push_back(std::move(smaller));
+        // Its input is a mesh with its seams whole: full detail.
+        GeometryPart smaller{part.material, cards != thinned.cards.end()
+                                                ? some_cards(cards->second, share * left)
+                                                : merge_apart(g, vertices, *all, solid_share(thinned, share) * left)};
+        if (!smaller.indices.empty()) level.parts.push_back(std::move(smaller));
+    }
+    for (GeometryPart& part : level.parts) {
+        if (!thinned.contains(part.material)) optimise_order(part, g);
+        level.triangles += static_cast<std::uint32_t>(part.indices.size() / 3);
     }
     return level;
 }
@@ -311,28 +329,26 @@ struct ChainWork {
 std::optional<Level> next_level(ChainWork& work) {
     const bool lock_border = work.options.lock_border;
     const double ratio = work.options.ratio, before = work.levels.back().triangles;
-    const auto propose = [&](bool lock, bool sloppy) {
-        return simplify(work.full, work.own_vertices, work.thinned, work.parts, ratio, lock, sloppy);
-    };
+    const auto propose = [&](Step step) { return simplify(work.full, work.own_vertices, work.thinned, work.parts, ratio, step); };
     const double wanted = before * expected_share(work.thinned, work.parts, ratio);
     const double max_triangles = 0.8 * before;  // above this it is no level of its own
-    Level next = propose(true, false);
-    if (!lock_border && next.triangles > std::min(wanted * 1.4, max_triangles)) next = propose(false, false);
+    Level next = propose(Step::fixed_borders);
+    if (!lock_border && next.triangles > std::min(wanted * 1.4, max_triangles)) next = propose(Step::free_borders);
     if (next.triangles == 0 || next.triangles > std::min(std::max(wanted * 1.5, wanted + 0.02 * before), max_triangles)) {
         if (lock_border) return std::nullopt;
-        next = propose(false, true);
+        next = propose(Step::sloppy);
         work.torn = true;
     }
     if (next.triangles == 0 || next.triangles > max_triangles) return std::nullopt;
     return next;
 }
 
-/// Gives corners the best of their coincident vertices, and enlarges the cards that are left.
+/// Enlarges the cards that are left. In torn levels, gives corners the best of their coincident vertices; edge collapses have.
 void finish_parts(ChainWork& work, Level& level) {
     for (GeometryPart& part : level.parts) {
         const auto cards = work.thinned.cards.find(part.material);
         if (cards == work.thinned.cards.end()) {
-            repair_corners(work.full, work.coincident, part);
+            if (work.torn) repair_corners(work.full, work.coincident, part);
             continue;
         }
         enlarge_cards(work.full, part, cards->second, work.card_area_m2[part.material]);

@@ -36,7 +36,7 @@ walk::WalkOutcome walked(double rest_after_ms, std::string_view selector) {
 
 TEST(RestWalk, RestsWhereItStandsAndChangesNothingElse) {
     // Frames at rest teach the correction nothing. Afterwards its sixth digit differs; this selector is not so fine.
-    const auto with = walked(500, "two-stage"), without = walked(0, "two-stage");
+    const auto with = walked(500, "best-first"), without = walked(0, "best-first");
     ASSERT_EQ(with.records.size(), 420U);
     ASSERT_EQ(without.records.size(), 420U);
     std::uint32_t samples = 0;
