@@ -198,24 +198,24 @@ bool BakeContext::make_forms() {
     std::atomic<bool> go{true};
     ChainOptions chain = chain_options(options, proxy_or_none);
     chain.cut_out = cut_out;
-    for (const model::Material& material : model.materials) {
-        const bool none = material.texture == model::none;
-        chain.pictures.push_back(none                                     ? Picture::none
-                                 : model.textures[material.texture].clamp ? Picture::clamped
-                                                                          : Picture::repeats);
-    }
+    chain.pictures = pictures_of(model);
+    std::vector<std::vector<std::string>> notes(scene.meshes.size());
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
         Geometry geometry = mesh_geometry(scene.meshes[m], model);
+        const std::vector<ArtistStandIn> stand_ins = stand_ins_of(scene, static_cast<importer::Index>(m), model);
         const CutLimits limits =
             cut_limits({std::max({extent.x, extent.y, extent.z}), stretch[m], std::uint64_t{placements[m]} * geometry.triangles(),
-                        has_pictures(geometry, chain), max_item_triangles});
-        by_mesh[m] = bake::make_forms(std::move(geometry), limits, chain);
+                        has_pictures(geometry, chain), max_item_triangles, !stand_ins.empty()});
+        by_mesh[m] = bake::make_forms(std::move(geometry), limits, chain, stand_ins, &notes[m]);
         if (!stage.step()) go = false;
     });
+    for (const auto& of_mesh : notes)
+        model.provenance.warnings.insert(model.provenance.warnings.end(), of_mesh.begin(), of_mesh.end());
     if (go) adopt_forms(std::move(by_mesh));
     return go;
 }
+
 /// Forms get their places in one list; an object of several forms becomes as many pieces.
 void BakeContext::adopt_forms(std::vector<std::vector<MeshForm>> by_mesh) {
     std::vector<std::uint32_t> first(by_mesh.size()), count(by_mesh.size());
@@ -490,7 +490,7 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     progress.update("write", 0.0);
     model::Model& model = context.model;
     model.provenance.sources = scene.sources;
-    model.provenance.warnings = scene.warnings;
+    model.provenance.warnings.insert(model.provenance.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
     model.provenance.quality = options.quality == Quality::full ? "full" : "draft";
     if (auto valid = model::validate(model); !valid) return valid.error();
     return std::move(model);

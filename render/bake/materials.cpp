@@ -204,6 +204,15 @@ model::Index add_materials(const importer::Scene& scene, model::Model& model) {
     return static_cast<model::Index>(model.materials.size() - 1);
 }
 
+std::vector<Picture> pictures_of(const model::Model& model) {
+    std::vector<Picture> out;
+    for (const model::Material& material : model.materials) {
+        const bool none = material.texture == model::none;
+        out.push_back(none ? Picture::none : model.textures[material.texture].clamp ? Picture::clamped : Picture::repeats);
+    }
+    return out;
+}
+
 void mark_vertex_colours(const importer::Scene& scene, model::Model& model) {
     for (const importer::Mesh& mesh : scene.meshes) {
         for (const importer::Primitive& p : mesh.primitives) {

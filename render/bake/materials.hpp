@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "render/bake/geometry.hpp"
 #include "render/import/scene.hpp"
 #include "render/model/model.hpp"
 
@@ -18,6 +19,8 @@ model::Index add_materials(const importer::Scene& scene, model::Model& model);
 std::vector<bool> cut_out_materials(const importer::Scene& scene);
 /// Sets the vertex colour effect of materials whose primitives have colours other than white.
 void mark_vertex_colours(const importer::Scene& scene, model::Model& model);
+/// By material of the model: whether it has a texture, and how that wraps.
+std::vector<Picture> pictures_of(const model::Model& model);
 
 /// Adds an RGBA8 texture with at most `max_levels` mip levels; returns its index. cutoff: alpha (0..255) of the alpha test, or 0
 /// without one. Levels of an alpha-tested texture keep its coverage; they end where they no longer can.

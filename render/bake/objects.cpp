@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "render/bake/baked_colours.hpp"
 
 namespace surefoot::bake {
@@ -157,6 +159,7 @@ CutLimits cut_limits(const MeshInScene& mesh) {
     CutLimits limits;
     limits.max_triangles = mesh.max_triangles;
     const bool fine = mesh.textured && mesh.placed_triangles <= max_fine_triangles;
+    if (mesh.has_stand_ins) return limits;
     limits.longest_m = mesh.scene_m / (fine ? parts_if_fine : parts_of_scene) / mesh.stretch;
     if (fine) limits.min_triangles = 64;
     return limits;
@@ -196,13 +199,27 @@ MeshForm make_form(Geometry geometry, const ChainOptions& options) {
 
 }  // namespace
 
-std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options) {
+std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options,
+                                 std::span<const ArtistStandIn> stand_ins, std::vector<std::string>* notes) {
     std::vector<Geometry> pieces = cut(geometry, limits);
     std::vector<MeshForm> forms;
+    const auto left_out = [&](const ArtistStandIn& one, const std::string& why) {
+        if (notes != nullptr) notes->push_back(fmt::format("Stand-in '{}' is left out: {}", one.name, why));
+    };
     if (pieces.empty()) {
+        std::vector<const ArtistStandIn*> usable;
+        for (const ArtistStandIn& one : stand_ins) {
+            if (const std::string why = why_no_stand_in(one.geometry, geometry); why.empty())
+                usable.push_back(&one);
+            else
+                left_out(one, why);
+        }
         forms.push_back(make_form(std::move(geometry), options));
+        for (const ArtistStandIn* one : usable) add_stand_in(forms.back().chain, one->geometry, options.slack);
         return forms;
     }
+    for (const ArtistStandIn& one : stand_ins)
+        left_out(one, fmt::format("its object of {} triangles is cut into {} pieces", geometry.triangles(), pieces.size()));
     ChainOptions locked = options;
     locked.lock_border = true;
     for (Geometry& piece : pieces) forms.push_back(make_form(std::move(piece), locked));

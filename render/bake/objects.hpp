@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "render/bake/bake.hpp"
 #include "render/bake/geometry.hpp"
+#include "render/bake/stand_ins.hpp"
 
 namespace surefoot::bake {
 
@@ -54,13 +56,16 @@ struct MeshInScene {
     std::uint64_t placed_triangles = 0;  ///< of all placements
     bool textured = false;               ///< its pixels are dear, and its triangles are not
     std::uint32_t max_triangles = 8192;  ///< CutLimits::max_triangles
+    bool has_stand_ins = false;          ///< they stand for the whole, so it is cut only if it has too many triangles
 };
 /// Cut finely, only what shows of a mesh has to be drawn. That is done for meshes with textures, unless the pieces of all
 /// placements would be too many.
 CutLimits cut_limits(const MeshInScene& mesh);
 /// Pieces within the limits, cut at medians of the triangle centres. Empty if the whole is within the limits.
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
-/// One form, or one a piece if the geometry exceeds the limits. Pieces keep their common borders.
-std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options);
+/// One form, or one a piece if the geometry exceeds the limits. Pieces keep their common borders. `notes`: why stand-ins are left
+/// out, one line each.
+std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options,
+                                 std::span<const ArtistStandIn> stand_ins = {}, std::vector<std::string>* notes = nullptr);
 
 }  // namespace surefoot::bake

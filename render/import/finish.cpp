@@ -62,16 +62,20 @@ std::string why_not_drawable(const Box& box, const dmat4& world) {
     return {};
 }
 
+void clean_mesh(Scene& scene, Mesh& mesh) {
+    Repairs counts;
+    for (Primitive& primitive : mesh.primitives) {
+        repair(primitive, counts);
+        if (primitive.material >= scene.materials.size()) primitive.material = 0;
+    }
+    report_repairs(counts, mesh.name, scene.warnings, mesh.lacks);
+    std::erase_if(mesh.primitives, [](const Primitive& p) { return p.indices.empty(); });
+}
+
 void clean_meshes(Scene& scene, const Progress& progress) {
+    for (StandIn& stand_in : scene.stand_ins) clean_mesh(scene, stand_in.mesh);
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-        Mesh& mesh = scene.meshes[i];
-        Repairs counts;
-        for (Primitive& primitive : mesh.primitives) {
-            repair(primitive, counts);
-            if (primitive.material >= scene.materials.size()) primitive.material = 0;
-        }
-        report_repairs(counts, mesh.name, scene.warnings, mesh.lacks);
-        std::erase_if(mesh.primitives, [](const Primitive& p) { return p.indices.empty(); });
+        clean_mesh(scene, scene.meshes[i]);
         progress.update("clean", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));
     }
 }

@@ -100,8 +100,13 @@ const json& array_in(const json& root, const char* key) {
 }
 
 Result<void> check_extensions(const json& root, const std::string& file, std::vector<std::string>& warnings) {
-    static constexpr std::array known{"KHR_materials_unlit",     "KHR_texture_transform", "KHR_mesh_quantization",
-                                      "EXT_mesh_gpu_instancing", "KHR_lights_punctual",   "KHR_materials_pbrSpecularGlossiness"};
+    static constexpr std::array known{"KHR_materials_unlit",
+                                      "KHR_texture_transform",
+                                      "KHR_mesh_quantization",
+                                      "EXT_mesh_gpu_instancing",
+                                      "KHR_lights_punctual",
+                                      "KHR_materials_pbrSpecularGlossiness",
+                                      "MSFT_lod"};
     for (const json& entry : array_in(root, "extensionsRequired")) {
         if (!entry.is_string()) continue;
         const auto& name = entry.get_ref<const std::string&>();

@@ -8,6 +8,7 @@
 
 #include "render/import/finish.hpp"
 #include "render/import/gltf_parts.hpp"
+#include "render/import/stand_ins.hpp"
 
 namespace surefoot::importer {
 namespace {
@@ -79,6 +80,9 @@ public:
     Walk(const tinygltf::Model& model, const std::string& file, Scene& scene)
         : model_(model), file_(file), scene_(scene), state_(model.nodes.size(), State::fresh) {}
 
+    /// Leaves this node out, and what is below it.
+    void skip(int node) { state_[static_cast<std::size_t>(node)] = State::skipped; }
+
     Result<void> from(int root) {
         if (auto entered = enter(root, none); !entered) return entered;
         while (!stack_.empty()) {
@@ -96,7 +100,7 @@ public:
     }
 
 private:
-    enum class State : std::uint8_t { fresh, open, done };
+    enum class State : std::uint8_t { fresh, open, done, skipped };
     struct Frame {
         int node;
         Index index;
@@ -118,6 +122,7 @@ private:
         if (state == State::open)
             return Error{file_, fmt::format("Node '{}' is its own ancestor", name_of(node)), "Break the cycle in the node graph",
                          ErrorKind::damaged};
+        if (state == State::skipped) return {};
         if (state == State::done) {
             scene_.warnings.push_back(fmt::format("Node '{}' has more than one parent; only the first is kept", name_of(node)));
             return {};
@@ -193,6 +198,28 @@ std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
     return model.scenes[exists ? static_cast<std::size_t>(wanted) : 0].nodes;
 }
 
+/// What stands for an object: its nodes are placed behind those of the scene, joined, and taken away again.
+Result<void> add_stand_in(const tinygltf::Model& model, const std::string& file, const StandInClaim& claim, Scene& scene) {
+    const tinygltf::Node& object = model.nodes[static_cast<std::size_t>(claim.object)];
+    const std::string object_name = object.name.empty() ? fmt::format("node {}", claim.object) : object.name;
+    const std::size_t first = scene.nodes.size();
+    Walk walk(model, file, scene);
+    if (auto walked = walk.from(claim.stand_in); !walked) return walked;
+    const std::string name = scene.nodes[first].name;
+    const dmat4 frame = claim.same_frame ? scene.nodes[first].world : local_matrix(object);
+    std::vector<Placed> placed = below(scene, static_cast<Index>(first));
+    for (Placed& one : placed) one.at = glm::inverse(frame) * scene.nodes[first].world * one.at;
+    const bool has_mesh = object.mesh >= 0 && static_cast<std::size_t>(object.mesh) < scene.meshes.size();
+    scene.nodes.resize(first);
+    if (!has_mesh || placed.empty()) {
+        scene.warnings.push_back(fmt::format("Stand-in '{}' of '{}' is left out: {}", name, object_name,
+                                             has_mesh ? "it has no mesh" : "the object has no mesh of its own"));
+        return {};
+    }
+    scene.stand_ins.push_back({name, static_cast<Index>(object.mesh), joined(scene, placed, name)});
+    return {};
+}
+
 }  // namespace
 
 Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, Scene& scene) {
@@ -202,9 +229,14 @@ Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, S
             scene.nodes.push_back(Node{scene.meshes[i].name, none, static_cast<Index>(i), dmat4(1.0), 1.0F});
         return {};
     }
+    const std::vector<StandInClaim> claims = stand_in_claims(model, scene.warnings);
     Walk walk(model, file, scene);
+    for (const StandInClaim& claim : claims) walk.skip(claim.stand_in);
     for (const int root : roots_of(model, scene)) {
         if (auto walked = walk.from(root); !walked) return walked;
+    }
+    for (const StandInClaim& claim : claims) {
+        if (auto added = add_stand_in(model, file, claim, scene); !added) return added;
     }
     return {};
 }

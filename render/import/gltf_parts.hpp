@@ -54,9 +54,20 @@ struct TextureUse {
 std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::string& file, Scene& scene,
                                        const Progress& progress);
 
+// ---- stand-ins: MSFT_lod, and the extra `stand_ins` with names of nodes ----
+
+/// One glTF node stands for another.
+struct StandInClaim {
+    int object, stand_in;
+    bool same_frame;  ///< the frames of both nodes are laid on each other; else the stand-in has the object's parent (MSFT_lod)
+};
+/// All of a file, in its order. Warnings: nodes that do not exist.
+std::vector<StandInClaim> stand_in_claims(const tinygltf::Model& model, std::vector<std::string>& warnings);
+
 // ---- the node graph to a Scene's nodes: world matrices in double, instances, cycles refused ----
 
-/// Reads the default scene, else the first, else every root. Error: a cycle, by node name. Warnings: deviations from the file.
+/// Reads the default scene, else the first, else every root; then the stand-ins, whose nodes are not drawn by themselves. Error:
+/// a cycle, by node name. Warnings: deviations from the file.
 Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, Scene& scene);
 
 }  // namespace surefoot::importer

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "render/import/formats.hpp"
+#include "render/import/stand_ins.hpp"
 
 namespace surefoot::importer {
 namespace {
@@ -27,12 +28,20 @@ Result<void> check_file(const std::string& file) {
     return {};
 }
 
-Result<Scene> import_one(const std::string& file, const Progress& progress) {
+Result<Scene> import_model(const std::string& file, const Progress& progress) {
     if (auto usable = check_file(file); !usable) return usable.error();
     if (const Format* format = format_of(file)) return format->read(file, progress);
     const std::string ending = ending_of(file);
     return Error{file, ending.empty() ? "The file name has no ending" : fmt::format("The ending '{}' is unknown", ending),
                  fmt::format("Convert it to one of {}", endings_in_words()), ErrorKind::unsupported};
+}
+
+Result<Scene> import_one(const std::string& file, const Progress& progress) {
+    auto scene = import_model(file, progress);
+    if (!scene) return scene;
+    const auto read = [&](const std::string& other) { return import_model(other, progress); };
+    if (auto done = read_stand_ins(file, *scene, read); !done) return done.error();
+    return scene;
 }
 
 void shift(Index& index, std::size_t by) {
@@ -48,6 +57,10 @@ void append(Scene& to, Scene&& from) {
     for (Mesh& mesh : from.meshes) {
         for (Primitive& primitive : mesh.primitives) shift(primitive.material, to.materials.size());
     }
+    for (StandIn& stand_in : from.stand_ins) {
+        for (Primitive& primitive : stand_in.mesh.primitives) shift(primitive.material, to.materials.size());
+        shift(stand_in.of, to.meshes.size());
+    }
     for (Node& node : from.nodes) {
         shift(node.parent, to.nodes.size());
         shift(node.mesh, to.meshes.size());
@@ -57,6 +70,7 @@ void append(Scene& to, Scene&& from) {
     move_all(to.nodes, from.nodes);
     move_all(to.materials, from.materials);
     move_all(to.images, from.images);
+    move_all(to.stand_ins, from.stand_ins);
     move_all(to.sources, from.sources);
     move_all(to.warnings, from.warnings);
     move_all(to.damage, from.damage);

@@ -61,12 +61,20 @@ struct Damage {
     std::string file, what;
 };
 
+/// A simpler mesh that an artist made for one seen from far.
+struct StandIn {
+    std::string name;
+    Index of = none;  ///< mesh that it stands for, in all placements
+    Mesh mesh;        ///< in the frame of that mesh
+};
+
 /// An imported scene, in metres with +Y up.
 struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;
     std::vector<Material> materials;  ///< at least one
     std::vector<image::Image> images;
+    std::vector<StandIn> stand_ins;
     std::vector<std::string> sources;
     std::vector<std::string> warnings;              ///< repaired or dropped data, one line each with counts
     std::vector<Damage> damage;                     ///< warnings about drawn things, which a person should repair
@@ -74,7 +82,7 @@ struct Scene {
     [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
 };
 
-/// By ending (formats.hpp). Several files become one scene.
+/// By ending (formats.hpp), with the stand-ins listed beside each file (stand_ins.hpp). Several files become one scene.
 /// Errors: missing, empty or truncated file; unknown ending; nothing drawable. Missing textures are damage, and white.
 Result<Scene> import_files(const std::vector<std::string>& files, const Progress& progress);
 

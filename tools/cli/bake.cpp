@@ -139,7 +139,11 @@ void add_bake(CLI::App& app, Context& context) {
     auto a = std::make_shared<BakeArguments>();
     CLI::App* c = add_command(app, "bake", "Import scenes and write a .walk model with levels of detail",
                               "surefoot bake house.glb garden.obj -o home.walk", a->json);
-    c->add_option("in", a->in, "Input files (" + importer::endings_in_words() + "); several files become one scene")->required();
+    c->add_option("in", a->in,
+                  "Input files (" + importer::endings_in_words() +
+                      "); several files become one scene. Stand-ins are read from glTF (MSFT_lod, the extra stand_ins) and from "
+                      "NAME.stand_ins.toml beside NAME.glb")
+        ->required();
     c->add_option("-o,--out", a->out, "The .walk model to write; an older file is replaced only when the new one is complete")
         ->required();
     c->add_option("--quality", a->quality, "draft: at most one minute per million triangles; full: tighter error bounds")
