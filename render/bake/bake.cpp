@@ -203,7 +203,8 @@ bool BakeContext::make_forms() {
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;
         Geometry geometry = mesh_geometry(scene.meshes[m], model);
-        const std::vector<ArtistStandIn> stand_ins = stand_ins_of(scene, static_cast<importer::Index>(m), model);
+        const std::vector<ArtistStandIn> stand_ins =
+            stand_ins_of(scene, static_cast<importer::Index>(m), model, geometry, notes[m]);
         const CutLimits limits =
             cut_limits({std::max({extent.x, extent.y, extent.z}), stretch[m], std::uint64_t{placements[m]} * geometry.triangles(),
                         has_pictures(geometry, chain), max_item_triangles, !stand_ins.empty()});

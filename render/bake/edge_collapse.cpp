@@ -16,6 +16,9 @@ namespace {
 
 constexpr std::uint32_t no_index = 0xffffffffU;
 constexpr double max_cost = 1e300;
+/// A place with more triangles is a hub: it stays, and nothing moves onto it. To look all round it again and again would take too
+/// long.
+constexpr std::size_t max_triangles_around = 64;
 
 /// Two vertices of one material that differ in nothing are one corner.
 struct CornerKey {
@@ -94,7 +97,9 @@ struct EdgeCollapse::Mesh {
     }
     bool moves(std::uint32_t p, std::uint32_t q, std::vector<Move>& out) const;
     [[nodiscard]] double cost(std::uint32_t p, std::uint32_t q, const std::vector<Move>& moved) const;
-    [[nodiscard]] bool allowed(std::uint32_t p, std::uint32_t q) const;
+    [[nodiscard]] bool keeps_topology(std::uint32_t p, std::uint32_t q) const;
+    [[nodiscard]] bool keeps_sides(std::uint32_t p, std::uint32_t q) const;
+    [[nodiscard]] bool allowed(std::uint32_t p, std::uint32_t q) const { return keeps_topology(p, q) && keeps_sides(p, q); }
     void evaluate(std::uint32_t p);
     void collapse(std::uint32_t p, std::uint32_t q, const std::vector<Move>& moved);
 };
@@ -236,17 +241,19 @@ EdgeCollapse::Mesh::Mesh(std::span<const model::Vertex> vertices, std::span<cons
 }
 
 std::vector<EdgeCollapse::Mesh::Neighbour> EdgeCollapse::Mesh::neighbours(std::uint32_t place) const {
+    std::vector<std::uint32_t> all;
+    all.reserve(2 * around[place].size());
+    for (const std::uint32_t t : around[place])
+        for (const std::uint32_t c : triangles[t].corner)
+            if (corners[c].place != place) all.push_back(corners[c].place);
+    std::sort(all.begin(), all.end());
     std::vector<Neighbour> out;
-    for (const std::uint32_t t : around[place]) {
-        for (const std::uint32_t c : triangles[t].corner) {
-            const std::uint32_t other = corners[c].place;
-            if (other == place) continue;
-            const auto same = std::find_if(out.begin(), out.end(), [&](const Neighbour& n) { return n.place == other; });
-            if (same == out.end())
-                out.push_back({other, 1});
-            else
-                ++same->triangles;
-        }
+    out.reserve(all.size() / 2 + 1);
+    for (const std::uint32_t other : all) {
+        if (out.empty() || out.back().place != other)
+            out.push_back({other, 1});
+        else
+            ++out.back().triangles;
     }
     return out;
 }
@@ -290,8 +297,10 @@ double EdgeCollapse::Mesh::cost(std::uint32_t p, std::uint32_t q, const std::vec
     return all < max_cost ? all : max_cost;  // one that is not finite, too
 }
 
-/// Whether p may go to q: the mesh keeps its topology, no triangle turns over, and a border moves only along itself.
-bool EdgeCollapse::Mesh::allowed(std::uint32_t p, std::uint32_t q) const {
+/// A border moves only along itself; p and q have no neighbours in common but those at their edge; nothing vanishes or folds
+/// flat.
+bool EdgeCollapse::Mesh::keeps_topology(std::uint32_t p, std::uint32_t q) const {
+    if (around[p].size() > max_triangles_around || around[q].size() > max_triangles_around) return false;
     const std::vector<Neighbour> of_p = neighbours(p), of_q = neighbours(q);
     std::uint32_t at_edge = 0, borders = 0;
     for (const Neighbour& n : of_p) {
@@ -301,11 +310,22 @@ bool EdgeCollapse::Mesh::allowed(std::uint32_t p, std::uint32_t q) const {
     }
     if (at_edge == 0) return false;
     if (borders > 0 && (borders != 2 || at_edge != 1)) return false;
-    std::uint32_t common = 0;
+    std::vector<std::uint32_t> common;
     for (const Neighbour& n : of_p)
-        common += std::any_of(of_q.begin(), of_q.end(), [&](const Neighbour& m) { return m.place == n.place; }) ? 1 : 0;
-    if (common != at_edge) return false;
+        if (std::any_of(of_q.begin(), of_q.end(), [&](const Neighbour& m) { return m.place == n.place; }))
+            common.push_back(n.place);
+    if (common.size() != at_edge) return false;
     if (around[p].size() == at_edge && around[q].size() == at_edge) return false;  // nothing would be left
+    // Where each has a triangle with both common neighbours, these would lie on each other: a tetrahedron.
+    const auto closes = [&](std::uint32_t place) {
+        return std::any_of(around[place].begin(), around[place].end(),
+                           [&](std::uint32_t t) { return has(triangles[t], common[0]) && has(triangles[t], common[1]); });
+    };
+    return at_edge != 2 || !closes(p) || !closes(q);
+}
+
+/// No triangle turns over or becomes a line.
+bool EdgeCollapse::Mesh::keeps_sides(std::uint32_t p, std::uint32_t q) const {
     for (const std::uint32_t i : around[p]) {
         const Triangle& t = triangles[i];
         if (has(t, q)) continue;
@@ -318,10 +338,8 @@ bool EdgeCollapse::Mesh::allowed(std::uint32_t p, std::uint32_t q) const {
         const dvec3 n = glm::cross(before[1] - before[0], before[2] - before[0]);
         const dvec3 m = glm::cross(after[1] - after[0], after[2] - after[0]);
         if (glm::dot(n, m) < 0.3 * glm::length(n) * glm::length(m)) return false;
-        const double longest2 =
-            std::max({glm::dot(after[1] - after[0], after[1] - after[0]), glm::dot(after[2] - after[0], after[2] - after[0]),
-                      glm::dot(after[2] - after[1], after[2] - after[1])});
-        if (!(glm::length(m) > 1e-4 * longest2)) return false;
+        const dvec3 a = after[1] - after[0], b = after[2] - after[0];
+        if (!(glm::length(m) > 1e-4 * std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(b - a, b - a)}))) return false;
     }
     return true;
 }
@@ -330,11 +348,12 @@ bool EdgeCollapse::Mesh::allowed(std::uint32_t p, std::uint32_t q) const {
 void EdgeCollapse::Mesh::evaluate(std::uint32_t p) {
     ++stamps[p];
     targets[p] = no_index;
-    if (fixed[p] || around[p].empty()) return;
+    if (fixed[p] || around[p].empty() || around[p].size() > max_triangles_around) return;
     std::vector<std::pair<double, std::uint32_t>> steps;
     std::vector<Move> moved;
     for (const Neighbour& n : neighbours(p))
-        if (moves(p, n.place, moved)) steps.emplace_back(cost(p, n.place, moved), n.place);
+        if (around[n.place].size() <= max_triangles_around && moves(p, n.place, moved))
+            steps.emplace_back(cost(p, n.place, moved), n.place);
     std::sort(steps.begin(), steps.end());
     for (const auto& [costs, q] : steps) {
         if (!allowed(p, q)) continue;

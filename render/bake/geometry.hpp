@@ -61,7 +61,7 @@ struct ChainOptions {
     double ratio = 0.45;              ///< of triangles, from a level to the next coarser; solids beside cards use its square root
 };
 
-/// meshoptimizer proposes levels, mesh_distance bounds their errors. One level if no coarser one is worth keeping.
+/// Edge collapses propose levels, mesh_distance bounds their errors. One level if no coarser one is worth keeping.
 LodChain make_chain(Geometry full, const ChainOptions& options);
 
 /// Drops vertices that no part uses, and orders triangles and vertices for the caches.

@@ -214,14 +214,16 @@ std::vector<Picture> pictures_of(const model::Model& model) {
 }
 
 void mark_vertex_colours(const importer::Scene& scene, model::Model& model) {
-    for (const importer::Mesh& mesh : scene.meshes) {
+    const auto mark = [&](const importer::Mesh& mesh) {
         for (const importer::Primitive& p : mesh.primitives) {
             const bool coloured = std::any_of(p.colours.begin(), p.colours.end(), [](const auto& c) {
                 return c[0] != 255 || c[1] != 255 || c[2] != 255 || c[3] != 255;
             });
             if (coloured) model.materials[p.material].effects |= model::effect_vertex_colour;
         }
-    }
+    };
+    for (const importer::Mesh& mesh : scene.meshes) mark(mesh);
+    for (const importer::StandIn& stand_in : scene.stand_ins) mark(stand_in.mesh);
 }
 
 std::array<std::uint8_t, 4> tinted(const model::Material& material, const model::Vertex& vertex, const vec3& picture) {

@@ -13,13 +13,16 @@ namespace surefoot::bake {
 class MeshSurface {
 public:
     MeshSurface() = default;
-    MeshSurface(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts) { add(vertices, parts); }
+    MeshSurface(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts,
+                const vec3& moved_by = vec3(0)) {
+        add(vertices, parts, moved_by);
+    }
 
     /// Parts over these vertices.
-    void add(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts) {
+    void add(const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts, const vec3& moved_by = vec3(0)) {
         const auto base = static_cast<std::uint32_t>(positions_.size());
         positions_.reserve(positions_.size() + vertices.size());
-        for (const model::Vertex& v : vertices) positions_.push_back(position_of(v));
+        for (const model::Vertex& v : vertices) positions_.push_back(position_of(v) + moved_by);
         for (const GeometryPart& part : parts)
             for (const std::uint32_t index : part.indices) indices_.push_back(base + index);
     }

@@ -203,23 +203,16 @@ std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, con
                                  std::span<const ArtistStandIn> stand_ins, std::vector<std::string>* notes) {
     std::vector<Geometry> pieces = cut(geometry, limits);
     std::vector<MeshForm> forms;
-    const auto left_out = [&](const ArtistStandIn& one, const std::string& why) {
-        if (notes != nullptr) notes->push_back(fmt::format("Stand-in '{}' is left out: {}", one.name, why));
-    };
+    std::vector<std::string> unheard;
+    std::vector<std::string>& lines = notes != nullptr ? *notes : unheard;
     if (pieces.empty()) {
-        std::vector<const ArtistStandIn*> usable;
-        for (const ArtistStandIn& one : stand_ins) {
-            if (const std::string why = why_no_stand_in(one.geometry, geometry); why.empty())
-                usable.push_back(&one);
-            else
-                left_out(one, why);
-        }
         forms.push_back(make_form(std::move(geometry), options));
-        for (const ArtistStandIn* one : usable) add_stand_in(forms.back().chain, one->geometry, options.slack);
+        if (!stand_ins.empty()) add_stand_ins(forms.back().chain, stand_ins, options.slack, lines);
         return forms;
     }
     for (const ArtistStandIn& one : stand_ins)
-        left_out(one, fmt::format("its object of {} triangles is cut into {} pieces", geometry.triangles(), pieces.size()));
+        lines.push_back(fmt::format("Stand-in '{}' is left out: its object of {} triangles is cut into {} pieces", one.name,
+                                    geometry.triangles(), pieces.size()));
     ChainOptions locked = options;
     locked.lock_border = true;
     for (Geometry& piece : pieces) forms.push_back(make_form(std::move(piece), locked));

@@ -1,6 +1,7 @@
 // Stand-ins that an artist made, as levels of the chain of their object.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,15 +16,15 @@ struct ArtistStandIn {
     Geometry geometry;
 };
 
-/// Those of one mesh of the scene. `model` has its materials.
-std::vector<ArtistStandIn> stand_ins_of(const importer::Scene& scene, importer::Index mesh, const model::Model& model);
+/// The usable ones of a mesh of the scene. `model` has its materials, `object` its geometry. Others get a line in `notes`: those
+/// that are empty, have as many triangles as the object, or reach beyond it by a tenth of its size.
+std::vector<ArtistStandIn> stand_ins_of(const importer::Scene& scene, importer::Index mesh, const model::Model& model,
+                                        const Geometry& object, std::vector<std::string>& notes);
 
-/// Why it can be no form of the object: it is empty, as large as the object or larger. Empty if it can.
-std::string why_no_stand_in(const Geometry& stand_in, const Geometry& object);
-
-/// Adds it to the object's levels, with the bound of its two-sided distance to full detail. Levels of about as many triangles go,
-/// and so do those that it beats. Of the others, coarser ones get errors above it: an artist's stand-in looks better than its
-/// distance says. Its error counts as at least min_proxy_error, since distance says nothing of its picture.
-void add_stand_in(LodChain& chain, const Geometry& stand_in, float slack);
+/// Adds them to the object's levels, with the bound of their two-sided distance to full detail. It counts as at least
+/// min_proxy_error, since distance says nothing of a picture. Made levels of about as many triangles go, and so do those that are
+/// no better. Coarser made levels get errors above it. One that is off by a quarter of the object's size is left out, with a line
+/// in `notes`.
+void add_stand_ins(LodChain& chain, std::span<const ArtistStandIn> stand_ins, float slack, std::vector<std::string>& notes);
 
 }  // namespace surefoot::bake

@@ -1,4 +1,4 @@
-// Enlarges a picture by the processor: where the driver is software, its own passes take five times as long.
+// Enlarges a picture by the processor: where the driver is software, its own passes take three times as long.
 #pragma once
 
 #include <cstdint>

@@ -72,8 +72,21 @@ void clean_mesh(Scene& scene, Mesh& mesh) {
     std::erase_if(mesh.primitives, [](const Primitive& p) { return p.indices.empty(); });
 }
 
+/// A stand-in that is not whole would be drawn so, where its object is whole.
+void leave_out_lacking(Scene& scene) {
+    std::erase_if(scene.stand_ins, [&](const StandIn& stand_in) {
+        const std::vector<std::string>* lacks = &stand_in.mesh.lacks;
+        for (const Primitive& primitive : stand_in.mesh.primitives)
+            if (lacks->empty()) lacks = &scene.materials[primitive.material].lacks;
+        if (!lacks->empty())
+            scene.warnings.push_back(fmt::format("Stand-in '{}' is left out: {}", stand_in.name, lacks->front()));
+        return !lacks->empty();
+    });
+}
+
 void clean_meshes(Scene& scene, const Progress& progress) {
     for (StandIn& stand_in : scene.stand_ins) clean_mesh(scene, stand_in.mesh);
+    leave_out_lacking(scene);
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         clean_mesh(scene, scene.meshes[i]);
         progress.update("clean", static_cast<double>(i + 1) / static_cast<double>(scene.meshes.size()));

@@ -199,25 +199,29 @@ std::vector<int> roots_of(const tinygltf::Model& model, Scene& scene) {
 }
 
 /// What stands for an object: its nodes are placed behind those of the scene, joined, and taken away again.
-Result<void> add_stand_in(const tinygltf::Model& model, const std::string& file, const StandInClaim& claim, Scene& scene) {
+void add_stand_in(const tinygltf::Model& model, const std::string& file, const std::vector<StandInClaim>& claims,
+                  const StandInClaim& claim, Scene& scene) {
     const tinygltf::Node& object = model.nodes[static_cast<std::size_t>(claim.object)];
-    const std::string object_name = object.name.empty() ? fmt::format("node {}", claim.object) : object.name;
-    const std::size_t first = scene.nodes.size();
+    const std::size_t first = scene.nodes.size(), damage = scene.damage.size();
     Walk walk(model, file, scene);
-    if (auto walked = walk.from(claim.stand_in); !walked) return walked;
+    for (const StandInClaim& other : claims)
+        if (other.stand_in != claim.stand_in) walk.skip(other.stand_in);
+    std::string why;
+    if (auto walked = walk.from(claim.stand_in); !walked) why = in_short(walked.error());
+    if (scene.damage.size() > damage) why = scene.damage.back().what;
+    scene.damage.resize(damage);
     const std::string name = scene.nodes[first].name;
     const dmat4 frame = claim.same_frame ? scene.nodes[first].world : local_matrix(object);
     std::vector<Placed> placed = below(scene, static_cast<Index>(first));
     for (Placed& one : placed) one.at = glm::inverse(frame) * scene.nodes[first].world * one.at;
-    const bool has_mesh = object.mesh >= 0 && static_cast<std::size_t>(object.mesh) < scene.meshes.size();
     scene.nodes.resize(first);
-    if (!has_mesh || placed.empty()) {
-        scene.warnings.push_back(fmt::format("Stand-in '{}' of '{}' is left out: {}", name, object_name,
-                                             has_mesh ? "it has no mesh" : "the object has no mesh of its own"));
-        return {};
-    }
-    scene.stand_ins.push_back({name, static_cast<Index>(object.mesh), joined(scene, placed, name)});
-    return {};
+    if (static_cast<std::size_t>(object.mesh) >= scene.meshes.size()) why = "the object's mesh does not exist";
+    if (placed.empty() && why.empty()) why = "it has no mesh";
+    if (why.empty())
+        scene.stand_ins.push_back({name, static_cast<Index>(object.mesh), joined(scene, placed, name)});
+    else
+        scene.warnings.push_back(fmt::format("Stand-in '{}' of '{}' is left out: {}", name,
+                                             object.name.empty() ? fmt::format("node {}", claim.object) : object.name, why));
 }
 
 }  // namespace
@@ -235,9 +239,8 @@ Result<void> read_nodes(const tinygltf::Model& model, const std::string& file, S
     for (const int root : roots_of(model, scene)) {
         if (auto walked = walk.from(root); !walked) return walked;
     }
-    for (const StandInClaim& claim : claims) {
-        if (auto added = add_stand_in(model, file, claim, scene); !added) return added;
-    }
+    for (const StandInClaim& claim : claims)
+        if (claim.used) add_stand_in(model, file, claims, claim, scene);
     return {};
 }
 

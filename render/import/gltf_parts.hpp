@@ -60,6 +60,7 @@ std::vector<TextureUse> read_materials(const tinygltf::Model& model, const std::
 struct StandInClaim {
     int object, stand_in;
     bool same_frame;  ///< the frames of both nodes are laid on each other; else the stand-in has the object's parent (MSFT_lod)
+    bool used;        ///< of the first node with this mesh; of the others, stand-ins are only not drawn
 };
 /// All of a file, in its order. Warnings: nodes that do not exist.
 std::vector<StandInClaim> stand_in_claims(const tinygltf::Model& model, std::vector<std::string>& warnings);

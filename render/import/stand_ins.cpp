@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -44,7 +45,8 @@ Result<std::vector<Entry>> read_list(const std::string& list) {
 
 std::string did_you_mean(const std::string& name, const Scene& scene) {
     std::vector<std::string_view> names;
-    for (const Node& node : scene.nodes) names.push_back(node.name);
+    for (const Node& node : scene.nodes)
+        if (node.name != name) names.push_back(node.name);
     const std::string_view nearest = nearest_word(name, names);
     return nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest);
 }
@@ -54,10 +56,13 @@ Index node_named(const Scene& scene, const std::string& name) {
     return found == scene.nodes.end() ? none : static_cast<Index>(found - scene.nodes.begin());
 }
 
-/// The mesh of the first node of that name that has one, else the mesh of that name.
+/// The mesh of the first node of that name, or of its instances; else the mesh of that name.
 Index mesh_named(const Scene& scene, const std::string& name) {
-    for (const Node& node : scene.nodes)
-        if (node.name == name && node.mesh != none) return node.mesh;
+    for (const Node& node : scene.nodes) {
+        if (node.mesh == none) continue;
+        const bool instance = node.parent != none && scene.nodes[node.parent].name == name && node.name.starts_with(name + " #");
+        if (node.name == name || instance) return node.mesh;
+    }
     const auto found = std::find_if(scene.meshes.begin(), scene.meshes.end(), [&](const Mesh& m) { return m.name == name; });
     return found == scene.meshes.end() ? none : static_cast<Index>(found - scene.meshes.begin());
 }
@@ -70,52 +75,91 @@ std::vector<bool> subtree(const Scene& scene, Index root) {
     return in;
 }
 
-void take_node(Scene& scene, Index root, Index of) {
-    StandIn stand_in{scene.nodes[root].name, of, joined(scene, below(scene, root), scene.nodes[root].name)};
-    const std::vector<bool> in = subtree(scene, root);
-    for (Index n = root; n < scene.nodes.size(); ++n)
-        if (in[n]) scene.nodes[n].mesh = none;
-    scene.stand_ins.push_back(std::move(stand_in));
-}
+/// A scene whose list is read. Nodes that become stand-ins stay as they are until the end, so that several objects may share one.
+class ListReader {
+public:
+    ListReader(const std::string& file, Scene& scene, const ReadModel& read)
+        : file_(file), scene_(scene), read_(read), taken_(scene.nodes.size(), false) {}
 
-void take_file(Scene& scene, Scene&& from, const Entry& entry, Index of) {
-    std::vector<Placed> all;
-    for (const Node& node : from.nodes)
-        if (node.mesh != none) all.push_back({node.mesh, node.world});
-    StandIn stand_in{entry.file, of, joined(from, all, entry.file)};
-    for (Primitive& primitive : stand_in.mesh.primitives) primitive.material += static_cast<Index>(scene.materials.size());
-    for (Material& material : from.materials)
-        if (material.image != none) material.image += static_cast<Index>(scene.images.size());
-    const auto move_all = [](auto& to, auto& of_file) {
-        to.insert(to.end(), std::make_move_iterator(of_file.begin()), std::make_move_iterator(of_file.end()));
-    };
-    move_all(scene.materials, from.materials);
-    move_all(scene.images, from.images);
-    move_all(scene.sources, from.sources);
-    move_all(scene.warnings, from.warnings);
-    scene.stand_ins.push_back(std::move(stand_in));
-}
-
-void take(Scene& scene, const std::string& file, const Entry& entry, const ReadModel& read) {
-    const auto left_out = [&](const std::string& why) {
-        scene.warnings.push_back(fmt::format("Stand-in '{}' of '{}' is left out: {}", entry.name(), entry.object, why));
-    };
-    const Index of = mesh_named(scene, entry.object);
-    if (of == none) return left_out("no node with triangles has the object's name" + did_you_mean(entry.object, scene));
-    if (!entry.file.empty()) {
-        auto other = read(place_beside(file, entry.file));
-        return other ? take_file(scene, std::move(*other), entry, of) : left_out(in_short(other.error()));
+    void take(const Entry& entry) {
+        const Index of = mesh_named(scene_, entry.object);
+        if (of == none)
+            return left_out(entry, "no node with triangles has the object's name" + did_you_mean(entry.object, scene_));
+        if (!placed(of, taken_)) return left_out(entry, "its object is not drawn, or is a stand-in itself");
+        if (entry.node.empty()) return take_file(entry, of);
+        const Index root = node_named(scene_, entry.node);
+        if (root == none) return left_out(entry, "no node has that name" + did_you_mean(entry.node, scene_));
+        const std::vector<Placed> meshes = below(scene_, root);
+        if (meshes.empty()) return left_out(entry, "it has no triangles");
+        std::vector<bool> taken = subtree(scene_, root);
+        for (std::size_t n = 0; n < taken.size(); ++n) taken[n] = taken[n] || taken_[n];
+        objects_.push_back(of);
+        const bool all_left = std::all_of(objects_.begin(), objects_.end(), [&](Index object) { return placed(object, taken); });
+        if (!all_left) {
+            objects_.pop_back();
+            return left_out(entry, "the object, or one before it in the list, is a part of it");
+        }
+        taken_ = std::move(taken);
+        made_.push_back({entry.node, of, joined(scene_, meshes, entry.node)});
     }
-    const Index root = node_named(scene, entry.node);
-    if (root == none) return left_out("no node has that name" + did_you_mean(entry.node, scene));
-    const std::vector<bool> in = subtree(scene, root);
-    const bool others = std::any_of(scene.nodes.begin(), scene.nodes.end(), [&](const Node& n) {
-        return n.mesh == of && !in[static_cast<std::size_t>(&n - scene.nodes.data())];
-    });
-    if (!others) return left_out("the object is a part of it");
-    if (below(scene, root).empty()) return left_out("it has no triangles");
-    take_node(scene, root, of);
-}
+
+    /// The nodes of stand-ins are no longer drawn by themselves.
+    void finish() {
+        for (std::size_t n = 0; n < taken_.size(); ++n)
+            if (taken_[n]) scene_.nodes[n].mesh = none;
+        for (StandIn& stand_in : made_) scene_.stand_ins.push_back(std::move(stand_in));
+    }
+
+private:
+    void left_out(const Entry& entry, const std::string& why) {
+        scene_.warnings.push_back(fmt::format("Stand-in '{}' of '{}' is left out: {}", entry.name(), entry.object, why));
+    }
+
+    [[nodiscard]] bool placed(Index mesh, const std::vector<bool>& without) const {
+        for (std::size_t n = 0; n < scene_.nodes.size(); ++n)
+            if (scene_.nodes[n].mesh == mesh && !without[n]) return true;
+        return false;
+    }
+
+    void take_file(const Entry& entry, Index of) {
+        const auto known = files_.find(entry.file);
+        if (known == files_.end()) {
+            auto other = read_(place_beside(file_, entry.file));
+            if (!other) return left_out(entry, in_short(other.error()));
+            if (!other->damage.empty()) return left_out(entry, other->damage.front().what);
+            files_[entry.file] = adopt(std::move(*other), entry.file);
+        }
+        objects_.push_back(of);
+        made_.push_back({entry.file, of, files_[entry.file]});
+    }
+
+    /// The meshes of another scene as one; its materials and images are added to this one.
+    Mesh adopt(Scene&& from, const std::string& name) {
+        std::vector<Placed> all;
+        for (const Node& node : from.nodes)
+            if (node.mesh != none) all.push_back({node.mesh, node.world});
+        Mesh mesh = joined(from, all, name);
+        for (Primitive& primitive : mesh.primitives) primitive.material += static_cast<Index>(scene_.materials.size());
+        for (Material& material : from.materials)
+            if (material.image != none) material.image += static_cast<Index>(scene_.images.size());
+        const auto move_all = [](auto& to, auto& of_file) {
+            to.insert(to.end(), std::make_move_iterator(of_file.begin()), std::make_move_iterator(of_file.end()));
+        };
+        move_all(scene_.materials, from.materials);
+        move_all(scene_.images, from.images);
+        move_all(scene_.sources, from.sources);
+        move_all(scene_.warnings, from.warnings);
+        return mesh;
+    }
+
+    const std::string& file_;
+    Scene& scene_;
+    const ReadModel& read_;
+    std::vector<bool> taken_;     ///< by node
+    std::vector<Index> objects_;  ///< meshes that have stand-ins
+    std::vector<StandIn> made_;
+    std::map<std::string, Mesh> files_;
+};
 
 }  // namespace
 
@@ -123,6 +167,8 @@ Mesh joined(const Scene& scene, std::span<const Placed> placed, const std::strin
     Mesh out;
     out.name = name;
     for (const Placed& one : placed) {
+        const std::vector<std::string>& lacks = scene.meshes[one.mesh].lacks;
+        out.lacks.insert(out.lacks.end(), lacks.begin(), lacks.end());
         const dmat3 linear(one.at);
         const dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                              glm::cross(linear[0], linear[1]));
@@ -132,7 +178,7 @@ Mesh joined(const Scene& scene, std::span<const Placed> placed, const std::strin
             for (vec3& n : primitive.normals) {
                 const dvec3 turned = cofactor * dvec3(n) * (mirrored ? -1.0 : 1.0);
                 const double length = glm::length(turned);
-                n = length > 0 ? vec3(turned / length) : vec3(0, 1, 0);
+                n = length > 0 ? vec3(turned / length) : vec3(0);  // to be made from its triangles
             }
             for (std::size_t i = 0; mirrored && i + 2 < primitive.indices.size(); i += 3)
                 std::swap(primitive.indices[i + 1], primitive.indices[i + 2]);
@@ -162,7 +208,9 @@ Result<void> read_stand_ins(const std::string& file, Scene& scene, const ReadMod
     const auto entries = read_list(list);
     if (!entries) return entries.error();
     scene.sources.push_back(list);
-    for (const Entry& entry : *entries) take(scene, file, entry, read);
+    ListReader reader(file, scene, read);
+    for (const Entry& entry : *entries) reader.take(entry);
+    reader.finish();
     return {};
 }
 

@@ -93,14 +93,45 @@ TEST(ArtistStandIns, ThatCannotBeUsedAreNamedAndTheObjectIsDrawn) {
     nothing.indices.clear();
     const std::vector<Case> cases = {{ball(ball_rings, 2), "it has 2304 triangles, and the object 2304"},
                                      {ball(5, 6), "beyond the object"},
+                                     {ball(5, 0.2F), "m off its object"},
                                      {nothing, "it has no triangles"}};
     for (const Case& one : cases) {
         const model::Model m = with_stand_ins(scene_with(one.mesh));
         ASSERT_EQ(m.provenance.warnings.size(), 1U) << one.why;
         EXPECT_NE(m.provenance.warnings[0].find("Stand-in 'far ball' is left out"), std::string::npos);
         EXPECT_NE(m.provenance.warnings[0].find(one.why), std::string::npos) << m.provenance.warnings[0];
-        EXPECT_EQ(placements_with(m, 2U * 2 * ball_rings * ball_rings), 2U);
+        EXPECT_EQ(m.triangles(), 2U * 2304) << "whole, or in pieces as without a stand-in";
     }
+}
+
+TEST(ArtistStandIns, OfOneObjectStandSideBySideInAnyOrder) {
+    for (const bool fine_first : {true, false}) {
+        importer::Scene scene = scene_with(ball(fine_first ? 10 : 5, 2));
+        scene.stand_ins.push_back({"other", 0, {"other", {ball(fine_first ? 5 : 10, 2)}}});
+        const model::Model m = with_stand_ins(scene);
+        EXPECT_EQ(placements_with(m, 100), 2U) << fine_first;
+        EXPECT_EQ(placements_with(m, 400), 2U) << fine_first;
+        EXPECT_TRUE(m.provenance.warnings.empty());
+    }
+    importer::Scene twice = scene_with(ball(5, 2));
+    twice.stand_ins.push_back({"again", 0, {"again", {ball(5, 2)}}});
+    const model::Model m = with_stand_ins(twice);
+    ASSERT_EQ(m.provenance.warnings.size(), 1U);
+    EXPECT_NE(m.provenance.warnings[0].find("'again' is left out: another one"), std::string::npos);
+}
+
+TEST(ArtistStandIns, KeepVertexColoursOfTheirOwn) {
+    importer::Scene scene = scene_with(ball(5, 2));
+    scene.materials.push_back({.name = "painted"});
+    importer::Primitive& p = scene.stand_ins[0].mesh.primitives[0];
+    p.material = 1;
+    p.colours.assign(p.positions.size(), {255, 0, 0, 255});
+    const model::Model m = with_stand_ins(scene);
+    std::size_t painted = 0;
+    for (const model::Representation& rep : m.reps)
+        if (rep.triangles == 100 && (m.materials[m.parts[rep.first_part].material].effects & model::effect_vertex_colour) != 0)
+            ++painted;
+    EXPECT_GE(painted, 2U);
 }
 
 TEST(ArtistStandIns, OfAnObjectThatIsTooLargeToDrawWholeAreNamed) {

@@ -130,6 +130,25 @@ TEST(Resolution, a_frame_at_each_step_is_the_small_picture_enlarged_to_the_pixel
     }
 }
 
+// A software driver's picture is enlarged by the processor, others by a pass.
+TEST(Resolution, a_pass_enlarges_as_the_processor_does) {
+    std::vector<gl::DrawItem> items;
+    const auto model = test::mixed_scene(items);
+    std::vector<gl::PixelImage> pictures;
+    for (const bool by_processor : {true, false}) {
+        gl::DeviceOptions options;
+        options.viewport = whole;
+        options.max_items = 4096;
+        options.processor_enlarges = by_processor;
+        auto device = gl::open_device(options);
+        if (!device) GTEST_SKIP() << device.error().text();
+        (*device)->draws.plays();
+        ASSERT_TRUE((*device)->load(model, effects::assemble_program).ok());
+        pictures.push_back(drawn(**device, items, 0.5F));
+    }
+    EXPECT_LE(worst_difference(pictures[0], pictures[1]), 3);
+}
+
 TEST(Resolution, half_is_near_the_whole_picture_and_farther_where_it_is_shifted_by_a_pixel) {
     std::vector<gl::DrawItem> items;
     const auto model = test::mixed_scene(items);

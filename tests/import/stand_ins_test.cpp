@@ -90,6 +90,63 @@ TEST(StandIns, WithAnObjectBelowThemAreLeftOut) {
     EXPECT_TRUE(warns(scene, "the object is a part of it"));
 }
 
+TEST(StandIns, AreOnePerMeshWhateverNumberOfNodesNamesThem) {
+    const Scene scene = imported(
+        R"([{"mesh":0,"name":"oak","extensions":{"MSFT_lod":{"ids":[2]}}},{"mesh":0,"name":"oak.001","extensions":{"MSFT_lod":{"ids":[3]}}},
+            {"mesh":0,"name":"far"},{"mesh":0,"name":"far.001"}])",
+        "[0,1,2,3]");
+    EXPECT_EQ(scene.triangles(), 2U);
+    EXPECT_EQ(scene.stand_ins.size(), 1U);
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(StandIns, InChainsAndCirclesHideNoObject) {
+    const Scene circle = imported(
+        R"([{"mesh":0,"name":"a","extras":{"stand_ins":"b"}},{"mesh":0,"name":"b","extras":{"stand_ins":"a"}}])", "[0,1]");
+    EXPECT_EQ(circle.triangles(), 1U);
+    EXPECT_EQ(circle.stand_ins.size(), 1U);
+    EXPECT_TRUE(warns(circle, "Stand-in 'a' of 'b' is left out: its object is a stand-in itself"));
+    const Scene chain = imported(
+        R"([{"mesh":0,"name":"b","extras":{"stand_ins":"c"}},{"mesh":0,"name":"a","extras":{"stand_ins":"b"}},{"mesh":0,"name":"c"}])",
+        "[0,1,2]");
+    EXPECT_EQ(chain.triangles(), 2U);
+    EXPECT_TRUE(warns(chain, "Stand-in 'b' of 'a' is left out: it has a stand-in of its own"));
+}
+
+TEST(StandIns, WithNonsenseForANameAreNamed) {
+    for (const char* value : {R"([3])", R"("")", R"({"a":1})", "7"})
+        EXPECT_TRUE(
+            warns(imported(std::string(R"([{"mesh":0,"name":"oak","extras":{"stand_ins":)") + value + R"(}},{"mesh":0}])"),
+                  "Stand-in 'extras.stand_ins' of 'oak' is left out: it is no name"))
+            << value;
+    EXPECT_TRUE(warns(imported(R"([{"mesh":0,"name":"oak","extensions":{"MSFT_lod":{"ids":3}}}])"), "it has no list of ids"));
+}
+
+// A cycle, or a mesh that does not exist, below a stand-in.
+TEST(StandIns, ThatAreBrokenDoNotRefuseTheScene) {
+    for (const char* nodes :
+         {R"([{"mesh":0,"name":"oak","extras":{"stand_ins":"far"}},{"name":"far","children":[2]},{"mesh":0,"children":[1]}])",
+          R"([{"mesh":0,"name":"oak","extras":{"stand_ins":"far"}},{"mesh":9,"name":"far"}])"}) {
+        const Scene scene = imported(nodes);
+        EXPECT_EQ(scene.triangles(), 1U);
+        EXPECT_TRUE(scene.stand_ins.empty());
+        EXPECT_TRUE(scene.damage.empty());
+        EXPECT_TRUE(warns(scene, "Stand-in 'far' of 'oak' is left out"));
+    }
+}
+
+TEST(StandIns, ThatLackATextureAreNamed) {
+    TriangleGltf other;
+    other.primitive += R"(,"material":0)";
+    other.more =
+        R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],"images":[{"uri":"no.png"}])";
+    const auto scene = imported_with_list("[[stand_in]]\nobject = \"oak\"\nfile = \"oak_far.glb\"\n", other.file());
+    ASSERT_TRUE(scene.ok()) << scene.error().text();
+    EXPECT_TRUE(scene->stand_ins.empty());
+    EXPECT_TRUE(scene->damage.empty());
+    EXPECT_TRUE(warns(*scene, "Stand-in 'oak_far.glb' of 'oak' is left out: Texture 'no.png'"));
+}
+
 TEST(StandIns, OfAMirroredNodeFaceOutwards) {
     const Scene scene = imported(
         R"([{"mesh":0,"name":"oak","extras":{"stand_ins":"far"}},{"name":"far","children":[2]},{"mesh":0,"scale":[-1,1,1]}])");
@@ -119,6 +176,16 @@ TEST(StandIns, OfAListTakeAnotherFileWithItsMaterials) {
     ASSERT_EQ(scene->stand_ins.size(), 1U);
     EXPECT_EQ(scene->materials.at(scene->stand_ins[0].mesh.primitives.at(0).material).name, "leaves");
     EXPECT_EQ(scene->sources.size(), 3U);
+}
+
+TEST(StandIns, OfAListMayStandForSeveralObjects) {
+    const auto scene = imported_with_list(
+        "[[stand_in]]\nobject = \"oak\"\nnode = \"far\"\n[[stand_in]]\nobject = \"mesh\"\nnode = \"far\"\n"
+        "[[stand_in]]\nobject = \"far\"\nnode = \"oak\"\n");
+    ASSERT_TRUE(scene.ok()) << scene.error().text();
+    EXPECT_EQ(scene->stand_ins.size(), 2U);
+    EXPECT_EQ(scene->triangles(), 1U);
+    EXPECT_TRUE(warns(*scene, "Stand-in 'oak' of 'far' is left out"));
 }
 
 TEST(StandIns, OfAListThatAreNotThereAreNamed) {
