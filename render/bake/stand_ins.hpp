@@ -16,8 +16,8 @@ struct ArtistStandIn {
     Geometry geometry;
 };
 
-/// The usable ones of a mesh of the scene. `model` has its materials, `object` its geometry. Others get a line in `notes`: those
-/// that are empty, have as many triangles as the object, or reach beyond it by a tenth of its size.
+/// The usable ones of a mesh of the scene. `model` has its materials, `object` its geometry. Others get a line in `notes`. These
+/// are empty, have as many triangles as the object, or reach beyond it by a tenth of its size.
 std::vector<ArtistStandIn> stand_ins_of(const importer::Scene& scene, importer::Index mesh, const model::Model& model,
                                         const Geometry& object, std::vector<std::string>& notes);
 
