@@ -226,7 +226,7 @@ void draw_form(const model::Model& model, const model::Representation& rep, Form
     const vec3 origin(glm::dot(away, dvec3(from.right)) / pixel_m - static_cast<double>(view.left),
                       glm::dot(away, dvec3(from.up)) / pixel_m - static_cast<double>(view.low),
                       glm::dot(away, dvec3(from.towards)));
-    const mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+    const mat3 cofactor = cofactors(linear);
     const bool mirrored = glm::dot(linear[0], cofactor[0]) < 0;
     for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
         const model::Part& part = model.parts[p];

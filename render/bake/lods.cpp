@@ -343,7 +343,7 @@ std::optional<Level> next_level(ChainWork& work) {
     return next;
 }
 
-/// Enlarges the cards that are left. In torn levels, gives corners the best of their coincident vertices; edge collapses have.
+/// Enlarges the cards that are left. The sloppy mode picks any of coincident vertices: there, corners get the best of them.
 void finish_parts(ChainWork& work, Level& level) {
     for (GeometryPart& part : level.parts) {
         const auto cards = work.thinned.cards.find(part.material);

@@ -82,8 +82,7 @@ void append(Geometry& to, const LodChain& chain, std::span<const GeometryPart* c
             model::Index proxy_material) {
     if (parts.empty()) return;
     const dmat3 linear(world);
-    // Normals by the cofactors: right under shear and mirroring, and no inverse of what may be singular.
-    const dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+    const dmat3 cofactor = cofactors(linear);
     const bool mirrored = glm::dot(linear[0], cofactor[0]) < 0;
     // Sorted, not a table over the chain's vertices: of a large object a few are used, and this runs for every level above it.
     std::vector<std::uint32_t> used;

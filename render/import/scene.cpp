@@ -53,6 +53,8 @@ void move_all(std::vector<T>& to, std::vector<T>& from) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
+}  // namespace
+
 void append(Scene& to, Scene&& from) {
     for (Mesh& mesh : from.meshes) {
         for (Primitive& primitive : mesh.primitives) shift(primitive.material, to.materials.size());
@@ -75,8 +77,6 @@ void append(Scene& to, Scene&& from) {
     move_all(to.warnings, from.warnings);
     move_all(to.damage, from.damage);
 }
-
-}  // namespace
 
 void Scene::damaged(std::string line) {
     warnings.push_back(line);

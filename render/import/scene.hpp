@@ -82,6 +82,9 @@ struct Scene {
     [[nodiscard]] std::uint64_t triangles() const;  ///< instances counted each
 };
 
+/// Adds all of one scene to another.
+void append(Scene& to, Scene&& from);
+
 /// By ending (formats.hpp), with the stand-ins listed beside each file (stand_ins.hpp). Several files become one scene.
 /// Errors: missing, empty or truncated file; unknown ending; nothing drawable. Missing textures are damage, and white.
 Result<Scene> import_files(const std::vector<std::string>& files, const Progress& progress);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
@@ -33,9 +32,11 @@ Result<std::vector<Entry>> read_list(const std::string& list) {
         one.text("object", entry.object);
         one.text("node", entry.node);
         one.text("file", entry.file);
+        if (auto known = one.finish(); !known) return known;  // a misspelt key comes before a missing one
         if (entry.object.empty()) one.refuse("object", "is missing", "Name the node or mesh that the stand-in is for");
-        if (entry.node.empty() == entry.file.empty())
-            one.refuse("node", "and the key file are two ways to name one stand-in", "Give one of them");
+        if (entry.node.empty() && entry.file.empty())
+            one.refuse("node", "is missing, and so is the key file", "Name a node of the scene, or another model file");
+        if (!entry.node.empty() && !entry.file.empty()) one.refuse("file", "stands beside the key node", "Give one of them");
         entries.push_back(std::move(entry));
         return one.finish();
     });
@@ -138,18 +139,15 @@ private:
         std::vector<Placed> all;
         for (const Node& node : from.nodes)
             if (node.mesh != none) all.push_back({node.mesh, node.world});
-        Mesh mesh = joined(from, all, name);
-        for (Primitive& primitive : mesh.primitives) primitive.material += static_cast<Index>(scene_.materials.size());
-        for (Material& material : from.materials)
-            if (material.image != none) material.image += static_cast<Index>(scene_.images.size());
-        const auto move_all = [](auto& to, auto& of_file) {
-            to.insert(to.end(), std::make_move_iterator(of_file.begin()), std::make_move_iterator(of_file.end()));
-        };
-        move_all(scene_.materials, from.materials);
-        move_all(scene_.images, from.images);
-        move_all(scene_.sources, from.sources);
-        move_all(scene_.warnings, from.warnings);
-        return mesh;
+        Mesh one = joined(from, all, name);
+        from.nodes.clear();
+        from.stand_ins.clear();
+        from.meshes.clear();
+        from.meshes.push_back(std::move(one));
+        append(scene_, std::move(from));
+        one = std::move(scene_.meshes.back());
+        scene_.meshes.pop_back();
+        return one;
     }
 
     const std::string& file_;
@@ -170,8 +168,7 @@ Mesh joined(const Scene& scene, std::span<const Placed> placed, const std::strin
         const std::vector<std::string>& lacks = scene.meshes[one.mesh].lacks;
         out.lacks.insert(out.lacks.end(), lacks.begin(), lacks.end());
         const dmat3 linear(one.at);
-        const dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                             glm::cross(linear[0], linear[1]));
+        const dmat3 cofactor = cofactors(linear);
         const bool mirrored = glm::dot(linear[0], cofactor[0]) < 0;
         for (Primitive primitive : scene.meshes[one.mesh].primitives) {
             for (vec3& p : primitive.positions) p = vec3(one.at * dvec4(dvec3(p), 1.0));

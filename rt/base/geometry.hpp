@@ -21,6 +21,12 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 
+/// Turns normals as `linear` turns surfaces, also where it shears or mirrors. No inverse of what may be singular is taken.
+template <class Matrix>
+[[nodiscard]] Matrix cofactors(const Matrix& linear) {
+    return {glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1])};
+}
+
 /// Axis-aligned box; empty when min > max on any axis.
 struct Box {
     dvec3 min{std::numeric_limits<double>::infinity()};
