@@ -124,7 +124,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
         const double items_us = (planned_us - fixed_us) / (1.0 + slice_end_us / std::max(1.0, e.options.slice_us));
         return prepare::lost_share(curve, items_us) + static_cast<double>(e.costs.blur_loss_at(at));
     };
-    const float other = e.resolution.trial();
+    const float other = e.resolution.trial(hints.planned_us);
     if (other > 0.0F) {
         e.resolution.judge(lost(out.curve, out.resolution), lost(e.preparer->value_at(other), other));
         e.preparer->add_value_time(out);

@@ -125,7 +125,7 @@ std::vector<GeometryPart> collapse_solids(const Geometry& g, const Thinned& thin
     for (const GeometryPart& part : from) {
         if (thinned.contains(part.material)) continue;
         solids.push_back(part);
-        const double left = solid_share(thinned, share) * static_cast<double>(part.indices.size() / 3);
+        const double left = solid_share(thinned, share) * (static_cast<double>(part.indices.size()) / 3.0);
         target += std::max(2U, static_cast<std::uint32_t>(left));
     }
     if (solids.empty()) return solids;

@@ -15,7 +15,18 @@ double lost_share(const ValueCurve& curve, double items_us) {
 
 float ResolutionChooser::gain() const { return at_ == 0 ? 0.0F : static_cast<float>(lost_[0] - lost_[at_]); }
 
-float ResolutionChooser::trial() {
+bool ResolutionChooser::jumped() const {
+    constexpr double far_off = 1.2;  // two resolutions side by side differ by more in their share of the time
+    const double ratio = planned_us_[at_] / decided_by_us_[at_];
+    return ratio > far_off || ratio < 1 / far_off;  // of NaN, by 0/0: no
+}
+
+float ResolutionChooser::trial(const PlannedTimes& planned_us) {
+    planned_us_ = planned_us;
+    if (decided_ && jumped()) {
+        decided_ = false;
+        judged_ = 0;
+    }
     if (++frame_ % every != 0 && decided_) return 0.0F;
     tried_ = (tried_ + 1) % model::resolution_steps.size();
     if (tried_ == at_) tried_ = (tried_ + 1) % model::resolution_steps.size();
@@ -33,6 +44,7 @@ void ResolutionChooser::judge(double lost_now, double lost_tried) {
     const bool wins = lost_[best] < lost_now * (1.0 - (best > at_ ? softer : sharper)) - unseen;
     if (wins && (best == best_before_ || !decided_)) at_ = tried_ = best;
     decided_ = true;
+    decided_by_us_ = planned_us_;
     best_before_ = wins ? best : at_;
 }
 

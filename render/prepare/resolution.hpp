@@ -9,15 +9,20 @@
 
 namespace surefoot::prepare {
 
+/// Predicted time that a cut may take, us, by model::resolution_steps.
+using PlannedTimes = std::array<double, model::resolution_steps.size()>;
+
 /// Compares what the budget buys at each resolution. With every third set one other resolution is evaluated, in turns. When all
 /// have been, the best one is taken if it wins by a margin, and won the round before too. The margin is larger for a softer
-/// picture. The first round takes each set, and decides alone. Deterministic.
+/// picture. The first round takes each set, and decides alone. So does the round after the planned time has jumped: what was
+/// decided by another time says little. Deterministic.
 /// Source: dynamic video resolution, Montrym et al. 1997 (InfiniteReality); here it is priced like any form.
 class ResolutionChooser {
 public:
     [[nodiscard]] float resolution() const { return model::resolution_steps[at_]; }
     /// After a frame was prepared at resolution(): the resolution to evaluate beside it; 0: none this time.
-    float trial();
+    /// planned_us: predicted time that a cut may take, by step of resolution.
+    float trial(const PlannedTimes& planned_us);
     /// Shares of the value that are lost now, and that would be at the resolution of trial(): 0..1, with the blur's.
     void judge(double lost_now, double lost_tried);
 
@@ -25,11 +30,14 @@ public:
     [[nodiscard]] float gain() const;
 
 private:
+    [[nodiscard]] bool jumped() const;
+
     static constexpr std::uint32_t every = 3;
     std::uint32_t at_ = 0, tried_ = 0, best_before_ = 0, frame_ = 0;
     std::array<double, model::resolution_steps.size()> lost_{};
     std::uint32_t judged_ = 0;  ///< of this round
-    bool decided_ = false;      ///< once
+    bool decided_ = false;      ///< at least once, by about the present time
+    PlannedTimes planned_us_{}, decided_by_us_{};  ///< the newest; that of the last round
 };
 
 /// Share of the value that is lost where `items_us` may be spent on items, 0..1.

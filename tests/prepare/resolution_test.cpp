@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "render/prepare/resolution.hpp"
@@ -11,9 +12,11 @@ namespace {
 
 /// Frames in which the resolutions lose these shares, by model::resolution_steps.
 template <class Lost>
-void walk(ResolutionChooser& chooser, int frames, const Lost& lost) {
+void walk(ResolutionChooser& chooser, int frames, const Lost& lost, double planned_us = 1e4) {
+    PlannedTimes planned;
+    planned.fill(planned_us);
     for (int i = 0; i < frames; ++i) {
-        const float tried = chooser.trial();
+        const float tried = chooser.trial(planned);
         if (tried > 0.0F) chooser.judge(lost(chooser.resolution()), lost(tried));
     }
 }
@@ -57,7 +60,7 @@ TEST(ResolutionChooser, ARoundTriesAllOthersAfterAChangeToo) {
     ASSERT_EQ(chooser.resolution(), 0.5F);
     std::vector<float> tried;
     for (int i = 0; i < 12; ++i) {
-        const float other = chooser.trial();
+        const float other = chooser.trial({1e4, 1e4, 1e4, 1e4, 1e4});
         if (!(other > 0.0F)) continue;
         tried.push_back(other);
         chooser.judge(0.02, 0.1);
@@ -78,6 +81,27 @@ TEST(ResolutionChooser, DecidesAtOnceInTheBeginning) {
     walk(chooser, 12, [](float r) { return r == 1.0F ? 0.0 : 0.1; });
     EXPECT_EQ(chooser.resolution(), 1.0F);
     EXPECT_EQ(chooser.gain(), 0.0F);
+}
+
+TEST(ResolutionChooser, DecidesAnewWhereThePlannedTimeHasJumped) {
+    const auto lost = [](float soft, float sharp) {
+        return [=](float r) { return r == 0.625F ? soft : r == 1.0F ? sharp : 0.2; };
+    };
+    ResolutionChooser chooser;
+    walk(chooser, 4, lost(0.02, 0.1), 1e4);
+    ASSERT_EQ(chooser.resolution(), 0.625F);
+    walk(chooser, 8, lost(0.02, 0.0), 1.15e4);
+    EXPECT_EQ(chooser.resolution(), 0.625F) << "a small change: it takes two rounds";
+    walk(chooser, 3, lost(0.02, 0.0), 1.3e4);
+    EXPECT_EQ(chooser.resolution(), 0.625F);
+    walk(chooser, 1, lost(0.02, 0.0), 1.3e4);
+    EXPECT_EQ(chooser.resolution(), 1.0F) << "after each of the four others";
+    walk(chooser, 4, lost(0.02, 0.1), 1e4);
+    EXPECT_EQ(chooser.resolution(), 0.625F) << "back in as few";
+    walk(chooser, 4, lost(0.02, 0.0), 0);
+    EXPECT_EQ(chooser.resolution(), 1.0F) << "no time at all is a change too";
+    walk(chooser, 4, lost(0.02, 0.1), std::nan(""));
+    EXPECT_EQ(chooser.resolution(), 1.0F) << "what is no number is none";
 }
 
 TEST(ValueCurve, IsReadBetweenItsLevels) {

@@ -2,6 +2,8 @@
 // predicted.
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "tests/walk/walk_fixture.hpp"
 
 namespace surefoot {
@@ -25,6 +27,27 @@ TEST(Rehearsal, TheFirstFrameKnowsWhatFramesCost) {
     const float correction = first_correction(rt::ClockKind::real, true);
     EXPECT_GT(correction, 0.0F);
     EXPECT_LT(correction, 0.9F) << "three frames alone would leave it at 1";
+}
+
+/// Of the first frame, by a table whose pixels are so dear that a softer picture would win.
+float first_resolution(bool correct_costs) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(3);
+    request.clock = rt::ClockKind::real;
+    request.fifo = false;
+    request.rate_hz = 60;
+    request.correct_costs = correct_costs;
+    auto costs = std::make_shared<model::CostModel>(model::default_costs());
+    costs->combine.submit_weight *= 0.1F;
+    costs->combine.raster_weight *= 7.0F;
+    request.given_costs = costs;
+    const walk::WalkOutcome outcome = walk(request);
+    EXPECT_EQ(outcome.records.size(), 3U);
+    return outcome.records.empty() ? 0 : outcome.records.front().resolution;
+}
+
+TEST(Rehearsal, TheFirstFrameHasTheResolutionThatItsTimeAllows) {
+    EXPECT_LT(first_resolution(false), 1);
+    EXPECT_EQ(first_resolution(true), 1) << "frames take a small part of what the table says";
 }
 
 TEST(Rehearsal, ThereIsNoneOnTheVirtualClockOrWithoutCorrection) {

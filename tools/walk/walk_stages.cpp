@@ -72,11 +72,27 @@ double WalkStages::planned_us() const {
     return request_.in_frame_check ? std::min(options_.budget_us, limit_.us() - margin_us()) : options_.budget_us;
 }
 
+PrepareHints WalkStages::hints() const {
+    PrepareHints hints;
+    // One headroom for all: that of a resolution that is not drawn says nothing of these frames.
+    const Correction drawn = correction_at(learnt_resolution_, filtered_);
+    for (std::size_t step = 0; step < hints.planned_us.size(); ++step) {
+        const double factor =
+            request_.correct_costs ? corrections_.expected(state_of(model::resolution_steps[step], filtered_)) : drawn.factor;
+        hints.planned_us[step] = planned_us() / (factor * drawn.headroom);
+    }
+    if (request_.correct_costs) hints.form_ratio = forms_.ratio();
+    return hints;
+}
+
 void WalkStages::rehearse(std::int64_t until_ns) {
     if (virtual_clock_ || !request_.correct_costs) return;
-    prepared_.refresh();
-    const prepare::PreparedFrame& set = prepared_.front();
-    for (int i = 0; i < rehearsed_frames && clock_.now_ns() < until_ns - 2 * options_.period_ns; ++i) {
+    std::int64_t due_ns = clock_.now_ns();
+    for (int i = 0; i < rehearsed_frames && due_ns < until_ns - 2 * options_.period_ns; ++i) {
+        clock_.sleep_until_ns(due_ns);
+        prepared_.refresh();
+        const prepare::PreparedFrame& set = prepared_.front();
+        publish_rehearsed(set.region, due_ns);
         SubmitLimits limits;
         limits.limit_us = limit_.us();
         limits.margin_us = margin_us();
@@ -85,7 +101,19 @@ void WalkStages::rehearse(std::int64_t until_ns) {
         engine_.select(set, planned_us(), correction_at(set.resolution, false), options_.target_error_rad);
         report_ = engine_.submit(set.region.centre, limits);
         learn(report_.finished_us);
+        due_ns = std::max(due_ns + options_.period_ns, clock_.now_ns());
     }
+}
+
+void WalkStages::publish_rehearsed(const prepare::Region& region, std::int64_t due_ns) {
+    PoseSample& sample = poses_.back();
+    sample = {};
+    sample.time_ns = due_ns;
+    sample.pose = sample.before = region.centre;
+    sample.predicted = {true, region, 0, 0};
+    sample.hints = hints();
+    sample.valid = true;
+    poses_.publish();
 }
 
 void WalkStages::sample(rt::FrameRecord& record) {
@@ -111,15 +139,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
     now_.predicted = newest.predicted;
     now_.frame = walked_++;
     now_.time_ns = record.due_ns;
-    now_.hints = {};
-    // One headroom for all: that of a resolution that is not drawn says nothing of these frames.
-    const Correction drawn = correction_at(learnt_resolution_, filtered_);
-    for (std::size_t step = 0; step < now_.hints.planned_us.size(); ++step) {
-        const double factor =
-            request_.correct_costs ? corrections_.expected(state_of(model::resolution_steps[step], filtered_)) : drawn.factor;
-        now_.hints.planned_us[step] = planned_us() / (factor * drawn.headroom);
-    }
-    if (request_.correct_costs) now_.hints.form_ratio = forms_.ratio();
+    now_.hints = hints();
     now_.valid = true;
     take(newest, record);
     poses_.back() = now_;

@@ -55,8 +55,8 @@ struct WalkStagesOptions {
     std::atomic<bool>* lost = nullptr;    ///< set when the graphics device is lost; may be null
 };
 
-/// Drawn of the first view before the walk: a correction is the median of about as many.
-constexpr int rehearsed_frames = 16;
+/// Drawn of the first view before the walk: a correction is the median of 15. The others learn the resolution that it leads to.
+constexpr int rehearsed_frames = 24;
 
 /// The stages of a walk. The frame thread calls all members.
 class WalkStages final : public rt::FrameStages {
@@ -66,8 +66,9 @@ public:
                rt::TripleBuffer<prepare::PreparedFrame>& prepared, SnapshotStore& snapshots, KeptFrame& kept,
                const WalkStagesOptions& options);
 
-    /// Draws the prepared first view again and again, as frames of the walk. So corrections are known before the first frame.
-    /// Ends two periods before `until_ns` at the latest. Nothing on the virtual clock, or where costs are not corrected.
+    /// Draws the first view again and again, as frames of the walk: one a period, with a set prepared for the next ones. So
+    /// corrections are known before the first frame, and the resolution is chosen by them. Ends two periods before `until_ns` at
+    /// the latest. Nothing on the virtual clock, or where costs are not corrected.
     void rehearse(std::int64_t until_ns);
 
     void sample(rt::FrameRecord& record) override;
@@ -79,6 +80,8 @@ public:
 private:
     void inject(FramePhase phase, const rt::FrameRecord& record) const;
     void prepare_inline();
+    [[nodiscard]] PrepareHints hints() const;
+    void publish_rehearsed(const prepare::Region& region, std::int64_t due_ns);
     void take(const FramePose& from, rt::FrameRecord& record);
     void latch(rt::FrameRecord& record);
     /// What the frames at this resolution have taught, as far as predictions are corrected. filtered: those that bought the
