@@ -35,8 +35,8 @@ private:
     static constexpr std::uint32_t every = 3;
     std::uint32_t at_ = 0, tried_ = 0, best_before_ = 0, frame_ = 0;
     std::array<double, model::resolution_steps.size()> lost_{};
-    std::uint32_t judged_ = 0;  ///< of this round
-    bool decided_ = false;      ///< at least once, by about the present time
+    std::uint32_t judged_ = 0;                     ///< of this round
+    bool decided_ = false;                         ///< at least once, by about the present time
     PlannedTimes planned_us_{}, decided_by_us_{};  ///< the newest; that of the last round
 };
 
