@@ -15,18 +15,18 @@ double lost_share(const ValueCurve& curve, double items_us) {
 
 float ResolutionChooser::gain() const { return at_ == 0 ? 0.0F : static_cast<float>(lost_[0] - lost_[at_]); }
 
-bool ResolutionChooser::jumped() const {
-    constexpr double far_off = 1.2;  // two resolutions side by side differ by more in their share of the time
+bool ResolutionChooser::time_changed() const {
+    constexpr double far_off = 1.2;  // raster time changes by more from one resolution to the next
     const double ratio = planned_us_[at_] / decided_by_us_[at_];
     return ratio > far_off || ratio < 1 / far_off;  // of NaN, by 0/0: no
 }
 
 float ResolutionChooser::trial(const PlannedTimes& planned_us) {
     planned_us_ = planned_us;
-    if (decided_ && jumped()) {
-        decided_ = false;
-        judged_ = 0;
-    }
+    if (held_ > 0)
+        --held_;
+    else if (decided_ && time_changed())
+        decided_ = false, judged_ = 0;  // the round begins anew
     if (++frame_ % every != 0 && decided_) return 0.0F;
     tried_ = (tried_ + 1) % model::resolution_steps.size();
     if (tried_ == at_) tried_ = (tried_ + 1) % model::resolution_steps.size();
@@ -40,11 +40,16 @@ void ResolutionChooser::judge(double lost_now, double lost_tried) {
     lost_[tried_] = lost_tried;
     if (++judged_ + 1 < lost_.size()) return;
     judged_ = 0;
+    const bool first = !(decided_by_us_[at_] > 0.0), alone = !decided_ && (first || time_changed());
     const auto best = static_cast<std::uint32_t>(std::min_element(lost_.begin(), lost_.end()) - lost_.begin());
     const bool wins = lost_[best] < lost_now * (1.0 - (best > at_ ? softer : sharper)) - unseen;
-    if (wins && (best == best_before_ || !decided_)) at_ = tried_ = best;
+    const bool open = wins && best != best_before_ && !alone;  // the next round decides
+    if (wins && !open) {
+        at_ = tried_ = best;
+        if (alone && !first) held_ = hold;
+    }
     decided_ = true;
-    decided_by_us_ = planned_us_;
+    if (!open) decided_by_us_ = planned_us_;
     best_before_ = wins ? best : at_;
 }
 

@@ -14,8 +14,8 @@ using PlannedTimes = std::array<double, model::resolution_steps.size()>;
 
 /// Compares what the budget buys at each resolution. With every third set one other resolution is evaluated, in turns. When all
 /// have been, the best one is taken if it wins by a margin, and won the round before too. The margin is larger for a softer
-/// picture. The first round takes each set, and decides alone. So does the round after the planned time has jumped: what was
-/// decided by another time says little. Deterministic.
+/// picture. The first round takes each set, and decides alone. So does a round after the planned time has changed by far, if
+/// it has not come back meanwhile. After such a decision the next ones take two rounds for a while. Deterministic.
 /// Source: dynamic video resolution, Montrym et al. 1997 (InfiniteReality); here it is priced like any form.
 class ResolutionChooser {
 public:
@@ -30,14 +30,15 @@ public:
     [[nodiscard]] float gain() const;
 
 private:
-    [[nodiscard]] bool jumped() const;
+    [[nodiscard]] bool time_changed() const;  ///< by far, since the last decision
 
-    static constexpr std::uint32_t every = 3;
+    static constexpr std::uint32_t every = 3, hold = 12;  // sets
     std::uint32_t at_ = 0, tried_ = 0, best_before_ = 0, frame_ = 0;
     std::array<double, model::resolution_steps.size()> lost_{};
     std::uint32_t judged_ = 0;                     ///< of this round
-    bool decided_ = false;                         ///< at least once, by about the present time
-    PlannedTimes planned_us_{}, decided_by_us_{};  ///< the newest; that of the last round
+    bool decided_ = false;                         ///< by about the present time
+    std::uint32_t held_ = 0;                       ///< sets from now on in which no round decides alone
+    PlannedTimes planned_us_{}, decided_by_us_{};  ///< the newest; of the last decision
 };
 
 /// Share of the value that is lost where `items_us` may be spent on items, 0..1.

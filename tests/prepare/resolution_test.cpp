@@ -83,25 +83,58 @@ TEST(ResolutionChooser, DecidesAtOnceInTheBeginning) {
     EXPECT_EQ(chooser.gain(), 0.0F);
 }
 
-TEST(ResolutionChooser, DecidesAnewWhereThePlannedTimeHasJumped) {
-    const auto lost = [](float soft, float sharp) {
-        return [=](float r) { return r == 0.625F ? soft : r == 1.0F ? sharp : 0.2; };
-    };
+/// At 62.5 % `soft` is lost, at 100 % `sharp`, elsewhere more.
+auto losses(double soft, double sharp) {
+    return [=](float r) { return r == 0.625F ? soft : r == 1.0F ? sharp : 0.2; };
+}
+constexpr double time_us = 1e4;
+
+TEST(ResolutionChooser, DecidesAnewWhereThePlannedTimeHasChanged) {
     ResolutionChooser chooser;
-    walk(chooser, 4, lost(0.02, 0.1), 1e4);
+    walk(chooser, 4, losses(0.02, 0.1), time_us);
     ASSERT_EQ(chooser.resolution(), 0.625F);
-    walk(chooser, 8, lost(0.02, 0.0), 1.15e4);
+    walk(chooser, 8, losses(0.02, 0.0), 1.15 * time_us);
     EXPECT_EQ(chooser.resolution(), 0.625F) << "a small change: it takes two rounds";
-    walk(chooser, 3, lost(0.02, 0.0), 1.3e4);
+    walk(chooser, 3, losses(0.02, 0.0), 1.3 * time_us);
     EXPECT_EQ(chooser.resolution(), 0.625F);
-    walk(chooser, 1, lost(0.02, 0.0), 1.3e4);
+    walk(chooser, 1, losses(0.02, 0.0), 1.3 * time_us);
     EXPECT_EQ(chooser.resolution(), 1.0F) << "after each of the four others";
-    walk(chooser, 4, lost(0.02, 0.1), 1e4);
-    EXPECT_EQ(chooser.resolution(), 0.625F) << "back in as few";
-    walk(chooser, 4, lost(0.02, 0.0), 0);
-    EXPECT_EQ(chooser.resolution(), 1.0F) << "no time at all is a change too";
-    walk(chooser, 4, lost(0.02, 0.1), std::nan(""));
-    EXPECT_EQ(chooser.resolution(), 1.0F) << "what is no number is none";
+    walk(chooser, 12, losses(0.02, 0.1), 0.8 * time_us);
+    EXPECT_EQ(chooser.resolution(), 1.0F) << "held for twelve sets";
+    walk(chooser, 4, losses(0.02, 0.1), 0.8 * time_us);
+    EXPECT_EQ(chooser.resolution(), 0.625F) << "as soon as before after that";
+}
+
+TEST(ResolutionChooser, ATimeThatGoesToAndFroDoesNotChangeEachPicture) {
+    ResolutionChooser chooser;
+    walk(chooser, 4, losses(0.02, 0.1), time_us);
+    int changes = 0;
+    for (int i = 0; i < 30; ++i) {  // each half lasts as long as a round
+        const float before = chooser.resolution();
+        walk(chooser, 4, losses(0.02, i % 2 == 0 ? 0.0 : 0.1), i % 2 == 0 ? 1.5 * time_us : time_us);
+        if (chooser.resolution() != before) ++changes;
+    }
+    EXPECT_GT(changes, 0);
+    EXPECT_LE(changes, 8) << "120 sets; at most one change in sixteen";
+}
+
+TEST(ResolutionChooser, AShortChangeOfThePlannedTimeDecidesNothing) {
+    ResolutionChooser chooser;
+    walk(chooser, 4, losses(0.02, 0.1), time_us);
+    for (int i = 0; i < 5; ++i) {
+        walk(chooser, 1, losses(0.02, 0.0), 2 * time_us);
+        walk(chooser, 3, losses(0.02, 0.1), time_us);
+        EXPECT_EQ(chooser.resolution(), 0.625F);
+    }
+}
+
+TEST(ResolutionChooser, NoTimeIsAChangeTooButNoNumberIsNone) {
+    ResolutionChooser chooser;
+    walk(chooser, 4, losses(0.02, 0.1), time_us);
+    walk(chooser, 4, losses(0.02, 0.0), 0);
+    EXPECT_EQ(chooser.resolution(), 1.0F);
+    walk(chooser, 16, losses(0.02, 0.1), std::nan(""));
+    EXPECT_EQ(chooser.resolution(), 1.0F);
 }
 
 TEST(ValueCurve, IsReadBetweenItsLevels) {

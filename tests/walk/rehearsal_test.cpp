@@ -2,8 +2,11 @@
 // predicted.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <memory>
 
+#include "rt/base/progress.hpp"
 #include "tests/walk/walk_fixture.hpp"
 
 namespace surefoot {
@@ -48,6 +51,27 @@ float first_resolution(bool correct_costs) {
 TEST(Rehearsal, TheFirstFrameHasTheResolutionThatItsTimeAllows) {
     EXPECT_LT(first_resolution(false), 1);
     EXPECT_EQ(first_resolution(true), 1) << "frames take a small part of what the table says";
+}
+
+TEST(Rehearsal, AStopEndsItAtOnce) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(3);
+    request.clock = rt::ClockKind::real;
+    request.fifo = false;
+    request.rate_hz = 10;  // else it would take a second and a half
+    std::atomic<bool> stop{false};
+    std::chrono::steady_clock::time_point started;
+    walk::WalkObserver observer;
+    observer.on_started = [&](const walk::WalkStart& /*start*/) {
+        started = std::chrono::steady_clock::now();
+        stop.store(true);
+    };
+    Progress progress;
+    progress.stop = &stop;
+    const auto outcome = walk::run_walk(request, progress, observer);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text();
+    EXPECT_LT(std::chrono::steady_clock::now() - started, std::chrono::milliseconds(900));
+    EXPECT_TRUE(outcome->stopped);
+    EXPECT_TRUE(outcome->records.empty());
 }
 
 TEST(Rehearsal, ThereIsNoneOnTheVirtualClockOrWithoutCorrection) {

@@ -43,7 +43,7 @@ void PrepareThread::stop() {
 
 void PrepareThread::prepare_newest() {
     const double period_s = static_cast<double>(grid_.period_ns) * 1e-9;
-    const bool frame = poses_.refresh() && poses_.front().valid && poses_.front().time_ns != seen_ns_;
+    const bool frame = poses_.refresh() && poses_.front().valid && poses_.front().frame != seen_;
     bool jump = jump_poses_ != nullptr && jump_poses_->refresh();
     jump = jump && poses_.front().valid && jump_poses_->front().time_ns > poses_.front().time_ns;  // else a frame has it already
     if (!frame && !jump) return;
@@ -55,7 +55,7 @@ void PrepareThread::prepare_newest() {
         sample.dt_s = jump_poses_->front().dt_s;
         sample.predicted = {};
     }
-    seen_ns_ = poses_.front().time_ns;
+    seen_ = sample.frame;
     prepare_after(engine_, sample, period_s, prepared_.back());
     rhythm_.prepared(prepared_.back());
     if (jump) rhythm_.forget();  // its region is of a standing eye
@@ -74,7 +74,6 @@ void PrepareThread::run() {
     const std::int64_t offset_ns = grid_.period_ns / 40;
     const std::int64_t step_ns = jump_poses_ != nullptr ? grid_.period_ns / 8 : grid_.period_ns;
     while (!stopping_.load(std::memory_order_relaxed)) {
-        if (clock.now_ns() < grid_.t0_ns) rhythm_.forget();  // rehearsed frames have no numbers
         prepare_newest();
         // The steps are counted from each frame's start, so that one of them is always where it is without them.
         const std::int64_t begun_ns = grid_.t0_ns + offset_ns, now = clock.now_ns();

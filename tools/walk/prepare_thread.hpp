@@ -27,8 +27,8 @@ struct PredictedRegion {
 
 /// What the frame thread publishes at each frame's start.
 struct PoseSample {
-    std::uint64_t frame = 0;   ///< walked frames, from 0; of rehearsed ones 0
-    std::int64_t time_ns = 0;  ///< when it was due; no two have the same
+    std::uint64_t frame = 0;   ///< rehearsed and walked frames, from 0
+    std::int64_t time_ns = 0;  ///< when it was due
     Pose pose, before;         ///< now, and one frame ago
     double dt_s = 0;
     PredictedRegion predicted;  ///< not known: the last two poses say where the walk goes
@@ -100,7 +100,7 @@ private:
     rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
     JumpBuffer* jump_poses_;
     PrepareRhythm rhythm_ GUARDED_BY(prepares_);
-    std::int64_t seen_ns_ GUARDED_BY(prepares_) = -1;  ///< PoseSample::time_ns of the frame prepared after last
+    std::uint64_t seen_ GUARDED_BY(prepares_) = ~0ULL;  ///< frame prepared after last
     const rt::Placement placement_;
     std::optional<Error> misplaced_;  ///< written before placed_
     std::latch placed_{1};

@@ -125,7 +125,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     rt::VirtualClock virtual_time;
     rt::Clock& clock = s.virtual_clock ? static_cast<rt::Clock&>(virtual_time) : real;
     // Far enough ahead that all threads are in place before the first slot, and the first view is rehearsed.
-    constexpr std::int64_t in_place_ns = 300'000'000, max_rehearsal_ns = 1'000'000'000;
+    constexpr std::int64_t in_place_ns = 300'000'000, max_rehearsal_ns = 1'200'000'000;
     const std::int64_t ahead_ns = in_place_ns + std::min(rehearsed_frames * s.grid.period_ns, max_rehearsal_ns);
     s.grid.t0_ns = s.virtual_clock ? s.grid.period_ns : real.now_ns() + ahead_ns;
     s.on_frame_core = on_frame_core(s.plan, s.rasterisers);
@@ -154,7 +154,9 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
         in_place.count_down();
         rt::prefault_stack();
         if (!s.virtual_clock) rt::prefault_heap();
-        WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, snapshots, s.kept, stages_options(s));
+        WalkStagesOptions of_stages = stages_options(s);
+        of_stages.stop = progress.stop;
+        WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, snapshots, s.kept, of_stages);
         s.engine->device().bind();
         stages.rehearse(s.grid.t0_ns);
         s.burn_ns = rt::run_frame_loop(options, clock, stages, ring).burn_ns;

@@ -90,27 +90,36 @@ void WalkStages::rehearse(std::int64_t until_ns) {
     std::int64_t due_ns = clock_.now_ns();
     for (int i = 0; i < rehearsed_frames && due_ns < until_ns - 2 * options_.period_ns; ++i) {
         clock_.sleep_until_ns(due_ns);
+        if ((options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) || engine_.device().lost()) break;
         prepared_.refresh();
         const prepare::PreparedFrame& set = prepared_.front();
-        publish_rehearsed(set.region, due_ns);
+        limit_.count(set);
+        const FramePose newest = pose_source_.sample({0, due_ns, clock_.now_ns()});
+        publish_rehearsed(newest, due_ns);
+        due_ns += options_.period_ns;
+        if (!covers(set.region, newest.pose, set.viewport)) continue;  // a button leads elsewhere
         SubmitLimits limits;
         limits.limit_us = limit_.us();
         limits.margin_us = margin_us();
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
         engine_.select(set, planned_us(), correction_at(set.resolution, false), options_.target_error_rad);
-        report_ = engine_.submit(set.region.centre, limits);
+        report_ = engine_.submit(newest.pose, limits);
         learn(report_.finished_us);
-        due_ns = std::max(due_ns + options_.period_ns, clock_.now_ns());
+        due_ns = std::max(due_ns, clock_.now_ns());
     }
+    rehearsed_ = walked_;
 }
 
-void WalkStages::publish_rehearsed(const prepare::Region& region, std::int64_t due_ns) {
+void WalkStages::publish_rehearsed(const FramePose& newest, std::int64_t due_ns) {
     PoseSample& sample = poses_.back();
     sample = {};
+    sample.frame = walked_++;
     sample.time_ns = due_ns;
-    sample.pose = sample.before = region.centre;
-    sample.predicted = {true, region, 0, 0};
+    sample.pose = newest.pose;
+    sample.before = newest.before;
+    sample.dt_s = static_cast<double>(options_.period_ns) * 1e-9;
+    sample.predicted = newest.predicted;
     sample.hints = hints();
     sample.valid = true;
     poses_.publish();
@@ -120,7 +129,7 @@ void WalkStages::sample(rt::FrameRecord& record) {
     inject(FramePhase::sample, record);
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
     // With a control, the walk goes on where its last block ended: slots of the bare loop do not advance the path.
-    path_slot_ = request_.control ? walked_ : record.slot;
+    path_slot_ = request_.control ? walked_ - rehearsed_ : record.slot;
     const FramePose newest = pose_source_.sample(frame_time(record));
     const bool unseen = !now_.valid || newest.jumped;  // no frame has seen where this one's motion comes from
     if (virtual_clock_) {
@@ -301,7 +310,7 @@ void WalkStages::account(rt::FrameRecord& record) {
     if (report_.forecast_us > 0 && !report_.at_rest) overshoot_.update(actual_us - report_.forecast_us);
     if (coarse_ && record.missed && record.cause == rt::Cause::none) record.cause = rt::Cause::prepared_too_old;
     record.floor_share = report_.floor_share;
-    const bool follows = now_.frame > 0;  // the cut before the first frame is of the warm-up
+    const bool follows = now_.frame > rehearsed_;  // the cut before the first frame is of the warm-up
     record.floor_frame =
         follows && !report_.at_rest && engine_.fell_to_floor(now_.pose, time_left_us_, cost_factor(record, actual_us));
     keep(record);

@@ -49,13 +49,14 @@ struct WalkStagesOptions {
     double limit_us = 0;   ///< of the in-frame check, from the due time
     int shared_cores = 0;  ///< of real-time rasterisers and workers: FrameLimit; 0: they share none
     double target_error_rad = 0;
-    std::uint64_t capture_frame = ~0ULL;  ///< number of the frame to keep
-    bool capture_missed = false;          ///< also keep missed frames, one at a time
-    const FaultHook* inject = nullptr;    ///< injects faults, for tests; null: none
-    std::atomic<bool>* lost = nullptr;    ///< set when the graphics device is lost; may be null
+    std::uint64_t capture_frame = ~0ULL;      ///< number of the frame to keep
+    bool capture_missed = false;              ///< also keep missed frames, one at a time
+    const FaultHook* inject = nullptr;        ///< injects faults, for tests; null: none
+    const std::atomic<bool>* stop = nullptr;  ///< ends the rehearsal; may be null
+    std::atomic<bool>* lost = nullptr;        ///< set when the graphics device is lost; may be null
 };
 
-/// Drawn of the first view before the walk: a correction is the median of 15. The others learn the resolution that it leads to.
+/// At most. A correction is the median of 15, and changes by 6 % a frame; then a resolution is chosen.
 constexpr int rehearsed_frames = 24;
 
 /// The stages of a walk. The frame thread calls all members.
@@ -66,9 +67,9 @@ public:
                rt::TripleBuffer<prepare::PreparedFrame>& prepared, SnapshotStore& snapshots, KeptFrame& kept,
                const WalkStagesOptions& options);
 
-    /// Draws the first view again and again, as frames of the walk: one a period, with a set prepared for the next ones. So
-    /// corrections are known before the first frame, and the resolution is chosen by them. Ends two periods before `until_ns` at
-    /// the latest. Nothing on the virtual clock, or where costs are not corrected.
+    /// Draws the first view again and again, as frames of the walk: one a period, with sets prepared meanwhile. So corrections
+    /// are known before the first frame, and the resolution is chosen by them. The last one begins two periods before `until_ns`
+    /// at the latest. A stop ends it. Nothing on the virtual clock, or where costs are not corrected.
     void rehearse(std::int64_t until_ns);
 
     void sample(rt::FrameRecord& record) override;
@@ -81,7 +82,7 @@ private:
     void inject(FramePhase phase, const rt::FrameRecord& record) const;
     void prepare_inline();
     [[nodiscard]] PrepareHints hints() const;
-    void publish_rehearsed(const prepare::Region& region, std::int64_t due_ns);
+    void publish_rehearsed(const FramePose& newest, std::int64_t due_ns);
     void take(const FramePose& from, rt::FrameRecord& record);
     void latch(rt::FrameRecord& record);
     /// What the frames at this resolution have taught, as far as predictions are corrected. filtered: those that bought the
@@ -113,7 +114,8 @@ private:
     SubmitReport report_;
     float learnt_resolution_ = 1;       ///< of the last frame that drew a selected cut; the picture at rest is another
     double time_left_us_ = 0;           ///< until the limit, as the last submission began
-    std::uint64_t walked_ = 0;          ///< frames so far, without the control's bare ones
+    std::uint64_t walked_ = 0;          ///< frames so far, with the rehearsed ones and without the control's bare ones
+    std::uint64_t rehearsed_ = 0;       ///< of them
     std::uint64_t path_slot_ = 0;       ///< position on the path, in periods; with a control it does not advance in bare blocks
     bool filtered_ = false;             ///< the last frame that was learnt from had the second mip level
     bool coarse_ = false;               ///< the last selection was Engine::select_last()
