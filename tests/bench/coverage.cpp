@@ -3,7 +3,7 @@
 // drawn. A hole: the cut shows the sky where full detail within 50 m covers the pixel and all within two pixels. A size: pixels
 // that a coarse form covers alone, against full detail of what it stands for, where that covers over 400 pixels.
 //
-// bench_coverage MODEL.walk [POSES 1000] [PATH.csv] [LIFT_M] [STATE_DIR] [SHARE 0.25] [PICTURES_DIR] -> one JSON object.
+// bench_coverage MODEL.walk [POSES 1000] [PATH.csv] [LIFT_M] [STATE_DIR] [SHARE 0.5] [PICTURES_DIR] -> one JSON object.
 // PICTURES_DIR: cut and full detail at the pose with the most holes, as worst-cut.png and worst-full.png.
 #include <fmt/format.h>
 
@@ -200,7 +200,7 @@ int main(int argc, char** argv) {
         return fmt::print(stderr, "bench_coverage MODEL.walk [POSES] [PATH.csv] [LIFT_M] [STATE_DIR] [SHARE] [DIR]\n"), 2;
     const auto argument = [&](int i) { return argc > i ? std::string(argv[i]) : std::string(); };
     const int poses = argc > 2 ? std::max(1, std::atoi(argv[2])) : 1000;
-    const double share = argc > 6 ? std::atof(argv[6]) : 0.25;
+    const double share = argc > 6 ? std::atof(argv[6]) : 0.5;
     const bench::SceneArguments arguments{argument(1), argument(3), argc > 4 ? std::atof(argv[4]) : 0, argument(5)};
     auto scene = bench::open_scene(arguments);
     if (!scene) return fail(scene.error());
