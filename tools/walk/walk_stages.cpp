@@ -87,10 +87,12 @@ PrepareHints WalkStages::hints() const {
 
 void WalkStages::rehearse(std::int64_t until_ns) {
     if (virtual_clock_ || !request_.correct_costs) return;
+    gl::Device& device = engine_.device();
+    device.draws.plays();
     std::int64_t due_ns = clock_.now_ns();
     for (int i = 0; i < rehearsed_frames && due_ns < until_ns - 2 * options_.period_ns; ++i) {
         clock_.sleep_until_ns(due_ns);
-        if ((options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) || engine_.device().lost()) break;
+        if ((options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) || device.lost()) break;
         prepared_.refresh();
         const prepare::PreparedFrame& set = prepared_.front();
         limit_.count(set);
