@@ -349,13 +349,13 @@ void EdgeCollapse::Mesh::evaluate(std::uint32_t p) {
     ++stamps[p];
     targets[p] = no_index;
     if (fixed[p] || around[p].empty() || around[p].size() > max_triangles_around) return;
-    std::vector<std::pair<double, std::uint32_t>> steps;
+    std::vector<std::pair<double, std::uint32_t>> collapses;
     std::vector<Move> moved;
     for (const Neighbour& n : neighbours(p))
         if (around[n.place].size() <= max_triangles_around && moves(p, n.place, moved))
-            steps.emplace_back(cost(p, n.place, moved), n.place);
-    std::sort(steps.begin(), steps.end());
-    for (const auto& [costs, q] : steps) {
+            collapses.emplace_back(cost(p, n.place, moved), n.place);
+    std::sort(collapses.begin(), collapses.end());
+    for (const auto& [costs, q] : collapses) {
         if (!allowed(p, q)) continue;
         targets[p] = q;
         queue.push({costs, p, stamps[p]});

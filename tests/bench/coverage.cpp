@@ -93,14 +93,16 @@ double distance_to(const Box& box, const dvec3& eye) {
 
 /// Pixels that `cut` leaves open although `full` is there and all round.
 std::size_t holes(const Mask& cut, const Mask& full, int width, int height) {
+    const auto at = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    };
     std::size_t found = 0;
     for (int y = round_px; y < height - round_px; ++y) {
         for (int x = round_px; x < width - round_px; ++x) {
-            if (cut[static_cast<std::size_t>(y * width + x)] != 0) continue;
+            if (cut[at(x, y)] != 0) continue;
             bool whole = true;
             for (int v = y - round_px; whole && v <= y + round_px; ++v)
-                for (int u = x - round_px; whole && u <= x + round_px; ++u)
-                    whole = full[static_cast<std::size_t>(v * width + u)] != 0;
+                for (int u = x - round_px; whole && u <= x + round_px; ++u) whole = full[at(u, v)] != 0;
             found += whole ? 1 : 0;
         }
     }

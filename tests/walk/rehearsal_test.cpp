@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 
+#include "render/model/cost.hpp"
 #include "rt/base/progress.hpp"
 #include "tests/walk/walk_fixture.hpp"
 
