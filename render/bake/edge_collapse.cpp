@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <queue>
 #include <unordered_map>
 
@@ -25,7 +26,8 @@ struct CornerKey {
     model::Vertex vertex;
     model::Index material;
     bool operator==(const CornerKey& o) const {
-        return material == o.material && std::memcmp(&vertex, &o.vertex, sizeof(vertex)) == 0;
+        using Bits = std::array<std::uint32_t, sizeof(model::Vertex) / sizeof(std::uint32_t)>;
+        return material == o.material && std::bit_cast<Bits>(vertex) == std::bit_cast<Bits>(o.vertex);
     }
 };
 
