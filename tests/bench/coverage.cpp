@@ -1,7 +1,9 @@
 // Bench: do coarse forms leave holes, and do objects keep their size? Poses along a path look all round. Each cut may take a
 // share of full detail's predicted time, at full resolution. Two engines draw it before two skies: where they agree, something is
-// drawn. A hole: the cut shows the sky where full detail within 50 m covers the pixel and all within two pixels. A size: pixels
-// that a coarse form covers alone, against full detail of what it stands for, where that covers over 400 pixels.
+// drawn. A hole: the cut shows the sky, but full detail of leaves whose boxes are within 50 m covers the pixel and all within two
+// pixels. So a hole before something else is not seen, and an outline that draws back by three pixels counts. A size: pixels that
+// a coarse form covers alone, against full detail of what it stands for, where either covers over 400 pixels. Only forms wholly
+// in view are sized, at every 25th pose.
 //
 // bench_coverage MODEL.walk [POSES 1000] [PATH.csv] [LIFT_M] [STATE_DIR] [SHARE 0.5] [PICTURES_DIR] -> one JSON object.
 // PICTURES_DIR: cut and full detail at the pose with the most holes, as worst-cut.png and worst-full.png.
@@ -36,9 +38,9 @@ using Mask = std::vector<std::uint8_t>;  // a byte a pixel: 1 where something is
 
 constexpr double near_m = 50;
 constexpr std::size_t min_pixels = 400;
-constexpr int round_px = 2;                  // of full detail that must be there too
-constexpr int usual_green = 255 * 72 / 100;  // of model::usual_sky
-constexpr int poses_a_sizing = 25;           // each form is drawn alone: a pose in so many
+constexpr int round_px = 2;  // of full detail that must be there too
+const int usual_green = static_cast<int>(255 * model::usual_sky[1]);
+constexpr int poses_a_sizing = 25;  // each form is drawn alone: a pose in so many
 
 /// Two devices: the usual sky, and a black one. The first one chooses the cuts.
 class TwoSkies {
