@@ -199,6 +199,7 @@ bool BakeContext::make_forms() {
     ChainOptions chain = chain_options(options, proxy_or_none);
     chain.cut_out = cut_out;
     chain.pictures = pictures_of(model);
+    chain.looks = &model;
     std::vector<std::vector<std::string>> notes(scene.meshes.size());
     for_all(scene.meshes.size(), [&](std::size_t m) {
         if (!go || stretch[m] == 0) return;

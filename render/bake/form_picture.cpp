@@ -212,30 +212,56 @@ void FormPicture::clear(const FormView& of, bool by_the_sun) {
     samples.assign(static_cast<std::size_t>(view.width) * view.height, {});
 }
 
+namespace {
+
+/// From vertices to a picture's samples.
+struct ToPicture {
+    mat3 turned;
+    vec3 origin;
+    mat3 cofactor;
+    bool mirrored = false;
+
+    ToPicture(const FormView& view, const mat3& linear, const dvec3& at) : cofactor(cofactors(linear)) {
+        const Direction& from = view.direction;
+        const double pixel_m = std::ldexp(1.0, view.exponent);
+        const mat3 to_view =
+            glm::transpose(mat3(from.right / static_cast<float>(pixel_m), from.up / static_cast<float>(pixel_m), from.towards));
+        turned = to_view * linear;
+        const dvec3 away = at - view.middle;
+        origin =
+            vec3(glm::dot(away, dvec3(from.right)) / pixel_m - static_cast<double>(view.left),
+                 glm::dot(away, dvec3(from.up)) / pixel_m - static_cast<double>(view.low), glm::dot(away, dvec3(from.towards)));
+        mirrored = glm::dot(linear[0], cofactor[0]) < 0;
+    }
+    [[nodiscard]] Painter::Corner corner(const model::Vertex& v) const {
+        return {turned * vec3(v.position[0], v.position[1], v.position[2]) + origin, &v};
+    }
+};
+
+}  // namespace
+
 void draw_form(const model::Model& model, const model::Representation& rep, FormPicture& picture) {
-    const FormView& view = picture.view;
     if (picture.samples.empty()) return;
-    const Direction& from = view.direction;
     const model::Placement& placement = model.placements[rep.placement];
-    const mat3& linear = placement.linear;
-    const double pixel_m = std::ldexp(1.0, view.exponent);
-    const mat3 to_view =
-        glm::transpose(mat3(from.right / static_cast<float>(pixel_m), from.up / static_cast<float>(pixel_m), from.towards));
-    const mat3 turned = to_view * linear;
-    const dvec3 away = placement.origin - view.middle;
-    const vec3 origin(glm::dot(away, dvec3(from.right)) / pixel_m - static_cast<double>(view.left),
-                      glm::dot(away, dvec3(from.up)) / pixel_m - static_cast<double>(view.low),
-                      glm::dot(away, dvec3(from.towards)));
-    const mat3 cofactor = cofactors(linear);
-    const bool mirrored = glm::dot(linear[0], cofactor[0]) < 0;
+    const ToPicture to(picture.view, placement.linear, placement.origin);
     for (model::Index p = rep.first_part; p < rep.first_part + rep.part_count; ++p) {
         const model::Part& part = model.parts[p];
-        const Painter painter{model, model.materials[part.material], picture, cofactor, mirrored};
+        const Painter painter{model, model.materials[part.material], picture, to.cofactor, to.mirrored};
         const auto corner = [&](std::uint32_t i) {
-            const model::Vertex& v = model.vertices[part.first_vertex + model.indices[part.first_index + i]];
-            return Painter::Corner{turned * vec3(v.position[0], v.position[1], v.position[2]) + origin, &v};
+            return to.corner(model.vertices[part.first_vertex + model.indices[part.first_index + i]]);
         };
         for (std::uint32_t i = 0; i + 2 < part.index_count; i += 3) painter.draw({corner(i), corner(i + 1), corner(i + 2)});
+    }
+}
+
+void draw_geometry(const model::Model& looks, const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts,
+                   FormPicture& picture) {
+    if (picture.samples.empty()) return;
+    const ToPicture to(picture.view, mat3(1.0F), dvec3(0.0));
+    for (const GeometryPart& part : parts) {
+        const Painter painter{looks, looks.materials[part.material], picture, to.cofactor, to.mirrored};
+        const auto corner = [&](std::size_t i) { return to.corner(vertices[part.indices[i]]); };
+        for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) painter.draw({corner(i), corner(i + 1), corner(i + 2)});
     }
 }
 

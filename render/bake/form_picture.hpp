@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "render/bake/geometry.hpp"
 #include "render/model/model.hpp"
 #include "render/model/picture_loss.hpp"
 
@@ -54,6 +55,9 @@ struct FormPicture {
 
 /// Draws a form over what the picture holds. Blended surfaces show in as many samples as they are opaque.
 void draw_form(const model::Model& model, const model::Representation& rep, FormPicture& picture);
+/// The same of parts over vertices in the world's frame. `looks`: the model with their materials and textures.
+void draw_geometry(const model::Model& looks, const std::vector<model::Vertex>& vertices, const std::vector<GeometryPart>& parts,
+                   FormPicture& picture);
 /// Draws a picture of the same grid, with pixels that are no larger, over what the picture holds.
 void draw_picture(const FormPicture& from, FormPicture& picture);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "render/bake/baked_colours.hpp"
+#include "render/bake/prisms.hpp"
 
 namespace surefoot::bake {
 
@@ -194,6 +195,7 @@ MeshForm make_form(Geometry geometry, const ChainOptions& options) {
     form.box.min = local.min + geometry.centre;
     form.box.max = local.max + geometry.centre;
     form.chain = make_chain(std::move(geometry), options);
+    add_prisms(form.chain, options);
     return form;
 }
 
