@@ -193,7 +193,6 @@ bool BakeContext::make_forms() {
         stretch[object.mesh] = std::max(stretch[object.mesh], largest_stretch(dmat3(object.world)));
     }
     const dvec3 extent = world.max - world.min;
-    const std::uint32_t max_item_triangles = max_triangles(options);
     Stage stage(progress, "levels of detail", scene.meshes.size());
     std::atomic<bool> go{true};
     ChainOptions chain = chain_options(options, proxy_or_none);
@@ -208,7 +207,7 @@ bool BakeContext::make_forms() {
             stand_ins_of(scene, static_cast<importer::Index>(m), model, geometry, notes[m]);
         const CutLimits limits =
             cut_limits({std::max({extent.x, extent.y, extent.z}), stretch[m], std::uint64_t{placements[m]} * geometry.triangles(),
-                        has_pictures(geometry, chain), max_item_triangles, !stand_ins.empty()});
+                        has_pictures(geometry, chain), max_triangles(options), !stand_ins.empty()});
         by_mesh[m] = bake::make_forms(std::move(geometry), limits, chain, stand_ins, &notes[m]);
         if (!stage.step()) go = false;
     });

@@ -11,8 +11,8 @@ namespace surefoot::bake {
 
 namespace {
 
-constexpr std::uint32_t profile_px = 64;  // about as many samples across a picture
-constexpr std::size_t profile_rows = 48;
+constexpr std::uint32_t profile_px = 64;       // about as many samples across a picture
+constexpr double max_rows = 48, min_rows = 8;  // what has fewer pixels in height is flat
 constexpr double square_from = 1.2;     // of the mean width along the diagonals, against that along the axes: a square has 1.41
 constexpr double closed_from = 0.15;    // of the widest section: narrower ends stay open
 constexpr double steepest_slope = 1.5;  // of normals
@@ -168,7 +168,8 @@ void add_vertices(Geometry& g, const PrismStack& stack, const Profile& profile, 
             const double turn = std::atan2(c.x, c.y) / (2 * std::numbers::pi) + 2;
             const auto view = static_cast<std::size_t>(std::lround(turn * profile_views)) % profile_views;
             if (const auto found = colour_between(profile.plain[view], low, high)) colour = *found;
-            const dvec3 at(ring.centre.x + ring.half.x * c.x, ring.height, ring.centre.y + ring.half.y * c.y);
+            const dvec3 at = glm::clamp(dvec3(ring.centre.x + ring.half.x * c.x, ring.height, ring.centre.y + ring.half.y * c.y),
+                                        profile.box.min, profile.box.max);
             const dvec3 normal = glm::normalize(dvec3(c.x, slope * glm::length(c), c.y));
             model::Vertex v{};
             v.colour[3] = 255;
@@ -190,14 +191,18 @@ Profile profile_of(const Geometry& g, const std::vector<GeometryPart>& full, con
     profile.box = g.box();
     const dvec3 extent = profile.box.max - profile.box.min;
     if (!(extent.y > 0) || !(std::max(extent.x, extent.z) > 0)) return profile;
-    RowSums sums(profile.box.min.y, extent.y, profile_rows);
+    double pixel_m = 0;
     for (std::size_t k = 0; k < profile_views; ++k) {
         const double azimuth = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(profile_views);
         FormPicture& picture = profile.plain[k];
         picture.clear(view_of(profile.box, direction_of(azimuth, 0), dvec3(0.0), profile_px), false);
         draw_geometry(looks, g.vertices, full, picture);
-        sums.add(picture, k);
+        pixel_m = std::max(pixel_m, std::ldexp(1.0, picture.view.exponent));
     }
+    const double rows = std::min(std::floor(extent.y / pixel_m), max_rows);  // each has a line of each picture
+    if (!(rows >= min_rows)) return profile;
+    RowSums sums(profile.box.min.y, extent.y, static_cast<std::size_t>(rows));
+    for (std::size_t k = 0; k < profile_views; ++k) sums.add(profile.plain[k], k);
     profile.rows = std::move(sums).finish(profile.plain);
     double straight = 0, diagonal = 0;
     for (const ProfileRow& row : profile.rows)

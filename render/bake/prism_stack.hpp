@@ -21,14 +21,14 @@ struct ProfileRow {
     dvec2 centre{0.0};  ///< x and z, of what is covered
 };
 
-/// How an object looks from all round, row by row from below. The rows are equally high, and there are at least two.
+/// How an object looks from all round, row by row from below. The rows are equally high, and there are at least eight.
 struct Profile {
     Box box;
     std::array<FormPicture, profile_views> plain;  ///< without light
     std::vector<ProfileRow> rows;
     bool square = false;  ///< its sections are rectangles along x and z, rather than round
 };
-/// `full`: the object's triangles, with `looks` for their materials and textures. No rows: nothing shows, or it has no height.
+/// `full`: the object's triangles, with `looks` for their materials and textures. No rows: nothing shows, or it is flat.
 Profile profile_of(const Geometry& g, const std::vector<GeometryPart>& full, const model::Model& looks);
 
 /// A horizontal section: a polygon inside a rectangle or ellipse.
@@ -46,7 +46,8 @@ struct PrismStack {
 /// The heights at which the outline bends most: straight lines between them are off the profile by the smallest area.
 PrismStack stack_of(const Profile& profile, std::size_t rings, std::uint32_t sides);
 
-/// Appends the stack's vertices to the geometry, in the profile's colours times `brightness`. The level has no error yet.
+/// Appends the stack's vertices to the geometry, in the profile's colours times `brightness`, inside the object's box. The level
+/// has no error yet.
 Level emit_stack(Geometry& g, const PrismStack& stack, const Profile& profile, model::Index material, const dvec3& brightness);
 
 }  // namespace surefoot::bake

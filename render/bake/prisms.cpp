@@ -24,8 +24,9 @@ constexpr float clearly = 0.9F;                     // of the loss of levels tha
 /// Of the samples that the stack or full detail covers, both have to cover so many. What stands apart in one object (two
 /// rails) would become one beam between them.
 constexpr double min_common = 0.3;
-/// Levels of this share of its triangles or more, which look no better, have no use beside a stack.
-constexpr double alike_triangles = 0.7;
+/// Levels of this share of its time or more, which look no better, have no use beside a stack. A draw takes as long as so many
+/// triangles.
+constexpr double alike_time = 0.65, triangles_a_draw = 40;
 /// What shows where a level shows nothing is not known yet: colours of a usual model.
 constexpr model::ColourSpread usual_colours{{0.4F, 0.4F, 0.4F}, 0.05F};
 
@@ -122,7 +123,8 @@ struct JudgedLevels {
     }
     void insert(Level&& stack, float loss) {
         for (std::size_t i = levels.size() - 1; i-- > 0;) {
-            if (!is_rival(levels[i]) || levels[i].triangles < alike_triangles * stack.triangles || losses[i] < loss) continue;
+            const double time = (levels[i].triangles + triangles_a_draw) / (stack.triangles + triangles_a_draw);
+            if (!is_rival(levels[i]) || time < alike_time || losses[i] < loss) continue;
             levels.erase(levels.begin() + static_cast<std::ptrdiff_t>(i));
             losses.erase(losses.begin() + static_cast<std::ptrdiff_t>(i));
         }
@@ -162,7 +164,7 @@ void add_prisms(LodChain& chain, const ChainOptions& options) {
         std::size_t rings;
         std::uint32_t sides;
     };
-    for (const Size size : {Size{3, 4}, Size{5, 5}}) {
+    for (const Size size : {Size{3, 5}, Size{5, 5}}) {
         const std::size_t vertices = g.vertices.size();
         std::optional<Level> stack =
             fitted_stack(g, stack_of(profile, size.rings, size.sides), profile, judge, options.proxy_material);
