@@ -96,26 +96,34 @@ struct Judged {
     float rounding = 0;  ///< of float positions about the node's centre
 };
 
-/// Every representation below full detail of every `stride`-th node, `points` samples each way.
+/// Every representation of a node below full detail, `points` samples each way.
+inline std::vector<Judged> judge_node(const model::Model& m, model::Index n, std::size_t points) {
+    std::vector<Judged> out;
+    const model::Node& node = m.nodes[n];
+    const dvec3 centre = node.box.centre();
+    const Surface full = full_detail(m, n, centre);
+    const measure::TriangleTree full_tree(full.view());
+    for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
+        if (m.reps[r].error_m == 0) continue;
+        const Surface rep = surface_of(m, m.reps[r], centre);
+        Judged judged{n, r, m.reps[r].error_m, std::numeric_limits<float>::infinity(), 0};
+        if (!rep.indices.empty()) {
+            const measure::TriangleTree rep_tree(rep.view());
+            judged.sampled = std::max(measure::sampled_distance(full.view(), rep_tree, points, 1 + r).largest,
+                                      measure::sampled_distance(rep.view(), full_tree, points, 7 + r).largest);
+        }
+        judged.rounding = 1e-6F * static_cast<float>(node.box.diagonal());
+        out.push_back(judged);
+    }
+    return out;
+}
+
+/// Those of every `stride`-th node.
 inline std::vector<Judged> judge(const model::Model& m, std::size_t points, std::size_t stride = 1) {
     std::vector<Judged> out;
     for (model::Index n = 0; n < m.nodes.size(); n += static_cast<model::Index>(stride)) {
-        const model::Node& node = m.nodes[n];
-        const dvec3 centre = node.box.centre();
-        const Surface full = full_detail(m, n, centre);
-        const measure::TriangleTree full_tree(full.view());
-        for (model::Index r = node.first_rep; r < node.first_rep + node.rep_count; ++r) {
-            if (m.reps[r].error_m == 0) continue;
-            const Surface rep = surface_of(m, m.reps[r], centre);
-            Judged judged{n, r, m.reps[r].error_m, std::numeric_limits<float>::infinity(), 0};
-            if (!rep.indices.empty()) {
-                const measure::TriangleTree rep_tree(rep.view());
-                judged.sampled = std::max(measure::sampled_distance(full.view(), rep_tree, points, 1 + r).largest,
-                                          measure::sampled_distance(rep.view(), full_tree, points, 7 + r).largest);
-            }
-            judged.rounding = 1e-6F * static_cast<float>(node.box.diagonal());
-            out.push_back(judged);
-        }
+        const std::vector<Judged> of_node = judge_node(m, n, points);
+        out.insert(out.end(), of_node.begin(), of_node.end());
     }
     return out;
 }

@@ -1,9 +1,9 @@
-// Bench: do coarse forms leave holes, and do objects keep their size? Poses along a path look all round. Each cut may take a
-// share of full detail's predicted time, at full resolution. Two engines draw it before two skies: where they agree, something is
-// drawn. A hole: the cut shows the sky, but full detail of leaves whose boxes are within 50 m covers the pixel and all within two
-// pixels. So a hole before something else is not seen, and an outline that draws back by three pixels counts. A size: pixels that
-// a coarse form covers alone, against full detail of what it stands for, where either covers over 400 pixels. Only forms wholly
-// in view are sized, at every 25th pose.
+// Bench: do coarse forms leave holes, and do objects keep their size? Poses along a path look all round. Each cut may take the
+// same time, as in a walk: a share of full detail's median predicted time over all poses, at full resolution. Two engines draw it
+// before two skies: where they agree, something is drawn. A hole: the cut shows the sky, but full detail of leaves whose boxes
+// are within 50 m covers the pixel and all within two pixels. So a hole before something else is not seen, and an outline that
+// draws back by three pixels counts. A size: pixels that a coarse form covers alone, against full detail of what it stands for,
+// where either covers over 400 pixels. Only forms wholly in view are sized, at every 25th pose.
 //
 // bench_coverage MODEL.walk [POSES 1000] [PATH.csv] [LIFT_M] [STATE_DIR] [SHARE 0.5] [PICTURES_DIR] -> one JSON object.
 // PICTURES_DIR: cut and full detail at the pose with the most holes, as worst-cut.png and worst-full.png.
@@ -120,6 +120,7 @@ struct Sizes {
 
 /// Figures over all poses.
 struct Coverage {
+    double budget_us = 0;
     std::size_t poses = 0, poses_with_holes = 0, pixels = 0, worst_pixels = 0, near_pixels = 0;
     Pose worst_pose;
     Items worst_cut{};
@@ -151,12 +152,16 @@ void size_forms(TwoSkies& two, const Pose& pose, const Items& cut, const Items& 
     }
 }
 
-Items drawn_cut(Engine& engine, const Pose& pose, double share, prepare::PreparedFrame& set) {
+void prepare(Engine& engine, const Pose& pose, prepare::PreparedFrame& set) {
     engine.device().bind();
     engine.prepare({pose, 0, 0}, 0, 0, 0, set);
-    const model::FrameCombine combine = engine.costs().combine_at(1, set.viewport);
-    const double whole_us = static_cast<double>(combine.frame_us(set.full_cost.submit_us, set.full_cost.raster_us));
-    engine.select(set, share * whole_us, {1, 1}, 0);
+    engine.device().release();
+}
+
+Items drawn_cut(Engine& engine, const Pose& pose, double budget_us, prepare::PreparedFrame& set) {
+    prepare(engine, pose, set);
+    engine.device().bind();
+    engine.select(set, budget_us, {1, 1}, 0);
     SubmitLimits limits;
     limits.limit_us = 1e12;
     engine.submit(pose, limits);
@@ -165,17 +170,37 @@ Items drawn_cut(Engine& engine, const Pose& pose, double share, prepare::Prepare
     return cut;
 }
 
-Coverage covered_along(TwoSkies& two, const Path& path, int poses, double share) {
+std::vector<Pose> poses_along(const Path& path, int count) {
+    std::vector<Pose> poses;
+    for (int i = 0; i < count; ++i) {
+        poses.push_back(sample_path(path, path.duration_s() * (i + 0.5) / count));
+        const double golden_rad = std::numbers::pi * (3 - std::sqrt(5.0));
+        poses.back().orientation = glm::angleAxis(golden_rad * i, dvec3(0, 1, 0)) * poses.back().orientation;
+    }
+    return poses;
+}
+
+double median_full_us(Engine& engine, const std::vector<Pose>& poses, prepare::PreparedFrame& set) {
+    std::vector<double> times;
+    for (const Pose& pose : poses) {
+        prepare(engine, pose, set);
+        const model::FrameCombine combine = engine.costs().combine_at(1, set.viewport);
+        times.push_back(static_cast<double>(combine.frame_us(set.full_cost.submit_us, set.full_cost.raster_us)));
+    }
+    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+    return times[times.size() / 2];
+}
+
+Coverage covered_along(TwoSkies& two, const std::vector<Pose>& poses, double share) {
     Engine& engine = two.first();
     const model::Viewport viewport = engine.options().device.viewport;
     prepare::PreparedFrame set;
     engine.reserve(set);
     Coverage out;
-    for (int i = 0; i < poses; ++i) {
-        Pose pose = sample_path(path, path.duration_s() * (i + 0.5) / poses);
-        const double golden_rad = std::numbers::pi * (3 - std::sqrt(5.0));
-        pose.orientation = glm::angleAxis(golden_rad * i, dvec3(0, 1, 0)) * pose.orientation;
-        const Items cut = drawn_cut(engine, pose, share, set);
+    out.budget_us = share * median_full_us(engine, poses, set);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const Pose& pose = poses[i];
+        const Items cut = drawn_cut(engine, pose, out.budget_us, set);
         const Items full = engine.full_detail(pose);
         Items close;
         for (const gl::DrawItem& leaf : full)
@@ -210,7 +235,7 @@ int main(int argc, char** argv) {
     if (!scene) return fail(scene.error());
     auto two = TwoSkies::open(arguments, scene->costs);
     if (!two) return fail(two.error());
-    const Coverage found = covered_along(*two, scene->path.path, poses, share);
+    const Coverage found = covered_along(*two, poses_along(scene->path.path, poses), share);
     std::string sizes;
     std::size_t forms = 0, off = 0;
     for (const auto& [form, s] : found.sizes) {
@@ -231,9 +256,10 @@ int main(int argc, char** argv) {
     }
     const auto of = [](std::size_t evidence, std::size_t figure) { return evidence > 0 ? fmt::format("{}", figure) : "null"; };
     fmt::print(
-        "{{\"model\": {}, \"share\": {}, \"poses\": {}, \"near_pixels\": {}, \"poses_with_holes\": {}, \"hole_pixels\": {}, "
+        "{{\"model\": {}, \"share\": {}, \"budget_ms\": {:.3f}, \"poses\": {}, \"near_pixels\": {}, \"poses_with_holes\": {}, "
+        "\"hole_pixels\": {}, "
         "\"worst_hole_pixels\": {}, \"forms\": {}, \"forms_off\": {}, \"sizes\": {{{}}}}}\n",
-        quoted(arguments.model_file), share, found.poses, found.near_pixels, found.poses_with_holes,
+        quoted(arguments.model_file), share, found.budget_us / 1000, found.poses, found.near_pixels, found.poses_with_holes,
         of(found.near_pixels, found.pixels), found.worst_pixels, forms, of(forms, off), sizes);
     return 0;
 }
