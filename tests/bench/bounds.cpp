@@ -57,6 +57,11 @@ int main(int argc, char** argv) {
     for (const auto& of_leaf : judged) {
         for (const bake::Judged& j : of_leaf) {
             if (model::is_full_detail(m->nodes[j.node], j.rep, j.bound)) continue;
+            if (j.sampled > j.bound + j.rounding) {
+                const model::Representation& rep = m->reps[j.rep];
+                fmt::print(stderr, "{}: {} of {} triangles, sampled {} m, bound {} m\n", m->name_of(m->nodes[j.node]),
+                           model::form_of(rep.kind).name, rep.triangles, j.sampled, j.bound);
+            }
             beyond += j.sampled > j.bound + j.rounding ? 1 : 0;
             ratios.push_back(static_cast<double>(j.bound) / std::max(static_cast<double>(j.sampled), 1e-12));
         }
