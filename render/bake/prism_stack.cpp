@@ -41,22 +41,31 @@ public:
         }
     }
 
-    /// Each view sees the centre along its own right: their mean, twice, is the centre, since the views go evenly round.
+    /// Each view sees the centre along its own right: the centre is the one that suits all views best. Where nothing shows, it is
+    /// that of the row below, or of the first one that shows.
     std::vector<ProfileRow> finish(const std::array<FormPicture, profile_views>& pictures) && {
+        std::vector<bool> known(rows_.size(), false);
         for (std::size_t r = 0; r < rows_.size(); ++r) {
             ProfileRow& row = rows_[r];
-            double known = 0;
+            glm::dmat2 axes(0.0);
+            dvec2 sum(0.0);
             for (std::size_t k = 0; k < profile_views; ++k) {
                 if (row.width[k] > 0) {
                     const vec3& right = pictures[k].view.direction.right;
-                    row.centre += 2.0 * middle_[r][k] / row.width[k] * dvec2(right.x, right.z);
-                    known += 1;
+                    const dvec2 along(right.x, right.z);
+                    axes += glm::outerProduct(along, along);
+                    sum += middle_[r][k] / row.width[k] * along;
                 }
                 row.width[k] /= std::max(lines_[r][k], 1.0);
                 row.mean_width += row.width[k] / static_cast<double>(profile_views);
             }
-            row.centre /= std::max(known, 1.0);
+            known[r] = glm::determinant(axes) > 0.1;
+            if (known[r]) row.centre = glm::inverse(axes) * sum;
         }
+        const auto first = std::find(known.begin(), known.end(), true);
+        if (first == known.end()) return {};
+        dvec2 centre = rows_[static_cast<std::size_t>(first - known.begin())].centre;
+        for (std::size_t r = 0; r < rows_.size(); ++r) centre = rows_[r].centre = known[r] ? rows_[r].centre : centre;
         return std::move(rows_);
     }
 
@@ -188,7 +197,9 @@ void add_vertices(Geometry& g, const PrismStack& stack, const Profile& profile, 
 
 Profile profile_of(const Geometry& g, const std::vector<GeometryPart>& full, const model::Model& looks) {
     Profile profile;
-    profile.box = g.box();
+    for (const GeometryPart& part : full)  // other vertices are those of levels, whose cards may reach further
+        for (const std::uint32_t index : part.indices) profile.box.grow(dvec3(position_of(g.vertices[index])));
+    if (profile.box.empty()) return profile;
     const dvec3 extent = profile.box.max - profile.box.min;
     if (!(extent.y > 0) || !(std::max(extent.x, extent.z) > 0)) return profile;
     double pixel_m = 0;

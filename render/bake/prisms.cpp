@@ -33,8 +33,7 @@ constexpr model::ColourSpread usual_colours{{0.4F, 0.4F, 0.4F}, 0.05F};
 /// How levels look beside full detail.
 class Judge {
 public:
-    Judge(const Geometry& g, const Level& full, const model::Model& looks) : g_(g), looks_(looks) {
-        const Box box = g.box();
+    Judge(const Geometry& g, const Level& full, const Box& box, const model::Model& looks) : g_(g), looks_(looks) {
         const auto see = [&](unsigned eighth, double elevation) {
             return draw(full, view_of(box, direction_of(std::numbers::pi * eighth / 4, elevation), dvec3(0.0), judged_px));
         };
@@ -151,10 +150,10 @@ void add_prisms(LodChain& chain, const ChainOptions& options) {
     if (options.looks == nullptr || options.proxy_material == model::none) return;
     if (chain.levels.back().triangles < min_full_triangles) return;
     const std::vector<GeometryPart> full = chain.levels.back().parts;
-    const double diagonal_m = g.box().diagonal();
     const Profile profile = profile_of(g, full, *options.looks);
     if (profile.rows.empty()) return;
-    const Judge judge(g, chain.levels.back(), *options.looks);
+    const double diagonal_m = profile.box.diagonal();
+    const Judge judge(g, chain.levels.back(), profile.box, *options.looks);
     JudgedLevels judged(chain.levels, judge);
     const MeshSurface surface(g.vertices, full);
     measure::DistanceLimits limits;

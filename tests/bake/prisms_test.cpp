@@ -196,6 +196,19 @@ TEST(Prisms, DoNotFillWhatIsOpen) {
     for (const Level& level : with_prisms(g).levels) EXPECT_FALSE(is_stack(level)) << level.triangles;
 }
 
+// A wall that some views do not see, far from the origin: its middle is where it is.
+TEST(PrismStack, IsWhereTheObjectIs) {
+    Geometry g;
+    g.parts = {{0, {}}};
+    add_leaf(g, {40, 2, 10}, {1.5F, 0, 0}, {0, 2, 0}, bark);
+    const Profile profile = profile_of(g, g.parts, plain_materials());
+    ASSERT_FALSE(profile.rows.empty());
+    for (const ProfileRow& row : profile.rows) {
+        EXPECT_NEAR(row.centre.x, 40, 0.3) << row.height;
+        EXPECT_NEAR(row.centre.y, 10, 0.3) << row.height;
+    }
+}
+
 TEST(Prisms, NeedMaterialsAndColours) {
     const model::Model looks = plain_materials();
     ChainOptions without = options_for(looks);

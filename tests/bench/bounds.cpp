@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
                    : fmt::format("{:.3f}", ratios[static_cast<std::size_t>(q * static_cast<double>(ratios.size() - 1))]);
     };
     fmt::print("{{\"model\": {}, \"meshes\": {}, \"forms\": {}, \"beyond\": {}, \"ratio_p50\": {}, \"ratio_p90\": {}}}\n",
-               nlohmann::json(argv[1]).dump(), leaves.size(), ratios.size(), ratios.empty() ? "null" : fmt::format("{}", beyond),
-               quantile(0.5), quantile(0.9));
+               nlohmann::json(argv[1]).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), leaves.size(),
+               ratios.size(), ratios.empty() ? "null" : fmt::format("{}", beyond), quantile(0.5), quantile(0.9));
     return 0;
 }
