@@ -20,13 +20,13 @@ namespace {
 /// 0: demoted and named within a second; else what went wrong.
 int let_one_run_away() {
     if (!guard_runaways(500'000)) return 1;
+    const RealClock clock;
+    const std::int64_t begun = clock.now_ns();  // before the hog, which may keep this thread from its core
     std::thread hog([] {
         if (!place_thread(0, {.policy = Policy::fifo, .priority = 50, .cpus = {}, .name = "hog"})) _exit(2);
         for (std::atomic<unsigned> forever{0};;) ++forever;
     });
     hog.detach();
-    const RealClock clock;
-    const std::int64_t begun = clock.now_ns();
     if (!surefoot::test::eventually(5, [] { return runaway_seen().has_value(); })) return 3;
     const auto seen = runaway_seen();
     if (seen->name != "hog" || !seen->demoted) return 4;
