@@ -42,6 +42,10 @@ struct LodChain {
     std::vector<Level> levels;
 };
 
+/// Errors that do not fall from coarse to fine are raised by a thousandth above the next finer one: they stay apart in any
+/// placement.
+void raise_errors(std::vector<Level>& levels);
+
 /// Minimum error of levels with baked colours, as a share of their size. Such a level has lost its texture, so it may only be
 /// shown small. At an accepted error of 1/8 pixel, the object is 8 pixels large.
 constexpr double min_proxy_error = 1.0 / 64;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -26,6 +27,16 @@ Box Geometry::box() const {
     Box box;
     for (const model::Vertex& v : vertices) box.grow(dvec3(position_of(v)));
     return box;
+}
+
+void raise_errors(std::vector<Level>& levels) {
+    constexpr float apart = 1.001F;
+    for (std::size_t i = levels.size(); i-- > 1;) {
+        Level &finer = levels[i], &coarser = levels[i - 1];
+        if (coarser.error_m <= finer.error_m)
+            coarser.error_m =
+                std::max(finer.error_m * apart, std::nextafter(finer.error_m, std::numeric_limits<float>::infinity()));
+    }
 }
 
 void optimise(Geometry& geometry) {

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
-#include <span>
 
 #include "render/bake/mesh_surface.hpp"
 #include "render/bake/picture_loss.hpp"
@@ -47,19 +45,23 @@ public:
         for (const FormPicture& full : above_) difference.add(full, draw(level, full.view));
         return difference.loss(usual_colours).colour[1];
     }
-    /// Of the samples that either covers, what share both cover.
+    /// Of the samples that either covers, what share both cover: the mean of all views, whose pixels differ in size.
     [[nodiscard]] double common(const Level& level) const {
-        double both = 0, either = 0;
-        for (const std::vector<FormPicture>* views : {&round_, &above_}) {
-            for (const FormPicture& full : *views) {
+        double sum = 0, views = 0;
+        for (const std::vector<FormPicture>* of : {&round_, &above_}) {
+            for (const FormPicture& full : *of) {
                 const FormPicture own = draw(level, full.view);
+                double both = 0, either = 0;
                 for (std::size_t i = 0; i < own.samples.size(); ++i) {
                     both += own.samples[i].covered() && full.samples[i].covered() ? 1 : 0;
                     either += own.samples[i].covered() || full.samples[i].covered() ? 1 : 0;
                 }
+                if (!(either > 0)) continue;
+                sum += both / either;
+                views += 1;
             }
         }
-        return either > 0 ? both / either : 0;
+        return views > 0 ? sum / views : 0;
     }
     /// What horizontal views show: how many samples, and their mean colour.
     struct Seen {
@@ -92,92 +94,103 @@ private:
     std::vector<FormPicture> round_, above_;  // of full detail
 };
 
-/// A stack that covers as much as full detail and is as bright, from all round. Nothing: it would not show.
-std::optional<Level> fitted_stack(Geometry& g, PrismStack stack, const Profile& profile, const Judge& judge,
-                                  model::Index material) {
-    const std::size_t vertices = g.vertices.size();
-    const Level first = emit_stack(g, stack, profile, material, dvec3(1.0));
-    const Judge::Seen wanted = judge.seen(nullptr), got = judge.seen(&first);
-    g.vertices.resize(vertices);
-    g.baked.resize(vertices);
-    if (!(wanted.samples > 0) || !(got.samples > 0)) return {};
-    for (PrismRing& ring : stack.rings) ring.half *= std::clamp(wanted.samples / got.samples, 0.5, 2.0);
-    const dvec3 brightness = glm::clamp(wanted.colour / glm::max(got.colour, dvec3(1.0)), dvec3(0.4), dvec3(1.6));
-    return emit_stack(g, stack, profile, material, brightness);
-}
-
-/// The levels of a chain with their losses; full detail has none.
-struct JudgedLevels {
-    std::vector<Level>& levels;
-    std::vector<float> losses;
-
-    JudgedLevels(std::vector<Level>& of, const Judge& judge) : levels(of) {
-        for (const Level& level : levels) losses.push_back(is_rival(level) ? judge.loss(level) : 0.0F);
-    }
-    static bool is_rival(const Level& level) { return level.triangles <= max_rival_triangles; }
-    [[nodiscard]] bool has_use_for(const Level& stack, float loss) const {
-        for (std::size_t i = 0; i < levels.size(); ++i)
-            if (levels[i].triangles <= stack.triangles && clearly * losses[i] <= loss) return false;
-        return true;
-    }
-    void insert(Level&& stack, float loss) {
-        for (std::size_t i = levels.size() - 1; i-- > 0;) {
-            const double time = (levels[i].triangles + triangles_a_draw) / (stack.triangles + triangles_a_draw);
-            if (!is_rival(levels[i]) || time < alike_time || losses[i] < loss) continue;
-            levels.erase(levels.begin() + static_cast<std::ptrdiff_t>(i));
-            losses.erase(losses.begin() + static_cast<std::ptrdiff_t>(i));
-        }
-        const auto place =
-            std::find_if(levels.begin(), levels.end() - 1, [&](const Level& l) { return l.triangles > stack.triangles; });
-        losses.insert(losses.begin() + (place - levels.begin()), loss);
-        levels.insert(place, std::move(stack));
-    }
+/// A stack that covers as much as full detail and is as bright, from all round.
+struct FittedStack {
+    PrismStack stack;
+    dvec3 brightness{1.0};
+    std::uint32_t triangles = 0;
+    float loss = 0;
 };
 
-/// From fine to coarse, errors rise.
-void raise_errors(std::vector<Level>& levels) {
-    float above_m = levels.back().error_m;
-    for (std::size_t i = levels.size() - 1; i-- > 0;) {
-        above_m = std::nextafter(above_m, std::numeric_limits<float>::infinity());
-        levels[i].error_m = above_m = std::max(levels[i].error_m, above_m);
+/// What a stack looks like, without leaving its vertices in the geometry.
+template <class Use>
+auto while_emitted(Geometry& g, const FittedStack& fitted, const Profile& profile, model::Index material, const Use& use) {
+    const std::size_t vertices = g.vertices.size();
+    const auto seen = use(emit_stack(g, fitted.stack, profile, material, fitted.brightness));
+    g.vertices.resize(vertices);
+    g.baked.resize(vertices);
+    return seen;
+}
+
+/// Nothing: it would not show, or its outline is another one.
+std::optional<FittedStack> fit_stack(Geometry& g, const PrismStack& stack, const Profile& profile, const Judge& judge,
+                                     model::Index material) {
+    FittedStack fitted{stack};
+    const Judge::Seen wanted = judge.seen(nullptr);
+    const Judge::Seen got = while_emitted(g, fitted, profile, material, [&](const Level& level) { return judge.seen(&level); });
+    if (!(wanted.samples > 0) || !(got.samples > 0)) return {};
+    for (PrismRing& ring : fitted.stack.rings) ring.half *= std::clamp(wanted.samples / got.samples, 0.5, 2.0);
+    fitted.brightness = glm::clamp(wanted.colour / glm::max(got.colour, dvec3(1.0)), dvec3(0.4), dvec3(1.6));
+    const double common = while_emitted(g, fitted, profile, material, [&](const Level& level) {
+        fitted.triangles = level.triangles;
+        fitted.loss = judge.loss(level);
+        return judge.common(level);
+    });
+    if (common < min_common) return {};
+    return fitted;
+}
+
+/// Stacks that each lose a tenth less than all levels and stacks of as many triangles or fewer; small ones first.
+std::vector<FittedStack> useful_stacks(LodChain& chain, const std::vector<float>& losses, const Profile& profile,
+                                       const Judge& judge, model::Index material) {
+    struct Size {
+        std::size_t rings;
+        std::uint32_t sides;
+    };
+    std::vector<FittedStack> stacks;
+    for (const Size size : {Size{3, 5}, Size{5, 5}}) {
+        const auto fitted = fit_stack(chain.full, stack_of(profile, size.rings, size.sides), profile, judge, material);
+        if (!fitted) continue;
+        bool useful =
+            stacks.empty() || (fitted->triangles > stacks.back().triangles && fitted->loss < clearly * stacks.back().loss);
+        for (std::size_t i = 0; i < losses.size(); ++i)
+            useful = useful && (chain.levels[i].triangles > fitted->triangles || fitted->loss < clearly * losses[i]);
+        if (useful) stacks.push_back(*fitted);
     }
+    return stacks;
+}
+
+/// Whether one of the stacks looks no worse than a level and takes about as long, or less.
+bool replaced(const Level& level, float loss, const std::vector<FittedStack>& stacks) {
+    return level.triangles <= max_rival_triangles && std::ranges::any_of(stacks, [&](const FittedStack& stack) {
+               return stack.loss <= loss &&
+                      level.triangles + triangles_a_draw >= alike_time * (stack.triangles + triangles_a_draw);
+           });
 }
 
 }  // namespace
 
 void add_prisms(LodChain& chain, const ChainOptions& options) {
-    Geometry& g = chain.full;
     if (options.looks == nullptr || options.proxy_material == model::none) return;
     if (chain.levels.back().triangles < min_full_triangles) return;
-    const std::vector<GeometryPart> full = chain.levels.back().parts;
-    const Profile profile = profile_of(g, full, *options.looks);
+    Geometry& g = chain.full;
+    const Level full = chain.levels.back();
+    const Profile profile = profile_of(g, full.parts, *options.looks);
     if (profile.rows.empty()) return;
+    const Judge judge(g, full, profile.box, *options.looks);
+    std::vector<float> losses;
+    for (const Level& level : chain.levels)
+        losses.push_back(level.triangles <= max_rival_triangles && level.error_m > 0 ? judge.loss(level) : 0.0F);
+    const std::vector<FittedStack> stacks = useful_stacks(chain, losses, profile, judge, options.proxy_material);
+    if (stacks.empty()) return;
+    std::vector<Level> levels;
+    for (std::size_t i = 0; i + 1 < chain.levels.size(); ++i)
+        if (!replaced(chain.levels[i], losses[i], stacks)) levels.push_back(std::move(chain.levels[i]));
     const double diagonal_m = profile.box.diagonal();
-    const Judge judge(g, chain.levels.back(), profile.box, *options.looks);
-    JudgedLevels judged(chain.levels, judge);
-    const MeshSurface surface(g.vertices, full);
+    const MeshSurface surface(g.vertices, full.parts);
     measure::DistanceLimits limits;
     limits.relative = options.slack;
     limits.absolute = static_cast<float>(0.0005 * diagonal_m);
-    struct Size {
-        std::size_t rings;
-        std::uint32_t sides;
-    };
-    for (const Size size : {Size{3, 5}, Size{5, 5}}) {
-        const std::size_t vertices = g.vertices.size();
-        std::optional<Level> stack =
-            fitted_stack(g, stack_of(profile, size.rings, size.sides), profile, judge, options.proxy_material);
-        const float loss = stack ? judge.loss(*stack) : 0.0F;
-        if (!stack || !judged.has_use_for(*stack, loss) || judge.common(*stack) < min_common) {
-            g.vertices.resize(vertices);
-            g.baked.resize(vertices);
-            continue;
-        }
-        const MeshSurface coarse(g.vertices, stack->parts);
-        stack->error_m = std::max(measure::two_sided_distance(surface.view(), coarse.view(), limits).upper,
-                                  static_cast<float>(min_proxy_error * diagonal_m));
-        judged.insert(std::move(*stack), loss);
+    for (const FittedStack& stack : stacks) {
+        Level level = emit_stack(g, stack.stack, profile, options.proxy_material, stack.brightness);
+        const MeshSurface coarse(g.vertices, level.parts);
+        level.error_m = std::max(measure::two_sided_distance(surface.view(), coarse.view(), limits).upper,
+                                 static_cast<float>(min_proxy_error * diagonal_m));
+        levels.push_back(std::move(level));
     }
+    std::ranges::sort(levels, {}, &Level::triangles);
+    levels.push_back(full);
+    chain.levels = std::move(levels);
     raise_errors(chain.levels);
 }
 

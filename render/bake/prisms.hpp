@@ -5,10 +5,9 @@
 
 namespace surefoot::bake {
 
-/// Adds stacks to the chain. One stays if, seen from all round and above, it loses a tenth less than each level of as many
-/// triangles or fewer. Levels that look worse by about as many triangles go. Needs options.looks and a proxy material, else does
-/// nothing. Its error is the bound of its two-sided distance to full detail, at least min_proxy_error; coarser levels get errors
-/// above it.
+/// Adds up to two stacks to the chain. One stays if, seen from all round and above, it loses a tenth less than each level of as
+/// many triangles or fewer. Levels that look no better and take about as long go. Without options.looks or a proxy material it
+/// does nothing. Its error is at least the bound of its two-sided distance to full detail, and min_proxy_error.
 void add_prisms(LodChain& chain, const ChainOptions& options);
 
 }  // namespace surefoot::bake

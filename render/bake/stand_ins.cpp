@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -87,12 +86,8 @@ void add_stand_ins(LodChain& chain, std::span<const ArtistStandIn> stand_ins, fl
     });
     made.insert(made.end(), std::make_move_iterator(artists.begin()), std::make_move_iterator(artists.end()));
     std::sort(made.begin(), made.end(), [](const Level& a, const Level& b) { return a.triangles < b.triangles; });
-    float above_m = 0;  // from fine to coarse, errors rise
-    for (std::size_t i = made.size(); i-- > 0;) {
-        above_m = std::nextafter(above_m, std::numeric_limits<float>::infinity());
-        made[i].error_m = above_m = std::max(made[i].error_m, above_m);
-    }
     made.push_back(std::move(full_detail));
+    raise_errors(made);
     chain.levels = std::move(made);
 }
 

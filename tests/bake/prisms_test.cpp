@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "render/bake/bake.hpp"
 #include "render/bake/prism_stack.hpp"
@@ -73,14 +74,28 @@ ChainOptions options_for(const model::Model& m) {
     return options;
 }
 
-LodChain with_prisms(Geometry g) {
+/// A chain, and how many of its vertices were there before its stacks.
+struct WithPrisms {
+    LodChain chain;
+    std::size_t others = 0;
+    [[nodiscard]] bool is_stack(const Level& level) const {
+        return std::ranges::all_of(level.parts, [&](const GeometryPart& part) {
+            return std::ranges::all_of(part.indices, [&](std::uint32_t index) { return index >= others; });
+        });
+    }
+    [[nodiscard]] std::vector<Level> stacks() const {
+        std::vector<Level> out;
+        std::ranges::copy_if(chain.levels, std::back_inserter(out), [&](const Level& level) { return is_stack(level); });
+        return out;
+    }
+};
+WithPrisms with_prisms(Geometry g) {
     const model::Model looks = plain_materials();
-    LodChain chain = make_chain(std::move(g), options_for(looks));
-    add_prisms(chain, options_for(looks));
-    return chain;
+    WithPrisms out{make_chain(std::move(g), options_for(looks))};
+    out.others = out.chain.full.vertices.size();
+    add_prisms(out.chain, options_for(looks));
+    return out;
 }
-
-bool is_stack(const Level& level) { return level.parts.size() == 1 && level.parts[0].material == 1 && level.triangles > 15; }
 
 double area_shown(const Geometry& g, const std::vector<GeometryPart>& parts, double azimuth, double elevation) {
     FormPicture picture;
@@ -138,23 +153,26 @@ TEST(PrismStack, OfABoxIsABox) {
 }
 
 TEST(Prisms, StandForATreeAndCoverAsMuch) {
-    const LodChain chain = with_prisms(tree());
-    const auto stack = std::ranges::find_if(chain.levels, is_stack);
-    ASSERT_NE(stack, chain.levels.end());
+    const WithPrisms made = with_prisms(tree());
+    const LodChain& chain = made.chain;
+    const std::vector<Level> stacks = made.stacks();
+    ASSERT_FALSE(stacks.empty());
     const std::vector<GeometryPart>& full = chain.levels.back().parts;
-    for (const double azimuth : {0.1, 0.9, 2.5}) {
-        const double share = area_shown(chain.full, stack->parts, azimuth, 0.2) / area_shown(chain.full, full, azimuth, 0.2);
-        EXPECT_NEAR(share, 1, 0.12) << azimuth;
-    }
+    for (const Level& stack : stacks)
+        for (const double azimuth : {0.1, 0.9, 2.5}) {
+            const double share = area_shown(chain.full, stack.parts, azimuth, 0.2) / area_shown(chain.full, full, azimuth, 0.2);
+            EXPECT_NEAR(share, 1, 0.12) << azimuth;
+        }
     for (std::size_t i = 0; i + 1 < chain.levels.size(); ++i) {
         EXPECT_GT(chain.levels[i].error_m, chain.levels[i + 1].error_m);
         EXPECT_LT(chain.levels[i].triangles, chain.levels[i + 1].triangles);
     }
     const Box box = tree().box();
-    for (const std::uint32_t index : stack->parts[0].indices) {
-        const dvec3 at(position_of(chain.full.vertices[index]));
-        EXPECT_EQ(glm::clamp(at, box.min - 1e-5, box.max + 1e-5), at) << "inside the object's box";
-    }
+    for (const Level& stack : stacks)
+        for (const std::uint32_t index : stack.parts[0].indices) {
+            const dvec3 at(position_of(chain.full.vertices[index]));
+            EXPECT_EQ(glm::clamp(at, box.min - 1e-5, box.max + 1e-5), at) << "inside the object's box";
+        }
 }
 
 TEST(Prisms, AreBoundedAsOtherForms) {
@@ -172,19 +190,45 @@ TEST(Prisms, AreBoundedAsOtherForms) {
     p.indices = g.parts[0].indices;
     const importer::Index mesh = add_mesh(scene, p, "tree");
     place(scene, mesh, {0, 0, 0});
-    place(scene, mesh, {20, 0, 5}, {2, 3, -1});
+    place(scene, mesh, {200, 0, 5}, {2, 3, -1});  // so far that no tree is cut into pieces
     auto model = bake(scene, {}, {});
     ASSERT_TRUE(model.ok());
-    std::size_t stacks = 0;
+    const auto as_small = [](std::uint32_t triangles) { return triangles >= 16 && triangles <= 46; };
+    const WithPrisms made = with_prisms(tree());
+    for (const Level& level : made.chain.levels) EXPECT_EQ(as_small(level.triangles), made.is_stack(level)) << level.triangles;
+    std::size_t placed = 0;
     for (const Judged& j : judge(*model, 10000)) {
         EXPECT_LE(j.sampled, j.bound + j.rounding) << j.node << " " << j.rep;
-        if (model->nodes[j.node].child_count == 0 && model->reps[j.rep].triangles < 60) ++stacks;
+        if (model->nodes[j.node].child_count == 0 && as_small(model->reps[j.rep].triangles)) ++placed;
     }
-    EXPECT_GE(stacks, 2U) << "both trees have one";
+    EXPECT_EQ(placed, 2 * made.stacks().size()) << "both trees have them";
 }
 
-// Two rails have the mean outline of a beam between them.
+/// Two posts of 3 m, so far apart.
+Geometry posts(float apart_m) {
+    Geometry g;
+    g.parts = {{0, {}}};
+    for (const float x : {-0.5F * apart_m, 0.5F * apart_m})
+        for (int i = 0; i < 20; ++i) {
+            const float y = 0.15F * static_cast<float>(i) + 0.075F;
+            add_leaf(g, {x, y, 0}, {0.06F, 0, 0}, {0, 0.075F, 0}, bark);
+            add_leaf(g, {x, y, 0}, {0, 0, 0.06F}, {0, 0.075F, 0}, bark);
+        }
+    return g;
+}
+
+// Two posts have the mean outline of one between them.
 TEST(Prisms, DoNotFillWhatIsOpen) {
+    const Geometry apart = posts(3);
+    ASSERT_FALSE(profile_of(apart, apart.parts, plain_materials()).rows.empty());
+    const WithPrisms made = with_prisms(apart);
+    EXPECT_TRUE(made.stacks().empty());
+    EXPECT_EQ(made.chain.full.vertices.size(), made.others) << "nothing is left of those that were tried";
+    EXPECT_EQ(made.chain.full.baked.size(), made.chain.full.vertices.size());
+}
+
+// Rails are flat from all sides.
+TEST(Prisms, AreNotForWhatIsFlat) {
     Geometry g;
     g.parts = {{0, {}}};
     for (const float x : {-5.0F, 5.0F})
@@ -193,7 +237,19 @@ TEST(Prisms, DoNotFillWhatIsOpen) {
             add_leaf(g, {x, 0, z}, {0.05F, 0, 0}, {0, 0, 0.5F}, bark);
             add_leaf(g, {x, 0, z}, {0, 0.05F, 0}, {0, 0, 0.5F}, bark);
         }
-    for (const Level& level : with_prisms(g).levels) EXPECT_FALSE(is_stack(level)) << level.triangles;
+    EXPECT_TRUE(profile_of(g, g.parts, plain_materials()).rows.empty());
+    EXPECT_TRUE(with_prisms(g).stacks().empty());
+}
+
+// The vertices of coarse levels, whose cards grow, are no part of the object.
+TEST(PrismStack, MeasuresFullDetailAlone) {
+    Geometry g = tree();
+    const Box box = g.box();
+    const std::vector<GeometryPart> full = g.parts;
+    add_leaf(g, {0, 9, 0}, {5, 0, 0}, {0, 1, 0}, green);
+    const Profile profile = profile_of(g, full, plain_materials());
+    EXPECT_EQ(profile.box.min, box.min);
+    EXPECT_EQ(profile.box.max, box.max);
 }
 
 // A wall that some views do not see, far from the origin: its middle is where it is.
@@ -211,13 +267,37 @@ TEST(PrismStack, IsWhereTheObjectIs) {
 
 TEST(Prisms, NeedMaterialsAndColours) {
     const model::Model looks = plain_materials();
-    ChainOptions without = options_for(looks);
-    without.looks = nullptr;
-    LodChain chain = make_chain(tree(), without);
-    const std::size_t levels = chain.levels.size(), vertices = chain.full.vertices.size();
-    add_prisms(chain, without);
-    EXPECT_EQ(chain.levels.size(), levels);
-    EXPECT_EQ(chain.full.vertices.size(), vertices);
+    ChainOptions no_looks = options_for(looks), no_colours = options_for(looks);
+    no_looks.looks = nullptr;
+    no_colours.proxy_material = model::none;
+    for (const ChainOptions& without : {no_looks, no_colours}) {
+        LodChain chain = make_chain(tree(), without);
+        const std::size_t levels = chain.levels.size(), vertices = chain.full.vertices.size();
+        add_prisms(chain, without);
+        EXPECT_EQ(chain.levels.size(), levels);
+        EXPECT_EQ(chain.full.vertices.size(), vertices);
+    }
+}
+
+TEST(Prisms, OfAChainWithoutLevelsAreItsOnlyOnes) {
+    const model::Model looks = plain_materials();
+    LodChain chain;
+    chain.full = tree();
+    chain.levels.push_back({chain.full.parts, static_cast<std::uint32_t>(chain.full.triangles()), 0});
+    add_prisms(chain, options_for(looks));
+    ASSERT_GE(chain.levels.size(), 2U);
+    EXPECT_EQ(chain.levels.back().error_m, 0);
+}
+
+// Two errors that are one float apart can become equal when they are placed.
+TEST(Levels, ErrorsStayApartInAnyPlacement) {
+    std::vector<Level> levels(3);
+    levels[0].error_m = 0.5F;
+    levels[1].error_m = 0.5F;
+    raise_errors(levels);
+    EXPECT_GT(levels[0].error_m, 1.0005F * levels[1].error_m);
+    EXPECT_FLOAT_EQ(levels[1].error_m, 0.5F);
+    EXPECT_EQ(levels[2].error_m, 0);
 }
 
 }  // namespace
