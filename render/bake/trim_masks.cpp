@@ -9,6 +9,8 @@
 #include <span>
 #include <utility>
 
+#include "render/bake/mesh_surface.hpp"
+
 namespace surefoot::bake {
 
 namespace {
@@ -370,6 +372,19 @@ void Trimmer::cut(const Card& card, GeometryPart& to) {
     }
 }
 
+/// Error of a level that was cut from `before`: what was cut away counts, though nothing shows there. Of an object it is the
+/// distance from full detail. Of a cluster, whose full detail is not at hand, the distance from the uncut level is added.
+float error_of_cut(const LodChain& chain, const Level& before, const Level& cut) {
+    const bool has_full = chain.levels.back().error_m == 0;
+    const MeshSurface from(chain.full.vertices, has_full ? chain.levels.back().parts : before.parts);
+    const measure::TriangleTree to(MeshSurface(chain.full.vertices, cut.parts).view());
+    measure::DistanceLimits limits;
+    limits.absolute = 0.0005F * to.diagonal();
+    limits.known_lower = has_full ? before.error_m : 0.0F;
+    const float distance = measure::directed_distance(from.view(), to, limits).upper;
+    return has_full ? std::max(before.error_m, distance) : before.error_m + distance;
+}
+
 }  // namespace
 
 std::vector<GeometryPart> trimmed(Geometry& g, const std::vector<GeometryPart>& parts, const MaskShapes& shapes,
@@ -429,11 +444,13 @@ void trim_levels(LodChain& chain, const MaskShapes& shapes) {
         Level& now = chain.levels[i];
         if (now.error_m <= model::trimmed_error_m) continue;
         if (auto level = cut(now.parts, chain.levels[i - 1].triangles, finer, {coarse_price}); level) {
+            now.error_m = error_of_cut(chain, now, *level);
             now.parts = std::move(level->parts);
             now.triangles = level->triangles;
         }
         finer = now.triangles;
     }
+    raise_errors(chain.levels);
 }
 
 }  // namespace surefoot::bake

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "render/bake/cards.hpp"
+#include "render/bake/mesh_surface.hpp"
 #include "rt/base/random.hpp"
 
 namespace surefoot::bake {
@@ -181,6 +182,37 @@ TEST(TrimMasks, LevelsKeepTheirOrder) {
                 << hidden << ' ' << i;
         }
         EXPECT_EQ(chain.levels.back().triangles, 200U);
+    }
+}
+
+TEST(TrimMasks, WhatIsCutAwayCountsInTheError) {
+    const model::Model m = masked(oval);
+    for (const bool cluster : {false, true}) {  // which has no full detail of its own
+        LodChain chain;
+        chain.full = card();
+        for (const float z : {0.01F, 0.02F}) {
+            const Geometry more = card();
+            const auto base = static_cast<std::uint32_t>(chain.full.vertices.size());
+            chain.full.vertices.insert(chain.full.vertices.end(), more.vertices.begin(), more.vertices.end());
+            for (std::size_t k = base; k < chain.full.vertices.size(); ++k) chain.full.vertices[k].position[2] = z;
+            chain.full.baked.resize(chain.full.vertices.size());
+            for (const std::uint32_t corner : {0U, 1U, 2U, 0U, 2U, 3U}) chain.full.parts[0].indices.push_back(base + corner);
+        }
+        const std::vector<GeometryPart> full = chain.full.parts;
+        const std::vector<std::uint32_t> one(full[0].indices.begin(), full[0].indices.begin() + 6);
+        const std::vector<std::uint32_t> half(one.begin(), one.begin() + 3);
+        chain.levels.push_back({{{0, half}}, 1, 0.75F});
+        chain.levels.push_back({{{0, one}}, 2, 0.02F});
+        if (!cluster) chain.levels.push_back({full, 100, 0.0F});  // more than the cut level
+        trim_levels(chain, MaskShapes(m, {true}));
+        const Level& cut = chain.levels[1];
+        ASSERT_GT(cut.triangles, 2U);
+        const MeshSurface whole(chain.full.vertices, full), left(chain.full.vertices, cut.parts);
+        const float off = measure::sampled_distance(whole.view(), measure::TriangleTree(left.view()), 10000, 1).largest;
+        EXPECT_GT(off, 0.7F) << "a far corner of the card";
+        EXPECT_GE(cut.error_m, off);
+        EXPECT_LE(cut.error_m, 1.2F * off);
+        EXPECT_GT(chain.levels[0].error_m, cut.error_m);
     }
 }
 
