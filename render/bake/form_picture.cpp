@@ -24,6 +24,7 @@ struct Texels {
     std::uint32_t width = 1, height = 1;
     bool clamp = false;
 
+    Texels() = default;
     Texels(const model::Model& model, const model::Texture& texture, float texels_a_pixel) {
         width = texture.width;
         height = texture.height;
@@ -49,6 +50,24 @@ struct Texels {
 };
 
 float cross(const vec2& a, const vec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// Columns, from and to, that hold all samples of a row in a triangle, and one or two more on each side.
+glm::uvec2 columns_of(const std::array<vec2, 3>& corners, float y, const glm::uvec2& all) {
+    float left = 1e30F, right = -1e30F;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const vec2 &p = corners[k], &q = corners[(k + 1) % 3];
+        if (std::min(p.y, q.y) > y + 0.01F || std::max(p.y, q.y) < y - 0.01F) continue;
+        const float rise = q.y - p.y;
+        const float t = std::abs(rise) > 1e-3F ? std::clamp((y - p.y) / rise, 0.0F, 1.0F) : 0.0F;
+        const float x = p.x + t * (q.x - p.x), also = std::abs(rise) > 1e-3F ? x : q.x;
+        left = std::min({left, x, also});
+        right = std::max({right, x, also});
+    }
+    const float from = std::max(static_cast<float>(all.x), std::floor(left) - 1.0F);
+    const float to = std::min(static_cast<float>(all.y), std::ceil(right) + 2.0F);
+    return from < to ? glm::uvec2(from, to) : glm::uvec2(all.x, all.x);
+}
+
 vec2 uv_of(const model::Vertex& v) { return {v.uv[0], v.uv[1]}; }
 
 std::array<std::uint8_t, 3> bytes_of(const vec4& colour) {
@@ -72,7 +91,7 @@ struct Painter {
     struct Triangle {
         std::array<vec4, 3> colours;
         std::array<vec2, 3> uv;
-        float texels_a_pixel = 0;
+        std::array<Texels, picture_levels> texels;
     };
 
     /// Colours before the texture, 0 to about 1.
@@ -116,8 +135,13 @@ Painter::Triangle Painter::triangle_of(const std::array<Corner, 3>& corners, flo
     for (std::size_t k = 0; k < 3; ++k) t.colours[k] = lit(*corners[k].vertex), t.uv[k] = uv_of(*corners[k].vertex);
     if (textured()) {
         const model::Texture& texture = model.textures[material.texture];
-        t.texels_a_pixel = std::abs(cross(t.uv[1] - t.uv[0], t.uv[2] - t.uv[0])) * static_cast<float>(texture.width) *
-                           static_cast<float>(texture.height) / area;
+        const float texels_a_pixel = std::abs(cross(t.uv[1] - t.uv[0], t.uv[2] - t.uv[0])) * static_cast<float>(texture.width) *
+                                     static_cast<float>(texture.height) / area;
+        float scale = std::ldexp(1.0F, -2 * level_octaves);
+        for (Texels& texels : t.texels) {
+            texels = Texels(model, texture, scale * texels_a_pixel);
+            scale *= std::ldexp(1.0F, 2 * level_octaves);
+        }
     }
     return t;
 }
@@ -127,7 +151,8 @@ void Painter::fill(const std::array<Corner, 3>& corners, float area, const glm::
     Triangle triangle;
     bool ready = false;
     for (std::uint32_t y = range.y; y < range.w; ++y) {
-        for (std::uint32_t x = range.x; x < range.z; ++x) {
+        const glm::uvec2 span = columns_of({a, b, c}, static_cast<float>(y), {range.x, range.z});
+        for (std::uint32_t x = span.x; x < span.y; ++x) {
             const vec2 p(static_cast<float>(x), static_cast<float>(y));
             const float wa = cross(c - b, p - b), wb = cross(a - c, p - c), wc = area - wa - wb;
             if (wa < 0 || wb < 0 || wc < 0) continue;
@@ -145,18 +170,14 @@ void Painter::put(const Triangle& triangle, const vec3& w, float depth, std::uin
     const FormView& view = picture.view;
     FormSample& sample = picture.samples[static_cast<std::size_t>(y) * view.width + x];
     const vec4 plain = w.x * triangle.colours[0] + w.y * triangle.colours[1] + w.z * triangle.colours[2];
-    std::array<vec4, picture_levels> colours{plain, plain, plain};
-    if (textured()) {
-        const vec2 uv = w.x * triangle.uv[0] + w.y * triangle.uv[1] + w.z * triangle.uv[2];
-        float scale = std::ldexp(1.0F, -2 * level_octaves);
-        for (vec4& colour : colours) {
-            colour *= Texels(model, model.textures[material.texture], scale * triangle.texels_a_pixel).at(uv);
-            scale *= std::ldexp(1.0F, 2 * level_octaves);
-        }
-    }
-    const float alpha = colours[1].a;
+    const vec2 uv = w.x * triangle.uv[0] + w.y * triangle.uv[1] + w.z * triangle.uv[2];
+    const auto colour_at = [&](std::size_t level) { return textured() ? plain * triangle.texels[level].at(uv) : plain; };
+    std::array<vec4, picture_levels> colours{plain, colour_at(1), plain};
+    const float alpha = colours[1].a;  // the other levels are not asked for in holes
     if (material.alpha == model::AlphaMode::mask && alpha < material.alpha_cutoff) return;
     if (material.alpha == model::AlphaMode::blend && alpha < threshold_of(view.left + x, view.low + y)) return;
+    colours[0] = colour_at(0);
+    colours[2] = colour_at(2);
     sample.depth = depth;
     sample.owner = picture.owner;
     for (std::size_t k = 0; k < picture_levels; ++k) sample.rgb[k] = bytes_of(colours[k]);
