@@ -42,10 +42,17 @@ void ResolutionChooser::judge(double lost_now, double lost_tried) {
     judged_ = 0;
     const bool first = !(decided_by_us_[at_] > 0.0), alone = !decided_ && (first || time_changed());
     const auto best = static_cast<std::uint32_t>(std::min_element(lost_.begin(), lost_.end()) - lost_.begin());
-    const bool wins = lost_[best] < lost_now * (1.0 - (best > at_ ? softer : sharper)) - unseen;
-    const bool open = wins && best != best_before_ && !alone;  // the next round decides
+    const auto beats = [&](std::uint32_t step) {
+        return step != at_ && lost_[step] < lost_now * (1.0 - (step > at_ ? softer : sharper)) - unseen;
+    };
+    const bool wins = beats(best);
+    // Where a view becomes cheaper or dearer, each round has another winner. Two on one side agree on the nearer one.
+    const bool one_side = (best > at_) == (best_before_ > at_);
+    const std::uint32_t nearer = best > at_ ? std::min(best, best_before_) : std::max(best, best_before_);
+    const std::uint32_t agreed = alone ? best : nearer;
+    const bool open = wins && !alone && !(one_side && beats(agreed));  // the next round decides
     if (wins && !open) {
-        at_ = tried_ = best;
+        at_ = tried_ = agreed;
         if (alone && !first) held_ = hold;
     }
     decided_ = true;

@@ -13,10 +13,11 @@ namespace surefoot::prepare {
 using PlannedTimes = std::array<double, model::resolution_steps.size()>;
 
 /// Compares what the budget buys at each resolution. With every third set one other resolution is evaluated, in turns. When all
-/// have been, the best one is taken if it wins by a margin, and won the round before too. The margin is larger for a softer
-/// picture. The first round takes each set, and decides alone. So does a round after the planned time has changed by far, if
-/// it has not come back meanwhile. After such a decision the next ones take two rounds for a while. Deterministic.
-/// Source: dynamic video resolution, Montrym et al. 1997 (InfiniteReality); here it is priced like any form.
+/// have been, the best one is taken if it wins by a margin, and won the round before too. If both rounds have sharper winners, or
+/// softer ones, the nearer of the two is taken. The margin is larger for a softer picture. The first round takes each set, and
+/// decides alone. So does a round after the planned time has changed by far, if it has not come back meanwhile. After such a
+/// decision the next ones take two rounds for a while. Deterministic. Source: dynamic video resolution, Montrym et al. 1997
+/// (InfiniteReality); here it is priced like any form.
 class ResolutionChooser {
 public:
     [[nodiscard]] float resolution() const { return model::resolution_steps[at_]; }

@@ -54,6 +54,33 @@ TEST(ResolutionChooser, ASofterPictureNeedsMoreThanASharperOne) {
     EXPECT_EQ(chooser.resolution(), 1.0F) << "a fifth less is";
 }
 
+TEST(ResolutionChooser, WinnersThatMoveAgreeOnTheNearerOne) {
+    const auto best_at = [](float best) { return [=](float r) { return 0.02 + 0.3 * std::abs(static_cast<double>(r - best)); }; };
+    const auto start_at = [&](ResolutionChooser& chooser, float best) {
+        walk(chooser, 4, best_at(best));
+        ASSERT_EQ(chooser.resolution(), best);
+    };
+    ResolutionChooser sharper;  // a view that becomes cheaper: each round has another winner
+    start_at(sharper, 0.5F);
+    walk(sharper, 12, best_at(0.75F));
+    EXPECT_EQ(sharper.resolution(), 0.5F) << "one round decides nothing";
+    walk(sharper, 12, best_at(0.875F));
+    EXPECT_EQ(sharper.resolution(), 0.75F);
+    walk(sharper, 12, best_at(1.0F));
+    EXPECT_EQ(sharper.resolution(), 0.875F) << "the winner before counts on";
+
+    ResolutionChooser softer;
+    start_at(softer, 1.0F);
+    walk(softer, 12, best_at(0.625F));
+    walk(softer, 12, best_at(0.5F));
+    EXPECT_EQ(softer.resolution(), 0.625F);
+
+    ResolutionChooser both;  // winners on both sides agree on nothing
+    start_at(both, 0.75F);
+    for (int i = 0; i < 4; ++i) walk(both, 12, best_at(i % 2 == 0 ? 0.5F : 1.0F));
+    EXPECT_EQ(both.resolution(), 0.75F);
+}
+
 TEST(ResolutionChooser, ARoundTriesAllOthersAfterAChangeToo) {
     ResolutionChooser chooser;
     walk(chooser, 4, [](float r) { return r == 0.5F ? 0.02 : 0.1; });
