@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <vector>
 
 #include "render/measure/mesh_distance.hpp"
@@ -85,6 +86,21 @@ inline Surface full_detail(const model::Model& m, model::Index node, const dvec3
         for (std::size_t i = 0; i + 2 < leaf.positions.size(); i += 3)
             out.add(leaf.positions[i], leaf.positions[i + 1], leaf.positions[i + 2]);
     }
+    return out;
+}
+
+/// Leaves of so many triangles or more that have coarser forms, `count` of them, evenly spread: one a mesh.
+inline std::vector<model::Index> distinct_leaves(const model::Model& m, std::size_t count, std::uint32_t min_triangles = 0) {
+    std::set<model::Index> seen;
+    std::vector<model::Index> all, out;
+    for (model::Index n = 0; n < m.nodes.size(); ++n) {
+        const model::Node& node = m.nodes[n];
+        if (node.child_count > 0 || node.rep_count < 2) continue;
+        const model::Representation& full = m.reps[node.first_rep + node.rep_count - 1];
+        if (full.triangles >= min_triangles && seen.insert(full.first_part).second) all.push_back(n);
+    }
+    count = std::min(count, all.size());
+    for (std::size_t i = 0; i < count; ++i) out.push_back(all[i * all.size() / count]);
     return out;
 }
 

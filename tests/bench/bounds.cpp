@@ -9,7 +9,6 @@
 #include <atomic>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,32 +16,14 @@
 #include "render/model/walk_file.hpp"
 #include "tests/bake/surface.hpp"
 
-namespace {
-
 using namespace surefoot;
-
-/// One leaf a mesh, `count` of them.
-std::vector<model::Index> leaves_of(const model::Model& m, std::size_t count) {
-    std::set<model::Index> seen;
-    std::vector<model::Index> all, out;
-    for (model::Index n = 0; n < m.nodes.size(); ++n) {
-        const model::Node& node = m.nodes[n];
-        if (node.child_count > 0 || node.rep_count < 2) continue;
-        if (seen.insert(m.reps[node.first_rep + node.rep_count - 1].first_part).second) all.push_back(n);
-    }
-    count = std::min(count, all.size());
-    for (std::size_t i = 0; i < count; ++i) out.push_back(all[i * all.size() / count]);
-    return out;
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
     if (argc < 2) return fmt::print(stderr, "bench_bounds MODEL.walk [MESHES] [POINTS]\n"), 2;
     const auto number = [&](int i, long usual) { return argc > i ? std::max(1L, std::atol(argv[i])) : usual; };
     auto m = model::read_walk(argv[1]);
     if (!m) return fmt::print(stderr, "{}\n", m.error().text()), 1;
-    const std::vector<model::Index> leaves = leaves_of(*m, static_cast<std::size_t>(number(2, 200)));
+    const std::vector<model::Index> leaves = bake::distinct_leaves(*m, static_cast<std::size_t>(number(2, 200)));
     std::vector<std::vector<bake::Judged>> judged(leaves.size());
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> threads;
