@@ -1,6 +1,7 @@
 // What an engine owns and what its submission shares: private to engine.cpp and engine_submit.cpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "render/model/view.hpp"
 #include "render/prepare/resolution.hpp"
 #include "render/rest.hpp"
+#include "render/select/frame_profile.hpp"
 #include "render/unprepared.hpp"
 #include "rt/base/thread_annotations.hpp"
 
@@ -46,7 +48,9 @@ struct Engine::Impl {
     bool use_last GUARDED_BY(draws) = false;  ///< the last cut's forms: no prepared set may be used
     const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
     Correction correction GUARDED_BY(draws);
-    double headroom GUARDED_BY(draws) = 1;         ///< that the last select() spent
+    double headroom GUARDED_BY(draws) = 1;  ///< that the last select() spent
+    /// By resolution: the time that frames take as they are drawn.
+    std::array<select::FrameProfile, model::resolution_steps.size()> profiles GUARDED_BY(draws);
     double forecast_us GUARDED_BY(draws) = 0;      ///< end of this frame, by the last check that let a slice be drawn in full
     float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from
 
@@ -83,6 +87,7 @@ struct Engine::Impl {
     [[nodiscard]] model::ItemCost drawn_cost(model::Index rep, const model::ItemCost& cost) const REQUIRES(draws) {
         return filtered && !use_last ? filter_costs.with(rep, cost) : cost;
     }
+    [[nodiscard]] select::FrameProfile& profile() REQUIRES(draws) { return profiles[model::resolution_step(drawn_resolution)]; }
     /// Of what was bought, the time that is spent beside the draws.
     [[nodiscard]] double beside_us() const REQUIRES(draws) {
         return use_last ? 0.0 : cut.bought.cost_us - (filtered ? static_cast<double>(filter_us) : 0.0);

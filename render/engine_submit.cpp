@@ -71,6 +71,14 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     check.next_stand_in_us = with(p.stand_in) * scale;
     check.rest_stand_in_us = (with(p.rest) + static_cast<double>(enlarge_us())) * correction.factor;  // of many: little spread
     check.limit_us = limits.limit_us - limits.margin_us;
+    if (limits.now_ns != nullptr && !use_last) {  // times of another clock repeat the predictions
+        const double finished_us = check.elapsed_us - check.in_flight_us;
+        const double predicted_us = check.predicted_so_far_us - check.in_flight_us;
+        const select::FrameProfile::Usual usual = profile().at(predicted_us, limits.limit_us);
+        profile().note(finished_us, predicted_us, select::wrongness(check), limits.limit_us);
+        check.usual_wrong = usual.wrong;
+        check.usual_tail = usual.tail;
+    }
     if (!select::still_fits(check)) return false;
     forecast_us = select::forecast_us(check);
     return true;
@@ -198,6 +206,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     e.culled.clear();
     e.floor.begin();
     e.forecast_us = 0;
+    e.profile().begin();
     e.frustum = model::make_frustum(pose, e.options.device.viewport, model::far_corners_m(e.model.nodes[0].box));
     e.device->set_filter(e.filtered && !e.use_last ? e.best_filter : e.device->filter());
     e.device->begin_frame(pose, e.drawn_resolution);
@@ -210,6 +219,9 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.submitted_us = e.now_us(limits) - start_us;
     e.device->finish_frame();
     report.finished_us = e.now_us(limits) - start_us;
+    if (limits.now_ns != nullptr && !e.use_last)
+        e.profile().finish(limits.elapsed_us + report.finished_us, limits.elapsed_us + report.predicted_us * e.correction.factor,
+                           limits.limit_us);
     const bool timed = report.finished_us > 0;  // else no clock runs within the frame, and no forecast was made of it
     report.forecast_us = timed && e.forecast_us > 0 ? e.forecast_us - limits.elapsed_us : 0;
     const gl::FrameStats stats = e.device->stats();

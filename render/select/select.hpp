@@ -151,12 +151,17 @@ struct CheckInput {
     double rest_stand_in_us = 0;     ///< all slices after it as stand-ins, expected
     double limit_us = 0;             ///< when the frame must be done
     double margin = 1.0;             ///< factor on top of the headroom
+    double usual_wrong = 1.0;        ///< FrameProfile::Usual of the frames before; below 1 counts as 1
+    double usual_tail = 1.0;
 };
+/// How much longer than predicted what is finished has taken, a prior time added to both: 0 and more; 8 if it is unknown.
+double wrongness(const CheckInput& input);
 /// When the frame would end, us since it was due, if the slice is drawn in full and all after it as stand-ins. NaN: unknown.
 double forecast_us(const CheckInput& input);
 /// True: draw the slice in full. False: draw this and all later slices as stand-ins. Pure.
 /// Predictions are multiplied by a factor of 1..8: elapsed / predicted time of what is finished. A few early slices must not
 /// decide alone. So a prior time is added to both: 1/20 of the limit, and half of the rest's cost times the share of time left.
+/// Frames that are usually as late at this point and end in time count as in time: only what exceeds the usual does.
 bool still_fits(const CheckInput& input);
 
 }  // namespace surefoot::select

@@ -182,15 +182,27 @@ void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, Slic
     (void)CHECK_RARE(plan.order.size() == cut.items.size(), "The slices hold every item of the cut once");
 }
 
-double forecast_us(const CheckInput& input) {
-    const double rest_us = std::isfinite(input.rest_stand_in_us) ? std::max(input.rest_stand_in_us, 0.0) : 0.0;
+namespace {
+
+double rest_us_of(const CheckInput& input) {
+    return std::isfinite(input.rest_stand_in_us) ? std::max(input.rest_stand_in_us, 0.0) : 0.0;
+}
+
+}  // namespace
+
+double wrongness(const CheckInput& input) {
     const double time_left = std::clamp(1.0 - input.elapsed_us / input.limit_us, 0.0, 1.0);  // NaN stays one: does not fit
-    const double prior_us = 0.05 * input.limit_us + 0.5 * rest_us * time_left;
+    const double prior_us = 0.05 * input.limit_us + 0.5 * rest_us_of(input) * time_left;
     // What is in flight counts as predicted: it says nothing of how wrong the frame is, and may be as wrong.
     const double finished_us = input.elapsed_us - input.in_flight_us;
     const double predicted_us = std::max(input.predicted_so_far_us - input.in_flight_us, 0.0);
     const double wrong = (finished_us + prior_us) / (predicted_us + prior_us);
-    const double factor = std::clamp(std::isfinite(wrong) ? wrong : 8.0, 1.0, 8.0);
+    return std::isfinite(wrong) ? std::clamp(wrong, 0.0, 8.0) : 8.0;
+}
+
+double forecast_us(const CheckInput& input) {
+    const double factor = std::max(wrongness(input) / std::max(input.usual_wrong, 1.0), 1.0) * std::max(input.usual_tail, 1.0);
+    const double finished_us = input.elapsed_us - input.in_flight_us;
     return finished_us + input.in_flight_us * factor + (input.next_us + input.rest_stand_in_us) * factor * input.margin;
 }
 

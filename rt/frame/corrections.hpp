@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,8 +11,8 @@
 
 namespace surefoot::rt {
 
-/// A CostController for each state. A state that no frame was drawn in yet starts with what the last frame's state has learnt.
-/// After that it keeps its own. So a return to a state finds the figures that it was left with.
+/// A CostController for each state. A state that no frame was drawn in yet starts midway between the table and what the last
+/// frame's state has learnt: part of that error is the machine's today, part is that state's own. After that it keeps its own. So a return to a state finds the figures that it was left with.
 class Corrections {
 public:
     static constexpr std::size_t states = 10;
@@ -19,7 +20,7 @@ public:
     /// As CostController::update(). States above the last are the last.
     void update(std::size_t state, double predicted_us, double actual_us) {
         state = std::min(state, states - 1);
-        if (!known_[state]) of_[state] = of_[last_];
+        if (!known_[state]) of_[state] = of_[last_], of_[state].halve();
         in_state_ = known_[state] && state == last_ ? in_state_ + 1 : 0;
         if (in_state_ == 0) restart_drift();
         known_[state] = true;
@@ -29,10 +30,15 @@ public:
         if (in_state_ > learnt_after) drift_ *= of_[state].factor() / before;
         left_[state] = drift_;
     }
+    /// The factor of a state as it was left.
+    [[nodiscard]] double factor(std::size_t state) const {
+        state = std::min(state, states - 1);
+        return known_[state] ? of_[state].factor() : std::sqrt(of_[last_].factor());
+    }
     /// The factor of a state, as it may be by now: what has changed since in the state that was drawn is the machine's doing.
     [[nodiscard]] double expected(std::size_t state) const {
         state = std::min(state, states - 1);
-        if (!known_[state]) return of_[last_].factor();
+        if (!known_[state]) return factor(state);
         return std::clamp(of_[state].factor() * drift_ / left_[state], CostController::lowest, CostController::highest);
     }
     /// What the states from `first` on have learnt is old: they start again as if no frame had been drawn in them. The last

@@ -176,6 +176,23 @@ TEST(Corrections, EachStateKeepsItsOwnAndStartsWithTheLastOnes) {
     EXPECT_NEAR(c.of(0).factor(), 1.5, 1e-9);
 }
 
+TEST(Corrections, AStateNotDrawnYetIsExpectedMidwayBetweenTheTableAndTheLastOne) {
+    Corrections c;
+    for (int i = 0; i < 100; ++i) c.update(4, 100, 64);
+    EXPECT_NEAR(c.factor(0), 0.8, 1e-9) << "the root of 0.64";
+    EXPECT_NEAR(c.expected(0), 0.8, 1e-9);
+    c.update(0, 100, 80);
+    EXPECT_NEAR(c.factor(0), 0.8, 1e-9) << "it starts there";
+    for (int i = 0; i < 10; ++i) c.update(0, 100, 100);
+    EXPECT_NEAR(c.factor(0), 1.0, 0.05) << "and learns its own as fast as ever";
+    EXPECT_NEAR(c.factor(4), 0.64, 1e-9) << "kept";
+    c.forget_from(1);
+    EXPECT_NEAR(c.factor(4), std::sqrt(c.factor(0)), 1e-9);
+    Corrections dear;
+    for (int i = 0; i < 100; ++i) dear.update(4, 100, 144);
+    EXPECT_NEAR(dear.factor(0), 1.2, 1e-9);
+}
+
 TEST(Corrections, WhatSlowsTheDrawnStateSlowsTheOthers) {
     Corrections c;
     for (int i = 0; i < 100; ++i) c.update(0, 100, 100);

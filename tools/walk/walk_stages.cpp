@@ -61,8 +61,8 @@ void WalkStages::inject(FramePhase phase, const rt::FrameRecord& record) const {
 Correction WalkStages::correction_at(float resolution, bool filtered) const {
     const float of_table = engine_.costs().headroom;
     if (!request_.correct_costs) return {1.0, static_cast<double>(of_table)};
-    const rt::CostController& controller = corrections_.of(state_of(resolution, filtered));
-    return {controller.factor(), controller.headroom(static_cast<double>(of_table))};
+    const std::size_t state = state_of(resolution, filtered);
+    return {corrections_.factor(state), corrections_.of(state).headroom(static_cast<double>(of_table))};
 }
 
 double WalkStages::margin_us() const { return std::min(overshoot_.margin_us(), max_margin_share * limit_.us()); }
