@@ -31,7 +31,7 @@ namespace {
 
 using namespace surefoot;
 
-constexpr std::uint32_t across_px = 128, min_triangles = 200;
+constexpr std::uint32_t across_px = 128, min_triangles = 100;
 constexpr std::array shares{0.5, 0.25, 0.125};  // of full detail's time
 enum Method : std::size_t { ours, quadrics, clustering, thinning, methods };
 constexpr std::array<const char*, methods> method_names{"ours", "quadrics", "clustering", "thinning"};
@@ -44,6 +44,7 @@ struct Form {
     double bound = -1;         ///< of the two-sided distance, by the diagonal; below 0: not known yet
     bake::Geometry geometry;   ///< of the rivals
     bool whole = false;        ///< full detail
+    bool missing = false;      ///< no form is as cheap
 };
 
 /// Full detail about the node's centre, along the world's axes.
@@ -73,6 +74,20 @@ bake::Geometry geometry_of(const model::Model& m, const model::Representation& r
         }
         g.parts.push_back(std::move(own));
     }
+    return g;
+}
+
+/// Vertices of one place become one: a simplifier keeps what looks like a border to it.
+bake::Geometry welded(bake::Geometry g) {
+    std::vector<float> places;
+    for (const model::Vertex& v : g.vertices) places.insert(places.end(), v.position, v.position + 3);
+    std::vector<std::uint32_t> all(g.vertices.size()), first(g.vertices.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    meshopt_generateShadowIndexBuffer(first.data(), all.data(), all.size() / 3 * 3, places.data(), g.vertices.size(),
+                                      3 * sizeof(float), 3 * sizeof(float));
+    for (std::size_t i = all.size() / 3 * 3; i < all.size(); ++i) first[i] = all[i];
+    for (bake::GeometryPart& part : g.parts)
+        for (std::uint32_t& index : part.indices) index = first[index];
     return g;
 }
 
@@ -110,7 +125,8 @@ bake::Geometry thinned(const bake::Geometry& full, double share) {
     for (const bake::GeometryPart& part : full.parts) {
         std::vector<std::size_t> order(part.indices.size() / 3);
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-        for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+        for (std::size_t i = order.size(); i > 1; --i)
+            std::swap(order[i - 1], order[random.below(static_cast<std::uint32_t>(i))]);
         const std::size_t left = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(order.size())));
         order.resize(std::min(left, order.size()));
         const float larger = std::sqrt(static_cast<float>(part.indices.size()) / 3.0F / static_cast<float>(order.size()));
@@ -263,25 +279,25 @@ Used compare_methods(const model::Model& m, const model::Node& node, const model
         forms[ours].back().whole = r + 1 == end;
     }
     const double full_us = forms[ours].back().time_us;
+    const bake::Geometry joined = welded(judge.full);
     for (double share = 0.75; share * static_cast<double>(judge.full.triangles()) >= 4; share *= 0.75) {
-        forms[quadrics].push_back(judge.of_geometry(collapsed(judge.full, share)));
-        forms[clustering].push_back(judge.of_geometry(clustered(judge.full, share)));
+        forms[quadrics].push_back(judge.of_geometry(collapsed(joined, share)));
+        forms[clustering].push_back(judge.of_geometry(clustered(joined, share)));
         forms[thinning].push_back(judge.of_geometry(thinned(judge.full, share)));
     }
+    Form nothing = judge.of_geometry({});
+    nothing.bound = 1;
+    nothing.missing = true;
     Used used;
     for (std::size_t s = 0; s < shares.size(); ++s) {
         for (std::size_t method = 0; method < methods; ++method) {
             Form* best = nullptr;
-            Form* cheapest = nullptr;
-            for (Form& form : forms[method]) {
-                if (form.whole) continue;
-                if (cheapest == nullptr || form.time_us < cheapest->time_us) cheapest = &form;
-                if (form.time_us > shares[s] * full_us) continue;
-                if (best == nullptr || form.squared_error < best->squared_error) best = &form;
-            }
-            Form& taken = *(best != nullptr ? best : cheapest);
-            if (taken.bound < 0) taken.bound = judge.bound_of(taken.geometry);
-            used[s][method] = taken;
+            for (Form& form : forms[method])
+                if (!form.whole && form.time_us <= shares[s] * full_us &&
+                    (best == nullptr || form.squared_error < best->squared_error))
+                    best = &form;
+            if (best != nullptr && best->bound < 0) best->bound = judge.bound_of(best->geometry);
+            used[s][method] = best != nullptr ? *best : nothing;
             used[s][method].geometry = {};
         }
     }
@@ -311,18 +327,21 @@ int main(int argc, char** argv) {
     for (std::size_t method = 0; method < methods; ++method) {
         out += fmt::format(", \"{}\": {{", method_names[method]);
         for (std::size_t s = 0; s < shares.size(); ++s) {
-            double squares = 0, outline = 0;
+            double squares = 0, outline = 0, missing = 0;
             std::vector<double> bounds;
             for (const Used& of_leaf : used) {
                 squares += of_leaf[s][method].squared_error;
                 outline += of_leaf[s][method].outline;
+                missing += of_leaf[s][method].missing ? 1 : 0;
                 bounds.push_back(of_leaf[s][method].bound);
             }
             std::sort(bounds.begin(), bounds.end());
             const auto count = static_cast<double>(used.size());
-            out += fmt::format("{}\"at_{:.0f}\": {{\"psnr_db\": {:.2f}, \"outline_percent\": {:.1f}, \"bound_percent\": {:.2f}}}",
-                               s == 0 ? "" : ", ", 100 * shares[s], -10 * std::log10(std::max(squares / count, 1e-13)),
-                               100 * outline / count, 100 * bounds[bounds.size() / 2]);
+            out += fmt::format(
+                "{}\"at_{:.0f}\": {{\"psnr_db\": {:.2f}, \"outline_percent\": {:.1f}, \"bound_percent\": {:.2f}, \"missing\": "
+                "{}}}",
+                s == 0 ? "" : ", ", 100 * shares[s], -10 * std::log10(std::max(squares / count, 1e-13)), 100 * outline / count,
+                100 * bounds[bounds.size() / 2], missing);
         }
         out += "}";
     }
