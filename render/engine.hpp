@@ -41,7 +41,8 @@ struct EngineOptions {
 /// Time limit of one frame, and the clock for its checks.
 struct SubmitLimits {
     double elapsed_us = 0;                            ///< already spent in this frame when submit is called
-    double limit_us = 0;                              ///< when the frame must be done, from its start
+    double limit_us = 0;                              ///< when the frame should be done, from its start
+    double deadline_us = 0;                           ///< when it is late; 0: at the limit
     double margin_us = 0;                             ///< of the in-frame check: how much later than forecast frames end
     std::int64_t (*now_ns)(void* context) = nullptr;  ///< null: the device's charged time (virtual)
     void* now_context = nullptr;

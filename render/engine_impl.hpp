@@ -49,7 +49,7 @@ struct Engine::Impl {
     const prepare::PreparedFrame* prepared GUARDED_BY(draws) = nullptr;
     Correction correction GUARDED_BY(draws);
     double headroom GUARDED_BY(draws) = 1;  ///< that the last select() spent
-    /// By resolution: the time that frames take as they are drawn.
+    /// By step of resolution: the usual course of frames.
     std::array<select::FrameProfile, model::resolution_steps.size()> profiles GUARDED_BY(draws);
     double forecast_us GUARDED_BY(draws) = 0;      ///< end of this frame, by the last check that let a slice be drawn in full
     float drawn_resolution GUARDED_BY(draws) = 1;  ///< of the last prepared frame that was selected from

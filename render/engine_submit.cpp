@@ -71,12 +71,12 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     check.next_stand_in_us = with(p.stand_in) * scale;
     check.rest_stand_in_us = (with(p.rest) + static_cast<double>(enlarge_us())) * correction.factor;  // of many: little spread
     check.limit_us = limits.limit_us - limits.margin_us;
+    check.deadline_us = limits.deadline_us - limits.margin_us;
     if (limits.now_ns != nullptr && !use_last) {  // times of another clock repeat the predictions
-        const double finished_us = check.elapsed_us - check.in_flight_us;
         const double predicted_us = check.predicted_so_far_us - check.in_flight_us;
+        profile().note(check.elapsed_us - check.in_flight_us, predicted_us, limits.limit_us);
         const select::FrameProfile::Usual usual = profile().at(predicted_us, limits.limit_us);
-        profile().note(finished_us, predicted_us, select::wrongness(check), limits.limit_us);
-        check.usual_wrong = usual.wrong;
+        check.usual_head = usual.head;
         check.usual_tail = usual.tail;
     }
     if (!select::still_fits(check)) return false;

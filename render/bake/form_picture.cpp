@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::uint32_t max_side = 576;  // of 64 pixels across: a side reaches 1.1 * 4 * 64 samples and one to both sides
 constexpr int level_octaves = 3;         // between two levels of a picture
+constexpr float max_rounded_px = 1e4F;   // of twice a triangle's area
 constexpr int max_octaves = 12;          // what is finer has hardly a sample
 
 /// 0..1, evenly spread over 4 x 4 samples of the grid and the same in every picture: equal glass looks equal in two forms.
@@ -51,7 +52,8 @@ struct Texels {
 
 float cross(const vec2& a, const vec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// Columns, from and to, that hold all samples of a row in a triangle, and one or two more on each side.
+/// Columns, from and to, that hold all samples of a row in a triangle, and one or two more on each side. Weights of large
+/// triangles are rounded by more than that, so their rows are whole.
 glm::uvec2 columns_of(const std::array<vec2, 3>& corners, float y, const glm::uvec2& all) {
     float left = 1e30F, right = -1e30F;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -151,7 +153,8 @@ void Painter::fill(const std::array<Corner, 3>& corners, float area, const glm::
     Triangle triangle;
     bool ready = false;
     for (std::uint32_t y = range.y; y < range.w; ++y) {
-        const glm::uvec2 span = columns_of({a, b, c}, static_cast<float>(y), {range.x, range.z});
+        const glm::uvec2 all(range.x, range.z);
+        const glm::uvec2 span = area < max_rounded_px ? columns_of({a, b, c}, static_cast<float>(y), all) : all;
         for (std::uint32_t x = span.x; x < span.y; ++x) {
             const vec2 p(static_cast<float>(x), static_cast<float>(y));
             const float wa = cross(c - b, p - b), wb = cross(a - c, p - c), wc = area - wa - wb;

@@ -380,7 +380,6 @@ float error_of_cut(const LodChain& chain, const Level& before, const Level& cut)
     const measure::TriangleTree to(MeshSurface(chain.full.vertices, cut.parts).view());
     measure::DistanceLimits limits;
     limits.absolute = 0.0005F * to.diagonal();
-    limits.known_lower = has_full ? before.error_m : 0.0F;
     const float distance = measure::directed_distance(from.view(), to, limits).upper;
     return has_full ? std::max(before.error_m, distance) : before.error_m + distance;
 }

@@ -23,7 +23,8 @@ std::vector<GeometryPart> trimmed(Geometry& g, const std::vector<GeometryPart>& 
                                   const TrimPrice& price);
 
 /// Cuts the levels of a chain but for the coarsest. Full detail stays: a new level before it shows the same for less, where it
-/// fills many pixels. Triangles still rise from level to level, up to the new one.
+/// fills many pixels. Triangles still rise from level to level, up to the new one. What is cut away counts in a level's error,
+/// and errors still fall: coarser ones rise where need be. The new level before full detail has model::trimmed_error_m.
 void trim_levels(LodChain& chain, const MaskShapes& shapes);
 
 }  // namespace surefoot::bake

@@ -43,7 +43,7 @@ void ResolutionChooser::judge(double lost_now, double lost_tried) {
     const bool first = !(decided_by_us_[at_] > 0.0), alone = !decided_ && (first || time_changed());
     const auto best = static_cast<std::uint32_t>(std::min_element(lost_.begin(), lost_.end()) - lost_.begin());
     const auto beats = [&](std::uint32_t step) {
-        return step != at_ && lost_[step] < lost_now * (1.0 - (step > at_ ? softer : sharper)) - unseen;
+        return step != at_ && lost_[step] < lost_[at_] * (1.0 - (step > at_ ? softer : sharper)) - unseen;
     };
     const bool wins = beats(best);
     // Where a view becomes cheaper or dearer, each round has another winner. Two on one side agree on the nearer one.
@@ -57,7 +57,7 @@ void ResolutionChooser::judge(double lost_now, double lost_tried) {
     }
     decided_ = true;
     if (!open) decided_by_us_ = planned_us_;
-    best_before_ = wins ? best : at_;
+    best_before_ = beats(best) ? best : at_;  // after a change: where it still wins
 }
 
 }  // namespace surefoot::prepare

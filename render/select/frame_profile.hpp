@@ -7,28 +7,30 @@
 
 namespace surefoot::select {
 
-/// Learnt from each check of each frame that was drawn by one resolution, by the predicted time of what was finished. Moving
-/// means of about eight frames. A fixed size, no allocation.
+/// Learnt from each check of each frame, in sixteenths of the limit by the predicted time of what was finished. It forgives
+/// little: what makes frames look better is learnt over about eight frames and forgotten at once. Used by the thread that draws.
+/// A fixed size, no allocation.
 class FrameProfile {
 public:
     static constexpr std::size_t bins = 16;
-    /// As far as a frame was predicted to be. Both 1: as predicted, or not known yet.
+    /// Measured by predicted time. Both are 1 where nothing is known.
     struct Usual {
-        double wrong = 1;  ///< what still_fits() thinks of the part before: CheckInput::usual_wrong
-        double tail = 1;   ///< measured by predicted time of all after it
+        double head = 1;  ///< of all that is finished by then, 1..4
+        double tail = 1;  ///< of all after it, 1..4
     };
+    /// A place that is no number is the first bin.
     [[nodiscard]] Usual at(double finished_predicted_us, double limit_us) const;
 
     void begin() { count_ = 0; }
-    /// A check: measured and predicted time of what is finished, and wrongness() there. The first of each bin counts.
-    void note(double finished_us, double finished_predicted_us, double wrong, double limit_us);
-    /// The frame's end, measured and predicted. Learns from what was noted since begin().
+    /// A check: measured and predicted time of what is finished. The first of each bin counts.
+    void note(double finished_us, double finished_predicted_us, double limit_us);
+    /// The frame's end, measured and predicted. Learns from what was noted since begin(); ignores what is no number.
     void finish(double end_us, double end_predicted_us, double limit_us);
 
 private:
     struct Point {
         std::size_t bin = 0;
-        double finished_us = 0, predicted_us = 0, wrong = 1;
+        double finished_us = 0, predicted_us = 0;
     };
     std::array<Usual, bins> usual_{};
     std::array<Point, bins> points_{};

@@ -149,19 +149,19 @@ struct CheckInput {
     double next_us = 0;              ///< the next slice in full, with headroom
     double next_stand_in_us = 0;     ///< the next slice as its stand-in
     double rest_stand_in_us = 0;     ///< all slices after it as stand-ins, expected
-    double limit_us = 0;             ///< when the frame must be done
+    double limit_us = 0;             ///< when the frame should be done
+    double deadline_us = 0;          ///< when it must be done, if nothing turns out as usual; at most the limit: the limit
     double margin = 1.0;             ///< factor on top of the headroom
-    double usual_wrong = 1.0;        ///< FrameProfile::Usual of the frames before; below 1 counts as 1
-    double usual_tail = 1.0;
+    double usual_head = 1.0;         ///< of the frames before, here: measured by predicted time of what is finished; at least 1
+    double usual_tail = 1.0;         ///< the same of all after it
 };
-/// How much longer than predicted what is finished has taken, a prior time added to both: 0 and more; 8 if it is unknown.
-double wrongness(const CheckInput& input);
 /// When the frame would end, us since it was due, if the slice is drawn in full and all after it as stand-ins. NaN: unknown.
-double forecast_us(const CheckInput& input);
-/// True: draw the slice in full. False: draw this and all later slices as stand-ins. Pure.
 /// Predictions are multiplied by a factor of 1..8: elapsed / predicted time of what is finished. A few early slices must not
 /// decide alone. So a prior time is added to both: 1/20 of the limit, and half of the rest's cost times the share of time left.
-/// Frames that are usually as late at this point and end in time count as in time: only what exceeds the usual does.
+/// The factor is divided by what it would be for a usual frame, down to 1, and multiplied by the usual tail.
+double forecast_us(const CheckInput& input);
+/// True: draw the slice in full. False: draw this and all later slices as stand-ins. Pure. The forecast has to be within the
+/// limit. What it would be without the usual figures has to be within the deadline: frames are forgiven no more than that.
 bool still_fits(const CheckInput& input);
 
 }  // namespace surefoot::select

@@ -184,31 +184,35 @@ void plan_slices(const SelectInput& input, const Cut& cut, double slice_us, Slic
 
 namespace {
 
-double rest_us_of(const CheckInput& input) {
-    return std::isfinite(input.rest_stand_in_us) ? std::max(input.rest_stand_in_us, 0.0) : 0.0;
-}
-
-}  // namespace
-
-double wrongness(const CheckInput& input) {
+/// How much longer than predicted a frame takes whose finished part took `finished_us`: 1..8, 8 if it is unknown.
+double wrong_by(const CheckInput& input, double finished_us) {
+    const double rest_us = std::isfinite(input.rest_stand_in_us) ? std::max(input.rest_stand_in_us, 0.0) : 0.0;
     const double time_left = std::clamp(1.0 - input.elapsed_us / input.limit_us, 0.0, 1.0);  // NaN stays one: does not fit
-    const double prior_us = 0.05 * input.limit_us + 0.5 * rest_us_of(input) * time_left;
-    // What is in flight counts as predicted: it says nothing of how wrong the frame is, and may be as wrong.
-    const double finished_us = input.elapsed_us - input.in_flight_us;
+    const double prior_us = 0.05 * input.limit_us + 0.5 * rest_us * time_left;
     const double predicted_us = std::max(input.predicted_so_far_us - input.in_flight_us, 0.0);
     const double wrong = (finished_us + prior_us) / (predicted_us + prior_us);
-    return std::isfinite(wrong) ? std::clamp(wrong, 0.0, 8.0) : 8.0;
+    return std::clamp(std::isfinite(wrong) ? wrong : 8.0, 1.0, 8.0);
 }
 
-double forecast_us(const CheckInput& input) {
-    const double factor = std::max(wrongness(input) / std::max(input.usual_wrong, 1.0), 1.0) * std::max(input.usual_tail, 1.0);
+/// What is in flight counts as predicted: it says nothing of how wrong the frame is, and may be as wrong.
+double end_us(const CheckInput& input, double factor) {
     const double finished_us = input.elapsed_us - input.in_flight_us;
     return finished_us + input.in_flight_us * factor + (input.next_us + input.rest_stand_in_us) * factor * input.margin;
 }
 
+}  // namespace
+
+double forecast_us(const CheckInput& input) {
+    const double predicted_us = std::max(input.predicted_so_far_us - input.in_flight_us, 0.0);
+    const double usual = wrong_by(input, std::max(input.usual_head, 1.0) * predicted_us);
+    const double wrong = wrong_by(input, input.elapsed_us - input.in_flight_us);
+    return end_us(input, std::max(wrong / usual, 1.0) * std::max(input.usual_tail, 1.0));
+}
+
 bool still_fits(const CheckInput& input) {
-    if (input.next_stand_in_us >= input.next_us) return true;  // the stand-in would gain nothing
-    return forecast_us(input) <= input.limit_us;               // NaN: does not fit
+    if (input.next_stand_in_us >= input.next_us) return true;   // the stand-in would gain nothing
+    if (!(forecast_us(input) <= input.limit_us)) return false;  // NaN: does not fit
+    return end_us(input, wrong_by(input, input.elapsed_us - input.in_flight_us)) <= std::max(input.deadline_us, input.limit_us);
 }
 
 }  // namespace surefoot::select

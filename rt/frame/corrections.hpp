@@ -11,8 +11,9 @@
 
 namespace surefoot::rt {
 
-/// A CostController for each state. A state that no frame was drawn in yet starts midway between the table and what the last
-/// frame's state has learnt: part of that error is the machine's today, part is that state's own. After that it keeps its own. So a return to a state finds the figures that it was left with.
+/// A CostController for each state: a resolution and a filter. After its first frame a state keeps its own figures, so a return
+/// finds what was left. Before that it has the last frame's. At another resolution a factor below 1 counts for half then: its
+/// root. A table that is too dear for one picture may be right for another.
 class Corrections {
 public:
     static constexpr std::size_t states = 10;
@@ -20,7 +21,7 @@ public:
     /// As CostController::update(). States above the last are the last.
     void update(std::size_t state, double predicted_us, double actual_us) {
         state = std::min(state, states - 1);
-        if (!known_[state]) of_[state] = of_[last_], of_[state].halve();
+        if (!known_[state]) start(state);
         in_state_ = known_[state] && state == last_ ? in_state_ + 1 : 0;
         if (in_state_ == 0) restart_drift();
         known_[state] = true;
@@ -30,10 +31,11 @@ public:
         if (in_state_ > learnt_after) drift_ *= of_[state].factor() / before;
         left_[state] = drift_;
     }
-    /// The factor of a state as it was left.
+    /// The factor of a state as it was left, or as it would start.
     [[nodiscard]] double factor(std::size_t state) const {
         state = std::min(state, states - 1);
-        return known_[state] ? of_[state].factor() : std::sqrt(of_[last_].factor());
+        const double of_source = of_[source_of(state)].factor();
+        return half_counts(state) ? std::sqrt(of_source) : of_source;
     }
     /// The factor of a state, as it may be by now: what has changed since in the state that was drawn is the machine's doing.
     [[nodiscard]] double expected(std::size_t state) const {
@@ -44,12 +46,21 @@ public:
     /// What the states from `first` on have learnt is old: they start again as if no frame had been drawn in them. The last
     /// frame's state must not be one of them.
     void forget_from(std::size_t first) { std::fill(known_.begin() + std::min(first, states), known_.end(), false); }
-    [[nodiscard]] const CostController& of(std::size_t state) const {
-        state = std::min(state, states - 1);
-        return of_[known_[state] ? state : last_];
-    }
+    /// The figures that a state has, or would start with but for its factor.
+    [[nodiscard]] const CostController& of(std::size_t state) const { return of_[source_of(std::min(state, states - 1))]; }
 
 private:
+    /// Whose figures a state has.
+    [[nodiscard]] std::size_t source_of(std::size_t state) const { return known_[state] ? state : last_; }
+    [[nodiscard]] bool half_counts(std::size_t state) const {
+        constexpr std::size_t resolutions = states / 2;
+        return !known_[state] && state % resolutions != last_ % resolutions && of_[last_].factor() < 1;
+    }
+    void start(std::size_t state) {
+        const bool half = half_counts(state);
+        of_[state] = of_[source_of(state)];
+        if (half) of_[state].halve();
+    }
     /// With each change of the state, so that what adds up over months stays a small number.
     void restart_drift() {
         constexpr double max_drift = 2;  // an older figure says no more

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt/base/random.hpp"
 #include "tests/bake/squares.hpp"
 
 namespace surefoot::bake {
@@ -45,6 +46,51 @@ TEST(FormView, OddBoxesHaveAnEmptyPicture) {
         EXPECT_TRUE(picture.samples.empty());
         draw_form(squares({{}}), squares({{}}).reps[0], picture);
     }
+}
+
+/// Whether a sample of the picture lies in a triangle whose corners are in pixels, counter-clockwise.
+bool holds(const std::array<vec2, 3>& t, const vec2& p) {
+    const auto side = [](const vec2& a, const vec2& b) { return a.x * b.y - a.y * b.x; };
+    const float area = side(t[1] - t[0], t[2] - t[0]), wa = side(t[2] - t[1], p - t[1]), wb = side(t[0] - t[2], p - t[2]);
+    return wa >= 0 && wb >= 0 && area - wa - wb >= 0;
+}
+
+TEST(FormPicture, TrianglesOfAnySlantCoverTheSamplesInThem) {
+    model::Model looks;
+    looks.materials.emplace_back();
+    looks.materials[0].two_sided = true;
+    Random random(5);
+    std::size_t drawn = 0;
+    for (int i = 0; i < 3000; ++i) {
+        // Small and large, beyond the picture too; every third has an edge that is nearly level.
+        const float size = i % 2 == 0 ? 1.0F : 40.0F, level = std::ldexp(1.0F, -6 - i % 16);
+        const auto anywhere = [&] { return size * (static_cast<float>(random.unit()) - 0.5F) + 0.5F; };
+        std::array<vec2, 3> corners;
+        for (vec2& corner : corners) corner.x = anywhere(), corner.y = anywhere();
+        if (i % 3 == 0) corners[1].y = corners[0].y + level * (static_cast<float>(random.unit()) - 0.5F);
+        Geometry g;
+        g.parts.push_back({0, {0, 1, 2}});
+        for (const vec2& corner : corners) {
+            model::Vertex v{};
+            v.position[0] = corner.x, v.position[1] = corner.y;
+            g.vertices.push_back(v);
+        }
+        FormPicture picture;
+        picture.clear(view_of(unit_box, front, dvec3(0), 64));
+        draw_geometry(looks, g.vertices, g.parts, picture);
+        const float px = std::ldexp(1.0F, -picture.view.exponent);
+        for (vec2& corner : corners) corner = corner * px - vec2(picture.view.left, picture.view.low);
+        const vec2 u = corners[1] - corners[0], v = corners[2] - corners[0];
+        if (u.x * v.y - u.y * v.x < 0) std::swap(corners[1], corners[2]);
+        for (std::uint32_t y = 0; y < picture.view.height; ++y) {
+            for (std::uint32_t x = 0; x < picture.view.width; ++x) {
+                const bool is = picture.samples[static_cast<std::size_t>(y) * picture.view.width + x].covered();
+                ASSERT_EQ(is, holds(corners, vec2(x, y))) << i << ": " << x << ' ' << y;
+                drawn += is ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(drawn, 100'000U);
 }
 
 TEST(FormPicture, ASquareCoversTheSamplesInItAndOnItsEdges) {

@@ -45,5 +45,38 @@ TEST_F(InFrameCheck, DoesSoForTheFormsOfTheLastCut) {
     EXPECT_EQ(draw_last(whole.predicted_us + 2 * engine->options().slice_us).downgraded_slices, 0U);
 }
 
+/// A clock that runs `slow` times as fast as the device charges.
+struct SlowClock {
+    gl::Device* device = nullptr;
+    double slow = 1;
+
+    static std::int64_t now_ns(void* context) {
+        const auto& clock = *static_cast<const SlowClock*>(context);
+        clock.device->draws.plays();
+        return static_cast<std::int64_t>(1e3 * clock.slow * clock.device->charged_us());
+    }
+};
+
+TEST_F(InFrameCheck, WhatFramesUsuallyDoLetsNoneMissItsDeadline) {
+    const SubmitReport whole = draw(ample_us);
+    SlowClock clock{&engine->device(), 1};
+    SubmitLimits limits{.limit_us = 1.2 * whole.predicted_us, .deadline_us = 1.4 * whole.predicted_us};
+    limits.now_ns = SlowClock::now_ns;
+    limits.now_context = &clock;
+    int coarse = 0;
+    for (int i = 0; i < 120; ++i) {  // right, slow, to and fro, far too slow
+        clock.slow = i < 30 ? 1 : i < 60 ? 1.7 : i < 90 ? (i % 2 == 0 ? 1 : 1.7) : 3;
+        engine->select(prepared, ample_us, {1, 1}, 0);
+        const SubmitReport report = engine->submit(pose, limits);
+        if (clock.slow > 2) {  // the floor alone may take longer then
+            EXPECT_GE(report.downgraded_slices + 2, report.slices) << i;
+        } else {
+            EXPECT_LE(report.finished_us, limits.deadline_us) << i;
+        }
+        coarse += report.downgraded_slices > 0 ? 1 : 0;
+    }
+    EXPECT_GE(coarse, 75) << "30 slow ones, 15 of those to and fro, 30 far too slow";
+}
+
 }  // namespace
 }  // namespace surefoot

@@ -176,7 +176,7 @@ TEST(Corrections, EachStateKeepsItsOwnAndStartsWithTheLastOnes) {
     EXPECT_NEAR(c.of(0).factor(), 1.5, 1e-9);
 }
 
-TEST(Corrections, AStateNotDrawnYetIsExpectedMidwayBetweenTheTableAndTheLastOne) {
+TEST(Corrections, AResolutionNotDrawnYetHasHalfOfAGainAndAllOfALoss) {
     Corrections c;
     for (int i = 0; i < 100; ++i) c.update(4, 100, 64);
     EXPECT_NEAR(c.factor(0), 0.8, 1e-9) << "the root of 0.64";
@@ -188,9 +188,14 @@ TEST(Corrections, AStateNotDrawnYetIsExpectedMidwayBetweenTheTableAndTheLastOne)
     EXPECT_NEAR(c.factor(4), 0.64, 1e-9) << "kept";
     c.forget_from(1);
     EXPECT_NEAR(c.factor(4), std::sqrt(c.factor(0)), 1e-9);
+    Corrections filter;
+    for (int i = 0; i < 100; ++i) filter.update(4, 100, 64);
+    EXPECT_NEAR(filter.factor(9), 0.64, 1e-9) << "the other filter at the same resolution: the machine's error is all its own";
     Corrections dear;
     for (int i = 0; i < 100; ++i) dear.update(4, 100, 144);
-    EXPECT_NEAR(dear.factor(0), 1.2, 1e-9);
+    EXPECT_NEAR(dear.factor(0), 1.44, 1e-9) << "no hope that another resolution is less wrong";
+    dear.update(0, 100, 144);
+    EXPECT_NEAR(dear.factor(0), 1.44, 1e-9);
 }
 
 TEST(Corrections, WhatSlowsTheDrawnStateSlowsTheOthers) {

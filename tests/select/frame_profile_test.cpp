@@ -10,7 +10,7 @@
 namespace surefoot::select {
 namespace {
 
-constexpr double frame_limit_us = 32'000;
+constexpr double frame_limit_us = 32'000, deadline_us = 36'000;
 
 /// A check in the middle of a frame: 8 ms were predicted for what is finished.
 CheckInput middle(double wrong, const FrameProfile& profile) {
@@ -19,9 +19,10 @@ CheckInput middle(double wrong, const FrameProfile& profile) {
                   .next_us = 3'000,
                   .next_stand_in_us = 2'000,
                   .rest_stand_in_us = 12'000,
-                  .limit_us = frame_limit_us};
+                  .limit_us = frame_limit_us,
+                  .deadline_us = deadline_us};
     const FrameProfile::Usual usual = profile.at(8'000, frame_limit_us);
-    in.usual_wrong = usual.wrong;
+    in.usual_head = usual.head;
     in.usual_tail = usual.tail;
     return in;
 }
@@ -30,7 +31,7 @@ CheckInput middle(double wrong, const FrameProfile& profile) {
 void draw_frames(FrameProfile& profile, int count, double wrong, double end_us = 24'000) {
     for (int i = 0; i < count; ++i) {
         profile.begin();
-        profile.note(8'000 * wrong, 8'000, wrongness(middle(wrong, profile)), frame_limit_us);
+        profile.note(8'000 * wrong, 8'000, frame_limit_us);
         profile.finish(end_us, 24'000, frame_limit_us);
     }
 }
@@ -38,64 +39,90 @@ void draw_frames(FrameProfile& profile, int count, double wrong, double end_us =
 TEST(FrameProfile, KnowsNothingAtFirst) {
     const FrameProfile profile;
     for (const double us : {0.0, 8'000.0, 1e9, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
-        EXPECT_EQ(profile.at(us, frame_limit_us).wrong, 1.0);
+        EXPECT_EQ(profile.at(us, frame_limit_us).head, 1.0);
         EXPECT_EQ(profile.at(us, frame_limit_us).tail, 1.0);
     }
     EXPECT_TRUE(still_fits(middle(1.0, profile)));
-    EXPECT_FALSE(still_fits(middle(1.8, profile))) << "late by so much, it would end late";
+    EXPECT_FALSE(still_fits(middle(1.7, profile))) << "late by so much, it would end late";
 }
 
 TEST(FrameProfile, ALatenessThatEachFrameMakesUpForStopsNoFrame) {
     FrameProfile profile;
-    draw_frames(profile, 60, 1.8);
-    EXPECT_NEAR(profile.at(8'000, frame_limit_us).wrong, wrongness(middle(1.8, profile)), 0.01);
-    EXPECT_NEAR(profile.at(8'000, frame_limit_us).tail, (24'000 - 14'400) / 16'000.0, 0.01);
-    EXPECT_TRUE(still_fits(middle(1.8, profile)));
-    EXPECT_NEAR(forecast_us(middle(1.8, profile)), 14'400 + 15'000, 200) << "the rest counts as predicted, not as less";
-    EXPECT_FALSE(still_fits(middle(3.0, profile))) << "twice as late as usual is late";
-    EXPECT_EQ(profile.at(20'000, frame_limit_us).wrong, 1.0) << "nothing was checked there";
+    draw_frames(profile, 60, 1.7);
+    EXPECT_NEAR(profile.at(8'000, frame_limit_us).head, 1.7, 0.01);
+    EXPECT_EQ(profile.at(8'000, frame_limit_us).tail, 1.0) << "the rest counts as predicted, not as less";
+    EXPECT_TRUE(still_fits(middle(1.7, profile)));
+    EXPECT_NEAR(forecast_us(middle(1.7, profile)), 13'600 + 15'000, 100);
+    EXPECT_EQ(profile.at(20'000, frame_limit_us).head, 1.0) << "nothing was checked there";
 }
 
-TEST(FrameProfile, FramesThatAreLateToTheEndCountAsLate) {
+TEST(FrameProfile, NoFrameIsForgivenMoreThanItsDeadline) {
     FrameProfile profile;
-    draw_frames(profile, 60, 1.8, 1.8 * 24'000);
-    EXPECT_NEAR(profile.at(8'000, frame_limit_us).tail, 1.8, 0.01);
-    EXPECT_FALSE(still_fits(middle(1.8, profile)));
+    draw_frames(profile, 60, 3.0);
+    CheckInput in = middle(2.0, profile);
+    EXPECT_LT(forecast_us(in), frame_limit_us);
+    EXPECT_FALSE(still_fits(in)) << "if it goes on so, it misses";
+    in.deadline_us = 1e9;
+    EXPECT_TRUE(still_fits(in));
+    in.deadline_us = 0;
+    EXPECT_FALSE(still_fits(in)) << "none is given: the limit";
+}
+
+TEST(FrameProfile, FramesThatAreLateToTheEndCountAsLateAtOnce) {
+    FrameProfile profile;
+    draw_frames(profile, 60, 1.7);
+    draw_frames(profile, 1, 1.7, 1.7 * 24'000);
+    EXPECT_NEAR(profile.at(8'000, frame_limit_us).tail, 1.7, 0.01);
+    EXPECT_FALSE(still_fits(middle(1.7, profile)));
+    draw_frames(profile, 2, 1.7);
+    EXPECT_GT(profile.at(8'000, frame_limit_us).tail, 1.4) << "forgotten slowly";
+}
+
+TEST(FrameProfile, OneFrameAsPredictedEndsWhatWasForgiven) {
+    FrameProfile profile;
+    draw_frames(profile, 60, 1.7);
+    draw_frames(profile, 1, 1.0);
+    EXPECT_EQ(profile.at(8'000, frame_limit_us).head, 1.0);
+    for (int i = 0; i < 40; ++i) draw_frames(profile, 1, i % 2 == 0 ? 1.7 : 1.0);
+    EXPECT_LT(profile.at(8'000, frame_limit_us).head, 1.1) << "every other frame is late";
 }
 
 TEST(FrameProfile, EarlyFramesPromiseNothing) {
     FrameProfile profile;
     draw_frames(profile, 60, 0.5, 12'000);
-    const CheckInput usual = middle(1.0, profile), unknown = middle(1.0, FrameProfile());
-    EXPECT_LT(usual.usual_wrong, 1.0);
-    EXPECT_EQ(forecast_us(usual), forecast_us(unknown));
+    EXPECT_EQ(forecast_us(middle(1.0, profile)), forecast_us(middle(1.0, FrameProfile())));
 }
 
-TEST(FrameProfile, OneFrameSaysLittleAndNoNumberNothing) {
+TEST(FrameProfile, OneFrameSaysLittleAShortRestAndNoNumberNothing) {
     FrameProfile profile;
     draw_frames(profile, 1, 100);  // beside a burst of other work
-    EXPECT_LE(profile.at(8'000, frame_limit_us).wrong, 1.5);
+    EXPECT_LE(profile.at(8'000, frame_limit_us).head, 1.375);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     FrameProfile broken;
     broken.begin();
-    broken.note(nan, 8'000, nan, frame_limit_us);
-    broken.note(9'000, 10'000, 1.0, frame_limit_us);
+    broken.note(nan, 8'000, frame_limit_us);
+    broken.note(9'000, 10'000, frame_limit_us);
     broken.finish(nan, nan, nan);
+    FrameProfile ended;
+    ended.begin();
+    ended.note(20'000, 20'000, frame_limit_us);
+    ended.finish(24'000, 21'000, frame_limit_us);  // four times as long as predicted, by fixed costs of a frame's end
     for (double us = 0; us < frame_limit_us; us += 1'000) {
-        EXPECT_EQ(broken.at(us, frame_limit_us).wrong, 1.0);
+        EXPECT_EQ(broken.at(us, frame_limit_us).head, 1.0);
         EXPECT_EQ(broken.at(us, frame_limit_us).tail, 1.0);
+        EXPECT_EQ(ended.at(us, frame_limit_us).tail, 1.0);
     }
 }
 
-TEST(FrameProfile, TheFirstCheckOfABinCountsAndNoMoreFit) {
+TEST(FrameProfile, TheFirstCheckOfABinCountsOnce) {
     FrameProfile profile;
     profile.begin();
-    for (int i = 0; i < 1000; ++i) profile.note(32.0 * i, 32.0 * i, i % 63 == 0 ? 2.0 : 1.0, frame_limit_us);
+    for (int i = 1; i < 1000; ++i) profile.note(i % 63 == 1 ? 64.0 * i : 32.0 * i, 32.0 * i, frame_limit_us);
     profile.finish(frame_limit_us, frame_limit_us, frame_limit_us);
-    for (double us = 3'000; us < frame_limit_us; us += 2'000) EXPECT_NEAR(profile.at(us, frame_limit_us).wrong, 1.0, 0.13) << us;
-    EXPECT_GT(profile.at(0, frame_limit_us).wrong, 1.1) << "2, an eighth of it";
+    EXPECT_NEAR(profile.at(0, frame_limit_us).head, 1.125, 1e-9) << "2, an eighth of it";
+    EXPECT_EQ(profile.at(2'500, frame_limit_us).head, 1.0) << "its first check was as predicted";
     profile.finish(frame_limit_us, frame_limit_us, frame_limit_us);
-    EXPECT_LT(profile.at(0, frame_limit_us).wrong, 1.2) << "each note is learnt once";
+    EXPECT_NEAR(profile.at(0, frame_limit_us).head, 1.125, 1e-9) << "each note is learnt once";
 }
 
 }  // namespace

@@ -102,6 +102,7 @@ void WalkStages::rehearse(std::int64_t until_ns) {
         if (!covers(set.region, newest.pose, set.viewport)) continue;  // a button leads elsewhere
         SubmitLimits limits;
         limits.limit_us = limit_.us();
+        limits.deadline_us = static_cast<double>(options_.period_ns) * 1e-3;
         limits.margin_us = margin_us();
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
@@ -243,6 +244,7 @@ void WalkStages::submit(rt::FrameRecord& record) {
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
     limits.limit_us = limit_.us();
+    limits.deadline_us = static_cast<double>(options_.period_ns) * 1e-3;
     limits.margin_us = margin_us();
     limits.frame_ns = record.due_ns;
     if (!virtual_clock_) {
