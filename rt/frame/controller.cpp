@@ -20,10 +20,9 @@ void CostController::update(double predicted_us, double actual_us) {
     factor_ = std::clamp(std::clamp(sorted[window / 2], factor_ / slew, factor_ * slew), lowest, highest);
 }
 
-void CostController::halve() {
-    const double scale = 1 / std::sqrt(factor_);
-    for (double& ratio : ratios_) ratio = std::clamp(ratio * scale, lowest, highest);
-    factor_ = std::clamp(factor_ * scale, lowest, highest);
+void CostController::scale(double by) {
+    for (double& ratio : ratios_) ratio = std::clamp(ratio * by, lowest, highest);
+    factor_ = std::clamp(factor_ * by, lowest, highest);
 }
 
 void CostController::update_headroom(double error) {

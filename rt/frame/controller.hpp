@@ -19,8 +19,8 @@ public:
     /// predicted_us: uncorrected (factor 1). Pairs that are not positive and finite are ignored.
     void update(double predicted_us, double actual_us);
     [[nodiscard]] double factor() const { return factor_; }
-    /// Half of what was learnt, by the logarithm: the factor's root.
-    void halve();
+    /// As if all actual times had been `by` times as long; by > 0. The factor stays within its range.
+    void scale(double by);
     /// The headroom; at most the table's, which it equals for the first 58 frames. Falls as fast as it rises: a slow fall of 1 %
     /// a frame used more time and made frames no steadier.
     [[nodiscard]] double headroom(double of_table) const;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -12,8 +11,8 @@
 namespace surefoot::rt {
 
 /// A CostController for each state: a resolution and a filter. After its first frame a state keeps its own figures, so a return
-/// finds what was left. Before that it has the last frame's. At another resolution a factor below 1 counts for half then: its
-/// root. A table that is too dear for one picture may be right for another.
+/// finds what was left. Before that it has the last frame's. At another resolution a factor below 1 is a quarter larger then, up
+/// to 1. A table that is too dear for one picture may be right for another.
 class Corrections {
 public:
     static constexpr std::size_t states = 10;
@@ -34,8 +33,7 @@ public:
     /// The factor of a state as it was left, or as it would start.
     [[nodiscard]] double factor(std::size_t state) const {
         state = std::min(state, states - 1);
-        const double of_source = of_[source_of(state)].factor();
-        return half_counts(state) ? std::sqrt(of_source) : of_source;
+        return of_[source_of(state)].factor() * caution(state);
     }
     /// The factor of a state, as it may be by now: what has changed since in the state that was drawn is the machine's doing.
     [[nodiscard]] double expected(std::size_t state) const {
@@ -52,14 +50,17 @@ public:
 private:
     /// Whose figures a state has.
     [[nodiscard]] std::size_t source_of(std::size_t state) const { return known_[state] ? state : last_; }
-    [[nodiscard]] bool half_counts(std::size_t state) const {
+    /// Factor on these: above 1 for a resolution that was not drawn yet, once the drawn one's own error was learnt.
+    [[nodiscard]] double caution(std::size_t state) const {
         constexpr std::size_t resolutions = states / 2;
-        return !known_[state] && state % resolutions != last_ % resolutions && of_[last_].factor() < 1;
+        constexpr double dearer = 1.25;
+        if (known_[state] || state % resolutions == last_ % resolutions || in_state_ <= learnt_after) return 1;
+        return std::clamp(1 / of_[last_].factor(), 1.0, dearer);
     }
     void start(std::size_t state) {
-        const bool half = half_counts(state);
+        const double more = caution(state);
         of_[state] = of_[source_of(state)];
-        if (half) of_[state].halve();
+        of_[state].scale(more);
     }
     /// With each change of the state, so that what adds up over months stays a small number.
     void restart_drift() {

@@ -176,10 +176,10 @@ TEST(Corrections, EachStateKeepsItsOwnAndStartsWithTheLastOnes) {
     EXPECT_NEAR(c.of(0).factor(), 1.5, 1e-9);
 }
 
-TEST(Corrections, AResolutionNotDrawnYetHasHalfOfAGainAndAllOfALoss) {
+TEST(Corrections, AResolutionNotDrawnYetIsDearerThanTheLastOneUpToTheTable) {
     Corrections c;
     for (int i = 0; i < 100; ++i) c.update(4, 100, 64);
-    EXPECT_NEAR(c.factor(0), 0.8, 1e-9) << "the root of 0.64";
+    EXPECT_NEAR(c.factor(0), 0.8, 1e-9) << "a quarter more";
     EXPECT_NEAR(c.expected(0), 0.8, 1e-9);
     c.update(0, 100, 80);
     EXPECT_NEAR(c.factor(0), 0.8, 1e-9) << "it starts there";
@@ -187,7 +187,12 @@ TEST(Corrections, AResolutionNotDrawnYetHasHalfOfAGainAndAllOfALoss) {
     EXPECT_NEAR(c.factor(0), 1.0, 0.05) << "and learns its own as fast as ever";
     EXPECT_NEAR(c.factor(4), 0.64, 1e-9) << "kept";
     c.forget_from(1);
-    EXPECT_NEAR(c.factor(4), std::sqrt(c.factor(0)), 1e-9);
+    EXPECT_EQ(c.factor(4), c.factor(0)) << "forgotten";
+    for (int i = 0; i < 60; ++i) c.update(0, 100, 98);
+    EXPECT_NEAR(c.factor(4), 1.0, 1e-9) << "not above the table, where the last one is just below";
+    Corrections fresh;
+    for (int i = 0; i < 30; ++i) fresh.update(4, 100, 64);
+    EXPECT_EQ(fresh.factor(0), fresh.factor(4)) << "whose error it is cannot be known yet";
     Corrections filter;
     for (int i = 0; i < 100; ++i) filter.update(4, 100, 64);
     EXPECT_NEAR(filter.factor(9), 0.64, 1e-9) << "the other filter at the same resolution: the machine's error is all its own";
