@@ -94,7 +94,8 @@ template <class Simplify>
 bake::Geometry simplified(const bake::Geometry& full, double share, const Simplify& simplify) {
     bake::Geometry g = full;
     for (bake::GeometryPart& part : g.parts) {
-        const auto left = static_cast<std::size_t>(share * static_cast<double>(part.indices.size() / 3));
+        const std::size_t triangles = part.indices.size() / 3;
+        const auto left = static_cast<std::size_t>(share * static_cast<double>(triangles));
         std::vector<std::uint32_t> out(part.indices.size());
         out.resize(simplify(out, part.indices, std::max<std::size_t>(1, left) * 3));
         part.indices = std::move(out);
