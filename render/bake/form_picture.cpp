@@ -52,18 +52,19 @@ struct Texels {
 
 float cross(const vec2& a, const vec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// Columns, from and to, that hold all samples of a row in a triangle, and one or two more on each side. Weights of large
-/// triangles are rounded by more than that, so their rows are whole.
+/// Columns, from and to, that hold all samples of a row in a triangle, and one or two more on each side. Only for triangles below
+/// max_rounded_px: weights of larger ones are rounded by more than that.
 glm::uvec2 columns_of(const std::array<vec2, 3>& corners, float y, const glm::uvec2& all) {
     float left = 1e30F, right = -1e30F;
     for (std::size_t k = 0; k < 3; ++k) {
         const vec2 &p = corners[k], &q = corners[(k + 1) % 3];
         if (std::min(p.y, q.y) > y + 0.01F || std::max(p.y, q.y) < y - 0.01F) continue;
         const float rise = q.y - p.y;
-        const float t = std::abs(rise) > 1e-3F ? std::clamp((y - p.y) / rise, 0.0F, 1.0F) : 0.0F;
-        const float x = p.x + t * (q.x - p.x), also = std::abs(rise) > 1e-3F ? x : q.x;
-        left = std::min({left, x, also});
-        right = std::max({right, x, also});
+        const bool level = std::abs(rise) <= 1e-3F;  // both of its ends count
+        const float t = level ? 0.0F : std::clamp((y - p.y) / rise, 0.0F, 1.0F);
+        const float from_x = p.x + t * (q.x - p.x), to_x = level ? q.x : from_x;
+        left = std::min({left, from_x, to_x});
+        right = std::max({right, from_x, to_x});
     }
     const float from = std::max(static_cast<float>(all.x), std::floor(left) - 1.0F);
     const float to = std::min(static_cast<float>(all.y), std::ceil(right) + 2.0F);
@@ -152,8 +153,8 @@ void Painter::fill(const std::array<Corner, 3>& corners, float area, const glm::
     const vec2 a(corners[0].at), b(corners[1].at), c(corners[2].at);
     Triangle triangle;
     bool ready = false;
+    const glm::uvec2 all(range.x, range.z);
     for (std::uint32_t y = range.y; y < range.w; ++y) {
-        const glm::uvec2 all(range.x, range.z);
         const glm::uvec2 span = area < max_rounded_px ? columns_of({a, b, c}, static_cast<float>(y), all) : all;
         for (std::uint32_t x = span.x; x < span.y; ++x) {
             const vec2 p(static_cast<float>(x), static_cast<float>(y));

@@ -13,7 +13,7 @@ namespace surefoot::select {
 class FrameProfile {
 public:
     static constexpr std::size_t bins = 16;
-    /// Measured by predicted time. Both are 1 where nothing is known.
+    /// Measured time divided by predicted time. Both are 1 where nothing is known.
     struct Usual {
         double head = 1;  ///< of all that is finished by then, 1..4
         double tail = 1;  ///< of all after it, 1..4

@@ -150,10 +150,10 @@ struct CheckInput {
     double next_stand_in_us = 0;     ///< the next slice as its stand-in
     double rest_stand_in_us = 0;     ///< all slices after it as stand-ins, expected
     double limit_us = 0;             ///< when the frame should be done
-    double deadline_us = 0;          ///< when it must be done, if nothing turns out as usual; at most the limit: the limit
+    double deadline_us = 0;          ///< when it is late; below the limit it counts as the limit
     double margin = 1.0;             ///< factor on top of the headroom
-    double usual_head = 1.0;         ///< of the frames before, here: measured by predicted time of what is finished; at least 1
-    double usual_tail = 1.0;         ///< the same of all after it
+    double usual_head = 1.0;         ///< FrameProfile::Usual of the frames before, at this point; below 1 counts as 1
+    double usual_tail = 1.0;
 };
 /// When the frame would end, us since it was due, if the slice is drawn in full and all after it as stand-ins. NaN: unknown.
 /// Predictions are multiplied by a factor of 1..8: elapsed / predicted time of what is finished. A few early slices must not

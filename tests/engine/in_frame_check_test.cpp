@@ -45,7 +45,7 @@ TEST_F(InFrameCheck, DoesSoForTheFormsOfTheLastCut) {
     EXPECT_EQ(draw_last(whole.predicted_us + 2 * engine->options().slice_us).downgraded_slices, 0U);
 }
 
-/// A clock that runs `slow` times as fast as the device charges.
+/// On this clock all takes `slow` times as long as the device charges.
 struct SlowClock {
     gl::Device* device = nullptr;
     double slow = 1;

@@ -67,6 +67,14 @@ Correction WalkStages::correction_at(float resolution, bool filtered) const {
 
 double WalkStages::margin_us() const { return std::min(overshoot_.margin_us(), max_margin_share * limit_.us()); }
 
+SubmitLimits WalkStages::frame_limits() const {
+    SubmitLimits limits;
+    limits.limit_us = limit_.us();
+    limits.deadline_us = static_cast<double>(options_.period_ns) * 1e-3;
+    limits.margin_us = margin_us();
+    return limits;
+}
+
 /// A cut that the in-frame check would not let through is not planned.
 double WalkStages::planned_us() const {
     return request_.in_frame_check ? std::min(options_.budget_us, limit_.us() - margin_us()) : options_.budget_us;
@@ -100,10 +108,7 @@ void WalkStages::rehearse(std::int64_t until_ns) {
         publish_rehearsed(newest, due_ns);
         due_ns += options_.period_ns;
         if (!covers(set.region, newest.pose, set.viewport)) continue;  // a button leads elsewhere
-        SubmitLimits limits;
-        limits.limit_us = limit_.us();
-        limits.deadline_us = static_cast<double>(options_.period_ns) * 1e-3;
-        limits.margin_us = margin_us();
+        SubmitLimits limits = frame_limits();
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
         engine_.select(set, planned_us(), correction_at(set.resolution, false), options_.target_error_rad);
@@ -240,12 +245,9 @@ void WalkStages::keep(const rt::FrameRecord& record) {
 void WalkStages::submit(rt::FrameRecord& record) {
     inject(FramePhase::submit, record);
     latch(record);
-    SubmitLimits limits;
+    SubmitLimits limits = frame_limits();
     const std::int64_t begun_ns = clock_.now_ns();
     limits.elapsed_us = static_cast<double>(begun_ns - record.due_ns) * 1e-3;
-    limits.limit_us = limit_.us();
-    limits.deadline_us = static_cast<double>(options_.period_ns) * 1e-3;
-    limits.margin_us = margin_us();
     limits.frame_ns = record.due_ns;
     if (!virtual_clock_) {
         limits.now_ns = clock_now;
