@@ -77,7 +77,7 @@ struct Engine::Impl {
     /// as stand-ins.
     struct Progression {
         const model::ItemCost &so_far, &next, &stand_in, &rest;
-        float in_flight_us;    ///< of so_far: not finished yet
+        float in_flight_us;    ///< of so_far's raster time: not finished yet
         float pending_us = 0;  ///< of so_far: not handed to the device yet
     };
     [[nodiscard]] select::SelectInput input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,

@@ -63,7 +63,9 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     check.predicted_so_far_us = limits.elapsed_us + static_cast<double>(so_far_us + bought_us) * correction.factor;
     check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + static_cast<double>(p.pending_us) * correction.factor;
     if (limits.now_ns != nullptr) {
-        check.in_flight_us = static_cast<double>(p.in_flight_us) * correction.factor;
+        // As it counts in the frame: several rasterisers share it.
+        const float finished_us = combine.frame_us(p.so_far.submit_us, p.so_far.raster_us - p.in_flight_us);
+        check.in_flight_us = static_cast<double>(so_far_us - finished_us) * correction.factor;
         check.elapsed_us += check.in_flight_us;
     } else if (!device->charges())  // what a charging device has in flight is charged; for another one predictions count
         check.elapsed_us = check.predicted_so_far_us;
