@@ -4,6 +4,7 @@
 //   frame thread:  select(prepared, budget) ──► Cut ◄──┘ ──► submit(pose, limit): slice by slice ──► SubmitReport
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -47,6 +48,7 @@ struct SubmitLimits {
     std::int64_t (*now_ns)(void* context) = nullptr;  ///< null: the device's charged time (virtual)
     void* now_context = nullptr;
     std::int64_t frame_ns = -1;  ///< the time that the pose is of; below 0: unknown, and no rest
+    [[nodiscard]] double longest_us() const { return std::max(limit_us, deadline_us); }
 };
 
 /// Actual / predicted cost of recent frames: the median, and the headroom (p90) on top of it.

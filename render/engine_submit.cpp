@@ -76,8 +76,8 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     check.deadline_us = limits.deadline_us - limits.margin_us;
     if (limits.now_ns != nullptr && !use_last) {  // times of another clock repeat the predictions
         const double predicted_us = check.predicted_so_far_us - check.in_flight_us;
-        profile().note(check.elapsed_us - check.in_flight_us, predicted_us, limits.limit_us);
-        const select::FrameProfile::Usual usual = profile().at(predicted_us, limits.limit_us);
+        profile().note(check.elapsed_us - check.in_flight_us, predicted_us, limits.longest_us());
+        const select::FrameProfile::Usual usual = profile().at(predicted_us, limits.longest_us());
         check.usual_head = usual.head;
         check.usual_tail = usual.tail;
     }
@@ -223,7 +223,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.finished_us = e.now_us(limits) - start_us;
     if (limits.now_ns != nullptr && !e.use_last)
         e.profile().finish(limits.elapsed_us + report.finished_us, limits.elapsed_us + report.predicted_us * e.correction.factor,
-                           limits.limit_us);
+                           limits.longest_us());
     const bool timed = report.finished_us > 0;  // else no clock runs within the frame, and no forecast was made of it
     report.forecast_us = timed && e.forecast_us > 0 ? e.forecast_us - limits.elapsed_us : 0;
     const gl::FrameStats stats = e.device->stats();

@@ -1,6 +1,8 @@
 // What preparing takes from frames that share its cores.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tools/walk/frame_limit.hpp"
 
 namespace surefoot::walk {
@@ -31,6 +33,28 @@ TEST(FrameLimit, TakesNoMoreThanHalfOfThePeriodAndNothingWhereNoCoreIsShared) {
     EXPECT_EQ(heavy.us(), 16'500);
     EXPECT_EQ(alone.us(), 29'000);
     EXPECT_EQ(short_one.us(), 10'000) << "a limit that is lower stays";
+}
+
+TEST(FrameLimit, AFrameTakesWhatEarlierOnesLeftAndNoMore) {
+    FrameLimit limit(14'600, 16'667, 2);
+    for (std::uint64_t frame = 0; frame < 300; ++frame) limit.count(set_of(frame, 6'000));
+    const double mean_us = limit.us();
+    EXPECT_NEAR(mean_us, 12'000, 1);
+    EXPECT_EQ(limit.next_us(), mean_us) << "nothing is left yet";
+    limit.ended(mean_us - 1'000);
+    EXPECT_DOUBLE_EQ(limit.next_us(), mean_us + 1'000);
+    for (int frame = 0; frame < 100; ++frame) limit.ended(10'000);
+    EXPECT_EQ(limit.next_us(), 14'600) << "never beyond the limit without preparing";
+    // From now on each frame takes all that it may.
+    double beyond_us = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+        beyond_us += limit.next_us() - mean_us;
+        limit.ended(limit.next_us());
+    }
+    EXPECT_LE(beyond_us, 0.5 * 16'667 + 1) << "in a second";
+    EXPECT_DOUBLE_EQ(limit.next_us(), mean_us);
+    limit.ended(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_DOUBLE_EQ(limit.next_us(), mean_us) << "no number says nothing";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "render/prepare/prepared.hpp"
@@ -28,18 +29,29 @@ public:
         newest_ = set.frame;
         any_ = true;
     }
+    /// Call it after each frame: when it ended, us after it was due.
+    void ended(double end_us) {
+        if (std::isfinite(end_us)) left_us_ = std::clamp(left_us_ + us() - end_us, 0.0, max_left * period_us_);
+    }
+    /// As a mean of frames.
     [[nodiscard]] double us() const {
         if (shared_cores_ <= 0) return limit_us_;
         const double left_us = real_time_share * period_us_ - mean_us_ / shared_cores_;
         return std::min(limit_us_, std::max(left_us, min_share * period_us_));
     }
+    [[nodiscard]] double longest_us() const { return limit_us_; }  ///< of any frame
+    /// By when the next frame is to be done. The kernel counts by seconds, so one frame may take what others have left. In any
+    /// second that is half a period at most beyond the mean.
+    [[nodiscard]] double next_us() const { return std::min(limit_us_, us() + left_us_); }
 
 private:
+    static constexpr double max_left = 0.5;  ///< of a period, that is kept for later frames
     static constexpr double frames = 32;  ///< that the mean is of, about: the kernel counts by seconds
 
     double limit_us_, period_us_;
     int shared_cores_;
     double mean_us_ = 0;  ///< CPU time of preparing, a frame
+    double left_us_ = 0;  ///< by frames that ended before the limit
     std::uint64_t newest_ = 0;
     bool any_ = false;
 };

@@ -69,15 +69,17 @@ double WalkStages::margin_us() const { return std::min(overshoot_.margin_us(), m
 
 SubmitLimits WalkStages::frame_limits() const {
     SubmitLimits limits;
-    limits.limit_us = limit_.us();
+    limits.limit_us = limit_.next_us();
     limits.deadline_us = static_cast<double>(options_.period_ns) * 1e-3;
     limits.margin_us = margin_us();
     return limits;
 }
 
-/// A cut that the in-frame check would not let through is not planned.
-double WalkStages::planned_us() const {
-    return request_.in_frame_check ? std::min(options_.budget_us, limit_.us() - margin_us()) : options_.budget_us;
+/// A cut that the in-frame check would not let through is not planned. The kernel's share is left by frames as a mean, so there
+/// a frame counts as it is expected; in its own time it counts with headroom.
+double WalkStages::planned_us(const Correction& by) const {
+    if (!request_.in_frame_check) return options_.budget_us;
+    return std::min({options_.budget_us, limit_.longest_us() - margin_us(), limit_.us() * std::max(by.headroom, 1.0)});
 }
 
 PrepareHints WalkStages::hints() const {
@@ -87,7 +89,7 @@ PrepareHints WalkStages::hints() const {
     for (std::size_t step = 0; step < hints.planned_us.size(); ++step) {
         const double factor =
             request_.correct_costs ? corrections_.expected(state_of(model::resolution_steps[step], filtered_)) : drawn.factor;
-        hints.planned_us[step] = planned_us() / (factor * drawn.headroom);
+        hints.planned_us[step] = planned_us(drawn) / (factor * drawn.headroom);
     }
     if (request_.correct_costs) hints.form_ratio = forms_.ratio();
     return hints;
@@ -111,7 +113,8 @@ void WalkStages::rehearse(std::int64_t until_ns) {
         SubmitLimits limits = frame_limits();
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
-        engine_.select(set, planned_us(), correction_at(set.resolution, false), options_.target_error_rad);
+        const Correction correction = correction_at(set.resolution, false);
+        engine_.select(set, planned_us(correction), correction, options_.target_error_rad);
         report_ = engine_.submit(newest.pose, limits);
         learn(report_.finished_us);
         due_ns = std::max(due_ns, clock_.now_ns());
@@ -196,15 +199,16 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.prepared_age = static_cast<std::uint32_t>(age);
     limit_.count(set);
     record.cost_scale = static_cast<float>(request_.cost_scale);
-    record.correction = static_cast<float>(correction_at(set.resolution, filtered_).factor);
-    record.budget_us = static_cast<float>(planned_us());
+    const Correction before = correction_at(set.resolution, filtered_);
+    record.correction = static_cast<float>(before.factor);
+    record.budget_us = static_cast<float>(planned_us(before));
     coarse_ = age > rt::oldest_prepared(options_.period_ns) || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_last();
         return;
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
-    const double budget_us = std::max(0.0, planned_us() - spent_us);
+    const double budget_us = std::max(0.0, planned_us(before) - spent_us);
     const bool filtered = engine_.offer_filter(set, budget_us, correction_at(set.resolution, true));
     const Correction correction = correction_at(set.resolution, filtered);
     record.correction = static_cast<float>(correction.factor);
@@ -292,6 +296,7 @@ void WalkStages::learn(double actual_us) {
 }
 
 void WalkStages::account(rt::FrameRecord& record) {
+    limit_.ended(static_cast<double>(record.rastered_ns - record.due_ns) * 1e-3);
     record.slices = report_.slices;
     record.downgraded_slices = report_.downgraded_slices;
     record.items = report_.items;
