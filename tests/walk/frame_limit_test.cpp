@@ -35,6 +35,14 @@ TEST(FrameLimit, TakesNoMoreThanHalfOfThePeriodAndNothingWhereNoCoreIsShared) {
     EXPECT_EQ(short_one.us(), 10'000) << "a limit that is lower stays";
 }
 
+TEST(FrameLimit, LeavesTimeForASetInTwoFrames) {
+    FrameLimit limit(14'600, 16'667, 2);
+    for (std::uint64_t frame = 0; frame < 300; ++frame) limit.count(set_of(frame / 2, 10'000));
+    EXPECT_NEAR(limit.us(), 16'667 - 6'000, 1);
+    for (std::uint64_t frame = 300; frame < 600; ++frame) limit.count(set_of(frame / 6, 10'000));
+    EXPECT_NEAR(limit.us(), 16'667 - 6'000, 1) << "sets that come late get no less";
+}
+
 TEST(FrameLimit, AFrameTakesWhatEarlierOnesLeftAndNoMore) {
     FrameLimit limit(14'600, 16'667, 2);
     for (std::uint64_t frame = 0; frame < 300; ++frame) limit.count(set_of(frame, 6'000));

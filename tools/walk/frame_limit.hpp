@@ -11,7 +11,8 @@ namespace surefoot::walk {
 
 /// Linux gives ordinary threads 5 % of each core (fair server from 6.12, real-time throttling before). If real-time threads leave
 /// them less, it takes the rest by force. It does so in one piece of up to 50 ms a second, and a frame is late. Rasterisers and
-/// workers share cores: what preparing takes, frames may not. The frame thread calls all members.
+/// workers share cores: what preparing takes, frames may not. One thread makes a set beside the frames, and it serves for two of
+/// them. What is left of two periods has to be enough for it. The frame thread calls all members.
 class FrameLimit {
 public:
     static constexpr double real_time_share = 0.90;  ///< of a core
@@ -25,6 +26,7 @@ public:
     void count(const prepare::PreparedFrame& set) {
         const bool fresh = !any_ || set.frame != newest_;
         const double spent_us = fresh ? set.cpu_us : 0.0;
+        if (fresh) set_us_ = any_ ? set_us_ + (spent_us - set_us_) / sets : spent_us;
         mean_us_ = any_ ? mean_us_ + (spent_us - mean_us_) / frames : spent_us;
         newest_ = set.frame;
         any_ = true;
@@ -36,7 +38,8 @@ public:
     /// As a mean of frames.
     [[nodiscard]] double us() const {
         if (shared_cores_ <= 0) return limit_us_;
-        const double left_us = real_time_share * period_us_ - mean_us_ / shared_cores_;
+        const double left_us =
+            std::min(real_time_share * period_us_ - mean_us_ / shared_cores_, period_us_ - set_share * set_us_);
         return std::min(limit_us_, std::max(left_us, min_share * period_us_));
     }
     [[nodiscard]] double longest_us() const { return limit_us_; }  ///< of any frame
@@ -45,12 +48,15 @@ public:
     [[nodiscard]] double next_us() const { return std::min(limit_us_, us() + left_us_); }
 
 private:
-    static constexpr double max_left = 0.5;  ///< of a period, that is kept for later frames
-    static constexpr double frames = 32;  ///< that the mean is of, about: the kernel counts by seconds
+    static constexpr double max_left = 0.5;   ///< of a period, that is kept for later frames
+    static constexpr double set_share = 0.6;  ///< of a set's time, that a frame leaves: half, and a fifth of that for its start
+    static constexpr double frames = 32;      ///< that the mean is of, about: the kernel counts by seconds
+    static constexpr double sets = 8;         ///< the same
 
     double limit_us_, period_us_;
     int shared_cores_;
     double mean_us_ = 0;  ///< CPU time of preparing, a frame
+    double set_us_ = 0;   ///< CPU time of preparing, a set
     double left_us_ = 0;  ///< by frames that ended before the limit
     std::uint64_t newest_ = 0;
     bool any_ = false;
