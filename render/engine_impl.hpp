@@ -77,8 +77,8 @@ struct Engine::Impl {
     /// as stand-ins.
     struct Progression {
         const model::ItemCost &so_far, &next, &stand_in, &rest;
-        float in_flight_us;    ///< of so_far's raster time: not finished yet
-        float pending_us = 0;  ///< of so_far: not handed to the device yet
+        float in_flight_us;            ///< of so_far's raster time: not finished yet
+        model::ItemCost pending = {};  ///< of so_far: not handed to the device yet
     };
     [[nodiscard]] select::SelectInput input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,
                                                double target_error_rad) const REQUIRES(draws);

@@ -59,13 +59,15 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
                                    so_far_us);
     };
     const double scale = correction.factor * headroom;
+    const float handed_us = combine.frame_us(p.so_far.submit_us - p.pending.submit_us, p.so_far.raster_us - p.pending.raster_us);
+    const float pending_us = so_far_us - handed_us;
     select::CheckInput check;
     check.predicted_so_far_us = limits.elapsed_us + static_cast<double>(so_far_us + bought_us) * correction.factor;
-    check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + static_cast<double>(p.pending_us) * correction.factor;
+    check.elapsed_us = limits.elapsed_us + now_us(limits) - start_us + static_cast<double>(pending_us) * correction.factor;
     if (limits.now_ns != nullptr) {
         // As it counts in the frame: several rasterisers share it.
-        const float finished_us = combine.frame_us(p.so_far.submit_us, p.so_far.raster_us - p.in_flight_us);
-        check.in_flight_us = static_cast<double>(so_far_us - finished_us) * correction.factor;
+        const float left_us = combine.left_us(p.so_far.submit_us, p.so_far.raster_us, p.in_flight_us);
+        check.in_flight_us = static_cast<double>(left_us) * correction.factor;
         check.elapsed_us += check.in_flight_us;
     } else if (!device->charges())  // what a charging device has in flight is charged; for another one predictions count
         check.elapsed_us = check.predicted_so_far_us;
@@ -76,8 +78,8 @@ bool Engine::Impl::in_time(const Progression& p, const SubmitLimits& limits, dou
     check.deadline_us = limits.deadline_us - limits.margin_us;
     if (limits.now_ns != nullptr && !use_last) {  // times of another clock repeat the predictions
         const double predicted_us = check.predicted_so_far_us - check.in_flight_us;
-        profile().note(check.elapsed_us - check.in_flight_us, predicted_us, limits.longest_us());
-        const select::FrameProfile::Usual usual = profile().at(predicted_us, limits.longest_us());
+        profile().note(check.elapsed_us - check.in_flight_us, predicted_us, limits.scale_us());
+        const select::FrameProfile::Usual usual = profile().at(predicted_us, limits.scale_us());
         check.usual_head = usual.head;
         check.usual_tail = usual.tail;
     }
@@ -152,8 +154,7 @@ void Engine::Impl::submit_last(const Pose& pose, const SubmitLimits& limits, dou
         rest_stand_in.submit_us -= group.stand_in.cost.submit_us;
         rest_stand_in.raster_us -= group.stand_in.cost.raster_us;
         const model::ItemCost rest{rest_stand_in.submit_us + costs.slice_us, rest_stand_in.raster_us};
-        const float pending_us = slice.submit_us + slice.raster_us;
-        full = full && in_time({so_far, group.cost, group.stand_in.cost, rest, in_flight_us, pending_us}, limits, start_us);
+        full = full && in_time({so_far, group.cost, group.stand_in.cost, rest, in_flight_us, slice}, limits, start_us);
         if (full) {
             for (const UnpreparedItem& item : unprepared.items().subspan(group.first, group.count)) push(item, report);
         } else {
@@ -223,7 +224,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.finished_us = e.now_us(limits) - start_us;
     if (limits.now_ns != nullptr && !e.use_last)
         e.profile().finish(limits.elapsed_us + report.finished_us, limits.elapsed_us + report.predicted_us * e.correction.factor,
-                           limits.longest_us());
+                           limits.scale_us());
     const bool timed = report.finished_us > 0;  // else no clock runs within the frame, and no forecast was made of it
     report.forecast_us = timed && e.forecast_us > 0 ? e.forecast_us - limits.elapsed_us : 0;
     const gl::FrameStats stats = e.device->stats();

@@ -44,6 +44,10 @@ struct FrameCombine {
         return fixed_us + submit_weight * submit_us + raster_weight * raster_us +
                max_weight * (submit_us > raster_us ? submit_us : raster_us);
     }
+    /// Of frame_us, what `undone_us` of the raster time adds.
+    [[nodiscard]] float left_us(float submit_us, float raster_us, float undone_us) const {
+        return frame_us(submit_us, raster_us) - frame_us(submit_us, raster_us - undone_us);
+    }
 };
 
 /// What a lower resolution loses of the value, by resolution_steps: 0 at first, never falling, at most 1.

@@ -1,4 +1,4 @@
-// Means that rise and fall at different speeds, by bins of the limit (frame_profile.hpp).
+// Means that rise and fall at different speeds, by bins of the period (frame_profile.hpp).
 #include "render/select/frame_profile.hpp"
 
 #include <algorithm>

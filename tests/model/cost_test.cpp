@@ -33,6 +33,13 @@ TEST(Cost, LinearFiguresComeBackExactly) {
 
 TEST(Cost, BelowOneCountsAsOne) { EXPECT_EQ(plain().item(0, -5, plain().grids[0]).raster_us, 1.0F); }
 
+TEST(Cost, UndoneRasterTimeCountsAsInTheFrame) {
+    const model::FrameCombine shared{400, 1.8F, 0.5F, 0.25F};
+    EXPECT_FLOAT_EQ(shared.left_us(1000, 9000, 2000), 1500) << "the larger sum is the raster time: half and a quarter of it";
+    EXPECT_FLOAT_EQ(shared.left_us(9000, 3000, 2000), 1000) << "submitting is the larger one";
+    EXPECT_EQ(shared.left_us(1000, 9000, 0), 0.0F);
+}
+
 TEST(Cost, NotANumberCostsTheMost) {
     const CostModel costs = plain();
     EXPECT_EQ(costs.item(std::numeric_limits<float>::quiet_NaN(), 1, costs.grids[0]).submit_us, 8.0F);

@@ -43,6 +43,22 @@ TEST(FrameLimit, LeavesTimeForASetInTwoFrames) {
     EXPECT_NEAR(limit.us(), 16'667 - 6'000, 1) << "sets that come late get no less";
 }
 
+TEST(FrameLimit, APlanIsExpectedToEndByTheMeanAndWithHeadroomByTheLimit) {
+    FrameLimit limit(14'600, 16'667, 2);
+    for (std::uint64_t frame = 0; frame < 300; ++frame) limit.count(set_of(frame, 6'000));
+    for (const double spent_us : {0.0, 300.0, 5'000.0})
+        for (const double margin_us : {0.0, 800.0})
+            for (const double headroom : {0.0, 1.0, 1.04, 1.25, 2.0}) {
+                const double plan_us = limit.plan_us(spent_us, margin_us, headroom), h = std::max(headroom, 1.0);
+                EXPECT_LE(spent_us + plan_us / h, limit.us() + 1e-6);
+                EXPECT_LE(spent_us + plan_us + margin_us, 14'600 + 1e-6);
+                EXPECT_GT(plan_us, 0);
+            }
+    EXPECT_EQ(limit.plan_us(20'000, 0, 1.1), 0) << "nothing is left";
+    limit.count(set_of(1000, std::numeric_limits<double>::infinity()));
+    EXPECT_GT(limit.us(), 8'000) << "no number says nothing";
+}
+
 TEST(FrameLimit, AFrameTakesWhatEarlierOnesLeftAndNoMore) {
     FrameLimit limit(14'600, 16'667, 2);
     for (std::uint64_t frame = 0; frame < 300; ++frame) limit.count(set_of(frame, 6'000));

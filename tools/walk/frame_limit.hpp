@@ -11,8 +11,8 @@ namespace surefoot::walk {
 
 /// Linux gives ordinary threads 5 % of each core (fair server from 6.12, real-time throttling before). If real-time threads leave
 /// them less, it takes the rest by force. It does so in one piece of up to 50 ms a second, and a frame is late. Rasterisers and
-/// workers share cores: what preparing takes, frames may not. One thread makes a set beside the frames, and it serves for two of
-/// them. What is left of two periods has to be enough for it. The frame thread calls all members.
+/// workers share cores: what preparing takes, frames may not. One thread makes a set beside the frames, and a set serves two
+/// frames. What is left of two periods has to be enough for it. The frame thread calls all members.
 class FrameLimit {
 public:
     static constexpr double real_time_share = 0.90;  ///< of a core
@@ -25,8 +25,8 @@ public:
     /// Call it once a frame, with the set that it has: a set that is new has cost its CPU time.
     void count(const prepare::PreparedFrame& set) {
         const bool fresh = !any_ || set.frame != newest_;
-        const double spent_us = fresh ? set.cpu_us : 0.0;
-        if (fresh) set_us_ = any_ ? set_us_ + (spent_us - set_us_) / sets : spent_us;
+        const double spent_us = fresh && std::isfinite(set.cpu_us) ? set.cpu_us : 0.0;
+        if (fresh) set_us_ = any_ ? set_us_ + (spent_us - set_us_) / sets : std::min(spent_us, 0.5 * period_us_);
         mean_us_ = any_ ? mean_us_ + (spent_us - mean_us_) / frames : spent_us;
         newest_ = set.frame;
         any_ = true;
@@ -42,16 +42,22 @@ public:
             std::min(real_time_share * period_us_ - mean_us_ / shared_cores_, period_us_ - set_share * set_us_);
         return std::min(limit_us_, std::max(left_us, min_share * period_us_));
     }
-    [[nodiscard]] double longest_us() const { return limit_us_; }  ///< of any frame
-    /// By when the next frame is to be done. The kernel counts by seconds, so one frame may take what others have left. In any
-    /// second that is half a period at most beyond the mean.
+    /// By when the next frame is to be done. The kernel counts by seconds, so one frame may take what others have left. If frames
+    /// end by it, that is half a period at most beyond the mean. A later one is late for another reason, and costs others
+    /// nothing.
     [[nodiscard]] double next_us() const { return std::min(limit_us_, us() + left_us_); }
+    /// What a cut may take by its prediction with headroom, if it is begun spent_us after it was due. Expected, it ends by us();
+    /// with headroom and margin by the limit of any frame. Then the check may still make its last slices coarse.
+    [[nodiscard]] double plan_us(double spent_us, double margin_us, double headroom) const {
+        const double expected_us = (us() - spent_us) * std::max(headroom, 1.0);
+        return std::max(0.0, std::min(limit_us_ - margin_us - spent_us, expected_us));
+    }
 
 private:
     static constexpr double max_left = 0.5;   ///< of a period, that is kept for later frames
-    static constexpr double set_share = 0.6;  ///< of a set's time, that a frame leaves: half, and a fifth of that for its start
+    static constexpr double set_share = 0.6;  ///< of a set's time, that a frame leaves: half, and 0.1 for its start
     static constexpr double frames = 32;      ///< that the mean is of, about: the kernel counts by seconds
-    static constexpr double sets = 8;         ///< the same
+    static constexpr double sets = 8;         ///< that the mean of set_us_ is of, about
 
     double limit_us_, period_us_;
     int shared_cores_;

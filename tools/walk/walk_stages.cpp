@@ -15,7 +15,7 @@ static_assert(rt::Corrections::states == 2 * steps, "A correction for each resol
 
 std::size_t state_of(float resolution, bool filtered) { return model::resolution_step(resolution) + (filtered ? steps : 0); }
 
-constexpr double max_margin_share = 0.2;  // of the limit: more would only draw everything coarse
+constexpr double max_margin_share = 0.2;  // of the mean limit: more would only draw everything coarse
 
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
 }  // namespace
@@ -75,11 +75,10 @@ SubmitLimits WalkStages::frame_limits() const {
     return limits;
 }
 
-/// A cut that the in-frame check would not let through is not planned. The kernel's share is left by frames as a mean, so there
-/// a frame counts as it is expected; in its own time it counts with headroom.
-double WalkStages::planned_us(const Correction& by) const {
-    if (!request_.in_frame_check) return options_.budget_us;
-    return std::min({options_.budget_us, limit_.longest_us() - margin_us(), limit_.us() * std::max(by.headroom, 1.0)});
+/// What a cut may take from now on, spent_us after the frame was due.
+double WalkStages::planned_us(const Correction& by, double spent_us) const {
+    const double budget_us = std::max(0.0, options_.budget_us - spent_us);
+    return request_.in_frame_check ? std::min(budget_us, limit_.plan_us(spent_us, margin_us(), by.headroom)) : budget_us;
 }
 
 PrepareHints WalkStages::hints() const {
@@ -89,7 +88,7 @@ PrepareHints WalkStages::hints() const {
     for (std::size_t step = 0; step < hints.planned_us.size(); ++step) {
         const double factor =
             request_.correct_costs ? corrections_.expected(state_of(model::resolution_steps[step], filtered_)) : drawn.factor;
-        hints.planned_us[step] = planned_us(drawn) / (factor * drawn.headroom);
+        hints.planned_us[step] = planned_us(drawn, 0) / (factor * drawn.headroom);
     }
     if (request_.correct_costs) hints.form_ratio = forms_.ratio();
     return hints;
@@ -108,15 +107,17 @@ void WalkStages::rehearse(std::int64_t until_ns) {
         limit_.count(set);
         const FramePose newest = pose_source_.sample({0, due_ns, clock_.now_ns()});
         publish_rehearsed(newest, due_ns);
+        const std::int64_t begun_ns = due_ns;
         due_ns += options_.period_ns;
         if (!covers(set.region, newest.pose, set.viewport)) continue;  // a button leads elsewhere
         SubmitLimits limits = frame_limits();
         limits.now_ns = clock_now;
         limits.now_context = &clock_;
         const Correction correction = correction_at(set.resolution, false);
-        engine_.select(set, planned_us(correction), correction, options_.target_error_rad);
+        engine_.select(set, planned_us(correction, 0), correction, options_.target_error_rad);
         report_ = engine_.submit(newest.pose, limits);
         learn(report_.finished_us);
+        limit_.ended(static_cast<double>(clock_.now_ns() - begun_ns) * 1e-3);
         due_ns = std::max(due_ns, clock_.now_ns());
     }
     rehearsed_ = walked_;
@@ -201,16 +202,17 @@ void WalkStages::select(rt::FrameRecord& record) {
     record.cost_scale = static_cast<float>(request_.cost_scale);
     const Correction before = correction_at(set.resolution, filtered_);
     record.correction = static_cast<float>(before.factor);
-    record.budget_us = static_cast<float>(planned_us(before));
+    record.budget_us = static_cast<float>(planned_us(before, 0));
     coarse_ = age > rt::oldest_prepared(options_.period_ns) || !covers(set.region, now_.pose, set.viewport);
     if (coarse_) {
         engine_.select_last();
         return;
     }
     const double spent_us = static_cast<double>(clock_.now_ns() - record.due_ns) * 1e-3;
-    const double budget_us = std::max(0.0, planned_us(before) - spent_us);
-    const bool filtered = engine_.offer_filter(set, budget_us, correction_at(set.resolution, true));
+    const Correction with_filter = correction_at(set.resolution, true);
+    const bool filtered = engine_.offer_filter(set, planned_us(with_filter, spent_us), with_filter);
     const Correction correction = correction_at(set.resolution, filtered);
+    const double budget_us = planned_us(correction, spent_us);
     record.correction = static_cast<float>(correction.factor);
     const select::Cut& cut = engine_.select(set, budget_us, correction, options_.target_error_rad);
     record.floor_us = cut.floor_us;

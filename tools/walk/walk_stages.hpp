@@ -90,8 +90,8 @@ private:
     [[nodiscard]] Correction correction_at(float resolution, bool filtered) const;
     /// How much later than forecast recent frames ended, us, within bounds.
     [[nodiscard]] double margin_us() const;
-    [[nodiscard]] SubmitLimits frame_limits() const;              ///< without a clock, and as if the frame began now
-    [[nodiscard]] double planned_us(const Correction& by) const;  ///< that a cut may take, from the due time
+    [[nodiscard]] SubmitLimits frame_limits() const;  ///< without a clock, and as if the frame began now
+    [[nodiscard]] double planned_us(const Correction& by, double spent_us) const;
     [[nodiscard]] FrameTime frame_time(const rt::FrameRecord& record) const;
     void learn(double actual_us);
     void keep(const rt::FrameRecord& record);
