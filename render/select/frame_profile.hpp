@@ -7,7 +7,7 @@
 
 namespace surefoot::select {
 
-/// Learnt from each check of each frame, in sixteenths of the period (limit_us: the same in all frames) by the predicted time of
+/// Learnt from each check of each frame, in sixteenths of a fixed limit by the predicted time of
 /// what was finished. It forgives little: what makes frames look better is learnt over about eight frames and forgotten at once.
 /// Used by the thread that draws. A fixed size, no allocation.
 class FrameProfile {
