@@ -48,9 +48,8 @@ struct SubmitLimits {
     std::int64_t (*now_ns)(void* context) = nullptr;  ///< null: the device's charged time (virtual)
     void* now_context = nullptr;
     std::int64_t frame_ns = -1;  ///< the time that the pose is of; below 0: unknown, and no rest
-    [[nodiscard]] double scale_us() const {
-        return std::max(limit_us, deadline_us);
-    }  ///< of FrameProfile: the same in all frames
+    /// Of FrameProfile: the same in all frames.
+    [[nodiscard]] double scale_us() const { return std::max(limit_us, deadline_us); }
 };
 
 /// Actual / predicted cost of recent frames: the median, and the headroom (p90) on top of it.

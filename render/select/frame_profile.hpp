@@ -7,9 +7,9 @@
 
 namespace surefoot::select {
 
-/// Learnt from each check of each frame, in sixteenths of a fixed limit by the predicted time of
-/// what was finished. It forgives little: what makes frames look better is learnt over about eight frames and forgotten at once.
-/// Used by the thread that draws. A fixed size, no allocation.
+/// Learnt from each check of each frame, in sixteenths of a limit that stays, by the predicted time of what was finished. It
+/// forgives little: what makes frames look better is learnt over about eight frames and forgotten at once. Used by the thread
+/// that draws. A fixed size, no allocation.
 class FrameProfile {
 public:
     static constexpr std::size_t bins = 16;
