@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <memory>
 #include <thread>
@@ -146,6 +147,18 @@ TEST(Server, ARequestMayComeInPieces) {
     RawReader r(server->address());
     for (const char& c : hello_request) ASSERT_TRUE(r.send_text(std::string_view(&c, 1)));
     EXPECT_NE(r.listen().find("hello"), std::string::npos);
+}
+
+TEST(Server, AReaderIsCountedAsOpenBeforeItsAnswerIsMade) {
+    std::atomic<const Server*> asked{nullptr};
+    std::atomic<std::uint64_t> open_at_answer{0};
+    const auto server = serving(any_port(), [&](std::string_view path) {
+        if (asked != nullptr) open_at_answer = asked.load()->counts().open;
+        return hello_pages()(path);
+    });
+    asked = server.get();
+    EXPECT_EQ(*fetch(server->address(), "/hello"), "hello\n");
+    EXPECT_EQ(open_at_answer, 1U);
 }
 
 TEST(Server, HalfOpenReadersAreGivenUpAndTheOthersServed) {

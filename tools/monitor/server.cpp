@@ -167,7 +167,8 @@ void Server::take_in(int fd, std::int64_t now_ns) {
     }
     auto& r = *readers_.emplace_back(std::make_unique<Reader>(fd));
     r.deadline_ns = now_ns + limits_.request_ms * ms_ns;
-    serve(r, now_ns);  // the request is often there already
+    open_.store(readers_.size(), std::memory_order_relaxed);  // before the answer: who has it may ask for the counts
+    serve(r, now_ns);                                         // the request is often there already
     if (r.over) readers_.pop_back();
 }
 
