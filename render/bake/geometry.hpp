@@ -55,7 +55,7 @@ enum class Picture : std::uint8_t { none, repeats, clamped };
 
 /// Settings of a chain.
 struct ChainOptions {
-    bool lock_border = false;         ///< for pieces of one object: keep their common borders equal
+    bool is_piece = false;            ///< of a larger object: its borders stay as long as possible, and no box ends the chain
     std::uint32_t smallest = 16;      ///< triangles at which the chain ends
     float slack = 0.25F;              ///< relative gap allowed between upper and lower bound
     model::Index proxy_material = 0;  ///< material of the coarsest levels (vertex colours only); none: they keep their materials

@@ -337,20 +337,21 @@ struct ChainWork {
 
 /// The simplifier's proposal for the next coarser level, in up to three tries; nothing if the chain ends here.
 /// Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives way.
+/// Pieces of one object keep their borders as long as that makes a level at all.
 std::optional<Level> next_level(ChainWork& work) {
-    const bool lock_border = work.options.lock_border;
     const double ratio = work.options.ratio, before = work.levels.back().triangles;
     const auto propose = [&](Step step) { return simplify(work.full, work.own_vertices, work.thinned, work.parts, ratio, step); };
     const double wanted = before * expected_share(work.thinned, work.parts, ratio);
     const double max_triangles = 0.8 * before;  // above this it is no level of its own
+    const auto is_level = [&](const Level& level) { return level.triangles > 0 && level.triangles <= max_triangles; };
     Level next = propose(Step::fixed_borders);
-    if (!lock_border && next.triangles > std::min(wanted * 1.4, max_triangles)) next = propose(Step::free_borders);
-    if (next.triangles == 0 || next.triangles > std::min(std::max(wanted * 1.5, wanted + 0.02 * before), max_triangles)) {
-        if (lock_border) return std::nullopt;
+    if (work.options.is_piece && is_level(next)) return next;
+    if (next.triangles > std::min(wanted * 1.4, max_triangles)) next = propose(Step::free_borders);
+    if (!is_level(next) || next.triangles > std::max(wanted * 1.5, wanted + 0.02 * before)) {
         next = propose(Step::sloppy);
         work.torn = true;
     }
-    if (next.triangles == 0 || next.triangles > max_triangles) return std::nullopt;
+    if (!is_level(next)) return std::nullopt;
     return next;
 }
 
@@ -401,7 +402,7 @@ void append_level(ChainWork& work, Level&& level) {
 
 /// Ends the chain with the twelve triangles of a box if its coarsest level is still large.
 void add_box_level(ChainWork& work) {
-    if (work.levels.back().triangles <= 48 || work.options.lock_border || work.thinned.mostly) return;
+    if (work.levels.back().triangles <= 48 || work.options.is_piece || work.thinned.mostly) return;
     Level round = box_level(work.full, work.box, work.options.proxy_material);
     round.error_m = std::max({work.reference.bound(work.full, round), work.pictures.shift_m(round),
                               std::nextafter(work.levels.back().error_m, 1e30F)});

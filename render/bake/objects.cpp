@@ -215,9 +215,9 @@ std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, con
     for (const ArtistStandIn& one : stand_ins)
         lines.push_back(fmt::format("Stand-in '{}' is left out: its object of {} triangles is cut into {} pieces", one.name,
                                     geometry.triangles(), pieces.size()));
-    ChainOptions locked = options;
-    locked.lock_border = true;
-    for (Geometry& piece : pieces) forms.push_back(make_form(std::move(piece), locked));
+    ChainOptions of_piece = options;
+    of_piece.is_piece = true;
+    for (Geometry& piece : pieces) forms.push_back(make_form(std::move(piece), of_piece));
     return forms;
 }
 

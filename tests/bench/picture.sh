@@ -109,6 +109,25 @@ picture_turns() { # NAME PATH LIFT
   full_after=$full_ms
 }
 
+# A page of the last turn's pictures: a row a pose, full detail beside what each pass showed there.
+picture_page() { # NAME
+  local page=$picture_work/$1.html pass image file turn=$picture_rounds
+  {
+    echo "<!doctype html><html lang=en><meta charset=utf-8><title>$1: old and new beside full detail</title>"
+    echo "<style>body { font: 1rem sans-serif } td { padding: .2rem } img { width: 30rem } p { max-width: 45rem }</style><h1>$1</h1>"
+    echo "<p>Pictures of walks at $(awk "BEGIN { printf \"%.1f\", 1000 / $picture_rate }") ms a frame, and at half of that where a column says so."
+    echo "Full detail stands at the poses of old. A walk that misses a frame is a pose behind it.</p><table><tr><th>full detail"
+    for pass in "${picture_passes[@]}"; do echo "<th>$pass: $(awk -v all="${db[$pass]}" 'BEGIN { n = split(all, x, " "); print x[n] }') dB"; done
+    for file in "$picture_work/walks/$1-old-$turn/walk/"*.png; do
+      image=${file##*/}
+      echo "<tr><td><img loading=lazy alt='full detail' src='walks/$1-old-$turn/full/$image'>"
+      for pass in "${picture_passes[@]}"; do echo "<td><img loading=lazy alt='$pass' src='walks/$1-$pass-$turn/walk/$image'>"; done
+    done
+    echo "</table></html>"
+  } >"$page"
+  echo "tests/bench/run: pictures side by side: $page" >&2
+}
+
 # keep_difference PROMISE NAME PASS LESS [WORDS]: the median over the turns of what PASS has more than LESS, in dB
 keep_difference() {
   local more less i gains=() note
@@ -131,6 +150,7 @@ picture_scene() { # NAME SCENE PATH LIFT
     [[ -z "$picture_quick" ]] || break
     if (( try == 3 )); then echo "tests/bench/run: $1: given up after three tries" >&2; failed=1; return 0; fi
   done
+  picture_page "$1"
   local promise=picture_gain
   case $1 in candela | ravenbridge | cocoa) promise=picture_gain_$1 ;; esac
   keep_difference "$promise" "$1" new old

@@ -150,13 +150,13 @@ TEST(Server, ARequestMayComeInPieces) {
 }
 
 TEST(Server, AReaderIsCountedAsOpenBeforeItsAnswerIsMade) {
-    std::atomic<const Server*> asked{nullptr};
+    std::atomic<const Server*> listening{nullptr};
     std::atomic<std::uint64_t> open_at_answer{0};
     const auto server = serving(any_port(), [&](std::string_view path) {
-        if (asked != nullptr) open_at_answer = asked.load()->counts().open;
+        if (listening != nullptr) open_at_answer = listening.load()->counts().open;
         return hello_pages()(path);
     });
-    asked = server.get();
+    listening = server.get();
     EXPECT_EQ(*fetch(server->address(), "/hello"), "hello\n");
     EXPECT_EQ(open_at_answer, 1U);
 }
