@@ -55,9 +55,9 @@ enum class Picture : std::uint8_t { none, repeats, clamped };
 
 /// Settings of a chain.
 struct ChainOptions {
-    bool is_piece = false;            ///< of a larger object: its borders stay as long as possible, and no box ends the chain
-    std::uint32_t smallest = 16;      ///< triangles at which the chain ends
-    float slack = 0.25F;              ///< relative gap allowed between upper and lower bound
+    bool is_piece = false;        ///< of a cut object: its borders stay as long as that gives levels, and no box ends the chain
+    std::uint32_t smallest = 16;  ///< triangles at which the chain ends
+    float slack = 0.25F;          ///< relative gap allowed between upper and lower bound
     model::Index proxy_material = 0;  ///< material of the coarsest levels (vertex colours only); none: they keep their materials
     std::uint32_t proxy_below = 40;   ///< triangles; coarser levels have baked colours in one part
     std::vector<Picture> pictures;    ///< by material: the texture that baked colours lose

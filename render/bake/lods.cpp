@@ -337,7 +337,7 @@ struct ChainWork {
 
 /// The simplifier's proposal for the next coarser level, in up to three tries; nothing if the chain ends here.
 /// Borders first stay where they are: tiles of ground and walls that meet must not part. What is all border (leaves) gives way.
-/// Pieces of one object keep their borders as long as that makes a level at all.
+/// Pieces of one object keep their borders as long as that makes a level at all. Neighbours no longer meet after that.
 std::optional<Level> next_level(ChainWork& work) {
     const double ratio = work.options.ratio, before = work.levels.back().triangles;
     const auto propose = [&](Step step) { return simplify(work.full, work.own_vertices, work.thinned, work.parts, ratio, step); };

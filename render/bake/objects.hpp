@@ -63,8 +63,8 @@ struct MeshInScene {
 CutLimits cut_limits(const MeshInScene& mesh);
 /// Pieces within the limits, cut at medians of the triangle centres. Empty if the whole is within the limits.
 std::vector<Geometry> cut(const Geometry& whole, const CutLimits& limits);
-/// One form, or one a piece if the geometry exceeds the limits. Pieces keep their common borders. `notes`: why stand-ins are left
-/// out, one line each.
+/// One form, or one a piece if the geometry exceeds the limits. Pieces meet in full detail, and in
+/// coarser levels as long as possible. `notes`: why stand-ins are left out, one line each.
 std::vector<MeshForm> make_forms(Geometry geometry, const CutLimits& limits, const ChainOptions& options,
                                  std::span<const ArtistStandIn> stand_ins = {}, std::vector<std::string>* notes = nullptr);
 

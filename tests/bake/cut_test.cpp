@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 #include "render/bake/bake.hpp"
 #include "render/bake/objects.hpp"
@@ -80,6 +82,50 @@ TEST(Cut, WhatHasTexturesHasSmallPieces) {
         EXPECT_LT(piece.vertices.size(), 3 * piece.triangles()) << "corners are shared, and others are not kept";
     }
     EXPECT_EQ(pieces_of_sheet(31, 2).size(), 1U) << "124 triangles";
+}
+
+/// Levels of a sheet of triangles that is a piece of something larger.
+std::vector<Level> levels_of_piece(int across, int up, double ratio, Geometry& whole) {
+    importer::Mesh mesh;
+    mesh.primitives.push_back(
+        grid_surface(across, up, [](float u, float v) { return vec3(20 * u, 3 * v, std::sin(9 * u) * (v - 0.5F)); }));
+    model::Model model;
+    model.materials.resize(1);
+    ChainOptions options;
+    options.is_piece = true;
+    options.proxy_material = model::none;
+    options.ratio = ratio;
+    LodChain chain = make_chain(mesh_geometry(mesh, model), options);
+    whole = std::move(chain.full);
+    return std::move(chain.levels);
+}
+
+bool on_border(const vec3& at) {
+    constexpr float near = 1e-4F;
+    return at.x < near || at.x > 20 - near || at.y < near || at.y > 3 - near;
+}
+
+TEST(Cut, APieceThatIsAllBorderHasLevels) {
+    Geometry whole;
+    const std::vector<Level> levels = levels_of_piece(50, 1, 0.45, whole);
+    ASSERT_GE(levels.size(), 2U);
+    EXPECT_LE(levels.front().triangles, 50U);
+    EXPECT_EQ(levels.back().triangles, 100U);
+}
+
+TEST(Cut, APieceKeepsItsBorderWhereThatGivesALevel) {
+    Geometry whole;
+    const std::vector<Level> levels = levels_of_piece(20, 2, 0.3, whole);  // with its border, half of it is left
+    ASSERT_GE(levels.size(), 2U);
+    const Level& finest = levels[levels.size() - 2];  // but for full detail
+    EXPECT_LE(finest.triangles, 0.8 * 80);
+    std::set<std::uint32_t> kept, all;
+    for (const GeometryPart& part : finest.parts) kept.insert(part.indices.begin(), part.indices.end());
+    for (const GeometryPart& part : levels.back().parts) all.insert(part.indices.begin(), part.indices.end());
+    for (const std::uint32_t vertex : all) {
+        if (!on_border(position_of(whole.vertices[vertex]) + vec3(whole.centre))) continue;
+        EXPECT_TRUE(kept.contains(vertex)) << vertex;
+    }
 }
 
 TEST(Cut, AHundredthOfTheSceneIsShortEnough) {

@@ -1,5 +1,7 @@
-// What better colours on coarse forms could give at most: of the value that captured cuts lose, the share that is lost within
-// outlines. The rest is lost where only one of full detail and the form shows something, and no colour mends that.
+// What perfect colours on the coarse forms of captured cuts would give: of the value that a cut loses, the share that is lost
+// where both full detail and the form show something. No colour mends the rest. Forms are seen as from the eye, without
+// perspective.
+//   bench_perfect_colours MODEL.walk CAPTURE...
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +21,8 @@ namespace {
 
 constexpr std::uint32_t across_px = 64;
 
-/// The greatest value that a candidate's subtree may have.
+/// The greatest value that a candidate's subtree may have. A node whose children were not looked at is fine enough to count as
+/// whole.
 double full_value(const prepare::PreparedFrame& frame, Index candidate) {
     const prepare::Candidate& c = frame.candidates[candidate];
     if (c.child_count == 0 || c.first_child == model::none)
@@ -48,10 +51,10 @@ double share_within(const model::Model& m, const select::CutItem& item, const dv
     bake::draw_form(m, m.reps[item.rep], form);
     bake::PictureDifference difference;
     difference.add(full, form);
-    difference.end(bake::picture_levels);
     // The middle between two measured sizes, by their logarithm.
     const std::size_t level = size_px > 181 ? 0 : size_px > 22.6 ? 1 : 2;
-    const double all = static_cast<double>(difference.loss(m.colours).colour[level]) * static_cast<double>(difference.full_detail);
+    const double all =
+        static_cast<double>(difference.loss(m.colours).colour[level]) * static_cast<double>(difference.full_detail);
     const double within = static_cast<double>(difference.both[level]) / (3.0 * 255 * 255);
     return all > 0 ? std::min(1.0, within / all) : -1.0;
 }
@@ -68,6 +71,7 @@ int main(int argc, char** argv) {
         const auto captured = capture::read_capture(argv[i]);
         if (!captured) return fmt::print(stderr, "{}\n", captured.error().text()), 1;
         const prepare::PreparedFrame& frame = captured->prepared;
+        if (captured->node_count != m->nodes.size()) return fmt::print(stderr, "{} is of another model\n", argv[i]), 1;
         for (const select::CutItem& item : captured->items) {
             if (model::is_full_detail(m->nodes[item.node], item.rep, m->reps[item.rep].error_m)) continue;
             const double of_form = full_value(frame, item.candidate) - static_cast<double>(frame.choices[item.choice].value);

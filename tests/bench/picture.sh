@@ -119,6 +119,7 @@ picture_page() { # NAME
     echo "Full detail stands at the poses of old. A walk that misses a frame is a pose behind it.</p><table><tr><th>full detail"
     for pass in "${picture_passes[@]}"; do echo "<th>$pass: $(awk -v all="${db[$pass]}" 'BEGIN { n = split(all, x, " "); print x[n] }') dB"; done
     for file in "$picture_work/walks/$1-old-$turn/walk/"*.png; do
+      [[ -f "$file" ]] || continue
       image=${file##*/}
       echo "<tr><td><img loading=lazy alt='full detail' src='walks/$1-old-$turn/full/$image'>"
       for pass in "${picture_passes[@]}"; do echo "<td><img loading=lazy alt='$pass' src='walks/$1-$pass-$turn/walk/$image'>"; done
@@ -152,7 +153,11 @@ picture_scene() { # NAME SCENE PATH LIFT
   done
   picture_page "$1"
   local promise=picture_gain
-  case $1 in candela | ravenbridge | cocoa) promise=picture_gain_$1 ;; esac
+  case $1${picture_forms:+, forms} in
+    candela | ravenbridge | cocoa) promise=picture_gain_$1 ;;
+    "candela, forms" | "ravenbridge, forms") promise=picture_forms_houses ;;
+    "cocoa, forms" | "forest, forms") promise=picture_forms_$1 ;;
+  esac
   keep_difference "$promise" "$1" new old
   keep picture_db "$(read -ra all <<<"${db[new]}"; middle_of "${all[@]}")" --scene "$1"
   keep picture_db "$(read -ra all <<<"${db[old]}"; middle_of "${all[@]}")" --scene "$1, old"

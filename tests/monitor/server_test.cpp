@@ -149,16 +149,31 @@ TEST(Server, ARequestMayComeInPieces) {
     EXPECT_NE(r.listen().find("hello"), std::string::npos);
 }
 
+// The server is held in one answer while others connect. It takes them all in at once then.
 TEST(Server, AReaderIsCountedAsOpenBeforeItsAnswerIsMade) {
     std::atomic<const Server*> listening{nullptr};
+    std::atomic<bool> held{false}, released{false};
     std::atomic<std::uint64_t> open_at_answer{0};
     const auto server = serving(any_port(), [&](std::string_view path) {
-        if (listening != nullptr) open_at_answer = listening.load()->counts().open;
-        return hello_pages()(path);
+        if (path == "/hold") {
+            held = true;
+            EXPECT_TRUE(eventually(5, [&] { return released.load(); }));
+        } else {
+            open_at_answer = listening.load()->counts().open;
+        }
+        return hello_pages()("/hello");
     });
     listening = server.get();
-    EXPECT_EQ(*fetch(server->address(), "/hello"), "hello\n");
-    EXPECT_EQ(open_at_answer, 1U);
+    std::thread first([&] { EXPECT_EQ(*fetch(server->address(), "/hold"), "hello\n"); });
+    EXPECT_TRUE(eventually(5, [&] { return held.load(); }));
+    std::vector<RawReader> idle;
+    for (int i = 0; i < 3; ++i) idle.emplace_back(server->address());
+    RawReader last(server->address());
+    EXPECT_TRUE(last.send_text(hello_request));
+    released = true;
+    EXPECT_NE(last.listen().find("hello"), std::string::npos);
+    first.join();
+    EXPECT_EQ(open_at_answer, 4U);
 }
 
 TEST(Server, HalfOpenReadersAreGivenUpAndTheOthersServed) {

@@ -142,7 +142,6 @@ void Server::poll_once(std::int64_t now_ns) {
         if (fds[i + 2].revents != 0) serve(*readers_[i], then_ns);
     drop_late(then_ns);
     if (fds[1].revents != 0) accept_all(then_ns);
-    open_.store(readers_.size(), std::memory_order_relaxed);
 }
 
 void Server::accept_all(std::int64_t now_ns) {
@@ -162,15 +161,18 @@ void Server::accept_all(std::int64_t now_ns) {
 void Server::take_in(int fd, std::int64_t now_ns) {
     if (readers_.size() >= limits_.readers) {
         // Whoever has been here longest is the likeliest to be stuck; a new one must always get in.
-        readers_.erase(readers_.begin());
         dropped_full_.fetch_add(1, std::memory_order_relaxed);
+        readers_.erase(readers_.begin());
     }
     auto& r = *readers_.emplace_back(std::make_unique<Reader>(fd));
     r.deadline_ns = now_ns + limits_.request_ms * ms_ns;
-    open_.store(readers_.size(), std::memory_order_relaxed);  // before the answer: who has it may ask for the counts
-    serve(r, now_ns);                                         // the request is often there already
+    count_open();      // before the answer: who has it may ask for the counts
+    serve(r, now_ns);  // the request is often there already
     if (r.over) readers_.pop_back();
+    count_open();
 }
+
+void Server::count_open() { open_.store(readers_.size(), std::memory_order_relaxed); }
 
 void Server::serve(Reader& r, std::int64_t now_ns) {
     if (!r.answering) {
@@ -251,6 +253,7 @@ void Server::drop_late(std::int64_t now_ns) {
         dropped_slow_.fetch_add(1, std::memory_order_relaxed);
     }
     std::erase_if(readers_, [](const auto& r) { return r->over; });
+    count_open();
 }
 
 }  // namespace surefoot::monitor

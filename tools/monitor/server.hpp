@@ -64,6 +64,7 @@ private:
     void answer(Reader& reader, std::int64_t now_ns);
     bool write_answer(Reader& reader);
     void drop_late(std::int64_t now_ns);
+    void count_open();
 
     Address address_;
     Pages pages_;
