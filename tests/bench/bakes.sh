@@ -36,7 +36,7 @@ kept_ratio() {
   keep "$1" "$(middle_of "${ratios[@]}")" --scene "$2" --spread "$(min_and_max "${ratios[@]}")" \
     --note "$(rounded_all "$4") $3; the older build $(rounded_all "$5") $3.${6:+ $6}"
 }
-rounded_all() { awk -v all="$1" 'BEGIN { n = split(all, x, " "); for (i = 1; i <= n; ++i) printf "%s%.3g", i > 1 ? ", " : "", x[i] }'; }
+rounded_all() { awk -v all="$1" 'BEGIN { n = split(all, x, " "); for (i = 1; i <= n; ++i) printf "%s%.3g", (i > 1 ? ", " : ""), x[i] }'; }
 
 bakes_scene() { # NAME SCENE PATH LIFT
   local turn side label bake_s bake_triangles file_mb walk_mib opening_s
