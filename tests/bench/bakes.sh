@@ -1,6 +1,7 @@
 # The group `bakes OLD NEW` of tests/bench/run, which sources this: what the forms of a newer build cost beside an older one, in turns.
 # A bake's time, the file's size, and a walk's memory and its time from the start to the end of its second frame. Both builds use their
 # built-in cost tables. Walks are on the virtual clock, where none waits for a period.
+# Scenes are those of picture.sh.
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154 # work, data, old, new, failed, chosen_scenes: of run
 
@@ -56,24 +57,12 @@ bakes_scene() { # NAME SCENE PATH LIFT
 }
 
 bakes_group() {
-  local program name scene path lift chosen=" ${chosen_scenes[*]} "
+  local program
   for program in "$old/surefoot" "$new/surefoot"; do
     [[ -x "$program" ]] || { echo "tests/bench/run: $program is not there: build it" >&2; failed=1; return 0; }
   done
   [[ -x /usr/bin/time ]] || { echo "tests/bench/run: /usr/bin/time is not installed (Debian: time)" >&2; failed=1; return 0; }
   local picture_work=$work/picture
   mkdir -p "$picture_work" "$work/bakes/state"
-  while read -r name scene path lift <&3; do
-    [[ $chosen == "  " || $chosen == *" $name "* ]] || continue
-    case $name in
-      forest) picture_generate forest 10 "$old" || { failed=1; continue; } ;;
-      town) picture_generate town 1 "$old" || { failed=1; continue; } ;;
-      garden) picture_generate garden 1 "$new" || { failed=1; continue; } ;;
-    esac
-    bakes_scene "$name" "$scene" "$path" "$lift"
-    chosen=${chosen/" $name "/" $name: done "}
-  done 3< <(picture_sources)
-  for name in "${chosen_scenes[@]}"; do
-    if [[ $chosen != *" $name: done "* ]]; then echo "tests/bench/run: bakes: there is no scene $name, or SUREFOOT_DATA names no folder" >&2; failed=1; fi
-  done
+  each_scene bakes bakes_scene
 }

@@ -172,8 +172,26 @@ picture_scene() { # NAME SCENE PATH LIFT
   done
 }
 
+# each_scene GROUP FUNCTION: FUNCTION NAME SCENE PATH LIFT for each scene that was chosen, or for all. Makes the generated ones.
+each_scene() {
+  local name scene path lift chosen=" ${chosen_scenes[*]} "
+  while read -r name scene path lift <&3; do
+    [[ $chosen == "  " || $chosen == *" $name "* ]] || continue
+    case $name in
+      forest) picture_generate forest 10 "$old" || { failed=1; continue; } ;;
+      town) picture_generate town 1 "$old" || { failed=1; continue; } ;;
+      garden) picture_generate garden 1 "$new" || { failed=1; continue; } ;;
+    esac
+    "$2" "$name" "$scene" "$path" "$lift"
+    chosen=${chosen/" $name "/" $name: done "}
+  done 3< <(picture_sources)
+  for name in "${chosen_scenes[@]}"; do
+    if [[ $chosen != *" $name: done "* ]]; then echo "tests/bench/run: $1: there is no scene $name, or SUREFOOT_DATA names no folder" >&2; failed=1; fi
+  done
+}
+
 picture_group() {
-  local name scene path lift program
+  local program
   for program in "$old/surefoot" "$new/surefoot" "$build/tests/bench_ledger_poses" "$build/tests/bench_picture_difference"; do
     [[ -x "$program" ]] || { echo "tests/bench/run: $program is not there: build it (the target benches has those of tests)" >&2; failed=1; return 0; }
   done
@@ -189,15 +207,5 @@ picture_group() {
   picture_generate forest 10 "$old" || { failed=1; return 0; }
   # The forest first: it is what says how fast the machine is.
   picture_set_up "$old" forest "$picture_work/forest.glb" "$picture_work/forest.path.csv" 0 || { failed=1; return 0; }
-  local chosen=" ${chosen_scenes[*]} "
-  while read -r name scene path lift <&3; do
-    [[ $chosen == "  " || $chosen == *" $name "* ]] || continue
-    [[ $name != town ]] || picture_generate town 1 "$old" || { failed=1; continue; }
-    [[ $name != garden ]] || picture_generate garden 1 "$new" || { failed=1; continue; }
-    picture_scene "$name" "$scene" "$path" "$lift"
-    chosen=${chosen/" $name "/" $name: done "}
-  done 3< <(picture_sources)
-  for name in "${chosen_scenes[@]}"; do
-    if [[ $chosen != *" $name: done "* ]]; then echo "tests/bench/run: picture: there is no scene $name, or SUREFOOT_DATA names no folder" >&2; failed=1; fi
-  done
+  each_scene picture picture_scene
 }
