@@ -27,8 +27,10 @@ struct Settings {
     std::string steering_file;       ///< how it steers; empty: the default of the device's class
     std::string state_dir;           ///< empty: the program's own choice
     std::string monitor, incidents;  ///< the daemon's: where live figures are served; a folder
-    double lift_m = 0;               ///< added to the path's heights
-    double open_limit_s = 600;       ///< the daemon's: for how long opening a model may take
+    rt::WalkingMode walking = rt::WalkingMode::automatic;
+    double eye_height_m = 1.7, body_radius_m = 0.3, step_height_m = 0.25, max_slope_deg = 45, edge_m = 1;  ///< of the walker
+    double lift_m = 0;          ///< added to the path's heights
+    double open_limit_s = 600;  ///< the daemon's: for how long opening a model may take
     double rate_hz = 30;
     std::uint32_t width = 1280, height = 720;  ///< pixels
     double shift_x = 0, shift_y = 0;           ///< off-axis projection, in half widths and half heights of the image
@@ -55,9 +57,9 @@ struct Settings {
 
 enum class Kind : std::uint8_t { number, integer, flag, choice, colour, file };
 
-using Member =
-    std::variant<double Settings::*, std::uint32_t Settings::*, int Settings::*, bool Settings::*, std::string Settings::*,
-                 rt::LatePolicy Settings::*, rt::ClockKind Settings::*, rt::TextureFilter Settings::*>;
+using Member = std::variant<double Settings::*, std::uint32_t Settings::*, int Settings::*, bool Settings::*,
+                            std::string Settings::*, rt::LatePolicy Settings::*, rt::ClockKind Settings::*,
+                            rt::TextureFilter Settings::*, rt::WalkingMode Settings::*>;
 
 /// One row of the schema. min and max hold for number and integer, choices for choice (of an enum: in its order); max for
 /// file: bytes.

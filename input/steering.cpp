@@ -103,6 +103,7 @@ NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const G
         // Smoothing and debouncing run on between reports.
         if (sources_[i].connected && devices_[i].ticked)
             sources_[i].output = evaluate(devices_[i].mapper, devices_[i].newest, now_ns, age_limit_ns(i));
+        if (sources_[i].connected && !sources_[i].output.neutral) flies_ = devices_[i].mapper.flies;
     }
     const Command command = step(safety_, safety_limits_, sources_, lines, now_ns);
     for (std::size_t i = 0; i < max_devices; ++i) {

@@ -44,6 +44,8 @@ public:
     NavigationSample tick(const Lines& lines, std::int64_t now_ns, const Ground& ground = {}) REQUIRES(steers);
 
     bool place(const Pose& pose) REQUIRES(steers) { return surefoot::input::place(motion_, pose); }
+    /// Whether the device that moved the eye last moves it freely in space (DeviceMapping::flies).
+    [[nodiscard]] bool flies() const REQUIRES(steers) { return flies_; }
     [[nodiscard]] const SafetyState& safety() const REQUIRES(steers) { return safety_; }
     [[nodiscard]] const MotionState& motion() const REQUIRES(steers) { return motion_; }
     [[nodiscard]] const Mapper& mapper(int device) const REQUIRES(steers);
@@ -65,6 +67,7 @@ private:
     SafetyState safety_ GUARDED_BY(steers);
     std::vector<Device> devices_ GUARDED_BY(steers);  ///< max_devices of them
     std::array<Source, max_devices> sources_ GUARDED_BY(steers){};
+    bool flies_ GUARDED_BY(steers) = false;
 };
 
 }  // namespace surefoot::input

@@ -159,6 +159,7 @@ Compiler compiled(const DeviceMapping& mapping, std::span<const ControlInfo> con
 
 Result<Mapper> compile(const DeviceMapping& mapping, std::span<const ControlInfo> controls) {
     Compiler c = compiled(mapping, controls);
+    c.mapper.flies = mapping.flies;
     if (!c.errors().empty()) {
         Error error = c.errors().front();
         error.place = fmt::format("mapping '{}', control {}", mapping.name, error.place);
@@ -169,6 +170,7 @@ Result<Mapper> compile(const DeviceMapping& mapping, std::span<const ControlInfo
 
 Mapper compile_what_fits(const DeviceMapping& mapping, std::span<const ControlInfo> controls) {
     Compiler c = compiled(mapping, controls);
+    c.mapper.flies = mapping.flies;
     for (const Error& error : c.errors()) c.mapper.messages.push_back(error.text());
     return std::move(c.mapper);
 }

@@ -181,6 +181,7 @@ private:
     void six_axis() {
         mapping_.name = "default: six axes";
         mapping_.reporting = Reporting::streaming;  // every 8 ms while deflected, zeros on release, then nothing
+        mapping_.flies = true;
         add_present(desktop, x, Action::side);
         add_present(desktop, y, Action::forward, true);
         add_present(desktop, z, Action::up, true);
@@ -330,6 +331,7 @@ DeviceMapping default_mapping(std::span<const ControlInfo> controls, DeviceClass
         if (port == 0) {
             all.name = fmt::format("{}, {} ports", one.name, last + 1);
             all.reporting = one.reporting;
+            all.flies = one.flies;
         }
         std::ranges::move(one.axes, std::back_inserter(all.axes));
         std::ranges::move(one.sticks, std::back_inserter(all.sticks));

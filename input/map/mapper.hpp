@@ -51,6 +51,7 @@ struct Binding {
 /// The mapping of one device with its state. Made by compile(), then used by one thread.
 struct Mapper {
     std::vector<Binding> bindings;
+    bool flies = false;                 ///< DeviceMapping::flies
     bool adapter = false;               ///< of one for several pads: each reports in its own way and time
     std::vector<std::string> messages;  ///< named controls that cannot be bound, for the log
     std::int64_t last_ns = -1;

@@ -107,6 +107,7 @@ struct DeviceMapping {
     std::string name;
     DeviceMatch match;
     Reporting reporting = Reporting::learn;
+    bool flies = false;  ///< moves the eye freely in space, through walls too, unless the walk's settings say otherwise
     std::vector<AxisMapping> axes;
     std::vector<StickMapping> sticks;
     std::vector<HatMapping> hats;

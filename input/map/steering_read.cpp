@@ -180,6 +180,7 @@ Result<void> read_device(TableReader& table, std::vector<DeviceMapping>& into) {
         table.choice("class", words::classes, index);
     }
     choose(table, "reporting", words::reportings, m.reporting);
+    table.flag("flies", m.flies);
     table.tables("axis", [&](TableReader& t) { return read_axis(t, m.axes); });
     table.tables("stick", [&](TableReader& t) { return read_stick(t, m.sticks); });
     table.tables("hat", [&](TableReader& t) { return read_hat(t, m.hats); });

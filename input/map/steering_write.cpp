@@ -79,6 +79,7 @@ void write_device(Writer& w, const DeviceMapping& m) {
     w.text("product_name", m.match.product_name);
     if (m.match.device_class) w.text("class", words::classes[static_cast<std::size_t>(*m.match.device_class)]);
     w.word("reporting", words::reportings, m.reporting, Reporting::learn);
+    w.flag("flies", m.flies);
     for (const AxisMapping& a : m.axes) {
         w.header("[[device.axis]]");
         w.control(a.control);

@@ -89,7 +89,9 @@ std::vector<DeviceMapping> Teach::mappings() const {
         m.name = device.identity.product_name.empty() ? "shown" : device.identity.product_name;
         m.match.vendor = device.identity.vendor;
         m.match.product = device.identity.product;
-        m.reporting = default_mapping(device.infos, device.identity.device_class).reporting;
+        const DeviceMapping usual = default_mapping(device.infos, device.identity.device_class);
+        m.reporting = usual.reporting;
+        m.flies = usual.flies;
         std::vector<Learned> axes;
         for (const Learned& l : learned_) {
             if (l.device != static_cast<int>(d)) continue;

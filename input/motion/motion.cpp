@@ -26,8 +26,8 @@ dquat about_y(double angle) { return {std::cos(angle / 2), 0, std::sin(angle / 2
 dquat about_x(double angle) { return {std::cos(angle / 2), std::sin(angle / 2), 0, 0}; }
 dquat about_z(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
 
-dquat walker_frame(const MotionState& state, const MotionLimits& limits, double yaw, double pitch) {
-    return limits.level ? about_y(yaw) : glm::normalize(about_y(yaw) * about_x(pitch) * about_z(state.roll));
+dquat walker_frame(const MotionState& state, bool level, double yaw, double pitch) {
+    return level ? about_y(yaw) : glm::normalize(about_y(yaw) * about_x(pitch) * about_z(state.roll));
 }
 
 dvec3 wanted_velocity(const dvec3& walk, double speed, const MotionLimits& limits) {
@@ -38,14 +38,27 @@ dvec3 wanted_velocity(const dvec3& walk, double speed, const MotionLimits& limit
 }
 
 /// Where the ground lets the step end.
-dvec3 allowed(MotionState& state, const Ground& ground, const dvec3& wanted) {
-    if (ground.query == nullptr || wanted == state.position) return wanted;
-    const dvec3 answer = ground.query(ground.context, state.position, wanted);
+dvec3 allowed(MotionState& state, const Ground& ground, const dvec3& wanted, double dt_s) {
+    if (ground.query == nullptr || (wanted == state.position && !ground.walks())) return wanted;
+    const dvec3 answer = ground.query(ground.context, state.position, wanted, dt_s);
     if (!finite(answer)) {
         ++state.refused;
         return state.position;
     }
-    return towards(state.position, answer, glm::length(wanted - state.position) + ground.stair_m);
+    return ground.walks() ? answer : towards(state.position, answer, glm::length(wanted - state.position));
+}
+
+/// Walks a level step, and takes from the velocity what walls took.
+void walk(MotionState& state, const dquat& frame, const dvec3& velocity, double dt_s, const Ground& ground) {
+    const dvec3 before = state.position, way = frame * dvec3(velocity.x, 0, velocity.z) * dt_s;
+    const dvec3 wanted = before + dvec3(way.x, 0, way.z);
+    state.position = allowed(state, ground, wanted, dt_s);
+    state.rise_m_s = (state.position.y - before.y) / dt_s;
+    state.velocity.y = 0;
+    if (state.position.x == wanted.x && state.position.z == wanted.z) return;
+    const dvec3 gone = state.position - before;
+    const dvec3 kept = glm::inverse(frame) * dvec3(gone.x / dt_s, 0, gone.z / dt_s);
+    state.velocity = towards(dvec3(0.0), kept, glm::length(state.velocity));
 }
 
 void count(PressCounts& presses, const MotionRequest& request) {
@@ -81,10 +94,14 @@ void integrate(MotionState& state, const MotionLimits& limits, const dvec3& velo
     if (std::abs(pitch_before + rates.y * dt_s) > limits.max_pitch_rad && pitch_before * rates.y > 0) rates.y = state.rates.y = 0;
     state.yaw.add(rates.x * dt_s);
     state.pitch.add(rates.y * dt_s);
-    if (velocity != dvec3(0.0)) {
-        const dquat frame = walker_frame(state, limits, yaw_before + rates.x * dt_s / 2, pitch_before + rates.y * dt_s / 2);
+    const dquat frame =
+        walker_frame(state, limits.level || ground.walks(), yaw_before + rates.x * dt_s / 2, pitch_before + rates.y * dt_s / 2);
+    state.rise_m_s = 0;
+    if (ground.walks()) {
+        walk(state, frame, velocity, dt_s, ground);
+    } else if (velocity != dvec3(0.0)) {
         const dvec3 before = state.position, wanted = before + frame * velocity * dt_s;
-        state.position = allowed(state, ground, wanted);
+        state.position = allowed(state, ground, wanted, dt_s);
         if (state.position != wanted) {  // the walker keeps the speed that the wall left
             const dvec3 kept = glm::inverse(frame) * ((state.position - before) / dt_s);
             state.velocity = towards(dvec3(0.0), kept, glm::length(state.velocity));
@@ -122,6 +139,7 @@ bool place(MotionState& state, const Pose& pose) {
     const dvec3 over = glm::inverse(unrolled) * up;
     state.roll = level > 1e-9 ? std::atan2(-over.x, over.y) : 0;
     state.velocity = dvec3(0.0);
+    state.rise_m_s = 0;
     state.rates = dvec2(0.0);
     state.walk.set(dvec3(0.0));
     state.turning.set(dvec2(0.0));
@@ -148,6 +166,7 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     state.last_ns = std::max(state.last_ns, now_ns);
     if (command.order == Order::stop) {
         state.velocity = dvec3(0.0);
+        state.rise_m_s = 0;
         state.rates = dvec2(0.0);
         state.walk.set(dvec3(0.0));
         state.turning.set(dvec2(0.0));
@@ -161,7 +180,8 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
 
     NavigationSample sample;
     sample.pose = pose_of(state);
-    sample.velocity_m_s = walker_frame(state, limits, state.yaw.value, state.pitch.value) * state.velocity;
+    const dquat frame = walker_frame(state, limits.level || ground.walks(), state.yaw.value, state.pitch.value);
+    sample.velocity_m_s = frame * state.velocity + dvec3(0, state.rise_m_s, 0);
     sample.angular_rad_s = dvec3(0, state.rates.x, 0) + about_y(state.yaw.value) * dvec3(state.rates.y, 0, 0);
     sample.stamp_ns = command.stamp_ns;
     sample.sequence = ++state.sequence;
@@ -171,7 +191,7 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     sample.pause = request.pause;
     sample.stopped = command.order == Order::stop;
     sample.presses = state.presses;
-    const Prediction ahead = predict(sample, limits, limits.frame_s, ground.query != nullptr ? ground.stair_m : 0);
+    const Prediction ahead = predict(sample, limits, limits.frame_s, ground.walks() ? ground.rise_m_s2 : 0);
     sample.uncertainty_m = ahead.uncertainty_m;
     sample.uncertainty_rad = ahead.uncertainty_rad;
     return sample;

@@ -13,13 +13,14 @@
 namespace surefoot::input {
 
 /// Collision with walls, floors and stairs: returns where a step may end. `context` belongs to the caller. Must not throw or
-/// allocate. The answer may be nearer, aside, or higher by a stair. It is shortened to the wanted length plus stair_m. A
-/// non-finite answer holds the eye where it is.
+/// allocate. The answer may be nearer or aside; it is shortened to the wanted length. A non-finite answer holds the eye where it
+/// is. One that walks (rise_m_s2 > 0) also moves the eye up and down, is asked at every step, and is asked for level moves only.
 struct Ground {
-    using Query = dvec3 (*)(const void* context, const dvec3& from, const dvec3& wanted) noexcept;
+    using Query = dvec3 (*)(void* context, const dvec3& from, const dvec3& wanted, double dt_s) noexcept;
     Query query = nullptr;
-    const void* context = nullptr;
-    double stair_m = 0;  ///< how much further than wanted an answer may move the eye
+    void* context = nullptr;
+    double rise_m_s2 = 0;  ///< largest acceleration up or down that it gives to the eye, which may stop at once
+    [[nodiscard]] bool walks() const { return query != nullptr && rise_m_s2 > 0; }
 };
 
 /// Speeds, accelerations and limits of the walker.
@@ -54,6 +55,7 @@ struct MotionState {
     double roll = 0;   ///< of the pose it was placed with; nothing here changes it
     double fov_y_rad = Pose{}.fov_y_rad;
     dvec3 velocity{0.0};  ///< walker's frame: right, up, back; m/s
+    double rise_m_s = 0;  ///< upwards, by the ground
     dvec2 rates{0.0};     ///< yaw, pitch; rad/s
     OneEuro<dvec3> walk;
     OneEuro<dvec2> turning;
@@ -82,8 +84,8 @@ Pose carried(const NavigationSample& sample, double by_s);
 
 /// The pose `lead_s` after the sample if the hand stays as it is. Its uncertainty bounds the distance to any pose that the limits
 /// allow then. The bound covers a stop at any moment, by order or by a wall, and a new start in any direction. It holds for every
-/// input and order, except `brake` towards a moving request. `stair_m`: that of the Ground. The bound: |v(s) - v0| <= |v0| + A s,
-/// integrated over the lead t, with A = a + |v0| (|w0| + alpha t / 2), as the walker's frame turns.
-Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double stair_m = 0);
+/// input and order, except `brake` towards a moving request. `rise_m_s2`: that of the Ground. The bound: |v(s) - v0| <= |v0| + A
+/// s, integrated over the lead t, with A = a + |v0| (|w0| + alpha t / 2), as the walker's frame turns.
+Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double rise_m_s2 = 0);
 
 }  // namespace surefoot::input

@@ -25,13 +25,13 @@ Pose carried(const NavigationSample& sample, double by_s) {
     return pose;
 }
 
-Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double stair_m) {
+Prediction predict(const NavigationSample& sample, const MotionLimits& limits, double lead_s, double rise_m_s2) {
     const double t = std::clamp(std::isfinite(lead_s) ? lead_s : 0.0, 0.0, 1.0);
     const double speed = glm::length(sample.velocity_m_s), turning = glm::length(sample.angular_rad_s);
     Prediction ahead;
     ahead.pose = carried(sample, t);
-    const double accel = limits.accel_m_s2 + speed * (turning + 0.5 * limits.accel_rad_s2 * t);
-    ahead.uncertainty_m = strayed(accel, speed, t) + stair_m;
+    const double accel = std::hypot(limits.accel_m_s2, rise_m_s2) + speed * (turning + 0.5 * limits.accel_rad_s2 * t);
+    ahead.uncertainty_m = strayed(accel, speed, t);
     // Heading and pitch turn one after the other, the prediction about one axis: they differ by half their product.
     const double max_turning = turning + limits.accel_rad_s2 * t;
     ahead.uncertainty_rad = strayed(limits.accel_rad_s2, turning, t) + 0.5 * max_turning * max_turning * t * t;

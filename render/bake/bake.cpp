@@ -3,26 +3,24 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <thread>
 
 #include "render/bake/boxes.hpp"
+#include "render/bake/ground.hpp"
 #include "render/bake/limits.hpp"
 #include "render/bake/materials.hpp"
 #include "render/bake/picture_loss.hpp"
 #include "render/bake/proxies.hpp"
+#include "render/bake/stage.hpp"
 #include "render/bake/trim_masks.hpp"
 #include "render/model/pixels.hpp"
-#include "rt/base/fork_join.hpp"
-#include "rt/base/mutex.hpp"
 
 namespace surefoot::bake {
 
@@ -39,44 +37,6 @@ std::string place_of(const importer::Scene& scene) { return scene.sources.empty(
 Error stopped_by_user(const importer::Scene& scene) {
     return {place_of(scene), "The user stopped the bake; nothing was written", "", ErrorKind::stopped};
 }
-
-/// body(0) to body(count - 1) on all threads of the arena.
-template <class Body>
-void for_all(std::size_t count, const Body& body) {
-    ForkJoin loop;
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        const ForkJoin::Task task(loop);
-        body(i);
-    });
-    loop.joined();
-}
-
-/// Progress from many threads, reported about ten times a second; and the request to stop.
-class Stage {
-public:
-    Stage(const Progress& progress, std::string_view name, std::size_t total) : progress_(progress), name_(name), total_(total) {}
-    /// False: stop.
-    bool step() {
-        const std::size_t done = done_.fetch_add(1) + 1;
-        const auto now = std::chrono::steady_clock::now();
-        if (mutex_.try_lock()) {
-            if (now - last_update_ > std::chrono::milliseconds(100) || done == total_) {
-                last_update_ = now;
-                progress_.update(name_, static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total_)));
-            }
-            mutex_.unlock();
-        }
-        return !progress_.stopped();
-    }
-
-private:
-    const Progress& progress_;
-    std::string_view name_;
-    std::size_t total_;
-    std::atomic<std::size_t> done_{0};
-    Mutex mutex_;
-    std::chrono::steady_clock::time_point last_update_ GUARDED_BY(mutex_){};
-};
 
 struct BakeContext {
     const importer::Scene& scene;
@@ -486,12 +446,15 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         boxes->drop_idle(costs_of(options));
         context.measure_areas();
         context.find_effects();
+        context.model.ground = make_ground(scene, progress);
+        done = !progress.stopped();
     });
     if (!done) return stopped_by_user(scene);
     progress.update("write", 0.0);
     model::Model& model = context.model;
     model.provenance.sources = scene.sources;
     model.provenance.warnings.insert(model.provenance.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
+    for (std::string& line : ground_warnings(model.ground, scene)) model.provenance.warnings.push_back(std::move(line));
     model.provenance.quality = options.quality == Quality::full ? "full" : "draft";
     if (auto valid = model::validate(model); !valid) return valid.error();
     return std::move(model);

@@ -45,6 +45,18 @@ float importance_of(const tinygltf::Node& node) {
     return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : 1.0F;
 }
 
+/// Extras `walk`: "block" or "pass"; else as the parent has it.
+WalkRule walk_of(const tinygltf::Node& node, WalkRule inherited, Scene& scene) {
+    if (!node.extras.Has("walk")) return inherited;
+    const tinygltf::Value& value = node.extras.Get("walk");
+    const std::string text = value.IsString() ? value.Get<std::string>() : "";
+    if (text == "block") return WalkRule::block;
+    if (text == "pass") return WalkRule::pass;
+    scene.warnings.push_back(
+        fmt::format("Node '{}': the extra 'walk' is neither \"block\" nor \"pass\"; it is ignored", node.name));
+    return inherited;
+}
+
 /// EXT_mesh_gpu_instancing: one matrix an instance.
 Result<std::vector<dmat4>> instances_of(const tinygltf::Model& model, const tinygltf::Value& extension,
                                         const std::string& place) {
@@ -139,6 +151,7 @@ private:
         to.parent = parent;
         to.world = (parent == none ? dmat4(1.0) : scene_.nodes[parent].world) * local_matrix(from);
         to.importance = importance_of(from);
+        to.walk = walk_of(from, parent == none ? WalkRule::by_rule : scene_.nodes[parent].walk, scene_);
         if (from.mesh >= 0 && static_cast<std::size_t>(from.mesh) < scene_.meshes.size()) to.mesh = static_cast<Index>(from.mesh);
         if (from.mesh >= 0 && to.mesh == none)
             scene_.damaged(fmt::format("Node '{}' names mesh {}, which does not exist", to.name, from.mesh));
@@ -159,8 +172,8 @@ private:
         const Node parent = scene_.nodes[node];
         scene_.nodes[node].mesh = none;
         for (std::size_t i = 0; i < matrices->size(); ++i) {
-            scene_.nodes.push_back(
-                Node{fmt::format("{} #{}", parent.name, i), node, parent.mesh, parent.world * (*matrices)[i], parent.importance});
+            scene_.nodes.push_back(Node{fmt::format("{} #{}", parent.name, i), node, parent.mesh, parent.world * (*matrices)[i],
+                                        parent.importance, parent.walk});
         }
     }
 

@@ -47,6 +47,9 @@ struct Mesh {
     std::vector<std::string> lacks = {};  ///< its broken or missing data
 };
 
+/// Whether a walker is stopped: by the rules of the bake, or as the scene's author says.
+enum class WalkRule : std::uint8_t { by_rule, block, pass };
+
 /// parent < own index (parents come first), none for roots.
 struct Node {
     std::string name;
@@ -54,6 +57,7 @@ struct Node {
     Index mesh = none;
     dmat4 world{1.0};  ///< mesh frame to world
     float importance = 1.0F;
+    WalkRule walk = WalkRule::by_rule;  ///< handed down to its children
 };
 
 /// A missing or broken thing that the scene draws.

@@ -229,6 +229,8 @@ Check check_rest(const Model& m) {
     return {};
 }
 
+Check check_ground(const Model& m) { return validate(m.ground); }
+
 }  // namespace
 
 EffectMask Model::called_for() const {
@@ -240,7 +242,7 @@ EffectMask Model::called_for() const {
 Result<void> validate(const Model& model) {
     if (auto fits = check_limits(counts_of(model), "model"); !fits) return fits;
     for (const auto check : {check_textures, check_materials, check_parts, check_placements, check_reps, check_losses, check_tree,
-                             check_group_losses, check_rest}) {
+                             check_group_losses, check_rest, check_ground}) {
         if (Check result = check(model); !result) return result;
     }
     return {};

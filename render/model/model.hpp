@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/model/effects.hpp"
+#include "render/model/ground.hpp"
 #include "render/model/picture_loss.hpp"
 #include "rt/base/geometry.hpp"
 #include "rt/base/named.hpp"
@@ -134,6 +135,7 @@ struct Model {
     std::vector<std::byte, PageMemory<std::byte>> texels;  ///< empty in an Engine: the device holds them
     std::string names;                                     ///< zero-terminated strings, offset 0 is ""
     std::vector<EffectFinding> effects;                    ///< one an effect, bit order
+    Ground ground;                                         ///< for walking; empty in older files
     std::uint32_t object_count = 0;
     dvec3 sun_direction{0.36, 0.80, 0.48};  ///< towards the sun, unit
     Provenance provenance;

@@ -34,6 +34,10 @@ struct PutArchive {
         (*this)(static_cast<std::uint64_t>(values.size()));
         for (const T& value : values) fields(*this, value);
     }
+    void list(const std::vector<std::byte>& raw) {
+        (*this)(static_cast<std::uint64_t>(raw.size()));
+        bytes.insert(bytes.end(), raw.begin(), raw.end());
+    }
 };
 
 /// Takes values from bounded bytes; failed() after any read beyond the end, or a flag that is neither 0 nor 1.
@@ -61,6 +65,10 @@ struct TakeArchive {
     void list(std::vector<T>& values) {
         const auto count = reader.read<std::uint64_t>();
         for (std::uint64_t i = 0; i < count && !failed(); ++i) fields(*this, values.emplace_back());
+    }
+    void list(std::vector<std::byte>& raw) {
+        const auto view = reader.bytes(reader.read<std::uint64_t>());
+        raw.assign(view.begin(), view.end());
     }
     [[nodiscard]] bool failed() const { return bad || reader.failed(); }
 };
@@ -134,6 +142,43 @@ void fields(Archive& a, FindingT& f) { a(f.bit), a(f.called_for), a(f.triangles)
 template <class Archive, class TextT>
 requires std::is_same_v<std::remove_const_t<TextT>, std::string>
 void fields(Archive& a, TextT& text) { a(text); }
+
+template <class Archive, class BoxT>
+requires std::is_same_v<std::remove_const_t<BoxT>, GroundBox>
+void fields(Archive& a, BoxT& b) {
+    for (auto& v : b.min) a(v);
+    for (auto& v : b.max) a(v);
+}
+
+template <class Archive, class BlockT>
+requires std::is_same_v<std::remove_const_t<BlockT>, GroundBlock>
+void fields(Archive& a, BlockT& b) {
+    for (auto& v : b.origin) a(v);
+    a(b.first_byte), a(b.corners), a(b.triangles), a(b.wide);
+}
+
+template <class Archive, class MeshT>
+requires std::is_same_v<std::remove_const_t<MeshT>, GroundMesh>
+void fields(Archive& a, MeshT& m) {
+    vector3(a, m.origin), a(m.step_m);
+    for (auto& v : m.min) a(v);
+    for (auto& v : m.max) a(v);
+    a(m.first_block), a(m.block_count), a(m.first_node);
+}
+
+template <class Archive, class InstanceT>
+requires std::is_same_v<std::remove_const_t<InstanceT>, GroundInstance>
+void fields(Archive& a, InstanceT& i) {
+    vector3(a, i.origin);
+    for (int column = 0; column < 3; ++column) vector3(a, i.linear[column]);
+    a(i.mesh);
+}
+
+template <class Archive, class GroundT>
+void ground(Archive& a, GroundT& g) {
+    a(g.triangles);
+    a.list(g.meshes), a.list(g.blocks), a.list(g.boxes), a.list(g.bytes), a.list(g.instances);
+}
 
 /// All that is not an array: counts, sun, provenance. Eight spare bytes among them once held the time of the bake.
 template <class Archive, class ModelT>

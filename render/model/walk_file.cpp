@@ -47,12 +47,16 @@ enum Section : std::uint32_t {
     effects_section,
     rest_section,
     losses_section,
+    ground_section,
     section_count
 };
-constexpr std::array<std::string_view, section_count> section_names = {
-    "pages", "nodes", "representations", "parts", "placements", "materials", "textures", "effects", "provenance", "losses"};
+constexpr std::array<std::string_view, section_count> section_names = {"pages",      "nodes",     "representations", "parts",
+                                                                       "placements", "materials", "textures",        "effects",
+                                                                       "provenance", "losses",    "ground"};
 /// No model is valid without them; any other that a file has not got is empty.
-constexpr bool required(std::uint32_t section) { return section != textures_section && section != losses_section; }
+constexpr bool required(std::uint32_t section) {
+    return section != textures_section && section != losses_section && section != ground_section;
+}
 
 struct PageEntry {
     std::uint32_t stored = 0;  ///< bytes on disk; equal to the unpacked size: kept raw
@@ -134,6 +138,9 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
             put.list(m.losses);
             if (!m.group_losses.empty()) put.list(m.group_losses);
             break;
+        case ground_section:
+            walk::ground(put, m.ground);
+            break;
         default:
             walk::rest(put, m);
             break;
@@ -190,7 +197,8 @@ Result<void> open_sections(Reading& in, std::span<const std::byte> table, std::s
     if (!rest.empty()) return in.error("section table", "Some bytes belong to no section");
     for (std::uint32_t id = 0; id < section_count; ++id) {
         if (required(id) && !in.sections[id]) return in.error(section_names[id], "The section is missing");
-        if (id != rest_section && id != losses_section) in.model_hash = fnv1a(in.model_hash, hashes[id]);
+        const bool drawn = id != rest_section && id != losses_section && id != ground_section;
+        if (drawn) in.model_hash = fnv1a(in.model_hash, hashes[id]);
     }
     return {};
 }
@@ -259,6 +267,9 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
             walk::fields(take, m.colours);
             take.list(m.losses);
             if (take.reader.left() != 0) take.list(m.group_losses);  // older files end here
+            break;
+        case ground_section:
+            walk::ground(take, m.ground);
             break;
         default:
             walk::rest(take, m);
@@ -340,6 +351,7 @@ Result<WalkFileInfo> write_walk(const std::string& file, const Model& model) {
     walk::PutArchive table;
     for (std::uint32_t section = 0; section < section_count; ++section) {
         if (section == losses_section && model.losses.empty()) continue;
+        if (section == ground_section && model.ground.empty()) continue;
         const auto bytes = section_bytes(section, model, sizes, pages);
         table(section), table(static_cast<std::uint64_t>(bytes.size())), table(hash_bytes(bytes));
         if (auto written = out.write(bytes); !written) return written.error();
@@ -382,6 +394,7 @@ Result<Model> read_walk(const std::string& file, WalkFileInfo* info) {
         return Error{fmt::format("{}: {}", file, valid.error().place), valid.error().what, valid.error().remedy,
                      valid.error().kind};
     }
+    index_instances(model.ground);
     if (info != nullptr) *info = {bytes->size(), sizes.sum(), static_cast<std::uint32_t>(pages.size()), in.model_hash};
     return model;
 }

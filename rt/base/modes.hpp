@@ -25,6 +25,9 @@ enum class ClockKind : std::uint8_t { real, virtual_time };
 /// two nearest ones, blended. adaptive: frame by frame, where a driver takes longer for two.
 enum class TextureFilter : std::uint8_t { automatic, bilinear, trilinear, adaptive };
 
+/// Whether a steered eye walks: on floors and around walls, or flies through them.
+enum class WalkingMode : std::uint8_t { automatic, walk, fly };
+
 /// In the enums' order.
 inline constexpr std::array late_policies = {
     Named{"lock", "frames appear on the grid only; a late frame skips whole slots"},
@@ -33,6 +36,12 @@ inline constexpr std::array late_policies = {
 inline constexpr std::array clock_kinds = {
     Named{"real", "the machine's clock"},
     Named{"virtual", "predicted costs advance the clock; the same cost table gives the same frames"},
+};
+
+inline constexpr std::array walking_modes = {
+    Named{"auto", "devices that move in all six ways fly, such as 3D mice; all others walk"},
+    Named{"walk", "all devices walk"},
+    Named{"fly", "all devices fly, through walls too"},
 };
 
 inline constexpr std::array texture_filters = {

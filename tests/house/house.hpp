@@ -41,6 +41,7 @@ inline const std::vector<Room>& rooms() {
         {"input/replay", {"rt/", "input", "input/"}},
         {"input/safety", {"rt/", "input", "input/"}},
         {"render/model", {}},
+        {"render/model/ground", {"render/model"}},
         {"render/image", {}},
         {"render/import", {"render/model", "render/image"}},
         // Calibration draws with the programs of the effects whose cost it measures.

@@ -225,7 +225,7 @@ struct Wall {
     double z;
     bool mad = false;
 };
-dvec3 stop_at_wall(const void* context, const dvec3& from, const dvec3& wanted) noexcept {
+dvec3 stop_at_wall(void* context, const dvec3& from, const dvec3& wanted, double /*dt_s*/) noexcept {
     const auto& wall = *static_cast<const Wall*>(context);
     if (wall.mad) return {std::numeric_limits<double>::quiet_NaN(), 1e300, 0};
     (void)from;

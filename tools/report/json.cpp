@@ -76,6 +76,9 @@ Json input_of(const InputSummary& in) {
         {"losses", in.losses},
         {"presses", {{"next_viewpoint", in.next_viewpoint}, {"reset", in.reset}, {"tour", in.tour}, {"pause", in.pause}}},
         {"jumps", in.jumps},
+        {"walked", in.walked},
+        {"returns", in.returns},
+        {"freed", in.freed},
         {"filter_lag_ms", rounded(in.filter_lag_ms)},
         {"guard_violations", in.guard_violations},
     };

@@ -55,8 +55,10 @@ struct InputSummary {
     std::uint64_t timeouts = 0, overflows = 0, losses = 0;
     std::uint64_t next_viewpoint = 0, reset = 0, tour = 0, pause = 0;  ///< presses
     std::uint64_t jumps = 0;                                           ///< placings elsewhere
-    double filter_lag_ms = 0;                                          ///< at most, of mapping and filter
-    std::uint64_t guard_violations = 0;                                ///< of the input thread
+    bool walked = false;                   ///< walls and floors held the visitor; false: it flew, or the model has no ground
+    std::uint64_t returns = 0, freed = 0;  ///< of the walker: from being stuck, and out of something solid
+    double filter_lag_ms = 0;              ///< at most, of mapping and filter
+    std::uint64_t guard_violations = 0;    ///< of the input thread
 };
 
 /// A form that was drawn where full detail would show more. Its share of the error is measured in the pictures where it was

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "input/replay/replay_source.hpp"
 #include "rt/base/text.hpp"
@@ -38,6 +39,9 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
     std::unique_ptr<InputSession> session(new InputSession());
     session->source_name_ = request.input_file;
     session->period_ns_ = period_ns;
+    session->mode_ = request.walking;
+    session->body_ = {request.eye_height_m, request.body_radius_m, request.step_height_m,
+                      request.max_slope_deg * std::numbers::pi / 180, request.edge_m};
     session->motion_ = steering.motion;
     session->motion_.frame_s = static_cast<double>(period_ns) * 1e-9;
     if (request.input_file == live_input) {
@@ -57,9 +61,11 @@ Result<std::unique_ptr<InputSession>> InputSession::open(const WalkRequest& requ
     return session;
 }
 
-void InputSession::begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement) {
+void InputSession::begin(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
+                         const rt::Placement& placement) {
     tour_controller_ = std::make_unique<TourController>(path);
-    stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, samples_, jump_poses_,
+    walking_ = std::make_unique<Walking>(ground, body_, mode_);
+    stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, *walking_, samples_, jump_poses_,
                                               live_ ? live_->keeper() : nullptr);
     poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get());
     stepper_->begin(start_ns);
@@ -101,7 +107,12 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     s.reset = presses.reset;
     s.tour = presses.tour;
     s.pause = presses.pause;
-    s.jumps = tour_controller_->jumps();
+    s.jumps = tour_controller_->jumps() + walking_->jumps();
+    if (const model::Walker* walker = walking_->walker()) {
+        s.walked = true;
+        s.returns = walker->returns();
+        s.freed = walker->freed();
+    }
     s.filter_lag_ms = steering_->worst_lag_s() * 1e3;
     s.guard_violations = guard_violations_;
     return s;

@@ -33,7 +33,9 @@ public:
     [[nodiscard]] double duration_s() const { return duration_s_; }
 
     /// The walk's time begins at start_ns, at the start of `path`, which must outlive this. real_clock: starts the thread.
-    void begin(const Path& path, std::int64_t start_ns, bool real_clock, const rt::Placement& placement);
+    /// A visitor walks on `ground`, which must outlive this too.
+    void begin(const Path& path, const model::Ground& ground, std::int64_t start_ns, bool real_clock,
+               const rt::Placement& placement);
     /// For the frame thread; after begin().
     [[nodiscard]] PoseSource& poses() { return *poses_; }
     /// For the prepare thread: poses that the eye jumps to by a button.
@@ -65,6 +67,9 @@ private:
     std::unique_ptr<input::Steering> steering_;
     rt::TripleBuffer<SteeredSample> samples_;
     JumpBuffer jump_poses_;
+    rt::WalkingMode mode_ = rt::WalkingMode::automatic;
+    model::Body body_;
+    std::unique_ptr<Walking> walking_;
     std::unique_ptr<TourController> tour_controller_;
     std::unique_ptr<InputStepper> stepper_;
     std::unique_ptr<SteeredPoses> poses_;

@@ -8,10 +8,12 @@
 namespace surefoot::walk {
 
 InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller,
-                           rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses, input::StopKeeper* keeper)
+                           Walking& walking, rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses,
+                           input::StopKeeper* keeper)
     : source_(source),
       steering_(steering),
       tour_controller_(tour_controller),
+      walking_(walking),
       samples_(samples),
       jump_poses_(jump_poses),
       keeper_(keeper) {
@@ -32,7 +34,7 @@ std::int64_t InputStepper::next_ns() const { return std::min(source_.next_ns(), 
 void InputStepper::step(std::int64_t now_ns) {
     steering_.steers.plays();
     const input::Lines lines = source_.drain(steering_, now_ns);
-    input::NavigationSample sample = steering_.tick(lines, now_ns);
+    input::NavigationSample sample = steering_.tick(lines, now_ns, walking_.ground(steering_.flies()));
     if (keeper_ != nullptr) keeper_->set(steering_.safety().latched);
     tour_controller_.follow(sample, steering_, now_ns);
     publish(sample, now_ns);
@@ -47,8 +49,9 @@ void InputStepper::advance_to(std::int64_t now_ns) {
 }
 
 void InputStepper::publish(const input::NavigationSample& sample, std::int64_t now_ns) {
-    if (tour_controller_.jumps() != jumps_reported_) {
-        jumps_reported_ = tour_controller_.jumps();
+    const std::uint32_t jumps = tour_controller_.jumps() + walking_.jumps();
+    if (jumps != jumps_reported_) {
+        jumps_reported_ = jumps;
         PoseSample& place = jump_poses_.back();
         place.pose = sample.pose;
         place.dt_s = static_cast<double>(input_tick_ns) * 1e-9;
@@ -60,8 +63,10 @@ void InputStepper::publish(const input::NavigationSample& sample, std::int64_t n
     out.nav = sample;
     out.time_ns = now_ns;
     out.reports = source_.log().count();
-    out.jumps = tour_controller_.jumps();
+    out.jumps = jumps;
     out.touring = tour_controller_.touring();
+    out.walking = walking_.walks();
+    out.barrier = out.walking ? walking_.walker()->barrier() : model::Barrier::clear;
     samples_.publish();
 }
 

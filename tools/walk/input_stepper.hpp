@@ -12,6 +12,7 @@
 #include "rt/exchange/triple_buffer.hpp"
 #include "tools/walk/prepare_thread.hpp"
 #include "tools/walk/tour_controller.hpp"
+#include "tools/walk/walking.hpp"
 
 namespace surefoot::walk {
 
@@ -23,8 +24,10 @@ struct SteeredSample {
     input::NavigationSample nav;
     std::int64_t time_ns = 0;   ///< of the step: nav.pose is the pose then
     std::uint64_t reports = 0;  ///< accepted, up to and with this sample
-    std::uint32_t jumps = 0;    ///< TourController::jumps()
+    std::uint32_t jumps = 0;    ///< of the tour controller and of the walker
     bool touring = false;
+    bool walking = false;                            ///< else the eye flies
+    model::Barrier barrier = model::Barrier::clear;  ///< what stops the walker
 };
 
 /// One step of the input: drains the source, steps the walker, publishes the sample. One thread calls all members.
@@ -33,7 +36,7 @@ public:
     /// All of them must outlive this; `steering` is placed at the tour's start.
     /// `keeper`, if given, is notified at each step whether an emergency stop is latched.
     /// `jump_poses` is notified of jumps: poses that the eye does not walk to.
-    InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller,
+    InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller, Walking& walking,
                  rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses, input::StopKeeper* keeper = nullptr);
 
     /// Publishes the start, and attaches connected devices. On a neutral thread, before the first step; allocates.
@@ -53,6 +56,7 @@ private:
     input::ReportSource& source_;
     input::Steering& steering_;
     TourController& tour_controller_;
+    Walking& walking_;
     rt::TripleBuffer<SteeredSample>& samples_;
     JumpBuffer& jump_poses_;
     input::StopKeeper* keeper_;

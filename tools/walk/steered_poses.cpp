@@ -40,7 +40,7 @@ FramePose SteeredPoses::pose_of(const FrameTime& time) const {
     out.reports = s.reports;
     if (s.touring) return out;  // the limits say nothing about a path: the last two poses do
     const double ahead_s = horizon_s(static_cast<double>(period_ns_) * 1e-9) + static_cast<double>(carry_limit_ns) * 1e-9;
-    const input::Prediction ahead = input::predict(s.nav, limits_, ahead_s);
+    const input::Prediction ahead = input::predict(s.nav, limits_, ahead_s, s.walking ? walker_rise_m_s2 : 0);
     out.predicted.known = true;
     out.predicted.region = {ahead.pose, ahead.uncertainty_m, ahead.uncertainty_rad};
     out.predicted.speed_m_s = glm::length(s.nav.velocity_m_s);

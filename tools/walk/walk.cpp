@@ -140,7 +140,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
             s.facts.degraded.push_back({rt::LackKind::placing, refused->what, refused->remedy});
     }
     PathPoses path_poses(s.path.path, s.grid.period_ns);
-    if (s.input) s.input->begin(s.path.path, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
+    if (s.input) s.input->begin(s.path.path, s.engine->model().ground, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
     PoseSource& pose_source = s.input ? s.input->poses() : static_cast<PoseSource&>(path_poses);
     if (s.virtual_clock) notify_started(s);
     std::atomic<bool> done{false};

@@ -1,0 +1,22 @@
+// The ground of a scene: its blocking triangles (ground_classes.hpp) in shared trees (ground_build.hpp).
+#pragma once
+
+#include <vector>
+
+#include "render/import/scene.hpp"
+#include "render/model/ground.hpp"
+#include "rt/base/progress.hpp"
+
+namespace surefoot::bake {
+
+/// By node of the scene, for each triangle of its mesh: whether it blocks.
+using BlockingTriangles = std::vector<std::vector<bool>>;
+
+/// From full detail, independent of what is drawn. Runs on the threads of the caller's arena; the same bits for any number of
+/// them. Empty if the user stops it. `blocking`, if given, receives the classes.
+model::Ground make_ground(const importer::Scene& scene, const Progress& progress, BlockingTriangles* blocking = nullptr);
+
+/// Guesses that a person should know of: no floor, or a size at which nobody can walk. One line each.
+std::vector<std::string> ground_warnings(const model::Ground& ground, const importer::Scene& scene);
+
+}  // namespace surefoot::bake

@@ -1,0 +1,29 @@
+// Trees of small blocks over blocking triangles (render/model/ground.hpp).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/model/ground.hpp"
+#include "render/model/ground/capsule.hpp"
+
+namespace surefoot::bake {
+
+/// A mesh with its blocks, boxes and bytes, to be joined to a ground.
+struct GroundTree {
+    model::GroundMesh mesh;
+    std::vector<model::GroundBlock> blocks;
+    std::vector<model::GroundBox> boxes;
+    std::vector<std::byte> bytes;
+    std::uint64_t triangles = 0;
+};
+
+/// Corners move to a lattice of at most `step_m`, a power of two; finer where the mesh is tiny, coarser where it is too wide for
+/// 31 bits. Triangles of which two corners meet there are dropped.
+GroundTree build_tree(std::span<const model::GroundTriangle> triangles, double step_m);
+/// Its numbers count on from the ground's.
+void append(model::Ground& ground, GroundTree&& tree);
+/// Puts instances into the order of their implicit tree. The ground's meshes must be complete.
+void order_instances(model::Ground& ground);
+
+}  // namespace surefoot::bake

@@ -1,0 +1,137 @@
+// The triangles of a ground near a box. Nothing here allocates.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "render/model/ground.hpp"
+#include "render/model/ground/capsule.hpp"
+
+namespace surefoot::model {
+
+namespace ground_tree {
+
+inline bool overlap(const Box& a, const Box& b) {
+    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y && a.min.z <= b.max.z &&
+           b.min.z <= a.max.z;
+}
+
+inline Box box_of(const GroundTriangle& t) { return {glm::min(glm::min(t.a, t.b), t.c), glm::max(glm::max(t.a, t.b), t.c)}; }
+
+/// A node of an implicit tree: its own number, and the leaves below it.
+struct Span {
+    std::uint32_t node, first, count;
+};
+
+/// Visits the leaves whose nodes all pass. passes(node) -> bool, visit(leaf).
+template <class Passes, class Visit>
+void for_leaves(std::uint32_t count, const Passes& passes, const Visit& visit) {
+    if (count == 0) return;
+    std::array<Span, 40> stack;  // halves: one waiting span a level, 32 levels at most
+    std::size_t top = 0;
+    stack[top++] = {0, 0, count};
+    while (top > 0) {
+        const Span span = stack[--top];
+        if (!passes(span.node)) continue;
+        if (span.count == 1) {
+            visit(span.first);
+            continue;
+        }
+        const std::uint32_t left = (span.count + 1) / 2, right = span.count / 2;
+        stack[top++] = {span.node + 2 * left, span.first + left, right};
+        stack[top++] = {span.node + 1, span.first, left};
+    }
+}
+
+/// Corner `i` of a block, on the lattice.
+inline dvec3 corner(const Ground& ground, const GroundBlock& block, std::uint32_t i) {
+    dvec3 p;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t at = 3 * std::size_t{i} + static_cast<std::size_t>(axis);
+        std::uint32_t offset = 0;
+        if (block.wide) {
+            std::memcpy(&offset, ground.bytes.data() + block.first_byte + 4 * at, 4);
+        } else {
+            std::uint16_t half = 0;
+            std::memcpy(&half, ground.bytes.data() + block.first_byte + 2 * at, 2);
+            offset = half;
+        }
+        p[axis] = static_cast<double>(block.origin[static_cast<std::size_t>(axis)]) + static_cast<double>(offset);
+    }
+    return p;
+}
+
+/// The query's box on a mesh's lattice, and in the units of its tree.
+struct LatticeQuery {
+    Box box;                                   ///< lattice points
+    std::array<std::int32_t, 3> min{}, max{};  ///< in 65535ths of the mesh's box; outside of 0..65535 where the query is
+
+    LatticeQuery(const GroundMesh& mesh, const Box& local) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto at = static_cast<std::size_t>(axis);
+            box.min[axis] = (local.min[axis] - mesh.origin[axis]) / mesh.step_m - 1;
+            box.max[axis] = (local.max[axis] - mesh.origin[axis]) / mesh.step_m + 1;
+            const double low = mesh.min[at], extent = static_cast<double>(mesh.max[at]) - low;
+            const double scale = extent > 0 ? 65535.0 / extent : 0.0;
+            min[at] = static_cast<std::int32_t>(std::clamp(std::floor((box.min[axis] - low) * scale), -1.0, 65536.0));
+            max[at] = static_cast<std::int32_t>(std::clamp(std::ceil((box.max[axis] - low) * scale), -1.0, 65536.0));
+            if (extent > 0) continue;  // flat: all of its boxes are at 0
+            min[at] = box.min[axis] > low ? 1 : 0;
+            max[at] = box.max[axis] < low ? -1 : 0;
+        }
+    }
+    [[nodiscard]] bool meets(const GroundBox& b) const {
+        for (std::size_t a = 0; a < 3; ++a)
+            if (min[a] > b.max[a] || max[a] < b.min[a]) return false;
+        return true;
+    }
+};
+
+/// visit(GroundTriangle, number): triangles whose lattice box meets the query, by `place` from mesh frame to world.
+template <class Place, class Visit>
+void in_mesh(const Ground& ground, const GroundMesh& mesh, const Box& local, const Place& place, const Visit& visit) {
+    const LatticeQuery query(mesh, local);
+    const auto passes = [&](std::uint32_t node) { return query.meets(ground.boxes[mesh.first_node + node]); };
+    for_leaves(mesh.block_count, passes, [&](std::uint32_t leaf) {
+        const GroundBlock& block = ground.blocks[mesh.first_block + leaf];
+        std::array<dvec3, max_block_corners> corners;
+        for (std::uint32_t i = 0; i < block.corners; ++i) corners[i] = corner(ground, block, i);
+        const std::byte* numbers = ground.bytes.data() + block.first_byte + std::size_t{block.corners} * (block.wide ? 12 : 6);
+        for (std::uint32_t t = 0; t < block.triangles; ++t, numbers += 3) {
+            const dvec3 &a = corners[std::to_integer<std::size_t>(numbers[0])],
+                        &b = corners[std::to_integer<std::size_t>(numbers[1])],
+                        &c = corners[std::to_integer<std::size_t>(numbers[2])];
+            if (!overlap(query.box, box_of({a, b, c}))) continue;
+            const auto in_world = [&](const dvec3& p) { return place(mesh.origin + mesh.step_m * p); };
+            visit(GroundTriangle{in_world(a), in_world(b), in_world(c)});
+        }
+    });
+}
+
+}  // namespace ground_tree
+
+/// Calls visit(const GroundTriangle&) for every triangle whose box meets `box`, always in the same order.
+template <class Visit>
+void for_triangles_near(const Ground& ground, const Box& box, const Visit& visit) {
+    if (ground.meshes.empty()) return;
+    const auto near = [&](const GroundTriangle& t) {
+        if (ground_tree::overlap(box, ground_tree::box_of(t))) visit(t);
+    };
+    ground_tree::in_mesh(
+        ground, ground.meshes[0], box, [](const dvec3& p) { return p; }, near);
+    const auto passes = [&](std::uint32_t node) { return ground_tree::overlap(box, ground.instance_boxes[node]); };
+    ground_tree::for_leaves(static_cast<std::uint32_t>(ground.instances.size()), passes, [&](std::uint32_t leaf) {
+        const GroundInstance& instance = ground.instances[leaf];
+        const dmat3 linear(instance.linear), inverse = glm::inverse(linear);
+        const dvec3 centre = inverse * (box.centre() - instance.origin), half = box.half();
+        const dvec3 reach = glm::abs(inverse[0]) * half.x + glm::abs(inverse[1]) * half.y + glm::abs(inverse[2]) * half.z;
+        ground_tree::in_mesh(
+            ground, ground.meshes[instance.mesh], {centre - reach, centre + reach},
+            [&](const dvec3& p) { return instance.origin + linear * p; }, near);
+    });
+}
+
+}  // namespace surefoot::model

@@ -1,0 +1,370 @@
+// The steps of the walker (README.md).
+#include "render/model/ground/walker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/model/ground/near.hpp"
+
+namespace surefoot::model {
+
+namespace {
+
+constexpr double skin_m = 1e-3;        // walls keep this much more off than the radius
+constexpr double step_slack_m = 0.01;  // a step of exactly step_m is climbed
+constexpr double foot_share = 0.5;     // radius of the disc under which the floor is looked for
+constexpr double max_overlap_m = 0.01;
+constexpr double gravity_m_s2 = 9.81, max_fall_m_s = 5;
+constexpr double eye_m_s2 = 8, eye_settles_s = 0.06;  // how the eye follows the feet up and down
+constexpr double max_lag_m = 0.5;                     // the eye behind the feet, climbing
+constexpr double max_sink_m = 0.15;                   // the eye below its height over the feet, landing
+constexpr double gather_m = 0.3;                      // triangles are gathered this much further than a step needs
+constexpr double close_m = 0.12;
+constexpr std::size_t max_near = 2048;
+constexpr double deep_m = 1e7;  // below every floor
+constexpr std::uint32_t trials = 16;
+constexpr double trial_m = 0.1, stuck_after_s = 1, free_every_m = 0.5;
+constexpr std::uint32_t search_rings = 40, search_a_tick = 2;
+constexpr double ring_m = 0.25;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+dvec3 direction(double turn) {
+    const double angle = 2 * std::numbers::pi * turn;
+    return {std::cos(angle), 0, std::sin(angle)};
+}
+
+Box swept(const Capsule& capsule, const dvec3& move) {
+    Box box{capsule.low - capsule.radius, capsule.low + capsule.radius};
+    box.max.y += capsule.length;
+    const Box moved{box.min + move, box.max + move};
+    box.grow(moved);
+    return box;
+}
+
+}  // namespace
+
+Walker::Walker(const Ground& ground, const Body& body) : ground_(ground), body_(body) {
+    near_.reserve(max_near);
+    close_.reserve(max_near);
+    for (std::size_t i = 1; i < foot_.size(); ++i) foot_[i] = foot_share * body_.radius_m * direction(static_cast<double>(i) / 8);
+}
+
+Capsule Walker::capsule_at(const dvec3& feet) const {
+    const double bottom = body_.step_m + step_slack_m, top = body_.eye_m + crown_m;
+    return {feet + dvec3(0, bottom + body_.radius_m, 0), std::max(0.0, top - bottom - 2 * body_.radius_m), body_.radius_m};
+}
+
+// ---- what is near ----
+
+void Walker::gather(const Box& box) {
+    near_.clear();
+    near_complete_ = true;
+    close_known_ = false;
+    near_box_ = box;
+    for_triangles_near(ground_, box, [&](const GroundTriangle& t) {
+        if (near_.size() == max_near)
+            near_complete_ = false;
+        else
+            near_.push_back({t, ground_tree::box_of(t)});
+    });
+}
+
+/// From the gathered triangles where they hold all of the box, else from the tree.
+template <class Visit>
+void Walker::for_near(const Box& box, const Visit& visit) const {
+    if (!near_complete_ || !near_box_.contains(box)) return for_triangles_near(ground_, box, visit);
+    for (const Near& near : near_)
+        if (ground_tree::overlap(box, near.box)) visit(near.triangle);
+}
+
+void Walker::prepare_near(double reach_m) {
+    const Capsule body = capsule_at(feet_);
+    Box needed{feet_ - dvec3(body.radius + reach_m), feet_ + dvec3(body.radius + reach_m)};
+    needed.min.y = feet_.y - std::min(body_.edge_m, 2.0) - reach_m;
+    needed.max.y = body.low.y + body.length + body.radius + body_.step_m + reach_m;
+    if (near_complete_ && near_box_.contains(needed)) return;
+    gather({needed.min - gather_m, needed.max + gather_m});
+}
+
+void Walker::find_close(const dvec3& feet) {
+    Capsule body = capsule_at(feet);
+    const double radius = body.radius;
+    body.radius += close_m;
+    const Box box = swept(body, dvec3(0.0));
+    close_.clear();
+    for (std::uint32_t i = 0; i < near_.size(); ++i) {
+        if (!ground_tree::overlap(box, near_[i].box)) continue;
+        if (separation(body, near_[i].triangle).distance <= radius + close_m) close_.push_back(i);
+    }
+    close_to_ = feet;
+    close_known_ = true;
+}
+
+/// The body with its feet there, moved; its radius grown by `skin`. Steps are short, so only what is close can be touched, and
+/// that is found once for many of them.
+Contact Walker::sweep(const dvec3& feet, const dvec3& move, double skin) {
+    Contact first;
+    Capsule body = capsule_at(feet);
+    body.radius += skin;
+    const auto offer = [&](const GroundTriangle& t) {
+        const Contact contact = first_contact(body, move, t);
+        if (contact.share < first.share) first = contact;
+    };
+    const Box box = swept(body, move);
+    const double reach = glm::length(move) + skin;
+    if (reach > close_m || !near_complete_ || !near_box_.contains(box)) {
+        for_near(box, offer);
+        return first;
+    }
+    if (!close_known_ || glm::length(feet - close_to_) + reach > close_m) find_close(feet);
+    for (const std::uint32_t i : close_)
+        if (ground_tree::overlap(box, near_[i].box)) offer(near_[i].triangle);
+    return first;
+}
+
+bool Walker::is_free(const dvec3& feet) const {
+    Capsule body = capsule_at(feet);
+    body.radius -= max_overlap_m;
+    bool is_free = true;
+    for_near(swept(body, dvec3(0.0)),
+             [&](const GroundTriangle& t) { is_free = is_free && separation(body, t).distance >= body.radius; });
+    return is_free;
+}
+
+/// The centre and eight points around it look down from `top`.
+Walker::Footing Walker::footing(const dvec3& at, double top, double bottom) const {
+    const double reach = foot_share * body_.radius_m, min_up = std::cos(body_.slope_rad);
+    Footing found{-infinity, -infinity};
+    const Box column{dvec3(at.x - reach, bottom, at.z - reach), dvec3(at.x + reach, top, at.z + reach)};
+    for_near(column, [&](const GroundTriangle& t) {
+        const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
+        const bool floor = std::abs(n.y) >= min_up * glm::length(n);
+        for (const dvec3& off : foot_) {
+            const double y = height_at(t, at.x + off.x, at.z + off.z);
+            if (!(y >= bottom && y <= top)) continue;
+            found.any = std::max(found.any, y);
+            if (floor) found.floor = std::max(found.floor, y);
+        }
+    });
+    return found;
+}
+
+// ---- a move ----
+
+/// Level moves stop at walls and go on along them.
+dvec3 Walker::slide(const dvec3& feet, dvec3 move, Barrier& barrier) {
+    dvec3 at = feet;
+    std::array<dvec3, 4> walls;
+    for (std::size_t i = 0; i < walls.size() && glm::length(move) > 1e-12; ++i) {
+        const Contact contact = sweep(at, move, skin_m);
+        if (contact.share > 1) return at + move;
+        at += contact.share * move;
+        move *= 1 - contact.share;
+        barrier = Barrier::wall;
+        const double level = std::hypot(contact.away.x, contact.away.z);
+        if (level < 1e-6) return at;
+        walls[i] = dvec3(contact.away.x / level, 0, contact.away.z / level);
+        move -= walls[i] * std::min(0.0, glm::dot(walls[i], move));
+        for (std::size_t before = 0; before < i; ++before)
+            if (glm::dot(walls[before], move) < -1e-12) return at;  // a corner
+    }
+    return at;
+}
+
+Walker::Attempt Walker::attempt(const dvec3& move) {
+    Attempt to;
+    to.feet = slide(feet_, move, to.barrier);
+    const double raise = body_.step_m + step_slack_m, top = feet_.y + raise;
+    const double bottom = feet_.y - std::max(raise, std::min(body_.edge_m, deep_m));
+    const Footing under = footing(to.feet, top, bottom);
+    const auto refused = [&](Barrier why) {
+        to.feet = feet_;
+        to.barrier = why;
+        return to;
+    };
+    double floor = under.floor;
+    if (floor == -infinity && under.any > -infinity) {  // only what is too steep: down it goes, if it stood on such before
+        if (supported_ && (!steep_ || under.any > feet_.y)) return refused(Barrier::slope);
+        floor = under.any;
+        to.steep = true;
+    }
+    if (floor == -infinity) {
+        if (supported_) return refused(Barrier::edge);
+        return to;
+    }
+    const double rise = floor - feet_.y;
+    if (rise > 0) {
+        if (floor + body_.eye_m - eye_.y > max_lag_m + std::max(0.0, feet_.y + body_.eye_m - eye_.y))
+            return refused(Barrier::slope);
+        if (sweep(to.feet, dvec3(0, rise, 0)).share <= 1) return refused(Barrier::ceiling);
+        to.feet.y = floor;
+        to.supported = true;
+    } else if (-rise <= raise && supported_) {
+        const Contact below = sweep(to.feet, dvec3(0, rise, 0));
+        to.feet.y += std::min(1.0, below.share) * rise;
+        to.supported = true;
+    }
+    return to;
+}
+
+void Walker::travel(const dvec3& move) {
+    Attempt best = attempt(move);
+    const Barrier first = best.barrier;
+    // Along an edge, or past the end of what is too steep or too low: the same way, turned aside.
+    for (int i = 1; i <= 6 && best.feet == feet_ && first != Barrier::wall; ++i) {
+        const double turn = (i % 2 == 0 ? -1 : 1) * ((i + 1) / 2) * (29.0 / 360.0), along = std::cos(2 * std::numbers::pi * turn);
+        const dvec3 d = direction(turn);
+        best = attempt(along * dvec3(move.x * d.x - move.z * d.z, 0, move.x * d.z + move.z * d.x));
+    }
+    if (best.feet == feet_) {
+        barrier_ = first;
+        return;
+    }
+    const dvec2 gone(best.feet.x - feet_.x, best.feet.z - feet_.z);
+    if (glm::length(gone) < 0.1 * glm::length(move)) barrier_ = first;
+    feet_ = best.feet;
+    supported_ = best.supported;
+    steep_ = best.steep;
+    if (!supported_) return;
+    fall_m_s = 0;
+    if (free_count_ > 0 && glm::length(feet_ - free_places_[0]) < free_every_m) return;
+    free_places_[1] = free_places_[0];
+    free_places_[0] = feet_;
+    free_count_ = std::min<std::uint32_t>(free_count_ + 1, 2);
+}
+
+void Walker::fall(double dt_s) {
+    if (supported_) return;
+    const Footing under = footing(feet_, feet_.y + skin_m, feet_.y - deep_m);
+    if (under.any == -infinity) {  // no floor to fall to
+        fall_m_s = 0;
+        return;
+    }
+    fall_m_s = std::min(fall_m_s + gravity_m_s2 * dt_s, max_fall_m_s);
+    const double drop = std::min(fall_m_s * dt_s, std::max(0.0, feet_.y - under.any));
+    const Contact below = sweep(feet_, dvec3(0, -drop, 0));
+    feet_.y -= std::min(1.0, below.share) * drop;
+    if (below.share > 1 && feet_.y - under.any > 1e-9) return;
+    supported_ = true;
+    steep_ = under.any > under.floor;
+    fall_m_s = 0;
+}
+
+/// The eye follows its height over the feet with a limited acceleration. It may stop at once.
+void Walker::raise_eye(double dt_s) {
+    eye_.x = feet_.x, eye_.z = feet_.z;
+    const double target = feet_.y + body_.eye_m, off = target - eye_.y;
+    const double speed = std::min(std::sqrt(2 * eye_m_s2 * std::abs(off)), std::abs(off) / eye_settles_s);
+    const double wanted = std::copysign(speed, off), change = (supported_ ? eye_m_s2 : gravity_m_s2) * dt_s;
+    eye_m_s += std::clamp(wanted - eye_m_s, -change, change);
+    if (!supported_) eye_m_s = -fall_m_s;
+    eye_.y += eye_m_s * dt_s;
+    if (eye_.y < target - max_lag_m) eye_.y = target - max_lag_m;
+    if (supported_ && eye_m_s < 0 && eye_.y < target - max_sink_m) eye_.y = target - max_sink_m, eye_m_s = 0;
+    if (std::abs(target - eye_.y) < 1e-5 && std::abs(eye_m_s) < 1e-3) eye_.y = target, eye_m_s = 0;
+}
+
+// ---- beginnings, and being stuck ----
+
+/// The feet find their floor below an eye that was placed.
+void Walker::stand_up() {
+    awake_ = true;
+    fall_m_s = eye_m_s = 0;
+    const Footing under = footing(eye_, eye_.y, eye_.y - body_.eye_m - std::min(body_.edge_m, deep_m));
+    supported_ = under.any > -infinity;
+    steep_ = under.any > under.floor;
+    feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
+    free_count_ = 0;
+    searching_ = !is_free(feet_);
+    search_at_ = 0;
+}
+
+/// Rings around the eye, nearest first: the first place with a floor near its height where the body is free.
+void Walker::look_for_a_free_place() {
+    barrier_ = Barrier::inside;
+    for (std::uint32_t i = 0; i < search_a_tick && searching_; ++i, ++search_at_) {
+        const std::uint32_t ring = search_at_ / trials + 1;
+        if (ring > search_rings) {  // nothing is free: the walker stays, and walls let it out but not in
+            searching_ = false;
+            return;
+        }
+        const dvec3 at = eye_ + ring * ring_m * direction((search_at_ % trials) / static_cast<double>(trials));
+        const Footing under = footing(at, eye_.y, eye_.y - body_.eye_m - 1.0);
+        if (under.floor == -infinity || !is_free({at.x, under.floor, at.z})) continue;
+        ++freed_;
+        stand_at({at.x, under.floor, at.z});
+    }
+}
+
+void Walker::stand_at(const dvec3& feet) {
+    feet_ = feet;
+    eye_ = feet + dvec3(0, body_.eye_m, 0);
+    supported_ = true;
+    steep_ = searching_ = false;
+    fall_m_s = eye_m_s = 0;
+    pushed_s_ = 0;
+    trial_ = 0;
+    tried_from_ = feet;
+}
+
+/// Stuck: pushed for a second without getting on, and none of 16 directions moves a tenth of a metre. One direction a tick.
+void Walker::watch(const dvec3& move, double dt_s) {
+    if (glm::length(feet_ - tried_from_) >= trial_m || !supported_) {
+        tried_from_ = feet_;
+        pushed_s_ = 0;
+        trial_ = 0;
+        return;
+    }
+    if (move == dvec3(0.0)) return;
+    pushed_s_ += dt_s;
+    if (pushed_s_ < stuck_after_s) return;
+    const Attempt to = attempt(trial_m * direction(trial_ / static_cast<double>(trials)));
+    if (glm::length(to.feet - feet_) >= 0.9 * trial_m) {
+        pushed_s_ = 0;
+        trial_ = 0;
+    } else if (++trial_ == trials) {
+        ++returns_;
+        barrier_ = Barrier::stuck;
+        if (free_count_ > 0) {
+            stand_at(free_places_[free_count_ - 1]);
+        } else {
+            trial_ = 0;
+            pushed_s_ = 0;
+            searching_ = true;
+            search_at_ = 0;
+        }
+    }
+}
+
+dvec3 Walker::walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept {
+    if (!known_ || from != eye_) {  // somebody placed the eye
+        eye_ = from;
+        known_ = true;
+        awake_ = searching_ = false;
+        barrier_ = Barrier::clear;
+    }
+    const dvec3 move(wanted.x - from.x, 0, wanted.z - from.z);
+    const bool pushed = move != dvec3(0.0);
+    if (!awake_) {
+        if (!pushed) return eye_;
+        stand_up();
+        tried_from_ = feet_;
+        pushed_s_ = 0;
+        trial_ = 0;
+    }
+    barrier_ = Barrier::clear;
+    if (searching_) {
+        look_for_a_free_place();
+        return eye_;
+    }
+    if (!pushed && supported_ && eye_m_s == 0 && eye_.y == feet_.y + body_.eye_m) return eye_;
+    prepare_near(glm::length(move) + max_fall_m_s * dt_s);
+    if (pushed) travel(move);
+    fall(dt_s);
+    raise_eye(dt_s);
+    if (pushed) watch(move, dt_s);
+    return eye_;
+}
+
+}  // namespace surefoot::model

@@ -1,0 +1,121 @@
+// The walker's body: slides along walls, climbs steps and slopes, falls to floors, and stops at edges and under ceilings.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "render/model/ground.hpp"
+#include "render/model/ground/capsule.hpp"
+#include "rt/base/named.hpp"
+
+namespace surefoot::model {
+
+/// Size and abilities of the walker.
+struct Body {
+    double eye_m = 1.7;                 ///< eye above the floor; the head ends crown_m higher
+    double radius_m = 0.3;              ///< of the capsule
+    double step_m = 0.25;               ///< highest step that is climbed
+    double slope_rad = 0.785398163397;  ///< steepest floor that is climbed
+    double edge_m = 1.0;                ///< a drop of this much or more stops the walker; infinite: none does
+};
+constexpr double crown_m = 0.1;
+
+/// What keeps the walker from going on.
+enum class Barrier : std::uint8_t { clear, wall, slope, ceiling, edge, inside, stuck };
+inline constexpr std::array barriers = {
+    Named{"clear", "nothing is in the way"},
+    Named{"wall", "a wall is in the way"},
+    Named{"slope", "the floor is too steep"},
+    Named{"ceiling", "the ceiling is too low"},
+    Named{"edge", "the floor ends at a drop"},
+    Named{"inside", "the place is inside something solid; the nearest free place is being looked for"},
+    Named{"stuck", "no direction is free; the walker goes back to where it was free"},
+};
+
+/// One walker on a ground. The constructor allocates; nothing else does, nor locks, nor reads a clock. One thread uses it.
+///
+/// The body is a capsule from step_m above the feet to crown_m above the eye: what is lower is stepped on. The feet stand on the
+/// highest floor under a disc of half the radius. The same calls give the same bits.
+class Walker {
+public:
+    /// The ground must outlive this, and be valid and indexed.
+    Walker(const Ground& ground, const Body& body);
+
+    /// One step of the eye, from where it is towards `wanted`; only the level part of the way counts. Call it at every tick, also
+    /// when the hand rests: falls go on. An eye that somebody placed elsewhere stays as it is until the hand moves.
+    dvec3 walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept;
+
+    /// Why the last step ended short of what was wanted.
+    [[nodiscard]] Barrier barrier() const { return barrier_; }
+    /// How often a stuck walker went back, and how often one that began inside something was put beside it.
+    [[nodiscard]] std::uint64_t returns() const { return returns_; }
+    [[nodiscard]] std::uint64_t freed() const { return freed_; }
+    [[nodiscard]] const dvec3& feet() const { return feet_; }
+    /// Whether something carries the feet; else the walker falls, or glides where there is no floor at all.
+    [[nodiscard]] bool supported() const { return supported_; }
+    /// The part of a body with its feet there that walls stop.
+    [[nodiscard]] Capsule capsule_at(const dvec3& feet) const;
+
+private:
+    struct Near {
+        GroundTriangle triangle;
+        Box box;
+    };
+    /// Heights of the highest floor and of the highest surface of any slope under the feet; minus infinity: none.
+    struct Footing {
+        double floor, any;
+    };
+    /// Where a move would end.
+    struct Attempt {
+        dvec3 feet{0.0};
+        bool supported = false, steep = false;
+        Barrier barrier = Barrier::clear;
+    };
+
+    template <class Visit>
+    void for_near(const Box& box, const Visit& visit) const;
+    void gather(const Box& box);
+    void find_close(const dvec3& feet);
+    [[nodiscard]] Contact sweep(const dvec3& feet, const dvec3& move, double skin = 0);
+    [[nodiscard]] Footing footing(const dvec3& at, double top, double bottom) const;
+    [[nodiscard]] bool is_free(const dvec3& feet) const;
+    [[nodiscard]] dvec3 slide(const dvec3& feet, dvec3 move, Barrier& barrier);
+    [[nodiscard]] Attempt attempt(const dvec3& move);
+    void travel(const dvec3& move);
+    void fall(double dt_s);
+    void raise_eye(double dt_s);
+    void stand_up();
+    void look_for_a_free_place();
+    void stand_at(const dvec3& feet);
+    void watch(const dvec3& move, double dt_s);
+    void prepare_near(double reach_m);
+
+    const Ground& ground_;
+    Body body_;
+    std::vector<Near> near_;
+    Box near_box_;
+    bool near_complete_ = false;
+    std::vector<std::uint32_t> close_;  ///< of near_: within close_m of a body with its feet at close_to_
+    dvec3 close_to_{0.0};
+    bool close_known_ = false;
+    std::array<dvec3, 9> foot_{};  ///< points of the foot's disc
+
+    dvec3 eye_{0.0}, feet_{0.0};
+    bool known_ = false;  ///< eye_ is where the walker left it
+    bool awake_ = false;  ///< the hand has moved since the eye was placed
+    bool supported_ = false;
+    bool steep_ = false;  ///< what supports is too steep to climb
+    double fall_m_s = 0, eye_m_s = 0;
+    Barrier barrier_ = Barrier::clear;
+    std::uint32_t search_at_ = 0;  ///< candidates for a free place that were looked at
+    bool searching_ = false;
+    dvec3 tried_from_{0.0};  ///< where the walker was when it last got on
+    double pushed_s_ = 0;    ///< for how long it has not
+    std::uint32_t trial_ = 0;
+    std::array<dvec3, 2> free_places_{};  ///< newest first
+    std::uint32_t free_count_ = 0;
+    std::uint64_t returns_ = 0, freed_ = 0;
+};
+
+}  // namespace surefoot::model

@@ -1,0 +1,36 @@
+// Joins the walker's body to the input's steps: which devices walk, and what to do where the walker was put elsewhere.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "input/motion/motion.hpp"
+#include "render/model/ground/walker.hpp"
+#include "rt/base/modes.hpp"
+
+namespace surefoot::walk {
+
+/// Largest acceleration that a walker's eye gets up or down; it falls with that of gravity.
+constexpr double walker_rise_m_s2 = 9.81;
+
+/// The walker of a session. All members but the constructor belong to the thread of the input's steps.
+class Walking {
+public:
+    /// Without a ground, or with `fly`, everybody flies. The ground must outlive this.
+    Walking(const model::Ground& ground, const model::Body& body, rt::WalkingMode mode);
+
+    /// What the next step asks. `flies`: the device that steers moves freely in space.
+    [[nodiscard]] input::Ground ground(bool flies);
+    /// How often the walker was put elsewhere: out of something solid, or back to where it was free.
+    [[nodiscard]] std::uint32_t jumps() const;
+    [[nodiscard]] bool walks() const { return walks_; }
+    /// Null where nobody walks.
+    [[nodiscard]] const model::Walker* walker() const { return walker_ ? &*walker_ : nullptr; }
+
+private:
+    std::optional<model::Walker> walker_;
+    rt::WalkingMode mode_;
+    bool walks_ = false;
+};
+
+}  // namespace surefoot::walk
