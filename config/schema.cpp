@@ -44,6 +44,19 @@ constexpr Entry file_name(string_view key, string_view help, std::string S::*mem
     return {key, Kind::file, {}, 0, longest_name, {}, help, member};
 }
 
+/// How a steered visitor moves.
+std::vector<Entry> walker_entries() {
+    return {
+        choice("walking", rt::walking_modes, "Whether a steered visitor walks on floors and around walls, or flies through them.",
+               &S::walking),
+        number("eye_height_m", "m", 0.1, 100, "Walker: height of the eye above the floor.", &S::eye_height_m),
+        number("body_radius_m", "m", 0.02, 10, "Walker: half the width of the body.", &S::body_radius_m),
+        number("step_height_m", "m", 0, 10, "Walker: highest step that is climbed.", &S::step_height_m),
+        number("max_slope_deg", "degrees", 0, 89, "Walker: steepest floor that is climbed.", &S::max_slope_deg),
+        number("edge_m", "m", 0, 1e6, "Walker: a drop of this much or more stops the visitor; less is fallen down.", &S::edge_m),
+    };
+}
+
 std::vector<Entry> make_entries(const Registry& selectors, const Registry& backends) {
     std::vector<Entry> entries = {
         file_name("model", "The .walk model, relative to this file's folder; \"\": none, so the command line must name one.",
@@ -56,13 +69,6 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         file_name("input", "Source of steering: \"\" follows the path; \"devices\" uses connected devices; else a recording.",
                   &S::input_file),
         file_name("steering", "File of input mappings; \"\": the default mapping of the device's class.", &S::steering_file),
-        choice("walking", rt::walking_modes, "Whether a steered visitor walks on floors and around walls, or flies through them.",
-               &S::walking),
-        number("eye_height_m", "m", 0.1, 100, "Walker: height of the eye above the floor.", &S::eye_height_m),
-        number("body_radius_m", "m", 0.02, 10, "Walker: half the width of the body.", &S::body_radius_m),
-        number("step_height_m", "m", 0, 10, "Walker: highest step that is climbed.", &S::step_height_m),
-        number("max_slope_deg", "degrees", 0, 89, "Walker: steepest floor that is climbed.", &S::max_slope_deg),
-        number("edge_m", "m", 0, 1e6, "Walker: a drop of this much or more stops the visitor; less is fallen down.", &S::edge_m),
         file_name("state",
                   "Folder of the cost table and of a latched emergency stop; \"\": $STATE_DIRECTORY, as systemd sets it.",
                   &S::state_dir),
@@ -117,6 +123,8 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),
         integer("worker_priority", "FIFO", 1, 98, "Priority of the workers; below the rasterisers'.", &S::worker_priority),
     };
+    const std::vector<Entry> walker = walker_entries();
+    entries.insert(entries.begin() + 5, walker.begin(), walker.end());  // after "steering"
     std::find_if(entries.begin(), entries.end(), [](const Entry& e) { return e.key == "backend"; })->absent = backends.absent;
     return entries;
 }

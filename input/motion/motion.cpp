@@ -165,6 +165,7 @@ NavigationSample step(MotionState& state, const MotionLimits& limits, const Comm
     const double dt_s = std::min(static_cast<double>(passed) * 1e-9, longest_step_s);
     state.last_ns = std::max(state.last_ns, now_ns);
     if (command.order == Order::stop) {
+        if (ground.halt != nullptr) ground.halt(ground.context);
         state.velocity = dvec3(0.0);
         state.rise_m_s = 0;
         state.rates = dvec2(0.0);

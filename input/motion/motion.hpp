@@ -19,7 +19,8 @@ struct Ground {
     using Query = dvec3 (*)(void* context, const dvec3& from, const dvec3& wanted, double dt_s) noexcept;
     Query query = nullptr;
     void* context = nullptr;
-    double rise_m_s2 = 0;  ///< largest acceleration up or down that it gives to the eye, which may stop at once
+    double rise_m_s2 = 0;                            ///< largest acceleration that it gives to the eye, which may stop at once
+    void (*halt)(void* context) noexcept = nullptr;  ///< a stop: what falls or rises does so no more
     [[nodiscard]] bool walks() const { return query != nullptr && rise_m_s2 > 0; }
 };
 

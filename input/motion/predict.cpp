@@ -30,7 +30,7 @@ Prediction predict(const NavigationSample& sample, const MotionLimits& limits, d
     const double speed = glm::length(sample.velocity_m_s), turning = glm::length(sample.angular_rad_s);
     Prediction ahead;
     ahead.pose = carried(sample, t);
-    const double accel = std::hypot(limits.accel_m_s2, rise_m_s2) + speed * (turning + 0.5 * limits.accel_rad_s2 * t);
+    const double accel = limits.accel_m_s2 + rise_m_s2 + speed * (turning + 0.5 * limits.accel_rad_s2 * t);
     ahead.uncertainty_m = strayed(accel, speed, t);
     // Heading and pitch turn one after the other, the prediction about one axis: they differ by half their product.
     const double max_turning = turning + limits.accel_rad_s2 * t;

@@ -18,8 +18,8 @@ struct GroundTree {
     std::uint64_t triangles = 0;
 };
 
-/// Corners move to a lattice of at most `step_m`, a power of two; finer where the mesh is tiny, coarser where it is too wide for
-/// 31 bits. Triangles of which two corners meet there are dropped.
+/// Corners move to a lattice of at most `step_m`, a power of two. It is finer where the mesh is tiny, and coarser where it is too
+/// wide for 31 bits. Triangles of which two corners meet there are dropped.
 GroundTree build_tree(std::span<const model::GroundTriangle> triangles, double step_m);
 /// Its numbers count on from the ground's.
 void append(model::Ground& ground, GroundTree&& tree);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <unordered_map>
 
 #include "rt/base/hash.hpp"
@@ -99,8 +100,8 @@ public:
             if (wanted[i]) cells_.emplace_back(key(cell(points[i])), i);
         std::sort(cells_.begin(), cells_.end());
     }
-    template <class Visit>
-    void for_near(const dvec3& p, const Visit& visit) const {
+    template <class Use>
+    void for_near(const dvec3& p, const Use& use) const {
         const auto at = cell(p);
         for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x)
             for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y)
@@ -108,7 +109,7 @@ public:
                     const std::uint64_t k = key({x, y, z});
                     for (auto it = std::lower_bound(cells_.begin(), cells_.end(), std::pair{k, 0U});
                          it != cells_.end() && it->first == k; ++it)
-                        if (glm::length(points_[it->second] - p) <= reach_) visit(it->second);
+                        if (glm::length(points_[it->second] - p) <= reach_) use(it->second);
                 }
     }
 
@@ -143,6 +144,25 @@ void join_small_parts(const GroundFacts& facts, const std::vector<bool>& small, 
 
 dvec3 scale_of(const dmat4& world) {
     return {glm::length(dvec3(world[0])), glm::length(dvec3(world[1])), glm::length(dvec3(world[2]))};
+}
+
+/// Its heights, and in which of eight level directions it is widest.
+void measure_outline(std::span<const dvec3> corners, Sheet& sheet) {
+    Box box;
+    for (const dvec3& p : corners) box.grow(p);
+    sheet.low_m = box.min.y, sheet.high_m = box.max.y;
+    for (int d = 0; d < 8; ++d) {
+        const double angle = std::numbers::pi * d / 8;
+        const dvec3 along(std::cos(angle), 0, std::sin(angle));
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (const dvec3& p : corners) {
+            const double s = p.x * along.x + p.z * along.z;
+            low = std::min(low, s), high = std::max(high, s);
+        }
+        if (high - low <= sheet.width_m) continue;
+        sheet.width_m = high - low;
+        sheet.along = along;
+    }
 }
 
 }  // namespace
@@ -229,33 +249,19 @@ std::vector<Sheet> upright_sheets(const GroundFacts& facts, const dmat4& world) 
     for (const std::vector<std::uint32_t>& of : members) {
         if (of.empty()) continue;
         Sheet sheet;
+        std::vector<dvec3> corners;
         double area = 0;
-        Box box;
-        std::array<dvec2, 8> spans;  // along each direction
-        spans.fill({std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
         for (const std::uint32_t i : of) {
             sheet.triangles.push_back(upright[i]);
             const double weight = glm::length(normals[i]);
             area += weight;
             for (const std::uint32_t corner : facts.corners[upright[i]]) {
-                const dvec3 p = place(corner);
-                box.grow(p);
-                sheet.centre += weight / 3 * p;
-                for (std::size_t d = 0; d < spans.size(); ++d) {
-                    const double angle = std::numbers::pi * static_cast<double>(d) / 8,
-                                 s = p.x * std::cos(angle) + p.z * std::sin(angle);
-                    spans[d] = {std::min(spans[d].x, s), std::max(spans[d].y, s)};
-                }
+                corners.push_back(place(corner));
+                sheet.centre += weight / 3 * corners.back();
             }
         }
         sheet.centre /= area;
-        for (std::size_t d = 0; d < spans.size(); ++d) {
-            if (spans[d].y - spans[d].x <= sheet.width_m) continue;
-            const double angle = std::numbers::pi * static_cast<double>(d) / 8;
-            sheet.width_m = spans[d].y - spans[d].x;
-            sheet.along = {std::cos(angle), 0, std::sin(angle)};
-        }
-        sheet.low_m = box.min.y, sheet.high_m = box.max.y;
+        measure_outline(corners, sheet);
         if (sheet.width_m >= sheet_width_m && sheet.high_m - sheet.low_m >= sheet_high_m - sheet_low_m)
             found.push_back(std::move(sheet));
     }

@@ -17,8 +17,8 @@ struct GroundBox {
     std::array<std::uint16_t, 3> min{}, max{};
 };
 
-/// Neighbouring triangles, and their corners on the mesh's lattice. At first_byte stand the corners, each three offsets from
-/// `origin` of 16 bits, or of 32 bits where `wide`; then three numbers of corners, of 8 bits, for each triangle.
+/// Neighbouring triangles, and their corners on the mesh's lattice. At first_byte stand the corners: three offsets from `origin`
+/// each, of 16 bits, or of 32 bits where `wide`. Then stand the triangles: three numbers of corners each, of 8 bits.
 struct GroundBlock {
     std::array<std::int32_t, 3> origin{};
     std::uint32_t first_byte = 0;  ///< in Ground::bytes
@@ -29,7 +29,7 @@ constexpr std::uint32_t max_block_triangles = 32, max_block_corners = 96;
 
 /// Blocking triangles in a frame of their own: point = origin + step_m * lattice point. All corners lie on one lattice, so
 /// neighbouring triangles leave no crack. The tree is implicit: a node of n > 1 blocks has children of (n + 1) / 2 and n / 2
-/// blocks; the first child follows it, and the second follows all of the first. A node of one block is that block.
+/// blocks. The first child follows it, and the second follows all of the first. A node of one block is that block.
 struct GroundMesh {
     dvec3 origin{0.0};
     double step_m = 1;

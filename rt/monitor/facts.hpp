@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace surefoot::rt {
 
@@ -10,6 +11,9 @@ struct InputState {
     bool live = false;            ///< devices steer; else a path or a recording
     int devices = 0;              ///< that steer
     bool emergency_stop = false;  ///< latched
+    bool walking = false;         ///< on floors and around walls; else the visitor flies
+    std::string_view barrier{};   ///< what stops the walker: "wall", "edge"...; empty: nothing. A constant's name.
+    std::string_view barrier_help{};
     friend bool operator==(const InputState&, const InputState&) = default;
 };
 

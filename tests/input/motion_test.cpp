@@ -234,7 +234,7 @@ dvec3 stop_at_wall(void* context, const dvec3& from, const dvec3& wanted, double
 
 TEST(Motion, TheGroundMayOnlyHoldBack) {
     Wall wall{-1};
-    const Ground ground{stop_at_wall, &wall, 0};
+    const Ground ground{stop_at_wall, &wall, 0, nullptr};
     MotionState state;
     step(state, {}, {}, 0, ground);
     std::int64_t now = 0;
@@ -272,7 +272,7 @@ TEST(Prediction, NoWalkLeavesItsUncertainty) {
             command.request.speed = random.range(-1, 1);
             command.order = random.below(20) == 0 ? Order::stop : Order::walk;
         }
-        const Ground ground = (i / 50'000) % 2 == 0 ? Ground{} : Ground{stop_at_wall, &wall, 0};
+        const Ground ground = (i / 50'000) % 2 == 0 ? Ground{} : Ground{stop_at_wall, &wall, 0, nullptr};
         if (i % 50'000 == 0) wall.z = state.position.z - 3;
         const auto sample = step(state, limits, command, now += ms, ground);
         for (auto it = open.begin(); it != open.end();) {

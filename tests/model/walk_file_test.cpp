@@ -251,9 +251,10 @@ struct Sections {
     }
 };
 
-constexpr std::array<const char*, 10> section_names = {"pages",     "nodes",    "representations", "parts",      "placements",
-                                                       "materials", "textures", "effects",         "provenance", "losses"};
-constexpr std::uint32_t textures_id = 6, losses_id = 9;  // optional
+constexpr std::array<const char*, 11> section_names = {"pages",      "nodes",     "representations", "parts",
+                                                       "placements", "materials", "textures",        "effects",
+                                                       "provenance", "losses",    "ground"};
+constexpr std::uint32_t textures_id = 6, losses_id = 9, ground_id = 10;  // optional
 
 struct OpenTable : WalkFile {
     Model model = two_triangles();

@@ -24,6 +24,7 @@ inline std::string keep(const GamepadSession& session, const std::string& name) 
 inline walk::WalkRequest steered_request(const GamepadSession& session, const std::string& name) {
     walk::WalkRequest request = Forest::get().virtual_request(0);
     request.input_file = keep(session, name);
+    request.walking = rt::WalkingMode::fly;  // what these tests see is the device; those of walking set it back
     return request;
 }
 

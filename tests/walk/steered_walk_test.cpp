@@ -64,6 +64,24 @@ TEST(SteeredWalk, FramesPrepareForWhereTheHandCanLead) {
     EXPECT_EQ(outcome.summary.input.guard_violations, 0U);
 }
 
+TEST(SteeredWalk, OnTheGroundKeepsItsHeightAndIsForeseen) {
+    walk::WalkRequest request = steered_request(input::test::walk_and_turn(), "on-foot");
+    request.walking = rt::WalkingMode::automatic;
+    request.eye_height_m = 1.6;
+    const walk::WalkOutcome outcome = walk(request);
+    EXPECT_TRUE(outcome.summary.input.walked);
+    EXPECT_EQ(outcome.summary.input.returns, 0U);
+    EXPECT_EQ(outcome.summary.input.guard_violations, 0U);
+    for (const rt::FrameRecord& r : outcome.records) {
+        EXPECT_GT(r.candidates, 0U) << "frame " << r.frame << " left the region that it was prepared for";
+        EXPECT_EQ(r.guard_violations, 0U);
+    }
+    EXPECT_GT(glm::length(eye(outcome.records.back()) - start_of_path().position), 2.0) << "it went somewhere";
+    walk::WalkRequest flight = request;
+    flight.walking = rt::WalkingMode::fly;
+    EXPECT_FALSE(walk(flight).summary.input.walked);
+}
+
 TEST(SteeredWalk, TheRegionOfAPreparedFrameIsThePredictedPoseWidenedByItsUncertainty) {
     walk::WalkRequest request = steered_request(input::test::walk_and_turn(), "region");
     request.capture_file = test::Forest::get().dir + "/region.cap";

@@ -198,7 +198,12 @@ std::string status_json(const MonitorPage& p) {
                 {"triangles", f.last.triangles},
                 {"nodes", f.last.items},
                 {"standing_still", f.last.stopped}};
-    j["input"] = {{"live", p.input.live}, {"devices", p.input.devices}, {"emergency_stop", p.input.emergency_stop}};
+    j["input"] = {{"live", p.input.live},
+                  {"devices", p.input.devices},
+                  {"emergency_stop", p.input.emergency_stop},
+                  {"walking", p.input.walking},
+                  {"barrier", p.input.barrier.empty() ? ordered_json(nullptr) : ordered_json(p.input.barrier)},
+                  {"barrier_text", p.input.barrier.empty() ? ordered_json(nullptr) : ordered_json(p.input.barrier_help)}};
     j["degraded"] = degraded;
     j["notes"] = notes;
     j["process"] = {{"rss_bytes", counted(p.process.rss_bytes)},

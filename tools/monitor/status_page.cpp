@@ -116,6 +116,8 @@ void add_input(const json& s, const TerminalStyle& style, std::vector<std::strin
         lines.push_back(inked(style, Ink::bad, "emergency stop: the walk stands still"));
     else if (flag_at(s, "/now/standing_still"))
         lines.push_back(inked(style, Ink::warn, "the walk stands still: stop or dead-man"));
+    if (const std::string barrier = text_at(s, "/input/barrier_text"); !barrier.empty())
+        lines.push_back(inked(style, Ink::warn, "the visitor stands: " + barrier));
     if (flag_at(s, "/input/live")) lines.push_back(fmt::format("steered by {} devices", grouped(number_at(s, "/input/devices"))));
     if (!s.contains("notes") || !s["notes"].is_array()) return;
     for (const json& n : s["notes"])

@@ -122,6 +122,8 @@ void add_events(const json& s, const json& before, double between_s, const Termi
         lines.push_back(inked(style, Ink::bad, "EMERGENCY STOP: the walk stands still"));
     else if (flag_at(s, "/now/standing_still"))
         lines.push_back(inked(style, Ink::warn, "the walk stands still: stop or dead-man"));
+    if (const std::string barrier = text_at(s, "/input/barrier_text"); !barrier.empty())
+        lines.push_back(inked(style, Ink::warn, "the visitor stands: " + barrier));
     const std::string note = s.contains("notes") && !s["notes"].empty() ? text_at(s["notes"].back(), "/text") : "";
     if (flag_at(s, "/input/live"))
         lines.push_back(

@@ -72,6 +72,18 @@ void InputSession::begin(const Path& path, const model::Ground& ground, std::int
     if (real_clock) thread_ = std::make_unique<InputThread>(*stepper_, placement);
 }
 
+rt::InputState InputSession::now() const {
+    rt::InputState state;
+    if (live_) state = {true, live_->steering_now(), live_->stop_latched(), false, {}, {}};
+    if (!walking_) return state;
+    state.walking = walking_->shown_walks();
+    const model::Barrier barrier = walking_->shown_barrier();
+    if (barrier == model::Barrier::clear) return state;
+    state.barrier = model::barriers[static_cast<std::size_t>(barrier)].name;
+    state.barrier_help = model::barriers[static_cast<std::size_t>(barrier)].help;
+    return state;
+}
+
 std::optional<Error> InputSession::end(const Progress& progress, std::vector<std::string>& notes) {
     if (!thread_) return {};
     thread_->stop();

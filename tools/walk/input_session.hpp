@@ -46,9 +46,7 @@ public:
     }
     [[nodiscard]] bool live() const { return live_.has_value(); }
     /// As of the last poll_live().
-    [[nodiscard]] rt::InputState now() const {
-        return live_ ? rt::InputState{true, live_->steering_now(), live_->stop_latched()} : rt::InputState{};
-    }
+    [[nodiscard]] rt::InputState now() const;
     /// Ends the input thread. Returns the error if the thread could not be placed.
     std::optional<Error> end(const Progress& progress, std::vector<std::string>& notes);
 

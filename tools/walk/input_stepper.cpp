@@ -37,6 +37,7 @@ void InputStepper::step(std::int64_t now_ns) {
     input::NavigationSample sample = steering_.tick(lines, now_ns, walking_.ground(steering_.flies()));
     if (keeper_ != nullptr) keeper_->set(steering_.safety().latched);
     tour_controller_.follow(sample, steering_, now_ns);
+    walking_.publish();
     publish(sample, now_ns);
     tick_at_ns_ = now_ns + input_tick_ns;
 }

@@ -13,7 +13,8 @@ input::Ground Walking::ground(bool flies) {
     const auto query = [](void* walker, const dvec3& from, const dvec3& wanted, double dt_s) noexcept {
         return static_cast<model::Walker*>(walker)->walk(from, wanted, dt_s);
     };
-    return {query, &*walker_, walker_rise_m_s2};
+    const auto halt = [](void* context) noexcept { static_cast<model::Walker*>(context)->halt(); };
+    return {query, &*walker_, walker_rise_m_s2, halt};
 }
 
 std::uint32_t Walking::jumps() const { return walker_ ? static_cast<std::uint32_t>(walker_->returns() + walker_->freed()) : 0; }

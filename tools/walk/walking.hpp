@@ -1,6 +1,7 @@
 // Joins the walker's body to the input's steps: which devices walk, and what to do where the walker was put elsewhere.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 
@@ -13,7 +14,8 @@ namespace surefoot::walk {
 /// Largest acceleration that a walker's eye gets up or down; it falls with that of gravity.
 constexpr double walker_rise_m_s2 = 9.81;
 
-/// The walker of a session. All members but the constructor belong to the thread of the input's steps.
+/// The walker of a session. All members but the constructor and those for any thread belong to the thread of the
+/// input's steps.
 class Walking {
 public:
     /// Without a ground, or with `fly`, everybody flies. The ground must outlive this.
@@ -24,6 +26,14 @@ public:
     /// How often the walker was put elsewhere: out of something solid, or back to where it was free.
     [[nodiscard]] std::uint32_t jumps() const;
     [[nodiscard]] bool walks() const { return walks_; }
+    /// After each step: lets other threads read what stops the walker.
+    void publish() {
+        shown_.store(walks_ ? walker_->barrier() : model::Barrier::clear, std::memory_order_relaxed),
+            shown_walks_.store(walks_, std::memory_order_relaxed);
+    }
+    /// For any thread, as of the last publish().
+    [[nodiscard]] model::Barrier shown_barrier() const { return shown_.load(std::memory_order_relaxed); }
+    [[nodiscard]] bool shown_walks() const { return shown_walks_.load(std::memory_order_relaxed); }
     /// Null where nobody walks.
     [[nodiscard]] const model::Walker* walker() const { return walker_ ? &*walker_ : nullptr; }
 
@@ -31,6 +41,8 @@ private:
     std::optional<model::Walker> walker_;
     rt::WalkingMode mode_;
     bool walks_ = false;
+    std::atomic<model::Barrier> shown_{model::Barrier::clear};
+    std::atomic<bool> shown_walks_{false};
 };
 
 }  // namespace surefoot::walk

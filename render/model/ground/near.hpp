@@ -26,9 +26,9 @@ struct Span {
     std::uint32_t node, first, count;
 };
 
-/// Visits the leaves whose nodes all pass. passes(node) -> bool, visit(leaf).
-template <class Passes, class Visit>
-void for_leaves(std::uint32_t count, const Passes& passes, const Visit& visit) {
+/// Visits the leaves whose nodes all pass. passes(node) -> bool, use(leaf).
+template <class Passes, class Use>
+void for_leaves(std::uint32_t count, const Passes& passes, const Use& use) {
     if (count == 0) return;
     std::array<Span, 40> stack;  // halves: one waiting span a level, 32 levels at most
     std::size_t top = 0;
@@ -37,7 +37,7 @@ void for_leaves(std::uint32_t count, const Passes& passes, const Visit& visit) {
         const Span span = stack[--top];
         if (!passes(span.node)) continue;
         if (span.count == 1) {
-            visit(span.first);
+            use(span.first);
             continue;
         }
         const std::uint32_t left = (span.count + 1) / 2, right = span.count / 2;
@@ -90,9 +90,9 @@ struct LatticeQuery {
     }
 };
 
-/// visit(GroundTriangle, number): triangles whose lattice box meets the query, by `place` from mesh frame to world.
-template <class Place, class Visit>
-void in_mesh(const Ground& ground, const GroundMesh& mesh, const Box& local, const Place& place, const Visit& visit) {
+/// use(GroundTriangle, number): triangles whose lattice box meets the query, by `place` from mesh frame to world.
+template <class Place, class Use>
+void in_mesh(const Ground& ground, const GroundMesh& mesh, const Box& local, const Place& place, const Use& use) {
     const LatticeQuery query(mesh, local);
     const auto passes = [&](std::uint32_t node) { return query.meets(ground.boxes[mesh.first_node + node]); };
     for_leaves(mesh.block_count, passes, [&](std::uint32_t leaf) {
@@ -106,19 +106,19 @@ void in_mesh(const Ground& ground, const GroundMesh& mesh, const Box& local, con
                         &c = corners[std::to_integer<std::size_t>(numbers[2])];
             if (!overlap(query.box, box_of({a, b, c}))) continue;
             const auto in_world = [&](const dvec3& p) { return place(mesh.origin + mesh.step_m * p); };
-            visit(GroundTriangle{in_world(a), in_world(b), in_world(c)});
+            use(GroundTriangle{in_world(a), in_world(b), in_world(c)});
         }
     });
 }
 
 }  // namespace ground_tree
 
-/// Calls visit(const GroundTriangle&) for every triangle whose box meets `box`, always in the same order.
-template <class Visit>
-void for_triangles_near(const Ground& ground, const Box& box, const Visit& visit) {
+/// Calls use(const GroundTriangle&) for every triangle that meets `box`, and for some whose boxes do; always in the same order.
+template <class Use>
+void for_triangles_near(const Ground& ground, const Box& box, const Use& use) {
     if (ground.meshes.empty()) return;
     const auto near = [&](const GroundTriangle& t) {
-        if (ground_tree::overlap(box, ground_tree::box_of(t))) visit(t);
+        if (ground_tree::overlap(box, ground_tree::box_of(t))) use(t);
     };
     ground_tree::in_mesh(
         ground, ground.meshes[0], box, [](const dvec3& p) { return p; }, near);

@@ -16,12 +16,14 @@ constexpr double step_slack_m = 0.01;  // a step of exactly step_m is climbed
 constexpr double foot_share = 0.5;     // radius of the disc under which the floor is looked for
 constexpr double max_overlap_m = 0.01;
 constexpr double gravity_m_s2 = 9.81, max_fall_m_s = 5;
+constexpr double max_roll_m_s = 1;
 constexpr double eye_m_s2 = 8, eye_settles_s = 0.06;  // how the eye follows the feet up and down
-constexpr double max_lag_m = 0.5;                     // the eye behind the feet, climbing
+constexpr double max_lag_m = 0.8;                     // the eye behind the feet, climbing
 constexpr double max_sink_m = 0.15;                   // the eye below its height over the feet, landing
 constexpr double gather_m = 0.3;                      // triangles are gathered this much further than a step needs
 constexpr double close_m = 0.12;
 constexpr std::size_t max_near = 2048;
+constexpr double sight_m = 20;  // how far the sides of a solid are looked for
 constexpr double deep_m = 1e7;  // below every floor
 constexpr std::uint32_t trials = 16;
 constexpr double trial_m = 0.1, stuck_after_s = 1, free_every_m = 0.5;
@@ -32,6 +34,31 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 dvec3 direction(double turn) {
     const double angle = 2 * std::numbers::pi * turn;
     return {std::cos(angle), 0, std::sin(angle)};
+}
+
+/// Whether the triangle's plane alone shows that the capsule does not touch it.
+bool is_beyond(const Capsule& capsule, const GroundTriangle& t) {
+    const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
+    const double low = glm::dot(capsule.low - t.a, n), high = low + capsule.length * n.y;
+    const double reach2 = capsule.radius * capsule.radius * glm::dot(n, n);
+    return low * high > 0 && low * low > reach2 && high * high > reach2;
+}
+
+/// Where a line meets a triangle, as a share of its way; above 1: nowhere.
+struct Crossing {
+    double share = 2;
+    bool back = false;  ///< the triangle turns its back to where the line comes from
+};
+Crossing crossing_of(const dvec3& from, const dvec3& way, const GroundTriangle& t) {
+    const dvec3 u = t.b - t.a, v = t.c - t.a, n = glm::cross(u, v);
+    const double along = glm::dot(way, n);
+    if (along == 0) return {};
+    const double share = glm::dot(t.a - from, n) / along;
+    if (!(share >= 0 && share <= 1)) return {};
+    const dvec3 p = from + share * way;
+    const bool inside = glm::dot(glm::cross(u, p - t.a), n) >= 0 && glm::dot(glm::cross(t.c - t.b, p - t.b), n) >= 0 &&
+                        glm::dot(glm::cross(t.a - t.c, p - t.c), n) >= 0;
+    return inside ? Crossing{share, along > 0} : Crossing{};
 }
 
 Box swept(const Capsule& capsule, const dvec3& move) {
@@ -71,11 +98,11 @@ void Walker::gather(const Box& box) {
 }
 
 /// From the gathered triangles where they hold all of the box, else from the tree.
-template <class Visit>
-void Walker::for_near(const Box& box, const Visit& visit) const {
-    if (!near_complete_ || !near_box_.contains(box)) return for_triangles_near(ground_, box, visit);
+template <class Use>
+void Walker::for_near(const Box& box, const Use& use) const {
+    if (!near_complete_ || !near_box_.contains(box)) return for_triangles_near(ground_, box, use);
     for (const Near& near : near_)
-        if (ground_tree::overlap(box, near.box)) visit(near.triangle);
+        if (ground_tree::overlap(box, near.box)) use(near.triangle);
 }
 
 void Walker::prepare_near(double reach_m) {
@@ -94,8 +121,9 @@ void Walker::find_close(const dvec3& feet) {
     const Box box = swept(body, dvec3(0.0));
     close_.clear();
     for (std::uint32_t i = 0; i < near_.size(); ++i) {
-        if (!ground_tree::overlap(box, near_[i].box)) continue;
-        if (separation(body, near_[i].triangle).distance <= radius + close_m) close_.push_back(i);
+        if (!ground_tree::overlap(box, near_[i].box) || is_beyond(body, near_[i].triangle)) continue;
+        const double apart = separation(body, near_[i].triangle).distance - radius;
+        if (apart <= close_m) close_.push_back({i, apart});
     }
     close_to_ = feet;
     close_known_ = true;
@@ -118,8 +146,9 @@ Contact Walker::sweep(const dvec3& feet, const dvec3& move, double skin) {
         return first;
     }
     if (!close_known_ || glm::length(feet - close_to_) + reach > close_m) find_close(feet);
-    for (const std::uint32_t i : close_)
-        if (ground_tree::overlap(box, near_[i].box)) offer(near_[i].triangle);
+    const double gone = glm::length(feet - close_to_);
+    for (const Close& close : close_)
+        if (close.apart_m <= gone + reach) offer(near_[close.of_near].triangle);
     return first;
 }
 
@@ -130,6 +159,26 @@ bool Walker::is_free(const dvec3& feet) const {
     for_near(swept(body, dvec3(0.0)),
              [&](const GroundTriangle& t) { is_free = is_free && separation(body, t).distance >= body.radius; });
     return is_free;
+}
+
+/// Of six lines from the body's middle, five or all end at the backs of triangles. Closed things are seen so from their inside.
+bool Walker::is_inside_solid(const dvec3& feet) const {
+    const dvec3 middle = feet + dvec3(0, (body_.step_m + body_.eye_m) / 2, 0);
+    int backs = 0;
+    for (int i = 0; i < 6; ++i) {
+        dvec3 way(0.0);
+        way[i / 2] = i % 2 == 0 ? sight_m : -sight_m;
+        Box line{middle, middle};
+        line.grow(middle + way);
+        double nearest = 2;
+        bool back = false;
+        for_triangles_near(ground_, line, [&](const GroundTriangle& t) {
+            const Crossing crossing = crossing_of(middle, way, t);
+            if (crossing.share < nearest) nearest = crossing.share, back = crossing.back;
+        });
+        backs += nearest <= 1 && back ? 1 : 0;
+    }
+    return backs >= 5;
 }
 
 /// The centre and eight points around it look down from `top`.
@@ -195,8 +244,7 @@ Walker::Attempt Walker::attempt(const dvec3& move) {
     }
     const double rise = floor - feet_.y;
     if (rise > 0) {
-        if (floor + body_.eye_m - eye_.y > max_lag_m + std::max(0.0, feet_.y + body_.eye_m - eye_.y))
-            return refused(Barrier::slope);
+        if (floor + body_.eye_m - eye_.y > max_lag_m) return refused(Barrier::slope);  // too fast for the eye
         if (sweep(to.feet, dvec3(0, rise, 0)).share <= 1) return refused(Barrier::ceiling);
         to.feet.y = floor;
         to.supported = true;
@@ -228,7 +276,8 @@ void Walker::travel(const dvec3& move) {
     steep_ = best.steep;
     if (!supported_) return;
     fall_m_s = 0;
-    if (free_count_ > 0 && glm::length(feet_ - free_places_[0]) < free_every_m) return;
+    const dvec3& last = free_count_ > 0 ? free_places_[0] : stood_up_at_;
+    if (glm::length(feet_ - last) < free_every_m || glm::length(feet_ - stood_up_at_) < free_every_m) return;
     free_places_[1] = free_places_[0];
     free_places_[0] = feet_;
     free_count_ = std::min<std::uint32_t>(free_count_ + 1, 2);
@@ -246,9 +295,24 @@ void Walker::fall(double dt_s) {
     const Contact below = sweep(feet_, dvec3(0, -drop, 0));
     feet_.y -= std::min(1.0, below.share) * drop;
     if (below.share > 1 && feet_.y - under.any > 1e-9) return;
+    if (below.share <= 1 && feet_.y - under.any > body_.step_m && roll_off(below, dt_s)) return;
     supported_ = true;
     steep_ = under.any > under.floor;
     fall_m_s = 0;
+}
+
+/// A falling body that touches an edge with its side is led off it, slowly. False: it lies there.
+bool Walker::roll_off(const Contact& contact, double dt_s) {
+    const double level = std::hypot(contact.away.x, contact.away.z);
+    if (level < 0.05) return false;
+    // Down and aside together no more than gravity gives.
+    fall_m_s = std::clamp(fall_m_s - 0.3 * gravity_m_s2 * dt_s, 0.0, max_roll_m_s);
+    Barrier ignored = Barrier::clear;
+    const dvec3 aside = dvec3(contact.away.x, 0, contact.away.z) * (fall_m_s * dt_s / level);
+    const dvec3 to = slide(feet_, aside, ignored);
+    const bool moved = glm::length(to - feet_) > 0.1 * glm::length(aside);
+    feet_ = to;
+    return moved;
 }
 
 /// The eye follows its height over the feet with a limited acceleration. It may stop at once.
@@ -260,7 +324,6 @@ void Walker::raise_eye(double dt_s) {
     eye_m_s += std::clamp(wanted - eye_m_s, -change, change);
     if (!supported_) eye_m_s = -fall_m_s;
     eye_.y += eye_m_s * dt_s;
-    if (eye_.y < target - max_lag_m) eye_.y = target - max_lag_m;
     if (supported_ && eye_m_s < 0 && eye_.y < target - max_sink_m) eye_.y = target - max_sink_m, eye_m_s = 0;
     if (std::abs(target - eye_.y) < 1e-5 && std::abs(eye_m_s) < 1e-3) eye_.y = target, eye_m_s = 0;
 }
@@ -275,8 +338,8 @@ void Walker::stand_up() {
     supported_ = under.any > -infinity;
     steep_ = under.any > under.floor;
     feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
-    free_count_ = 0;
-    searching_ = !is_free(feet_);
+    stood_up_at_ = feet_;
+    searching_ = !is_free(feet_) || is_inside_solid(feet_);
     search_at_ = 0;
 }
 
@@ -291,9 +354,10 @@ void Walker::look_for_a_free_place() {
         }
         const dvec3 at = eye_ + ring * ring_m * direction((search_at_ % trials) / static_cast<double>(trials));
         const Footing under = footing(at, eye_.y, eye_.y - body_.eye_m - 1.0);
-        if (under.floor == -infinity || !is_free({at.x, under.floor, at.z})) continue;
+        const dvec3 feet{at.x, under.floor, at.z};
+        if (under.floor == -infinity || !is_free(feet) || is_inside_solid(feet)) continue;
         ++freed_;
-        stand_at({at.x, under.floor, at.z});
+        stand_at(feet);
     }
 }
 

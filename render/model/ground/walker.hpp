@@ -46,11 +46,16 @@ public:
     /// when the hand rests: falls go on. An eye that somebody placed elsewhere stays as it is until the hand moves.
     dvec3 walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept;
 
+    /// The walk was stopped: it goes on from rest.
+    void halt() noexcept { fall_m_s = eye_m_s = 0; }
+
     /// Why the last step ended short of what was wanted.
     [[nodiscard]] Barrier barrier() const { return barrier_; }
     /// How often a stuck walker went back, and how often one that began inside something was put beside it.
     [[nodiscard]] std::uint64_t returns() const { return returns_; }
     [[nodiscard]] std::uint64_t freed() const { return freed_; }
+    /// Whether the hand has moved since the eye was placed; before, the feet are nowhere.
+    [[nodiscard]] bool stands() const { return awake_; }
     [[nodiscard]] const dvec3& feet() const { return feet_; }
     /// Whether something carries the feet; else the walker falls, or glides where there is no floor at all.
     [[nodiscard]] bool supported() const { return supported_; }
@@ -61,6 +66,11 @@ private:
     struct Near {
         GroundTriangle triangle;
         Box box;
+    };
+    /// One of near_, and its distance from the surface of the body whose feet are at close_to_.
+    struct Close {
+        std::uint32_t of_near;
+        double apart_m;
     };
     /// Heights of the highest floor and of the highest surface of any slope under the feet; minus infinity: none.
     struct Footing {
@@ -73,17 +83,19 @@ private:
         Barrier barrier = Barrier::clear;
     };
 
-    template <class Visit>
-    void for_near(const Box& box, const Visit& visit) const;
+    template <class Use>
+    void for_near(const Box& box, const Use& use) const;
     void gather(const Box& box);
     void find_close(const dvec3& feet);
     [[nodiscard]] Contact sweep(const dvec3& feet, const dvec3& move, double skin = 0);
     [[nodiscard]] Footing footing(const dvec3& at, double top, double bottom) const;
     [[nodiscard]] bool is_free(const dvec3& feet) const;
+    [[nodiscard]] bool is_inside_solid(const dvec3& feet) const;
     [[nodiscard]] dvec3 slide(const dvec3& feet, dvec3 move, Barrier& barrier);
     [[nodiscard]] Attempt attempt(const dvec3& move);
     void travel(const dvec3& move);
     void fall(double dt_s);
+    [[nodiscard]] bool roll_off(const Contact& contact, double dt_s);
     void raise_eye(double dt_s);
     void stand_up();
     void look_for_a_free_place();
@@ -96,7 +108,7 @@ private:
     std::vector<Near> near_;
     Box near_box_;
     bool near_complete_ = false;
-    std::vector<std::uint32_t> close_;  ///< of near_: within close_m of a body with its feet at close_to_
+    std::vector<Close> close_;  ///< those up to close_m apart
     dvec3 close_to_{0.0};
     bool close_known_ = false;
     std::array<dvec3, 9> foot_{};  ///< points of the foot's disc
@@ -113,7 +125,8 @@ private:
     dvec3 tried_from_{0.0};  ///< where the walker was when it last got on
     double pushed_s_ = 0;    ///< for how long it has not
     std::uint32_t trial_ = 0;
-    std::array<dvec3, 2> free_places_{};  ///< newest first
+    dvec3 stood_up_at_{0.0};
+    std::array<dvec3, 2> free_places_{};  ///< newest first: each half a metre's walk from where it began and from the last one
     std::uint32_t free_count_ = 0;
     std::uint64_t returns_ = 0, freed_ = 0;
 };

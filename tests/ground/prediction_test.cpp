@@ -1,0 +1,130 @@
+// A walker's poses stay in what is predicted of them, on stairs, at walls and at drops.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "input/motion/motion.hpp"
+#include "rt/base/random.hpp"
+#include "tests/ground/grounds.hpp"
+
+namespace surefoot::test {
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+/// A court of 20 m with stairs of 0.25 m up to a gallery, drops of 0.9 m, pillars, and a slope.
+model::Ground court() {
+    Triangles t;
+    add_floor(t, -10, 10, -10, 10, 0);
+    add_wall(t, {-10, -10}, {10, -10}, -1, 5);
+    add_wall(t, {10, -10}, {10, 10}, -1, 5);
+    add_wall(t, {10, 10}, {-10, 10}, -1, 5);
+    add_wall(t, {-10, 10}, {-10, -10}, -1, 5);
+    for (int i = 0; i < 8; ++i) add_box(t, {2 + 0.3 * i, 0, -8}, {10, 0.25 * (i + 1), -2});
+    add_box(t, {-8, 0, 2}, {-4, 0.9, 8});
+    add_quad(t, {-4, 0.9, 2}, {-4, 0.9, 8}, {-2, 0, 8}, {-2, 0, 2});
+    for (int i = 0; i < 5; ++i) add_box(t, {1.0 + i, 0, 3}, {1.3 + i, 3, 3.3});
+    return ground_of(t);
+}
+
+input::Ground asks(model::Walker& walker) {
+    const auto query = [](void* context, const dvec3& from, const dvec3& wanted, double dt_s) noexcept {
+        return static_cast<model::Walker*>(context)->walk(from, wanted, dt_s);
+    };
+    const auto halt = [](void* context) noexcept { static_cast<model::Walker*>(context)->halt(); };
+    return {query, &walker, 9.81, halt};
+}
+
+}  // namespace
+
+TEST(WalkerPrediction, NoWalkLeavesItsUncertainty) {
+    const model::Ground ground = court();
+    model::Walker walker(ground, {});
+    const input::Ground question = asks(walker);
+    Random random(11);
+    const input::MotionLimits limits;
+    input::MotionState state;
+    ASSERT_TRUE(input::place(state, Pose{{0, 1.7, 0}, {1, 0, 0, 0}, 1}));
+    struct Open {
+        input::Prediction ahead;
+        std::int64_t due;
+    };
+    std::vector<Open> open;
+    std::vector<double> used;
+    input::Command command;
+    std::int64_t now = 0;
+    double lowest = 9, highest = -9;
+    for (int i = 0; i < 200'000; ++i) {
+        if (i % 8000 == 0) {
+            const std::array<dvec3, 3> places{{{1, 1.7, -5}, {8, 3.7, -5}, {-6, 2.6, 5}}};
+            ASSERT_TRUE(input::place(state, Pose{places[random.below(3)], {std::cos(0.8), 0, std::sin(0.8), 0}, 1}));
+            open.clear();
+        }
+        if (random.below(600) == 0) {
+            command.request = {};
+            command.request.forward = random.range(-0.3, 1), command.request.side = random.range(-0.5, 0.5);
+            command.request.turn = random.range(-1, 1), command.request.look = random.range(-0.3, 0.3);
+            command.request.speed = random.range(-1, 1);
+            command.order = random.below(30) == 0 ? input::Order::stop : input::Order::walk;
+        }
+        const input::NavigationSample sample = input::step(state, limits, command, now += ms, question);
+        lowest = std::min(lowest, sample.pose.position.y), highest = std::max(highest, sample.pose.position.y);
+        for (auto it = open.begin(); it != open.end();) {
+            if (it->due > now) {
+                ++it;
+                continue;
+            }
+            const double off = glm::length(sample.pose.position - it->ahead.pose.position);
+            ASSERT_LE(off, it->ahead.uncertainty_m + 1e-9) << i;
+            if (it->ahead.uncertainty_m > 1e-6) used.push_back(off / it->ahead.uncertainty_m);
+            it = open.erase(it);
+        }
+        const std::int64_t lead = 8LL << random.below(4);
+        if (i % 7 == 0) open.push_back({input::predict(sample, limits, static_cast<double>(lead) * 1e-3, 9.81), now + lead * ms});
+    }
+    std::sort(used.begin(), used.end());
+    std::printf("share of the bound used: median %.2f, p99 %.2f, largest %.2f; eye at %.2f to %.2f m\n", used[used.size() / 2],
+                used[used.size() * 99 / 100], used.back(), lowest, highest);
+    EXPECT_GT(highest, 3.5) << "it was on the gallery";
+    EXPECT_LT(lowest, 1.69) << "and fell from it";
+}
+
+TEST(WalkerMotion, IsLevelHoweverTheEyeLooks) {
+    Triangles t;
+    add_floor(t, -20, 20, -20, 20, 0);
+    const model::Ground ground = ground_of(t);
+    model::Walker walker(ground, {});
+    input::MotionState state;
+    ASSERT_TRUE(input::place(state, Pose{{0, 1.7, 0}, glm::angleAxis(-1.0, dvec3(1, 0, 0)), 1}));
+    input::Command command;
+    command.request.forward = 1, command.request.up = 1;
+    input::NavigationSample sample;
+    for (std::int64_t now = 0; now < 3000 * ms; now += ms) sample = input::step(state, {}, command, now, asks(walker));
+    EXPECT_NEAR(sample.pose.position.y, 1.7, 1e-3) << "a walker neither flies up nor digs itself in";
+    EXPECT_LT(sample.pose.position.z, -2.5) << "and is not slowed down by looking at its feet";
+    EXPECT_NEAR(sample.velocity_m_s.y, 0, 1e-3);
+}
+
+TEST(WalkerMotion, AStopHoldsItInTheAir) {
+    Triangles t;
+    add_floor(t, -20, 20, -20, 20, 0);
+    const model::Ground ground = ground_of(t);
+    model::Walker walker(ground, {});
+    input::MotionState state;
+    ASSERT_TRUE(input::place(state, Pose{{0, 9, 0}, {1, 0, 0, 0}, 1}));
+    input::Command command;
+    command.request.forward = 0.1;
+    std::int64_t now = 0;
+    for (int i = 0; i < 300; ++i) input::step(state, {}, command, now += ms, asks(walker));
+    command.order = input::Order::stop;
+    const dvec3 before = input::step(state, {}, command, now += ms, asks(walker)).pose.position;
+    EXPECT_LT(before.y, 9);
+    for (int i = 0; i < 300; ++i) ASSERT_EQ(input::step(state, {}, command, now += ms, asks(walker)).pose.position, before);
+}
+
+}  // namespace surefoot::test
