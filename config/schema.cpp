@@ -61,10 +61,10 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
     std::vector<Entry> entries = {
         file_name("model", "The .walk model, relative to this file's folder; \"\": none, so the command line must name one.",
                   &S::model_file),
-        file_name(
-            "path",
-            "CSV file of poses over time; \"\": MODEL.path.csv, else a tour. An input starts there and uses its viewpoints.",
-            &S::path_file),
+        file_name("path",
+                  "CSV file of poses over time; \"\": MODEL.path.csv, else the model's own; \"none\": around its box. An input "
+                  "starts there.",
+                  &S::path_file),
         number("lift_m", "m", -1e7, 1e7, "Height added to every pose of the path; 1.5 for recorded drives.", &S::lift_m),
         file_name("input", "Source of steering: \"\" follows the path; \"devices\" uses connected devices; else a recording.",
                   &S::input_file),

@@ -19,6 +19,7 @@
 #include "render/bake/picture_loss.hpp"
 #include "render/bake/proxies.hpp"
 #include "render/bake/stage.hpp"
+#include "render/bake/tour.hpp"
 #include "render/bake/trim_masks.hpp"
 #include "render/model/pixels.hpp"
 
@@ -447,6 +448,9 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
         context.measure_areas();
         context.find_effects();
         context.model.ground = make_ground(scene, progress);
+        Tour tour = make_tour(context.model.ground, context.model.nodes[0].box, progress);
+        context.model.tour = std::move(tour.path);
+        context.model.tour_kind = std::move(tour.kind);
         done = !progress.stopped();
     });
     if (!done) return stopped_by_user(scene);

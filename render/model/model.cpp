@@ -231,6 +231,21 @@ Check check_rest(const Model& m) {
 
 Check check_ground(const Model& m) { return validate(m.ground); }
 
+Check check_tour(const Model& m) {
+    double before = -1;
+    for (std::size_t i = 0; i < m.tour.samples.size(); ++i) {
+        const PathSample& sample = m.tour.samples[i];
+        const Pose& pose = sample.pose;
+        if (!(sample.time_s > before) || !(sample.time_s < path_time_limit_s))
+            return wrong("tour", i, "The time does not increase");
+        if (!finite(pose.position) || !(std::abs(glm::length(pose.orientation) - 1) < 1e-3) || !(pose.fov_y_rad > 0) ||
+            !(pose.fov_y_rad < 3.1))
+            return wrong("tour", i, "The pose is none");
+        before = sample.time_s;
+    }
+    return {};
+}
+
 }  // namespace
 
 EffectMask Model::called_for() const {
@@ -242,7 +257,7 @@ EffectMask Model::called_for() const {
 Result<void> validate(const Model& model) {
     if (auto fits = check_limits(counts_of(model), "model"); !fits) return fits;
     for (const auto check : {check_textures, check_materials, check_parts, check_placements, check_reps, check_losses, check_tree,
-                             check_group_losses, check_rest, check_ground}) {
+                             check_group_losses, check_rest, check_ground, check_tour}) {
         if (Check result = check(model); !result) return result;
     }
     return {};

@@ -14,6 +14,7 @@
 #include "rt/base/geometry.hpp"
 #include "rt/base/named.hpp"
 #include "rt/base/page_memory.hpp"
+#include "rt/base/path.hpp"
 #include "rt/base/result.hpp"
 
 namespace surefoot::model {
@@ -136,6 +137,8 @@ struct Model {
     std::string names;                                     ///< zero-terminated strings, offset 0 is ""
     std::vector<EffectFinding> effects;                    ///< one an effect, bit order
     Ground ground;                                         ///< for walking; empty in older files
+    Path tour;                                             ///< the default path; empty in older files
+    std::string tour_kind;                                 ///< what it does: "through its free space"
     std::uint32_t object_count = 0;
     dvec3 sun_direction{0.36, 0.80, 0.48};  ///< towards the sun, unit
     Provenance provenance;

@@ -174,6 +174,15 @@ void fields(Archive& a, InstanceT& i) {
     a(i.mesh);
 }
 
+template <class Archive, class SampleT>
+requires std::is_same_v<std::remove_const_t<SampleT>, PathSample>
+void fields(Archive& a, SampleT& s) {
+    a(s.time_s);
+    vector3(a, s.pose.position);
+    a(s.pose.orientation.x), a(s.pose.orientation.y), a(s.pose.orientation.z), a(s.pose.orientation.w);
+    a(s.pose.fov_y_rad);
+}
+
 template <class Archive, class GroundT>
 void ground(Archive& a, GroundT& g) {
     a(g.triangles);

@@ -48,14 +48,15 @@ enum Section : std::uint32_t {
     rest_section,
     losses_section,
     ground_section,
+    tour_section,
     section_count
 };
 constexpr std::array<std::string_view, section_count> section_names = {"pages",      "nodes",     "representations", "parts",
                                                                        "placements", "materials", "textures",        "effects",
-                                                                       "provenance", "losses",    "ground"};
+                                                                       "provenance", "losses",    "ground",          "tour"};
 /// No model is valid without them; any other that a file has not got is empty.
 constexpr bool required(std::uint32_t section) {
-    return section != textures_section && section != losses_section && section != ground_section;
+    return section != textures_section && section != losses_section && section != ground_section && section != tour_section;
 }
 
 struct PageEntry {
@@ -141,6 +142,9 @@ std::vector<std::byte> section_bytes(std::uint32_t section, const Model& m, cons
         case ground_section:
             walk::ground(put, m.ground);
             break;
+        case tour_section:
+            put(m.tour_kind), put.list(m.tour.samples);
+            break;
         default:
             walk::rest(put, m);
             break;
@@ -197,7 +201,7 @@ Result<void> open_sections(Reading& in, std::span<const std::byte> table, std::s
     if (!rest.empty()) return in.error("section table", "Some bytes belong to no section");
     for (std::uint32_t id = 0; id < section_count; ++id) {
         if (required(id) && !in.sections[id]) return in.error(section_names[id], "The section is missing");
-        const bool drawn = id != rest_section && id != losses_section && id != ground_section;
+        const bool drawn = id != rest_section && id != losses_section && id != ground_section && id != tour_section;
         if (drawn) in.model_hash = fnv1a(in.model_hash, hashes[id]);
     }
     return {};
@@ -270,6 +274,9 @@ Result<void> take_section(const Reading& in, std::uint32_t section, Model& m, Pa
             break;
         case ground_section:
             walk::ground(take, m.ground);
+            break;
+        case tour_section:
+            take(m.tour_kind), take.list(m.tour.samples);
             break;
         default:
             walk::rest(take, m);
@@ -352,6 +359,7 @@ Result<WalkFileInfo> write_walk(const std::string& file, const Model& model) {
     for (std::uint32_t section = 0; section < section_count; ++section) {
         if (section == losses_section && model.losses.empty()) continue;
         if (section == ground_section && model.ground.empty()) continue;
+        if (section == tour_section && model.tour.samples.empty()) continue;
         const auto bytes = section_bytes(section, model, sizes, pages);
         table(section), table(static_cast<std::uint64_t>(bytes.size())), table(hash_bytes(bytes));
         if (auto written = out.write(bytes); !written) return written.error();

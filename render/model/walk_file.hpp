@@ -14,7 +14,7 @@ struct WalkFileInfo {
     std::uint64_t bytes = 0;          ///< on disk
     std::uint64_t payload_bytes = 0;  ///< geometry and texels, unpacked
     std::uint32_t pages = 0;
-    std::uint64_t hash = 0;  ///< of all sections except provenance, which names folders; equal for equal bakes
+    std::uint64_t hash = 0;  ///< of all sections that are drawn; equal for equal bakes
 };
 
 /// Written under a temporary name, synced, renamed: the old file survives any failure.

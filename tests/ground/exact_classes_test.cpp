@@ -157,8 +157,11 @@ TEST(ExactClasses, FencesOnAFloorBlockAndHoveringOnesDoNot) {
         bool blocks;
         WalkRule walk = WalkRule::by_rule;
     };
-    dmat4 tilted(1.0);
-    tilted[1] = dvec4(0, 0.6, 0.8, 0);
+    const auto leaning = [](double up, double aside) {
+        dmat4 world(1.0);
+        world[1] = dvec4(0, up, aside, 0);
+        return world;
+    };
     const std::vector<Fence> fences = {
         {"on the floor", dmat4(1.0), true},
         {"a metre above", moved(0, 1, 0), false},
@@ -175,7 +178,8 @@ TEST(ExactClasses, FencesOnAFloorBlockAndHoveringOnesDoNot) {
         {"0.4 m beyond the floor's rim", moved(0, 0, 20.4), false},
         {"a quarter of the width at 19.9 m", moved(19.4, 0, 0), true},
         {"a quarter of the width at 20.1 m", moved(19.6, 0, 0), false},
-        {"a unit normal of y 0.8", tilted, false},
+        {"leaning by 29 degrees", leaning(1.2, 0.665), true},
+        {"leaning by 31 degrees", leaning(1.2, 0.721), false},
     };
     SceneMaker make;
     Primitive fence;
@@ -186,6 +190,19 @@ TEST(ExactClasses, FencesOnAFloorBlockAndHoveringOnesDoNot) {
     for (const Fence& row : fences) make.add_node(1, row.world, row.walk);
     const Blocks blocks = blocking_triangles(make.scene);
     for (std::size_t i = 0; i < fences.size(); ++i) EXPECT_EQ(blocks[i + 2], all(2, fences[i].blocks)) << fences[i].what;
+}
+
+TEST(ExactClasses, FencesStandOnSlopesOfUpTo45Degrees) {
+    for (const double degrees : {44.0, 46.0}) {
+        const double rise = std::tan(degrees * std::numbers::pi / 180);
+        SceneMaker make;
+        Primitive fence;
+        fence.material = make.add_barred_material();
+        add_quad(fence, vec3(0), vec3(2, 0, 0), vec3(0, 1, 0), true);
+        make.add({fence});
+        make.add({one_quad(vec3(-20, -20 * rise, -20), vec3(40, 0, 0), vec3(0, 40 * rise, 40))});
+        EXPECT_EQ(blocking_triangles(make.scene), (Blocks{all(2, degrees < 45), all(2, true)})) << degrees;
+    }
 }
 
 TEST(ExactClasses, OneTexelBelowTheCutoffMakesATriangleSheer) {
@@ -224,11 +241,13 @@ TEST(ExactClasses, ImagesRepeatAndUvsThatAreNotFiniteAreSheer) {
     Primitive hovering;
     hovering.material = make.add_material(model::AlphaMode::mask, 1, top);
     add_quad(hovering, vec3(0, 9, 0), vec3(2, 0, 0), vec3(0, 1, 0), true);
-    for (vec2& uv : hovering.uvs) uv = vec2(uv.x - 3.0F, 0.2F * uv.y - 7.0F);  // stays in the repeated top row
+    for (vec2& uv : hovering.uvs) uv = vec2(uv.x + 3.0F, 0.2F * uv.y + 7.0F);  // stays in the repeated top row
+    make.add({hovering});
+    for (vec2& uv : hovering.uvs) uv -= vec2(9.0F, 14.0F);
     make.add({hovering});
     hovering.uvs[3].x = std::numeric_limits<float>::quiet_NaN();  // of the second triangle
     make.add({hovering});
-    EXPECT_EQ(blocking_triangles(make.scene), (Blocks{all(2, true), {true, false}}));
+    EXPECT_EQ(blocking_triangles(make.scene), (Blocks{all(2, true), all(2, true), {true, false}}));
 }
 
 TEST(ExactClasses, SheerCardsAreOneSheetWhereTheyTurnByLessThanTenDegrees) {
@@ -264,11 +283,12 @@ Primitive strewn_triangles(Random& random, std::uint32_t count) {
         return strewn.positions[random.below(static_cast<std::uint32_t>(strewn.positions.size()))];
     };
     for (std::uint32_t i = 0; i < count; ++i) {
-        vec3 at = 1.5F * any();
-        if (i % 20 == 1)
-            at = corner_of_any();
-        else if (i % 3 != 0)
-            at = corner_of_any() + static_cast<float>(random.range(0.0001, 0.0029)) * glm::normalize(any());
+        const bool at_another = i % 20 == 1, near_another = i % 3 != 0 && !at_another;
+        vec3 at = at_another || near_another ? corner_of_any() : 1.5F * any();
+        if (near_another) {
+            const vec3 aside = glm::normalize(any());
+            at += static_cast<float>(random.range(0.0001, 0.0029)) * aside;
+        }
         const float size = i % 30 == 0 ? 0.4F : 0.1F;
         for (std::uint32_t k = 0; k < 3; ++k) {
             strewn.positions.push_back(k == 0 ? at : at + size * any());

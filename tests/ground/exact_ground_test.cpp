@@ -69,6 +69,12 @@ TEST(ExactGround, FloorsOfABoxAreItsTopAndItsBottom) {
     EXPECT_EQ(box.floors_at(1.0001, 0.25, 0.7), std::vector<double>{}) << "beyond the rim";
 }
 
+TEST(ExactGround, FloorsAreNoSteeperThanTheLimit) {
+    const ExactGround slope = ground_of_all(one_quad(vec3(0), vec3(0, 0, 1), vec3(1, 1, 0)));  // 45 degrees
+    EXPECT_EQ(slope.floors_at(0.25, 0.5, 0.70), std::vector<double>{0.25});
+    EXPECT_EQ(slope.floors_at(0.25, 0.5, 0.72), std::vector<double>{});
+}
+
 TEST(ExactGround, SegmentsThroughABoxCrossTheSideThatTheyMeetFirst) {
     const ExactGround box = unit_box();
     const std::optional<Hit> hit = box.crosses({-1, 0.5, 0.5}, {3, 0.5, 0.6});

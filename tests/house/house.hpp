@@ -63,7 +63,7 @@ inline const std::vector<Room>& rooms() {
         {"tools/selftest", below_tools_and({"tools/scenes"})},
         {"tools/cli", below_tools_and({"tools/"})},
         {"systemd/daemon", {"rt/", "config", "tools/walk", "tools/monitor"}},
-        {"tools/report", {"rt/", "render/image", "render/model"}},
+        {"tools/report", {"rt/", "render/image", "render/model", "render/model/ground"}},
         {"tools/scenes", {"render/image", "render/import", "render/model"}},
         {"tests", {"*"}},
     };

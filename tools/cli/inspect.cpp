@@ -1,4 +1,5 @@
 // surefoot inspect: what is in a .walk model, in figures or in pictures.
+#include <filesystem>
 #include <optional>
 
 #include <fmt/format.h>
@@ -6,10 +7,13 @@
 #include "render/effects/effects.hpp"
 #include "render/model/model.hpp"
 #include "render/model/walk_file.hpp"
+#include "rt/base/file.hpp"
 #include "rt/base/statistics.hpp"
 #include "tools/accuracy/form_pictures.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
+#include "tools/report/floor_plan.hpp"
+#include "tools/walk/path_source.hpp"
 
 namespace surefoot::cli {
 
@@ -19,6 +23,7 @@ struct InspectArguments {
     bool tree = false;
     bool json = false;
     std::optional<std::string> pictures;    ///< folder of the page
+    std::string map, path;                  ///< the floor plan's file; the path on it
     accuracy::FormPicturesRequest request;  ///< its model is `file`
 };
 
@@ -121,7 +126,27 @@ int run_pictures(InspectArguments& a, const Context& context) {
     return exit_success;
 }
 
+/// The floor plan of a path: the requested one, or the one that a walk would follow.
+int run_map(const InspectArguments& a) {
+    if (!a.map.ends_with(".svg"))
+        return misuse(
+            {"--map " + a.map, "The floor plan's name does not end in .svg", "Name a file PLAN.svg", ErrorKind::misuse});
+    if (auto ok = probe_writable(a.map); !ok) return fail(ok.error());
+    auto m = model::read_walk(a.file);
+    if (!m) return fail(m.error());
+    auto chosen = walk::choose_path(a.path, a.file, *m, 0);
+    if (!chosen) return fail(chosen.error());
+    const std::string title = fmt::format("{}, {}", std::filesystem::path(a.file).stem().string(), chosen->source);
+    if (auto w = write_text(a.map, report::floor_plan_svg(*m, chosen->path, title)); !w) return fail(w.error());
+    if (a.json)
+        print_json({{"map", a.map}, {"path", chosen->source}, {"seconds", chosen->path.duration_s()}});
+    else
+        fmt::print("map: {}\npath: {}\n", a.map, chosen->source);
+    return exit_success;
+}
+
 int run_inspect(InspectArguments& a, const Context& context) {
+    if (!a.map.empty()) return run_map(a);
     if (a.pictures) return run_pictures(a, context);
     model::WalkFileInfo info;
     auto m = model::read_walk(a.file, &info);
@@ -161,6 +186,7 @@ int run_inspect(InspectArguments& a, const Context& context) {
                   {"instances", m->ground.instances.size()},
                   {"blocks", m->ground.blocks.size()},
                   {"bytes", model::bytes_of(m->ground)}}},
+                {"tour", {{"kind", m->tour_kind}, {"samples", m->tour.samples.size()}, {"seconds", m->tour.duration_s()}}},
                 {"box_m", {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}}},
                 {"sources", m->provenance.sources},
                 {"quality", m->provenance.quality},
@@ -171,8 +197,10 @@ int run_inspect(InspectArguments& a, const Context& context) {
 
 void add_inspect(CLI::App& app, Context& context) {
     auto a = std::make_shared<InspectArguments>();
-    CLI::App* c = add_command(app, "inspect", "Print the contents of a .walk model as JSON",
-                              "surefoot inspect town.walk\n  surefoot inspect town.walk --pictures forms", a->json);
+    CLI::App* c = add_command(
+        app, "inspect", "Print the contents of a .walk model as JSON",
+        "surefoot inspect town.walk\n  surefoot inspect town.walk --pictures forms\n  surefoot inspect town.walk --map plan.svg",
+        a->json);
     c->add_option("model", a->file, "The .walk model")->required();
     CLI::Option* tree = c->add_flag("--tree", a->tree,
                                     "Print the hierarchy instead: one line per node, with its forms as kind:triangles@error. "
@@ -181,6 +209,11 @@ void add_inspect(CLI::App& app, Context& context) {
         c->add_option("--pictures", a->pictures,
                       "Folder for a page instead: each form drawn beside full detail, with its error, look, cost and bytes");
     pictures->excludes(tree);
+    CLI::Option* map = c->add_option("--map", a->map,
+                                     "SVG file for a floor plan instead: what blocks a walker, with the path and its viewpoints");
+    map->excludes(tree)->excludes(pictures);
+    c->add_option("--path", a->path, "Of --map: CSV file of poses over time, in place of the path that a walk would follow")
+        ->needs(map);
     c->add_option("--nodes", a->request.max_nodes, "Of --pictures: the number of nodes, spread over the levels; 0: all")
         ->check(whole_number_within(0, 1'000'000))
         ->capture_default_str()

@@ -133,7 +133,8 @@ int run_walk_command(WalkArguments& a, const Context& context) {
 /// What the walk follows: a path, devices or a recording.
 void add_sources(CLI::App* c, walk::WalkRequest& r) {
     c->add_option("--path", r.path_file,
-                  "CSV file of poses over time (else MODEL.path.csv, else a tour). With --input the path is not followed: "
+                  "CSV file of poses over time (else MODEL.path.csv, else the model's default path); `none`: around its box. "
+                  "With --input the path is not followed: "
                   "its first pose is the start, poses at equal times are viewpoints, and the action `tour` follows it");
     c->add_option(
          "--input", r.input_file,

@@ -1,4 +1,4 @@
-// Where a walk's path comes from: the requested file, the one beside the model, or a tour made from the model's box.
+// Where a walk's path comes from: the requested file, the one beside the model, the model's own, or one around its box.
 #include "tools/walk/path_source.hpp"
 
 #include <cmath>
@@ -58,7 +58,10 @@ Result<ChosenPath> choose_path(const std::string& requested, const std::string& 
         std::error_code ignored;
         if (std::filesystem::exists(beside, ignored)) file = beside;
     }
-    if (file.empty()) {
+    if (requested.empty() && file.empty() && !model.tour.samples.empty()) {
+        chosen.path = model.tour;
+        chosen.source = "default path, " + model.tour_kind;
+    } else if (file.empty() || requested == no_path) {
         chosen.path = generated_tour(model);
         chosen.source = "generated tour";
     } else {

@@ -7,6 +7,7 @@
 
 #include "render/gl/backends.hpp"
 #include "render/select/registry.hpp"
+#include "tools/walk/path_source.hpp"
 
 namespace surefoot::walk {
 
@@ -20,7 +21,7 @@ struct FileSetting {
 
 constexpr FileSetting files[] = {
     {"model", &config::Settings::model_file},
-    {"path", &config::Settings::path_file},
+    {"path", &config::Settings::path_file, no_path},
     {"input", &config::Settings::input_file, live_input},
     {"steering", &config::Settings::steering_file},
     {"state", &config::Settings::state_dir},

@@ -161,6 +161,15 @@ bool Walker::is_free(const dvec3& feet) const {
     return is_free;
 }
 
+bool Walker::passes(const dvec3& from, const dvec3& to) const {
+    const double y = std::max(from.y, to.y);
+    const Capsule body = capsule_at({from.x, y, from.z});
+    const dvec3 move(to.x - from.x, 0, to.z - from.z);
+    bool touches = false;
+    for_near(swept(body, move), [&](const GroundTriangle& t) { touches = touches || first_contact(body, move, t).share <= 1; });
+    return !touches;
+}
+
 /// Of six lines from the body's middle, five or all end at the backs of triangles. Closed things are seen so from their inside.
 bool Walker::is_inside_solid(const dvec3& feet) const {
     const dvec3 middle = feet + dvec3(0, (body_.step_m + body_.eye_m) / 2, 0);

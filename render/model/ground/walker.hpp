@@ -49,6 +49,14 @@ public:
     /// The walk was stopped: it goes on from rest.
     void halt() noexcept { fall_m_s = eye_m_s = 0; }
 
+    /// Whether nothing overlaps a body with its feet there by over a centimetre.
+    [[nodiscard]] bool is_free(const dvec3& feet) const;
+    /// The highest floor under the foot's disc at (x, z) between these heights; minus infinity: none.
+    [[nodiscard]] double floor_at(const dvec3& at, double top, double bottom) const { return footing(at, top, bottom).floor; }
+    /// Whether a free body gets straight from one place to another: at the height of the higher one it touches nothing on the
+    /// way.
+    [[nodiscard]] bool passes(const dvec3& from, const dvec3& to) const;
+
     /// Why the last step ended short of what was wanted.
     [[nodiscard]] Barrier barrier() const { return barrier_; }
     /// How often a stuck walker went back, and how often one that began inside something was put beside it.
@@ -89,7 +97,6 @@ private:
     void find_close(const dvec3& feet);
     [[nodiscard]] Contact sweep(const dvec3& feet, const dvec3& move, double skin = 0);
     [[nodiscard]] Footing footing(const dvec3& at, double top, double bottom) const;
-    [[nodiscard]] bool is_free(const dvec3& feet) const;
     [[nodiscard]] bool is_inside_solid(const dvec3& feet) const;
     [[nodiscard]] dvec3 slide(const dvec3& feet, dvec3 move, Barrier& barrier);
     [[nodiscard]] Attempt attempt(const dvec3& move);
