@@ -20,5 +20,6 @@ std::span<const Row> long_runs_rows();
 std::span<const Row> files_rows();
 std::span<const Row> texture_rows();
 std::span<const Row> alpha_edge_rows();
+std::span<const Row> walking_rows();
 
 }  // namespace surefoot::selftest
