@@ -123,8 +123,6 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),
         integer("worker_priority", "FIFO", 1, 98, "Priority of the workers; below the rasterisers'.", &S::worker_priority),
     };
-    const std::vector<Entry> walker = walker_entries();
-    entries.insert(entries.begin() + 5, walker.begin(), walker.end());  // after "steering"
     std::find_if(entries.begin(), entries.end(), [](const Entry& e) { return e.key == "backend"; })->absent = backends.absent;
     return entries;
 }
@@ -157,6 +155,8 @@ Schema::Schema(Registry selectors, Registry backends, std::span<const Renamed> r
       backends_(std::move(backends)),
       renamed_(renamed),
       entries_(make_entries(selectors_, backends_)) {
+    const std::vector<Entry> walker = walker_entries();
+    entries_.insert(entries_.begin() + 5, walker.begin(), walker.end());  // after "steering"
     defaults_.selector = selectors_.usual;
     defaults_.backend = backends_.usual;
 }

@@ -60,8 +60,8 @@ std::vector<StandingPlace> places_above(const model::Ground& ground, const model
     return found;
 }
 
-void find_ways(const model::Walker& walker, const model::Body& body, const CellRows& cells, const std::vector<std::uint32_t>& first,
-               std::vector<StandingPlace>& places, std::size_t cell) {
+void find_ways(const model::Walker& walker, const model::Body& body, const CellRows& cells,
+               const std::vector<std::uint32_t>& first, std::vector<StandingPlace>& places, std::size_t cell) {
     const auto x = static_cast<std::ptrdiff_t>(cell % cells.columns), z = static_cast<std::ptrdiff_t>(cell / cells.columns);
     for (std::size_t d = 0; d < directions.size(); ++d) {
         const std::ptrdiff_t to_x = x + directions[d][0], to_z = z + directions[d][1];

@@ -4,7 +4,7 @@
 //   * A triangle is solid if its material is opaque, or if its picture hides nothing of it. Any other is sheer.
 //   * A solid triangle blocks, unless its part is smaller than a foot. A part: triangles joined by corners, or with corners that
 //     are at most 2 mm apart. Its size: the longest side of its box along the node's axes.
-//   * A sheer triangle blocks if it is of an upright sheet at least 1 m wide that spans 0.3 to 0.8 m above some floor beside it.
+//   * A sheer triangle blocks if its sheet is upright, at least 1 m wide, and spans 0.3 to 0.8 m above a floor beside it.
 //     Such are fences and panes. A sheet: upright triangles joined by corners whose planes differ by up to 10 degrees.
 #pragma once
 

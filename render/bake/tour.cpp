@@ -67,7 +67,7 @@ Box best_window(const model::Ground& ground, const Box& box, const ForEach& for_
         weights[{static_cast<int>(std::floor((place.feet.x - box.min.x) / quarter)),
                  static_cast<int>(std::floor((place.feet.z - box.min.z) / quarter))}] += place.indoors ? indoors_weight : 1;
     std::pair<int, int> best{0, 0};
-    double most_weight = -1;
+    double max_weight = -1;
     for (const auto& [corner, unused] : weights) {
         double sum = 0;
         for (int dx = 0; dx < 4; ++dx) {
@@ -76,7 +76,7 @@ Box best_window(const model::Ground& ground, const Box& box, const ForEach& for_
                 sum += found == weights.end() ? 0 : found->second;
             }
         }
-        if (sum > most_weight) most_weight = sum, best = corner;
+        if (sum > max_weight) max_weight = sum, best = corner;
     }
     Box window = box;
     window.min.x = box.min.x + best.first * quarter, window.max.x = std::min(box.max.x, window.min.x + window_m);
@@ -355,9 +355,9 @@ Path fly_above(const model::Ground& ground, const Box& box) {
         }
     }
     dvec3 centre = box.centre();
-    int most_blocks = 0;
+    int max_blocks = 0;
     for (const auto& [key, cell] : density)
-        if (cell.first > most_blocks) most_blocks = cell.first, centre = cell.second / static_cast<double>(cell.first);
+        if (cell.first > max_blocks) max_blocks = cell.first, centre = cell.second / static_cast<double>(cell.first);
     std::vector<dvec3> eyes;
     for (std::size_t i = 0; i < sample_count; ++i) {
         const double angle = 1.5 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(sample_count);

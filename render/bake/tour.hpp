@@ -17,8 +17,8 @@ struct Tour {
 
 constexpr double tour_s = 60, tour_samples_per_s = 10, max_tour_m = 84;  // at most 1.4 m/s
 
-/// `box`: of all that is drawn. A model with free space to stand in is walked through, indoors first, at eye height; one wider
-/// than 2 km is flown over; any other is circled. Deterministic for any number of threads of the caller's arena.
+/// `box`: of all that is drawn. A model with free space to stand in is walked through at eye height, indoors first. One wider
+/// than 2 km is flown over. Any other is circled. Deterministic for any number of threads of the caller's arena.
 Tour make_tour(const model::Ground& ground, const Box& box, const Progress& progress);
 
 }  // namespace surefoot::bake

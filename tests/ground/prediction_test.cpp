@@ -32,7 +32,7 @@ model::Ground court() {
     return ground_of(t);
 }
 
-input::Ground asks(model::Walker& walker) {
+input::Ground ground_of_walker(model::Walker& walker) {
     const auto query = [](void* context, const dvec3& from, const dvec3& wanted, double dt_s) noexcept {
         return static_cast<model::Walker*>(context)->walk(from, wanted, dt_s);
     };
@@ -45,7 +45,7 @@ input::Ground asks(model::Walker& walker) {
 TEST(WalkerPrediction, NoWalkLeavesItsUncertainty) {
     const model::Ground ground = court();
     model::Walker walker(ground, {});
-    const input::Ground question = asks(walker);
+    const input::Ground question = ground_of_walker(walker);
     Random random(11);
     const input::MotionLimits limits;
     input::MotionState state;
@@ -104,7 +104,8 @@ TEST(WalkerMotion, IsLevelHoweverTheEyeLooks) {
     input::Command command;
     command.request.forward = 1, command.request.up = 1;
     input::NavigationSample sample;
-    for (std::int64_t now = 0; now < 3000 * ms; now += ms) sample = input::step(state, {}, command, now, asks(walker));
+    for (std::int64_t now = 0; now < 3000 * ms; now += ms)
+        sample = input::step(state, {}, command, now, ground_of_walker(walker));
     EXPECT_NEAR(sample.pose.position.y, 1.7, 1e-3) << "a walker neither flies up nor digs itself in";
     EXPECT_LT(sample.pose.position.z, -2.5) << "and is not slowed down by looking at its feet";
     EXPECT_NEAR(sample.velocity_m_s.y, 0, 1e-3);
@@ -120,11 +121,12 @@ TEST(WalkerMotion, AStopHoldsItInTheAir) {
     input::Command command;
     command.request.forward = 0.1;
     std::int64_t now = 0;
-    for (int i = 0; i < 300; ++i) input::step(state, {}, command, now += ms, asks(walker));
+    for (int i = 0; i < 300; ++i) input::step(state, {}, command, now += ms, ground_of_walker(walker));
     command.order = input::Order::stop;
-    const dvec3 before = input::step(state, {}, command, now += ms, asks(walker)).pose.position;
+    const dvec3 before = input::step(state, {}, command, now += ms, ground_of_walker(walker)).pose.position;
     EXPECT_LT(before.y, 9);
-    for (int i = 0; i < 300; ++i) ASSERT_EQ(input::step(state, {}, command, now += ms, asks(walker)).pose.position, before);
+    for (int i = 0; i < 300; ++i)
+        ASSERT_EQ(input::step(state, {}, command, now += ms, ground_of_walker(walker)).pose.position, before);
 }
 
 }  // namespace surefoot::test

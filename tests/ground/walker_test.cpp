@@ -201,6 +201,21 @@ TEST(Walker, CeilingsStopIt) {
     EXPECT_EQ(step.barrier(), Barrier::ceiling);
 }
 
+TEST(Walker, ASmallBodyIsAThinOne) {
+    Triangles t = level();
+    add_wall(t, {3, -10}, {3, 10}, 0, 3);
+    add_quad(t, {-3, 0.7, -5}, {-3, 0.7, 5}, {-8, 0.7, 5}, {-8, 0.7, -5});
+    const Ground ground = ground_of(t);
+    const Body child{0.5, 0.3, 0.4, 0.78, 1};
+    Walker walker(ground, child);
+    const Capsule body = walker.capsule_at({0, 0, 0});
+    EXPECT_GE(body.low.y - body.radius, 0.0);
+    EXPECT_LE(body.low.y + body.length + body.radius, 0.6 + 1e-9) << "its crown";
+    EXPECT_LT(push(walker, {0, 0.5, 0}, 1.4 * right, 4).x, 3);
+    Walker under(ground, child);
+    EXPECT_LT(push(under, {0, 0.5, 0}, -1.4 * right, 4).x, -5) << "under the table";
+}
+
 TEST(Walker, CracksAndHolesSmallerThanAFootCarryIt) {
     Triangles t;
     for (int i = -10; i < 10; ++i) add_floor(t, i + 0.001, i + 1, -5, 5, 0);  // a millimetre apart

@@ -84,8 +84,9 @@ std::string walked(const model::Model& model, const Path& path, const Plan& plan
             walls += cut_in_plan(plan, t, floor + cut_m);
         }
     });
-    return fmt::format("<path d=\"{}\" fill=\"#e6e9ec\" stroke=\"none\"/><path d=\"{}\" fill=\"none\" stroke=\"#20262c\" stroke-width=\"1.3\"/>",
-                       floors, walls);
+    return fmt::format(
+        "<path d=\"{}\" fill=\"#e6e9ec\" stroke=\"none\"/><path d=\"{}\" fill=\"none\" stroke=\"#20262c\" stroke-width=\"1.3\"/>",
+        floors, walls);
 }
 
 /// Outlines of blocks and instances from above.

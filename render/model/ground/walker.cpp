@@ -72,6 +72,10 @@ Box swept(const Capsule& capsule, const dvec3& move) {
 }  // namespace
 
 Walker::Walker(const Ground& ground, const Body& body) : ground_(ground), body_(body) {
+    // A small visitor is a thin one too, and steps no higher than the knee.
+    const double tall = body_.eye_m + crown_m;
+    body_.step_m = std::min(body_.step_m, 0.4 * tall);
+    body_.radius_m = std::min(body_.radius_m, (tall - body_.step_m - step_slack_m) / 2);
     near_.reserve(max_near);
     close_.reserve(max_near);
     for (std::size_t i = 1; i < foot_.size(); ++i) foot_[i] = foot_share * body_.radius_m * direction(static_cast<double>(i) / 8);

@@ -11,7 +11,7 @@
 
 namespace surefoot::model {
 
-/// Size and abilities of the walker.
+/// Size and abilities of the walker. A step or a radius that does not fit the height is made smaller.
 struct Body {
     double eye_m = 1.7;                 ///< eye above the floor; the head ends crown_m higher
     double radius_m = 0.3;              ///< of the capsule
