@@ -103,9 +103,10 @@ NavigationSample Steering::tick(const Lines& lines, std::int64_t now_ns, const G
         // Smoothing and debouncing run on between reports.
         if (sources_[i].connected && devices_[i].ticked)
             sources_[i].output = evaluate(devices_[i].mapper, devices_[i].newest, now_ns, age_limit_ns(i));
-        if (sources_[i].connected && !sources_[i].output.neutral) flies_ = devices_[i].mapper.flies;
     }
     const Command command = step(safety_, safety_limits_, sources_, lines, now_ns);
+    for (std::size_t i = 0; i < max_devices; ++i)
+        if (safety_.devices[i].contributed) flies_ = devices_[i].mapper.flies;
     for (std::size_t i = 0; i < max_devices; ++i) {
         sources_[i].equal_report = sources_[i].moved = sources_[i].seen_neutral = sources_[i].lost = false;
         sources_[i].drained = 0;

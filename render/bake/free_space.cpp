@@ -14,7 +14,7 @@ namespace {
 constexpr double ceiling_m = 8, same_floor_m = 0.1, max_clear_m = 3;
 constexpr std::array<std::array<int, 2>, 8> directions = {{{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
-/// CellRows of a window, row by row.
+/// The cells of a window, row by row.
 struct CellRows {
     Box window;
     double cell_m;
@@ -35,7 +35,7 @@ struct CellRows {
 std::vector<StandingPlace> places_above(const model::Ground& ground, const model::Walker& walker, const model::Body& body,
                                         const dvec3& at, const Box& window) {
     std::vector<double> heights, floors;
-    const double min_up = std::cos(body.slope_rad);
+    const double min_up = std::cos(body.slope_rad) - 1e-6;
     model::for_triangles_near(ground, {dvec3(at.x, window.min.y, at.z), dvec3(at.x, window.max.y, at.z)},
                               [&](const model::GroundTriangle& t) {
                                   const double y = model::height_at(t, at.x, at.z);

@@ -208,6 +208,9 @@ std::vector<bool> blocking_solids(const GroundFacts& facts, const dmat4& world) 
         any_small = any_small || small[p];
     }
     if (!any_small) return facts.solid;
+    Box all;
+    for (const Box& box : facts.part_boxes) all.grow(box);
+    if (placed_size(all, scale) < foot_m) return std::vector<bool>(facts.solid.size(), false);  // however they join
     Unions parts(facts.part_boxes.size());
     join_small_parts(facts, small, join_m / std::max({scale.x, scale.y, scale.z}), parts);
     std::vector<Box> boxes(facts.part_boxes.size());

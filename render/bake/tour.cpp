@@ -220,14 +220,12 @@ bool is_straight_free(const model::Walker& walker, const dvec3& from, const dvec
     return std::abs(at.y - to.y) < 0.3;
 }
 
-/// Leaves places out between which the straight way is free, and not nearer to walls than the way around was.
+/// Leaves places out between which the straight way is free.
 std::vector<dvec3> straightened(const FreeSpace& space, const model::Walker& walker, const std::vector<std::uint32_t>& way) {
     std::vector<dvec3> kept{space.places[way[0]].feet};
     for (std::size_t i = 0; i + 1 < way.size();) {
         std::size_t best = i + 1;
-        float clear = space.places[way[i]].clear_m;
         for (std::size_t j = i + 2; j < std::min(way.size(), i + 24); ++j) {
-            clear = std::min(clear, space.places[way[j]].clear_m);
             if (is_straight_free(walker, space.places[way[i]].feet, space.places[way[j]].feet)) best = j;
         }
         kept.push_back(space.places[way[best]].feet);
@@ -274,7 +272,8 @@ std::vector<dvec3> rounded(const model::Walker& walker, const std::vector<dvec3>
         for (std::size_t i = 1; i + 1 < points.size(); ++i) {
             dvec3 to = points[i] + strength * (wanted[i] - points[i]);
             to.y = walker.floor_at(to, points[i].y + 0.3, points[i].y - 0.3);
-            if (std::isfinite(to.y) && walker.is_free(to) && walker.passes(points[i - 1], to)) points[i] = to;
+            if (std::isfinite(to.y) && walker.is_free(to) && walker.passes(points[i - 1], to) && walker.passes(to, points[i + 1]))
+                points[i] = to;
         }
     }
     return points;
@@ -342,7 +341,8 @@ double highest_near(const model::Ground& ground, const dvec3& at, double reach, 
 /// A level loop around the middle of what blocks, well above all that lies under it.
 Path fly_above(const model::Ground& ground, const Box& box) {
     const dvec3 sides = box.max - box.min;
-    const double radius = std::min(0.25 * std::min(sides.x, sides.z), 3000.0), above = std::clamp(0.05 * radius, 30.0, 150.0);
+    const double radius = std::clamp(0.25 * std::min(sides.x, sides.z), 50.0, 3000.0),
+                 above = std::clamp(0.05 * radius, 30.0, 150.0);
     std::map<std::pair<int, int>, std::pair<int, dvec3>> density;  // blocks of triangles by cells as wide as the loop
     if (!ground.meshes.empty()) {
         const model::GroundMesh& mesh = ground.meshes[0];

@@ -13,7 +13,8 @@ Error ground_error(std::string_view array, std::size_t index, std::string_view w
     return {fmt::format("ground {}[{}]", array, index), std::string(what), "Bake the model again", ErrorKind::damaged};
 }
 
-bool is_finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+/// Finite, and near enough that sums with it are.
+bool is_finite(const dvec3& v) { return glm::length(v) <= 1e13; }
 
 Result<void> check_blocks(const Ground& ground) {
     for (std::size_t i = 0; i < ground.blocks.size(); ++i) {
@@ -36,7 +37,7 @@ Result<void> check_meshes(const Ground& ground) {
     std::uint64_t blocks = 0, nodes = 0;
     for (std::size_t i = 0; i < ground.meshes.size(); ++i) {
         const GroundMesh& mesh = ground.meshes[i];
-        if (!is_finite(mesh.origin) || !std::isfinite(mesh.step_m) || mesh.step_m < 1e-30 || mesh.step_m > 1e30)
+        if (!is_finite(mesh.origin) || !(mesh.step_m >= 1e-15) || !(mesh.step_m <= 1e6))
             return ground_error("meshes", i, "The lattice is not finite");
         if (mesh.first_block != blocks || mesh.first_node != nodes) return ground_error("meshes", i, "The tree is out of order");
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -89,8 +90,13 @@ Result<void> validate(const Ground& ground) {
     if (auto checked = check_meshes(ground); !checked) return checked;
     for (std::size_t i = 0; i < ground.instances.size(); ++i) {
         const GroundInstance& instance = ground.instances[i];
-        const double volume = std::abs(glm::determinant(dmat3(instance.linear)));
-        if (!is_finite(instance.origin) || !std::isfinite(volume) || volume <= 0)
+        const dmat3 inverse = glm::inverse(dmat3(instance.linear));
+        bool invertible = true;
+        for (int column = 0; column < 3; ++column) {
+            invertible = invertible && glm::length(dvec3(instance.linear[column])) <= 1e9;
+            invertible = invertible && glm::length(inverse[column]) <= 1e12;
+        }
+        if (!is_finite(instance.origin) || !invertible)
             return ground_error("instances", i, "The placement is not finite, or flat");
         if (instance.mesh == 0 || instance.mesh >= ground.meshes.size() || ground.meshes[instance.mesh].block_count == 0)
             return ground_error("instances", i, "The mesh is out of range");

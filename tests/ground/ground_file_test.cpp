@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "render/bake/ground.hpp"
@@ -61,6 +62,31 @@ TEST(GroundFile, ComesBackAsItWentOut) {
     ASSERT_EQ(before.size(), after.size());
     EXPECT_EQ(before.size(), 2U + 40 * 12 + 9 * 12);
     for (std::size_t i = 0; i < before.size(); ++i) ASSERT_EQ(before[i].a, after[i].a) << i;
+}
+
+TEST(TourFile, ComesBackAsItWentOutAndIsChecked) {
+    Model model = two_triangles();
+    model.tour.samples = {{0, {{1, 2, 3}, {1, 0, 0, 0}, 1}}, {2.5, {{4, 5, 6}, {0, 0, 1, 0}, 1.2}}};
+    model.tour_kind = "around it";
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(write_walk(folder / "m.walk", model).ok());
+    const auto read = read_walk(folder / "m.walk");
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    EXPECT_EQ(read->tour_kind, "around it");
+    ASSERT_EQ(read->tour.samples.size(), 2U);
+    EXPECT_EQ(read->tour.samples[1].time_s, 2.5);
+    EXPECT_EQ(read->tour.samples[1].pose.position, dvec3(4, 5, 6));
+    EXPECT_EQ(read->tour.samples[1].pose.orientation, dquat(0, 0, 1, 0));
+    EXPECT_EQ(read->tour.samples[1].pose.fov_y_rad, 1.2);
+    const auto refused = [&](auto spoil) {
+        Model bad = model;
+        spoil(bad.tour.samples[1]);
+        return !validate(bad).ok();
+    };
+    EXPECT_TRUE(refused([](PathSample& s) { s.time_s = 0; }));
+    EXPECT_TRUE(refused([](PathSample& s) { s.pose.position.x = std::numeric_limits<double>::quiet_NaN(); }));
+    EXPECT_TRUE(refused([](PathSample& s) { s.pose.orientation.y = 3; }));
+    EXPECT_TRUE(refused([](PathSample& s) { s.pose.fov_y_rad = 0; }));
 }
 
 TEST(GroundFile, WithoutASectionTheModelHasNoGround) {
@@ -151,11 +177,13 @@ TEST(GroundFile, DamageIsAnErrorOrHarmless) {
         }
         index_instances(bad);
         triangles_near(bad, {dvec3(-5), dvec3(5)});  // whatever it finds, it ends and stays in its arrays
+        Walker walker(bad, {});
+        test::push(walker, {0, 1.7, 0}, {1, 0, 0.3}, 0.02);
     }
     EXPECT_GT(refused, 300);
 }
 
-TEST(GroundFile, AGroundIsTheSameWhateverTheOrderOfEqualScenes) {
+TEST(GroundFile, TwoBakesOfOneSceneHaveTheSameGround) {
     auto made = scenes::generate("garden", 0.3, 1);
     const Ground one = bake::make_ground(made->scene, {}), two = bake::make_ground(made->scene, {});
     EXPECT_EQ(one.bytes, two.bytes);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "input/motion/motion.hpp"
+#include "render/model/ground/near.hpp"
 #include "rt/base/random.hpp"
 #include "tests/ground/grounds.hpp"
 
@@ -29,6 +30,9 @@ model::Ground court() {
     add_box(t, {-8, 0, 2}, {-4, 0.9, 8});
     add_quad(t, {-4, 0.9, 2}, {-4, 0.9, 8}, {-2, 0, 8}, {-2, 0, 2});
     for (int i = 0; i < 5; ++i) add_box(t, {1.0 + i, 0, 3}, {1.3 + i, 3, 3.3});
+    for (int i = 0; i < 4; ++i) add_box(t, {1 + 1.4 * i, 0, 6}, {1.7 + 1.4 * i, 0.25, 9});  // gutters between them
+    add_box(t, {-9, 0, -8}, {-6, 0.6, -3});                                                 // up by stairs, down at once
+    for (int i = 0; i < 3; ++i) add_box(t, {-9, 0, -3 + 0.3 * i}, {-6, 0.2 * (3 - i), -2.7 + 0.3 * i});
     return ground_of(t);
 }
 
@@ -61,8 +65,8 @@ TEST(WalkerPrediction, NoWalkLeavesItsUncertainty) {
     double lowest = 9, highest = -9;
     for (int i = 0; i < 200'000; ++i) {
         if (i % 8000 == 0) {
-            const std::array<dvec3, 3> places{{{1, 1.7, -5}, {8, 3.7, -5}, {-6, 2.6, 5}}};
-            ASSERT_TRUE(input::place(state, Pose{places[random.below(3)], {std::cos(0.8), 0, std::sin(0.8), 0}, 1}));
+            const std::array<dvec3, 5> places{{{1, 1.7, -5}, {8, 3.7, -5}, {-6, 2.6, 5}, {0.5, 1.7, 7.5}, {-7.5, 1.7, -1}}};
+            ASSERT_TRUE(input::place(state, Pose{places[random.below(5)], {std::cos(0.8), 0, std::sin(0.8), 0}, 1}));
             open.clear();
         }
         if (random.below(600) == 0) {
@@ -94,6 +98,59 @@ TEST(WalkerPrediction, NoWalkLeavesItsUncertainty) {
     EXPECT_LT(lowest, 1.69) << "and fell from it";
 }
 
+/// The region of poses is a ball around where walls let the eye come to, no larger than to the nearest wall.
+TEST(WalkerPrediction, NoPoseBeyondAWallIsForeseenAndHardlyAPoseIsMissed) {
+    const model::Ground ground = court();
+    model::Walker walker(ground, {});
+    const input::Ground question = ground_of_walker(walker);
+    Random random(12);
+    const input::MotionLimits limits;
+    input::MotionState state;
+    ASSERT_TRUE(input::place(state, Pose{{0, 1.7, 0}, {1, 0, 0, 0}, 1}));
+    struct Open {
+        dvec3 centre;
+        double radius;
+        std::int64_t due;
+    };
+    std::vector<Open> open;
+    input::Command command;
+    std::int64_t now = 0;
+    int beyond = 0, missed = 0, checked = 0, clipped = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        if (random.below(500) == 0) {
+            command.request = {};
+            command.request.forward = random.range(0, 1), command.request.turn = random.range(-1, 1);
+            command.request.speed = random.range(-1, 1);
+        }
+        const input::NavigationSample sample = input::step(state, limits, command, now += ms, question);
+        for (auto it = open.begin(); it != open.end();) {
+            if (it->due > now) {
+                ++it;
+                continue;
+            }
+            ++checked;
+            missed += glm::length(sample.pose.position - it->centre) > it->radius ? 1 : 0;
+            it = open.erase(it);
+        }
+        if (i % 50 != 0) continue;
+        constexpr double ahead_s = 0.1;
+        const input::Prediction ahead = input::predict(sample, limits, ahead_s, 9.81);
+        const auto foreseen = walker.foresee(sample.velocity_m_s * ahead_s, 1.5);
+        const double radius = std::min(ahead.uncertainty_m + glm::length(foreseen.eye - ahead.pose.position), foreseen.clear_m);
+        clipped += radius < ahead.uncertainty_m ? 1 : 0;
+        model::for_triangles_near(ground, {foreseen.eye - radius, foreseen.eye + radius}, [&](const model::GroundTriangle& t) {
+            const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
+            if (std::abs(n.y) > 0.7 * glm::length(n)) return;
+            beyond += model::separation({foreseen.eye, 0, 0}, t).distance < radius - 1e-9 ? 1 : 0;
+        });
+        open.push_back({foreseen.eye, radius, now + 100 * ms});
+    }
+    std::printf("regions: %d, clipped %d; eyes outside of theirs: %d of %d\n", 100'000 / 50, clipped, missed, checked);
+    EXPECT_EQ(beyond, 0);
+    EXPECT_GT(clipped, 10);
+    EXPECT_LT(missed, checked / 50);
+}
+
 TEST(WalkerMotion, IsLevelHoweverTheEyeLooks) {
     Triangles t;
     add_floor(t, -20, 20, -20, 20, 0);
@@ -117,14 +174,14 @@ TEST(WalkerMotion, AStopHoldsItInTheAir) {
     const model::Ground ground = ground_of(t);
     model::Walker walker(ground, {});
     input::MotionState state;
-    ASSERT_TRUE(input::place(state, Pose{{0, 9, 0}, {1, 0, 0, 0}, 1}));
+    ASSERT_TRUE(input::place(state, Pose{{0, 4.5, 0}, {1, 0, 0, 0}, 1}));
     input::Command command;
     command.request.forward = 0.1;
     std::int64_t now = 0;
     for (int i = 0; i < 300; ++i) input::step(state, {}, command, now += ms, ground_of_walker(walker));
     command.order = input::Order::stop;
     const dvec3 before = input::step(state, {}, command, now += ms, ground_of_walker(walker)).pose.position;
-    EXPECT_LT(before.y, 9);
+    EXPECT_LT(before.y, 4.4);
     for (int i = 0; i < 300; ++i)
         ASSERT_EQ(input::step(state, {}, command, now += ms, ground_of_walker(walker)).pose.position, before);
 }

@@ -42,7 +42,8 @@ Plan plan_of(const Path& path) {
 /// Floor under the nearest sample of the path, in plan.
 double floor_near(const Path& path, double eye_m, const dvec3& at) {
     double nearest = std::numeric_limits<double>::infinity(), y = 0;
-    for (std::size_t i = 0; i < path.samples.size(); i += 4) {
+    const std::size_t stride = std::max<std::size_t>(1, path.samples.size() / 200);
+    for (std::size_t i = 0; i < path.samples.size(); i += stride) {
         const dvec3& p = path.samples[i].pose.position;
         const double d = std::hypot(p.x - at.x, p.z - at.z);
         if (d < nearest) nearest = d, y = p.y - eye_m;

@@ -66,7 +66,7 @@ void InputSession::begin(const Path& path, const model::Ground& ground, std::int
     tour_controller_ = std::make_unique<TourController>(path);
     walking_ = std::make_unique<Walking>(ground, body_, mode_);
     stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, *walking_, samples_, jump_poses_,
-                                              live_ ? live_->keeper() : nullptr);
+                                              region_ahead_s(period_ns_), live_ ? live_->keeper() : nullptr);
     poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get());
     stepper_->begin(start_ns);
     if (real_clock) thread_ = std::make_unique<InputThread>(*stepper_, placement);
@@ -121,7 +121,7 @@ report::InputSummary InputSession::summary(std::span<const rt::FrameRecord> reco
     s.pause = presses.pause;
     s.jumps = tour_controller_->jumps() + walking_->jumps();
     if (const model::Walker* walker = walking_->walker()) {
-        s.walked = true;
+        s.walked = walking_->walked();
         s.returns = walker->returns();
         s.freed = walker->freed();
     }

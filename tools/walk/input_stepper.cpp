@@ -8,17 +8,25 @@
 namespace surefoot::walk {
 
 InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller,
-                           Walking& walking, rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses,
+                           Walking& walking, rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses, double ahead_s,
                            input::StopKeeper* keeper)
     : source_(source),
       steering_(steering),
       tour_controller_(tour_controller),
       walking_(walking),
+      ahead_s_(ahead_s),
       samples_(samples),
       jump_poses_(jump_poses),
       keeper_(keeper) {
     steering_.place(tour_controller_.start());
 }
+
+namespace {
+
+/// Regions are clipped by walls that are nearer to the predicted eye than this.
+constexpr double max_clear_m = 1.5;
+
+}  // namespace
 
 void InputStepper::begin(std::int64_t start_ns) {
     steering_.steers.plays();  // before the input thread is there
@@ -34,7 +42,13 @@ std::int64_t InputStepper::next_ns() const { return std::min(source_.next_ns(), 
 void InputStepper::step(std::int64_t now_ns) {
     steering_.steers.plays();
     const input::Lines lines = source_.drain(steering_, now_ns);
-    input::NavigationSample sample = steering_.tick(lines, now_ns, walking_.ground(steering_.flies()));
+    const bool led = tour_controller_.touring() || tour_controller_.paused();  // no walls for one who is carried or stands still
+    const std::uint32_t jumps = walking_.jumps();
+    input::NavigationSample sample = steering_.tick(lines, now_ns, led ? input::Ground{} : walking_.ground(steering_.flies()));
+    if (walking_.jumps() != jumps) {  // put elsewhere: the way there is no motion
+        steering_.place(sample.pose);
+        sample.velocity_m_s = sample.angular_rad_s = dvec3(0.0);
+    }
     if (keeper_ != nullptr) keeper_->set(steering_.safety().latched);
     tour_controller_.follow(sample, steering_, now_ns);
     walking_.publish();
@@ -67,6 +81,9 @@ void InputStepper::publish(const input::NavigationSample& sample, std::int64_t n
     out.jumps = jumps;
     out.touring = tour_controller_.touring();
     out.walking = walking_.walks();
+    const auto foreseen = walking_.foresee(sample, ahead_s_, max_clear_m);
+    out.foreseen = foreseen && foreseen->clear_m < max_clear_m;
+    if (foreseen) out.ahead_eye = foreseen->eye, out.ahead_clear_m = foreseen->clear_m;
     out.barrier = out.walking ? walking_.walker()->barrier() : model::Barrier::clear;
     samples_.publish();
 }

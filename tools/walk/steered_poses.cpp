@@ -39,8 +39,12 @@ FramePose SteeredPoses::pose_of(const FrameTime& time) const {
     out.stamp_ns = s.nav.stamp_ns;
     out.reports = s.reports;
     if (s.touring) return out;  // the limits say nothing about a path: the last two poses do
-    const double ahead_s = horizon_s(static_cast<double>(period_ns_) * 1e-9) + static_cast<double>(carry_limit_ns) * 1e-9;
-    const input::Prediction ahead = input::predict(s.nav, limits_, ahead_s, s.walking ? walker_rise_m_s2 : 0);
+    input::Prediction ahead = input::predict(s.nav, limits_, region_ahead_s(period_ns_), s.walking ? walker_rise_m_s2 : 0);
+    if (s.foreseen) {
+        const dvec3 led_m = s.ahead_eye - ahead.pose.position;
+        ahead.pose.position = s.ahead_eye;
+        ahead.uncertainty_m = std::min(ahead.uncertainty_m + glm::length(led_m), s.ahead_clear_m);
+    }
     out.predicted.known = true;
     out.predicted.region = {ahead.pose, ahead.uncertainty_m, ahead.uncertainty_rad};
     out.predicted.speed_m_s = glm::length(s.nav.velocity_m_s);

@@ -12,7 +12,13 @@ namespace surefoot::walk {
 /// frames does not show. If the input thread stalls for longer, the eye stays where it was.
 constexpr std::int64_t carry_limit_ns = 2 * input_tick_ns;
 
+/// How far ahead of a sample its region of poses reaches.
+inline double region_ahead_s(std::int64_t period_ns) {
+    return horizon_s(static_cast<double>(period_ns) * 1e-9) + static_cast<double>(carry_limit_ns) * 1e-9;
+}
+
 /// Poses of a walk that devices steer. For the frame thread.
+/// A walker's region is clipped by walls: it is around where walls let the eye come to, and no larger than to the nearest wall.
 class SteeredPoses final : public PoseSource {
 public:
     /// `inline_stepper`: on the virtual clock, stepped here up to the frame's time; null: a thread of its own steps it.

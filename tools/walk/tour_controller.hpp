@@ -29,6 +29,7 @@ public:
     void follow(input::NavigationSample& sample, input::Steering& steering, std::int64_t now_ns) REQUIRES(steering.steers);
 
     [[nodiscard]] bool touring() const { return touring_; }
+    [[nodiscard]] bool paused() const { return paused_; }
     /// How often the eye was put elsewhere without walking there.
     [[nodiscard]] std::uint32_t jumps() const { return jumps_; }
 

@@ -139,6 +139,14 @@ Result<void> open_engine(Session& s, const Progress& progress) {
         s.path = std::move(*path);
     }
 
+    if (s.input && r.walking != rt::WalkingMode::fly) {
+        if (model->ground.empty())
+            s.notes.push_back(r.model_file +
+                              ": The model holds nothing that blocks, so visitors fly. An older model must be baked again.");
+        if (std::string warning = path_warning(model->ground, s.path.path); !warning.empty())
+            s.notes.push_back(s.path.source + ": " + warning);
+    }
+
     const int others = s.plan.all.count() - (s.plan.all.has(s.plan.frame_core) ? 1 : 0);
     auto options = engine_options(r, others);
     if (!options) return options.error();

@@ -4,10 +4,12 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "input/motion/motion.hpp"
 #include "render/model/ground/walker.hpp"
 #include "rt/base/modes.hpp"
+#include "rt/base/path.hpp"
 
 namespace surefoot::walk {
 
@@ -26,6 +28,11 @@ public:
     /// How often the walker was put elsewhere: out of something solid, or back to where it was free.
     [[nodiscard]] std::uint32_t jumps() const;
     [[nodiscard]] bool walks() const { return walks_; }
+    [[nodiscard]] bool walked() const { return walked_; }  ///< at any time
+    /// After a step: where the sample's velocity leads the eye in `ahead_s`, with no wall nearer than clear_m. Nothing where
+    /// nobody walks, or where a button put the eye elsewhere.
+    [[nodiscard]] std::optional<model::Walker::Foreseen> foresee(const input::NavigationSample& sample, double ahead_s,
+                                                                 double far_m);
     /// After each step: lets other threads read what stops the walker.
     void publish() {
         shown_.store(walks_ ? walker_->barrier() : model::Barrier::clear, std::memory_order_relaxed),
@@ -40,9 +47,12 @@ public:
 private:
     std::optional<model::Walker> walker_;
     rt::WalkingMode mode_;
-    bool walks_ = false;
+    bool walks_ = false, walked_ = false;
     std::atomic<model::Barrier> shown_{model::Barrier::clear};
     std::atomic<bool> shown_walks_{false};
 };
+
+/// What a visitor should know of a path: where it leads through walls, and which viewpoints stand in one. Empty: nowhere.
+std::string path_warning(const model::Ground& ground, const Path& path);
 
 }  // namespace surefoot::walk

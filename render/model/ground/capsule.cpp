@@ -102,4 +102,16 @@ double height_at(const GroundTriangle& t, double x, double z) {
     return (of_a * t.a.y + of_b * t.b.y + of_c * t.c.y) / all;
 }
 
+Crossing crossing_of(const dvec3& from, const dvec3& way, const GroundTriangle& t) {
+    const dvec3 u = t.b - t.a, v = t.c - t.a, n = glm::cross(u, v);
+    const double along = glm::dot(way, n);
+    if (along == 0) return {};
+    const double share = glm::dot(t.a - from, n) / along;
+    if (!(share >= 0 && share <= 1)) return {};
+    const dvec3 p = from + share * way;
+    const bool inside = glm::dot(glm::cross(u, p - t.a), n) >= 0 && glm::dot(glm::cross(t.c - t.b, p - t.b), n) >= 0 &&
+                        glm::dot(glm::cross(t.a - t.c, p - t.c), n) >= 0;
+    return inside ? Crossing{share, along > 0} : Crossing{};
+}
+
 }  // namespace surefoot::model

@@ -36,4 +36,11 @@ Contact first_contact(const Capsule& capsule, const dvec3& move, const GroundTri
 /// Where the vertical line at (x, z) meets the triangle, or minus infinity. Edges belong to both of their triangles.
 double height_at(const GroundTriangle& triangle, double x, double z);
 
+/// Where a line meets a triangle, as a share of its way; above 1: nowhere.
+struct Crossing {
+    double share = 2;
+    bool back = false;  ///< the triangle turns its back to where the line comes from
+};
+Crossing crossing_of(const dvec3& from, const dvec3& way, const GroundTriangle& triangle);
+
 }  // namespace surefoot::model

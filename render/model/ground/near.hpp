@@ -76,13 +76,15 @@ struct LatticeQuery {
             box.max[axis] = (local.max[axis] - mesh.origin[axis]) / mesh.step_m + 1;
             const double low = mesh.min[at], extent = static_cast<double>(mesh.max[at]) - low;
             const double scale = extent > 0 ? 65535.0 / extent : 0.0;
-            min[at] = static_cast<std::int32_t>(std::clamp(std::floor((box.min[axis] - low) * scale), -1.0, 65536.0));
-            max[at] = static_cast<std::int32_t>(std::clamp(std::ceil((box.max[axis] - low) * scale), -1.0, 65536.0));
+            min[at] = bounded(std::floor((box.min[axis] - low) * scale));
+            max[at] = bounded(std::ceil((box.max[axis] - low) * scale));
             if (extent > 0) continue;  // flat: all of its boxes are at 0
             min[at] = box.min[axis] > low ? 1 : 0;
             max[at] = box.max[axis] < low ? -1 : 0;
         }
     }
+    /// No number becomes -1.
+    static std::int32_t bounded(double value) { return value > -1 ? static_cast<std::int32_t>(std::min(value, 65536.0)) : -1; }
     [[nodiscard]] bool meets(const GroundBox& b) const {
         for (std::size_t a = 0; a < 3; ++a)
             if (min[a] > b.max[a] || max[a] < b.min[a]) return false;

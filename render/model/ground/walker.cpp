@@ -11,11 +11,12 @@ namespace surefoot::model {
 
 namespace {
 
-constexpr double skin_m = 1e-3;        // walls keep this much more off than the radius
-constexpr double step_slack_m = 0.01;  // a step of exactly step_m is climbed
-constexpr double foot_share = 0.5;     // radius of the disc under which the floor is looked for
+constexpr double skin_m = 1e-3;                            // walls keep this much more off than the radius
+constexpr double step_slack_m = 0.01;                      // a step of exactly step_m is climbed
+constexpr double slope_slack = 1e-6, edge_slack_m = 1e-3;  // a slope of exactly the limit is climbed, and an edge stops
+constexpr double foot_share = 0.5;                         // radius of the disc under which the floor is looked for
 constexpr double max_overlap_m = 0.01;
-constexpr double gravity_m_s2 = 9.81, max_fall_m_s = 5;
+constexpr double gravity_m_s2 = 9.81, max_fall_m_s = 5, fall_from_m = 3;
 constexpr double max_roll_m_s = 1;
 constexpr double eye_m_s2 = 8, eye_settles_s = 0.06;  // how the eye follows the feet up and down
 constexpr double max_lag_m = 0.8;                     // the eye behind the feet, climbing
@@ -23,11 +24,14 @@ constexpr double max_sink_m = 0.15;                   // the eye below its heigh
 constexpr double gather_m = 0.3;                      // triangles are gathered this much further than a step needs
 constexpr double close_m = 0.12;
 constexpr std::size_t max_near = 2048;
-constexpr double sight_m = 20;  // how far the sides of a solid are looked for
+constexpr double wall_max_up = 0.7;  // of a normal: what is more level is a floor or a ceiling, and the eye is not led through it
+// How far the sides of a solid are looked for: small rooms of single walls look like one to who starts there.
+constexpr double start_sight_m = 1, place_sight_m = 2.5;
 constexpr double deep_m = 1e7;  // below every floor
 constexpr std::uint32_t trials = 16;
 constexpr double trial_m = 0.1, stuck_after_s = 1, free_every_m = 0.5;
-constexpr std::uint32_t search_rings = 40, search_a_tick = 2;
+constexpr std::uint32_t search_rings = 40, search_a_tick = 2, search_places = 2 * search_rings * trials;
+constexpr double below_floor_m = 1, max_push_out_m = 0.35, shown_stuck_s = 1;
 constexpr double ring_m = 0.25;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -42,23 +46,6 @@ bool is_beyond(const Capsule& capsule, const GroundTriangle& t) {
     const double low = glm::dot(capsule.low - t.a, n), high = low + capsule.length * n.y;
     const double reach2 = capsule.radius * capsule.radius * glm::dot(n, n);
     return low * high > 0 && low * low > reach2 && high * high > reach2;
-}
-
-/// Where a line meets a triangle, as a share of its way; above 1: nowhere.
-struct Crossing {
-    double share = 2;
-    bool back = false;  ///< the triangle turns its back to where the line comes from
-};
-Crossing crossing_of(const dvec3& from, const dvec3& way, const GroundTriangle& t) {
-    const dvec3 u = t.b - t.a, v = t.c - t.a, n = glm::cross(u, v);
-    const double along = glm::dot(way, n);
-    if (along == 0) return {};
-    const double share = glm::dot(t.a - from, n) / along;
-    if (!(share >= 0 && share <= 1)) return {};
-    const dvec3 p = from + share * way;
-    const bool inside = glm::dot(glm::cross(u, p - t.a), n) >= 0 && glm::dot(glm::cross(t.c - t.b, p - t.b), n) >= 0 &&
-                        glm::dot(glm::cross(t.a - t.c, p - t.c), n) >= 0;
-    return inside ? Crossing{share, along > 0} : Crossing{};
 }
 
 Box swept(const Capsule& capsule, const dvec3& move) {
@@ -90,7 +77,7 @@ Capsule Walker::capsule_at(const dvec3& feet) const {
 
 void Walker::gather(const Box& box) {
     near_.clear();
-    near_complete_ = true;
+    near_complete_ = near_known_ = true;
     close_known_ = false;
     near_box_ = box;
     for_triangles_near(ground_, box, [&](const GroundTriangle& t) {
@@ -114,7 +101,7 @@ void Walker::prepare_near(double reach_m) {
     Box needed{feet_ - dvec3(body.radius + reach_m), feet_ + dvec3(body.radius + reach_m)};
     needed.min.y = feet_.y - std::min(body_.edge_m, 2.0) - reach_m;
     needed.max.y = body.low.y + body.length + body.radius + body_.step_m + reach_m;
-    if (near_complete_ && near_box_.contains(needed)) return;
+    if (near_known_ && near_box_.contains(needed)) return;
     gather({needed.min - gather_m, needed.max + gather_m});
 }
 
@@ -175,7 +162,7 @@ bool Walker::passes(const dvec3& from, const dvec3& to) const {
 }
 
 /// Of six lines from the body's middle, five or all end at the backs of triangles. Closed things are seen so from their inside.
-bool Walker::is_inside_solid(const dvec3& feet) const {
+bool Walker::is_inside_solid(const dvec3& feet, double sight_m) const {
     const dvec3 middle = feet + dvec3(0, (body_.step_m + body_.eye_m) / 2, 0);
     int backs = 0;
     for (int i = 0; i < 6; ++i) {
@@ -196,7 +183,7 @@ bool Walker::is_inside_solid(const dvec3& feet) const {
 
 /// The centre and eight points around it look down from `top`.
 Walker::Footing Walker::footing(const dvec3& at, double top, double bottom) const {
-    const double reach = foot_share * body_.radius_m, min_up = std::cos(body_.slope_rad);
+    const double reach = foot_share * body_.radius_m, min_up = std::cos(body_.slope_rad) - slope_slack;
     Footing found{-infinity, -infinity};
     const Box column{dvec3(at.x - reach, bottom, at.z - reach), dvec3(at.x + reach, top, at.z + reach)};
     for_near(column, [&](const GroundTriangle& t) {
@@ -238,7 +225,7 @@ Walker::Attempt Walker::attempt(const dvec3& move) {
     Attempt to;
     to.feet = slide(feet_, move, to.barrier);
     const double raise = body_.step_m + step_slack_m, top = feet_.y + raise;
-    const double bottom = feet_.y - std::max(raise, std::min(body_.edge_m, deep_m));
+    const double bottom = feet_.y - std::max(raise, std::min(body_.edge_m, deep_m) - edge_slack_m);
     const Footing under = footing(to.feet, top, bottom);
     const auto refused = [&](Barrier why) {
         to.feet = feet_;
@@ -273,7 +260,8 @@ void Walker::travel(const dvec3& move) {
     Attempt best = attempt(move);
     const Barrier first = best.barrier;
     // Along an edge, or past the end of what is too steep or too low: the same way, turned aside.
-    for (int i = 1; i <= 6 && best.feet == feet_ && first != Barrier::wall; ++i) {
+    const int tries = near_complete_ ? 6 : 2;  // where triangles are too many to gather, each try takes long
+    for (int i = 1; i <= tries && best.feet == feet_ && first != Barrier::wall; ++i) {
         const double turn = (i % 2 == 0 ? -1 : 1) * ((i + 1) / 2) * (29.0 / 360.0), along = std::cos(2 * std::numbers::pi * turn);
         const dvec3 d = direction(turn);
         best = attempt(along * dvec3(move.x * d.x - move.z * d.z, 0, move.x * d.z + move.z * d.x));
@@ -298,8 +286,8 @@ void Walker::travel(const dvec3& move) {
 
 void Walker::fall(double dt_s) {
     if (supported_) return;
-    const Footing under = footing(feet_, feet_.y + skin_m, feet_.y - deep_m);
-    if (under.any == -infinity) {  // no floor to fall to
+    const Footing under = footing(feet_, feet_.y + skin_m, feet_.y - fall_from_m);
+    if (under.any == -infinity) {  // no floor to fall to: it glides
         fall_m_s = 0;
         return;
     }
@@ -336,8 +324,12 @@ void Walker::raise_eye(double dt_s) {
     const double wanted = std::copysign(speed, off), change = (supported_ ? eye_m_s2 : gravity_m_s2) * dt_s;
     eye_m_s += std::clamp(wanted - eye_m_s, -change, change);
     if (!supported_) eye_m_s = -fall_m_s;
+    const double before = eye_.y, lowest = target - max_sink_m;
     eye_.y += eye_m_s * dt_s;
-    if (supported_ && eye_m_s < 0 && eye_.y < target - max_sink_m) eye_.y = target - max_sink_m, eye_m_s = 0;
+    if (supported_ && eye_m_s < 0 && eye_.y < lowest) {  // it stops; it is not moved up
+        eye_.y = std::max(eye_.y, std::min(before, lowest));
+        eye_m_s = 0;
+    }
     if (std::abs(target - eye_.y) < 1e-5 && std::abs(eye_m_s) < 1e-3) eye_.y = target, eye_m_s = 0;
 }
 
@@ -352,23 +344,72 @@ void Walker::stand_up() {
     steep_ = under.any > under.floor;
     feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
     stood_up_at_ = feet_;
-    searching_ = !is_free(feet_) || is_inside_solid(feet_);
+    free_count_ = 0;
+    if (!supported_) {  // perhaps a vehicle's recorded path, whose heights are the road's
+        const double above = footing(eye_, eye_.y + below_floor_m, eye_.y).floor;
+        if (above > -infinity && is_free({eye_.x, above, eye_.z})) {
+            ++freed_;
+            stand_at({eye_.x, above, eye_.z});
+            return;
+        }
+    }
+    searching_ = !is_free(feet_) || is_inside_solid(feet_, start_sight_m);
     search_at_ = 0;
 }
 
-/// Rings around the eye, nearest first: the first place with a floor near its height where the body is free.
+/// Out of what the body overlaps, level and by the shortest way. False: not within max_push_out_m.
+bool Walker::push_out() {
+    dvec3 at = feet_;
+    for (int i = 0; i < 8; ++i) {
+        const Capsule body = capsule_at(at);
+        dvec3 aside(0.0);
+        double deepest = 0;
+        for_near(swept(body, dvec3(0.0)), [&](const GroundTriangle& t) {
+            const Separation s = separation(body, t);
+            const double deep = body.radius + skin_m - s.distance, level = std::hypot(s.away.x, s.away.z);
+            if (deep <= deepest || s.distance == 0 || level < 0.1) return;
+            deepest = deep;
+            aside = dvec3(s.away.x, 0, s.away.z) * (deep / (level * level));
+        });
+        if (deepest == 0) break;
+        at += aside;
+        if (glm::length(at - feet_) > max_push_out_m) return false;
+    }
+    at.y = footing(at, feet_.y + body_.step_m, feet_.y - body_.step_m).floor;
+    if (!std::isfinite(at.y) || !is_free(at) || is_inside_solid(at, place_sight_m)) return false;
+    stand_at(at);
+    return true;
+}
+
+bool Walker::sees(const dvec3& to) const {
+    Box box{eye_, eye_};
+    box.grow(to);
+    bool crosses = false;
+    for_triangles_near(ground_, box,
+                       [&](const GroundTriangle& t) { crosses = crosses || crossing_of(eye_, to - eye_, t).share <= 1; });
+    return !crosses;
+}
+
+/// Beside what it overlaps, if it does so slightly. Else on rings around the eye, nearest first: the first place with a floor
+/// where the body is free. At first only floors of about this height, from where nothing is between; then any.
 void Walker::look_for_a_free_place() {
     barrier_ = Barrier::inside;
+    if (search_at_ == 0 && supported_ && push_out()) {
+        ++freed_;
+        return;
+    }
     for (std::uint32_t i = 0; i < search_a_tick && searching_; ++i, ++search_at_) {
-        const std::uint32_t ring = search_at_ / trials + 1;
-        if (ring > search_rings) {  // nothing is free: the walker stays, and walls let it out but not in
+        if (search_at_ >= search_places) {  // nothing is free: the walker stays, and walls let it out but not in
             searching_ = false;
             return;
         }
-        const dvec3 at = eye_ + ring * ring_m * direction((search_at_ % trials) / static_cast<double>(trials));
-        const Footing under = footing(at, eye_.y, eye_.y - body_.eye_m - 1.0);
-        const dvec3 feet{at.x, under.floor, at.z};
-        if (under.floor == -infinity || !is_free(feet) || is_inside_solid(feet)) continue;
+        const std::uint32_t of_pass = search_at_ % (search_rings * trials), ring = of_pass / trials + 1;
+        const bool picky = search_at_ < search_rings * trials;
+        const dvec3 at = eye_ + ring * ring_m * direction((of_pass % trials) / static_cast<double>(trials));
+        const double top = picky ? feet_.y + body_.step_m : eye_.y;
+        const dvec3 feet{at.x, footing(at, top, eye_.y - body_.eye_m - 1.0).floor, at.z};
+        if (!std::isfinite(feet.y) || !is_free(feet) || is_inside_solid(feet, place_sight_m)) continue;
+        if (picky && !sees(feet + dvec3(0, body_.eye_m, 0))) continue;
         ++freed_;
         stand_at(feet);
     }
@@ -401,17 +442,30 @@ void Walker::watch(const dvec3& move, double dt_s) {
         pushed_s_ = 0;
         trial_ = 0;
     } else if (++trial_ == trials) {
-        ++returns_;
-        barrier_ = Barrier::stuck;
+        trial_ = 0;
+        pushed_s_ = 0;
+        stuck_s_ = shown_stuck_s;
         if (free_count_ > 0) {
+            ++returns_;
             stand_at(free_places_[free_count_ - 1]);
         } else {
-            trial_ = 0;
-            pushed_s_ = 0;
             searching_ = true;
-            search_at_ = 0;
+            search_at_ = 1;
         }
     }
+}
+
+Walker::Foreseen Walker::foresee(const dvec3& way, double far_m) noexcept {
+    Barrier ignored = Barrier::clear;
+    const dvec3 to = slide(feet_, dvec3(way.x, 0, way.z), ignored);
+    Foreseen foreseen{{to.x, eye_.y + way.y, to.z}, far_m};
+    const Capsule point{foreseen.eye, 0, far_m};
+    for_near(swept(point, dvec3(0.0)), [&](const GroundTriangle& t) {
+        const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
+        if (std::abs(n.y) > wall_max_up * glm::length(n) || is_beyond(point, t)) return;
+        foreseen.clear_m = std::min(foreseen.clear_m, separation(point, t).distance);
+    });
+    return foreseen;
 }
 
 dvec3 Walker::walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept {
@@ -430,7 +484,8 @@ dvec3 Walker::walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept
         pushed_s_ = 0;
         trial_ = 0;
     }
-    barrier_ = Barrier::clear;
+    stuck_s_ = std::max(0.0, stuck_s_ - dt_s);
+    barrier_ = stuck_s_ > 0 ? Barrier::stuck : Barrier::clear;
     if (searching_) {
         look_for_a_free_place();
         return eye_;

@@ -46,8 +46,19 @@ public:
     /// when the hand rests: falls go on. An eye that somebody placed elsewhere stays as it is until the hand moves.
     dvec3 walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept;
 
+    /// Where the eye comes to by going on level, and how far walls are from there.
+    struct Foreseen {
+        dvec3 eye{0.0};
+        double clear_m = 0;  ///< at most far_m
+    };
+    /// While it stands: `way` is what the eye's velocity makes of some time. Walls stop it as they stop steps. Nothing changes.
+    [[nodiscard]] Foreseen foresee(const dvec3& way, double far_m) noexcept;
+
     /// The walk was stopped: it goes on from rest.
-    void halt() noexcept { fall_m_s = eye_m_s = 0; }
+    void halt() noexcept {
+        fall_m_s = eye_m_s = 0;
+        barrier_ = Barrier::clear;
+    }
 
     /// Whether nothing overlaps a body with its feet there by over a centimetre.
     [[nodiscard]] bool is_free(const dvec3& feet) const;
@@ -63,7 +74,8 @@ public:
     [[nodiscard]] std::uint64_t returns() const { return returns_; }
     [[nodiscard]] std::uint64_t freed() const { return freed_; }
     /// Whether the hand has moved since the eye was placed; before, the feet are nowhere.
-    [[nodiscard]] bool stands() const { return awake_; }
+    [[nodiscard]] bool stands() const { return awake_ && !searching_; }
+    [[nodiscard]] const dvec3& eye() const { return eye_; }
     [[nodiscard]] const dvec3& feet() const { return feet_; }
     /// Whether something carries the feet; else the walker falls, or glides where there is no floor at all.
     [[nodiscard]] bool supported() const { return supported_; }
@@ -97,7 +109,7 @@ private:
     void find_close(const dvec3& feet);
     [[nodiscard]] Contact sweep(const dvec3& feet, const dvec3& move, double skin = 0);
     [[nodiscard]] Footing footing(const dvec3& at, double top, double bottom) const;
-    [[nodiscard]] bool is_inside_solid(const dvec3& feet) const;
+    [[nodiscard]] bool is_inside_solid(const dvec3& feet, double sight_m) const;
     [[nodiscard]] dvec3 slide(const dvec3& feet, dvec3 move, Barrier& barrier);
     [[nodiscard]] Attempt attempt(const dvec3& move);
     void travel(const dvec3& move);
@@ -105,6 +117,8 @@ private:
     [[nodiscard]] bool roll_off(const Contact& contact, double dt_s);
     void raise_eye(double dt_s);
     void stand_up();
+    [[nodiscard]] bool push_out();
+    [[nodiscard]] bool sees(const dvec3& to) const;
     void look_for_a_free_place();
     void stand_at(const dvec3& feet);
     void watch(const dvec3& move, double dt_s);
@@ -114,8 +128,8 @@ private:
     Body body_;
     std::vector<Near> near_;
     Box near_box_;
-    bool near_complete_ = false;
-    std::vector<Close> close_;  ///< those up to close_m apart
+    bool near_known_ = false, near_complete_ = false;  ///< incomplete: there are too many
+    std::vector<Close> close_;                         ///< those up to close_m apart
     dvec3 close_to_{0.0};
     bool close_known_ = false;
     std::array<dvec3, 9> foot_{};  ///< points of the foot's disc
@@ -131,6 +145,7 @@ private:
     bool searching_ = false;
     dvec3 tried_from_{0.0};  ///< where the walker was when it last got on
     double pushed_s_ = 0;    ///< for how long it has not
+    double stuck_s_ = 0;     ///< for how long it is still said that it was stuck
     std::uint32_t trial_ = 0;
     dvec3 stood_up_at_{0.0};
     std::array<dvec3, 2> free_places_{};  ///< newest first: each half a metre's walk from where it began and from the last one
