@@ -50,10 +50,13 @@ std::vector<Entry> walker_entries() {
         choice("walking", rt::walking_modes, "Whether a steered visitor walks on floors and around walls, or flies through them.",
                &S::walking),
         number("eye_height_m", "m", 0.1, 100, "Walker: height of the eye above the floor.", &S::eye_height_m),
-        number("body_radius_m", "m", 0.02, 10, "Walker: half the width of the body.", &S::body_radius_m),
-        number("step_height_m", "m", 0, 10, "Walker: highest step that is climbed.", &S::step_height_m),
+        number("body_radius_m", "m", 0.02, 10, "Walker: half the width of the body; no more than fits the height.",
+               &S::body_radius_m),
+        number("step_height_m", "m", 0, 10, "Walker: highest step that is climbed; at most 0.4 of the height.",
+               &S::step_height_m),
         number("max_slope_deg", "degrees", 0, 89, "Walker: steepest floor that is climbed.", &S::max_slope_deg),
-        number("edge_m", "m", 0, 1e6, "Walker: a drop of this much or more stops the visitor; less is fallen down.", &S::edge_m),
+        number("edge_m", "m", 0, 1e6,
+               "Walker: a drop of this much or more stops the visitor; less is fallen down, a step always.", &S::edge_m),
     };
 }
 

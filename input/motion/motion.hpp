@@ -14,7 +14,8 @@ namespace surefoot::input {
 
 /// Collision with walls, floors and stairs: returns where a step may end. `context` belongs to the caller. Must not throw or
 /// allocate. The answer may be nearer or aside; it is shortened to the wanted length. A non-finite answer holds the eye where it
-/// is. One that walks (rise_m_s2 > 0) also moves the eye up and down, is asked at every step, and is asked for level moves only.
+/// is. One that walks (rise_m_s2 > 0) also moves the eye up and down, is asked at every step, and for level moves only. Its
+/// answers are taken as they are: it may put a walker elsewhere. Whoever hands it in makes a jump of that.
 struct Ground {
     using Query = dvec3 (*)(void* context, const dvec3& from, const dvec3& wanted, double dt_s) noexcept;
     Query query = nullptr;

@@ -39,7 +39,7 @@ inline constexpr std::array clock_kinds = {
 };
 
 inline constexpr std::array walking_modes = {
-    Named{"auto", "devices that move in all six ways fly, such as 3D mice; all others walk"},
+    Named{"auto", "devices whose mapping flies do, as that of 3D mice; all others walk"},
     Named{"walk", "all devices walk"},
     Named{"fly", "all devices fly, through walls too"},
 };

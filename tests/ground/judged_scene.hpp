@@ -84,7 +84,7 @@ inline Square square_of(const dvec3& feet) {
 struct Walked {
     double worst_overlap_m = 0, walked_m = 0;
     std::size_t crossings = 0;  ///< of the eye's way or of the body's axis with what blocks
-    std::size_t off_floor = 0;  ///< times when the feet stood at no floor
+    std::size_t uncarried = 0;  ///< times when nothing carried a body that did not fall
     std::uint64_t returns = 0, freed = 0;
     std::set<Square> trodden;
     dvec3 end{0.0};
@@ -115,13 +115,17 @@ inline Walked visitor(const JudgedScene& of, const dvec3& start, std::uint64_t s
         const dvec3 top = body.low + dvec3(0, body.length, 0);
         walked.crossings += of.judge->crosses(judged_at, eye) ? 1 : 0;
         walked.crossings += of.judge->crosses(body.low, top) ? 1 : 0;
-        double off_floor = walker.supported() ? 9 : 0;  // the feet stand at a floor of the judge's, under their disc
-        for (int k = 0; k < 9 && off_floor > 0.002; ++k) {
-            const double reach = k == 0 ? 0 : 0.15, angle = k * 0.785398163397448;
+        double off_floor =
+            walker.supported() ? 9 : 0;  // the feet stand at a floor of the judge's under their disc, or 2 mm beside it
+        for (int k = 0; k < 17 && off_floor > 0.002; ++k) {
+            const double reach = k == 0 ? 0 : (k < 9 ? 0.15 : 0.152), angle = k * 0.785398163397448;
             const double x = walker.feet().x + reach * std::cos(angle), z = walker.feet().z + reach * std::sin(angle);
             for (const double y : of.judge->floors_at(x, z, 1e-3)) off_floor = std::min(off_floor, std::abs(y - walker.feet().y));
         }
-        walked.off_floor += off_floor > 0.002 ? 1 : 0;
+        // Else its sides lie on something, as on rocks beside the foot.
+        const bool lies =
+            off_floor > 0.002 && of.judge->distance(body.low, body.length, body.radius + 0.003) <= body.radius + 0.003;
+        walked.uncarried += off_floor > 0.002 && !lies ? 1 : 0;
         judged_at = eye;
     }
     walked.returns = walker.returns();

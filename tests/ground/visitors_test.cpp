@@ -56,7 +56,7 @@ std::set<Square> reachable(const JudgedScene& of, const dvec3& start) {
 void expect_good(const Walked& walked, const std::string& what) {
     EXPECT_LE(walked.worst_overlap_m, 0.01) << what;
     EXPECT_EQ(walked.crossings, 0U) << what;
-    EXPECT_LE(walked.off_floor, 3U) << what << ": a body may hang on what is narrower than its foot";
+    EXPECT_LE(walked.uncarried, 3U) << what;
 }
 
 /// Ten visitors of six minutes; prints what they did. At most one return an hour of visitors.

@@ -212,7 +212,9 @@ void add_inspect(CLI::App& app, Context& context) {
     CLI::Option* map = c->add_option("--map", a->map,
                                      "SVG file for a floor plan instead: what blocks a walker, with the path and its viewpoints");
     map->excludes(tree)->excludes(pictures);
-    c->add_option("--path", a->path, "Of --map: CSV file of poses over time, in place of the path that a walk would follow")
+    c->add_option(
+         "--path", a->path,
+         "Of --map: CSV file of poses over time, in place of the path that a walk would follow; `none`: round the model's box")
         ->needs(map);
     c->add_option("--nodes", a->request.max_nodes, "Of --pictures: the number of nodes, spread over the levels; 0: all")
         ->check(whole_number_within(0, 1'000'000))

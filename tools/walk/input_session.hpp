@@ -45,7 +45,7 @@ public:
         if (live_) live_->poll_live(progress, notes);
     }
     [[nodiscard]] bool live() const { return live_.has_value(); }
-    /// As of the last poll_live().
+    /// Devices as of the last poll_live(); what stops the walker as of the last step.
     [[nodiscard]] rt::InputState now() const;
     /// Ends the input thread. Returns the error if the thread could not be placed.
     std::optional<Error> end(const Progress& progress, std::vector<std::string>& notes);

@@ -73,8 +73,6 @@ Capsule Walker::capsule_at(const dvec3& feet) const {
     return {feet + dvec3(0, bottom + body_.radius_m, 0), std::max(0.0, top - bottom - 2 * body_.radius_m), body_.radius_m};
 }
 
-// ---- what is near ----
-
 void Walker::gather(const Box& box) {
     near_.clear();
     near_complete_ = near_known_ = true;
@@ -198,8 +196,6 @@ Walker::Footing Walker::footing(const dvec3& at, double top, double bottom) cons
     });
     return found;
 }
-
-// ---- a move ----
 
 /// Level moves stop at walls and go on along them.
 dvec3 Walker::slide(const dvec3& feet, dvec3 move, Barrier& barrier) {
