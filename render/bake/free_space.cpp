@@ -26,8 +26,9 @@ struct CellRows {
         return static_cast<std::size_t>(std::max(1.0, std::ceil(extent / cell_m)));
     }
     [[nodiscard]] dvec3 middle(std::size_t i) const {
-        return {window.min.x + (static_cast<double>(i % columns) + 0.5) * cell_m, 0,
-                window.min.z + (static_cast<double>(i / columns) + 0.5) * cell_m};
+        const std::size_t column = i % columns, row = i / columns;
+        return {window.min.x + (static_cast<double>(column) + 0.5) * cell_m, 0,
+                window.min.z + (static_cast<double>(row) + 0.5) * cell_m};
     }
 };
 

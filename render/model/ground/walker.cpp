@@ -258,7 +258,8 @@ void Walker::travel(const dvec3& move) {
     // Along an edge, or past the end of what is too steep or too low: the same way, turned aside.
     const int tries = near_complete_ ? 6 : 2;  // where triangles are too many to gather, each try takes long
     for (int i = 1; i <= tries && best.feet == feet_ && first != Barrier::wall; ++i) {
-        const double turn = (i % 2 == 0 ? -1 : 1) * ((i + 1) / 2) * (29.0 / 360.0), along = std::cos(2 * std::numbers::pi * turn);
+        const int step = i % 2 == 0 ? -(i / 2) : (i + 1) / 2;
+        const double turn = step * (29.0 / 360.0), along = std::cos(2 * std::numbers::pi * turn);
         const dvec3 d = direction(turn);
         best = attempt(along * dvec3(move.x * d.x - move.z * d.z, 0, move.x * d.z + move.z * d.x));
     }
