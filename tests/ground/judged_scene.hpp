@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -116,10 +117,13 @@ inline Walked visitor(const JudgedScene& of, const dvec3& start, std::uint64_t s
         walked.crossings += of.judge->crosses(judged_at, eye) ? 1 : 0;
         walked.crossings += of.judge->crosses(body.low, top) ? 1 : 0;
         double off_floor =
-            walker.supported() ? 9 : 0;  // the feet stand at a floor of the judge's under their disc, or 2 mm beside it
-        for (int k = 0; k < 17 && off_floor > 0.002; ++k) {
-            const double reach = k == 0 ? 0 : (k < 9 ? 0.15 : 0.152), angle = k * 0.785398163397448;
-            const double x = walker.feet().x + reach * std::cos(angle), z = walker.feet().z + reach * std::sin(angle);
+            walker.supported() ? 9 : 0;  // the feet stand at a floor of the judge's under their disc, or a millimetre beside it
+        for (int k = 0; k < 45 && off_floor > 0.002; ++k) {
+            constexpr std::array<dvec2, 5> beside{{{0, 0}, {1e-3, 0}, {-1e-3, 0}, {0, 1e-3}, {0, -1e-3}}};
+            const double reach = k % 9 == 0 ? 0 : 0.15, angle = (k % 9) * 0.785398163397448;
+            const dvec2 off = beside[static_cast<std::size_t>(k / 9)];
+            const double x = walker.feet().x + reach * std::cos(angle) + off.x,
+                         z = walker.feet().z + reach * std::sin(angle) + off.y;
             for (const double y : of.judge->floors_at(x, z, 1e-3)) off_floor = std::min(off_floor, std::abs(y - walker.feet().y));
         }
         // Else its sides lie on something, as on rocks beside the foot.
