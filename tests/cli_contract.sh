@@ -193,6 +193,12 @@ grep -qx 'surefoot devices list \[OPTION\]\.\.\.' man/surefoot-devices-list.1 ||
 # Figures and forms.
 json inspect f.walk --tree
 grep -q '"parent"' out || complain "inspect --tree --json has no parents"
+json inspect kept.walk --map plan.svg
+grep -q '"path": "default path' out || complain "the floor plan does not follow the default path: $(cat out)"
+[ "$(head -c 5 plan.svg)" = '<svg ' ] && grep -q '</svg>' plan.svg || complain "the floor plan is no picture"
+"$surefoot" inspect f.walk --map plan.svg --path none --json >out 2>err; grep -q '"path": "generated tour"' out || complain "--map does not follow --path"
+expect 2 'plan.png.*PLAN.svg' inspect f.walk --map plan.png
+expect 2 '--path.*--map' inspect f.walk --path none
 "$surefoot" replay c.cap >out 2>err; grep -q 'frame 7,' out || complain "replay names another frame than the captured one: $(head -1 out)"
 refuse 'best-worst' replay c.cap --selector best-worst
 "$surefoot" walk f.walk $virtual --frames 5 >out 2>err

@@ -12,6 +12,7 @@
 #include "render/bake/ground_classes.hpp"
 #include "render/bake/stage.hpp"
 #include "render/model/ground/near.hpp"
+#include "render/model/ground/walker.hpp"
 
 namespace surefoot::bake {
 
@@ -171,6 +172,28 @@ model::Ground GroundMaker::trees() {
     return ground;
 }
 
+/// Whether a default walker could stand on any triangle.
+bool has_floor(const model::Ground& ground) {
+    const double min_up = std::cos(model::Body{}.slope_rad);
+    const Box everywhere{dvec3(-1e30), dvec3(1e30)};
+    bool found = false;
+    const auto look_at = [&](const model::GroundTriangle& t) {
+        const dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
+        const double length = glm::length(normal);
+        found = found || (length > 0 && std::abs(normal.y) >= min_up * length);
+    };
+    model::ground_tree::in_mesh(
+        ground, ground.meshes[0], everywhere, [](const dvec3& p) { return p; }, look_at);
+    for (std::size_t i = 0; i < ground.instances.size() && !found; ++i) {
+        const model::GroundInstance& instance = ground.instances[i];
+        const dmat3 linear(instance.linear);
+        model::ground_tree::in_mesh(
+            ground, ground.meshes[instance.mesh], everywhere, [&](const dvec3& p) { return instance.origin + linear * p; },
+            look_at);
+    }
+    return found;
+}
+
 }  // namespace
 
 model::Ground make_ground(const importer::Scene& scene, const Progress& progress, BlockingTriangles* blocking) {
@@ -181,23 +204,19 @@ model::Ground make_ground(const importer::Scene& scene, const Progress& progress
     return ground;
 }
 
-std::vector<std::string> ground_warnings(const model::Ground& ground, const importer::Scene& scene) {
+std::vector<std::string> ground_warnings(const model::Ground& ground, const Box& all) {
     std::vector<std::string> lines;
-    Box all;
-    for (const importer::Node& node : scene.nodes) {
-        if (!is_placed(scene, node)) continue;
-        for (const importer::Primitive& p : scene.meshes[node.mesh].primitives)
-            for (const vec3& v : p.positions) all.grow(dvec3(node.world * dvec4(dvec3(v), 1.0)));
-    }
     const dvec3 sides = all.empty() ? dvec3(0.0) : all.max - all.min;
     const double widest = std::max(sides.x, sides.z);
     if (ground.empty()) {
         lines.emplace_back("Ground: nothing blocks a walker, so it passes through all and glides at its height");
-    } else if (widest < 1) {
-        lines.push_back(fmt::format("Ground: the model is {:.3g} m wide, smaller than a walker; are its units metres?", widest));
-    } else if (widest > 1e5) {
-        lines.push_back(fmt::format("Ground: the model is {:.3g} km wide; are its units metres?", widest / 1000));
+        return lines;
     }
+    if (widest < 1)
+        lines.push_back(fmt::format("Ground: the model is {:.3g} m wide, smaller than a walker; are its units metres?", widest));
+    if (widest > 1e5) lines.push_back(fmt::format("Ground: the model is {:.3g} km wide; are its units metres?", widest / 1000));
+    if (!has_floor(ground))
+        lines.emplace_back("Ground: there are walls, but nothing level enough to stand on, so walkers glide at their height");
     return lines;
 }
 

@@ -16,7 +16,7 @@ using BlockingTriangles = std::vector<std::vector<bool>>;
 /// them. Empty if the user stops it. `blocking`, if given, receives the classes.
 model::Ground make_ground(const importer::Scene& scene, const Progress& progress, BlockingTriangles* blocking = nullptr);
 
-/// Guesses that a person should know of: no floor, or a size at which nobody can walk. One line each.
-std::vector<std::string> ground_warnings(const model::Ground& ground, const importer::Scene& scene);
+/// Guesses that a person should know of: no floor, or a size at which nobody can walk. One line each. `all`: the model's box.
+std::vector<std::string> ground_warnings(const model::Ground& ground, const Box& all);
 
 }  // namespace surefoot::bake

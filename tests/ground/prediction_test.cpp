@@ -11,6 +11,7 @@
 #include "render/model/ground/near.hpp"
 #include "rt/base/random.hpp"
 #include "tests/ground/grounds.hpp"
+#include "tools/walk/walking.hpp"
 
 namespace surefoot::test {
 
@@ -102,6 +103,7 @@ TEST(WalkerPrediction, NoWalkLeavesItsUncertainty) {
 TEST(WalkerPrediction, NoPoseBeyondAWallIsForeseenAndHardlyAPoseIsMissed) {
     const model::Ground ground = court();
     model::Walker walker(ground, {});
+    walk::RegionClip clip(ground, {});
     const input::Ground question = ground_of_walker(walker);
     Random random(12);
     const input::MotionLimits limits;
@@ -135,15 +137,20 @@ TEST(WalkerPrediction, NoPoseBeyondAWallIsForeseenAndHardlyAPoseIsMissed) {
         if (i % 50 != 0) continue;
         constexpr double ahead_s = 0.1;
         const input::Prediction ahead = input::predict(sample, limits, ahead_s, 9.81);
-        const auto foreseen = walker.foresee(sample.velocity_m_s * ahead_s, 1.5);
-        const double radius = std::min(ahead.uncertainty_m + glm::length(foreseen.eye - ahead.pose.position), foreseen.clear_m);
+        walk::PredictedRegion region;
+        region.known = region.on_foot = true;
+        region.region = {ahead.pose, ahead.uncertainty_m, ahead.uncertainty_rad};
+        region.feet = walker.feet(), region.eye = walker.eye(), region.way = sample.velocity_m_s * ahead_s;
+        clip.clip(region);
+        const dvec3 eye = region.region.centre.position;
+        const double radius = region.region.radius_m;
         clipped += radius < ahead.uncertainty_m ? 1 : 0;
-        model::for_triangles_near(ground, {foreseen.eye - radius, foreseen.eye + radius}, [&](const model::GroundTriangle& t) {
+        model::for_triangles_near(ground, {eye - radius, eye + radius}, [&](const model::GroundTriangle& t) {
             const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
             if (std::abs(n.y) > 0.7 * glm::length(n)) return;
-            beyond += model::separation({foreseen.eye, 0, 0}, t).distance < radius - 1e-9 ? 1 : 0;
+            beyond += model::separation({eye, 0, 0}, t).distance < radius - 1e-9 ? 1 : 0;
         });
-        open.push_back({foreseen.eye, radius, now + 100 * ms});
+        open.push_back({eye, radius, now + 100 * ms});
     }
     std::printf("regions: %d, clipped %d; eyes outside of theirs: %d of %d\n", 100'000 / 50, clipped, missed, checked);
     EXPECT_EQ(beyond, 0);

@@ -23,7 +23,11 @@ importer::Scene square(float size, bool upright = false) {
     return scene;
 }
 
-std::vector<std::string> warnings_of(const importer::Scene& scene) { return ground_warnings(make_ground(scene, {}), scene); }
+std::vector<std::string> warnings_of(const importer::Scene& scene) {
+    Box box;
+    for (const vec3& p : scene.meshes[0].primitives[0].positions) box.grow(dvec3(p));
+    return ground_warnings(make_ground(scene, {}), box);
+}
 
 }  // namespace
 
@@ -33,6 +37,12 @@ TEST(GroundWarnings, SayWhatIsGuessed) {
     EXPECT_NE(warnings_of(square(0.5F))[0].find("0.5 m wide"), std::string::npos);
     EXPECT_NE(warnings_of(square(1e6F))[0].find("1e+03 km wide"), std::string::npos);
     EXPECT_NE(warnings_of(square(0.001F))[0].find("nothing blocks"), std::string::npos) << "smaller than a foot";
+    ASSERT_EQ(warnings_of(square(10, true)).size(), 1U) << "a wall, and no floor";
+    EXPECT_NE(warnings_of(square(10, true))[0].find("nothing level enough"), std::string::npos);
+    importer::Scene inside_out = square(10);
+    std::swap(inside_out.meshes[0].primitives[0].indices[1], inside_out.meshes[0].primitives[0].indices[2]);
+    std::swap(inside_out.meshes[0].primitives[0].indices[4], inside_out.meshes[0].primitives[0].indices[5]);
+    EXPECT_TRUE(warnings_of(inside_out).empty()) << "a floor holds from both sides";
 }
 
 TEST(GroundWarnings, AFloorIsFoundWhateverItsSize) {

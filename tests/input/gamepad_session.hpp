@@ -75,4 +75,17 @@ inline GamepadSession walk_and_turn() {
     return s;
 }
 
+/// Ten thousand reports at 1 kHz with every sort of movement in them, the first at rest.
+inline GamepadSession ten_thousand_events() {
+    GamepadSession session;
+    session.report({});
+    for (int i = 1; i < 10'000; ++i) {
+        const double t = i * 1e-3;
+        session.report(
+            {.side = 0.5 * std::sin(3 * t), .forward = std::sin(t), .turn = std::sin(0.7 * t), .look = 0.2 * std::sin(2 * t)},
+            1000);
+    }
+    return session;
+}
+
 }  // namespace surefoot::input::test

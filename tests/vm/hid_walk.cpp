@@ -1,4 +1,5 @@
-// The walk itself: follows a real device, stops when it is pulled, resumes after neutral, and leaves a picture.
+// The walk itself: follows a real device, stops when it is pulled, resumes after neutral, is held by a wall, and leaves a
+// picture.
 #include <fmt/format.h>
 
 #include <array>
@@ -60,8 +61,8 @@ double gone(const std::vector<Row>& rows, std::int64_t from_ns, std::int64_t to_
     return first == last ? -1 : std::hypot(last->x - first->x, last->y - first->y, last->z - first->z);
 }
 
-void hold(UhidDevice& device, int y, int ms) {
-    for (const std::int64_t from = now_ns(); ms_since(from) < ms; sleep_ms(4)) device.send(pad_at(128, y));
+void hold(UhidDevice& device, int y, int ms, int x = 128) {
+    for (const std::int64_t from = now_ns(); ms_since(from) < ms; sleep_ms(4)) device.send(pad_at(x, y));
 }
 
 /// `surefoot walk` in a child; what it says is read as it comes.
@@ -148,6 +149,45 @@ void walk_with(Checks& checks, const Guest& guest, const WalkKind& kind) {
                              kind.backend, follows, stops, waits, resumes, rows.size(), status));
 }
 
+/// Straight on until a wall holds the visitor, then to the side: it goes along the wall, and no nearer to it.
+void walk_against_a_wall(Checks& checks, const Guest& guest) {
+    const std::string file = guest.keep + "/walk.wall.csv";
+    UhidDevice device(like(guest, "f310-like"), "wall");
+    (void)device.node();
+    WalkingTool walk(
+        fmt::format("timeout 120 {} walk {} --input devices --backend null --rate 10 --seconds 32 --no-fifo --state {} "
+                    "--ledger {} --json",
+                    guest.tool, guest.model, guest.keep, file));
+    while (walk.steers() < 1 && !walk.ended()) hold(device, 128, 20);
+    hold(device, 128, 1000);
+    const std::int64_t pushed = now_ns();
+    hold(device, 0, 15'000);
+    const std::int64_t aside = now_ns();
+    hold(device, 128, 2000, 255);
+    const std::int64_t released = now_ns();
+    hold(device, 128, 500);
+    const int status = walk.end();
+    std::ofstream(guest.keep + "/walk.wall.txt") << walk.output();
+    const auto rows = ledger(file);
+    const double came = gone(rows, pushed, aside), held = gone(rows, aside - 2000 * ms, aside),
+                 along = gone(rows, aside, released);
+    double nearer = 0;  // to the wall, while it went along it
+    const Row *first = nullptr, *at_wall = nullptr;
+    for (const Row& r : rows) {
+        if (r.due_ns < aside) at_wall = &r;
+        if (first == nullptr && r.due_ns >= pushed) first = &r;
+        if (r.due_ns < aside || r.due_ns > released || first == nullptr || at_wall == nullptr || !(came > 0)) continue;
+        const double on_x = (at_wall->x - first->x) / came, on_z = (at_wall->z - first->z) / came;
+        nearer = std::max(nearer, (r.x - at_wall->x) * on_x + (r.z - at_wall->z) * on_z);
+    }
+    const bool walked = walk.output().find("\"walked\": true") != std::string::npos;
+    checks.check(
+        "walk.wall", status == 0 && walked && came > 2 && held >= 0 && held < 0.01 && along > 0.3 && nearer < 0.01,
+        fmt::format("came {:.2f} m, then the wall held it ({:.4f} m in two seconds), went {:.2f} m along it and {:.4f} m "
+                    "nearer; {} frames, status {}",
+                    came, held, along, nearer, rows.size(), status));
+}
+
 }  // namespace
 
 void check_walk(Checks& checks, const Guest& guest) {
@@ -156,6 +196,7 @@ void check_walk(Checks& checks, const Guest& guest) {
         return checks.not_run("walk", "this build has no live input");
     if (!std::filesystem::exists(guest.model)) return checks.not_run("walk", "no model came with it");
     walk_with(checks, guest, {"walk", "null", "--rate 10 --seconds 25", 120});
+    walk_against_a_wall(checks, guest);
     const std::string pictures = guest.keep + "/pictures";
     // Emulated, a frame of this size takes up to half a second, and one of what the built-in cost table would allow ten.
     walk_with(checks, guest,

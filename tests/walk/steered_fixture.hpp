@@ -13,6 +13,7 @@
 namespace surefoot::test {
 
 using input::test::GamepadSession;
+using input::test::ten_thousand_events;
 
 inline std::string keep(const GamepadSession& session, const std::string& name) {
     std::string file = Forest::get().dir + "/" + name + ".hid";
@@ -35,19 +36,6 @@ inline dquat orientation(const rt::FrameRecord& r) {
 /// The frame at a time after the walk's start, at 30 Hz.
 inline const rt::FrameRecord& at(const walk::WalkOutcome& outcome, double seconds) {
     return outcome.records.at(static_cast<std::size_t>(std::lround(seconds * 30.0)));
-}
-
-/// Ten thousand reports at 1 kHz with every sort of movement in them, the first at rest.
-inline GamepadSession ten_thousand_events() {
-    GamepadSession session;
-    session.report({});
-    for (int i = 1; i < 10'000; ++i) {
-        const double t = i * 1e-3;
-        session.report(
-            {.side = 0.5 * std::sin(3 * t), .forward = std::sin(t), .turn = std::sin(0.7 * t), .look = 0.2 * std::sin(2 * t)},
-            1000);
-    }
-    return session;
 }
 
 }  // namespace surefoot::test

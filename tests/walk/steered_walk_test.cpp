@@ -166,6 +166,28 @@ TEST(SteeredWalk, ButtonsLeadToViewpointsTourAndBack) {
         EXPECT_GT(r.candidates, 0U) << "frame " << r.frame << " was drawn coarse: nothing was prepared for where it is";
 }
 
+TEST(SteeredWalk, ButtonsOnFootLeadWhereTheyLeadInFlight) {
+    GamepadSession session;
+    session.report({});
+    session.hold({}, 0.2).press(GamepadSession::next_viewpoint);      // 0.2
+    session.hold({}, 0.2).press(GamepadSession::tour).hold({}, 0.8);  // 0.6, to 1.6
+    session.press(GamepadSession::pause).hold({.forward = 1}, 0.4);   // 1.6: pushed while paused
+    session.press(GamepadSession::reset).hold({}, 0.3);               // 2.2, to 2.7
+    session.hold({.forward = 1}, 1).hold({}, 0.3);                    // 2.7, to 4
+    walk::WalkRequest request = steered_request(session, "buttons-on-foot");
+    const walk::WalkOutcome flight = walk(request);
+    request.walking = rt::WalkingMode::automatic;
+    const walk::WalkOutcome foot = walk(request);
+    ASSERT_EQ(foot.records.size(), flight.records.size());
+    for (std::size_t i = 0; i < 80; ++i)
+        EXPECT_LT(glm::length(eye(foot.records[i]) - eye(flight.records[i])), 1e-9)
+            << i << ": nobody pushes who is carried, or stands where a button put him";
+    EXPECT_TRUE(foot.summary.input.walked);
+    EXPECT_EQ(foot.summary.input.jumps, flight.summary.input.jumps);
+    EXPECT_GT(glm::length(eye(at(foot, 3.9)) - eye(at(foot, 2.6))), 0.7) << "then the hand walks on";
+    for (const rt::FrameRecord& r : foot.records) EXPECT_GT(r.candidates, 0U) << "frame " << r.frame;
+}
+
 TEST(SteeredWalk, AnEmergencyStopStandsStillAndIsReported) {
     walk::WalkRequest request = test::Forest::get().virtual_request(0);
     GamepadSession session;

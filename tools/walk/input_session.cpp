@@ -66,10 +66,20 @@ void InputSession::begin(const Path& path, const model::Ground& ground, std::int
     tour_controller_ = std::make_unique<TourController>(path);
     walking_ = std::make_unique<Walking>(ground, body_, mode_);
     stepper_ = std::make_unique<InputStepper>(*source_, *steering_, *tour_controller_, *walking_, samples_, jump_poses_,
-                                              region_ahead_s(period_ns_), live_ ? live_->keeper() : nullptr);
+                                              live_ ? live_->keeper() : nullptr);
+    if (walking_->walker() != nullptr) clip_.emplace(ground, body_);
     poses_ = std::make_unique<SteeredPoses>(samples_, motion_, period_ns_, real_clock ? nullptr : stepper_.get());
     stepper_->begin(start_ns);
     if (real_clock) thread_ = std::make_unique<InputThread>(*stepper_, placement);
+}
+
+void InputSession::poll(const Progress& progress, std::vector<std::string>& notes) {
+    if (live_) live_->poll_live(progress, notes);
+    if (freed_told_ || !walking_ || !walking_->shown_freed()) return;
+    freed_told_ = true;
+    notify(progress, notes,
+           "The visitor was inside something solid and was put to the nearest free place. This is told once; `--json` counts it "
+           "as `freed`.");
 }
 
 rt::InputState InputSession::now() const {
@@ -85,11 +95,15 @@ rt::InputState InputSession::now() const {
 }
 
 std::optional<Error> InputSession::end(const Progress& progress, std::vector<std::string>& notes) {
-    if (!thread_) return {};
+    if (!thread_) {
+        poll(progress, notes);
+        return {};
+    }
     thread_->stop();
     guard_violations_ = thread_->guard_violations();
     steering_->steers.plays();  // its thread has ended
     if (live_) live_->finish(steering_->safety().latched, progress, notes);
+    poll(progress, notes);
     return thread_->misplaced();
 }
 

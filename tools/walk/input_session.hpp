@@ -40,12 +40,13 @@ public:
     [[nodiscard]] PoseSource& poses() { return *poses_; }
     /// For the prepare thread: poses that the eye jumps to by a button.
     [[nodiscard]] JumpBuffer* jump_poses() { return &jump_poses_; }
-    /// Live: call it every few milliseconds during the walk. Reports what devices do, and stores an emergency stop.
-    void poll_live(const Progress& progress, std::vector<std::string>& notes) {
-        if (live_) live_->poll_live(progress, notes);
-    }
+    /// For the thread that prepares; null where nobody can walk. After begin().
+    [[nodiscard]] RegionClip* clip() { return clip_ ? &*clip_ : nullptr; }
+    /// Call it every few milliseconds during the walk, from a thread that may wait. Reports what devices do, stores an emergency
+    /// stop, and tells once that a visitor was put out of something solid.
+    void poll(const Progress& progress, std::vector<std::string>& notes);
     [[nodiscard]] bool live() const { return live_.has_value(); }
-    /// Devices as of the last poll_live(); what stops the walker as of the last step.
+    /// Devices as of the last poll(); what stops the walker as of the last step.
     [[nodiscard]] rt::InputState now() const;
     /// Ends the input thread. Returns the error if the thread could not be placed.
     std::optional<Error> end(const Progress& progress, std::vector<std::string>& notes);
@@ -68,11 +69,13 @@ private:
     rt::WalkingMode mode_ = rt::WalkingMode::automatic;
     model::Body body_;
     std::unique_ptr<Walking> walking_;
+    std::optional<RegionClip> clip_;
     std::unique_ptr<TourController> tour_controller_;
     std::unique_ptr<InputStepper> stepper_;
     std::unique_ptr<SteeredPoses> poses_;
     std::unique_ptr<InputThread> thread_;
     std::uint64_t guard_violations_ = 0;
+    bool freed_told_ = false;
 };
 
 /// Ages of reports, ms: from a report's stamp until the first frame whose pose includes it was submitted. Pure. stamps_ns[i] is

@@ -8,25 +8,17 @@
 namespace surefoot::walk {
 
 InputStepper::InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller,
-                           Walking& walking, rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses, double ahead_s,
+                           Walking& walking, rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses,
                            input::StopKeeper* keeper)
     : source_(source),
       steering_(steering),
       tour_controller_(tour_controller),
       walking_(walking),
-      ahead_s_(ahead_s),
       samples_(samples),
       jump_poses_(jump_poses),
       keeper_(keeper) {
     steering_.place(tour_controller_.start());
 }
-
-namespace {
-
-/// Regions are clipped by walls that are nearer to the predicted eye than this.
-constexpr double max_clear_m = 1.5;
-
-}  // namespace
 
 void InputStepper::begin(std::int64_t start_ns) {
     steering_.steers.plays();  // before the input thread is there
@@ -81,9 +73,8 @@ void InputStepper::publish(const input::NavigationSample& sample, std::int64_t n
     out.jumps = jumps;
     out.touring = tour_controller_.touring();
     out.walking = walking_.walks();
-    const auto foreseen = walking_.foresee(sample, ahead_s_, max_clear_m);
-    out.foreseen = foreseen && foreseen->clear_m < max_clear_m;
-    if (foreseen) out.ahead_eye = foreseen->eye, out.ahead_clear_m = foreseen->clear_m;
+    out.on_foot = walking_.stands(sample);
+    if (out.on_foot) out.feet = walking_.walker()->feet();
     out.barrier = out.walking ? walking_.walker()->barrier() : model::Barrier::clear;
     samples_.publish();
 }

@@ -26,9 +26,8 @@ struct SteeredSample {
     std::uint64_t reports = 0;  ///< accepted, up to and with this sample
     std::uint32_t jumps = 0;    ///< of the tour controller and of the walker
     bool touring = false;
-    bool foreseen = false;                           ///< the next two are known
-    dvec3 ahead_eye{0.0};                            ///< where the velocity leads in the stepper's ahead_s, walls regarded
-    double ahead_clear_m = 0;                        ///< no wall is nearer to there
+    bool on_foot = false;  ///< a step of a walker led to nav.pose, with its feet at `feet`
+    dvec3 feet{0.0};
     bool walking = false;                            ///< else the eye flies
     model::Barrier barrier = model::Barrier::clear;  ///< what stops the walker
 };
@@ -37,12 +36,10 @@ struct SteeredSample {
 class InputStepper {
 public:
     /// All of them must outlive this; `steering` is placed at the tour's start.
-    /// `ahead_s`: for how far ahead frames are prepared.
     /// `keeper`, if given, is notified at each step whether an emergency stop is latched.
     /// `jump_poses` is notified of jumps: poses that the eye does not walk to.
     InputStepper(input::ReportSource& source, input::Steering& steering, TourController& tour_controller, Walking& walking,
-                 rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses, double ahead_s,
-                 input::StopKeeper* keeper = nullptr);
+                 rt::TripleBuffer<SteeredSample>& samples, JumpBuffer& jump_poses, input::StopKeeper* keeper = nullptr);
 
     /// Publishes the start, and attaches connected devices. On a neutral thread, before the first step; allocates.
     void begin(std::int64_t start_ns);
@@ -62,7 +59,6 @@ private:
     input::Steering& steering_;
     TourController& tour_controller_;
     Walking& walking_;
-    double ahead_s_;
     rt::TripleBuffer<SteeredSample>& samples_;
     JumpBuffer& jump_poses_;
     input::StopKeeper* keeper_;

@@ -9,14 +9,14 @@
 
 namespace surefoot::walk {
 
-namespace {
-
 void notify(const Progress& progress, std::vector<std::string>& notes, std::string text) {
     if (progress.notify)
         progress.notify(text);
     else
         notes.push_back(std::move(text));
 }
+
+namespace {
 
 /// The folder is there, and the file can be written: else a stop would be forgotten, and nobody would know.
 Result<void> check_memory(const std::string& file, bool latched) {

@@ -13,6 +13,9 @@
 
 namespace surefoot::walk {
 
+/// Shows the user a message at once, or adds it to `notes` where nobody listens.
+void notify(const Progress& progress, std::vector<std::string>& notes, std::string text);
+
 /// Live devices of a walk, with their messages and the stored stop.
 class LiveInput {
 public:

@@ -5,11 +5,13 @@
 #include <cmath>
 
 #include "rt/clock/clock.hpp"
+#include "tools/walk/walking.hpp"
 
 namespace surefoot::walk {
 
-void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out) {
-    if (const PredictedRegion& f = sample.predicted; f.known) {
+void prepare_after(Engine& engine, const PoseSample& sample, double period_s, RegionClip* clip, prepare::PreparedFrame& out) {
+    if (PredictedRegion f = sample.predicted; f.known) {
+        if (clip != nullptr) clip->clip(f);
         engine.prepare(f.region, sample.frame, f.speed_m_s, f.turn_rad_s, out, sample.hints);
         return;
     }
@@ -21,13 +23,14 @@ void prepare_after(Engine& engine, const PoseSample& sample, double period_s, pr
 }
 
 PrepareThread::PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
-                             rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, rt::Placement placement,
-                             bool shares_cores)
+                             rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, RegionClip* clip,
+                             rt::Placement placement, bool shares_cores)
     : engine_(engine),
       grid_(grid),
       poses_(poses),
       prepared_(prepared),
       jump_poses_(jump_poses),
+      clip_(clip),
       rhythm_(shares_cores ? 2 : 1, 1e-3 * static_cast<double>(grid.period_ns)),
       placement_(std::move(placement)),
       thread_([this] { run(); }) {
@@ -56,7 +59,7 @@ void PrepareThread::prepare_newest() {
         sample.predicted = {};
     }
     seen_ = sample.frame;
-    prepare_after(engine_, sample, period_s, prepared_.back());
+    prepare_after(engine_, sample, period_s, clip_, prepared_.back());
     rhythm_.prepared(prepared_.back());
     if (jump) rhythm_.forget();  // its region is of a standing eye
     prepared_.publish();

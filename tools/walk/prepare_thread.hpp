@@ -23,6 +23,8 @@ struct PredictedRegion {
     bool known = false;
     prepare::Region region;  ///< a path's next poses; or the hand's, and how far from it the limits of motion allow
     double speed_m_s = 0, turn_rad_s = 0;
+    bool on_foot = false;  ///< a walker stands at `feet` and `eye`, and its velocity leads `way` on: walls clip the region
+    dvec3 feet{0.0}, eye{0.0}, way{0.0};
 };
 
 /// What the frame thread publishes at each frame's start.
@@ -42,8 +44,11 @@ constexpr double horizon_s(double period_s) {
     return rt::oldest_prepared(period_ns) * period_s;
 }
 
-/// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation.
-void prepare_after(Engine& engine, const PoseSample& sample, double period_s, prepare::PreparedFrame& out);
+class RegionClip;
+
+/// Fills `out` for the frames after `sample`. Shared by the thread below and by the virtual clock's inline preparation. `clip`:
+/// null where nobody walks.
+void prepare_after(Engine& engine, const PoseSample& sample, double period_s, RegionClip* clip, prepare::PreparedFrame& out);
 
 /// Poses that the eye jumps to (buttons), from the input thread. Only poses and times are used.
 using JumpBuffer = rt::TripleBuffer<PoseSample>;
@@ -79,10 +84,11 @@ private:
 class PrepareThread {
 public:
     /// Start from a neutral thread; the thread is in its place when this returns. The buffers must outlive it. `jump_poses`: null
-    /// if the eye never jumps; else it is read eight times a period. shares_cores: with the rasterisers.
+    /// if the eye never jumps; else it is read eight times a period. `clip`: null if nobody walks. shares_cores: with the
+    /// rasterisers.
     PrepareThread(Engine& engine, rt::Grid grid, rt::TripleBuffer<PoseSample>& poses,
-                  rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, rt::Placement placement,
-                  bool shares_cores);
+                  rt::TripleBuffer<prepare::PreparedFrame>& prepared, JumpBuffer* jump_poses, RegionClip* clip,
+                  rt::Placement placement, bool shares_cores);
     ~PrepareThread();
     PrepareThread(const PrepareThread&) = delete;
     PrepareThread& operator=(const PrepareThread&) = delete;
@@ -99,6 +105,7 @@ private:
     rt::TripleBuffer<PoseSample>& poses_;
     rt::TripleBuffer<prepare::PreparedFrame>& prepared_;
     JumpBuffer* jump_poses_;
+    RegionClip* clip_;
     PrepareRhythm rhythm_ GUARDED_BY(prepares_);
     std::uint64_t seen_ GUARDED_BY(prepares_) = ~0ULL;  ///< frame prepared after last
     const rt::Placement placement_;

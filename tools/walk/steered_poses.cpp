@@ -39,16 +39,15 @@ FramePose SteeredPoses::pose_of(const FrameTime& time) const {
     out.stamp_ns = s.nav.stamp_ns;
     out.reports = s.reports;
     if (s.touring) return out;  // the limits say nothing about a path: the last two poses do
-    input::Prediction ahead = input::predict(s.nav, limits_, region_ahead_s(period_ns_), s.walking ? walker_rise_m_s2 : 0);
-    if (s.foreseen) {
-        const dvec3 led_m = s.ahead_eye - ahead.pose.position;
-        ahead.pose.position = s.ahead_eye;
-        ahead.uncertainty_m = std::min(ahead.uncertainty_m + glm::length(led_m), s.ahead_clear_m);
-    }
+    const double ahead_s = region_ahead_s(period_ns_);
+    const input::Prediction ahead = input::predict(s.nav, limits_, ahead_s, s.walking ? walker_rise_m_s2 : 0);
     out.predicted.known = true;
     out.predicted.region = {ahead.pose, ahead.uncertainty_m, ahead.uncertainty_rad};
     out.predicted.speed_m_s = glm::length(s.nav.velocity_m_s);
     out.predicted.turn_rad_s = glm::length(s.nav.angular_rad_s);
+    out.predicted.on_foot = s.on_foot;
+    if (s.on_foot)
+        out.predicted.feet = s.feet, out.predicted.eye = s.nav.pose.position, out.predicted.way = s.nav.velocity_m_s * ahead_s;
     return out;
 }
 

@@ -105,7 +105,7 @@ void supervise(Session& s, rt::Clock& clock, const std::atomic<bool>& done, cons
     const int look_ms = s.virtual_clock ? 5 : s.input && s.input->live() ? 10 : 100;
     while (!done.load()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
-        if (s.input) s.input->poll_live(progress, s.notes);
+        if (s.input) s.input->poll(progress, s.notes);
         notify_input(s);
         notify_missed_frame(s);
         const double ran =
@@ -131,16 +131,17 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
     s.on_frame_core = on_frame_core(s.plan, s.rasterisers);
     const rt::FrameLoopOptions options = loop_options(s, progress);
 
+    PathPoses path_poses(s.path.path, s.grid.period_ns);
+    if (s.input) s.input->begin(s.path.path, s.engine->model().ground, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
     std::unique_ptr<PrepareThread> preparing;
     JumpBuffer* jump_poses = s.input ? s.input->jump_poses() : nullptr;
+    RegionClip* clip = s.input ? s.input->clip() : nullptr;
     if (!s.virtual_clock) {
-        preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, jump_poses, prepare_placement(s.plan),
-                                                    shared_cores(s) > 0);
+        preparing = std::make_unique<PrepareThread>(*s.engine, s.grid, s.poses, s.prepared, jump_poses, clip,
+                                                    prepare_placement(s.plan), shared_cores(s) > 0);
         if (const auto& refused = preparing->misplaced())
             s.facts.degraded.push_back({rt::LackKind::placing, refused->what, refused->remedy});
     }
-    PathPoses path_poses(s.path.path, s.grid.period_ns);
-    if (s.input) s.input->begin(s.path.path, s.engine->model().ground, s.grid.t0_ns, !s.virtual_clock, input_placement(s.plan));
     PoseSource& pose_source = s.input ? s.input->poses() : static_cast<PoseSource&>(path_poses);
     if (s.virtual_clock) notify_started(s);
     std::atomic<bool> done{false};
@@ -156,6 +157,7 @@ void run_loop(Session& s, SnapshotStore& snapshots, rt::SpscRing<rt::FrameRecord
         if (!s.virtual_clock) rt::prefault_heap();
         WalkStagesOptions of_stages = stages_options(s);
         of_stages.stop = progress.stop;
+        of_stages.clip = clip;
         WalkStages stages(*s.engine, pose_source, clock, s.poses, s.prepared, snapshots, s.kept, of_stages);
         s.engine->device().bind();
         stages.rehearse(s.grid.t0_ns);

@@ -188,7 +188,7 @@ void WalkStages::latch(rt::FrameRecord& record) {
 
 void WalkStages::prepare_inline() {
     const rt::DriverScope not_the_frame_threads_own;  // the workers' library may allocate
-    prepare_after(engine_, now_, static_cast<double>(options_.period_ns) * 1e-9, prepared_.back());
+    prepare_after(engine_, now_, static_cast<double>(options_.period_ns) * 1e-9, options_.clip, prepared_.back());
     prepared_.publish();
 }
 

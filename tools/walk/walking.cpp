@@ -26,9 +26,14 @@ input::Ground Walking::ground(bool flies) {
     return {query, &*walker_, walker_rise_m_s2, halt};
 }
 
-std::optional<model::Walker::Foreseen> Walking::foresee(const input::NavigationSample& sample, double ahead_s, double far_m) {
-    if (!walks_ || !walker_->stands() || sample.pose.position != walker_->eye()) return {};  // a button put the eye elsewhere
-    return walker_->foresee(sample.velocity_m_s * ahead_s, far_m);
+void RegionClip::clip(PredictedRegion& predicted) {
+    if (!predicted.known || !predicted.on_foot) return;
+    prepare::Region& region = predicted.region;
+    const dvec3 unled = predicted.eye + predicted.way;
+    const double wide_m = region.radius_m + glm::length(region.centre.position - unled);
+    const model::Walker::Foreseen foreseen = walker_.foresee(predicted.feet, predicted.eye, predicted.way, wide_m);
+    region.radius_m = std::min(region.radius_m + glm::length(foreseen.eye - region.centre.position), foreseen.clear_m);
+    region.centre.position = foreseen.eye;
 }
 
 std::uint32_t Walking::jumps() const { return walker_ ? static_cast<std::uint32_t>(walker_->returns() + walker_->freed()) : 0; }

@@ -10,6 +10,7 @@
 #include "render/model/ground/walker.hpp"
 #include "rt/base/modes.hpp"
 #include "rt/base/path.hpp"
+#include "tools/walk/prepare_thread.hpp"
 
 namespace surefoot::walk {
 
@@ -29,18 +30,21 @@ public:
     [[nodiscard]] std::uint32_t jumps() const;
     [[nodiscard]] bool walks() const { return walks_; }
     [[nodiscard]] bool walked() const { return walked_; }  ///< at any time
-    /// After a step: where the sample's velocity leads the eye in `ahead_s`, with no wall nearer than clear_m. Nothing where
-    /// nobody walks, or where a button put the eye elsewhere.
-    [[nodiscard]] std::optional<model::Walker::Foreseen> foresee(const input::NavigationSample& sample, double ahead_s,
-                                                                 double far_m);
+    /// After a step: whether somebody walks, and a step led to the sample's eye. Else he flies, is carried, or a button put the
+    /// eye elsewhere.
+    [[nodiscard]] bool stands(const input::NavigationSample& sample) const {
+        return walks_ && walker_->stands() && sample.pose.position == walker_->eye();
+    }
     /// After each step: lets other threads read what stops the walker.
     void publish() {
-        shown_.store(walks_ ? walker_->barrier() : model::Barrier::clear, std::memory_order_relaxed),
-            shown_walks_.store(walks_, std::memory_order_relaxed);
+        shown_.store(walks_ ? walker_->barrier() : model::Barrier::clear, std::memory_order_relaxed);
+        shown_walks_.store(walks_, std::memory_order_relaxed);
+        shown_freed_.store(walker_ && walker_->freed() > 0, std::memory_order_relaxed);
     }
     /// For any thread, as of the last publish().
     [[nodiscard]] model::Barrier shown_barrier() const { return shown_.load(std::memory_order_relaxed); }
     [[nodiscard]] bool shown_walks() const { return shown_walks_.load(std::memory_order_relaxed); }
+    [[nodiscard]] bool shown_freed() const { return shown_freed_.load(std::memory_order_relaxed); }  ///< at any time
     /// Null where nobody walks.
     [[nodiscard]] const model::Walker* walker() const { return walker_ ? &*walker_ : nullptr; }
 
@@ -49,7 +53,20 @@ private:
     rt::WalkingMode mode_;
     bool walks_ = false, walked_ = false;
     std::atomic<model::Barrier> shown_{model::Barrier::clear};
-    std::atomic<bool> shown_walks_{false};
+    std::atomic<bool> shown_walks_{false}, shown_freed_{false};
+};
+
+/// Clips regions of poses by walls. For the thread that prepares; the constructor allocates, clip() does not.
+class RegionClip {
+public:
+    /// The ground must outlive this.
+    RegionClip(const model::Ground& ground, const model::Body& body) : walker_(ground, body) {}
+    /// No pose of a region on foot lies beyond a wall then; what is seen from there is not clipped. Other regions stay as they
+    /// are.
+    void clip(PredictedRegion& predicted);
+
+private:
+    model::Walker walker_;
 };
 
 /// What a visitor should know of a path: where it leads through walls, and which viewpoints stand in one. Empty: nowhere.

@@ -70,11 +70,23 @@ Separation separation(const Capsule& capsule, const GroundTriangle& t) {
     return {0, n2 > 0 ? n / std::sqrt(n2) : dvec3(0, 1, 0)};
 }
 
-Contact first_contact(const Capsule& capsule, const dvec3& move, const GroundTriangle& triangle) {
+double min_separation(const Capsule& capsule, const GroundTriangle& t) {
+    const dvec3 middle = (t.a + t.b + t.c) * (1.0 / 3.0), a = t.a - middle, b = t.b - middle, c = t.c - middle;
+    const double y = std::clamp(middle.y, capsule.low.y, capsule.low.y + capsule.length);
+    const dvec3 to_middle(middle.x - capsule.low.x, middle.y - y, middle.z - capsule.low.z);
+    const double of_sphere = glm::length(to_middle) - std::sqrt(std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(c, c)}));
+    const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
+    const double low = glm::dot(capsule.low - t.a, n), high = low + capsule.length * n.y, n2 = glm::dot(n, n);
+    if (!(low * high > 0) || !(n2 > 0)) return of_sphere;
+    return std::max(of_sphere, std::min(std::abs(low), std::abs(high)) / std::sqrt(n2));
+}
+
+Contact first_contact(const Capsule& capsule, const dvec3& move, const GroundTriangle& triangle, double until) {
     constexpr double tolerance_m = 1e-9;
     constexpr int max_steps = 48;  // a grazing contact halves its error with each; any other doubles its digits
     const double length = glm::length(move);
-    if (!(length > 0)) return {};
+    until = std::min(until, 1.0);
+    if (!(length > 0) || min_separation(capsule, triangle) > capsule.radius + until * length + tolerance_m) return {};
     Contact contact;
     double share = 0;
     Capsule moved = capsule;
@@ -86,7 +98,7 @@ Contact first_contact(const Capsule& capsule, const dvec3& move, const GroundTri
         contact.away = s.distance > 0 || glm::dot(s.away, move) < 0 ? s.away : -s.away;
         if (left <= tolerance_m) break;
         share += left / approach;
-        if (share > 1) return {};
+        if (share > until) return {};
         moved.low = capsule.low + share * move;
     }
     contact.share = share;

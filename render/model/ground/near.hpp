@@ -92,25 +92,51 @@ struct LatticeQuery {
     }
 };
 
-/// use(GroundTriangle, number): triangles whose lattice box meets the query, by `place` from mesh frame to world.
+/// The triangles of a block, by `place` from mesh frame to world, to use(GroundTriangle). Those that pass only: on the lattice.
+template <class Place, class Passes, class Use>
+void in_block(const Ground& ground, const GroundMesh& mesh, const GroundBlock& block, const Place& place, const Passes& passes,
+              const Use& use) {
+    std::array<dvec3, max_block_corners> corners;
+    for (std::uint32_t i = 0; i < block.corners; ++i) corners[i] = corner(ground, block, i);
+    const std::byte* numbers = ground.bytes.data() + block.first_byte + std::size_t{block.corners} * (block.wide ? 12 : 6);
+    const auto in_world = [&](const dvec3& p) { return place(mesh.origin + mesh.step_m * p); };
+    for (std::uint32_t t = 0; t < block.triangles; ++t, numbers += 3) {
+        const dvec3 &a = corners[std::to_integer<std::size_t>(numbers[0])],
+                    &b = corners[std::to_integer<std::size_t>(numbers[1])],
+                    &c = corners[std::to_integer<std::size_t>(numbers[2])];
+        if (passes(GroundTriangle{a, b, c})) use(GroundTriangle{in_world(a), in_world(b), in_world(c)});
+    }
+}
+
+/// use(number): blocks of a mesh that meet the query.
+template <class Use>
+void blocks_in_mesh(const Ground& ground, const GroundMesh& mesh, const LatticeQuery& query, const Use& use) {
+    const auto passes = [&](std::uint32_t node) { return query.meets(ground.boxes[mesh.first_node + node]); };
+    for_leaves(mesh.block_count, passes, [&](std::uint32_t leaf) { use(mesh.first_block + leaf); });
+}
+
+/// use(GroundTriangle): triangles whose lattice box meets the query, by `place` from mesh frame to world.
 template <class Place, class Use>
 void in_mesh(const Ground& ground, const GroundMesh& mesh, const Box& local, const Place& place, const Use& use) {
     const LatticeQuery query(mesh, local);
-    const auto passes = [&](std::uint32_t node) { return query.meets(ground.boxes[mesh.first_node + node]); };
-    for_leaves(mesh.block_count, passes, [&](std::uint32_t leaf) {
-        const GroundBlock& block = ground.blocks[mesh.first_block + leaf];
-        std::array<dvec3, max_block_corners> corners;
-        for (std::uint32_t i = 0; i < block.corners; ++i) corners[i] = corner(ground, block, i);
-        const std::byte* numbers = ground.bytes.data() + block.first_byte + std::size_t{block.corners} * (block.wide ? 12 : 6);
-        for (std::uint32_t t = 0; t < block.triangles; ++t, numbers += 3) {
-            const dvec3 &a = corners[std::to_integer<std::size_t>(numbers[0])],
-                        &b = corners[std::to_integer<std::size_t>(numbers[1])],
-                        &c = corners[std::to_integer<std::size_t>(numbers[2])];
-            if (!overlap(query.box, box_of({a, b, c}))) continue;
-            const auto in_world = [&](const dvec3& p) { return place(mesh.origin + mesh.step_m * p); };
-            use(GroundTriangle{in_world(a), in_world(b), in_world(c)});
-        }
-    });
+    const auto passes = [&](const GroundTriangle& t) { return overlap(query.box, box_of(t)); };
+    blocks_in_mesh(ground, mesh, query,
+                   [&](std::uint32_t block) { in_block(ground, mesh, ground.blocks[block], place, passes, use); });
+}
+
+/// use(instance): those whose boxes meet `box`.
+template <class Use>
+void instances_near(const Ground& ground, const Box& box, const Use& use) {
+    const auto passes = [&](std::uint32_t node) { return overlap(box, ground.instance_boxes[node]); };
+    for_leaves(static_cast<std::uint32_t>(ground.instances.size()), passes, use);
+}
+
+/// The world's box in the frame of an instance.
+inline Box in_frame_of(const GroundInstance& instance, const Box& box) {
+    const dmat3 inverse = glm::inverse(dmat3(instance.linear));
+    const dvec3 centre = inverse * (box.centre() - instance.origin), half = box.half();
+    const dvec3 reach = glm::abs(inverse[0]) * half.x + glm::abs(inverse[1]) * half.y + glm::abs(inverse[2]) * half.z;
+    return {centre - reach, centre + reach};
 }
 
 }  // namespace ground_tree
@@ -124,14 +150,11 @@ void for_triangles_near(const Ground& ground, const Box& box, const Use& use) {
     };
     ground_tree::in_mesh(
         ground, ground.meshes[0], box, [](const dvec3& p) { return p; }, near);
-    const auto passes = [&](std::uint32_t node) { return ground_tree::overlap(box, ground.instance_boxes[node]); };
-    ground_tree::for_leaves(static_cast<std::uint32_t>(ground.instances.size()), passes, [&](std::uint32_t leaf) {
-        const GroundInstance& instance = ground.instances[leaf];
-        const dmat3 linear(instance.linear), inverse = glm::inverse(linear);
-        const dvec3 centre = inverse * (box.centre() - instance.origin), half = box.half();
-        const dvec3 reach = glm::abs(inverse[0]) * half.x + glm::abs(inverse[1]) * half.y + glm::abs(inverse[2]) * half.z;
+    ground_tree::instances_near(ground, box, [&](std::uint32_t number) {
+        const GroundInstance& instance = ground.instances[number];
+        const dmat3 linear(instance.linear);
         ground_tree::in_mesh(
-            ground, ground.meshes[instance.mesh], {centre - reach, centre + reach},
+            ground, ground.meshes[instance.mesh], ground_tree::in_frame_of(instance, box),
             [&](const dvec3& p) { return instance.origin + linear * p; }, near);
     });
 }

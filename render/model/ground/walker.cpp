@@ -21,9 +21,9 @@ constexpr double max_roll_m_s = 1;
 constexpr double eye_m_s2 = 8, eye_settles_s = 0.06;  // how the eye follows the feet up and down
 constexpr double max_lag_m = 0.8;                     // the eye behind the feet, climbing
 constexpr double max_sink_m = 0.15;                   // the eye below its height over the feet, landing
-constexpr double gather_m = 0.3;                      // triangles are gathered this much further than a step needs
+constexpr double gather_m = 0.25;                     // triangles are gathered this much further than a step needs
 constexpr double close_m = 0.12;
-constexpr std::size_t max_near = 2048;
+constexpr std::size_t max_close = 4096;
 constexpr double wall_max_up = 0.7;  // of a normal: what is more level is a floor or a ceiling, and the eye is not led through it
 // How far the sides of a solid are looked for: small rooms of single walls look like one to who starts there.
 constexpr double start_sight_m = 1, place_sight_m = 2.5;
@@ -40,31 +40,21 @@ dvec3 direction(double turn) {
     return {std::cos(angle), 0, std::sin(angle)};
 }
 
-/// Whether the triangle's plane alone shows that the capsule does not touch it.
-bool is_beyond(const Capsule& capsule, const GroundTriangle& t) {
-    const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
-    const double low = glm::dot(capsule.low - t.a, n), high = low + capsule.length * n.y;
-    const double reach2 = capsule.radius * capsule.radius * glm::dot(n, n);
-    return low * high > 0 && low * low > reach2 && high * high > reach2;
-}
-
 Box swept(const Capsule& capsule, const dvec3& move) {
     Box box{capsule.low - capsule.radius, capsule.low + capsule.radius};
     box.max.y += capsule.length;
-    const Box moved{box.min + move, box.max + move};
-    box.grow(moved);
+    box.grow(Box{box.min + move, box.max + move});
     return box;
 }
 
 }  // namespace
 
-Walker::Walker(const Ground& ground, const Body& body) : ground_(ground), body_(body) {
+Walker::Walker(const Ground& ground, const Body& body) : ground_(ground), body_(body), near_(ground) {
     // A small visitor is a thin one too, and steps no higher than the knee.
     const double tall = body_.eye_m + crown_m;
     body_.step_m = std::min(body_.step_m, 0.4 * tall);
     body_.radius_m = std::min(body_.radius_m, (tall - body_.step_m - step_slack_m) / 2);
-    near_.reserve(max_near);
-    close_.reserve(max_near);
+    close_.reserve(max_close);
     for (std::size_t i = 1; i < foot_.size(); ++i) foot_[i] = foot_share * body_.radius_m * direction(static_cast<double>(i) / 8);
 }
 
@@ -73,71 +63,67 @@ Capsule Walker::capsule_at(const dvec3& feet) const {
     return {feet + dvec3(0, bottom + body_.radius_m, 0), std::max(0.0, top - bottom - 2 * body_.radius_m), body_.radius_m};
 }
 
-void Walker::gather(const Box& box) {
-    near_.clear();
-    near_complete_ = near_known_ = true;
-    close_known_ = false;
-    near_box_ = box;
-    for_triangles_near(ground_, box, [&](const GroundTriangle& t) {
-        if (near_.size() == max_near)
-            near_complete_ = false;
-        else
-            near_.push_back({t, ground_tree::box_of(t)});
-    });
-}
-
 /// From the gathered triangles where they hold all of the box, else from the tree.
 template <class Use>
 void Walker::for_near(const Box& box, const Use& use) const {
-    if (!near_complete_ || !near_box_.contains(box)) return for_triangles_near(ground_, box, use);
-    for (const Near& near : near_)
-        if (ground_tree::overlap(box, near.box)) use(near.triangle);
+    if (!near_.holds(box)) return for_triangles_near(ground_, box, use);
+    near_.for_triangles(box, [&](const GroundTriangle& t, const NearBlocks::Known&) { use(t); });
 }
 
-void Walker::prepare_near(double reach_m) {
-    const Capsule body = capsule_at(feet_);
-    Box needed{feet_ - dvec3(body.radius + reach_m), feet_ + dvec3(body.radius + reach_m)};
-    needed.min.y = feet_.y - std::min(body_.edge_m, 2.0) - reach_m;
+void Walker::prepare_near(const dvec3& feet, double reach_m) {
+    const Capsule body = capsule_at(feet);
+    reach_m += close_m;
+    Box needed{feet - dvec3(body.radius + reach_m), feet + dvec3(body.radius + reach_m)};
+    needed.min.y = feet.y - std::min(body_.edge_m, 2.0) - reach_m;
     needed.max.y = body.low.y + body.length + body.radius + body_.step_m + reach_m;
-    if (near_known_ && near_box_.contains(needed)) return;
-    gather({needed.min - gather_m, needed.max + gather_m});
+    if (near_.gathered(needed)) return;
+    near_.gather({needed.min - gather_m, needed.max + gather_m});
+    close_known_ = false;
 }
 
 void Walker::find_close(const dvec3& feet) {
-    Capsule body = capsule_at(feet);
-    const double radius = body.radius;
-    body.radius += close_m;
-    const Box box = swept(body, dvec3(0.0));
+    const Capsule body = capsule_at(feet);
+    const Box box = swept({body.low, body.length, body.radius + close_m}, dvec3(0.0));
     close_.clear();
-    for (std::uint32_t i = 0; i < near_.size(); ++i) {
-        if (!ground_tree::overlap(box, near_[i].box) || is_beyond(body, near_[i].triangle)) continue;
-        const double apart = separation(body, near_[i].triangle).distance - radius;
-        if (apart <= close_m) close_.push_back({i, apart});
-    }
+    close_complete_ = near_.holds(box);
+    near_.for_triangles(box, [&](const GroundTriangle& t, NearBlocks::Known& known) {
+        if (known.apart_m - glm::length(feet - known.feet) > close_m) return;
+        if (known.apart_m == -infinity) known = {feet, min_separation(body, t) - body.radius};
+        if (known.apart_m - glm::length(feet - known.feet) > close_m) return;
+        if (close_.size() < max_close)
+            close_.push_back({&t, &known});
+        else
+            close_complete_ = false;
+    });
     close_to_ = feet;
     close_known_ = true;
 }
 
-/// The body with its feet there, moved; its radius grown by `skin`. Steps are short, so only what is close can be touched, and
-/// that is found once for many of them.
+/// The body with its feet there, moved; its radius grown by `skin`. Steps are short, so only what is close can be touched; and of
+/// that only what was so near when it was last measured that it may have come within reach since.
 Contact Walker::sweep(const dvec3& feet, const dvec3& move, double skin) {
     Contact first;
-    Capsule body = capsule_at(feet);
-    body.radius += skin;
+    const Capsule body = capsule_at(feet);
+    const Capsule grown{body.low, body.length, body.radius + skin};
     const auto offer = [&](const GroundTriangle& t) {
-        const Contact contact = first_contact(body, move, t);
+        const Contact contact = first_contact(grown, move, t, first.share);
         if (contact.share < first.share) first = contact;
     };
-    const Box box = swept(body, move);
+    const Box box = swept(grown, move);
     const double reach = glm::length(move) + skin;
-    if (reach > close_m || !near_complete_ || !near_box_.contains(box)) {
+    const bool short_step = reach <= close_m && near_.holds(box);
+    if (short_step && (!close_known_ || glm::length(feet - close_to_) + reach > close_m)) find_close(feet);
+    if (!short_step || !close_complete_) {
         for_near(box, offer);
         return first;
     }
-    if (!close_known_ || glm::length(feet - close_to_) + reach > close_m) find_close(feet);
-    const double gone = glm::length(feet - close_to_);
-    for (const Close& close : close_)
-        if (close.apart_m <= gone + reach) offer(near_[close.of_near].triangle);
+    for (const Close& close : close_) {
+        NearBlocks::Known& known = *close.known;
+        const double moved = glm::length(feet - known.feet);
+        if (known.apart_m - moved > reach) continue;
+        if (moved > 0 || !known.exact) known = {feet, separation(body, *close.triangle).distance - body.radius, true};
+        if (known.apart_m <= reach) offer(*close.triangle);
+    }
     return first;
 }
 
@@ -145,8 +131,9 @@ bool Walker::is_free(const dvec3& feet) const {
     Capsule body = capsule_at(feet);
     body.radius -= max_overlap_m;
     bool is_free = true;
-    for_near(swept(body, dvec3(0.0)),
-             [&](const GroundTriangle& t) { is_free = is_free && separation(body, t).distance >= body.radius; });
+    for_near(swept(body, dvec3(0.0)), [&](const GroundTriangle& t) {
+        is_free = is_free && (min_separation(body, t) >= body.radius || separation(body, t).distance >= body.radius);
+    });
     return is_free;
 }
 
@@ -185,6 +172,7 @@ Walker::Footing Walker::footing(const dvec3& at, double top, double bottom) cons
     Footing found{-infinity, -infinity};
     const Box column{dvec3(at.x - reach, bottom, at.z - reach), dvec3(at.x + reach, top, at.z + reach)};
     for_near(column, [&](const GroundTriangle& t) {
+        if (std::max({t.a.y, t.b.y, t.c.y}) <= found.floor) return;
         const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
         const bool floor = std::abs(n.y) >= min_up * glm::length(n);
         for (const dvec3& off : foot_) {
@@ -256,7 +244,7 @@ void Walker::travel(const dvec3& move) {
     Attempt best = attempt(move);
     const Barrier first = best.barrier;
     // Along an edge, or past the end of what is too steep or too low: the same way, turned aside.
-    const int tries = near_complete_ ? 6 : 2;  // where triangles are too many to gather, each try takes long
+    const int tries = near_.complete() ? 6 : 2;  // where triangles are too many to gather, each try takes long
     for (int i = 1; i <= tries && best.feet == feet_ && first != Barrier::wall; ++i) {
         const int step = i % 2 == 0 ? -(i / 2) : (i + 1) / 2;
         const double turn = step * (29.0 / 360.0), along = std::cos(2 * std::numbers::pi * turn);
@@ -452,16 +440,18 @@ void Walker::watch(const dvec3& move, double dt_s) {
     }
 }
 
-Walker::Foreseen Walker::foresee(const dvec3& way, double far_m) noexcept {
+Walker::Foreseen Walker::foresee(const dvec3& feet, const dvec3& eye, const dvec3& way, double wide_m) noexcept {
     Barrier ignored = Barrier::clear;
-    const dvec3 to = slide(feet_, dvec3(way.x, 0, way.z), ignored);
-    Foreseen foreseen{{to.x, eye_.y + way.y, to.z}, far_m};
-    const Capsule point{foreseen.eye, 0, far_m};
+    prepare_near(feet, glm::length(way) + wide_m);
+    const dvec3 to = slide(feet, dvec3(way.x, 0, way.z), ignored);
+    Foreseen foreseen{{to.x, eye.y + way.y, to.z}, 0};
+    Capsule point{foreseen.eye, 0, wide_m + glm::length(foreseen.eye - eye - way)};
     for_near(swept(point, dvec3(0.0)), [&](const GroundTriangle& t) {
         const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
-        if (std::abs(n.y) > wall_max_up * glm::length(n) || is_beyond(point, t)) return;
-        foreseen.clear_m = std::min(foreseen.clear_m, separation(point, t).distance);
+        if (min_separation(point, t) >= point.radius || std::abs(n.y) > wall_max_up * glm::length(n)) return;
+        point.radius = std::min(point.radius, separation(point, t).distance);
     });
+    foreseen.clear_m = point.radius;
     return foreseen;
 }
 
@@ -488,7 +478,7 @@ dvec3 Walker::walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept
         return eye_;
     }
     if (!pushed && supported_ && eye_m_s == 0 && eye_.y == feet_.y + body_.eye_m) return eye_;
-    prepare_near(glm::length(move) + max_fall_m_s * dt_s);
+    prepare_near(feet_, glm::length(move) + max_fall_m_s * dt_s);
     if (pushed) travel(move);
     fall(dt_s);
     raise_eye(dt_s);

@@ -7,6 +7,7 @@
 
 #include "render/model/ground.hpp"
 #include "render/model/ground/capsule.hpp"
+#include "render/model/ground/near_blocks.hpp"
 #include "rt/base/named.hpp"
 
 namespace surefoot::model {
@@ -49,10 +50,11 @@ public:
     /// Where the eye comes to by going on level, and how far walls are from there.
     struct Foreseen {
         dvec3 eye{0.0};
-        double clear_m = 0;  ///< at most far_m
+        double clear_m = 0;  ///< walls further off than wide_m from eye + way need not count
     };
-    /// While it stands: `way` is what the eye's velocity makes of some time. Walls stop it as they stop steps. Nothing changes.
-    [[nodiscard]] Foreseen foresee(const dvec3& way, double far_m) noexcept;
+    /// For any body that stands there: `way` is what its velocity makes of some time. Walls stop it as they stop steps. The walk
+    /// stays as it is, but this takes longer than a step: use a walker of its own, on a thread that has the time.
+    [[nodiscard]] Foreseen foresee(const dvec3& feet, const dvec3& eye, const dvec3& way, double wide_m) noexcept;
 
     /// The walk was stopped: it goes on from rest.
     void halt() noexcept {
@@ -83,14 +85,10 @@ public:
     [[nodiscard]] Capsule capsule_at(const dvec3& feet) const;
 
 private:
-    struct Near {
-        GroundTriangle triangle;
-        Box box;
-    };
-    /// One of near_, and its distance from the surface of the body whose feet are at close_to_.
+    /// One of near_, and what is known of its distance.
     struct Close {
-        std::uint32_t of_near;
-        double apart_m;
+        const GroundTriangle* triangle;
+        NearBlocks::Known* known;
     };
     /// Heights of the highest floor and of the highest surface of any slope under the feet; minus infinity: none.
     struct Footing {
@@ -105,7 +103,6 @@ private:
 
     template <class Use>
     void for_near(const Box& box, const Use& use) const;
-    void gather(const Box& box);
     void find_close(const dvec3& feet);
     [[nodiscard]] Contact sweep(const dvec3& feet, const dvec3& move, double skin = 0);
     [[nodiscard]] Footing footing(const dvec3& at, double top, double bottom) const;
@@ -122,17 +119,15 @@ private:
     void look_for_a_free_place();
     void stand_at(const dvec3& feet);
     void watch(const dvec3& move, double dt_s);
-    void prepare_near(double reach_m);
+    void prepare_near(const dvec3& feet, double reach_m);
 
     const Ground& ground_;
     Body body_;
-    std::vector<Near> near_;
-    Box near_box_;
-    bool near_known_ = false, near_complete_ = false;  ///< incomplete: there are too many
-    std::vector<Close> close_;                         ///< those up to close_m apart
+    NearBlocks near_;
+    std::vector<Close> close_;  ///< those up to close_m apart
     dvec3 close_to_{0.0};
-    bool close_known_ = false;
-    std::array<dvec3, 9> foot_{};  ///< points of the foot's disc
+    bool close_known_ = false, close_complete_ = false;  ///< incomplete: there are too many
+    std::array<dvec3, 9> foot_{};                        ///< points of the foot's disc
 
     dvec3 eye_{0.0}, feet_{0.0};
     bool known_ = false;  ///< eye_ is where the walker left it

@@ -56,6 +56,7 @@ void expect_lossless(const walk::WalkOutcome& outcome) {
     }
     EXPECT_EQ(outcome.summary.guard_violations, 0U);
     EXPECT_EQ(in.guard_violations, 0U);
+    EXPECT_TRUE(in.walked);
 }
 
 TEST(SteeredRealWalk, TenThousandReportsReachTheirFramesInTimeThroughTheInputThread) {
@@ -64,6 +65,7 @@ TEST(SteeredRealWalk, TenThousandReportsReachTheirFramesInTimeThroughTheInputThr
         GTEST_SKIP() << "SCHED_FIFO 80 is refused here: run as root or with RLIMIT_RTPRIO";
     walk::WalkRequest request = test::steered_request(test::ten_thousand_events(), "real-events");
     request.clock = rt::ClockKind::real;
+    request.walking = rt::WalkingMode::automatic;  // on foot: walls and floors are asked at each step
     walk::WalkOutcome outcome = test::walk(request);
     expect_lossless(outcome);
     // A host that steals from the input thread delays reports too: then it is walked again, up to twice.

@@ -1,0 +1,88 @@
+// Every stair of a scene, up and down: found by the judge, walked by a script.
+#include <gtest/gtest.h>
+
+#include "tests/ground/judged_scene.hpp"
+#include "tests/ground/stairs.hpp"
+
+namespace surefoot::test {
+
+namespace {
+
+Box box_of_judged(const JudgedScene& of) {
+    Box box;
+    for (const importer::Node& node : of.scene.nodes) {
+        if (node.mesh == importer::none) continue;
+        for (const importer::Primitive& p : of.scene.meshes[node.mesh].primitives)
+            for (const vec3& v : p.positions) box.grow(dvec3(node.world * dvec4(dvec3(v), 1.0)));
+    }
+    return box;
+}
+
+/// Walks all flights; those whose upper treads have no room for a body up to there. Prints those. Returns how many there are.
+std::size_t climb_all(const JudgedScene& of, const std::string& name) {
+    const std::vector<Flight> flights = find_flights(*of.judge, box_of_judged(of));
+    const model::Walker walker(of.ground, {});
+    std::size_t closed = 0;
+    for (const Flight& flight : flights) {
+        const std::size_t open = open_treads(*of.judge, walker, flight);
+        const Climbed climbed = climb(of.ground, flight);
+        const dvec3& at = flight.bottom;
+        const std::string where = name + ", flight of " + std::to_string(flight.treads.size()) + " from " + std::to_string(at.x) +
+                                  ' ' + std::to_string(at.y) + ' ' + std::to_string(at.z) + " to " + std::to_string(flight.top.y);
+        const double goal = open == flight.treads.size() ? flight.top.y : open > 0 ? flight.treads[open - 1].y : at.y;
+        EXPECT_GE(climbed.up, goal - 0.01) << where;
+        EXPECT_LE(climbed.down, at.y + 0.01) << where;
+        EXPECT_EQ(climbed.returns, 0U) << where;
+        if (open == flight.treads.size()) continue;
+        ++closed;
+        std::printf("  closed: %s: a body has room on %zu treads, and got to %.2f m\n", where.c_str(), open, climbed.up);
+    }
+    std::printf("%s: %zu flights, %zu of them closed above\n", name.c_str(), flights.size(), closed);
+    return flights.size();
+}
+
+/// A floor, a flight of ten steps up from it, a ramp, and a flight of two.
+JudgedScene made_of_boxes() {
+    JudgedScene of;
+    of.scene.materials.emplace_back();
+    importer::Primitive p;
+    const auto add_top = [&](const vec3& a, const vec3& b, const vec3& c, const vec3& d) {
+        const auto first = static_cast<std::uint32_t>(p.positions.size());
+        p.positions.insert(p.positions.end(), {a, b, c, d});
+        for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) p.indices.push_back(first + i);
+    };
+    const auto add_steps = [&](float z, int count) {
+        for (int i = 0; i < count; ++i) {
+            const float x0 = 2 + 0.28F * static_cast<float>(i), x1 = x0 + (i + 1 == count ? 2.0F : 0.28F),
+                        y0 = 0.18F * static_cast<float>(i), y1 = y0 + 0.18F;
+            add_top({x0, y1, z}, {x0, y1, z + 1.2F}, {x1, y1, z + 1.2F}, {x1, y1, z});
+            add_top({x0, y0, z}, {x0, y0, z + 1.2F}, {x0, y1, z + 1.2F}, {x0, y1, z});
+        }
+    };
+    add_top({-2, 0, -6}, {-2, 0, 6}, {8, 0, 6}, {8, 0, -6});
+    add_steps(0, 10);
+    add_steps(-2, 2);
+    add_top({2, 0, 3}, {2, 0, 4}, {6, 2, 4}, {6, 2, 3});
+    of.scene.meshes.push_back({"boxes", {p}, {}});
+    importer::Node node;
+    node.mesh = 0;
+    of.scene.nodes.push_back(node);
+    of.finish();
+    return of;
+}
+
+}  // namespace
+
+TEST(Stairs, AreFoundAndClimbed) { EXPECT_EQ(climb_all(made_of_boxes(), "boxes"), 1U) << "neither the ramp nor the two steps"; }
+
+TEST(Nightly, EveryStairIsClimbedAndDescended) {
+    EXPECT_GE(climb_all(generated("town"), "town"), 20U);
+    for (const auto& [name, file, count] : {std::tuple{"hospital", "interior/hospital/hospital_three_floors.glb", 4},
+                                            {"ravenbridge", "interior/ravenbridge-mansion/ravenbridge_mansion.glb", 1}}) {
+        const auto of = imported(file);
+        if (!of) GTEST_SKIP() << "SUREFOOT_DATA is not set, or lacks " << file;
+        EXPECT_GE(climb_all(*of, name), static_cast<std::size_t>(count));
+    }
+}
+
+}  // namespace surefoot::test
