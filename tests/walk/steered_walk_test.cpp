@@ -169,22 +169,22 @@ TEST(SteeredWalk, ButtonsLeadToViewpointsTourAndBack) {
 TEST(SteeredWalk, ButtonsOnFootLeadWhereTheyLeadInFlight) {
     GamepadSession session;
     session.report({});
-    session.hold({}, 0.2).press(GamepadSession::next_viewpoint);      // 0.2
-    session.hold({}, 0.2).press(GamepadSession::tour).hold({}, 0.8);  // 0.6, to 1.6
-    session.press(GamepadSession::pause).hold({.forward = 1}, 0.4);   // 1.6: pushed while paused
-    session.press(GamepadSession::reset).hold({}, 0.3);               // 2.2, to 2.7
-    session.hold({.forward = 1}, 1).hold({}, 0.3);                    // 2.7, to 4
+    session.hold({}, 0.2).press(GamepadSession::next_viewpoint);                   // 0.2
+    session.hold({}, 0.2).press(GamepadSession::tour).hold({}, 0.8);               // 0.6, to 1.6
+    session.press(GamepadSession::pause).hold({.forward = 1}, 0.4).hold({}, 0.2);  // 1.6: pushed while paused
+    session.press(GamepadSession::reset).hold({}, 0.3);                            // 2.4, to 2.9
+    session.hold({.forward = 1}, 1).hold({}, 0.3);                                 // 2.9, to 4.2
     walk::WalkRequest request = steered_request(session, "buttons-on-foot");
     const walk::WalkOutcome flight = walk(request);
     request.walking = rt::WalkingMode::automatic;
     const walk::WalkOutcome foot = walk(request);
     ASSERT_EQ(foot.records.size(), flight.records.size());
-    for (std::size_t i = 0; i < 80; ++i)
+    for (std::size_t i = 0; i < 86; ++i)
         EXPECT_LT(glm::length(eye(foot.records[i]) - eye(flight.records[i])), 1e-9)
             << i << ": nobody pushes who is carried, or stands where a button put him";
     EXPECT_TRUE(foot.summary.input.walked);
     EXPECT_EQ(foot.summary.input.jumps, flight.summary.input.jumps);
-    EXPECT_GT(glm::length(eye(at(foot, 3.9)) - eye(at(foot, 2.6))), 0.7) << "then the hand walks on";
+    EXPECT_GT(glm::length(eye(at(foot, 4.1)) - eye(at(foot, 2.8))), 0.7) << "then the hand walks on";
     for (const rt::FrameRecord& r : foot.records) EXPECT_GT(r.candidates, 0U) << "frame " << r.frame;
 }
 
