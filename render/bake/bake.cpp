@@ -458,7 +458,8 @@ Result<model::Model> bake(const importer::Scene& scene, const BakeOptions& optio
     model::Model& model = context.model;
     model.provenance.sources = scene.sources;
     model.provenance.warnings.insert(model.provenance.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
-    for (std::string& line : ground_warnings(model.ground, model.nodes[0].box)) model.provenance.warnings.push_back(std::move(line));
+    for (std::string& line : ground_warnings(model.ground, model.nodes[0].box))
+        model.provenance.warnings.push_back(std::move(line));
     model.provenance.quality = options.quality == Quality::full ? "full" : "draft";
     if (auto valid = model::validate(model); !valid) return valid.error();
     return std::move(model);

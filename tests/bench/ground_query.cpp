@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     walk::Walking walking(model->ground, {}, rt::WalkingMode::walk);
     walk::RegionClip clip(model->ground, {});
     const dvec3 start = model->tour.samples.front().pose.position;
-    (void)::mlockall(MCL_CURRENT | MCL_FUTURE);  // as a walk does; refused, times are longer
+    (void)::mlockall(MCL_CURRENT | MCL_FUTURE);    // as a walk does; refused, times are longer
     (void)time_steps(walking, clip, start, 1, 7);  // warms caches and touches the model's pages
     Timed timed = time_steps(walking, clip, start, seconds, argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1);
     const auto quantiles = [](std::vector<double>& us) {

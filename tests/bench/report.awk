@@ -148,7 +148,7 @@ function missed_list(    p, scenes, count, i, n, key, reason, reasons, order_of_
     }
   }
   if (r == 0) return
-  line(""); line("## Missed targets"); line("")
+  line(""); line("## Missed targets")
   for (i = 1; i <= r; ++i) paragraph("* " reasons[order_of_reasons[i]] ". " order_of_reasons[i], "  ")
 }
 
@@ -186,7 +186,7 @@ function write_page(    p, g, groups, group_list, has_figures, count, with, whol
   for (i = 1; i <= g; ++i) {
     if (!(group_list[i] in has_figures)) continue
     one_command = command_of_group(group_list[i])
-    line(""); line("## " group_list[i] (one_command == "" ? "" : ": `" one_command "`")); line("")
+    line(""); line("## " group_list[i] (one_command == "" ? "" : ": `" one_command "`"))
     line("| promise | target | newest figures | holds | commit | host | date |" (one_command == "" ? " command |" : ""))
     line("|---|---|---|---|---|---|---|" (one_command == "" ? "---|" : ""))
     for (p = 1; p <= promises; ++p) if (group_of[order[p]] == group_list[i]) promise_rows(order[p])

@@ -22,12 +22,12 @@ struct Flight {
 
 constexpr int min_steps = 4;
 constexpr double march_m = 0.02, seed_m = 0.2, min_rise_m = 0.08, max_rise_m = 0.251, min_tread_m = 0.15, max_tread_m = 0.6;
-constexpr double level = 0.999;  // upright part of a tread's normal
+constexpr double tread_up = 0.999;  // of a normal
 
 /// The highest floor at (x, z) between two heights; nothing where there is none.
 inline bool floor_between(const exact::ExactGround& judge, double x, double z, double low, double high, double& found) {
     bool any = false;
-    for (const double y : judge.floors_at(x, z, level))
+    for (const double y : judge.floors_at(x, z, tread_up))
         if (y >= low && y <= high) found = y, any = true;  // sorted
     return any;
 }
@@ -77,7 +77,7 @@ public:
         for (int row = 0; row < rows_; ++row)
             for (int column = 0; column < columns_; ++column) {
                 auto& to = floors_[number(column, row)];
-                for (const double y : judge.floors_at(box.min.x + column * seed_m, box.min.z + row * seed_m, level))
+                for (const double y : judge.floors_at(box.min.x + column * seed_m, box.min.z + row * seed_m, tread_up))
                     if (to.empty() || y - to.back() > 0.01) to.push_back(y);
             }
     }

@@ -75,8 +75,9 @@ JudgedScene made_of_boxes() {
 
 TEST(Stairs, AreFoundAndClimbed) { EXPECT_EQ(climb_all(made_of_boxes(), "boxes"), 1U) << "neither the ramp nor the two steps"; }
 
-TEST(Nightly, EveryStairIsClimbedAndDescended) {
-    EXPECT_GE(climb_all(generated("town"), "town"), 20U);
+TEST(Nightly, EveryStairOfTheTownIsClimbedAndDescended) { EXPECT_GE(climb_all(generated("town"), "town"), 20U); }
+
+TEST(Nightly, EveryStairOfFilesIsClimbedAndDescended) {
     for (const auto& [name, file, count] : {std::tuple{"hospital", "interior/hospital/hospital_three_floors.glb", 4},
                                             {"ravenbridge", "interior/ravenbridge-mansion/ravenbridge_mansion.glb", 1}}) {
         const auto of = imported(file);

@@ -51,9 +51,12 @@ double floor_near(const Path& path, double eye_m, const dvec3& at) {
     return y;
 }
 
+/// All turn the same way: floors that lie upon each other would cancel out.
 std::string triangle_in_plan(const Plan& plan, const model::GroundTriangle& t) {
-    return fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f} {:.1f} {:.1f}z", plan.x(t.a), plan.y(t.a), plan.x(t.b), plan.y(t.b),
-                       plan.x(t.c), plan.y(t.c));
+    const bool turned = glm::cross(t.b - t.a, t.c - t.a).y < 0;
+    const dvec3 &b = turned ? t.c : t.b, &c = turned ? t.b : t.c;
+    return fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f} {:.1f} {:.1f}z", plan.x(t.a), plan.y(t.a), plan.x(b), plan.y(b), plan.x(c),
+                       plan.y(c));
 }
 
 /// The line in which a level plane cuts the triangle, or nothing.

@@ -53,7 +53,7 @@ public:
         double clear_m = 0;  ///< walls further off than wide_m from eye + way need not count
     };
     /// For any body that stands there: `way` is what its velocity makes of some time. Walls stop it as they stop steps. The walk
-    /// stays as it is, but this takes longer than a step: use a walker of its own, on a thread that has the time.
+    /// stays as it is. This takes longer than a step: use a walker of its own, on a thread that has the time.
     [[nodiscard]] Foreseen foresee(const dvec3& feet, const dvec3& eye, const dvec3& way, double wide_m) noexcept;
 
     /// The walk was stopped: it goes on from rest.
