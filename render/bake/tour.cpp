@@ -30,26 +30,20 @@ dquat looking_along(const dvec3& way) {
 
 // ---- where to walk ----
 
-/// use(place, blocks): where the blocks of the ground are; those of an instance together, in its middle.
-template <class Use>
-void for_blocks(const model::Ground& ground, const Use& use) {
+/// Where nine tenths of what blocks are, so that skies and far hills do not count.
+Box crowded_box(const model::Ground& ground, const Box& box) {
+    std::array<std::vector<double>, 3> at;
+    const auto add = [&](const dvec3& p) {
+        for (int axis = 0; axis < 3; ++axis) at[static_cast<std::size_t>(axis)].push_back(p[axis]);
+    };
     if (!ground.meshes.empty()) {
         const model::GroundMesh& mesh = ground.meshes[0];
         for (std::uint32_t b = 0; b < mesh.block_count; ++b) {
             const auto& origin = ground.blocks[mesh.first_block + b].origin;
-            use(mesh.origin + mesh.step_m * dvec3(origin[0], origin[1], origin[2]), 1);
+            add(mesh.origin + mesh.step_m * dvec3(origin[0], origin[1], origin[2]));
         }
     }
-    for (const model::GroundInstance& instance : ground.instances)
-        use(model::box_of(ground, instance).centre(), ground.meshes[instance.mesh].block_count);
-}
-
-/// Where nine tenths of what blocks are, so that skies and far hills do not count.
-Box crowded_box(const model::Ground& ground, const Box& box) {
-    std::array<std::vector<double>, 3> at;
-    for_blocks(ground, [&](const dvec3& p, std::uint32_t) {
-        for (int axis = 0; axis < 3; ++axis) at[static_cast<std::size_t>(axis)].push_back(p[axis]);
-    });
+    for (const model::GroundInstance& instance : ground.instances) add(model::box_of(ground, instance).centre());
     Box crowded = box;
     for (int axis = 0; axis < 3; axis += 2) {
         std::vector<double>& values = at[static_cast<std::size_t>(axis)];
@@ -61,37 +55,28 @@ Box crowded_box(const model::Ground& ground, const Box& box) {
     return crowded;
 }
 
-/// The window of the scene with the most to walk through, indoors first, and the most to see: blocks of triangles.
+/// The window of the scene with the most to walk through, indoors first.
 Box best_window(const model::Ground& ground, const Box& box, const ForEach& for_each) {
     const dvec3 sides = box.max - box.min;
     if (sides.x <= window_m && sides.z <= window_m) return box;
     const double cell = std::max(fine_cell_m, std::sqrt(sides.x * sides.z / static_cast<double>(coarse_cells)));
     const FreeSpace space = find_free_space(ground, {}, box, cell, for_each);
-    struct Weight {
-        double places = 0, blocks = 0;
-    };
-    std::map<std::pair<int, int>, Weight> weights;  // by quarters of a window
+    std::map<std::pair<int, int>, double> weights;  // by quarters of a window
     const double quarter = window_m / 4;
-    const auto at = [&](const dvec3& p) -> Weight& {
-        return weights[{static_cast<int>(std::floor((p.x - box.min.x) / quarter)),
-                        static_cast<int>(std::floor((p.z - box.min.z) / quarter))}];
-    };
-    for (const StandingPlace& place : space.places) at(place.feet).places += place.indoors ? indoors_weight : 1;
-    for_blocks(ground, [&](const dvec3& p, std::uint32_t blocks) {
-        if (p.x >= box.min.x && p.x <= box.max.x && p.z >= box.min.z && p.z <= box.max.z) at(p).blocks += blocks;
-    });
+    for (const StandingPlace& place : space.places)
+        weights[{static_cast<int>(std::floor((place.feet.x - box.min.x) / quarter)),
+                 static_cast<int>(std::floor((place.feet.z - box.min.z) / quarter))}] += place.indoors ? indoors_weight : 1;
     std::pair<int, int> best{0, 0};
     double max_weight = -1;
     for (const auto& [corner, unused] : weights) {
-        Weight sum;
+        double sum = 0;
         for (int dx = 0; dx < 4; ++dx) {
             for (int dz = 0; dz < 4; ++dz) {
                 const auto found = weights.find({corner.first + dx, corner.second + dz});
-                if (found != weights.end()) sum.places += found->second.places, sum.blocks += found->second.blocks;
+                sum += found == weights.end() ? 0 : found->second;
             }
         }
-        const double weight = sum.places * sum.blocks;
-        if (weight > max_weight) max_weight = weight, best = corner;
+        if (sum > max_weight) max_weight = sum, best = corner;
     }
     Box window = box;
     window.min.x = box.min.x + best.first * quarter, window.max.x = std::min(box.max.x, window.min.x + window_m);
