@@ -22,7 +22,8 @@ struct Flight {
 
 constexpr int min_steps = 4;
 constexpr double march_m = 0.02, seed_m = 0.2, min_rise_m = 0.08, max_rise_m = 0.251, min_tread_m = 0.15, max_tread_m = 0.6;
-constexpr double tread_up = 0.999;  // of a normal
+constexpr double max_half_width_m = 4;  // of stairs
+constexpr double tread_up = 0.999;      // of a normal
 
 /// The highest floor at (x, z) between two heights; nothing where there is none.
 inline bool floor_between(const exact::ExactGround& judge, double x, double z, double low, double high, double& found) {
@@ -64,7 +65,11 @@ inline bool same_flight(const Flight& a, const Flight& b) {
         const double share = std::clamp(glm::dot(way, at - a.bottom) / glm::dot(way, way), 0.0, 1.0);
         return glm::length(at - a.bottom - share * way);
     };
-    return glm::dot(a.ahead, b.ahead) > 0 && off(b.bottom) < 1.5 && off(b.top) < 1.5;
+    if (!(glm::dot(a.ahead, b.ahead) > 0)) return false;
+    if (off(b.bottom) < 1.5 && off(b.top) < 1.5) return true;
+    // Beside it, on wide stairs: part of the same heights.
+    const bool as_high = b.bottom.y > a.bottom.y - 0.05 && b.top.y < a.top.y + 0.05;
+    return as_high && glm::dot(a.ahead, b.ahead) > 0.9 && off(b.bottom) < max_half_width_m && off(b.top) < max_half_width_m;
 }
 
 /// Floors of a lattice of upright lines, each height once.
