@@ -22,14 +22,14 @@ int main(int argc, char** argv) {
     if (argc != 2) return bench::fail({"SCENE", "is missing", "give a file that bake reads"});
     auto scene = importer::import_files({argv[1]}, {});
     if (!scene) return bench::fail(scene.error());
-    std::size_t triangles = 0;  // of each mesh once
-    for (const importer::Mesh& mesh : scene->meshes)
-        for (const importer::Primitive& p : mesh.primitives) triangles += p.indices.size() / 3;
+    std::size_t triangles = 0;  // of each node, as a bake counts them
     Box box;
     for (const importer::Node& node : scene->nodes) {
         if (node.mesh == importer::none) continue;
-        for (const importer::Primitive& p : scene->meshes[node.mesh].primitives)
+        for (const importer::Primitive& p : scene->meshes[node.mesh].primitives) {
+            triangles += p.indices.size() / 3;
             for (const vec3& v : p.positions) box.grow(dvec3(node.world * dvec4(dvec3(v), 1.0)));
+        }
     }
     double ground_s = 1e9, tour_s = 1e9;
     std::size_t instances = 0, bytes = 0;
