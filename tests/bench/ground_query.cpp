@@ -12,7 +12,6 @@
 
 #include "rt/base/random.hpp"
 #include "rt/base/statistics.hpp"
-#include "rt/threads/memory.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tools/walk/walking.hpp"
 

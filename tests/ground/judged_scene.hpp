@@ -60,6 +60,17 @@ inline std::optional<JudgedScene> imported(const std::string& file) {
     return of;
 }
 
+/// Around all that is placed.
+inline Box box_of_scene(const importer::Scene& scene) {
+    Box box;
+    for (const importer::Node& node : scene.nodes) {
+        if (node.mesh == importer::none) continue;
+        for (const importer::Primitive& p : scene.meshes[node.mesh].primitives)
+            for (const vec3& v : p.positions) box.grow(dvec3(node.world * dvec4(dvec3(v), 1.0)));
+    }
+    return box;
+}
+
 /// Triangles on whose class the two do not agree; prints the nodes of the first few.
 inline std::size_t disagreements(const JudgedScene& of) {
     std::size_t count = 0;

@@ -8,21 +8,16 @@ namespace surefoot::test {
 
 namespace {
 
-Box box_of_judged(const JudgedScene& of) {
-    Box box;
-    for (const importer::Node& node : of.scene.nodes) {
-        if (node.mesh == importer::none) continue;
-        for (const importer::Primitive& p : of.scene.meshes[node.mesh].primitives)
-            for (const vec3& v : p.positions) box.grow(dvec3(node.world * dvec4(dvec3(v), 1.0)));
-    }
-    return box;
-}
+/// How many flights there are, and how many have room for a body on every tread: those were climbed and descended.
+struct Flights {
+    std::size_t found = 0, open = 0;
+};
 
-/// Walks all flights; those whose upper treads have no room for a body up to there. Prints those. Returns how many there are.
-std::size_t climb_all(const JudgedScene& of, const std::string& name) {
-    const std::vector<Flight> flights = find_flights(*of.judge, box_of_judged(of));
+/// Walks all flights. Those that are not open are walked up to where the room ends, and printed; their way down is not judged.
+Flights climb_all(const JudgedScene& of, const std::string& name) {
+    const std::vector<Flight> flights = find_flights(*of.judge, box_of_scene(of.scene));
     const model::Walker walker(of.ground, {});
-    std::size_t closed = 0;
+    Flights result{flights.size(), 0};
     for (const Flight& flight : flights) {
         const std::size_t open = open_treads(*of.judge, walker, flight);
         const Climbed climbed = climb(of.ground, flight);
@@ -33,16 +28,17 @@ std::size_t climb_all(const JudgedScene& of, const std::string& name) {
             EXPECT_GE(climbed.up, flight.top.y - 0.01) << where;
             EXPECT_LE(climbed.down, at.y + 0.01) << where;
             EXPECT_EQ(climbed.returns, 0U) << where;
+            ++result.open;
             continue;
         }
-        ++closed;  // where the last tread with room is, the head comes under what closes it
+        // On the way to the last tread with room the head comes under what closes the stair.
         const double goal = open > 1 ? flight.treads[open - 2].y : at.y;
         EXPECT_GE(climbed.up, goal - 0.01) << where;
         std::printf("  closed: %s: a body has room on %zu treads, got to %.2f m, and was put back %d times\n", where.c_str(),
                     open, climbed.up, static_cast<int>(climbed.returns));
     }
-    std::printf("%s: %zu flights, %zu of them closed above\n", name.c_str(), flights.size(), closed);
-    return flights.size();
+    std::printf("%s: %zu flights, %zu of them open\n", name.c_str(), result.found, result.open);
+    return result;
 }
 
 /// A floor, a flight of ten steps up from it, a ramp, and a flight of two.
@@ -77,17 +73,30 @@ JudgedScene made_of_boxes() {
 
 }  // namespace
 
-TEST(Stairs, AreFoundAndClimbed) { EXPECT_EQ(climb_all(made_of_boxes(), "boxes"), 1U) << "neither the ramp nor the two steps"; }
+TEST(Stairs, AreFoundAndClimbed) {
+    const Flights flights = climb_all(made_of_boxes(), "boxes");
+    EXPECT_EQ(flights.found, 1U) << "neither the ramp nor the two steps";
+    EXPECT_EQ(flights.open, 1U);
+}
 
-TEST(Nightly, EveryStairOfTheTownIsClimbedAndDescended) { EXPECT_GE(climb_all(generated("town"), "town"), 20U); }
+TEST(Nightly, StairsOfTheTownAreClimbedAndDescended) {
+    const Flights flights = climb_all(generated("town"), "town");
+    EXPECT_GE(flights.found, 20U);
+    EXPECT_GT(flights.open, 0U);
+}
 
-TEST(Nightly, EveryStairOfFilesIsClimbedAndDescended) {
-    for (const auto& [name, file, count] : {std::tuple{"hospital", "interior/hospital/hospital_three_floors.glb", 4},
-                                            {"ravenbridge", "interior/ravenbridge-mansion/ravenbridge_mansion.glb", 1}}) {
-        const auto of = imported(file);
-        if (!of) GTEST_SKIP() << "SUREFOOT_DATA is not set, or lacks " << file;
-        EXPECT_GE(climb_all(*of, name), static_cast<std::size_t>(count));
-    }
+TEST(Nightly, StairsOfTheHospitalAreClimbedAsFarAsABodyFits) {
+    const auto of = imported("interior/hospital/hospital_three_floors.glb");
+    if (!of) GTEST_SKIP() << "SUREFOOT_DATA is not set, or lacks the hospital";
+    EXPECT_GE(climb_all(*of, "hospital").found, 4U) << "slabs close them above";
+}
+
+TEST(Nightly, StairsOfRavenbridgeAreClimbedAndDescended) {
+    const auto of = imported("interior/ravenbridge-mansion/ravenbridge_mansion.glb");
+    if (!of) GTEST_SKIP() << "SUREFOOT_DATA is not set, or lacks ravenbridge";
+    const Flights flights = climb_all(*of, "ravenbridge");
+    EXPECT_GE(flights.found, 1U);
+    EXPECT_GT(flights.open, 0U);
 }
 
 }  // namespace surefoot::test

@@ -11,16 +11,6 @@ namespace surefoot::test {
 
 namespace {
 
-Box box_of_scene(const importer::Scene& scene) {
-    Box box;
-    for (const importer::Node& node : scene.nodes) {
-        if (node.mesh == importer::none) continue;
-        for (const importer::Primitive& p : scene.meshes[node.mesh].primitives)
-            for (const vec3& v : p.positions) box.grow(dvec3(node.world * dvec4(dvec3(v), 1.0)));
-    }
-    return box;
-}
-
 bake::Tour tour_of(const JudgedScene& of) { return bake::make_tour(of.ground, box_of_scene(of.scene), {}); }
 
 /// Ten samples a second for a minute, the eye on a straight and even way from each to the next, and nothing in it.
