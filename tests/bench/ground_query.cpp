@@ -13,6 +13,7 @@
 #include "rt/base/random.hpp"
 #include "rt/base/statistics.hpp"
 #include "tests/bench/bench_scene.hpp"
+#include "tools/walk/region_clip.hpp"
 #include "tools/walk/walking.hpp"
 
 namespace {

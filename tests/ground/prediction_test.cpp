@@ -11,7 +11,7 @@
 #include "render/model/ground/near.hpp"
 #include "rt/base/random.hpp"
 #include "tests/ground/grounds.hpp"
-#include "tools/walk/walking.hpp"
+#include "tools/walk/region_clip.hpp"
 
 namespace surefoot::test {
 

@@ -11,6 +11,7 @@
 #include "tests/input/gamepad_session.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tools/walk/input_session.hpp"
+#include "tools/walk/region_clip.hpp"
 
 namespace surefoot::walk {
 

@@ -13,6 +13,7 @@
 #include "tools/walk/input_stepper.hpp"
 #include "tools/walk/input_thread.hpp"
 #include "tools/walk/live_input.hpp"
+#include "tools/walk/region_clip.hpp"
 #include "tools/walk/steered_poses.hpp"
 #include "tools/walk/walk.hpp"
 

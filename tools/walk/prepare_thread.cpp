@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "rt/clock/clock.hpp"
-#include "tools/walk/walking.hpp"
+#include "tools/walk/region_clip.hpp"
 
 namespace surefoot::walk {
 

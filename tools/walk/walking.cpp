@@ -26,16 +26,6 @@ input::Ground Walking::ground(bool flies) {
     return {query, &*walker_, walker_rise_m_s2, halt};
 }
 
-void RegionClip::clip(PredictedRegion& predicted) {
-    if (!predicted.known || !predicted.on_foot) return;
-    prepare::Region& region = predicted.region;
-    const dvec3 unled = predicted.eye + predicted.way;
-    const double wide_m = region.radius_m + glm::length(region.centre.position - unled);
-    const model::Walker::Foreseen foreseen = walker_.foresee(predicted.feet, predicted.eye, predicted.way, wide_m);
-    region.radius_m = std::min(region.radius_m + glm::length(foreseen.eye - region.centre.position), foreseen.clear_m);
-    region.centre.position = foreseen.eye;
-}
-
 std::uint32_t Walking::jumps() const { return walker_ ? static_cast<std::uint32_t>(walker_->returns() + walker_->freed()) : 0; }
 
 namespace {

@@ -10,7 +10,6 @@
 #include "render/model/ground/walker.hpp"
 #include "rt/base/modes.hpp"
 #include "rt/base/path.hpp"
-#include "tools/walk/prepare_thread.hpp"
 
 namespace surefoot::walk {
 
@@ -54,19 +53,6 @@ private:
     bool walks_ = false, walked_ = false;
     std::atomic<model::Barrier> shown_{model::Barrier::clear};
     std::atomic<bool> shown_walks_{false}, shown_freed_{false};
-};
-
-/// Clips regions of poses by walls. For the thread that prepares; the constructor allocates, clip() does not.
-class RegionClip {
-public:
-    /// The ground must outlive this.
-    RegionClip(const model::Ground& ground, const model::Body& body) : walker_(ground, body) {}
-    /// No pose of a region on foot lies beyond a wall then; what is seen from there is not clipped. Other regions stay as they
-    /// are.
-    void clip(PredictedRegion& predicted);
-
-private:
-    model::Walker walker_;
 };
 
 /// What a visitor should know of a path: where it leads through walls, and which viewpoints stand in one. Empty: nowhere.
