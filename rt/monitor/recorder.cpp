@@ -16,7 +16,11 @@ Recorder::~Recorder() { stop(); }
 
 void Recorder::stop() {
     if (!thread_.joinable()) return;
-    stopping_.store(true, std::memory_order_release);
+    {
+        const MutexLock lock(mutex_);
+        stopping_ = true;
+    }
+    stop_.notify_all();
     thread_.join();
 }
 
@@ -26,11 +30,16 @@ void Recorder::run() {
         own->name = options_.thread_name;
         (void)restore_thread(*own);
     }
-    while (!stopping_.load(std::memory_order_acquire)) {
-        drain();
-        std::this_thread::sleep_for(std::chrono::nanoseconds(options_.poll_ns));
-    }
+    while (!stopping_before_next_poll()) drain();
     drain();
+}
+
+bool Recorder::stopping_before_next_poll() {
+    const auto next = std::chrono::steady_clock::now() + std::chrono::nanoseconds(options_.poll_ns);
+    const MutexLock lock(mutex_);
+    while (!stopping_ && stop_.wait_until(mutex_, next)) {
+    }
+    return stopping_;
 }
 
 void Recorder::drain() {

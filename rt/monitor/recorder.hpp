@@ -1,13 +1,13 @@
 // The monitor thread: empties the ring of frame records into reserved memory.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "rt/base/mutex.hpp"
 #include "rt/exchange/spsc_ring.hpp"
 #include "rt/frame/record.hpp"
 
@@ -17,7 +17,7 @@ namespace surefoot::rt {
 struct RecorderOptions {
     std::size_t reserve_records = 36000;  ///< more are kept too, but memory grows then
     bool keep = true;                     ///< false: records only go to on_record (a walk without end)
-    std::int64_t poll_ns = 100'000'000;   ///< how often the ring is emptied: a wake-up costs 15 to 60 us of CPU, a record 1
+    std::int64_t poll_ns = 250'000'000;   ///< how often the ring is emptied: a wake-up costs 15 to 150 us of CPU, a record 1
     std::string thread_name = "sf-monitor";
     std::function<void(const FrameRecord&)> on_record;  ///< live figures; on the monitor thread; may be empty
 };
@@ -30,7 +30,7 @@ public:
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// Empties the ring a last time and ends the thread. Call it when the producer has stopped.
+    /// Empties the ring a last time and ends the thread, at once. Call it when the producer has stopped.
     void stop();
     /// After stop().
     [[nodiscard]] const std::vector<FrameRecord>& records() const { return records_; }
@@ -38,11 +38,14 @@ public:
 
 private:
     void run();
+    bool stopping_before_next_poll();
     void drain();
     SpscRing<FrameRecord>& ring_;
     RecorderOptions options_;
     std::vector<FrameRecord> records_;
-    std::atomic<bool> stopping_{false};
+    Mutex mutex_;
+    Condition stop_;
+    bool stopping_ GUARDED_BY(mutex_) = false;
     std::thread thread_;
 };
 

@@ -38,11 +38,11 @@ float first_resolution(bool correct_costs) {
     walk::WalkRequest request = test::Forest::get().virtual_request(3);
     request.clock = rt::ClockKind::real;
     request.fifo = false;
-    request.rate_hz = 60;
+    request.rate_hz = 15;  // a slow host's frame takes a small part of a long period too
     request.correct_costs = correct_costs;
     auto costs = std::make_shared<model::CostModel>(model::default_costs());
-    costs->combine.submit_weight *= 0.1F;
-    costs->combine.raster_weight *= 7.0F;
+    costs->combine.submit_weight *= 0.4F;
+    costs->combine.raster_weight *= 28.0F;
     request.given_costs = costs;
     const walk::WalkOutcome outcome = walk(request);
     EXPECT_EQ(outcome.records.size(), 3U);

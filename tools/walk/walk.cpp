@@ -218,6 +218,7 @@ Result<WalkOutcome> run_walk(const WalkRequest& request, const Progress& progres
     rt::RecorderOptions recorder_options;
     recorder_options.keep = !request.endless && request.keep_records;
     recorder_options.reserve_records = s.frames + 64;
+    if (s.virtual_clock) recorder_options.poll_ns = 10'000'000;  // frames wait for a full ring
     recorder_options.on_record = [&](const rt::FrameRecord& record) {
         ++seen;
         if (!request.endless) blocks.on_record(record);

@@ -42,9 +42,9 @@ public:
             Slot& slot = *near.slot;
             std::array<std::int32_t, max_block_triangles> meets;
             for (std::size_t t = 0; t < meets.size(); ++t)  // all at once, in vector registers
-                meets[t] = (slot.min[0][t] <= wanted.max[0]) & (slot.max[0][t] >= wanted.min[0]) &
-                           (slot.min[1][t] <= wanted.max[1]) & (slot.max[1][t] >= wanted.min[1]) &
-                           (slot.min[2][t] <= wanted.max[2]) & (slot.max[2][t] >= wanted.min[2]);
+                meets[t] = std::int32_t{slot.min[0][t] <= wanted.max[0]} & std::int32_t{slot.max[0][t] >= wanted.min[0]} &
+                           std::int32_t{slot.min[1][t] <= wanted.max[1]} & std::int32_t{slot.max[1][t] >= wanted.min[1]} &
+                           std::int32_t{slot.min[2][t] <= wanted.max[2]} & std::int32_t{slot.max[2][t] >= wanted.min[2]};
             for (std::uint32_t t = 0; t < slot.count; ++t)
                 if (meets[t] != 0) use(slot.triangles[t], slot.known[t]);
         }
