@@ -29,7 +29,8 @@ bool is_placed(const importer::Scene& scene, const importer::Node& node) {
 
 model::GroundTriangle triangle_of(const GroundFacts& facts, std::size_t t, const dmat4& world) {
     const auto place = [&](std::uint32_t point) { return dvec3(world * dvec4(facts.points[point], 1.0)); };
-    return {place(facts.corners[t][0]), place(facts.corners[t][1]), place(facts.corners[t][2])};
+    const bool mirrored = glm::determinant(dmat3(world)) < 0;  // fronts stay fronts
+    return {place(facts.corners[t][0]), place(facts.corners[t][mirrored ? 2 : 1]), place(facts.corners[t][mirrored ? 1 : 2])};
 }
 
 double largest_scale(const dmat4& world) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "render/bake/free_space.hpp"
+#include "render/bake/seen_detail.hpp"
 #include "render/bake/stage.hpp"
 #include "render/model/ground/near.hpp"
 
@@ -18,7 +19,8 @@ namespace {
 
 constexpr double fine_cell_m = 0.25, window_m = 60, wide_m = 2000;
 constexpr std::size_t coarse_cells = 10'000, min_places = 60;  // fewer fine places than 4 m2 are no space to walk in
-constexpr double min_block_m = 0.5, max_block_m = 2, indoors_weight = 4;
+constexpr std::size_t max_weighed_places = 1500;
+constexpr double min_block_m = 0.5, max_block_m = 2, indoors_weight = 2, view_m = 60;
 constexpr double look_ahead_m = 2.5, smooth_m = 1.5, max_off_floor_m = 0.12;
 
 dvec3 level(const dvec3& v) { return {v.x, 0, v.z}; }
@@ -55,7 +57,24 @@ Box crowded_box(const model::Ground& ground, const Box& box) {
     return crowded;
 }
 
-/// The window of the scene with the most to walk through, indoors first.
+/// How much a place is worth a visit: by what is seen from it, indoors first.
+double worth(const model::Ground& ground, const StandingPlace& place) {
+    const std::size_t seen = blocks_seen(ground, place.feet + dvec3(0, model::Body{}.eye_m, 0), view_m);
+    return static_cast<double>(1 + seen) * (place.indoors ? indoors_weight : 1);
+}
+
+/// Every so many-th place, and what it is worth.
+std::vector<std::pair<std::uint32_t, double>> weighed_places(const model::Ground& ground, const FreeSpace& space,
+                                                             const ForEach& for_each) {
+    const std::size_t stride = space.places.size() / max_weighed_places + 1;
+    std::vector<std::pair<std::uint32_t, double>> weighed((space.places.size() + stride - 1) / stride);
+    for_each(weighed.size(), [&](std::size_t i) {
+        weighed[i] = {static_cast<std::uint32_t>(i * stride), worth(ground, space.places[i * stride])};
+    });
+    return weighed;
+}
+
+/// The window of the scene with the most to walk through and to see.
 Box best_window(const model::Ground& ground, const Box& box, const ForEach& for_each) {
     const dvec3 sides = box.max - box.min;
     if (sides.x <= window_m && sides.z <= window_m) return box;
@@ -63,9 +82,11 @@ Box best_window(const model::Ground& ground, const Box& box, const ForEach& for_
     const FreeSpace space = find_free_space(ground, {}, box, cell, for_each);
     std::map<std::pair<int, int>, double> weights;  // by quarters of a window
     const double quarter = window_m / 4;
-    for (const StandingPlace& place : space.places)
-        weights[{static_cast<int>(std::floor((place.feet.x - box.min.x) / quarter)),
-                 static_cast<int>(std::floor((place.feet.z - box.min.z) / quarter))}] += place.indoors ? indoors_weight : 1;
+    for (const auto& [place, weight] : weighed_places(ground, space, for_each)) {
+        const dvec3& feet = space.places[place].feet;
+        weights[{static_cast<int>(std::floor((feet.x - box.min.x) / quarter)),
+                 static_cast<int>(std::floor((feet.z - box.min.z) / quarter))}] += weight;
+    }
     std::pair<int, int> best{0, 0};
     double max_weight = -1;
     for (const auto& [corner, unused] : weights) {
@@ -84,14 +105,12 @@ Box best_window(const model::Ground& ground, const Box& box, const ForEach& for_
     return window;
 }
 
-/// The region with the most places, indoors first; no_place: none is large enough.
-std::uint32_t best_region(const FreeSpace& space) {
+/// The region with the most to see, large or rich; no_place: none is large enough.
+std::uint32_t best_region(const model::Ground& ground, const FreeSpace& space, const ForEach& for_each) {
     std::vector<double> weights(space.regions, 0);
     std::vector<std::size_t> counts(space.regions, 0);
-    for (const StandingPlace& place : space.places) {
-        weights[place.region] += place.indoors ? indoors_weight : 1;
-        ++counts[place.region];
-    }
+    for (const StandingPlace& place : space.places) ++counts[place.region];
+    for (const auto& [place, weight] : weighed_places(ground, space, for_each)) weights[space.places[place].region] += weight;
     std::uint32_t best = no_place;
     for (std::uint32_t r = 0; r < space.regions; ++r)
         if (counts[r] >= min_places && (best == no_place || weights[r] > weights[best])) best = r;
@@ -133,7 +152,7 @@ using Block = std::array<int, 3>;
 /// Goes on and on to where the most that is new lies on the way, for its length.
 class Explorer {
 public:
-    Explorer(const FreeSpace& space, std::uint32_t region) : space_(space) {
+    Explorer(const model::Ground& ground, const FreeSpace& space, std::uint32_t region, const ForEach& for_each) : space_(space) {
         const auto count =
             std::count_if(space.places.begin(), space.places.end(), [&](const StandingPlace& p) { return p.region == region; });
         block_m_ = std::clamp(std::sqrt(static_cast<double>(count)) * space.cell_m / 8, min_block_m, max_block_m);
@@ -142,9 +161,11 @@ public:
             if (space.places[p].region != region) continue;
             const auto [it, fresh] = widest.try_emplace(block_of(space.places[p].feet), p);
             if (!fresh && space.places[p].clear_m > space.places[it->second].clear_m) it->second = p;
-            weights_[it->first] = std::max(weights_[it->first], space.places[p].indoors ? indoors_weight : 1.0);
         }
         for (const auto& [block, place] : widest) targets_.push_back(place);
+        std::vector<double> worths(targets_.size());
+        for_each(worths.size(), [&](std::size_t i) { worths[i] = worth(ground, space.places[targets_[i]]); });
+        for (std::size_t i = 0; i < worths.size(); ++i) weights_[block_of(space.places[targets_[i]].feet)] = worths[i];
     }
 
     std::vector<std::uint32_t> run() {
@@ -179,7 +200,7 @@ private:
                 static_cast<int>(std::floor(p.z / block_m_))};
     }
     [[nodiscard]] double rank(std::uint32_t p) const {
-        return (space_.places[p].indoors ? indoors_weight : 1) * static_cast<double>(space_.places[p].clear_m);
+        return weights_.at(block_of(space_.places[p].feet)) * static_cast<double>(space_.places[p].clear_m);
     }
     void see(std::uint32_t p) {
         const Block b = block_of(space_.places[p].feet);
@@ -310,10 +331,10 @@ constexpr auto sample_count = static_cast<std::size_t>(tour_s * tour_samples_per
 Path walk_through(const model::Ground& ground, const Box& box, const ForEach& for_each) {
     const Box window = best_window(ground, box, for_each);
     const FreeSpace space = find_free_space(ground, {}, window, fine_cell_m, for_each);
-    const std::uint32_t region = best_region(space);
+    const std::uint32_t region = best_region(ground, space, for_each);
     if (region == no_place) return {};
     const model::Walker walker(ground, {});
-    const std::vector<std::uint32_t> way = Explorer(space, region).run();
+    const std::vector<std::uint32_t> way = Explorer(ground, space, region, for_each).run();
     if (way.size() < 4) return {};
     const std::vector<dvec3> line = straightened(space, walker, way);
     double length = 0;
