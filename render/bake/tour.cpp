@@ -22,6 +22,7 @@ constexpr std::size_t coarse_cells = 10'000, min_places = 60;  // fewer fine pla
 constexpr std::size_t max_weighed_places = 1500;
 constexpr double min_block_m = 0.5, max_block_m = 2, indoors_weight = 2, view_m = 60;
 constexpr double look_ahead_m = 2.5, smooth_m = 1.5, max_off_floor_m = 0.12;
+constexpr double loop_share = 0.06;  // radius of a flight's loop, of the narrower side
 
 dvec3 level(const dvec3& v) { return {v.x, 0, v.z}; }
 
@@ -359,26 +360,37 @@ double highest_near(const model::Ground& ground, const dvec3& at, double reach, 
     return y;
 }
 
-/// A level loop around the middle of what blocks, well above all that lies under it.
-Path fly_above(const model::Ground& ground, const Box& box) {
-    const dvec3 sides = box.max - box.min;
-    const double radius = std::clamp(0.25 * std::min(sides.x, sides.z), 50.0, 3000.0),
-                 above = std::clamp(0.05 * radius, 30.0, 150.0);
-    std::map<std::pair<int, int>, std::pair<int, dvec3>> density;  // blocks of triangles by cells as wide as the loop
+/// The middle of the most crowded square of `cell_m`, by blocks of triangles.
+dvec3 crowded_middle(const model::Ground& ground, const Box& box, double cell_m) {
+    std::map<std::pair<int, int>, std::pair<double, dvec3>> squares;
+    const auto add = [&](const dvec3& p, double blocks) {
+        if (p.x < box.min.x || p.x > box.max.x || p.z < box.min.z || p.z > box.max.z) return;
+        auto& square = squares[{static_cast<int>(std::floor(p.x / cell_m)), static_cast<int>(std::floor(p.z / cell_m))}];
+        square.first += blocks;
+        square.second += blocks * p;
+    };
     if (!ground.meshes.empty()) {
         const model::GroundMesh& mesh = ground.meshes[0];
         for (std::uint32_t b = 0; b < mesh.block_count; ++b) {
             const auto& origin = ground.blocks[mesh.first_block + b].origin;
-            const dvec3 p = mesh.origin + mesh.step_m * dvec3(origin[0], origin[1], origin[2]);
-            auto& cell = density[{static_cast<int>(std::floor(p.x / radius)), static_cast<int>(std::floor(p.z / radius))}];
-            ++cell.first;
-            cell.second += p;
+            add(mesh.origin + mesh.step_m * dvec3(origin[0], origin[1], origin[2]), 1);
         }
     }
+    for (const model::GroundInstance& instance : ground.instances)
+        add(model::box_of(ground, instance).centre(), ground.meshes[instance.mesh].block_count);
     dvec3 centre = box.centre();
-    int max_blocks = 0;
-    for (const auto& [key, cell] : density)
-        if (cell.first > max_blocks) max_blocks = cell.first, centre = cell.second / static_cast<double>(cell.first);
+    double max_blocks = 0;
+    for (const auto& [key, square] : squares)
+        if (square.first > max_blocks) max_blocks = square.first, centre = square.second / square.first;
+    return centre;
+}
+
+/// A level loop around what is most crowded, well above all that lies under it. It looks half ahead, half to the middle.
+Path fly_above(const model::Ground& ground, const Box& box) {
+    const dvec3 sides = box.max - box.min;
+    const double radius = std::clamp(loop_share * std::min(sides.x, sides.z), 50.0, 1000.0),
+                 above = std::clamp(0.2 * radius, 30.0, 150.0);
+    const dvec3 centre = crowded_middle(ground, box, 2 * radius);
     std::vector<dvec3> eyes;
     for (std::size_t i = 0; i < sample_count; ++i) {
         const double angle = 1.5 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(sample_count);
@@ -397,6 +409,11 @@ Path fly_above(const model::Ground& ground, const Box& box) {
     const std::vector<dvec3> smooth = averaged(eyes, 30);
     for (std::size_t i = 0; i < eyes.size(); ++i) eyes[i].y = smooth[i].y;
     Path path = path_along(eyes, 0.15);
+    for (PathSample& sample : path.samples) {
+        const dvec3 ahead = glm::normalize(level(sample.pose.forward())),
+                    inwards = glm::normalize(level(centre - sample.pose.position));
+        sample.pose.orientation = looking_along(ahead + inwards - dvec3(0, 0.3, 0));
+    }
     return path;
 }
 
