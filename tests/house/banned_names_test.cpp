@@ -10,6 +10,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "tests/house/banned_names.hpp"
@@ -33,12 +34,16 @@ std::string words_of(std::string_view text) {
     return words + '_';
 }
 
+/// Whether `banned` is in `words` with a '_' on either side.
 bool has_words(std::string_view words, std::string_view banned) {
-    return words.find("_" + std::string(banned) + "_") != std::string_view::npos;
+    for (std::size_t at = words.find(banned); at != std::string_view::npos; at = words.find(banned, at + 1)) {
+        const std::size_t end = at + banned.size();
+        if (at > 0 && words[at - 1] == '_' && end < words.size() && words[end] == '_') return true;
+    }
+    return false;
 }
 
-/// What to say instead of an identifier; empty where it may stay.
-std::string_view instead_of(std::string_view identifier) {
+std::string_view looked_up(std::string_view identifier) {
     const std::string words = words_of(identifier);
     if (std::find(contracts.begin(), contracts.end(), identifier) != contracts.end()) return {};
     for (const Banned& banned : banned_names())
@@ -48,6 +53,14 @@ std::string_view instead_of(std::string_view identifier) {
     for (const Banned& banned : banned_words())
         if (has_words(words, banned.name)) return banned.instead;
     return {};
+}
+
+/// What to say instead of an identifier; empty where it may stay.
+std::string_view instead_of(std::string_view identifier) {
+    static std::unordered_map<std::string, std::string_view> known;  // each stands a hundred times
+    const auto [it, is_new] = known.try_emplace(std::string(identifier));
+    if (is_new) it->second = looked_up(identifier);
+    return it->second;
 }
 
 /// The same with the names that are banned in the product only.
