@@ -41,42 +41,75 @@ Flights climb_all(const JudgedScene& of, const std::string& name) {
     return result;
 }
 
-/// A floor, a flight of ten steps up from it, a ramp, and a flight of two.
-JudgedScene made_of_boxes() {
-    JudgedScene of;
-    of.scene.materials.emplace_back();
+/// Floors and steps of squares.
+struct Squares {
     importer::Primitive p;
-    const auto add_top = [&](const vec3& a, const vec3& b, const vec3& c, const vec3& d) {
+
+    void add(const vec3& a, const vec3& b, const vec3& c, const vec3& d) {
         const auto first = static_cast<std::uint32_t>(p.positions.size());
         p.positions.insert(p.positions.end(), {a, b, c, d});
         for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) p.indices.push_back(first + i);
-    };
-    const auto add_steps = [&](float z, int count) {
+    }
+    /// From x = 2 up, 0.28 m wide and 0.18 m high each; the last is 2 m wide.
+    void add_steps(float z, int count) {
         for (int i = 0; i < count; ++i) {
             const float x0 = 2 + 0.28F * static_cast<float>(i), x1 = x0 + (i + 1 == count ? 2.0F : 0.28F),
                         y0 = 0.18F * static_cast<float>(i), y1 = y0 + 0.18F;
-            add_top({x0, y1, z}, {x0, y1, z + 1.2F}, {x1, y1, z + 1.2F}, {x1, y1, z});
-            add_top({x0, y0, z}, {x0, y0, z + 1.2F}, {x0, y1, z + 1.2F}, {x0, y1, z});
+            add({x0, y1, z}, {x0, y1, z + 1.2F}, {x1, y1, z + 1.2F}, {x1, y1, z});
+            add({x0, y0, z}, {x0, y0, z + 1.2F}, {x0, y1, z + 1.2F}, {x0, y1, z});
         }
-    };
-    add_top({-2, 0, -6}, {-2, 0, 6}, {8, 0, 6}, {8, 0, -6});
-    add_steps(0, 10);
-    add_steps(-2, 2);
-    add_top({2, 0, 3}, {2, 0, 4}, {6, 2, 4}, {6, 2, 3});
-    of.scene.meshes.push_back({"boxes", {p}, {}});
-    importer::Node node;
-    node.mesh = 0;
-    of.scene.nodes.push_back(node);
-    of.finish();
-    return of;
+    }
+    JudgedScene judged() const {
+        JudgedScene of;
+        of.scene.materials.emplace_back();
+        of.scene.meshes.push_back({"squares", {p}, {}});
+        importer::Node node;
+        node.mesh = 0;
+        of.scene.nodes.push_back(node);
+        of.finish();
+        return of;
+    }
+};
+
+/// A floor, a flight of ten steps up from it, a ramp, and a flight of two.
+JudgedScene floor_with_stairs() {
+    Squares of;
+    of.add({-2, 0, -6}, {-2, 0, 6}, {8, 0, 6}, {8, 0, -6});
+    of.add_steps(0, 10);
+    of.add_steps(-2, 2);
+    of.add({2, 0, 3}, {2, 0, 4}, {6, 2, 4}, {6, 2, 3});
+    return of.judged();
 }
 
 }  // namespace
 
 TEST(Stairs, AreFoundAndClimbed) {
-    const Flights flights = climb_all(made_of_boxes(), "boxes");
+    const Flights flights = climb_all(floor_with_stairs(), "squares");
     EXPECT_EQ(flights.found, 1U) << "neither the ramp nor the two steps";
     EXPECT_EQ(flights.open, 1U);
+}
+
+// On the fourth step the head is half a millimetre below a slab that is level but for a tenth of a millimetre a metre.
+TEST(Stairs, WhoStandsCloseUnderASlabGetsDownAgain) {
+    for (const float tilt : {-0.0005F, 0.0F, 0.0005F}) {
+        Squares squares;
+        squares.add({-2, 0, -6}, {-2, 0, 6}, {8, 0, 6}, {8, 0, -6});
+        squares.add_steps(0, 10);
+        const float y = 0.72F + 1.8F + 0.0007F;
+        squares.add({1, y - tilt, 0}, {6, y + tilt, 0}, {6, y + tilt, 1.2F}, {1, y - tilt, 1.2F});
+        const JudgedScene of = squares.judged();
+        model::Walker walker(of.ground, {});
+        ASSERT_NEAR(model::crown_m + model::Body{}.eye_m, 1.8, 1e-9);
+        dvec3 eye(0, 1.7, 0.6);
+        const auto push = [&](double way, double seconds) {
+            for (double t = 0; t < seconds; t += tick_s) eye = walker.walk(eye, eye + dvec3(1.4 * tick_s * way, 0, 0), tick_s);
+        };
+        push(1, 6);
+        EXPECT_NEAR(walker.feet().y, 0.72, 0.001) << tilt << ": as far as the head fits";
+        EXPECT_EQ(walker.returns(), 0U) << tilt << ": the way down is free";
+        push(-1, 3);
+        EXPECT_NEAR(walker.feet().y, 0, 0.001) << tilt;
+    }
 }
 
 TEST(Nightly, StairsOfTheTownAreClimbedAndDescended) {

@@ -190,7 +190,9 @@ dvec3 Walker::slide(const dvec3& feet, dvec3 move, Barrier& barrier) {
     dvec3 at = feet;
     std::array<dvec3, 4> walls;
     for (std::size_t i = 0; i < walls.size() && glm::length(move) > 1e-12; ++i) {
-        const Contact contact = sweep(at, move, skin_m);
+        Contact contact = sweep(at, move, skin_m);
+        // The skin is for walls. A ceiling whose tilt is a rounding error would hold who has come under it that close.
+        if (contact.share <= 1 && std::abs(contact.away.y) > wall_max_up) contact = sweep(at, move);
         if (contact.share > 1) return at + move;
         at += contact.share * move;
         move *= 1 - contact.share;
