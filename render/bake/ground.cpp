@@ -52,6 +52,8 @@ public:
         if (go_ && has_sheer()) {
             const model::Ground solid = trees();
             if (go_) classify_sheets(solid);
+        } else {
+            for (std::size_t n = 0; n < scene_.nodes.size(); ++n) (void)stage_.step();
         }
         return go_;
     }

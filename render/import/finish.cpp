@@ -93,6 +93,27 @@ void clean_meshes(Scene& scene, const Progress& progress) {
     }
 }
 
+/// Masks that nothing shows through, and images that fill memory.
+void warn_of_images(Scene& scene) {
+    for (const Material& material : scene.materials) {
+        if (material.alpha != model::AlphaMode::mask || material.image == none) continue;
+        const std::vector<std::uint8_t>& rgba = scene.images[material.image].rgba;
+        bool shows = false;
+        for (std::size_t i = 3; i < rgba.size() && !shows; i += 4)
+            shows = static_cast<float>(rgba[i]) / 255 * material.colour[3] >= material.alpha_cutoff;
+        if (!shows)
+            scene.warnings.push_back(
+                fmt::format("Material '{}': its mask hides all that wears it; is its alpha inverted?", material.name));
+    }
+    constexpr double large_mib = 256, mips = 4.0 / 3.0;
+    for (const image::Image& image : scene.images) {
+        const double mib = 4.0 * image.width * image.height * mips / (1 << 20);
+        if (mib > large_mib)
+            scene.warnings.push_back(fmt::format("Texture '{}' of {} x {} texels takes {:.0f} MiB; is it needed so large?",
+                                                 image.name, image.width, image.height, mib));
+    }
+}
+
 /// What things that are drawn lack. A library of materials may name pictures that nobody uses.
 void collect_damage(Scene& scene, const std::string& file) {
     std::vector<bool> mesh_drawn(scene.meshes.size(), false), material_drawn(scene.materials.size(), false);
@@ -118,6 +139,7 @@ void collect_damage(Scene& scene, const std::string& file) {
 Result<void> finish(Scene& scene, const std::string& file, const Progress& progress) {
     if (scene.materials.empty()) scene.materials.push_back(Material{.name = "white"});
     clean_meshes(scene, progress);
+    warn_of_images(scene);
     collect_damage(scene, file);
     std::vector<Box> boxes;
     for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh));
