@@ -134,7 +134,25 @@ void find_regions(FreeSpace& space) {
     }
 }
 
+/// Cell by cell, each from low to high.
+std::vector<std::vector<StandingPlace>> places_by_cell(const model::Ground& ground, const model::Walker& walker,
+                                                       const model::Body& body, const CellRows& cells, const ForEach& for_each) {
+    std::vector<std::vector<StandingPlace>> by_cell(cells.columns * cells.rows);
+    for_each(by_cell.size(),
+             [&](std::size_t i) { by_cell[i] = places_above(ground, walker, body, cells.middle(i), cells.window); });
+    return by_cell;
+}
+
 }  // namespace
+
+std::vector<StandingPlace> find_places(const model::Ground& ground, const model::Body& body, const Box& window, double cell_m,
+                                       const ForEach& for_each) {
+    std::vector<StandingPlace> places;
+    const model::Walker walker(ground, body);
+    for (const auto& of_cell : places_by_cell(ground, walker, body, CellRows(window, cell_m), for_each))
+        places.insert(places.end(), of_cell.begin(), of_cell.end());
+    return places;
+}
 
 FreeSpace find_free_space(const model::Ground& ground, const model::Body& body, const Box& window, double cell_m,
                           const ForEach& for_each) {
@@ -142,8 +160,7 @@ FreeSpace find_free_space(const model::Ground& ground, const model::Body& body, 
     space.cell_m = cell_m;
     const CellRows cells(window, cell_m);
     const model::Walker walker(ground, body);
-    std::vector<std::vector<StandingPlace>> by_cell(cells.columns * cells.rows);
-    for_each(by_cell.size(), [&](std::size_t i) { by_cell[i] = places_above(ground, walker, body, cells.middle(i), window); });
+    const auto by_cell = places_by_cell(ground, walker, body, cells, for_each);
     std::vector<std::uint32_t> first(by_cell.size() + 1, 0);
     for (std::size_t i = 0; i < by_cell.size(); ++i) {
         first[i + 1] = first[i] + static_cast<std::uint32_t>(by_cell[i].size());

@@ -27,9 +27,14 @@ struct FreeSpace {
     std::uint32_t regions = 0;
 };
 
-/// By cells of `cell_m` within the window, several floors above each other included. for_each(count, body) may run on many
-/// threads; the result does not depend on them.
+/// For each of a number of things; may run on many threads, and no result depends on them.
 using ForEach = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
+
+/// Places alone, without ways between them: next, region and clear_m are not set.
+std::vector<StandingPlace> find_places(const model::Ground& ground, const model::Body& body, const Box& window, double cell_m,
+                                       const ForEach& for_each);
+
+/// By cells of `cell_m` within the window, several floors above each other included.
 FreeSpace find_free_space(const model::Ground& ground, const model::Body& body, const Box& window, double cell_m,
                           const ForEach& for_each);
 

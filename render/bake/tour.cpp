@@ -17,8 +17,9 @@ namespace surefoot::bake {
 
 namespace {
 
-constexpr double fine_cell_m = 0.25, window_m = 60, wide_m = 2000;
-constexpr std::size_t coarse_cells = 10'000, min_places = 60;  // fewer fine places than 4 m2 are no space to walk in
+constexpr double fine_cell_m = 0.25, window_m = 60, min_window_m = 7.5, wide_m = 2000, max_places = 250'000;
+constexpr std::size_t coarse_cells = 10'000, sample_cells = 1000,
+                      min_places = 60;  // fewer fine places than 4 m2 are no space to walk in
 constexpr std::size_t max_weighed_places = 1500;
 constexpr double min_block_m = 0.5, max_block_m = 2, indoors_weight = 2, view_m = 60;
 constexpr double look_ahead_m = 2.5, smooth_m = 1.5, max_off_floor_m = 0.12;
@@ -33,24 +34,37 @@ dquat looking_along(const dvec3& way) {
 
 // ---- where to walk ----
 
+/// use(box, blocks): of each block that stands once, and of each instance.
+template <class Use>
+void for_boxes(const model::Ground& ground, const Use& use) {
+    if (ground.meshes.empty()) return;
+    const model::GroundMesh& mesh = ground.meshes[0];
+    const dvec3 low(mesh.min[0], mesh.min[1], mesh.min[2]);
+    const dvec3 unit = (dvec3(mesh.max[0], mesh.max[1], mesh.max[2]) - low) / 65535.0;
+    std::uint32_t leaf = 0;  // the node that was asked last
+    model::ground_tree::for_leaves(
+        mesh.block_count, [&](std::uint32_t node) { return leaf = node, true; },
+        [&](std::uint32_t /*block*/) {
+            const model::GroundBox& b = ground.boxes[mesh.first_node + leaf];
+            use(Box{mesh.origin + mesh.step_m * (low + unit * dvec3(b.min[0], b.min[1], b.min[2])),
+                    mesh.origin + mesh.step_m * (low + unit * dvec3(b.max[0], b.max[1], b.max[2]))},
+                1.0);
+        });
+    for (const model::GroundInstance& instance : ground.instances)
+        use(model::box_of(ground, instance), static_cast<double>(ground.meshes[instance.mesh].block_count));
+}
+
 /// Where nine tenths of what blocks are, so that skies and far hills do not count.
 Box crowded_box(const model::Ground& ground, const Box& box) {
     std::array<std::vector<double>, 3> at;
-    const auto add = [&](const dvec3& p) {
-        for (int axis = 0; axis < 3; ++axis) at[static_cast<std::size_t>(axis)].push_back(p[axis]);
-    };
-    if (!ground.meshes.empty()) {
-        const model::GroundMesh& mesh = ground.meshes[0];
-        for (std::uint32_t b = 0; b < mesh.block_count; ++b) {
-            const auto& origin = ground.blocks[mesh.first_block + b].origin;
-            add(mesh.origin + mesh.step_m * dvec3(origin[0], origin[1], origin[2]));
-        }
-    }
-    for (const model::GroundInstance& instance : ground.instances) add(model::box_of(ground, instance).centre());
+    for_boxes(ground, [&](const Box& b, double /*blocks*/) {
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double p : {b.min[axis], b.max[axis]}) at[static_cast<std::size_t>(axis)].push_back(p);
+    });
     Box crowded = box;
     for (int axis = 0; axis < 3; axis += 2) {
         std::vector<double>& values = at[static_cast<std::size_t>(axis)];
-        if (values.size() < 20) continue;
+        if (values.size() < 40) continue;
         std::sort(values.begin(), values.end());
         crowded.min[axis] = std::max(box.min[axis], values[values.size() / 20] - 2);
         crowded.max[axis] = std::min(box.max[axis], values[values.size() - 1 - values.size() / 20] + 2);
@@ -61,30 +75,32 @@ Box crowded_box(const model::Ground& ground, const Box& box) {
 /// How much a place is worth a visit: by what is seen from it, indoors first.
 double worth(const model::Ground& ground, const StandingPlace& place) {
     const std::size_t seen = blocks_seen(ground, place.feet + dvec3(0, model::Body{}.eye_m, 0), view_m);
-    return static_cast<double>(1 + seen) * (place.indoors ? indoors_weight : 1);
+    return static_cast<double>(seen) * (place.indoors ? indoors_weight : 1);
 }
 
-/// Every so many-th place, and what it is worth.
-std::vector<std::pair<std::uint32_t, double>> weighed_places(const model::Ground& ground, const FreeSpace& space,
-                                                             const ForEach& for_each) {
-    const std::size_t stride = space.places.size() / max_weighed_places + 1;
-    std::vector<std::pair<std::uint32_t, double>> weighed((space.places.size() + stride - 1) / stride);
+/// One of so many places, and what it is worth.
+std::vector<std::pair<std::uint32_t, double>> weighed_places(const model::Ground& ground,
+                                                             const std::vector<StandingPlace>& places, const ForEach& for_each) {
+    const std::size_t stride = places.size() / max_weighed_places + 1;
+    std::vector<std::pair<std::uint32_t, double>> weighed((places.size() + stride - 1) / stride);
     for_each(weighed.size(), [&](std::size_t i) {
-        weighed[i] = {static_cast<std::uint32_t>(i * stride), worth(ground, space.places[i * stride])};
+        // Not every stride-th: where two floors lie above each other, every second place is on one of them.
+        const std::size_t shift = (i * 2654435761U >> 8U) % stride, place = std::min(i * stride + shift, places.size() - 1);
+        weighed[i] = {static_cast<std::uint32_t>(place), worth(ground, places[place])};
     });
     return weighed;
 }
 
-/// The window of the scene with the most to walk through and to see.
-Box best_window(const model::Ground& ground, const Box& box, const ForEach& for_each) {
+/// The square of `side_m` of a box with the most to walk through and to see, of `floors` above each other.
+Box best_window(const model::Ground& ground, const Box& box, double side_m, double floors, const ForEach& for_each) {
     const dvec3 sides = box.max - box.min;
-    if (sides.x <= window_m && sides.z <= window_m) return box;
-    const double cell = std::max(fine_cell_m, std::sqrt(sides.x * sides.z / static_cast<double>(coarse_cells)));
-    const FreeSpace space = find_free_space(ground, {}, box, cell, for_each);
+    if (sides.x <= side_m && sides.z <= side_m) return box;
+    const double cell = std::max(fine_cell_m, std::sqrt(sides.x * sides.z * floors / static_cast<double>(coarse_cells)));
+    const std::vector<StandingPlace> places = find_places(ground, {}, box, cell, for_each);
     std::map<std::pair<int, int>, double> weights;  // by quarters of a window
-    const double quarter = window_m / 4;
-    for (const auto& [place, weight] : weighed_places(ground, space, for_each)) {
-        const dvec3& feet = space.places[place].feet;
+    const double quarter = side_m / 4;
+    for (const auto& [place, weight] : weighed_places(ground, places, for_each)) {
+        const dvec3& feet = places[place].feet;
         weights[{static_cast<int>(std::floor((feet.x - box.min.x) / quarter)),
                  static_cast<int>(std::floor((feet.z - box.min.z) / quarter))}] += weight;
     }
@@ -101,20 +117,41 @@ Box best_window(const model::Ground& ground, const Box& box, const ForEach& for_
         if (sum > max_weight) max_weight = sum, best = corner;
     }
     Box window = box;
-    window.min.x = box.min.x + best.first * quarter, window.max.x = std::min(box.max.x, window.min.x + window_m);
-    window.min.z = box.min.z + best.second * quarter, window.max.z = std::min(box.max.z, window.min.z + window_m);
+    window.min.x = box.min.x + best.first * quarter, window.max.x = std::min(box.max.x, window.min.x + side_m);
+    window.min.z = box.min.z + best.second * quarter, window.max.z = std::min(box.max.z, window.min.z + side_m);
     return window;
 }
 
-/// The region with the most to see, large or rich; no_place: none is large enough.
+/// How many places are above each other, on average over the box.
+double floors_in(const model::Ground& ground, const Box& box, const ForEach& for_each) {
+    const dvec3 sides = box.max - box.min;
+    const double cell = std::max(fine_cell_m, std::sqrt(sides.x * sides.z / static_cast<double>(sample_cells)));
+    const double cells = std::max(1.0, std::ceil(sides.x / cell)) * std::max(1.0, std::ceil(sides.z / cell));
+    return std::max(1.0, static_cast<double>(find_places(ground, {}, box, cell, for_each).size()) / cells);
+}
+
+/// The best window with no more places than are looked at in seconds: towers of many floors have a smaller one.
+Box window_to_walk(const model::Ground& ground, const Box& box, const ForEach& for_each) {
+    Box window = best_window(ground, box, window_m, floors_in(ground, box, for_each), for_each);
+    for (double side = window_m / 2; side >= min_window_m; side /= 2) {
+        const dvec3 sides = window.max - window.min;
+        const double floors = floors_in(ground, window, for_each), cells = sides.x * sides.z / (fine_cell_m * fine_cell_m);
+        if (floors * cells <= max_places) break;
+        window = best_window(ground, window, side, floors, for_each);
+    }
+    return window;
+}
+
+/// The region with the most to see, large or rich; no_place: none is large enough, or shows anything.
 std::uint32_t best_region(const model::Ground& ground, const FreeSpace& space, const ForEach& for_each) {
     std::vector<double> weights(space.regions, 0);
     std::vector<std::size_t> counts(space.regions, 0);
     for (const StandingPlace& place : space.places) ++counts[place.region];
-    for (const auto& [place, weight] : weighed_places(ground, space, for_each)) weights[space.places[place].region] += weight;
+    for (const auto& [place, weight] : weighed_places(ground, space.places, for_each))
+        weights[space.places[place].region] += weight;
     std::uint32_t best = no_place;
     for (std::uint32_t r = 0; r < space.regions; ++r)
-        if (counts[r] >= min_places && (best == no_place || weights[r] > weights[best])) best = r;
+        if (counts[r] >= min_places && weights[r] > (best == no_place ? 0 : weights[best])) best = r;
     return best;
 }
 
@@ -330,7 +367,7 @@ constexpr auto sample_count = static_cast<std::size_t>(tour_s * tour_samples_per
 
 /// Nothing: there is no free space worth walking in.
 Path walk_through(const model::Ground& ground, const Box& box, const ForEach& for_each) {
-    const Box window = best_window(ground, box, for_each);
+    const Box window = window_to_walk(ground, box, for_each);
     const FreeSpace space = find_free_space(ground, {}, window, fine_cell_m, for_each);
     const std::uint32_t region = best_region(ground, space, for_each);
     if (region == no_place) return {};
@@ -369,20 +406,17 @@ dvec3 crowded_middle(const model::Ground& ground, const Box& box, double cell_m)
         square.first += blocks;
         square.second += blocks * p;
     };
-    if (!ground.meshes.empty()) {
-        const model::GroundMesh& mesh = ground.meshes[0];
-        for (std::uint32_t b = 0; b < mesh.block_count; ++b) {
-            const auto& origin = ground.blocks[mesh.first_block + b].origin;
-            add(mesh.origin + mesh.step_m * dvec3(origin[0], origin[1], origin[2]), 1);
-        }
-    }
-    for (const model::GroundInstance& instance : ground.instances)
-        add(model::box_of(ground, instance).centre(), ground.meshes[instance.mesh].block_count);
-    dvec3 centre = box.centre();
+    for_boxes(ground, [&](const Box& b, double blocks) { add(b.centre(), blocks); });
     double max_blocks = 0;
-    for (const auto& [key, square] : squares)
-        if (square.first > max_blocks) max_blocks = square.first, centre = square.second / square.first;
-    return centre;
+    for (const auto& [key, square] : squares) max_blocks = std::max(max_blocks, square.first);
+    dvec3 best = box.centre();
+    double nearest_m = std::numeric_limits<double>::infinity();  // of those that are about as crowded: on plain land all are
+    for (const auto& [key, square] : squares) {
+        const dvec3 at = square.second / square.first;
+        const double off_m = glm::length(level(at - box.centre()));
+        if (square.first >= 0.8 * max_blocks && off_m < nearest_m) nearest_m = off_m, best = at;
+    }
+    return best;
 }
 
 /// A level loop around what is most crowded, well above all that lies under it. It looks half ahead, half to the middle.

@@ -78,6 +78,30 @@ TEST(Tour, GoesAroundWhatHasNoFloorToStandOn) {
         ASSERT_GT(glm::dot(s.pose.forward(), glm::normalize(box_of_scene(of.scene).centre() - s.pose.position)), 0.999);
 }
 
+TEST(Tour, GoesInsideOfRoomsAndAroundClosedThings) {
+    for (const double side : {6.0, 7.0, 8.0, 9.0}) {
+        Triangles room, container;
+        add_box(container, {0, 0, 0}, {side, 2.6, side});
+        for (const model::GroundTriangle& t : container) room.push_back({t.a, t.c, t.b});
+        const Box box{dvec3(0), dvec3(side, 2.6, side)};
+        const bake::Tour inside = bake::make_tour(ground_of(room), box, {}),
+                         around = bake::make_tour(ground_of(container), box, {});
+        EXPECT_EQ(inside.kind, "through its free space") << side;
+        for (const PathSample& s : inside.path.samples) ASSERT_NEAR(s.pose.position.y, 1.7, 1e-3) << side;
+        EXPECT_EQ(around.kind, "around it") << side;
+    }
+}
+
+// Thirty floors of 40 m: the window is smaller, so that the path is found in seconds.
+TEST(Nightly, TourOfATowerIsWithinOneOfItsFloors) {
+    Triangles t;
+    for (int i = 0; i < 30; ++i) add_box(t, {0, 3.0 * i - 0.2, 0}, {40, 3.0 * i, 40});
+    for (int i = 0; i < 30; ++i) add_box(t, {9, 3.0 * i, 9}, {11, 3.0 * i + 2.6, 11});
+    const bake::Tour tour = bake::make_tour(ground_of(t), {dvec3(0, -0.2, 0), dvec3(40, 89.8, 40)}, {});
+    EXPECT_EQ(tour.kind, "through its free space");
+    for (const PathSample& s : tour.path.samples) ASSERT_NEAR(s.pose.position.y, tour.path.samples[0].pose.position.y, 1e-3);
+}
+
 TEST(Tour, OfNothingAndOfTinyThingsIsAPathToo) {
     EXPECT_EQ(bake::make_tour({}, {dvec3(0), dvec3(0)}, {}).path.samples.size(), 601U);
     EXPECT_EQ(bake::make_tour({}, {dvec3(0), dvec3(1e-3)}, {}).kind, "around it");

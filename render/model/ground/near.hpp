@@ -153,9 +153,13 @@ void for_triangles_near(const Ground& ground, const Box& box, const Use& use) {
     ground_tree::instances_near(ground, box, [&](std::uint32_t number) {
         const GroundInstance& instance = ground.instances[number];
         const dmat3 linear(instance.linear);
+        const bool mirrored = glm::determinant(linear) < 0;  // fronts stay fronts
         ground_tree::in_mesh(
             ground, ground.meshes[instance.mesh], ground_tree::in_frame_of(instance, box),
-            [&](const dvec3& p) { return instance.origin + linear * p; }, near);
+            [&](const dvec3& p) { return instance.origin + linear * p; },
+            [&](const GroundTriangle& t) {
+                near(mirrored ? GroundTriangle{t.a, t.c, t.b} : t);
+            });
     });
 }
 

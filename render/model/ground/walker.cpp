@@ -192,11 +192,11 @@ dvec3 Walker::slide(const dvec3& feet, dvec3 move, Barrier& barrier) {
     for (std::size_t i = 0; i < walls.size() && glm::length(move) > 1e-12; ++i) {
         Contact contact = sweep(at, move, skin_m);
         // The skin is for walls. A ceiling whose tilt is a rounding error would hold who has come under it that close.
-        if (contact.share <= 1 && std::abs(contact.away.y) > wall_max_up) contact = sweep(at, move);
+        if (contact.share <= 1 && contact.away.y < -wall_max_up) contact = sweep(at, move);
         if (contact.share > 1) return at + move;
         at += contact.share * move;
         move *= 1 - contact.share;
-        barrier = Barrier::wall;
+        barrier = contact.away.y < -wall_max_up ? Barrier::ceiling : Barrier::wall;
         const double level = std::hypot(contact.away.x, contact.away.z);
         if (level < 1e-6) return at;
         walls[i] = dvec3(contact.away.x / level, 0, contact.away.z / level);
@@ -273,7 +273,8 @@ void Walker::travel(const dvec3& move) {
 
 void Walker::fall(double dt_s) {
     if (supported_) return;
-    const Footing under = footing(feet_, feet_.y + skin_m, feet_.y - fall_from_m);
+    const double deep = std::max(fall_from_m, std::min(body_.edge_m, deep_m));
+    const Footing under = footing(feet_, feet_.y + skin_m, feet_.y - deep);
     if (under.any == -infinity) {  // no floor to fall to: it glides
         fall_m_s = 0;
         return;
@@ -303,17 +304,20 @@ bool Walker::roll_off(const Contact& contact, double dt_s) {
     return moved;
 }
 
-/// The eye follows its height over the feet with a limited acceleration. It may stop at once.
-void Walker::raise_eye(double dt_s) {
+/// The eye follows its height over the feet with a limited acceleration. It may stop at once. Feet that really sink take it
+/// along.
+void Walker::raise_eye(double sank_m_s, double dt_s) {
     eye_.x = feet_.x, eye_.z = feet_.z;
     const double target = feet_.y + body_.eye_m, off = target - eye_.y;
     const double speed = std::min(std::sqrt(2 * eye_m_s2 * std::abs(off)), std::abs(off) / eye_settles_s);
-    const double wanted = std::copysign(speed, off), change = (supported_ ? eye_m_s2 : gravity_m_s2) * dt_s;
-    eye_m_s += std::clamp(wanted - eye_m_s, -change, change);
-    if (!supported_) eye_m_s = -fall_m_s;
+    const double wanted = std::copysign(speed, off), change = eye_m_s2 * dt_s;
+    if (supported_ || sank_m_s == 0)
+        eye_m_s += std::clamp(wanted - eye_m_s, -change, change);
+    else
+        eye_m_s = std::max(-sank_m_s, std::min(eye_m_s, 0.0) - gravity_m_s2 * dt_s);
     const double before = eye_.y, lowest = target - max_sink_m;
     eye_.y += eye_m_s * dt_s;
-    if (supported_ && eye_m_s < 0 && eye_.y < lowest) {  // it stops; it is not moved up
+    if (eye_m_s < 0 && eye_.y < lowest) {  // it stops; it is not moved up
         eye_.y = std::max(eye_.y, std::min(before, lowest));
         eye_m_s = 0;
     }
@@ -326,7 +330,9 @@ void Walker::raise_eye(double dt_s) {
 void Walker::stand_up() {
     awake_ = true;
     fall_m_s = eye_m_s = 0;
-    const Footing under = footing(eye_, eye_.y, eye_.y - body_.eye_m - std::min(body_.edge_m, deep_m));
+    const double below = eye_.y - body_.eye_m;
+    Footing under = footing(eye_, below + body_.step_m, below - body_.step_m);  // not the table that it was placed over
+    if (under.floor == -infinity) under = footing(eye_, eye_.y, below - std::min(body_.edge_m, deep_m));
     supported_ = under.any > -infinity;
     steep_ = under.any > under.floor;
     feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
@@ -415,7 +421,7 @@ void Walker::stand_at(const dvec3& feet) {
 
 /// Stuck: pushed for a second without getting on, and none of 16 directions moves a tenth of a metre. One direction a tick.
 void Walker::watch(const dvec3& move, double dt_s) {
-    if (glm::length(feet_ - tried_from_) >= trial_m || !supported_) {
+    if (glm::length(feet_ - tried_from_) >= trial_m) {
         tried_from_ = feet_;
         pushed_s_ = 0;
         trial_ = 0;
@@ -482,8 +488,9 @@ dvec3 Walker::walk(const dvec3& from, const dvec3& wanted, double dt_s) noexcept
     if (!pushed && supported_ && eye_m_s == 0 && eye_.y == feet_.y + body_.eye_m) return eye_;
     prepare_near(feet_, glm::length(move) + max_fall_m_s * dt_s);
     if (pushed) travel(move);
+    const double before_m = feet_.y;
     fall(dt_s);
-    raise_eye(dt_s);
+    raise_eye(std::max(0.0, before_m - feet_.y) / dt_s, dt_s);
     if (pushed) watch(move, dt_s);
     return eye_;
 }

@@ -112,7 +112,7 @@ private:
     void travel(const dvec3& move);
     void fall(double dt_s);
     [[nodiscard]] bool roll_off(const Contact& contact, double dt_s);
-    void raise_eye(double dt_s);
+    void raise_eye(double sank_m_s, double dt_s);
     void stand_up();
     [[nodiscard]] bool push_out();
     [[nodiscard]] bool sees(const dvec3& to) const;
