@@ -61,6 +61,13 @@ std::vector<StandingPlace> places_above(const model::Ground& ground, const model
     return found;
 }
 
+/// Whether a floor leads from one to the other, and no ledge.
+bool is_slope(const model::Walker& walker, const dvec3& from, const dvec3& to) {
+    const dvec3 middle = 0.5 * (from + to);
+    const double y = walker.floor_at(middle, middle.y + same_floor_m, middle.y - same_floor_m);
+    return std::isfinite(y);
+}
+
 void find_ways(const model::Walker& walker, const model::Body& body, const CellRows& cells,
                const std::vector<std::uint32_t>& first, std::vector<StandingPlace>& places, std::size_t cell) {
     const auto x = static_cast<std::ptrdiff_t>(cell % cells.columns), z = static_cast<std::ptrdiff_t>(cell / cells.columns);
@@ -74,7 +81,8 @@ void find_ways(const model::Walker& walker, const model::Body& body, const CellR
         const double max_rise = std::max(body.step_m, way * std::tan(body.slope_rad));
         for (std::uint32_t p = first[cell]; p < first[cell + 1]; ++p) {
             for (std::uint32_t q = first[other]; q < first[other + 1]; ++q) {
-                if (std::abs(places[p].feet.y - places[q].feet.y) > max_rise) continue;
+                const double rise = std::abs(places[p].feet.y - places[q].feet.y);
+                if (rise > max_rise || (rise > body.step_m && !is_slope(walker, places[p].feet, places[q].feet))) continue;
                 if (!walker.passes(places[p].feet, places[q].feet)) continue;
                 places[p].next[d] = q;
                 break;

@@ -266,28 +266,32 @@ private:
 
 // ---- the way ----
 
-/// A walker's straight way, in steps of a cell: free everywhere, with a floor that rises gently.
-bool is_straight_free(const model::Walker& walker, const dvec3& from, const dvec3& to) {
+/// A walker's straight way over the floor, in steps of a cell: free everywhere, and it rises gently. Else nothing.
+std::vector<dvec3> straight_way(const model::Walker& walker, const dvec3& from, const dvec3& to) {
     const int steps = std::max(1, static_cast<int>(std::ceil(glm::length(level(to - from)) / 0.2)));
+    std::vector<dvec3> way;
     dvec3 at = from;
     for (int i = 1; i <= steps; ++i) {
         dvec3 next = from + (to - from) * (static_cast<double>(i) / steps);
         next.y = walker.floor_at(next, at.y + 0.25, at.y - 0.25);
-        if (!std::isfinite(next.y) || !walker.is_free(next) || !walker.passes(at, next)) return false;
-        at = next;
+        if (!std::isfinite(next.y) || !walker.is_free(next) || !walker.passes(at, next)) return {};
+        way.push_back(at = next);
     }
-    return std::abs(at.y - to.y) < 0.3;
+    if (std::abs(at.y - to.y) >= 0.3) return {};
+    return way;
 }
 
-/// Leaves places out between which the straight way is free.
+/// Leaves places out between which the straight way is free, and follows the floor there.
 std::vector<dvec3> straightened(const FreeSpace& space, const model::Walker& walker, const std::vector<std::uint32_t>& way) {
     std::vector<dvec3> kept{space.places[way[0]].feet};
     for (std::size_t i = 0; i + 1 < way.size();) {
         std::size_t best = i + 1;
+        std::vector<dvec3> along{space.places[way[best]].feet};
         for (std::size_t j = i + 2; j < std::min(way.size(), i + 24); ++j) {
-            if (is_straight_free(walker, space.places[way[i]].feet, space.places[way[j]].feet)) best = j;
+            std::vector<dvec3> straight = straight_way(walker, space.places[way[i]].feet, space.places[way[j]].feet);
+            if (!straight.empty()) best = j, along = std::move(straight);
         }
-        kept.push_back(space.places[way[best]].feet);
+        kept.insert(kept.end(), along.begin(), along.end());
         i = best;
     }
     return kept;
@@ -322,9 +326,9 @@ std::vector<dvec3> averaged(const std::vector<dvec3>& points, std::size_t reach)
 std::vector<dvec3> rounded(const model::Walker& walker, const std::vector<dvec3>& way, double step_m) {
     const auto reach = static_cast<std::size_t>(std::ceil(smooth_m / std::max(step_m, 0.01) / 2));
     std::vector<dvec3> points = way;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        const double y = walker.floor_at(points[i], points[i - 1].y + 0.26, points[i - 1].y - 0.4);
-        if (std::isfinite(y)) points[i].y = y;
+    for (dvec3& point : points) {
+        const double y = walker.floor_at(point, point.y + 0.26, point.y - 0.26);
+        if (std::isfinite(y)) point.y = y;
     }
     for (const double strength : {1.0, 0.5}) {
         const std::vector<dvec3> wanted = averaged(points, reach);
