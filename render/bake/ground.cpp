@@ -211,8 +211,7 @@ std::vector<std::string> ground_warnings(const model::Ground& ground, const Box&
     std::vector<std::string> lines;
     const dvec3 sides = all.empty() ? dvec3(0.0) : all.max - all.min;
     const double widest = std::max(sides.x, sides.z);
-    if (ground.empty())
-        lines.emplace_back("Ground: nothing blocks a walker, so it passes through all and glides at its height");
+    if (ground.empty()) lines.emplace_back("Ground: nothing blocks a walker, so it passes through all and glides at its height");
     if (widest < 1)
         lines.push_back(fmt::format("Ground: the model is {:.3g} m wide, smaller than a walker; are its units metres?", widest));
     if (widest > 1e5) lines.push_back(fmt::format("Ground: the model is {:.3g} km wide; are its units metres?", widest / 1000));
