@@ -17,7 +17,7 @@ namespace surefoot::rt {
 struct RecorderOptions {
     std::size_t reserve_records = 36000;  ///< more are kept too, but memory grows then
     bool keep = true;                     ///< false: records only go to on_record (a walk without end)
-    std::int64_t poll_ns = 250'000'000;   ///< how often the ring is emptied: a wake-up costs 15 to 150 us of CPU, a record 1
+    std::int64_t poll_ns = 500'000'000;   ///< how often the ring is emptied: a wake-up costs 15 to 150 us of CPU, a record 1
     std::string thread_name = "sf-monitor";
     std::function<void(const FrameRecord&)> on_record;  ///< live figures; on the monitor thread; may be empty
 };
