@@ -22,7 +22,7 @@ Selected walk_at(double cost_scale, double budget_ms, bool correct_costs) {
     walk::WalkRequest request = test::Forest::get().virtual_request(60);
     request.clock = rt::ClockKind::real;
     request.fifo = false;
-    request.rate_hz = 60;
+    request.rate_hz = 20;  // a slow, busy host prepares most frames in time as well
     request.in_frame_check = false;
     request.occlusion = false;
     request.budget_ms = budget_ms;
