@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <numbers>
 
 #include "render/model/ground/near.hpp"
 
@@ -12,6 +13,7 @@ namespace surefoot::bake {
 namespace {
 
 constexpr double ceiling_m = 8, same_floor_m = 0.1, max_clear_m = 3;
+constexpr std::size_t tile_cells = 8;  // a walker goes through squares of so many by so many: what is near is near the next cell
 constexpr std::array<std::array<int, 2>, 8> directions = {{{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
 /// The cells of a window, row by row.
@@ -30,10 +32,24 @@ struct CellRows {
         return {window.min.x + (static_cast<double>(column) + 0.5) * cell_m, 0,
                 window.min.z + (static_cast<double>(row) + 0.5) * cell_m};
     }
+    [[nodiscard]] std::size_t size() const { return columns * rows; }
 };
 
+/// use(walker, cell) for all cells, each row of tiles with a walker of its own.
+void for_cells(const model::Ground& ground, const model::Body& body, const CellRows& cells, const ForEach& for_each,
+               const std::function<void(model::Walker&, std::size_t)>& use) {
+    for_each((cells.rows + tile_cells - 1) / tile_cells, [&](std::size_t strip) {
+        model::Walker walker(ground, body);
+        const std::size_t end_row = std::min(cells.rows, (strip + 1) * tile_cells);
+        for (std::size_t column = 0; column < cells.columns; column += tile_cells)
+            for (std::size_t row = strip * tile_cells; row < end_row; ++row)
+                for (std::size_t c = column; c < std::min(cells.columns, column + tile_cells); ++c)
+                    use(walker, row * cells.columns + c);
+    });
+}
+
 /// Places above the middle of one cell, from low to high.
-std::vector<StandingPlace> places_above(const model::Ground& ground, const model::Walker& walker, const model::Body& body,
+std::vector<StandingPlace> places_above(const model::Ground& ground, model::Walker& walker, const model::Body& body,
                                         const dvec3& at, const Box& window) {
     std::vector<double> heights, floors;
     const double min_up = std::cos(body.slope_rad) - 1e-6;
@@ -45,7 +61,10 @@ std::vector<StandingPlace> places_above(const model::Ground& ground, const model
                                   const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
                                   if (std::abs(n.y) >= min_up * glm::length(n)) floors.push_back(y);
                               });
+    if (floors.empty()) return {};
     std::sort(floors.begin(), floors.end());
+    walker.gather({dvec3(at.x - body.radius_m, floors.front() - body.step_m, at.z - body.radius_m),
+                   dvec3(at.x + body.radius_m, floors.back() + body.step_m + body.eye_m + model::crown_m, at.z + body.radius_m)});
     std::vector<StandingPlace> found;
     for (const double y : floors) {
         const dvec3 feet(at.x, walker.floor_at({at.x, y, at.z}, y + body.step_m, y - same_floor_m), at.z);
@@ -68,24 +87,34 @@ bool is_slope(const model::Walker& walker, const dvec3& from, const dvec3& to) {
     return std::isfinite(y);
 }
 
-void find_ways(const model::Walker& walker, const model::Body& body, const CellRows& cells,
-               const std::vector<std::uint32_t>& first, std::vector<StandingPlace>& places, std::size_t cell) {
+double max_rise_m(const model::Body& body, double way_m) { return std::max(body.step_m, way_m * std::tan(body.slope_rad)); }
+
+/// The ground around a place as far as its neighbours in the first half of the directions.
+void gather_around(model::Walker& walker, const model::Body& body, const dvec3& feet, double cell_m) {
+    const double beside = cell_m + body.radius_m, rise = max_rise_m(body, std::numbers::sqrt2 * cell_m) + same_floor_m;
+    walker.gather({feet + dvec3(-beside, -rise, -body.radius_m),
+                   feet + dvec3(beside, rise + body.step_m + body.eye_m + model::crown_m, beside)});
+}
+
+/// Between the places of a cell and those of its neighbours in the first half of the directions, there and back: to the lowest
+/// that is reached.
+void find_ways(model::Walker& walker, const model::Body& body, const CellRows& cells, const std::vector<std::uint32_t>& first,
+               std::vector<StandingPlace>& places, std::size_t cell) {
     const auto x = static_cast<std::ptrdiff_t>(cell % cells.columns), z = static_cast<std::ptrdiff_t>(cell / cells.columns);
-    for (std::size_t d = 0; d < directions.size(); ++d) {
-        const std::ptrdiff_t to_x = x + directions[d][0], to_z = z + directions[d][1];
-        if (to_x < 0 || to_z < 0 || to_x >= static_cast<std::ptrdiff_t>(cells.columns) ||
-            to_z >= static_cast<std::ptrdiff_t>(cells.rows))
-            continue;
-        const std::size_t other = static_cast<std::size_t>(to_z) * cells.columns + static_cast<std::size_t>(to_x);
-        const double way = cells.cell_m * std::hypot(directions[d][0], directions[d][1]);
-        const double max_rise = std::max(body.step_m, way * std::tan(body.slope_rad));
-        for (std::uint32_t p = first[cell]; p < first[cell + 1]; ++p) {
+    for (std::uint32_t p = first[cell]; p < first[cell + 1]; ++p) {
+        gather_around(walker, body, places[p].feet, cells.cell_m);
+        for (std::size_t d = 0; d < directions.size() / 2; ++d) {
+            const std::ptrdiff_t to_x = x + directions[d][0], to_z = z + directions[d][1];
+            if (to_x < 0 || to_x >= static_cast<std::ptrdiff_t>(cells.columns) || to_z >= static_cast<std::ptrdiff_t>(cells.rows))
+                continue;
+            const std::size_t other = static_cast<std::size_t>(to_z) * cells.columns + static_cast<std::size_t>(to_x);
+            const double max_rise = max_rise_m(body, cells.cell_m * std::hypot(directions[d][0], directions[d][1]));
             for (std::uint32_t q = first[other]; q < first[other + 1]; ++q) {
                 const double rise = std::abs(places[p].feet.y - places[q].feet.y);
                 if (rise > max_rise || (rise > body.step_m && !is_slope(walker, places[p].feet, places[q].feet))) continue;
-                if (!walker.passes(places[p].feet, places[q].feet)) continue;
-                places[p].next[d] = q;
-                break;
+                std::uint32_t &there = places[p].next[d], &back = places[q].next[d + directions.size() / 2];
+                if (there == no_place && walker.passes(places[p].feet, places[q].feet)) there = q;
+                if (back == no_place && walker.passes(places[q].feet, places[p].feet)) back = p;
             }
         }
     }
@@ -143,11 +172,12 @@ void find_regions(FreeSpace& space) {
 }
 
 /// Cell by cell, each from low to high.
-std::vector<std::vector<StandingPlace>> places_by_cell(const model::Ground& ground, const model::Walker& walker,
-                                                       const model::Body& body, const CellRows& cells, const ForEach& for_each) {
-    std::vector<std::vector<StandingPlace>> by_cell(cells.columns * cells.rows);
-    for_each(by_cell.size(),
-             [&](std::size_t i) { by_cell[i] = places_above(ground, walker, body, cells.middle(i), cells.window); });
+std::vector<std::vector<StandingPlace>> places_by_cell(const model::Ground& ground, const model::Body& body,
+                                                       const CellRows& cells, const ForEach& for_each) {
+    std::vector<std::vector<StandingPlace>> by_cell(cells.size());
+    for_cells(ground, body, cells, for_each, [&](model::Walker& walker, std::size_t i) {
+        by_cell[i] = places_above(ground, walker, body, cells.middle(i), cells.window);
+    });
     return by_cell;
 }
 
@@ -156,8 +186,7 @@ std::vector<std::vector<StandingPlace>> places_by_cell(const model::Ground& grou
 std::vector<StandingPlace> find_places(const model::Ground& ground, const model::Body& body, const Box& window, double cell_m,
                                        const ForEach& for_each) {
     std::vector<StandingPlace> places;
-    const model::Walker walker(ground, body);
-    for (const auto& of_cell : places_by_cell(ground, walker, body, CellRows(window, cell_m), for_each))
+    for (const auto& of_cell : places_by_cell(ground, body, CellRows(window, cell_m), for_each))
         places.insert(places.end(), of_cell.begin(), of_cell.end());
     return places;
 }
@@ -167,14 +196,14 @@ FreeSpace find_free_space(const model::Ground& ground, const model::Body& body, 
     FreeSpace space;
     space.cell_m = cell_m;
     const CellRows cells(window, cell_m);
-    const model::Walker walker(ground, body);
-    const auto by_cell = places_by_cell(ground, walker, body, cells, for_each);
+    const auto by_cell = places_by_cell(ground, body, cells, for_each);
     std::vector<std::uint32_t> first(by_cell.size() + 1, 0);
     for (std::size_t i = 0; i < by_cell.size(); ++i) {
         first[i + 1] = first[i] + static_cast<std::uint32_t>(by_cell[i].size());
         space.places.insert(space.places.end(), by_cell[i].begin(), by_cell[i].end());
     }
-    for_each(by_cell.size(), [&](std::size_t i) { find_ways(walker, body, cells, first, space.places, i); });
+    for_cells(ground, body, cells, for_each,
+              [&](model::Walker& walker, std::size_t i) { find_ways(walker, body, cells, first, space.places, i); });
     keep_both_ways(space.places);
     find_clearances(space);
     find_regions(space);

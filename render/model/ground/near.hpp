@@ -46,22 +46,14 @@ void for_leaves(std::uint32_t count, const Passes& passes, const Use& use) {
     }
 }
 
-/// Corner `i` of a block, on the lattice.
-inline dvec3 corner(const Ground& ground, const GroundBlock& block, std::uint32_t i) {
-    dvec3 p;
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::size_t at = 3 * std::size_t{i} + static_cast<std::size_t>(axis);
-        std::uint32_t offset = 0;
-        if (block.wide) {
-            std::memcpy(&offset, ground.bytes.data() + block.first_byte + 4 * at, 4);
-        } else {
-            std::uint16_t half = 0;
-            std::memcpy(&half, ground.bytes.data() + block.first_byte + 2 * at, 2);
-            offset = half;
-        }
-        p[axis] = static_cast<double>(block.origin[static_cast<std::size_t>(axis)]) + static_cast<double>(offset);
-    }
-    return p;
+/// Corners of a block on the lattice, from their bytes.
+template <class Offset>
+void unpack(const GroundBlock& block, const std::byte* bytes, std::array<dvec3, max_block_corners>& corners) {
+    const dvec3 origin(block.origin[0], block.origin[1], block.origin[2]);
+    std::array<Offset, std::size_t{3} * max_block_corners> offsets;
+    std::memcpy(offsets.data(), bytes, std::size_t{3} * block.corners * sizeof(Offset));
+    for (std::size_t i = 0; i < block.corners; ++i)
+        corners[i] = origin + dvec3(offsets[3 * i], offsets[3 * i + 1], offsets[3 * i + 2]);
 }
 
 /// The query's box on a mesh's lattice, and in the units of its tree.
@@ -97,8 +89,9 @@ template <class Place, class Passes, class Use>
 void in_block(const Ground& ground, const GroundMesh& mesh, const GroundBlock& block, const Place& place, const Passes& passes,
               const Use& use) {
     std::array<dvec3, max_block_corners> corners;
-    for (std::uint32_t i = 0; i < block.corners; ++i) corners[i] = corner(ground, block, i);
-    const std::byte* numbers = ground.bytes.data() + block.first_byte + std::size_t{block.corners} * (block.wide ? 12 : 6);
+    const std::byte* bytes = ground.bytes.data() + block.first_byte;
+    block.wide ? unpack<std::uint32_t>(block, bytes, corners) : unpack<std::uint16_t>(block, bytes, corners);
+    const std::byte* numbers = bytes + std::size_t{block.corners} * (block.wide ? 12 : 6);
     const auto in_world = [&](const dvec3& p) { return place(mesh.origin + mesh.step_m * p); };
     for (std::uint32_t t = 0; t < block.triangles; ++t, numbers += 3) {
         const dvec3 &a = corners[std::to_integer<std::size_t>(numbers[0])],

@@ -63,11 +63,13 @@ Capsule Walker::capsule_at(const dvec3& feet) const {
     return {feet + dvec3(0, bottom + body_.radius_m, 0), std::max(0.0, top - bottom - 2 * body_.radius_m), body_.radius_m};
 }
 
-/// From the gathered triangles where they hold all of the box, else from the tree.
+/// From the gathered triangles where they hold all of the box, else from the tree: the same ones.
 template <class Use>
 void Walker::for_near(const Box& box, const Use& use) const {
     if (!near_.holds(box)) return for_triangles_near(ground_, box, use);
-    near_.for_triangles(box, [&](const GroundTriangle& t, const NearBlocks::Known&) { use(t); });
+    near_.for_triangles(box, [&](const GroundTriangle& t, const NearBlocks::Known&) {
+        if (ground_tree::overlap(box, ground_tree::box_of(t))) use(t);
+    });
 }
 
 void Walker::prepare_near(const dvec3& feet, double reach_m) {

@@ -62,6 +62,12 @@ public:
         barrier_ = Barrier::clear;
     }
 
+    /// Gets ready what meets the box: what is asked about it next is answered the same, and sooner. For many questions about a
+    /// place without a step there.
+    void gather(const Box& box) noexcept {
+        near_.gather(box);
+        close_known_ = false;
+    }
     /// Whether nothing overlaps a body with its feet there by over a centimetre.
     [[nodiscard]] bool is_free(const dvec3& feet) const;
     /// The highest floor under the foot's disc at (x, z) between these heights; minus infinity: none.
