@@ -11,6 +11,8 @@ extern const SelectorEntry depth_first_entry;
 extern const SelectorEntry best_first_entry;
 extern const SelectorEntry two_stage_entry;
 extern const SelectorEntry threshold_entry;
+extern const SelectorEntry curve_budget_entry;
+extern const SelectorEntry curve_accuracy_entry;
 extern const SelectorEntry depth_first_1994_entry;
 extern const SelectorEntry best_first_1994_entry;
 extern const SelectorEntry two_stage_1994_entry;

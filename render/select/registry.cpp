@@ -9,9 +9,10 @@
 namespace surefoot::select {
 
 std::span<const SelectorEntry> selectors() {
-    static const std::array all = {flat_entry,          by_distance_entry, depth_first_entry,      best_first_entry,
-                                   two_stage_entry,     threshold_entry,   depth_first_1994_entry, best_first_1994_entry,
-                                   two_stage_1994_entry};
+    static const std::array all = {
+        flat_entry,          by_distance_entry,  depth_first_entry,    best_first_entry,       two_stage_entry,
+        threshold_entry,     curve_budget_entry, curve_accuracy_entry, depth_first_1994_entry, best_first_1994_entry,
+        two_stage_1994_entry};
     return all;
 }
 

@@ -49,7 +49,7 @@ int main() {
     fmt::print("{{\"candidates\": {}, \"select_ms\": {{", candidates);
     const char* comma = "";
     const double full_us = static_cast<double>(wide.run("flat", test::infinity).predicted_us);
-    for (const char* selector : {"depth-first", "best-first", "two-stage"}) {
+    for (const char* selector : {"depth-first", "best-first", "two-stage", "curve-budget", "threshold"}) {
         fmt::print("{}\"{}\": {{\"full\": {:.3f}, \"half\": {:.3f}, \"tenth\": {:.3f}}}", comma, selector,
                    select_ms(wide, selector, test::infinity), select_ms(wide, selector, 0.5 * full_us),
                    select_ms(wide, selector, 0.1 * full_us));

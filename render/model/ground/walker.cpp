@@ -5,13 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/model/ground/near.hpp"
+#include "render/model/ground/walker_parts.hpp"
 
 namespace surefoot::model {
 
 namespace {
 
-constexpr double skin_m = 1e-3;                            // walls keep this much more off than the radius
 constexpr double step_slack_m = 0.01;                      // a step of exactly step_m is climbed
 constexpr double slope_slack = 1e-6, edge_slack_m = 1e-3;  // a slope of exactly the limit is climbed, and an edge stops
 constexpr double foot_share = 0.5;                         // radius of the disc under which the floor is looked for
@@ -25,27 +24,7 @@ constexpr double gather_m = 0.25;                     // triangles are gathered 
 constexpr double close_m = 0.12;
 constexpr std::size_t max_close = 4096;
 constexpr double wall_max_up = 0.7;  // of a normal: what is more level is a floor or a ceiling, and the eye is not led through it
-// How far the sides of a solid are looked for: small rooms of single walls look like one to who starts there.
-constexpr double start_sight_m = 1, place_sight_m = 2.5;
-constexpr double deep_m = 1e7;  // below every floor
-constexpr std::uint32_t trials = 16;
-constexpr double trial_m = 0.1, stuck_after_s = 1, free_every_m = 0.5;
-constexpr std::uint32_t search_rings = 40, search_a_tick = 2, search_places = 2 * search_rings * trials;
-constexpr double below_floor_m = 1, max_push_out_m = 0.35, shown_stuck_s = 1;
-constexpr double ring_m = 0.25;
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-dvec3 direction(double turn) {
-    const double angle = 2 * std::numbers::pi * turn;
-    return {std::cos(angle), 0, std::sin(angle)};
-}
-
-Box swept(const Capsule& capsule, const dvec3& move) {
-    Box box{capsule.low - capsule.radius, capsule.low + capsule.radius};
-    box.max.y += capsule.length;
-    box.grow(Box{box.min + move, box.max + move});
-    return box;
-}
+constexpr double free_every_m = 0.5;
 
 }  // namespace
 
@@ -55,21 +34,13 @@ Walker::Walker(const Ground& ground, const Body& body) : ground_(ground), body_(
     body_.step_m = std::min(body_.step_m, 0.4 * tall);
     body_.radius_m = std::min(body_.radius_m, (tall - body_.step_m - step_slack_m) / 2);
     close_.reserve(max_close);
-    for (std::size_t i = 1; i < foot_.size(); ++i) foot_[i] = foot_share * body_.radius_m * direction(static_cast<double>(i) / 8);
+    for (std::size_t i = 1; i < foot_.size(); ++i)
+        foot_[i] = foot_share * body_.radius_m * walker_parts::direction(static_cast<double>(i) / 8);
 }
 
 Capsule Walker::capsule_at(const dvec3& feet) const {
     const double bottom = body_.step_m + step_slack_m, top = body_.eye_m + crown_m;
     return {feet + dvec3(0, bottom + body_.radius_m, 0), std::max(0.0, top - bottom - 2 * body_.radius_m), body_.radius_m};
-}
-
-/// From the gathered triangles where they hold all of the box, else from the tree: the same ones.
-template <class Use>
-void Walker::for_near(const Box& box, const Use& use) const {
-    if (!near_.holds(box)) return for_triangles_near(ground_, box, use);
-    near_.for_triangles(box, [&](const GroundTriangle& t, const NearBlocks::Known&) {
-        if (ground_tree::overlap(box, ground_tree::box_of(t))) use(t);
-    });
 }
 
 void Walker::prepare_near(const dvec3& feet, double reach_m) {
@@ -85,12 +56,12 @@ void Walker::prepare_near(const dvec3& feet, double reach_m) {
 
 void Walker::find_close(const dvec3& feet) {
     const Capsule body = capsule_at(feet);
-    const Box box = swept({body.low, body.length, body.radius + close_m}, dvec3(0.0));
+    const Box box = walker_parts::swept({body.low, body.length, body.radius + close_m}, dvec3(0.0));
     close_.clear();
     close_complete_ = near_.holds(box);
     near_.for_triangles(box, [&](const GroundTriangle& t, NearBlocks::Known& known) {
         if (known.apart_m - glm::length(feet - known.feet) > close_m) return;
-        if (known.apart_m == -infinity) known = {feet, min_separation(body, t) - body.radius};
+        if (known.apart_m == -walker_parts::infinity) known = {feet, min_separation(body, t) - body.radius};
         if (known.apart_m - glm::length(feet - known.feet) > close_m) return;
         if (close_.size() < max_close)
             close_.push_back({&t, &known});
@@ -111,7 +82,7 @@ Contact Walker::sweep(const dvec3& feet, const dvec3& move, double skin) {
         const Contact contact = first_contact(grown, move, t, first.share);
         if (contact.share < first.share) first = contact;
     };
-    const Box box = swept(grown, move);
+    const Box box = walker_parts::swept(grown, move);
     const double reach = glm::length(move) + skin;
     const bool short_step = reach <= close_m && near_.holds(box);
     if (short_step && (!close_known_ || glm::length(feet - close_to_) + reach > close_m)) find_close(feet);
@@ -133,7 +104,7 @@ bool Walker::is_free(const dvec3& feet) const {
     Capsule body = capsule_at(feet);
     body.radius -= max_overlap_m;
     bool is_free = true;
-    for_near(swept(body, dvec3(0.0)), [&](const GroundTriangle& t) {
+    for_near(walker_parts::swept(body, dvec3(0.0)), [&](const GroundTriangle& t) {
         is_free = is_free && (min_separation(body, t) >= body.radius || separation(body, t).distance >= body.radius);
     });
     return is_free;
@@ -144,34 +115,15 @@ bool Walker::passes(const dvec3& from, const dvec3& to) const {
     const Capsule body = capsule_at({from.x, y, from.z});
     const dvec3 move(to.x - from.x, 0, to.z - from.z);
     bool touches = false;
-    for_near(swept(body, move), [&](const GroundTriangle& t) { touches = touches || first_contact(body, move, t).share <= 1; });
+    for_near(walker_parts::swept(body, move),
+             [&](const GroundTriangle& t) { touches = touches || first_contact(body, move, t).share <= 1; });
     return !touches;
-}
-
-/// Of six lines from the body's middle, five or all end at the backs of triangles. Closed things are seen so from their inside.
-bool Walker::is_inside_solid(const dvec3& feet, double sight_m) const {
-    const dvec3 middle = feet + dvec3(0, (body_.step_m + body_.eye_m) / 2, 0);
-    int backs = 0;
-    for (int i = 0; i < 6; ++i) {
-        dvec3 way(0.0);
-        way[i / 2] = i % 2 == 0 ? sight_m : -sight_m;
-        Box line{middle, middle};
-        line.grow(middle + way);
-        double nearest = 2;
-        bool back = false;
-        for_triangles_near(ground_, line, [&](const GroundTriangle& t) {
-            const Crossing crossing = crossing_of(middle, way, t);
-            if (crossing.share < nearest) nearest = crossing.share, back = crossing.back;
-        });
-        backs += nearest <= 1 && back ? 1 : 0;
-    }
-    return backs >= 5;
 }
 
 /// The centre and eight points around it look down from `top`.
 Walker::Footing Walker::footing(const dvec3& at, double top, double bottom) const {
     const double reach = foot_share * body_.radius_m, min_up = std::cos(body_.slope_rad) - slope_slack;
-    Footing found{-infinity, -infinity};
+    Footing found{-walker_parts::infinity, -walker_parts::infinity};
     const Box column{dvec3(at.x - reach, bottom, at.z - reach), dvec3(at.x + reach, top, at.z + reach)};
     for_near(column, [&](const GroundTriangle& t) {
         if (std::max({t.a.y, t.b.y, t.c.y}) <= found.floor) return;
@@ -192,7 +144,7 @@ dvec3 Walker::slide(const dvec3& feet, dvec3 move, Barrier& barrier) {
     dvec3 at = feet;
     std::array<dvec3, 4> walls;
     for (std::size_t i = 0; i < walls.size() && glm::length(move) > 1e-12; ++i) {
-        Contact contact = sweep(at, move, skin_m);
+        Contact contact = sweep(at, move, walker_parts::skin_m);
         // The skin is for walls. A ceiling whose tilt is a rounding error would hold who has come under it that close.
         if (contact.share <= 1 && contact.away.y < -wall_max_up) contact = sweep(at, move);
         if (contact.share > 1) return at + move;
@@ -213,7 +165,7 @@ Walker::Attempt Walker::attempt(const dvec3& move) {
     Attempt to;
     to.feet = slide(feet_, move, to.barrier);
     const double raise = body_.step_m + step_slack_m, top = feet_.y + raise;
-    const double bottom = feet_.y - std::max(raise, std::min(body_.edge_m, deep_m) - edge_slack_m);
+    const double bottom = feet_.y - std::max(raise, std::min(body_.edge_m, walker_parts::deep_m) - edge_slack_m);
     const Footing under = footing(to.feet, top, bottom);
     const auto refused = [&](Barrier why) {
         to.feet = feet_;
@@ -221,12 +173,13 @@ Walker::Attempt Walker::attempt(const dvec3& move) {
         return to;
     };
     double floor = under.floor;
-    if (floor == -infinity && under.any > -infinity) {  // only what is too steep: down it goes, if it stood on such before
+    if (floor == -walker_parts::infinity &&
+        under.any > -walker_parts::infinity) {  // only what is too steep: down it goes, if it stood on such before
         if (supported_ && (!steep_ || under.any > feet_.y)) return refused(Barrier::slope);
         floor = under.any;
         to.steep = true;
     }
-    if (floor == -infinity) {
+    if (floor == -walker_parts::infinity) {
         if (supported_) return refused(Barrier::edge);
         return to;
     }
@@ -252,7 +205,7 @@ void Walker::travel(const dvec3& move) {
     for (int i = 1; i <= tries && best.feet == feet_ && first != Barrier::wall; ++i) {
         const int step = i % 2 == 0 ? -(i / 2) : (i + 1) / 2;
         const double turn = step * (29.0 / 360.0), along = std::cos(2 * std::numbers::pi * turn);
-        const dvec3 d = direction(turn);
+        const dvec3 d = walker_parts::direction(turn);
         best = attempt(along * dvec3(move.x * d.x - move.z * d.z, 0, move.x * d.z + move.z * d.x));
     }
     if (best.feet == feet_) {
@@ -275,9 +228,9 @@ void Walker::travel(const dvec3& move) {
 
 void Walker::fall(double dt_s) {
     if (supported_) return;
-    const double deep = std::max(fall_from_m, std::min(body_.edge_m, deep_m));
-    const Footing under = footing(feet_, feet_.y + skin_m, feet_.y - deep);
-    if (under.any == -infinity) {  // no floor to fall to: it glides
+    const double deep = std::max(fall_from_m, std::min(body_.edge_m, walker_parts::deep_m));
+    const Footing under = footing(feet_, feet_.y + walker_parts::skin_m, feet_.y - deep);
+    if (under.any == -walker_parts::infinity) {  // no floor to fall to: it glides
         fall_m_s = 0;
         return;
     }
@@ -326,137 +279,13 @@ void Walker::raise_eye(double sank_m_s, double dt_s) {
     if (std::abs(target - eye_.y) < 1e-5 && std::abs(eye_m_s) < 1e-3) eye_.y = target, eye_m_s = 0;
 }
 
-// ---- beginnings, and being stuck ----
-
-/// The feet find their floor below an eye that was placed.
-void Walker::stand_up() {
-    awake_ = true;
-    fall_m_s = eye_m_s = 0;
-    const double below = eye_.y - body_.eye_m;
-    Footing under = footing(eye_, below + body_.step_m, below - body_.step_m);  // not the table that it was placed over
-    if (under.floor == -infinity) under = footing(eye_, eye_.y, below - std::min(body_.edge_m, deep_m));
-    supported_ = under.any > -infinity;
-    steep_ = under.any > under.floor;
-    feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
-    stood_up_at_ = feet_;
-    free_count_ = 0;
-    if (!supported_) {  // perhaps a vehicle's recorded path, whose heights are the road's
-        const double above = footing(eye_, eye_.y + below_floor_m, eye_.y).floor;
-        if (above > -infinity && is_free({eye_.x, above, eye_.z})) {
-            ++freed_;
-            stand_at({eye_.x, above, eye_.z});
-            return;
-        }
-    }
-    searching_ = !is_free(feet_) || is_inside_solid(feet_, start_sight_m);
-    search_at_ = 0;
-}
-
-/// Out of what the body overlaps, level and by the shortest way. False: not within max_push_out_m.
-bool Walker::push_out() {
-    dvec3 at = feet_;
-    for (int i = 0; i < 8; ++i) {
-        const Capsule body = capsule_at(at);
-        dvec3 aside(0.0);
-        double deepest = 0;
-        for_near(swept(body, dvec3(0.0)), [&](const GroundTriangle& t) {
-            const Separation s = separation(body, t);
-            const double deep = body.radius + skin_m - s.distance, level = std::hypot(s.away.x, s.away.z);
-            if (deep <= deepest || s.distance == 0 || level < 0.1) return;
-            deepest = deep;
-            aside = dvec3(s.away.x, 0, s.away.z) * (deep / (level * level));
-        });
-        if (deepest == 0) break;
-        at += aside;
-        if (glm::length(at - feet_) > max_push_out_m) return false;
-    }
-    at.y = footing(at, feet_.y + body_.step_m, feet_.y - body_.step_m).floor;
-    if (!std::isfinite(at.y) || !is_free(at) || is_inside_solid(at, place_sight_m)) return false;
-    stand_at(at);
-    return true;
-}
-
-bool Walker::sees(const dvec3& to) const {
-    Box box{eye_, eye_};
-    box.grow(to);
-    bool crosses = false;
-    for_triangles_near(ground_, box,
-                       [&](const GroundTriangle& t) { crosses = crosses || crossing_of(eye_, to - eye_, t).share <= 1; });
-    return !crosses;
-}
-
-/// Beside what it overlaps, if it does so slightly. Else on rings around the eye, nearest first: the first place with a floor
-/// where the body is free. At first only floors of about this height, from where nothing is between; then any.
-void Walker::look_for_a_free_place() {
-    barrier_ = Barrier::inside;
-    if (search_at_ == 0 && supported_ && push_out()) {
-        ++freed_;
-        return;
-    }
-    for (std::uint32_t i = 0; i < search_a_tick && searching_; ++i, ++search_at_) {
-        if (search_at_ >= search_places) {  // nothing is free: the walker stays, and walls let it out but not in
-            searching_ = false;
-            return;
-        }
-        const std::uint32_t of_pass = search_at_ % (search_rings * trials), ring = of_pass / trials + 1;
-        const bool picky = search_at_ < search_rings * trials;
-        const dvec3 at = eye_ + ring * ring_m * direction((of_pass % trials) / static_cast<double>(trials));
-        const double top = picky ? feet_.y + body_.step_m : eye_.y;
-        const dvec3 feet{at.x, footing(at, top, eye_.y - body_.eye_m - 1.0).floor, at.z};
-        if (!std::isfinite(feet.y) || !is_free(feet) || is_inside_solid(feet, place_sight_m)) continue;
-        if (picky && !sees(feet + dvec3(0, body_.eye_m, 0))) continue;
-        ++freed_;
-        stand_at(feet);
-    }
-}
-
-void Walker::stand_at(const dvec3& feet) {
-    feet_ = feet;
-    eye_ = feet + dvec3(0, body_.eye_m, 0);
-    supported_ = true;
-    steep_ = searching_ = false;
-    fall_m_s = eye_m_s = 0;
-    pushed_s_ = 0;
-    trial_ = 0;
-    tried_from_ = feet;
-}
-
-/// Stuck: pushed for a second without getting on, and none of 16 directions moves a tenth of a metre. One direction a tick.
-void Walker::watch(const dvec3& move, double dt_s) {
-    if (glm::length(feet_ - tried_from_) >= trial_m) {
-        tried_from_ = feet_;
-        pushed_s_ = 0;
-        trial_ = 0;
-        return;
-    }
-    if (move == dvec3(0.0)) return;
-    pushed_s_ += dt_s;
-    if (pushed_s_ < stuck_after_s) return;
-    const Attempt to = attempt(trial_m * direction(trial_ / static_cast<double>(trials)));
-    if (glm::length(to.feet - feet_) >= 0.9 * trial_m) {
-        pushed_s_ = 0;
-        trial_ = 0;
-    } else if (++trial_ == trials) {
-        trial_ = 0;
-        pushed_s_ = 0;
-        stuck_s_ = shown_stuck_s;
-        if (free_count_ > 0) {
-            ++returns_;
-            stand_at(free_places_[free_count_ - 1]);
-        } else {
-            searching_ = true;
-            search_at_ = 1;
-        }
-    }
-}
-
 Walker::Foreseen Walker::foresee(const dvec3& feet, const dvec3& eye, const dvec3& way, double wide_m) noexcept {
     Barrier ignored = Barrier::clear;
     prepare_near(feet, glm::length(way) + wide_m);
     const dvec3 to = slide(feet, dvec3(way.x, 0, way.z), ignored);
     Foreseen foreseen{{to.x, eye.y + way.y, to.z}, 0};
     Capsule point{foreseen.eye, 0, wide_m + glm::length(foreseen.eye - eye - way)};
-    for_near(swept(point, dvec3(0.0)), [&](const GroundTriangle& t) {
+    for_near(walker_parts::swept(point, dvec3(0.0)), [&](const GroundTriangle& t) {
         const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
         if (min_separation(point, t) >= point.radius || std::abs(n.y) > wall_max_up * glm::length(n)) return;
         point.radius = std::min(point.radius, separation(point, t).distance);

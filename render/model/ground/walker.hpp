@@ -124,6 +124,7 @@ private:
     [[nodiscard]] bool sees(const dvec3& to) const;
     void look_for_a_free_place();
     void stand_at(const dvec3& feet);
+    [[nodiscard]] bool trial_gets_on();
     void watch(const dvec3& move, double dt_s);
     void prepare_near(const dvec3& feet, double reach_m);
 
@@ -144,10 +145,11 @@ private:
     Barrier barrier_ = Barrier::clear;
     std::uint32_t search_at_ = 0;  ///< candidates for a free place that were looked at
     bool searching_ = false;
-    dvec3 tried_from_{0.0};  ///< where the walker was when it last got on
-    double pushed_s_ = 0;    ///< for how long it has not
-    double stuck_s_ = 0;     ///< for how long it is still said that it was stuck
-    std::uint32_t trial_ = 0;
+    dvec3 tried_from_{0.0};    ///< where the walker was when it last got on
+    double pushed_s_ = 0;      ///< for how long it has not
+    double stuck_s_ = 0;       ///< for how long it is still said that it was stuck
+    std::uint32_t trial_ = 0;  ///< steps of trials that were done or left out
+    Attempt trial_at_;         ///< where the trial of a direction has come to
     dvec3 stood_up_at_{0.0};
     std::array<dvec3, 2> free_places_{};  ///< newest first: each half a metre's walk from where it began and from the last one
     std::uint32_t free_count_ = 0;

@@ -1,0 +1,177 @@
+// How a walker begins, gets out of what it stands in, and knows that it is stuck (README.md).
+#include <algorithm>
+
+#include "render/model/ground/walker_parts.hpp"
+
+namespace surefoot::model {
+
+namespace {
+
+// How far the sides of a solid are looked for: small rooms of single walls look like one to who starts there.
+constexpr double start_sight_m = 1, place_sight_m = 2.5;
+constexpr std::uint32_t trials = 16, trial_steps = 21;  // directions, and steps of each: one a tick
+constexpr double trial_m = 0.1, stuck_after_s = 1;
+constexpr std::uint32_t search_rings = 40, search_a_tick = 2, search_places = 2 * search_rings * trials;
+constexpr double below_floor_m = 1, max_push_out_m = 0.35, shown_stuck_s = 1;
+constexpr double ring_m = 0.25;
+
+}  // namespace
+
+/// Of six lines from the body's middle, five or all end at the backs of triangles. Closed things are seen so from their inside.
+bool Walker::is_inside_solid(const dvec3& feet, double sight_m) const {
+    const dvec3 middle = feet + dvec3(0, (body_.step_m + body_.eye_m) / 2, 0);
+    int backs = 0;
+    for (int i = 0; i < 6; ++i) {
+        dvec3 way(0.0);
+        way[i / 2] = i % 2 == 0 ? sight_m : -sight_m;
+        Box line{middle, middle};
+        line.grow(middle + way);
+        double nearest = 2;
+        bool back = false;
+        for_triangles_near(ground_, line, [&](const GroundTriangle& t) {
+            const Crossing crossing = crossing_of(middle, way, t);
+            if (crossing.share < nearest) nearest = crossing.share, back = crossing.back;
+        });
+        backs += nearest <= 1 && back ? 1 : 0;
+    }
+    return backs >= 5;
+}
+
+/// The feet find their floor below an eye that was placed.
+void Walker::stand_up() {
+    awake_ = true;
+    fall_m_s = eye_m_s = 0;
+    const double below = eye_.y - body_.eye_m;
+    Footing under = footing(eye_, below + body_.step_m, below - body_.step_m);  // not the table that it was placed over
+    if (under.floor == -walker_parts::infinity)
+        under = footing(eye_, eye_.y, below - std::min(body_.edge_m, walker_parts::deep_m));
+    supported_ = under.any > -walker_parts::infinity;
+    steep_ = under.any > under.floor;
+    feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
+    stood_up_at_ = feet_;
+    free_count_ = 0;
+    if (!supported_) {  // perhaps a vehicle's recorded path, whose heights are the road's
+        const double above = footing(eye_, eye_.y + below_floor_m, eye_.y).floor;
+        if (above > -walker_parts::infinity && is_free({eye_.x, above, eye_.z})) {
+            ++freed_;
+            stand_at({eye_.x, above, eye_.z});
+            return;
+        }
+    }
+    searching_ = !is_free(feet_) || is_inside_solid(feet_, start_sight_m);
+    search_at_ = 0;
+}
+
+/// Out of what the body overlaps, level and by the shortest way. False: not within max_push_out_m.
+bool Walker::push_out() {
+    dvec3 at = feet_;
+    for (int i = 0; i < 8; ++i) {
+        const Capsule body = capsule_at(at);
+        dvec3 aside(0.0);
+        double deepest = 0;
+        for_near(walker_parts::swept(body, dvec3(0.0)), [&](const GroundTriangle& t) {
+            const Separation s = separation(body, t);
+            const double deep = body.radius + walker_parts::skin_m - s.distance, level = std::hypot(s.away.x, s.away.z);
+            if (deep <= deepest || s.distance == 0 || level < 0.1) return;
+            deepest = deep;
+            aside = dvec3(s.away.x, 0, s.away.z) * (deep / (level * level));
+        });
+        if (deepest == 0) break;
+        at += aside;
+        if (glm::length(at - feet_) > max_push_out_m) return false;
+    }
+    at.y = footing(at, feet_.y + body_.step_m, feet_.y - body_.step_m).floor;
+    if (!std::isfinite(at.y) || !is_free(at) || is_inside_solid(at, place_sight_m)) return false;
+    stand_at(at);
+    return true;
+}
+
+bool Walker::sees(const dvec3& to) const {
+    Box box{eye_, eye_};
+    box.grow(to);
+    bool crosses = false;
+    for_triangles_near(ground_, box,
+                       [&](const GroundTriangle& t) { crosses = crosses || crossing_of(eye_, to - eye_, t).share <= 1; });
+    return !crosses;
+}
+
+/// Beside what it overlaps, if it does so slightly. Else on rings around the eye, nearest first: the first place with a floor
+/// where the body is free. At first only floors of about this height, from where nothing is between; then any.
+void Walker::look_for_a_free_place() {
+    barrier_ = Barrier::inside;
+    if (search_at_ == 0 && supported_ && push_out()) {
+        ++freed_;
+        return;
+    }
+    for (std::uint32_t i = 0; i < search_a_tick && searching_; ++i, ++search_at_) {
+        if (search_at_ >= search_places) {  // nothing is free: the walker stays, and walls let it out but not in
+            searching_ = false;
+            return;
+        }
+        const std::uint32_t of_pass = search_at_ % (search_rings * trials), ring = of_pass / trials + 1;
+        const bool picky = search_at_ < search_rings * trials;
+        const dvec3 at = eye_ + ring * ring_m * walker_parts::direction((of_pass % trials) / static_cast<double>(trials));
+        const double top = picky ? feet_.y + body_.step_m : eye_.y;
+        const dvec3 feet{at.x, footing(at, top, eye_.y - body_.eye_m - 1.0).floor, at.z};
+        if (!std::isfinite(feet.y) || !is_free(feet) || is_inside_solid(feet, place_sight_m)) continue;
+        if (picky && !sees(feet + dvec3(0, body_.eye_m, 0))) continue;
+        ++freed_;
+        stand_at(feet);
+    }
+}
+
+void Walker::stand_at(const dvec3& feet) {
+    feet_ = feet;
+    eye_ = feet + dvec3(0, body_.eye_m, 0);
+    supported_ = true;
+    steep_ = searching_ = false;
+    fall_m_s = eye_m_s = 0;
+    pushed_s_ = 0;
+    trial_ = 0;
+    tried_from_ = feet;
+}
+
+/// Goes on with the trial of a direction: a tenth of a metre at once, as over a small step; then in steps, as along a narrow
+/// ledge. The first that leads nowhere ends it.
+bool Walker::trial_gets_on() {
+    const Attempt here{feet_, supported_, steep_, Barrier::clear};
+    const std::uint32_t step = trial_ % trial_steps;
+    if (step <= 1) trial_at_ = here;
+    const dvec3 way = trial_m * walker_parts::direction(static_cast<double>(trial_ / trial_steps) / trials);
+    feet_ = trial_at_.feet, supported_ = trial_at_.supported, steep_ = trial_at_.steep;
+    const Attempt to = attempt(step == 0 ? way : way / (trial_steps - 1.0));
+    trial_ += step > 0 && to.feet == feet_ ? trial_steps - step : 1;
+    feet_ = here.feet, supported_ = here.supported, steep_ = here.steep;
+    trial_at_ = to;
+    return glm::length(to.feet - feet_) >= 0.9 * trial_m;
+}
+
+/// Stuck: pushed for a second without getting on, and none of 16 directions moves a tenth of a metre.
+void Walker::watch(const dvec3& move, double dt_s) {
+    if (glm::length(feet_ - tried_from_) >= trial_m) {
+        tried_from_ = feet_;
+        pushed_s_ = 0;
+        trial_ = 0;
+        return;
+    }
+    if (move == dvec3(0.0)) return;
+    pushed_s_ += dt_s;
+    if (pushed_s_ < stuck_after_s) return;
+    if (trial_gets_on()) {
+        pushed_s_ = 0;
+        trial_ = 0;
+    } else if (trial_ == trials * trial_steps) {
+        trial_ = 0;
+        pushed_s_ = 0;
+        stuck_s_ = shown_stuck_s;
+        if (free_count_ > 0) {
+            ++returns_;
+            stand_at(free_places_[free_count_ - 1]);
+        } else {
+            searching_ = true;
+            search_at_ = 1;
+        }
+    }
+}
+
+}  // namespace surefoot::model

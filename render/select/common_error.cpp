@@ -1,0 +1,177 @@
+// One pass up the tree for each error that is tried, and the selectors that go by it: `curve-budget` and `curve-accuracy`.
+#include "render/select/common_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/model/view.hpp"
+#include "render/select/entries.hpp"
+#include "render/select/scratch.hpp"
+#include "render/select/steps.hpp"
+
+namespace surefoot::select {
+
+namespace {
+
+constexpr float no_limit = std::numeric_limits<float>::infinity();
+constexpr float precision = 1 + 1.0F / 64, first_step = 1.06F;  // factors between errors
+constexpr float tiny_error = 1e-9F, huge_error = 1e3F;
+constexpr int max_passes = 24;
+constexpr double default_threshold_px = 2.0;  // of `curve-accuracy`, if no accuracy is requested; `distance` has the same
+
+}  // namespace
+
+CommonErrorCuts::CommonErrorCuts(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget)
+    : builder_(builder),
+      budget_(budget),
+      two_pixels_rad_(
+          static_cast<float>(default_threshold_px * model::pixel_angle(input.prepared->region.centre, input.prepared->viewport))),
+      shown_(state.shown),
+      new_factor_(state.hysteresis > 1.0F ? 1.0F / shown_error_factor : 1.0F),
+      below_(std::span(state.scratch().below).first(input.prepared->candidates.size())),
+      worst_(std::span(state.scratch().lacks).first(input.prepared->candidates.size())),
+      decisions_(std::span(state.scratch().links).first(input.prepared->candidates.size())) {}
+
+CommonErrorCuts::Found CommonErrorCuts::find(float error_rad) {
+    const float of_new = error_rad * new_factor_;
+    for (auto c = static_cast<Index>(decisions_.size()); c-- > 0;) {  // children come after their parents
+        const prepare::Candidate& candidate = builder_.candidate(c);
+        const auto choices = builder_.choices(c);
+        std::uint32_t k = 0;
+        while (k < choices.size() && !(choices[k].error_rad <= of_new)) ++k;
+        if (new_factor_ < 1.0F && shown_[candidate.node] != none)  // a coarser one may stay
+            for (std::uint32_t i = 0; i < k && choices[i].rep <= shown_[candidate.node]; ++i)
+                if (choices[i].rep == shown_[candidate.node] && choices[i].error_rad <= error_rad) k = i;
+        const bool suffices = k < choices.size();
+        decisions_[c] = suffices ? k : static_cast<std::uint32_t>(choices.size()) - 1;
+        const prepare::Choice& own = choices[decisions_[c]];
+        Sum& best = below_[c] = {};
+        best.add(own.cost);
+        worst_[c] = own.error_rad;
+        if (candidate.child_count == 0) continue;
+        Sum of_children;
+        float worst = 0;
+        for (Index child = candidate.first_child; child < candidate.first_child + candidate.child_count; ++child) {
+            of_children = of_children + below_[child];
+            worst = std::max(worst, worst_[child]);
+        }
+        const bool children_suffice = worst <= error_rad;
+        const bool opens = suffices == children_suffice && (suffices || worst == own.error_rad)
+                               ? budget_.items_us(of_children) < budget_.items_us(best)
+                               : (suffices ? false : children_suffice || worst < own.error_rad);
+        if (!opens) continue;
+        decisions_[c] = SelectState::opened;
+        best = of_children;
+        worst_[c] = worst;
+    }
+    return {below_[0], worst_[0]};
+}
+
+void CommonErrorCuts::take() {
+    for (Index c = 0; c < decisions_.size(); ++c) {
+        const Index parent = builder_.candidate(c).parent;
+        builder_.choose(c, parent != none && builder_.chosen(parent) != SelectState::opened ? none : decisions_[c]);
+    }
+}
+
+/// The worst error that the forms of the last frame have now; else two pixels.
+float CommonErrorCuts::likely_error() const {
+    float worst = 0;
+    for (Index c = 0; c < builder_.size(); ++c) {
+        const Index shown = shown_[builder_.candidate(c).node];
+        if (shown == none || shown == SelectState::opened) continue;
+        for (const prepare::Choice& choice : builder_.choices(c))
+            if (choice.rep == shown) worst = std::max(worst, choice.error_rad);
+    }
+    return worst > 0 && worst < no_limit ? worst : two_pixels_rad_;
+}
+
+/// From a likely error outwards in growing steps until one fits and a smaller one does not; then halving on logarithms.
+bool CommonErrorCuts::find_within_budget(float min_error_rad) {
+    const auto fits = [&](float error_rad) {
+        if (!budget_.fits(find(error_rad).sum)) return false;
+        take();
+        return true;
+    };
+    const float start = std::max(likely_error(), min_error_rad);
+    float fine = start, coarse = start, step = first_step;
+    if (fits(start)) {
+        do {
+            if (coarse <= min_error_rad) return true;
+            fine = coarse / step > tiny_error ? std::max(coarse / step, min_error_rad) : min_error_rad;
+            step *= step;
+        } while (fits(fine) && (coarse = fine, true));
+    } else {
+        do {
+            if (coarse == no_limit) return false;
+            fine = coarse;
+            coarse = coarse * step < huge_error ? coarse * step : no_limit;
+            step *= step;
+        } while (!fits(coarse));
+        coarse = std::min(coarse, worst_[0]);
+    }
+    fine = std::max(fine, tiny_error);
+    for (int pass = 0; pass < max_passes && coarse > fine * precision; ++pass) {
+        const float middle = std::sqrt(fine * coarse);
+        if (fits(middle))
+            coarse = std::min(middle, std::max(worst_[0], fine));
+        else
+            fine = middle;
+    }
+    return true;
+}
+
+namespace {
+
+class CurveBudget final : public Selector {
+public:
+    void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
+        clear(cut);
+        if (!has_room(input, state, cut)) return;
+        Budget budget(input);
+        CutBuilder builder(input, state);
+        builder.buy_items(budget);
+        builder.take_floor();
+        if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
+            return builder.finish(budget, builder.take_finest(), cut);
+        CommonErrorCuts cuts(input, state, builder, budget);
+        const auto target = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : 0.0);
+        (void)cuts.find_within_budget(target);  // none: the floor is drawn
+        builder.finish(budget, 0, cut);
+    }
+};
+
+class CurveAccuracy final : public Selector {
+public:
+    void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
+        clear(cut);
+        if (!has_room(input, state, cut)) return;
+        Budget budget(input);
+        CutBuilder builder(input, state);
+        builder.buy_all_items(budget);
+        builder.take_floor();
+        CommonErrorCuts cuts(input, state, builder, budget);
+        (void)cuts.find(input.target_error_rad > 0.0 ? static_cast<float>(input.target_error_rad) : cuts.two_pixels_rad());
+        cuts.take();
+        builder.finish(budget, 0, cut);
+    }
+};
+
+const Selector& make_curve_budget() {
+    static const CurveBudget selector;
+    return selector;
+}
+const Selector& make_curve_accuracy() {
+    static const CurveAccuracy selector;
+    return selector;
+}
+
+}  // namespace
+
+const SelectorEntry curve_budget_entry{"curve-budget", "the greatest accuracy that all objects can share, within the budget",
+                                       GoesBy::budget, true, make_curve_budget};
+const SelectorEntry curve_accuracy_entry{"curve-accuracy", "the cheapest cut of which all objects have one accuracy; no budget",
+                                         GoesBy::threshold, false, make_curve_accuracy};
+
+}  // namespace surefoot::select

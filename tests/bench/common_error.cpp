@@ -1,0 +1,132 @@
+// Bench: the accuracy that all objects of a frame share. For each capture, `curve-budget` without hysteresis beside the bound of
+// any cut within the same budget, and beside other selectors. The bound and the accuracies of cuts are computed here, from the
+// captured arrays. Exact: full detail fits. bench_common_error CAPTURE... -> one JSON object.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "render/capture/capture.hpp"
+#include "rt/base/statistics.hpp"
+#include "tests/bench/bench_scene.hpp"
+
+namespace {
+
+using namespace surefoot;
+
+constexpr int weighings = 8;  // of submit against raster time, for the larger of both
+
+/// The cheapest cut within an error, by weights of submit and raster time: one pass, children first.
+double cheapest_us(const prepare::PreparedFrame& frame, double error_rad, double submit_weight, double raster_weight) {
+    constexpr double none_us = std::numeric_limits<double>::infinity();
+    std::vector<double> below(frame.candidates.size());
+    for (std::size_t c = below.size(); c-- > 0;) {
+        const prepare::Candidate& at = frame.candidates[c];
+        double own = none_us, children = at.child_count > 0 ? 0 : none_us;
+        for (std::uint32_t k = 0; k < at.choice_count; ++k) {
+            const prepare::Choice& choice = frame.choices[at.first_choice + k];
+            const bool last_leaf = at.child_count == 0 && k + 1 == at.choice_count;  // nothing better is offered
+            if (static_cast<double>(choice.error_rad) > error_rad && !last_leaf) continue;
+            own = std::min(own, submit_weight * static_cast<double>(choice.cost.submit_us) +
+                                    raster_weight * static_cast<double>(choice.cost.raster_us));
+        }
+        for (std::uint32_t k = 0; k < at.child_count; ++k) children += below[at.first_child + k];
+        below[c] = std::min(own, children);
+    }
+    return below[0];
+}
+
+/// No cut whose items are all within `error_rad` is predicted to take less than this, us without correction and headroom.
+double bound_us(const capture::Capture& of, double error_rad) {
+    double bound = 0;
+    for (int i = 0; i <= weighings; ++i) {
+        const double share = static_cast<double>(i) / weighings, more = static_cast<double>(of.combine.max_weight);
+        bound = std::max(bound, cheapest_us(of.prepared, error_rad, static_cast<double>(of.combine.submit_weight) + share * more,
+                                            static_cast<double>(of.combine.raster_weight) + (1 - share) * more));
+    }
+    return bound;
+}
+
+double items_us(const capture::Capture& of, const select::Cut& cut) {
+    double submit = 0, raster = 0;
+    for (const select::CutItem& item : cut.items) {
+        submit += static_cast<double>(of.prepared.choices[item.choice].cost.submit_us);
+        raster += static_cast<double>(of.prepared.choices[item.choice].cost.raster_us);
+    }
+    return static_cast<double>(of.combine.submit_weight) * submit + static_cast<double>(of.combine.raster_weight) * raster +
+           static_cast<double>(of.combine.max_weight) * std::max(submit, raster);
+}
+
+/// 1/rad; infinite: exact.
+double worst_accuracy(const capture::Capture& of, const select::Cut& cut) {
+    double error = 0;
+    for (const select::CutItem& item : cut.items)
+        error = std::max(error, static_cast<double>(of.prepared.choices[item.choice].error_rad));
+    return 1 / error;
+}
+
+/// The greatest accuracy whose bound is within what the items of the budget may take: halving, on logarithms.
+double best_accuracy(const capture::Capture& of, double room_us) {
+    double fine = std::log(1e-9), coarse = std::log(1e3);
+    if (bound_us(of, 0) <= room_us) return std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 40; ++i) {
+        const double middle = 0.5 * (fine + coarse);
+        (bound_us(of, std::exp(middle)) <= room_us ? coarse : fine) = middle;
+    }
+    double best = 0;  // errors are those of forms: the greatest within
+    for (const prepare::Choice& choice : of.prepared.choices)
+        if (static_cast<double>(choice.error_rad) <= std::exp(coarse))
+            best = std::max(best, static_cast<double>(choice.error_rad));
+    return 1 / best;
+}
+
+struct Figures {
+    std::vector<double> of_best, to_two_stage, to_threshold;
+    std::size_t exact = 0;
+};
+
+Result<void> measure(const char* file, Figures& figures) {
+    auto read = capture::read_capture(file);
+    if (!read) return read.error();
+    capture::Capture& of = *read;
+    of.hysteresis = 1;
+    of.target_error_rad = 0;
+    const auto ours = capture::replay(of, "curve-budget");
+    const auto two_stage = capture::replay(of, "two-stage"), threshold = capture::replay(of, "threshold");
+    for (const auto* cut : {&ours, &two_stage, &threshold})
+        if (!*cut) return cut->error();
+    const double reached = worst_accuracy(of, *ours);
+    // What the items may take, from a cut's prediction: it is linear in it.
+    const double ends = 1 + static_cast<double>(of.combine.submit_weight) * static_cast<double>(of.slice_end_us) / of.slice_us;
+    const double factor = of.correction * static_cast<double>(of.headroom) * ends;
+    const double room_us = items_us(of, *ours) + (of.budget_us - static_cast<double>(ours->predicted_us)) / factor;
+    const double best = best_accuracy(of, room_us);
+    if (std::isinf(best)) {
+        ++figures.exact;
+        return {};
+    }
+    figures.of_best.push_back(reached / best);
+    figures.to_two_stage.push_back(reached / worst_accuracy(of, *two_stage));
+    figures.to_threshold.push_back(reached / worst_accuracy(of, *threshold));
+    fmt::print(stderr, "{}: {} candidates, accuracy {:.1f} rad^-1, {:.4f} of the best; two-stage {:.1f}, threshold {:.1f}\n",
+               file, of.prepared.candidates.size(), reached, figures.of_best.back(), worst_accuracy(of, *two_stage),
+               worst_accuracy(of, *threshold));
+    return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2) return bench::fail({"CAPTURE...", "is missing", "give files of `surefoot walk --capture`"});
+    Figures figures;
+    for (int i = 1; i < argc; ++i)
+        if (const Result<void> done = measure(argv[i], figures); !done) return bench::fail(done.error());
+    if (figures.of_best.empty()) return bench::fail({"the captures", "are all exact", "capture with a smaller budget"});
+    fmt::print(
+        "{{\"captures\": {}, \"exact\": {}, \"min_of_best\": {:.4f}, \"to_two_stage\": {:.3f}, \"to_threshold\": {:.3f}}}\n",
+        argc - 1, figures.exact, *std::min_element(figures.of_best.begin(), figures.of_best.end()),
+        quantile_of(figures.to_two_stage, 0.5), quantile_of(figures.to_threshold, 0.5));
+    return 0;
+}

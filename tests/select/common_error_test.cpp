@@ -1,0 +1,186 @@
+// The accuracy that all objects share: the cheapest cuts within an error, and the smallest error within a budget, beside plain
+// recursion and trial of every error.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "render/select/registry.hpp"
+#include "tests/select/scene.hpp"
+
+namespace surefoot::select {
+namespace {
+
+using test::infinity;
+using test::Scene;
+
+/// Costs that add up over a cut: nothing depends on the larger of two sums.
+Scene random_frame(std::uint64_t seed, std::uint32_t nodes, Random& random) {
+    Scene s(test::random_model(seed, nodes));
+    s.costs.combine = {100, 1.0F, 0.7F, 0};
+    s.state.hysteresis = 1;
+    prepare::Region region{test::random_pose(random), random.range(0, 0.5), random.range(0, 0.1)};
+    region.centre.position *= 0.5;
+    s.look(region);
+    return s;
+}
+
+double item_us(const model::ItemCost& cost) {
+    return static_cast<double>(cost.submit_us) + static_cast<double>(0.7F) * static_cast<double>(cost.raster_us);
+}
+
+/// Of the cheapest cut below a candidate whose items are all within the error; infinite: none is.
+double cheapest_us(const prepare::PreparedFrame& f, Index c, float error_rad) {
+    const prepare::Candidate& at = f.candidates[c];
+    double best = infinity, children = at.child_count > 0 ? 0 : infinity;
+    for (Index k = 0; k < at.choice_count; ++k)
+        if (f.choices[at.first_choice + k].error_rad <= error_rad)
+            best = std::min(best, item_us(f.choices[at.first_choice + k].cost));
+    for (Index k = 0; k < at.child_count; ++k) children += cheapest_us(f, at.first_child + k, error_rad);
+    return std::min(best, children);
+}
+
+double cut_items_us(const Scene& s) {
+    double sum = 0;
+    for (const CutItem& item : s.cut.items) sum += item_us(s.frame.choices[item.choice].cost);
+    return sum;
+}
+
+/// All errors of a frame, from small to large.
+std::vector<float> errors_of(const Scene& s) {
+    std::vector<float> errors;
+    for (const prepare::Choice& choice : s.frame.choices)
+        if (choice.error_rad > 0) errors.push_back(choice.error_rad);
+    std::sort(errors.begin(), errors.end());
+    errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
+    return errors;
+}
+
+template <class Use>
+void for_frames(std::uint64_t count, std::uint32_t max_nodes, const Use& use) {
+    Random random(23);
+    for (std::uint64_t seed = 0; seed < count; ++seed) {
+        Scene s = random_frame(seed, 2 + random.below(max_nodes), random);
+        if (!s.frame.candidates.empty()) use(s, random);
+    }
+}
+
+TEST(CommonError, IsHadByTheCheapestCut) {
+    std::size_t compared = 0, unreachable = 0;
+    for_frames(400, 50, [&](Scene& s, Random&) {
+        for (const float error : errors_of(s)) {
+            const double best = cheapest_us(s.frame, 0, error);
+            s.run("curve-accuracy", 0, static_cast<double>(error));
+            ASSERT_EQ(check_legal(s.frame, s.cut), "");
+            ++(std::isinf(best) ? unreachable : compared);
+            if (std::isinf(best)) continue;
+            ASSERT_LE(s.cut.worst_error_rad, error);
+            ASSERT_NEAR(cut_items_us(s), best, 1e-6 * best + 1e-9);
+        }
+    });
+    std::printf("%zu errors compared; %zu were below what some leaf has\n", compared, unreachable);
+    EXPECT_GT(compared, 2500U);
+    EXPECT_GT(unreachable, 20U);
+}
+
+TEST(CommonError, BelowWhatALeafHasTheBestFormIsTaken) {
+    for_frames(100, 30, [&](Scene& s, Random&) {
+        for (prepare::Choice& choice : s.frame.choices) choice.error_rad += 0.01F;  // nothing is exact
+        const float best = s.run("flat", infinity).worst_error_rad;
+        ASSERT_LE(s.run("curve-accuracy", 0, 0.005).worst_error_rad, best);
+        ASSERT_EQ(check_legal(s.frame, s.cut), "");
+    });
+}
+
+TEST(CommonError, IsTheSmallestThatTheBudgetBuys) {
+    std::size_t compared = 0;
+    for_frames(400, 50, [&](Scene& s, Random& random) {
+        const double full = static_cast<double>(s.run("flat", infinity).predicted_us),
+                     floor = static_cast<double>(s.cut.floor_us);
+        const double budget = floor + (full - floor) * random.range(0.05, 0.95);
+        // predicted = factor * (fixed + items * more): from two cuts
+        const double full_us = cut_items_us(s);
+        s.run("curve-accuracy", 0, 1e6);
+        const double cheap_us = cut_items_us(s), cheap = static_cast<double>(s.cut.predicted_us);
+        if (!(full_us > cheap_us * 1.01)) return;
+        const double room = cheap_us + (budget - cheap) * (full_us - cheap_us) / (full - cheap);
+        float best = infinity;
+        const std::vector<float> errors = errors_of(s);
+        for (auto error = errors.rbegin(); error != errors.rend(); ++error)
+            if (cheapest_us(s.frame, 0, *error) <= room * (1 - 1e-5)) best = *error;
+        s.run("curve-budget", budget);
+        ASSERT_LE(static_cast<double>(s.cut.predicted_us), std::max(budget, static_cast<double>(s.cut.floor_us)));
+        if (!std::isfinite(best)) return;
+        ++compared;
+        ASSERT_LE(static_cast<double>(s.cut.worst_error_rad), static_cast<double>(best) * (1 + 1.0 / 60));
+    });
+    EXPECT_GT(compared, 200U);
+}
+
+TEST(CommonError, StopsAtTheAccuracyThatIsAsked) {
+    Scene s(test::town(6));
+    prepare::Region region;
+    region.centre.position = dvec3(0, 3, 100);
+    s.look(region);
+    const double full = static_cast<double>(s.run("flat", infinity).predicted_us);
+    for (const double target : {0.2, 0.02, 0.005}) {
+        s.forget();
+        const std::uint64_t wanted = s.run("curve-accuracy", 0, target).triangles;
+        s.forget();
+        EXPECT_EQ(s.run("curve-budget", 0.99 * full, target).triangles, wanted) << target;
+        EXPECT_LE(static_cast<double>(s.cut.worst_error_rad), target);
+    }
+}
+
+TEST(CommonError, FallsAsTheBudgetGrows) {
+    Scene s(test::town(6));
+    s.state.hysteresis = 1;
+    s.look({Pose{}, 30.0, 1.0});
+    const double full = static_cast<double>(s.run("flat", infinity).predicted_us), floor = static_cast<double>(s.cut.floor_us);
+    float before = infinity, first = 0;
+    for (int i = 1; i < 20; ++i) {
+        const float error = s.run("curve-budget", floor + (full - floor) * i / 20).worst_error_rad;
+        EXPECT_LE(error, before * (1 + 1.0F / 60)) << i;
+        before = error;
+        if (i == 1) first = error;
+    }
+    EXPECT_LT(before, 0.5F * first);
+}
+
+TEST(CommonError, ShownFormsStayWithinTheErrorWhileTheEyeTrembles) {
+    const auto switches = [](float hysteresis) {
+        Scene s(test::town(6));
+        s.state.hysteresis = hysteresis;
+        Random random(5);
+        double sum = 0;
+        for (int i = 0; i < 120; ++i) {
+            s.look({{dvec3(random.range(-0.2, 0.2), 3, 100 * random.range(0.999, 1.001)), Pose{}.orientation}, 0, 0});
+            s.run("curve-accuracy", 0, 0.01);
+            EXPECT_LE(s.cut.worst_error_rad, 0.01F);
+            if (i >= 20) sum += s.cut.switches;
+        }
+        return sum / 100;
+    };
+    const double with = switches(1.25F), without = switches(1.0F);
+    std::printf("switches a frame under dither: %.2f with hysteresis, %.2f without\n", with, without);
+    EXPECT_LT(with, 0.2 * without);
+}
+
+TEST(CommonError, OddErrorsAndCostsEndAndStayLegal) {
+    for (const float bad : {0.0F, std::nanf(""), static_cast<float>(infinity), -1.0F}) {
+        for_frames(40, 20, [&](Scene& s, Random&) {
+            const double full = static_cast<double>(s.run("flat", infinity).predicted_us);
+            for (std::size_t i = 0; i < s.frame.choices.size(); i += 3) s.frame.choices[i].error_rad = bad;
+            for (std::size_t i = 1; i < s.frame.choices.size(); i += 3) s.frame.choices[i].cost = {bad, bad};
+            for (const double budget : {0.0, 0.5 * full, infinity, std::nan("")}) {
+                EXPECT_EQ(check_legal(s.frame, s.run("curve-budget", budget)), "");
+                EXPECT_EQ(check_legal(s.frame, s.run("curve-accuracy", budget, 0.01)), "");
+            }
+            EXPECT_EQ(check_legal(s.frame, s.run("curve-accuracy", 0, std::nan(""))), "");
+        });
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::select
