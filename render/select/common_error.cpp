@@ -17,8 +17,7 @@ namespace {
 constexpr float no_limit = std::numeric_limits<float>::infinity();
 constexpr float precision = 1 + 1.0F / 64, first_step = 1.06F;  // factors between errors
 constexpr float tiny_error = 1e-9F, huge_error = 1e3F;
-constexpr int max_passes = 24;
-constexpr double default_threshold_px = 2.0;  // of `curve-accuracy`, if no accuracy is requested; `distance` has the same
+constexpr int max_passes = 20;  // then what fits is drawn
 
 }  // namespace
 
@@ -28,6 +27,7 @@ CommonErrorCuts::CommonErrorCuts(const SelectInput& input, SelectState& state, C
       two_pixels_rad_(
           static_cast<float>(default_threshold_px * model::pixel_angle(input.prepared->region.centre, input.prepared->viewport))),
       shown_(state.shown),
+      share_(fresh_share(state)),
       new_factor_(state.hysteresis > 1.0F ? 1.0F / shown_error_factor : 1.0F),
       below_(std::span(state.scratch().below).first(input.prepared->candidates.size())),
       worst_(std::span(state.scratch().lacks).first(input.prepared->candidates.size())),
@@ -75,46 +75,53 @@ void CommonErrorCuts::take() {
     }
 }
 
-/// The worst error that the forms of the last frame have now; else two pixels.
+/// The worst error that the forms of the last frame have now, but for leaves that have nothing better; else two pixels.
 float CommonErrorCuts::likely_error() const {
     float worst = 0;
-    for (Index c = 0; c < builder_.size(); ++c) {
+    for (Index c = 0; c < builder_.size() && new_factor_ < 1.0F; ++c) {
         const Index shown = shown_[builder_.candidate(c).node];
         if (shown == none || shown == SelectState::opened) continue;
-        for (const prepare::Choice& choice : builder_.choices(c))
+        auto better = builder_.choices(c);
+        if (builder_.candidate(c).child_count == 0) better = better.first(better.size() - 1);
+        for (const prepare::Choice& choice : better)
             if (choice.rep == shown) worst = std::max(worst, choice.error_rad);
     }
     return worst > 0 && worst < no_limit ? worst : two_pixels_rad_;
 }
 
-/// From a likely error outwards in growing steps until one fits and a smaller one does not; then halving on logarithms.
+/// From a likely error outwards in growing steps until one fits and a smaller one does not; then halving on logarithms. With
+/// hysteresis the first may use all of the budget, and stays unless one that is smaller by a step fits the share of new forms.
 bool CommonErrorCuts::find_within_budget(float min_error_rad) {
-    const auto fits = [&](float error_rad) {
-        if (!budget_.fits(find(error_rad).sum)) return false;
+    const bool keeps = new_factor_ < 1.0F;
+    int passes = 0;
+    const auto fits = [&](float error_rad, double share) {
+        ++passes;
+        if (!budget_.fits(find(error_rad).sum, share)) return false;
         take();
         return true;
     };
     const float start = std::max(likely_error(), min_error_rad);
-    float fine = start, coarse = start, step = first_step;
-    if (fits(start)) {
+    float fine = start, coarse = start, step = keeps ? shown_error_factor : first_step;
+    if (fits(start, 1.0)) {
         do {
             if (coarse <= min_error_rad) return true;
             fine = coarse / step > tiny_error ? std::max(coarse / step, min_error_rad) : min_error_rad;
             step *= step;
-        } while (fits(fine) && (coarse = fine, true));
+        } while (fits(fine, share_) && (coarse = fine, true));
+        if (keeps && coarse == start) return true;
     } else {
         do {
-            if (coarse == no_limit) return false;
+            if (coarse == no_limit) return fits(no_limit, 1.0);
             fine = coarse;
             coarse = coarse * step < huge_error ? coarse * step : no_limit;
             step *= step;
-        } while (!fits(coarse));
+        } while (!fits(coarse, share_));
         coarse = std::min(coarse, worst_[0]);
     }
     fine = std::max(fine, tiny_error);
-    for (int pass = 0; pass < max_passes && coarse > fine * precision; ++pass) {
+    while (passes < max_passes && coarse > fine * precision) {
         const float middle = std::sqrt(fine * coarse);
-        if (fits(middle))
+        if (fits(middle, share_))
             coarse = std::min(middle, std::max(worst_[0], fine));
         else
             fine = middle;
@@ -137,7 +144,7 @@ public:
             return builder.finish(budget, builder.take_finest(), cut);
         CommonErrorCuts cuts(input, state, builder, budget);
         const auto target = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : 0.0);
-        (void)cuts.find_within_budget(target);  // none: the floor is drawn
+        if (budget.fits(builder.floor_sum())) (void)cuts.find_within_budget(target);  // else the floor is drawn
         builder.finish(budget, 0, cut);
     }
 };
@@ -171,7 +178,7 @@ const Selector& make_curve_accuracy() {
 
 const SelectorEntry curve_budget_entry{"curve-budget", "the greatest accuracy that all objects can share, within the budget",
                                        GoesBy::budget, true, make_curve_budget};
-const SelectorEntry curve_accuracy_entry{"curve-accuracy", "the cheapest cut of which all objects have one accuracy; no budget",
+const SelectorEntry curve_accuracy_entry{"curve-accuracy", "the cheapest cut within one error for all objects; no budget",
                                          GoesBy::threshold, false, make_curve_accuracy};
 
 }  // namespace surefoot::select

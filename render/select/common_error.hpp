@@ -1,4 +1,4 @@
-// The cheapest cut of which every item is within one angular error: what an accuracy that all objects share costs.
+// The cheapest cut within one angular error for all of its items. It says what an accuracy costs that all objects share.
 // Source: Pasman & Jansen 2002, 3.3; page: common-error.md.
 #pragma once
 
@@ -8,8 +8,10 @@
 
 namespace surefoot::select {
 
-/// Shown forms may keep an error this many times that of new ones; 1 without hysteresis.
+/// Shown forms may keep an error this many times that of new ones; without hysteresis they may not.
 constexpr float shown_error_factor = 1.1F;
+/// The error of selectors without a budget, where no accuracy is requested.
+constexpr double default_threshold_px = 2.0;
 
 /// Cuts of one frame by the error that all items share. Uses the state's scratch memory; allocates nothing.
 class CommonErrorCuts {
@@ -22,13 +24,13 @@ public:
         float worst_error_rad = 0;  ///< above what was wanted: some leaf has nothing better
     };
     /// The cheapest cut within `error_rad`, in radians; infinity: the cheapest of all. Where no form suffices, the best one
-    /// counts. Sums fall as the error rises, but for what the larger of two sums makes of it.
+    /// counts. Costs are compared node by node, so the larger of two sums over a frame may make another cut a little cheaper.
     [[nodiscard]] Found find(float error_rad);
     /// Gives the builder the cut that was found last.
     void take();
 
     /// The cut of the smallest error, no smaller than `min_error_rad`, that fits the budget, to one part in 64: the builder has
-    /// it. False: none fits, and the builder is as it was.
+    /// it. False: none fits, and the builder is as it was. Starts near what was shown, if there is hysteresis.
     [[nodiscard]] bool find_within_budget(float min_error_rad);
 
     [[nodiscard]] float two_pixels_rad() const { return two_pixels_rad_; }
@@ -40,6 +42,7 @@ private:
     const Budget& budget_;
     float two_pixels_rad_;
     std::span<const Index> shown_;
+    double share_;                        ///< of the budget, for forms that were not shown
     float new_factor_;                    ///< of the error, for forms that were not shown
     std::span<Sum> below_;                ///< by candidate: of the cheapest cut of its subtree
     std::span<float> worst_;              ///< by candidate: its worst error

@@ -1,13 +1,12 @@
-// The selectors without a budget: `flat` and `distance`.
+// The selectors without a budget that walk from the root: `flat` and `distance`.
 #include "render/model/view.hpp"
+#include "render/select/common_error.hpp"
 #include "render/select/cut_builder.hpp"
 #include "render/select/entries.hpp"
 
 namespace surefoot::select {
 
 namespace {
-
-constexpr double distance_threshold_px = 2.0;  // of `distance`, if no accuracy is requested
 
 /// Walks from the root; opens what `stops` does not stop, and draws the rest in the form that it says.
 template <class Stops>
@@ -49,7 +48,7 @@ public:
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {
         const double pixel = model::pixel_angle(input.prepared->region.centre, input.prepared->viewport);
         const auto threshold =
-            static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : distance_threshold_px * pixel);
+            static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : default_threshold_px * pixel);
         walk(input, state, cut, [threshold](const CutBuilder& builder, Index c) {
             const auto choices = builder.choices(c);
             for (std::uint32_t k = 0; k < choices.size(); ++k) {

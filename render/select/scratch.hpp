@@ -11,12 +11,12 @@ namespace surefoot::select {
 
 /// Scratch memory of a search.
 struct SelectState::Scratch {
-    std::vector<std::uint32_t> chosen;       ///< by candidate: CutBuilder's choices
-    std::vector<std::uint32_t> list;         ///< by candidate: CutBuilder's walk, then the search's stack or scan state
-    std::vector<std::uint32_t> links;        ///< by candidate: the queue's links, or deferred steps
-    std::vector<std::uint32_t> saved;        ///< by candidate: the choices of the best cut so far
-    std::vector<float> lacks;                ///< by candidate: CutBuilder::what_items_lack() and undo_losses()
-    std::vector<Sum> below;                  ///< by candidate: CutBuilder::undo_losses()
+    std::vector<std::uint32_t> chosen;  ///< by candidate: CutBuilder's choices
+    std::vector<std::uint32_t> list;    ///< by candidate: CutBuilder's walk, then the search's stack or scan state
+    std::vector<std::uint32_t> links;   ///< by candidate: the queue's links, deferred steps, or CommonErrorCuts' decisions
+    std::vector<std::uint32_t> saved;   ///< by candidate: the choices of the best cut so far
+    std::vector<float> lacks;           ///< by candidate: CutBuilder::what_items_lack() and undo_losses(), or CommonErrorCuts
+    std::vector<Sum> below;             ///< by candidate: CutBuilder::undo_losses(), or CommonErrorCuts
     std::vector<std::uint32_t> queue_heads;  ///< the queue's buckets
     std::vector<double> step_sums;           ///< two costs a bucket: of new steps, and of those shown before
 };

@@ -1,14 +1,14 @@
 # Read by tests/bench/run: the group common. Not run by itself.
 # shellcheck shell=bash
 
-# Seven frames along the path at each budget, without a lever that another selector lacks. The hospital's corridors at the smaller one.
+# Seven frames along the path at each budget, at full resolution and by one filter. The hospital's corridors at the smaller one.
 common_captures() { # NAME LABEL BUDGET_MS PATH_ARGUMENTS...
   local name=$1 label=$2 budget=$3 frame
   shift 3
   captures=()
   for frame in 60 150 240 330 420 500 580; do
     captures+=("$work/common-$label-$budget-$frame.cap")
-    measure "common walk $label $frame" "$surefoot" walk "$work/$name.walk" "$@" --clock virtual --backend null --resolution 100 --filter bilinear \
+    measure "common walk $label $budget $frame" "$surefoot" walk "$work/$name.walk" "$@" --clock virtual --backend null --resolution 100 --filter bilinear \
       --rest-after 0 --hysteresis 1 --state "$work/no-table" --budget "$budget" --frames $((frame + 1)) --capture "${captures[-1]}" \
       --capture-frame "$frame" --json || return 1
   done

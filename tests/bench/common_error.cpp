@@ -1,6 +1,6 @@
 // Bench: the accuracy that all objects of a frame share. For each capture, `curve-budget` without hysteresis beside the bound of
 // any cut within the same budget, and beside other selectors. The bound and the accuracies of cuts are computed here, from the
-// captured arrays. Exact: full detail fits. bench_common_error CAPTURE... -> one JSON object.
+// captured arrays. Exact: it shows full detail. bench_common_error CAPTURE... -> one JSON object.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -67,6 +67,13 @@ double worst_accuracy(const capture::Capture& of, const select::Cut& cut) {
     return 1 / error;
 }
 
+bool is_full_detail(const capture::Capture& of, const select::Cut& cut) {
+    return std::all_of(cut.items.begin(), cut.items.end(), [&](const select::CutItem& item) {
+        const prepare::Candidate& at = of.prepared.candidates[item.candidate];
+        return at.child_count == 0 && item.choice == at.first_choice + at.choice_count - 1;
+    });
+}
+
 /// The greatest accuracy whose bound is within what the items of the budget may take: halving, on logarithms.
 double best_accuracy(const capture::Capture& of, double room_us) {
     double fine = std::log(1e-9), coarse = std::log(1e3);
@@ -97,16 +104,17 @@ Result<void> measure(const char* file, Figures& figures) {
     const auto two_stage = capture::replay(of, "two-stage"), threshold = capture::replay(of, "threshold");
     for (const auto* cut : {&ours, &two_stage, &threshold})
         if (!*cut) return cut->error();
+    if (ours->floor_binds) return Error{file, "The budget does not buy the floor", "Capture with a larger budget"};
+    if (is_full_detail(of, *ours)) {
+        ++figures.exact;
+        return {};
+    }
     const double reached = worst_accuracy(of, *ours);
     // What the items may take, from a cut's prediction: it is linear in it.
     const double ends = 1 + static_cast<double>(of.combine.submit_weight) * static_cast<double>(of.slice_end_us) / of.slice_us;
     const double factor = of.correction * static_cast<double>(of.headroom) * ends;
     const double room_us = items_us(of, *ours) + (of.budget_us - static_cast<double>(ours->predicted_us)) / factor;
     const double best = best_accuracy(of, room_us);
-    if (std::isinf(best)) {
-        ++figures.exact;
-        return {};
-    }
     figures.of_best.push_back(reached / best);
     figures.to_two_stage.push_back(reached / worst_accuracy(of, *two_stage));
     figures.to_threshold.push_back(reached / worst_accuracy(of, *threshold));
@@ -127,6 +135,6 @@ int main(int argc, char** argv) {
     fmt::print(
         "{{\"captures\": {}, \"exact\": {}, \"min_of_best\": {:.4f}, \"to_two_stage\": {:.3f}, \"to_threshold\": {:.3f}}}\n",
         argc - 1, figures.exact, *std::min_element(figures.of_best.begin(), figures.of_best.end()),
-        quantile_of(figures.to_two_stage, 0.5), quantile_of(figures.to_threshold, 0.5));
+        median_of(figures.to_two_stage), median_of(figures.to_threshold));
     return 0;
 }

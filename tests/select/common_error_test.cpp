@@ -133,6 +133,99 @@ TEST(CommonError, StopsAtTheAccuracyThatIsAsked) {
     }
 }
 
+TEST(CommonError, GoesDownToWhatIsWantedFromACoarseCut) {
+    Scene s(test::town(6));
+    s.look({{dvec3(0, 3, 100), Pose{}.orientation}, 0, 0});
+    const double full = static_cast<double>(s.run("flat", infinity).predicted_us);
+    for (const double target : {0.02, 0.005, 0.001}) {
+        s.forget();
+        s.run("curve-budget", 1.2 * static_cast<double>(s.cut.floor_us));
+        EXPECT_GT(static_cast<double>(s.cut.worst_error_rad), target);
+        s.run("curve-budget", 0.99 * full, target);
+        EXPECT_LE(static_cast<double>(s.cut.worst_error_rad), target);
+        const std::uint64_t triangles = s.cut.triangles;
+        s.run("curve-budget", 0.99 * full);
+        EXPECT_GT(s.cut.triangles, triangles);
+    }
+}
+
+TEST(CommonError, OneLeafWithoutAGoodFormMakesNoOtherFiner) {
+    Scene s(test::town(6));
+    s.state.hysteresis = 1;
+    s.look({{dvec3(0, 3, 100), Pose{}.orientation}, 0, 0});
+    s.run("curve-accuracy", 0, 0.01);
+    const double before = cut_items_us(s);
+    const prepare::Candidate leaf = s.frame.candidates.back();
+    ASSERT_EQ(leaf.child_count, 0U);
+    for (Index c = static_cast<Index>(s.frame.candidates.size()) - 1; c != none; c = s.frame.candidates[c].parent)
+        for (Index k = 0; k < s.frame.candidates[c].choice_count; ++k)
+            s.frame.choices[s.frame.candidates[c].first_choice + k].error_rad += 1.0F;  // nor has any node above it
+    s.run("curve-accuracy", 0, 0.01);
+    EXPECT_GE(s.cut.worst_error_rad, 1.0F);
+    double siblings = item_us(s.frame.choices[leaf.first_choice + leaf.choice_count - 1].cost);
+    for (Index c = leaf.parent; c != none; c = s.frame.candidates[c].parent) {  // children of what must be opened now
+        const prepare::Candidate& above = s.frame.candidates[c];
+        for (Index k = 0; k < above.child_count; ++k) siblings += cheapest_us(s.frame, above.first_child + k, 0.01F);
+    }
+    if (std::isinf(siblings)) siblings = 0.2 * before;
+    EXPECT_LE(cut_items_us(s), before + siblings);
+}
+
+/// Frames add the larger of both sums: the cut may be dearer than the cheapest, by little.
+TEST(CommonError, WithTheLargerOfTwoSumsIsNearTheBound) {
+    double worst = 1;
+    for_frames(200, 50, [&](Scene& s, Random&) {
+        s.costs.combine = {100, 0.6F, 0.4F, 0.5F};
+        const auto weighed = [&](double submit, double raster, Index c, float error, const auto& self) -> double {
+            const prepare::Candidate& at = s.frame.candidates[c];
+            double best = infinity, children = at.child_count > 0 ? 0 : infinity;
+            for (Index k = 0; k < at.choice_count; ++k) {
+                const prepare::Choice& choice = s.frame.choices[at.first_choice + k];
+                if (choice.error_rad <= error)
+                    best = std::min(best, submit * static_cast<double>(choice.cost.submit_us) +
+                                              raster * static_cast<double>(choice.cost.raster_us));
+            }
+            for (Index k = 0; k < at.child_count; ++k) children += self(submit, raster, at.first_child + k, error, self);
+            return std::min(best, children);
+        };
+        for (const float error : errors_of(s)) {
+            double bound = 0;
+            for (int i = 0; i <= 8; ++i)
+                bound = std::max(bound, weighed(0.6 + 0.5 * i / 8, 0.4 + 0.5 * (8 - i) / 8, 0, error, weighed));
+            if (std::isinf(bound)) continue;
+            s.run("curve-accuracy", 0, static_cast<double>(error));
+            double submit = 0, raster = 0;
+            for (const CutItem& item : s.cut.items) {
+                submit += static_cast<double>(s.frame.choices[item.choice].cost.submit_us);
+                raster += static_cast<double>(s.frame.choices[item.choice].cost.raster_us);
+            }
+            worst = std::max(worst, (0.6 * submit + 0.4 * raster + 0.5 * std::max(submit, raster)) / bound);
+        }
+    });
+    std::printf("at most %.4f of the bound\n", worst);
+    EXPECT_LT(worst, 1.2);
+}
+
+TEST(CommonError, OfABudgetSwitchesLittleWhileEyeAndBudgetTremble) {
+    const auto switches = [](float hysteresis) {
+        Scene s(test::town(6));
+        s.state.hysteresis = hysteresis;
+        Random random(7);
+        s.look({{dvec3(0, 3, 100), Pose{}.orientation}, 0, 0});
+        const double budget = 0.4 * static_cast<double>(s.run("flat", infinity).predicted_us);
+        double sum = 0;
+        for (int i = 0; i < 120; ++i) {
+            s.look({{dvec3(random.range(-0.2, 0.2), 3, 100 * random.range(0.999, 1.001)), Pose{}.orientation}, 0, 0});
+            s.run("curve-budget", budget * random.range(0.99, 1.01));
+            if (i >= 20) sum += s.cut.switches;
+        }
+        return sum / 100;
+    };
+    const double with = switches(1.25F), without = switches(1.0F);
+    std::printf("switches a frame by a budget under dither: %.2f with hysteresis, %.2f without\n", with, without);
+    EXPECT_LT(with, 0.2 * without);
+}
+
 TEST(CommonError, FallsAsTheBudgetGrows) {
     Scene s(test::town(6));
     s.state.hysteresis = 1;

@@ -78,7 +78,8 @@ TEST(Select, UnlimitedBudgetGivesWhatFlatGives) {
         s.look({test::random_pose(random, 30), 0.1, 0.02});
         if (s.frame.candidates.empty()) continue;
         const std::uint64_t flat = s.run("flat", infinity).hash;
-        for (const char* name : {"depth-first", "best-first", "two-stage"}) EXPECT_EQ(s.run(name, infinity).hash, flat) << name;
+        for (const char* name : {"depth-first", "best-first", "two-stage", "curve-budget"})
+            EXPECT_EQ(s.run(name, infinity).hash, flat) << name;
     }
 }
 

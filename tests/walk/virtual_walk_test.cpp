@@ -196,17 +196,17 @@ TEST(VirtualWalk, WithinAFewFramesTheCorrectionMeetsADoubledCost) {
     EXPECT_EQ(late_downgrades, 0U);
 }
 
-TEST(VirtualWalk, EverySelectorWalksAndOnlyFlatAndDistanceIgnoreTheBudget) {
+TEST(VirtualWalk, EverySelectorWalksAndThoseByBudgetKeepIt) {
     walk::WalkRequest request = test::Forest::get().virtual_request(60);
     request.in_frame_check = false;
-    for (const auto* selector : {"depth-first", "best-first", "two-stage"}) {
+    for (const auto* selector : {"depth-first", "best-first", "two-stage", "curve-budget"}) {
         request.selector = selector;
         const walk::WalkOutcome outcome = walk(request);
         for (const rt::FrameRecord& r : outcome.records) {
             ASSERT_LE(r.actual_us, std::max(r.budget_us, r.floor_us) * 1.0001F) << selector << " frame " << r.frame;
         }
     }
-    for (const auto* selector : {"flat", "distance", "depth-first-1994", "best-first-1994", "two-stage-1994"}) {
+    for (const auto* selector : {"flat", "distance", "curve-accuracy", "depth-first-1994", "best-first-1994", "two-stage-1994"}) {
         request.selector = selector;
         EXPECT_EQ(walk(request).records.size(), 60U) << selector;
     }

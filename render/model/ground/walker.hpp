@@ -149,7 +149,8 @@ private:
     double pushed_s_ = 0;      ///< for how long it has not
     double stuck_s_ = 0;       ///< for how long it is still said that it was stuck
     std::uint32_t trial_ = 0;  ///< steps of trials that were done or left out
-    Attempt trial_at_;         ///< where the trial of a direction has come to
+    dvec3 trial_from_{0.0};    ///< where the trial of a direction began
+    Attempt trial_at_;         ///< where it has come to
     dvec3 stood_up_at_{0.0};
     std::array<dvec3, 2> free_places_{};  ///< newest first: each half a metre's walk from where it began and from the last one
     std::uint32_t free_count_ = 0;

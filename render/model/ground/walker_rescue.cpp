@@ -10,7 +10,7 @@ namespace {
 // How far the sides of a solid are looked for: small rooms of single walls look like one to who starts there.
 constexpr double start_sight_m = 1, place_sight_m = 2.5;
 constexpr std::uint32_t trials = 16, trial_steps = 21;  // directions, and steps of each: one a tick
-constexpr double trial_m = 0.1, stuck_after_s = 1;
+constexpr double trial_m = 0.1, min_step_m = 1e-6, stuck_after_s = 1;
 constexpr std::uint32_t search_rings = 40, search_a_tick = 2, search_places = 2 * search_rings * trials;
 constexpr double below_floor_m = 1, max_push_out_m = 0.35, shown_stuck_s = 1;
 constexpr double ring_m = 0.25;
@@ -132,18 +132,18 @@ void Walker::stand_at(const dvec3& feet) {
 }
 
 /// Goes on with the trial of a direction: a tenth of a metre at once, as over a small step; then in steps, as along a narrow
-/// ledge. The first that leads nowhere ends it.
+/// ledge. The first of these that leads nowhere ends the direction.
 bool Walker::trial_gets_on() {
     const Attempt here{feet_, supported_, steep_, Barrier::clear};
     const std::uint32_t step = trial_ % trial_steps;
-    if (step <= 1) trial_at_ = here;
+    if (step <= 1) trial_from_ = here.feet, trial_at_ = here;
     const dvec3 way = trial_m * walker_parts::direction(static_cast<double>(trial_ / trial_steps) / trials);
     feet_ = trial_at_.feet, supported_ = trial_at_.supported, steep_ = trial_at_.steep;
     const Attempt to = attempt(step == 0 ? way : way / (trial_steps - 1.0));
-    trial_ += step > 0 && to.feet == feet_ ? trial_steps - step : 1;
+    trial_ += step > 0 && glm::length(to.feet - feet_) < min_step_m ? trial_steps - step : 1;
     feet_ = here.feet, supported_ = here.supported, steep_ = here.steep;
     trial_at_ = to;
-    return glm::length(to.feet - feet_) >= 0.9 * trial_m;
+    return glm::length(to.feet - trial_from_) >= 0.9 * trial_m;
 }
 
 /// Stuck: pushed for a second without getting on, and none of 16 directions moves a tenth of a metre.
