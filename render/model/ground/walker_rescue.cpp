@@ -135,9 +135,9 @@ void Walker::stand_at(const dvec3& feet) {
 /// ledge. The first of these that leads nowhere ends the direction.
 bool Walker::trial_gets_on() {
     const Attempt here{feet_, supported_, steep_, Barrier::clear};
-    const std::uint32_t step = trial_ % trial_steps;
+    const std::uint32_t step = trial_ % trial_steps, number = trial_ / trial_steps;
     if (step <= 1) trial_from_ = here.feet, trial_at_ = here;
-    const dvec3 way = trial_m * walker_parts::direction(static_cast<double>(trial_ / trial_steps) / trials);
+    const dvec3 way = trial_m * walker_parts::direction(static_cast<double>(number) / trials);
     feet_ = trial_at_.feet, supported_ = trial_at_.supported, steep_ = trial_at_.steep;
     const Attempt to = attempt(step == 0 ? way : way / (trial_steps - 1.0));
     trial_ += step > 0 && glm::length(to.feet - feet_) < min_step_m ? trial_steps - step : 1;
