@@ -36,6 +36,7 @@ struct Settings {
     double shift_x = 0, shift_y = 0;           ///< off-axis projection, in half widths and half heights of the image
     double budget_ms = 0;                      ///< 0: what the rate allows
     double accuracy = 0;                       ///< rad^-1 to stop at; 0: as far as the budget goes
+    double min_accuracy = 0;                   ///< rad^-1 that is bought first; 0: nothing is guaranteed
     double resolution_pct = 0;                 ///< of the sides at which frames are drawn; a step of 12.5; 0: chosen
     std::uint32_t samples = 1;                 ///< of a pixel: 1, 2 or 4
     rt::TextureFilter filter = rt::TextureFilter::automatic;

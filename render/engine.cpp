@@ -26,6 +26,7 @@ Result<std::unique_ptr<Engine>> Engine::open(model::Model model, const model::Co
     impl->options = options;
     auto selector = select::selector_named(options.selector);
     if (!selector) return selector.error();
+    if (auto able = select::can_guarantee(**selector, options.max_error_rad); !able) return able.error();
     impl->options.device.null.costs = &impl->costs;
     impl->options.device.null.enlarge_us = static_cast<double>(costs.enlarge_us(0.5F, options.device.viewport));
     impl->options.device.rest = options.rest_after_ms > 0;
@@ -135,6 +136,7 @@ void Engine::prepare(const prepare::Region& region, std::uint64_t frame, double 
 Result<void> Engine::set_selector(std::string_view name) {
     auto selector = select::selector_named(name);
     if (!selector) return selector.error();
+    if (auto able = select::can_guarantee(**selector, impl_->options.max_error_rad); !able) return able;
     impl_->use(**selector);
     return {};
 }
@@ -152,7 +154,11 @@ bool Engine::offer(const select::Item& item) {
 
 select::SelectInput Engine::Impl::input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,
                                            double target_error_rad) const {
-    return {&model, &set, &costs, budget_us, by.factor, target_error_rad, options.slice_us, by.headroom, &offered};
+    return {&model,           &set,
+            &costs,           budget_us,
+            by.factor,        target_error_rad,
+            options.slice_us, by.headroom,
+            &offered,         options.max_error_rad};
 }
 
 /// The price is that of full detail, since a frame that shows less has no time for it.

@@ -36,6 +36,7 @@ struct EngineOptions {
     float resolution = 1;
     /// How long the pose must stay before the picture at rest is drawn, ms; 0: never. SubmitLimits::frame_ns is its clock.
     double rest_after_ms = 0;
+    double max_error_rad = 0;    ///< SelectInput::max_error_rad; refused for selectors that do not guarantee it
     bool in_frame_check = true;  ///< checks slices against the time left; off only for comparison
 };
 
@@ -82,7 +83,10 @@ struct SubmitReport {
     float resolution = 1;                               ///< that was drawn: a step of model::resolution_steps
     std::uint32_t samples = 1;                          ///< of a pixel, that were drawn
     rt::TextureFilter filter = rt::TextureFilter::bilinear;
-    float worst_error_rad = 0;  ///< of the drawn items, stand-ins included
+    float worst_error_rad = 0;                      ///< of the drawn items, stand-ins included
+    float worst_weighted_rad = 0;                   ///< the same of errors times importance
+    model::Index worst_node = model::none;          ///< the node of worst_weighted_rad; none: all is exact
+    rt::Guarantee guarantee = rt::Guarantee::none;  ///< of EngineOptions::max_error_rad: kept, or why not
     double value = 0;  ///< share of PreparedFrame::full_value that is drawn; 0: no prepared frame is; 1: nothing has value
     /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was
     /// drawn beside it; all else describes the shown picture.

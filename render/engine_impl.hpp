@@ -82,6 +82,8 @@ struct Engine::Impl {
     };
     [[nodiscard]] select::SelectInput input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,
                                                double target_error_rad) const REQUIRES(draws);
+    static void count_error(model::Index node, float error_rad, float importance, SubmitReport& report);
+    [[nodiscard]] rt::Guarantee guarantee_of(const SubmitReport& report) const REQUIRES(draws);
     void begin_offers() REQUIRES(draws);
     void take_filter() REQUIRES(draws);
     [[nodiscard]] model::ItemCost drawn_cost(model::Index rep, const model::ItemCost& cost) const REQUIRES(draws) {

@@ -15,6 +15,22 @@ constexpr float floor_picture_share = 0.5F;
 
 }  // namespace
 
+void Engine::Impl::count_error(model::Index node, float error_rad, float importance, SubmitReport& report) {
+    report.worst_error_rad = std::max(report.worst_error_rad, error_rad);
+    const float weighted_rad = error_rad * importance;
+    if (!(weighted_rad > report.worst_weighted_rad)) return;
+    report.worst_weighted_rad = weighted_rad;
+    if (weighted_rad > model::exact_up_to_rad) report.worst_node = node;
+}
+
+/// Items outside the pose's view are not drawn: so it may be kept although the cut did not.
+rt::Guarantee Engine::Impl::guarantee_of(const SubmitReport& report) const {
+    if (!(options.max_error_rad > 0.0)) return rt::Guarantee::none;
+    if (static_cast<double>(report.worst_weighted_rad) <= options.max_error_rad) return rt::Guarantee::kept;
+    if (use_last) return rt::Guarantee::unprepared;
+    return report.downgraded_slices > 0 ? rt::Guarantee::stand_ins : cut.guarantee;
+}
+
 /// Draws what of a slice the pose really sees; returns what that was predicted to cost.
 model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items, SubmitReport& report) {
     device->draws.plays();
@@ -39,7 +55,7 @@ model::ItemCost Engine::Impl::draw_slice(std::span<const select::CutItem> items,
         const double item_us = static_cast<double>(combine.frame_us(drawn_as.submit_us, drawn_as.raster_us) - combine.fixed_us);
         (full ? report.full_us : report.coarse_us) +=
             item_us / static_cast<double>(full ? prepared->full_factor : prepared->coarse_factor);
-        report.worst_error_rad = std::max(report.worst_error_rad, choice.error_rad);
+        count_error(item.node, choice.error_rad, candidate.importance, report);
         report.triangles += model.reps[item.rep].triangles;
     }
     device->draw(std::span<const gl::DrawItem>(drawn).subspan(first));
@@ -136,7 +152,7 @@ void Engine::Impl::push(const UnpreparedItem& item, SubmitReport& report) {
     if (!push_within(drawn, item.item)) return;
     floor.add(item.item, item.pixels, item.floor);
     report.triangles += model.reps[item.item.rep].triangles;
-    report.worst_error_rad = std::max(report.worst_error_rad, item.error_rad);
+    count_error(item.item.node, item.error_rad, model.nodes[item.item.node].importance, report);
 }
 
 /// As submit_cut(), with groups of the plan in place of slices. Several groups make a slice, since ending one has its price.
@@ -234,6 +250,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.samples = stats.samples;
     report.filter = stats.filter;
     report.floor_share = e.floor.floor_share();
+    report.guarantee = e.guarantee_of(report);
     e.report_items(report);
     e.last_report = report;
     return report;

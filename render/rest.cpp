@@ -173,7 +173,9 @@ void RestPicture::describe(SubmitReport& report) const {
     report.culled = 0;
     report.triangles = triangles_;
     report.resolution = 1;
-    report.worst_error_rad = 0;
+    report.worst_error_rad = report.worst_weighted_rad = 0;
+    report.worst_node = model::none;
+    if (report.guarantee != rt::Guarantee::none) report.guarantee = rt::Guarantee::kept;
     report.value = 1;
     report.floor_share = 0;
 }

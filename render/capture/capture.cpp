@@ -16,6 +16,7 @@ Capture take(const select::SelectInput& input, std::string_view selector, Memory
     c.budget_us = input.budget_us;
     c.correction = input.correction;
     c.target_error_rad = input.target_error_rad;
+    c.max_error_rad = input.max_error_rad;
     c.slice_us = input.slice_us;
     c.combine = input.costs->combine_at(input.prepared->resolution, input.prepared->viewport);
     c.headroom = static_cast<float>(select::headroom_of(input));
@@ -79,7 +80,8 @@ Result<select::Cut> replay(const Capture& capture, std::string_view selector_nam
                               capture.target_error_rad,
                               capture.slice_us,
                               0,
-                              &items};
+                              &items,
+                              capture.max_error_rad};
     select::Cut cut;
     select::reserve(cut, candidates);
     selector->run(input, state, cut);

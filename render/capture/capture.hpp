@@ -27,6 +27,7 @@ struct Capture {
     prepare::PreparedFrame prepared;
     std::string selector;
     double budget_us = 0, correction = 1, target_error_rad = 0, slice_us = 1000;
+    double max_error_rad = 0;                     ///< that was guaranteed; 0 in files that do not hold it
     model::FrameCombine combine;                  ///< of the resolution that is drawn
     float enlarge_ns_per_pixel = 0;               ///< of the cost model
     float headroom = 1, slice_end_us = 0;         ///< of the cost model; selection uses no more of it

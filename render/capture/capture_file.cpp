@@ -22,7 +22,8 @@ using model::Index;
 using model::none;
 
 constexpr std::uint32_t magic = 0x50434653;  // "SFCP"
-constexpr std::uint32_t version = 6, version_without_reserve = 5, version_without_items = 4, version_without_values = 3;
+constexpr std::uint32_t version = 7, version_without_guarantee = 6, version_without_reserve = 5, version_without_items = 4,
+                        version_without_values = 3;
 constexpr std::uint64_t max_bytes = 1ULL << 31U;  // unpacked
 constexpr std::uint32_t max_nodes = 1U << 26U;    // replay makes room for them
 constexpr std::size_t header_bytes = 40;
@@ -44,11 +45,13 @@ void each_setting(Io& io, C& c) {
        c.predicted_us);
     if (io.has_values) io(c.enlarge_ns_per_pixel);
     if (io.has_reserve) io(c.reserve_share);
+    if (io.has_guarantee) io(c.max_error_rad);
 }
 template <class Io, class C>
 void each(Io& io, C& c) requires std::is_same_v<std::remove_const_t<C>, prepare::Candidate> {
     io(c.node, c.parent, c.first_child, c.child_count, c.first_choice, c.choice_count, c.children_cost.submit_us,
        c.children_cost.raster_us, c.floor_cost.submit_us, c.floor_cost.raster_us, c.pixels, c.floor_open);
+    if (io.has_guarantee) io(c.importance);
 }
 template <class Io, class C>
 void each(Io& io, C& c) requires std::is_same_v<std::remove_const_t<C>, prepare::Choice> {
@@ -89,7 +92,7 @@ public:
         const auto bytes = std::as_bytes(std::span(s));
         out.insert(out.end(), bytes.begin(), bytes.end());
     }
-    static constexpr bool has_values = true, has_items = true, has_reserve = true;
+    static constexpr bool has_values = true, has_items = true, has_reserve = true, has_guarantee = true;
     std::vector<std::byte> out;
 
 private:
@@ -107,7 +110,8 @@ public:
         : in(bytes),
           has_values(file_version > version_without_values),
           has_items(file_version > version_without_items),
-          has_reserve(file_version > version_without_reserve) {}
+          has_reserve(file_version > version_without_reserve),
+          has_guarantee(file_version > version_without_guarantee) {}
     template <class... T>
     void operator()(T&... values) {
         (get(values), ...);
@@ -131,6 +135,7 @@ public:
     bool has_values;  ///< whether choices have values and rates
     bool has_items;   ///< whether it holds what was offered beside forms
     bool has_reserve;
+    bool has_guarantee;  ///< whether it holds importance and the guaranteed error
 
 private:
     void get(bool& value) { value = in.read<std::uint8_t>() != 0; }
@@ -159,6 +164,7 @@ bool finite(const model::ItemCost& cost) { return std::isfinite(cost.submit_us) 
 const char* wrong_in(const prepare::Candidate& c, std::size_t at, std::size_t& next_child, const Capture& capture) {
     const auto& f = capture.prepared;
     if (c.node >= capture.node_count) return "node out of range";
+    if (!(c.importance >= 0.0F && c.importance <= 1.0F)) return "importance out of range";
     if (c.choice_count == 0 || c.first_choice > f.choices.size() || c.choice_count > f.choices.size() - c.first_choice) {
         return "choices out of range";
     }
@@ -177,6 +183,7 @@ Result<void> check(const Capture& c, const std::string& place) {
     const auto bad = [&](std::string_view what) { return Error{place, std::string(what), remedy, ErrorKind::damaged}; };
     if (c.node_count == 0 || c.node_count > max_nodes) return bad("The number of nodes is out of range");
     if (!(c.hysteresis >= 1.0F && c.hysteresis <= 16.0F)) return bad("The hysteresis is out of range");
+    if (!(c.max_error_rad >= 0.0)) return bad("The guaranteed error is out of range");
     if (!(c.reserve_share >= 0.0F && c.reserve_share <= 1.0F)) return bad("The reserve is out of range");
     const auto& f = c.prepared;
     std::size_t next_child = 1;

@@ -132,6 +132,7 @@ std::uint32_t Evaluator::evaluate(const RegionView& view, float nearest_m, Candi
     candidate.pixels = seen.pixels;
     const float size = std::sqrt(seen.pixels / view.wide.viewport_pixels);
     const float importance = node.importance >= 0.0F ? std::min(node.importance, 1.0F) : 0.0F;
+    candidate.importance = importance;
     const float pixel_weight = importance * seen.focus * motion_factor(view, distance);
     weight = {size * pixel_weight, size * importance, distance, pixel_weight, outline_of(view, node.box), mean_size_m(node.box)};
 

@@ -14,6 +14,7 @@
 #include <array>
 
 #include "render/select/bucket_queue.hpp"
+#include "render/select/common_error.hpp"
 #include "render/select/cut_builder.hpp"
 #include "render/select/entries.hpp"
 #include "render/select/scratch.hpp"
@@ -46,7 +47,7 @@ public:
 
     /// Returns the number of steps taken.
     std::uint32_t run(bool fill) {
-        sum_ = builder_.floor_sum();
+        sum_ = builder_.start_sum();
         search();
         if (fill) {
             fill_up();
@@ -150,11 +151,11 @@ private:
         return shown >= builder_.choices(target.candidate)[target.choice].rep;
     }
 
-    /// From the floor to the targets, and what stands above them. False: they do not fit.
+    /// From the start to the targets, and what stands above them. False: they do not fit.
     bool start_from(std::span<const Target> targets) {
-        builder_.take_floor();
+        builder_.take_start();
         sums_.clear();
-        sum_ = builder_.floor_sum();
+        sum_ = builder_.start_sum();
         taken_ = deferred_count_ = 0;
         closed_ = false;
         double share = 1.0;
@@ -163,6 +164,7 @@ private:
             while (closed != none && builder_.chosen(closed) != SelectState::opened) {
                 Index top = closed;  // the highest that is not opened yet is an item
                 while (builder_.chosen(top) == none) top = builder_.candidate(top).parent;
+                if (!builder_.may_open(top)) return false;
                 step_to(top, opening);
             }
             step_to(target.candidate, target.choice);
@@ -174,7 +176,7 @@ private:
         const auto choices = builder_.choices(c);
         for (std::uint32_t k = builder_.chosen(c); k < choice && k < choices.size(); ++k) {
             const bool opens = k + 1 == choices.size();
-            sum_ = sum_.changed(choices[k].cost, opens ? builder_.candidate(c).children_cost : choices[k + 1].cost);
+            sum_ = sum_.changed(choices[k].cost, opens ? builder_.children_cost(c) : choices[k + 1].cost);
             do_step(c, k, opens);
         }
     }
@@ -190,7 +192,7 @@ private:
                 const Index shown = steps_.shown(builder_.candidate(c).node);
                 for_steps(c, [&](std::uint32_t k, bool opens) {
                     if (k < builder_.chosen(c)) return true;
-                    const model::ItemCost& in = opens ? builder_.candidate(c).children_cost : choices[k + 1].cost;
+                    const model::ItemCost& in = opens ? builder_.children_cost(c) : choices[k + 1].cost;
                     return use(c, k, opens, step_of(choices[k], shown), choices[k].cost, in);
                 });
             }
@@ -262,7 +264,7 @@ private:
     bool take_all(Index c, const Edge& edge) {
         if (steps_.has_target()) return false;
         const prepare::Candidate& candidate = builder_.candidate(c);
-        const bool opens = candidate.child_count > 0;
+        const bool opens = builder_.may_open(c);
         const std::uint32_t steps = candidate.choice_count - (opens ? 0U : 1U);
         if (steps == 0) return true;
         if ((scan_state_[c] & last_bucket) >= edge.bucket) return false;
@@ -293,7 +295,7 @@ private:
 
     bool try_step(Index c, std::uint32_t k, bool opens, double share) {
         const auto choices = builder_.choices(c);
-        const Sum next = sum_.changed(choices[k].cost, opens ? builder_.candidate(c).children_cost : choices[k + 1].cost);
+        const Sum next = sum_.changed(choices[k].cost, opens ? builder_.children_cost(c) : choices[k + 1].cost);
         if (!budget_.fits(next, share)) return false;
         sum_ = next;
         return true;
@@ -304,9 +306,7 @@ private:
             builder_.choose(c, k + 1);
             return true;
         }
-        const prepare::Candidate& candidate = builder_.candidate(c);
-        builder_.open(c);
-        for (Index child = 0; child < candidate.child_count; ++child) builder_.choose(candidate.first_child + child, 0);
+        builder_.open_to_children(c);
         return true;
     }
 
@@ -337,8 +337,10 @@ public:
         if (!has_room(input, state, cut)) return;
         Budget budget(input);
         CutBuilder builder(input, state);
-        builder.buy_items(budget);
         builder.take_floor();
+        guarantee_error(input, state, builder, budget);
+        builder.buy_items(budget);
+        builder.take_start();
         if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
             return builder.finish(budget, builder.take_finest(), cut);
         builder.finish(budget, ThresholdSearch(input, state, builder, budget, key_).run(fill_), cut);
@@ -364,11 +366,13 @@ const Selector& make_two_stage() {
 
 }  // namespace
 
-const SelectorEntry best_first_entry{"best-first", "the node of the greatest own benefit next, within the budget", GoesBy::budget,
-                                     true, make_best_first};
+const SelectorEntry best_first_entry{
+    "best-first", "the node of the greatest own benefit next, within the budget", GoesBy::budget, true, make_best_first, true};
 const SelectorEntry threshold_entry{usual_selector, "the step of the greatest value per cost next, within the budget",
-                                    GoesBy::budget, true, make_threshold};
-const SelectorEntry two_stage_entry{"two-stage", "the node of the greatest benefit in its subtree next, within the budget",
-                                    GoesBy::budget, true, make_two_stage};
+                                    GoesBy::budget, true,
+                                    make_threshold, true};
+const SelectorEntry two_stage_entry{"two-stage",    "the node of the greatest benefit in its subtree next, within the budget",
+                                    GoesBy::budget, true,
+                                    make_two_stage, true};
 
 }  // namespace surefoot::select

@@ -33,22 +33,22 @@ CommonErrorCuts::CommonErrorCuts(const SelectInput& input, SelectState& state, C
       worst_(std::span(state.scratch().lacks).first(input.prepared->candidates.size())),
       decisions_(std::span(state.scratch().links).first(input.prepared->candidates.size())) {}
 
-CommonErrorCuts::Found CommonErrorCuts::find(float error_rad) {
-    const float of_new = error_rad * new_factor_;
+CommonErrorCuts::Found CommonErrorCuts::find(float error_rad, float new_factor) {
+    const float of_new = error_rad * new_factor;
     for (auto c = static_cast<Index>(decisions_.size()); c-- > 0;) {  // children come after their parents
         const prepare::Candidate& candidate = builder_.candidate(c);
         const auto choices = builder_.choices(c);
         std::uint32_t k = 0;
-        while (k < choices.size() && !(choices[k].error_rad <= of_new)) ++k;
-        if (new_factor_ < 1.0F && shown_[candidate.node] != none)  // a coarser one may stay
+        while (k < choices.size() && !(builder_.weighted_error(c, choices[k]) <= of_new)) ++k;
+        if (new_factor < 1.0F && shown_[candidate.node] != none)  // a coarser one may stay
             for (std::uint32_t i = 0; i < k && choices[i].rep <= shown_[candidate.node]; ++i)
-                if (choices[i].rep == shown_[candidate.node] && choices[i].error_rad <= error_rad) k = i;
+                if (choices[i].rep == shown_[candidate.node] && builder_.weighted_error(c, choices[i]) <= error_rad) k = i;
         const bool suffices = k < choices.size();
         decisions_[c] = suffices ? k : static_cast<std::uint32_t>(choices.size()) - 1;
         const prepare::Choice& own = choices[decisions_[c]];
         Sum& best = below_[c] = {};
         best.add(own.cost);
-        worst_[c] = own.error_rad;
+        worst_[c] = builder_.weighted_error(c, own);
         if (candidate.child_count == 0) continue;
         Sum of_children;
         float worst = 0;
@@ -57,9 +57,9 @@ CommonErrorCuts::Found CommonErrorCuts::find(float error_rad) {
             worst = std::max(worst, worst_[child]);
         }
         const bool children_suffice = worst <= error_rad;
-        const bool opens = suffices == children_suffice && (suffices || worst == own.error_rad)
+        const bool opens = suffices == children_suffice && (suffices || worst == worst_[c])
                                ? budget_.items_us(of_children) < budget_.items_us(best)
-                               : (suffices ? false : children_suffice || worst < own.error_rad);
+                               : (suffices ? false : children_suffice || worst < worst_[c]);
         if (!opens) continue;
         decisions_[c] = SelectState::opened;
         best = of_children;
@@ -84,7 +84,7 @@ float CommonErrorCuts::likely_error() const {
         auto better = builder_.choices(c);
         if (builder_.candidate(c).child_count == 0) better = better.first(better.size() - 1);
         for (const prepare::Choice& choice : better)
-            if (choice.rep == shown) worst = std::max(worst, choice.error_rad);
+            if (choice.rep == shown) worst = std::max(worst, builder_.weighted_error(c, choice));
     }
     return worst > 0 && worst < no_limit ? worst : two_pixels_rad_;
 }
@@ -96,8 +96,11 @@ bool CommonErrorCuts::find_within_budget(float min_error_rad) {
     int passes = 0;
     const auto fits = [&](float error_rad, double share) {
         ++passes;
-        if (!budget_.fits(find(error_rad).sum, share)) return false;
+        const Found found = find(error_rad);
+        if (!budget_.fits(found.sum, share)) return false;
         take();
+        taken_error_ = error_rad;
+        taken_worst_ = found.worst_error_rad;
         return true;
     };
     const float start = std::max(likely_error(), min_error_rad);
@@ -129,6 +132,37 @@ bool CommonErrorCuts::find_within_budget(float min_error_rad) {
     return true;
 }
 
+float CommonErrorCuts::coarsest_error() const {
+    float worst = 0;
+    for (Index c = 0; c < builder_.size(); ++c) worst = std::max(worst, builder_.weighted_error(c, builder_.choices(c).front()));
+    return worst;
+}
+
+rt::Guarantee CommonErrorCuts::guarantee(float max_error_rad) {
+    if (coarsest_error() <= max_error_rad) return rt::Guarantee::kept;  // whatever is drawn
+    Found found = find(max_error_rad);
+    bool fits = budget_.fits(found.sum);
+    if (!fits && new_factor_ < 1.0F) {
+        found = find(max_error_rad, 1.0F);
+        fits = budget_.fits(found.sum);
+    }
+    if (fits) {
+        builder_.start_with(decisions_, max_error_rad);
+        return found.worst_error_rad > max_error_rad ? rt::Guarantee::no_form : rt::Guarantee::kept;
+    }
+    if (budget_.fits(builder_.floor_sum()) && find_within_budget(max_error_rad)) {
+        builder_.start_with(decisions_, find(taken_error_).worst_error_rad);  // the decisions that were taken once more
+    }
+    return rt::Guarantee::over_budget;
+}
+
+void guarantee_error(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget) {
+    const float max_error_rad = builder.guaranteed_rad();
+    if (!(max_error_rad > 0.0F)) return;
+    builder.set_guarantee(CommonErrorCuts(input, state, builder, budget).guarantee(max_error_rad));
+    builder.take_start();
+}
+
 namespace {
 
 class CurveBudget final : public Selector {
@@ -138,13 +172,16 @@ public:
         if (!has_room(input, state, cut)) return;
         Budget budget(input);
         CutBuilder builder(input, state);
-        builder.buy_items(budget);
         builder.take_floor();
+        guarantee_error(input, state, builder, budget);
+        builder.buy_items(budget);
+        builder.take_start();
         if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
             return builder.finish(budget, builder.take_finest(), cut);
         CommonErrorCuts cuts(input, state, builder, budget);
         const auto target = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : 0.0);
-        if (budget.fits(builder.floor_sum())) (void)cuts.find_within_budget(target);  // else the floor is drawn
+        const bool found = budget.fits(builder.floor_sum()) && cuts.find_within_budget(target);  // else the floor is drawn
+        if (found && cuts.taken_worst_rad() > builder.max_error_rad()) builder.take_start();     // what was shown had more error
         builder.finish(budget, 0, cut);
     }
 };
@@ -176,8 +213,9 @@ const Selector& make_curve_accuracy() {
 
 }  // namespace
 
-const SelectorEntry curve_budget_entry{"curve-budget", "the greatest accuracy that all objects can share, within the budget",
-                                       GoesBy::budget, true, make_curve_budget};
+const SelectorEntry curve_budget_entry{"curve-budget",    "the greatest accuracy that all objects can share, within the budget",
+                                       GoesBy::budget,    true,
+                                       make_curve_budget, true};
 const SelectorEntry curve_accuracy_entry{"curve-accuracy", "the cheapest cut within one error for all objects; no budget",
                                          GoesBy::threshold, false, make_curve_accuracy};
 

@@ -13,7 +13,8 @@ constexpr float shown_error_factor = 1.1F;
 /// The error of selectors without a budget, where no accuracy is requested.
 constexpr double default_threshold_px = 2.0;
 
-/// Cuts of one frame by the error that all items share. Uses the state's scratch memory; allocates nothing.
+/// Cuts of one frame by the error that all items share. Errors are times importance here: less is asked of what matters less.
+/// Uses the state's scratch memory; allocates nothing.
 class CommonErrorCuts {
 public:
     CommonErrorCuts(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget);
@@ -25,7 +26,7 @@ public:
     };
     /// The cheapest cut within `error_rad`, in radians; infinity: the cheapest of all. Where no form suffices, the best one
     /// counts. Costs are compared node by node, so the larger of two sums over a frame may make another cut a little cheaper.
-    [[nodiscard]] Found find(float error_rad);
+    [[nodiscard]] Found find(float error_rad) { return find(error_rad, new_factor_); }
     /// Gives the builder the cut that was found last.
     void take();
 
@@ -33,20 +34,33 @@ public:
     /// it. False: none fits, and the builder is as it was. Starts near what was shown, if there is hysteresis.
     [[nodiscard]] bool find_within_budget(float min_error_rad);
 
+    /// Lets the builder start with the cut of `max_error_rad`: with hysteresis, without it where only that fits. If none fits,
+    /// with that of the smallest error that does. The floor, if nothing does.
+    [[nodiscard]] rt::Guarantee guarantee(float max_error_rad);
+
+    /// Of the cut that find_within_budget() gave to the builder.
+    [[nodiscard]] float taken_worst_rad() const { return taken_worst_; }
     [[nodiscard]] float two_pixels_rad() const { return two_pixels_rad_; }
 
 private:
+    [[nodiscard]] Found find(float error_rad, float new_factor);
     [[nodiscard]] float likely_error() const;
+    [[nodiscard]] float coarsest_error() const;
 
     CutBuilder& builder_;
     const Budget& budget_;
     float two_pixels_rad_;
     std::span<const Index> shown_;
-    double share_;                        ///< of the budget, for forms that were not shown
-    float new_factor_;                    ///< of the error, for forms that were not shown
+    double share_;      ///< of the budget, for forms that were not shown
+    float new_factor_;  ///< of the error, for forms that were not shown
+    float taken_error_ = 0, taken_worst_ = 0;
     std::span<Sum> below_;                ///< by candidate: of the cheapest cut of its subtree
     std::span<float> worst_;              ///< by candidate: its worst error
     std::span<std::uint32_t> decisions_;  ///< by candidate: a choice, or SelectState::opened
 };
+
+/// Before a search, with the floor in the builder: its start, so that no item has more than the input's `max_error_rad`. Nothing
+/// changes if that is 0.
+void guarantee_error(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget);
 
 }  // namespace surefoot::select

@@ -2,6 +2,7 @@
 #include "render/select/cut_builder.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/select/bucket_queue.hpp"
 #include "render/select/scratch.hpp"
@@ -15,6 +16,13 @@ namespace {
 std::uint64_t mixed(std::uint64_t hash, const CutItem& item) {
     hash = (hash ^ (static_cast<std::uint64_t>(item.node) << 32U | item.rep)) * 0x9e3779b97f4a7c15ULL;
     return hash ^ (hash >> 29U);
+}
+
+/// As a float that is no larger.
+float error_no_more_than(double error_rad) {
+    if (!(error_rad > 0.0)) return 0.0F;
+    const auto nearest = static_cast<float>(error_rad);
+    return static_cast<double>(nearest) > error_rad ? std::nextafter(nearest, 0.0F) : nearest;
 }
 
 }  // namespace
@@ -41,6 +49,7 @@ void SelectState::reserve(const model::Model& model, std::uint32_t max_candidate
     scratch_->lacks.resize(max_candidates);
     scratch_->below.resize(max_candidates);
     scratch_->chosen.resize(max_candidates);
+    scratch_->starts.resize(max_candidates);
     scratch_->list.resize(max_candidates);
 }
 
@@ -49,8 +58,9 @@ void reserve(Cut& cut, std::uint32_t max_candidates) { cut.items.reserve(max_can
 void clear(Cut& cut) {
     cut.items.clear();
     cut.sum = {};
-    cut.predicted_us = cut.floor_us = cut.worst_error_rad = 0;
+    cut.predicted_us = cut.floor_us = cut.worst_error_rad = cut.worst_weighted_rad = 0;
     cut.floor_binds = false;
+    cut.guarantee = rt::Guarantee::none;
     cut.benefit = cut.value = 0;
     cut.bought = {};
     cut.triangles = cut.hash = 0;
@@ -71,6 +81,8 @@ CutBuilder::CutBuilder(const SelectInput& input, SelectState& state)
       scratch_(std::span(state.scratch().list).first(input.prepared->candidates.size())),
       lacks_(std::span(state.scratch().lacks).first(input.prepared->candidates.size())),
       below_(std::span(state.scratch().below).first(input.prepared->candidates.size())),
+      starts_(std::span(state.scratch().starts).first(input.prepared->candidates.size())),
+      guaranteed_rad_(error_no_more_than(input.max_error_rad)),
       items_(input) {}
 
 // Candidates are in breadth-first order, so a first-in first-out walk meets them ascending.
@@ -94,6 +106,49 @@ std::span<std::uint32_t> CutBuilder::take_floor() {
     return scratch_.first(items);
 }
 
+void CutBuilder::start_with(std::span<const std::uint32_t> decisions, float max_error_rad) {
+    max_error_rad_ = max_error_rad;
+    for (auto c = static_cast<Index>(starts_.size()); c-- > 0;) {  // children come after their parents
+        Start& start = starts_[c] = {};
+        start.choice = decisions[c];
+        const prepare::Candidate& at = candidate(c);
+        for (Index child = at.first_child; child < at.first_child + at.child_count; ++child) {
+            const Start& below = starts_[child];
+            start.children_cost += below.choice == SelectState::opened ? below.children_cost : choices(child)[below.choice].cost;
+            start.children_value += below.value;
+            start.worst_rad = std::max(start.worst_rad, below.worst_rad);
+        }
+        const bool opened = start.choice == SelectState::opened;
+        start.may_open = opened || start.worst_rad <= max_error_rad;
+        if (!opened) start.worst_rad = weighted_error(c, choices(c)[start.choice]);
+        start.value = opened ? start.children_value : choices(c)[start.choice].value;
+    }
+    start_ = {};
+    start_.add(first_choice(0) == SelectState::opened ? starts_[0].children_cost : choices(0)[first_choice(0)].cost);
+}
+
+std::span<std::uint32_t> CutBuilder::take_start() {
+    if (!has_starts()) return take_floor();
+    std::size_t items = 0;
+    for (Index c = 0; c < chosen_.size(); ++c) {
+        const Index parent = candidate(c).parent;
+        chosen_[c] = parent != none && chosen_[parent] != SelectState::opened ? none : starts_[c].choice;
+        if (chosen_[c] < SelectState::opened) scratch_[items++] = c;
+    }
+    return scratch_.first(items);
+}
+
+void CutBuilder::open_to_children(Index c) {
+    open(c);
+    const prepare::Candidate& at = candidate(c);
+    for (Index child = at.first_child; child < at.first_child + at.child_count; ++child) {
+        if (first_choice(child) == SelectState::opened)
+            open_to_children(child);
+        else
+            choose(child, first_choice(child));
+    }
+}
+
 double CutBuilder::value() const {
     double sum = 0;
     for (Index c = 0; c < chosen_.size(); ++c)
@@ -102,6 +157,7 @@ double CutBuilder::value() const {
 }
 
 float CutBuilder::children_value(Index c) const {
+    if (has_starts()) return starts_[c].children_value;
     float sum = 0;
     for (Index k = 0; k < candidate(c).child_count; ++k) sum += choices(candidate(c).first_child + k)[0].value;
     return sum;
@@ -150,7 +206,7 @@ void CutBuilder::undo_losses(float shown_counts) {
         for (std::uint32_t k = at.choice_count; k-- > 0;) {  // the finest first
             const auto [submit_us, raster_us] = own[k].cost;
             if (static_cast<double>(submit_us) > cost.submit_us || static_cast<double>(raster_us) > cost.raster_us) continue;
-            if (!(own[k].value > keeps)) continue;
+            if (!(own[k].value > keeps) || weighted_error(c, own[k]) > max_error_rad_) continue;
             choose(c, k);
             take(k);
             any = true;
@@ -167,7 +223,7 @@ void CutBuilder::restore() { std::copy(saved_.begin(), saved_.end(), chosen_.beg
 
 void CutBuilder::buy_items(Budget& budget) {
     if (items_.offered().empty()) return items_.count_refused();
-    take_floor();
+    take_start();
     items_.buy_before_forms(*this, state_, budget);
 }
 
@@ -217,6 +273,7 @@ void CutBuilder::list_items(Budget& budget, Cut& cut) {
         cut.items.push_back(item);
         sum.add(choice.cost);
         cut.worst_error_rad = std::max(cut.worst_error_rad, choice.error_rad);
+        cut.worst_weighted_rad = std::max(cut.worst_weighted_rad, weighted_error(c, choice));
         cut.benefit += 1.0 - static_cast<double>(choice.benefit);
         cut.value += static_cast<double>(choice.value);
         cut.triangles += choice.triangles;
@@ -252,6 +309,10 @@ void CutBuilder::finish(Budget& budget, std::uint32_t refinements, Cut& cut) {
     cut.floor_us = std::min(static_cast<float>(budget.forms_us(floor_)), cut.predicted_us);
     cut.floor_binds = !budget.fits_us(static_cast<double>(cut.floor_us));
     cut.refinements = refinements;
+    if (guaranteed_rad_ > 0.0F) {  // what takes full detail without a search asks nobody
+        const rt::Guarantee broken = guarantee_ == rt::Guarantee::none ? rt::Guarantee::no_form : guarantee_;
+        cut.guarantee = cut.worst_weighted_rad <= guaranteed_rad_ ? rt::Guarantee::kept : broken;
+    }
     remember(cut);
 }
 

@@ -61,7 +61,7 @@ void ItemBuyer::buy_before_forms(const CutBuilder& builder, SelectState& state, 
     const double fresh = fresh_share(state);
     StepSums sums(state.scratch().step_sums);
     sum_steps(builder, Steps(input_, state, Key::rate), sums, state.scratch().list);
-    Sum spent = builder.floor_sum();
+    Sum spent = builder.start_sum();
     auto next = all.begin();
     for (std::uint32_t bucket = 0; bucket < key_buckets && next != all.end(); ++bucket) {
         for (; next != all.end() && next->bucket == bucket; ++next) try_item(*next, spent, fresh, budget);

@@ -20,7 +20,7 @@ public:
 
     /// Without an item to buy: says how many were refused.
     void count_refused() { bought_.refused = input_.items != nullptr ? input_.items->refused() : 0; }
-    /// The first round. Walks over all steps by rate; the builder holds the floor. `budget` pays.
+    /// The first round. Walks over all steps by rate; the builder holds the start. `budget` pays.
     void buy_before_forms(const CutBuilder& builder, SelectState& state, Budget& budget);
     /// For selectors without a budget: everything.
     void buy_all(Budget& budget);

@@ -22,6 +22,15 @@ Result<const SelectorEntry*> selector_named(std::string_view name) {
                  "Use one of: " + names_in_words(selectors()), ErrorKind::misuse};
 }
 
+Result<void> can_guarantee(const SelectorEntry& selector, double max_error_rad) {
+    if (!(max_error_rad > 0.0) || selector.guarantees) return {};
+    std::string able;
+    for (const SelectorEntry& entry : selectors())
+        if (entry.guarantees) able += (able.empty() ? "" : ", ") + std::string(entry.name);
+    return Error{"selector '" + std::string(selector.name) + "'", "It cannot guarantee a min_accuracy",
+                 "Use one of: " + able + "; or set min_accuracy to 0", ErrorKind::misuse};
+}
+
 const Selector* find_selector(std::string_view name) {
     const SelectorEntry* entry = find_named(selectors(), name);
     return entry == nullptr ? nullptr : &entry->make();

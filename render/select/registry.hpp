@@ -21,6 +21,7 @@ struct SelectorEntry {
     GoesBy goes_by = GoesBy::budget;
     bool compared = true;  ///< by `surefoot accuracy`, if no selector is named
     const Selector& (*make)() = nullptr;
+    bool guarantees = false;  ///< buys SelectInput::max_error_rad first; others heed it not at all
 };
 
 constexpr std::string_view usual_selector = "threshold";
@@ -29,6 +30,9 @@ constexpr std::string_view full_detail_selector = "flat";
 std::span<const SelectorEntry> selectors();
 /// An unknown name is an Error that lists the known ones.
 Result<const SelectorEntry*> selector_named(std::string_view name);
+
+/// An error where max_error_rad is above 0 and the selector does not guarantee it.
+Result<void> can_guarantee(const SelectorEntry& selector, double max_error_rad);
 
 /// Null for an unknown name.
 const Selector* find_selector(std::string_view name);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/select/budget.hpp"
+#include "render/select/cut_builder.hpp"
 #include "render/select/select.hpp"
 
 namespace surefoot::select {
@@ -17,6 +18,7 @@ struct SelectState::Scratch {
     std::vector<std::uint32_t> saved;   ///< by candidate: the choices of the best cut so far
     std::vector<float> lacks;           ///< by candidate: CutBuilder::what_items_lack() and undo_losses(), or CommonErrorCuts
     std::vector<Sum> below;             ///< by candidate: CutBuilder::undo_losses(), or CommonErrorCuts
+    std::vector<Start> starts;          ///< by candidate: CutBuilder::start_with()
     std::vector<std::uint32_t> queue_heads;  ///< the queue's buckets
     std::vector<double> step_sums;           ///< two costs a bucket: of new steps, and of those shown before
 };

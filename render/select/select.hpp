@@ -13,6 +13,7 @@
 #include "render/model/model.hpp"
 #include "render/prepare/prepared.hpp"
 #include "render/select/item.hpp"
+#include "rt/base/modes.hpp"
 
 namespace surefoot::select {
 
@@ -29,12 +30,14 @@ struct CutItem {
 
 /// The chosen items, in candidate order. Legal: every visible leaf is covered exactly once.
 struct Cut {
-    std::vector<CutItem> items;  ///< reserved; never grows after
-    model::ItemCost sum;         ///< over items
-    float predicted_us = 0;      ///< whole frame, with correction and headroom
-    float floor_us = 0;          ///< of the cheapest legal cut
-    bool floor_binds = false;    ///< floor_us > budget: the floor is drawn
-    float worst_error_rad = 0;   ///< 1 / accuracy
+    std::vector<CutItem> items;                     ///< reserved; never grows after
+    model::ItemCost sum;                            ///< over items
+    float predicted_us = 0;                         ///< whole frame, with correction and headroom
+    float floor_us = 0;                             ///< of the cheapest legal cut
+    bool floor_binds = false;                       ///< floor_us > budget: the floor is drawn
+    float worst_error_rad = 0;                      ///< 1 / accuracy
+    float worst_weighted_rad = 0;                   ///< the same of errors times importance: what is guaranteed
+    rt::Guarantee guarantee = rt::Guarantee::none;  ///< of max_error_rad: kept, or why not
     double benefit = 0;  ///< sum over items of 1 - benefit of the next finer step; 0..items, items: nothing is left to gain
     double value = 0;    ///< sum over items, weighted pixels; PreparedFrame::full_value: nothing is left to gain
     BoughtItems bought;  ///< beside the forms; in predicted_us, not in sum and value
@@ -55,6 +58,7 @@ struct SelectInput {
     double slice_us = 1000;           ///< of the shortest slices; the prediction counts as if all were so short
     double headroom = 0;              ///< headroom on corrected predictions; 0: that of the cost table
     const ItemList* items = nullptr;  ///< what else may be bought; null: nothing
+    double max_error_rad = 0;         ///< bought first: no item has more error, if the budget allows; 0: nothing is guaranteed
 };
 
 inline double headroom_of(const SelectInput& input) {

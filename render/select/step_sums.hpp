@@ -49,7 +49,7 @@ bool for_steps(const CutBuilder& builder, const Steps& steps, Index c, const Use
     const auto choices = builder.choices(c);
     for (std::uint32_t k = 0; k < candidate.choice_count; ++k) {
         const bool last = k + 1 == candidate.choice_count;
-        if ((last && candidate.child_count == 0) || !steps.wanted(choices[k]) || !use(k, last)) return false;
+        if ((last && !builder.may_open(c)) || !steps.wanted(choices[k]) || !use(k, last)) return false;
     }
     return true;
 }
@@ -59,10 +59,10 @@ constexpr std::uint32_t last_bucket = key_buckets - 1;  ///< mask: the bucket of
 constexpr std::uint32_t opens_below = 1U << 16U;        ///< its children may be opened: the target error allows all its steps
 constexpr std::uint32_t refined_before = 1U << 17U;     ///< its first step was taken in the last frame
 
-/// Adds up all steps behind what the builder holds: the floor, or forms that a search starts from. notes: one a candidate.
+/// Adds up all steps behind what the builder holds: the start, or forms that a search starts from. notes: one a candidate.
 inline void sum_steps(const CutBuilder& builder, const Steps& steps, StepSums& sums, std::span<std::uint32_t> notes) {
     for (Index c = 0; c < builder.size(); ++c) {
-        if (builder.chosen(c) == SelectState::opened) continue;  // above the floor
+        if (builder.chosen(c) == SelectState::opened) continue;  // above the start
         const prepare::Candidate& candidate = builder.candidate(c);
         const auto choices = builder.choices(c);
         const Index shown = steps.shown(candidate.node);
@@ -72,12 +72,16 @@ inline void sum_steps(const CutBuilder& builder, const Steps& steps, StepSums& s
             continue;
         }
         std::uint32_t last = 0;
-        const std::uint32_t from = builder.chosen(c) == none ? 0 : builder.chosen(c);
+        const std::uint32_t from = builder.chosen(c) == none ? builder.first_choice(c) : builder.chosen(c);
+        if (from == SelectState::opened) {  // it has no step of its own: it opens with its parent
+            notes[c] = flags | opens_below;
+            continue;
+        }
         const bool passed = for_steps(builder, steps, c, [&](std::uint32_t k, bool opens) {
             if (k < from) return true;
             const StepPlace step = place_of(steps, choices[k], shown);
             last = step.bucket;
-            sums.add(step.bucket, step.refined, choices[k].cost, opens ? candidate.children_cost : choices[k + 1].cost);
+            sums.add(step.bucket, step.refined, choices[k].cost, opens ? builder.children_cost(c) : choices[k + 1].cost);
             return true;
         });
         notes[c] = flags | last | (passed ? opens_below : 0);

@@ -1,5 +1,5 @@
-// Modes of a walk that several rooms know: the policy for late frames, the clock, the texture filter. Enums, with their names in
-// settings and reports.
+// Modes of a walk that several rooms know: the policy for late frames, the clock, the texture filter; and what became of a
+// guarantee. Enums, with their names in settings and reports.
 #pragma once
 
 #include <array>
@@ -28,7 +28,14 @@ enum class TextureFilter : std::uint8_t { automatic, bilinear, trilinear, adapti
 /// Whether a steered eye walks: on floors and around walls, or flies through them.
 enum class WalkingMode : std::uint8_t { automatic, walk, fly };
 
+/// What became of the accuracy that a frame guarantees. none: nothing is guaranteed. Why it was not kept: over_budget: no legal
+/// cut has it within the budget. no_form: what is prepared has nothing better. stand_ins: the frame ran out of time, so the rest
+/// of its cut was drawn coarse. unprepared: no prepared set was new enough.
+enum class Guarantee : std::uint8_t { none, kept, over_budget, no_form, stand_ins, unprepared };
+
 /// In the enums' order.
+inline constexpr std::array<std::string_view, 6> guarantee_names = {"none",    "kept",      "over_budget",
+                                                                    "no_form", "stand_ins", "unprepared"};
 inline constexpr std::array late_policies = {
     Named{"lock", "frames appear on the grid only; a late frame skips whole slots"},
     Named{"float", "a late frame is shown as soon as it is done"},
@@ -51,6 +58,7 @@ inline constexpr std::array texture_filters = {
     Named{"adaptive", "trilinear; on a software driver only while all is in full detail and time is left"},
 };
 
+constexpr std::string_view name_of(Guarantee guarantee) { return guarantee_names[static_cast<std::size_t>(guarantee)]; }
 constexpr std::string_view name_of(LatePolicy late) { return late_policies[static_cast<std::size_t>(late)].name; }
 constexpr std::string_view name_of(ClockKind clock) { return clock_kinds[static_cast<std::size_t>(clock)].name; }
 constexpr std::string_view name_of(TextureFilter filter) { return texture_filters[static_cast<std::size_t>(filter)].name; }

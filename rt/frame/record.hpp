@@ -30,6 +30,9 @@ constexpr std::array<std::string_view, cause_count> cause_names = {
     "none",   "woken_late", "stolen",           "preempted",  "select",  "submit",
     "raster", "upload",     "prepared_too_old", "page_fault", "present", "stopped"};
 
+/// FrameRecord::binding_node where no drawn node has an error.
+constexpr std::uint32_t no_node = 0xFFFFFFFF;
+
 /// Times in integer nanoseconds of CLOCK_MONOTONIC (or of the virtual clock).
 struct FrameRecord {
     std::uint64_t slot = 0;     ///< grid slot; skipped slots are the gaps
@@ -66,8 +69,12 @@ struct FrameRecord {
     float predicted_us = 0, actual_us = 0, budget_us = 0, floor_us = 0, correction = 1;
     float cost_scale = 1;  ///< the setting's factor in predicted_us (real clock) or in actual_us (virtual clock)
     float prepare_cpu_us = 0;
-    float bought_us = 0;        ///< of predicted_us, without correction: what bought_items cost
-    float accuracy = 0;         ///< rad^-1
+    float bought_us = 0;            ///< of predicted_us, without correction: what bought_items cost
+    float accuracy = 0;             ///< rad^-1, of the drawn items
+    float guaranteed_accuracy = 0;  ///< the setting min_accuracy, rad^-1; 0: nothing is guaranteed
+    float reached_accuracy = 0;     ///< as accuracy, of errors times importance
+    Guarantee guarantee = Guarantee::none;
+    std::uint32_t binding_node = no_node;  ///< of the model: the node of reached_accuracy; no_node: all is exact
     float value = 0;            ///< share of full detail's value that is drawn, 0..1, without blur; 0: not known, no set was used
     float floor_share = 0;      ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones
     bool floor_frame = false;   ///< over half of the picture fell to floor forms, although the cut before would have fitted

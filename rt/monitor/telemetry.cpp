@@ -124,6 +124,7 @@ void Telemetry::count(const FrameRecord& f) {
     s.stopped_frames += f.stopped ? 1 : 0;
     s.floor_frames += f.floor_binds ? 1 : 0;
     s.rest_frames += f.at_rest ? 1 : 0;
+    s.broken_guarantees += f.guarantee > Guarantee::kept ? 1 : 0;
     s.trilinear_frames += f.filter == rt::TextureFilter::trilinear ? 1 : 0;
     s.continues += f.continued;
     s.stolen_ns += f.stolen_ns;

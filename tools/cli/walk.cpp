@@ -224,6 +224,7 @@ void add_walk(CLI::App& app, Context& context) {
         ->check(number_within(0.001, 1e6, "s"));
     add_settings(c, a->settings,
                  {{"--accuracy", "accuracy"},
+                  {"--min-accuracy", "min_accuracy"},
                   {"--resolution", "resolution"},
                   {"--samples", "samples"},
                   {"--walking", "walking"},

@@ -181,6 +181,7 @@ void add_work(Exposition& e, const Figures& f) {
               f.downgraded_slices);
     e.counter("surefoot_floor_frames_total", "Frames whose coarsest picture exceeded the budget.", f.floor_frames);
     e.counter("surefoot_rest_frames_total", "Frames that drew no cut, because the eye was at rest.", f.rest_frames);
+    e.counter("surefoot_broken_guarantees_total", "Frames below the accuracy that is guaranteed.", f.broken_guarantees);
     e.counter("surefoot_trilinear_frames_total", "Frames whose textures blend two mip levels.", f.trilinear_frames);
     e.counter("surefoot_switches_total", "Nodes whose form changed between frames.", f.switches);
     e.counter("surefoot_triangles_total", "Triangles drawn.", f.triangles);

@@ -95,6 +95,7 @@ ordered_json totals_json(const Figures& f) {
     j["floor_bound_frames"] = f.floor_frames;
     j["rest_frames"] = f.rest_frames;
     j["trilinear_frames"] = f.trilinear_frames;
+    j["broken_guarantees"] = f.broken_guarantees;
     j["stolen_ms"] = static_cast<double>(f.stolen_ns) * 1e-6;
     j["preempted_ms"] = static_cast<double>(f.preempted_ns) * 1e-6;
     return j;
@@ -188,6 +189,11 @@ std::string status_json(const MonitorPage& p) {
     j["times"] = times_json(f);
     j["recent"] = recent_json(f);
     j["now"] = {{"accuracy", f.frames > 0 ? known(double{f.last.accuracy}) : ordered_json(nullptr)},
+                {"guaranteed_accuracy", f.frames > 0 && f.last.guaranteed_accuracy > 0 ? ordered_json(f.last.guaranteed_accuracy)
+                                                                                       : ordered_json(nullptr)},
+                {"reached_accuracy", f.frames > 0 ? known(double{f.last.reached_accuracy}) : ordered_json(nullptr)},
+                {"guarantee", std::string(rt::name_of(f.last.guarantee))},
+                {"binding_node", f.last.binding_node != rt::no_node ? ordered_json(f.last.binding_node) : ordered_json(nullptr)},
                 {"exact", f.frames > 0 && std::isinf(f.last.accuracy)},
                 {"budget_ms", f.frames > 0 ? known(double{f.last.budget_us} * 1e-3) : ordered_json(nullptr)},
                 {"resolution", f.frames > 0 ? known(double{f.last.resolution}) : ordered_json(nullptr)},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "rt/base/modes.hpp"
 #include "tools/monitor/text.hpp"
 #include "tools/monitor/view.hpp"
 
@@ -80,6 +81,14 @@ void add_chart(const json& s, const TerminalStyle& style, std::vector<std::strin
     }
 }
 
+std::string guarantee_line(const json& s, const TerminalStyle& style, double guaranteed) {
+    const double broken = number_at(s, "/totals/broken_guarantees");
+    const std::string now = text_at(s, "/now/guarantee");
+    return fmt::format("guaranteed {} /rad: {}, {} frames without it", short_number(guaranteed),
+                       now == rt::name_of(rt::Guarantee::kept) ? inked(style, Ink::good, now) : inked(style, Ink::bad, now),
+                       grouped(broken));
+}
+
 void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {
     if (!(number_at(s, "/recent/frames") > 0)) return;
     const double period_ms = number_at(s, "/walk/period_ms");
@@ -96,6 +105,8 @@ void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::stri
                                          : fmt::format("accuracy {} /rad, least {}, {} triangles", short_number(accuracy),
                                                        short_number(number_at(s, "/recent/accuracy/min")),
                                                        grouped(number_at(s, "/now/triangles"))));
+    if (const double guaranteed = number_at(s, "/now/guaranteed_accuracy"); guaranteed > 0)
+        lines.push_back(guarantee_line(s, style, guaranteed));
     if (flag_at(s, "/now/at_rest"))
         lines.push_back(number_at(s, "/now/rest_samples") > 0
                             ? fmt::format("at rest  full detail, {:.0f} samples", number_at(s, "/now/rest_samples"))

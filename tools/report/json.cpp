@@ -121,12 +121,25 @@ Json picture_of(const PictureSummary& p) {
     return json;
 }
 
+Json guarantee_of(const GuaranteeSummary& g) {
+    Json broken = Json::object();
+    for (const auto& [reason, frames] : g.broken) broken[reason] = frames;
+    const bool binds = g.binding_node != rt::no_node;
+    return {{"accuracy", rounded(g.accuracy)},
+            {"kept_frames", g.kept},
+            {"broken_frames", broken},
+            {"reached_min", rounded(g.reached_min)},
+            {"worst_frame", binds ? Json(g.worst_frame) : Json(nullptr)},
+            {"binding_node", binds ? Json(g.binding_node) : Json(nullptr)},
+            {"binding_name", binds ? Json(g.binding_name) : Json(nullptr)}};
+}
+
 }  // namespace
 
 std::string to_json(const WalkSummary& s) {
     Json causes = Json::object();
     for (const auto& [cause, count] : s.miss_causes) causes[cause] = count;
-    const Json json = {
+    Json json = {
         {"frames", s.frames},
         {"slots", s.slots},
         {"skipped", s.skipped},
@@ -177,6 +190,7 @@ std::string to_json(const WalkSummary& s) {
         {"input", input_of(s.input)},
         {"picture", picture_of(s.picture)},
     };
+    if (s.guarantee.accuracy > 0) json["guarantee"] = guarantee_of(s.guarantee);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

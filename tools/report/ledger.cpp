@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 72> columns = {{
+constexpr std::array<Column, 76> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -90,6 +90,10 @@ constexpr std::array<Column, 72> columns = {{
     {"input_reports", [](auto& r, auto& f) { add(r, "{}", f.input_reports); }},
     {"stopped", [](auto& r, auto& f) { add(r, "{:d}", f.stopped); }},
     {"cut_hash", [](auto& r, auto& f) { add(r, "{:016x}", f.cut_hash); }},
+    {"guaranteed_accuracy", [](auto& r, auto& f) { add(r, "{:.3f}", f.guaranteed_accuracy); }},
+    {"reached_accuracy", [](auto& r, auto& f) { add(r, "{:.3f}", f.reached_accuracy); }},
+    {"guarantee", [](auto& r, auto& f) { add(r, "{}", rt::name_of(f.guarantee)); }},
+    {"binding_node", [](auto& r, auto& f) { if (f.binding_node != rt::no_node) add(r, "{}", f.binding_node); }},
     {"snapped", [](auto& r, auto& f) { add(r, "{:d}", f.snapped); }},
     {"cost_scale", [](auto& r, auto& f) { add(r, "{:.4f}", f.cost_scale); }},
     {"x", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[0]); }},

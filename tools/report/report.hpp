@@ -98,6 +98,17 @@ constexpr double max_psnr_db = 130;
 /// Of a mean squared error of 8-bit channels; at most max_psnr_db.
 double psnr_db(double mse);
 
+/// What became of the accuracy that all frames guarantee.
+struct GuaranteeSummary {
+    double accuracy = 0;                          ///< rad^-1; 0: nothing was guaranteed, and no figure holds
+    std::uint64_t kept = 0;                       ///< frames that had it
+    std::map<std::string, std::uint64_t> broken;  ///< frames that did not, by reason
+    double reached_min = 0;                       ///< rad^-1 of the worst frame; infinite: all were exact
+    std::uint64_t worst_frame = 0;                ///< its number
+    std::uint32_t binding_node = rt::no_node;     ///< of the model: what was worst in it
+    std::string binding_name;                     ///< the node's; may be empty
+};
+
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;
@@ -111,6 +122,7 @@ struct WalkSummary {
     double cost_scale = 1;  ///< the setting
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
+    GuaranteeSummary guarantee;
     std::uint64_t rest_frames = 0, rested_frames = 0;  ///< that drew no cut; those of them that showed full detail
     std::uint32_t rest_samples = 0;                    ///< of the smoothest picture at rest
     double rest_ms = 0;  ///< longest time from the first frame of a rest until full detail was shown; 0: it never was

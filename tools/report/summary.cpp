@@ -70,6 +70,24 @@ void accuracy_figures(std::span<const FrameRecord* const> frames, WalkSummary& s
     s.accuracy_mean = counted > 0 ? sum / static_cast<double>(counted) : std::numeric_limits<double>::infinity();
 }
 
+void guarantee_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
+    s.guarantee = {};
+    if (frames.empty()) return;
+    s.guarantee.accuracy = frames.back()->guaranteed_accuracy;  // the same in all frames
+    if (!(s.guarantee.accuracy > 0)) return;
+    s.guarantee.reached_min = std::numeric_limits<double>::infinity();
+    for (const FrameRecord* f : frames) {
+        if (f->guarantee == rt::Guarantee::kept)
+            ++s.guarantee.kept;
+        else
+            ++s.guarantee.broken[std::string(rt::name_of(f->guarantee))];
+        if (!(double{f->reached_accuracy} < s.guarantee.reached_min)) continue;
+        s.guarantee.reached_min = f->reached_accuracy;
+        s.guarantee.worst_frame = f->frame;
+        s.guarantee.binding_node = f->binding_node;
+    }
+}
+
 void budget_figures(std::span<const FrameRecord* const> frames, std::int64_t period_ns, WalkSummary& s) {
     s.budget_ms = quantiles_of(frames, [](const FrameRecord& f) { return f.budget_us * 1e-3; }).p50;
     const auto used =
@@ -156,6 +174,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     clear_counts(summary);
     count_frames(frames, summary);
     accuracy_figures(frames, summary);
+    guarantee_figures(frames, summary);
     budget_figures(frames, period_ns, summary);
     unused_time(frames, summary);
     resolution_figures(frames, summary);

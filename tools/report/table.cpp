@@ -38,6 +38,14 @@ void timing_rows(LabelledText& table, const WalkSummary& s) {
         1, "");
 }
 
+std::string guarantee_words(const GuaranteeSummary& g) {
+    std::string words = fmt::format("{} /rad in {} frames", short_number(g.accuracy), g.kept);
+    for (const auto& [reason, frames] : g.broken) words += fmt::format("; not in {} ({})", frames, reason);
+    if (g.binding_node == rt::no_node) return words + "; all was exact";
+    return words + fmt::format("; worst {} /rad in frame {}: node {}{}", short_number(g.reached_min), g.worst_frame,
+                               g.binding_node, g.binding_name.empty() ? "" : fmt::format(" ({})", g.binding_name));
+}
+
 void quality_rows(LabelledText& table, const WalkSummary& s) {
     table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget in wall time", s.budget_ms,
                                     percent(s.budget_used_mean), percent(s.budget_used_p99), percent(s.budget_used_wall_mean)));
@@ -48,6 +56,7 @@ void quality_rows(LabelledText& table, const WalkSummary& s) {
     table.row("accuracy",
               fmt::format("mean {} /rad ({}), worst {} /rad ({})", short_number(s.accuracy_mean), accuracy_words(s.accuracy_mean),
                           short_number(s.accuracy_min), accuracy_words(s.accuracy_min)));
+    if (s.guarantee.accuracy > 0) table.row("guarantee", guarantee_words(s.guarantee));
     if (s.resolution_min < 1)
         table.row("resolution",
                   fmt::format("mean {}, least {} of the sides", percent(s.resolution_mean), percent(s.resolution_min)));

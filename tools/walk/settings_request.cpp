@@ -83,6 +83,8 @@ Result<void> check_request(const WalkRequest& r) {
     if (r.cost_noise > 0 && (r.clock == rt::ClockKind::real || (*backend)->draws()))
         return Error{"--cost-noise", "Only simulated costs can have noise, and these costs are real",
                      "Add --clock virtual --backend null", ErrorKind::misuse};
+    if (const auto selector = select::selector_named(r.selector); selector)
+        if (auto ok = select::can_guarantee(**selector, r.min_accuracy); !ok) return ok;
     if (!r.steering_file.empty() && r.input_file.empty())
         return Error{"--steering", "A steering file needs a device, and this walk follows its path",
                      "Add --input devices, or --input REC with a recording of a device", ErrorKind::misuse};

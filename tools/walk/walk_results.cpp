@@ -8,6 +8,7 @@
 
 #include "render/capture/capture.hpp"
 #include "rt/base/file.hpp"
+#include "rt/base/text.hpp"
 #include "tools/walk/worst_forms.hpp"
 
 namespace surefoot::walk {
@@ -45,6 +46,9 @@ void fill_summary(const WalkRequest& request, const WalkFacts& facts, const Plac
                               "Give the monitor thread more CPU time"});
     }
     report::summarize(outcome.records, period_ns, s);
+    const model::Model& model = engine.model();
+    if (s.guarantee.binding_node < model.nodes.size())
+        s.guarantee.binding_name = printable(model.name_of(model.nodes[s.guarantee.binding_node]));
 }
 
 namespace {

@@ -15,6 +15,13 @@ static_assert(rt::Corrections::states == 2 * steps, "A correction for each resol
 
 std::size_t state_of(float resolution, bool filtered) { return model::resolution_step(resolution) + (filtered ? steps : 0); }
 
+static_assert(model::none == rt::no_node);
+
+/// rad^-1; infinite where all is exact.
+float accuracy_of(float error_rad) {
+    return error_rad > model::exact_up_to_rad ? 1.0F / error_rad : std::numeric_limits<float>::infinity();
+}
+
 constexpr double max_margin_share = 0.2;  // of the mean limit: more would only draw everything coarse
 
 std::int64_t clock_now(void* context) { return static_cast<const rt::Clock*>(context)->now_ns(); }
@@ -27,9 +34,9 @@ void KeptFrame::reserve(const Engine& engine) {
 }
 
 capture::Capture capture_of(const KeptFrame& kept, const WalkRequest& request, const Engine& engine) {
-    const select::SelectInput input{&engine.model(),  &kept.prepared,           &engine.costs(),
-                                    kept.budget_us,   kept.correction.factor,   kept.target_error_rad,
-                                    request.slice_us, kept.correction.headroom, &kept.offered};
+    const select::SelectInput input{
+        &engine.model(),       &kept.prepared,   &engine.costs(),          kept.budget_us, kept.correction.factor,
+        kept.target_error_rad, request.slice_us, kept.correction.headroom, &kept.offered,  engine.options().max_error_rad};
     capture::Capture taken =
         capture::take(input, request.selector,
                       {kept.memory, kept.bought_before, engine.options().hysteresis, engine.options().reserve_share}, kept.cut);
@@ -311,8 +318,11 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.bought_items = report_.bought_items;
     record.refused_items = report_.refused_items;
     record.bought_us = static_cast<float>(report_.bought_us);
-    record.accuracy = report_.worst_error_rad > model::exact_up_to_rad ? 1.0F / report_.worst_error_rad
-                                                                       : std::numeric_limits<float>::infinity();
+    record.accuracy = accuracy_of(report_.worst_error_rad);
+    record.guaranteed_accuracy = static_cast<float>(request_.min_accuracy);
+    record.reached_accuracy = accuracy_of(report_.worst_weighted_rad);
+    record.guarantee = report_.guarantee;
+    record.binding_node = report_.worst_node;
     record.value = static_cast<float>(report_.value);
     record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);
     const double actual_us = report_.finished_us - static_cast<double>(record.stolen_ns) * 1e-3;
