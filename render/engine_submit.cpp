@@ -28,7 +28,7 @@ rt::Guarantee Engine::Impl::guarantee_of(const SubmitReport& report) const {
     if (!(options.max_error_rad > 0.0)) return rt::Guarantee::none;
     if (static_cast<double>(report.worst_weighted_rad) <= options.max_error_rad) return rt::Guarantee::kept;
     if (use_last) return rt::Guarantee::unprepared;
-    return report.downgraded_slices > 0 ? rt::Guarantee::stand_ins : cut.guarantee;
+    return cut.guarantee > rt::Guarantee::kept ? cut.guarantee : rt::Guarantee::stand_ins;
 }
 
 /// Draws what of a slice the pose really sees; returns what that was predicted to cost.

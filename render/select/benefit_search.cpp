@@ -340,9 +340,8 @@ public:
         builder.take_floor();
         guarantee_error(input, state, builder, budget);
         builder.buy_items(budget);
-        builder.take_start();
-        if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
-            return builder.finish(budget, builder.take_finest(), cut);
+        const bool finest = full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget);
+        if (finest && !builder.finest_breaks_guarantee()) return builder.finish(budget, builder.take_finest(), cut);
         builder.finish(budget, ThresholdSearch(input, state, builder, budget, key_).run(fill_), cut);
     }
 

@@ -29,6 +29,8 @@ CommonErrorCuts::CommonErrorCuts(const SelectInput& input, SelectState& state, C
       shown_(state.shown),
       share_(fresh_share(state)),
       new_factor_(state.hysteresis > 1.0F ? 1.0F / shown_error_factor : 1.0F),
+      weights_{static_cast<double>(budget.combine().submit_weight), static_cast<double>(budget.combine().raster_weight),
+               static_cast<double>(budget.combine().max_weight)},
       below_(std::span(state.scratch().below).first(input.prepared->candidates.size())),
       worst_(std::span(state.scratch().lacks).first(input.prepared->candidates.size())),
       decisions_(std::span(state.scratch().links).first(input.prepared->candidates.size())) {}
@@ -58,7 +60,7 @@ CommonErrorCuts::Found CommonErrorCuts::find(float error_rad, float new_factor) 
         }
         const bool children_suffice = worst <= error_rad;
         const bool opens = suffices == children_suffice && (suffices || worst == worst_[c])
-                               ? budget_.items_us(of_children) < budget_.items_us(best)
+                               ? weights_.of(of_children) < weights_.of(best)
                                : (suffices ? false : children_suffice || worst < worst_[c]);
         if (!opens) continue;
         decisions_[c] = SelectState::opened;
@@ -138,22 +140,34 @@ float CommonErrorCuts::coarsest_error() const {
     return worst;
 }
 
+/// Costs are weighed node by node, so another weighing may find a cheaper cut where a frame takes the larger of two sums. That is
+/// tried where the first one is near the budget.
 rt::Guarantee CommonErrorCuts::guarantee(float max_error_rad) {
+    constexpr double near = 1.3;
     if (coarsest_error() <= max_error_rad) return rt::Guarantee::kept;  // whatever is drawn
     Found found = find(max_error_rad);
     bool fits = budget_.fits(found.sum);
-    if (!fits && new_factor_ < 1.0F) {
+    const auto try_again = [&](Weights weights) {
+        if (fits) return;
+        weights_ = weights;
         found = find(max_error_rad, 1.0F);
         fits = budget_.fits(found.sum);
+    };
+    if (new_factor_ < 1.0F) try_again(weights_);
+    const model::FrameCombine& combine = budget_.combine();
+    if (combine.max_weight > 0.0F && budget_.fits(found.sum, near)) {
+        const Weights usual = weights_;
+        try_again({usual.submit + usual.larger, usual.raster, 0});
+        try_again({usual.submit, usual.raster + usual.larger, 0});
+        weights_ = usual;
     }
     if (fits) {
         builder_.start_with(decisions_, max_error_rad);
-        return found.worst_error_rad > max_error_rad ? rt::Guarantee::no_form : rt::Guarantee::kept;
-    }
-    if (budget_.fits(builder_.floor_sum()) && find_within_budget(max_error_rad)) {
+    } else if (budget_.fits(builder_.floor_sum()) && find_within_budget(max_error_rad)) {
         builder_.start_with(decisions_, find(taken_error_).worst_error_rad);  // the decisions that were taken once more
     }
-    return rt::Guarantee::over_budget;
+    if (found.worst_error_rad > max_error_rad) return rt::Guarantee::no_form;
+    return fits ? rt::Guarantee::kept : rt::Guarantee::over_budget;
 }
 
 void guarantee_error(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget) {
@@ -175,9 +189,8 @@ public:
         builder.take_floor();
         guarantee_error(input, state, builder, budget);
         builder.buy_items(budget);
-        builder.take_start();
-        if (full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget))
-            return builder.finish(budget, builder.take_finest(), cut);
+        const bool finest = full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget);
+        if (finest && !builder.finest_breaks_guarantee()) return builder.finish(budget, builder.take_finest(), cut);
         CommonErrorCuts cuts(input, state, builder, budget);
         const auto target = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : 0.0);
         const bool found = budget.fits(builder.floor_sum()) && cuts.find_within_budget(target);  // else the floor is drawn

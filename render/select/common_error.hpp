@@ -2,6 +2,7 @@
 // Source: Pasman & Jansen 2002, 3.3; page: common-error.md.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "render/select/cut_builder.hpp"
@@ -43,6 +44,13 @@ public:
     [[nodiscard]] float two_pixels_rad() const { return two_pixels_rad_; }
 
 private:
+    /// How costs are compared, node by node: as a frame's are.
+    struct Weights {
+        double submit, raster, larger;
+        [[nodiscard]] double of(const Sum& sum) const {
+            return submit * sum.submit_us + raster * sum.raster_us + larger * std::max(sum.submit_us, sum.raster_us);
+        }
+    };
     [[nodiscard]] Found find(float error_rad, float new_factor);
     [[nodiscard]] float likely_error() const;
     [[nodiscard]] float coarsest_error() const;
@@ -53,6 +61,7 @@ private:
     std::span<const Index> shown_;
     double share_;      ///< of the budget, for forms that were not shown
     float new_factor_;  ///< of the error, for forms that were not shown
+    Weights weights_;
     float taken_error_ = 0, taken_worst_ = 0;
     std::span<Sum> below_;                ///< by candidate: of the cheapest cut of its subtree
     std::span<float> worst_;              ///< by candidate: its worst error

@@ -138,14 +138,24 @@ std::span<std::uint32_t> CutBuilder::take_start() {
     return scratch_.first(items);
 }
 
+// Without recursion: trees may be chains of thousands.
 void CutBuilder::open_to_children(Index c) {
     open(c);
-    const prepare::Candidate& at = candidate(c);
-    for (Index child = at.first_child; child < at.first_child + at.child_count; ++child) {
-        if (first_choice(child) == SelectState::opened)
-            open_to_children(child);
-        else
-            choose(child, first_choice(child));
+    Index at = candidate(c).first_child;
+    while (true) {
+        if (first_choice(at) == SelectState::opened) {
+            open(at);
+            at = candidate(at).first_child;
+            continue;
+        }
+        choose(at, first_choice(at));
+        Index parent = candidate(at).parent;
+        while (at != c && at + 1 == candidate(parent).first_child + candidate(parent).child_count) {
+            at = parent;
+            parent = candidate(at).parent;
+        }
+        if (at == c) return;
+        ++at;
     }
 }
 
@@ -244,6 +254,13 @@ bool CutBuilder::finest_is_cheapest(const Budget& budget) const {
     return budget.predicted_us(full) * (1.0 + 1e-6) < budget.predicted_us(floor_);
 }
 
+bool CutBuilder::finest_breaks_guarantee() const {
+    if (guarantee_ != rt::Guarantee::kept) return false;
+    for (Index c = 0; c < chosen_.size(); ++c)
+        if (candidate(c).child_count == 0 && weighted_error(c, choices(c).back()) > guaranteed_rad_) return true;
+    return false;
+}
+
 void CutBuilder::take_root(std::uint32_t offset) {
     take_floor();  // for its cost
     std::fill(chosen_.begin(), chosen_.end(), none);
@@ -309,8 +326,8 @@ void CutBuilder::finish(Budget& budget, std::uint32_t refinements, Cut& cut) {
     cut.floor_us = std::min(static_cast<float>(budget.forms_us(floor_)), cut.predicted_us);
     cut.floor_binds = !budget.fits_us(static_cast<double>(cut.floor_us));
     cut.refinements = refinements;
-    if (guaranteed_rad_ > 0.0F) {  // what takes full detail without a search asks nobody
-        const rt::Guarantee broken = guarantee_ == rt::Guarantee::none ? rt::Guarantee::no_form : guarantee_;
+    if (guarantee_ != rt::Guarantee::none) {
+        const rt::Guarantee broken = guarantee_ > rt::Guarantee::kept ? guarantee_ : rt::Guarantee::no_form;
         cut.guarantee = cut.worst_weighted_rad <= guaranteed_rad_ ? rt::Guarantee::kept : broken;
     }
     remember(cut);

@@ -34,15 +34,22 @@ public:
     /// Starts with the root alone at choice `offset`.
     void take_root(std::uint32_t offset);
 
-    /// From now on take_start() is a cut whose items all have at most this error, and searches keep it. decisions: by candidate,
-    /// the choice or SelectState::opened of the cut of its subtree. Call it after take_floor().
+    /// From now on take_start() is a cut whose items have at most this error, but for those that have nothing better, and
+    /// searches keep it. decisions: by candidate, the choice or SelectState::opened of the cut of its subtree. Call it after
+    /// take_floor().
     void start_with(std::span<const std::uint32_t> decisions, float max_error_rad);
     /// The cut that searches start with: the floor, or that of start_with(). Returns its items, ascending, in scratch().
     std::span<std::uint32_t> take_start();
     /// Sum over the items of take_start().
     [[nodiscard]] const Sum& start_sum() const { return has_starts() ? start_ : floor_; }
+    /// Largest weighted error of take_start(), where start_with() was called.
+    [[nodiscard]] float start_worst_rad() const { return has_starts() ? starts_[0].worst_rad : 0.0F; }
+    [[nodiscard]] bool has_starts() const { return max_error_rad_ < std::numeric_limits<float>::infinity(); }
+    /// Whether full detail lacks a guarantee that another cut keeps: a leaf may be cut off by a limit, above what is in it.
+    [[nodiscard]] bool finest_breaks_guarantee() const;
     /// What the input guarantees; 0: nothing.
     [[nodiscard]] float guaranteed_rad() const { return guaranteed_rad_; }
+    [[nodiscard]] rt::Guarantee guarantee() const { return guarantee_; }
     /// Told where the guarantee is bought; finish() writes it into the cut.
     void set_guarantee(rt::Guarantee guarantee) { guarantee_ = guarantee; }
     /// No item of a search has more error than this, but for those that have nothing better. Infinity: no limit.
@@ -100,7 +107,6 @@ public:
     void finish(Budget& budget, std::uint32_t refinements, Cut& cut);
 
 private:
-    [[nodiscard]] bool has_starts() const { return max_error_rad_ < std::numeric_limits<float>::infinity(); }
     [[nodiscard]] bool switched(Index c, Index rep) const;
     void list_items(Budget& budget, Cut& cut);
     void remember(const Cut& cut);

@@ -58,7 +58,7 @@ struct SelectInput {
     double slice_us = 1000;           ///< of the shortest slices; the prediction counts as if all were so short
     double headroom = 0;              ///< headroom on corrected predictions; 0: that of the cost table
     const ItemList* items = nullptr;  ///< what else may be bought; null: nothing
-    double max_error_rad = 0;         ///< bought first: no item has more error, if the budget allows; 0: nothing is guaranteed
+    double max_error_rad = 0;         ///< bought first: no error times importance is more, if the budget allows; 0: none
 };
 
 inline double headroom_of(const SelectInput& input) {

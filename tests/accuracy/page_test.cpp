@@ -11,6 +11,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/text_pieces.hpp"
 #include "tools/accuracy/page.hpp"
+#include "tools/report/report.hpp"
 
 namespace surefoot::accuracy {
 namespace {
@@ -62,6 +63,50 @@ TEST(AccuracyPage, AndItsFiles) {
         EXPECT_EQ(svg.find("inf"), std::string::npos);
     }
     EXPECT_NE(accuracy_svg(run, false), accuracy_svg(run, true));
+}
+
+AccuracyPoint point(double ms, double accuracy, double psnr_db) {
+    AccuracyPoint p;
+    p.selector = "threshold";
+    p.frame_ms_p50 = p.frame_ms_p99 = ms;
+    p.accuracy_mean = p.accuracy_worst = accuracy;
+    p.psnr_db = psnr_db;
+    return p;
+}
+
+TEST(AccuracyPage, MarksWhatNoOtherPointBeats) {
+    constexpr double exact = std::numeric_limits<double>::infinity();
+    std::vector<AccuracyPoint> points = {point(10, 50, 30),
+                                         point(10, 60, 29),
+                                         point(20, 55, 40),
+                                         point(20, 55, 40),
+                                         point(30, exact, report::max_psnr_db),
+                                         point(40, exact, report::max_psnr_db)};
+    mark_fronts(points);
+    std::string accuracy, psnr;
+    for (const AccuracyPoint& p : points) {
+        accuracy += p.accuracy_front ? 'y' : 'n';
+        psnr += p.psnr_front ? 'y' : 'n';
+    }
+    EXPECT_EQ(accuracy, "nynnyn");
+    EXPECT_EQ(psnr, "ynyyyn") << "equal points are both on it";
+}
+
+TEST(AccuracyPage, SaysWhatOneMoreMillisecondBuys) {
+    auto run = sweep();
+    EXPECT_EQ(nlohmann::json::parse(accuracy_json(run))["one_more_ms"].size(), 0U);
+    run.rate_hz = 30;
+    run.working_ms = 29.3;
+    run.one_more_ms = {{point(29, 50, 40.25), point(30, 53, 40.5)}};
+    run.points.front().accuracy_front = run.points.front().psnr_front = true;
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(write_accuracy_page(folder / "a", run).ok());
+    const auto page = *read_text(folder / "a/index.html");
+    for (const char* part : {"30.3 ms shows instead", "50 → <b>53</b>", "40.25 → <b>40.50</b>", "class=\"front\""})
+        EXPECT_NE(page.find(part), std::string::npos) << part;
+    const auto json = nlohmann::json::parse(*read_text(folder / "a/accuracy.json"));
+    EXPECT_EQ(json["one_more_ms"][0]["more"]["accuracy_worst"], 53);
+    EXPECT_EQ(json["working_ms"], 29.3);
 }
 
 TEST(AccuracyPage, OfNoPointsDoesNotDivideByZero) {

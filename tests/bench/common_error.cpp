@@ -11,61 +11,14 @@
 #include "render/capture/capture.hpp"
 #include "rt/base/statistics.hpp"
 #include "tests/bench/bench_scene.hpp"
+#include "tests/cut_bounds.hpp"
 
 namespace {
 
 using namespace surefoot;
 
-constexpr int weighings = 8;  // of submit against raster time, for the larger of both
-
-/// The cheapest cut within an error, by weights of submit and raster time: one pass, children first.
-double cheapest_us(const prepare::PreparedFrame& frame, double error_rad, double submit_weight, double raster_weight) {
-    constexpr double none_us = std::numeric_limits<double>::infinity();
-    std::vector<double> below(frame.candidates.size());
-    for (std::size_t c = below.size(); c-- > 0;) {
-        const prepare::Candidate& at = frame.candidates[c];
-        double own = none_us, children = at.child_count > 0 ? 0 : none_us;
-        for (std::uint32_t k = 0; k < at.choice_count; ++k) {
-            const prepare::Choice& choice = frame.choices[at.first_choice + k];
-            const bool last_leaf = at.child_count == 0 && k + 1 == at.choice_count;  // nothing better is offered
-            if (static_cast<double>(choice.error_rad) > error_rad && !last_leaf) continue;
-            own = std::min(own, submit_weight * static_cast<double>(choice.cost.submit_us) +
-                                    raster_weight * static_cast<double>(choice.cost.raster_us));
-        }
-        for (std::uint32_t k = 0; k < at.child_count; ++k) children += below[at.first_child + k];
-        below[c] = std::min(own, children);
-    }
-    return below[0];
-}
-
-/// No cut whose items are all within `error_rad` is predicted to take less than this, us without correction and headroom.
-double bound_us(const capture::Capture& of, double error_rad) {
-    double bound = 0;
-    for (int i = 0; i <= weighings; ++i) {
-        const double share = static_cast<double>(i) / weighings, more = static_cast<double>(of.combine.max_weight);
-        bound = std::max(bound, cheapest_us(of.prepared, error_rad, static_cast<double>(of.combine.submit_weight) + share * more,
-                                            static_cast<double>(of.combine.raster_weight) + (1 - share) * more));
-    }
-    return bound;
-}
-
-double items_us(const capture::Capture& of, const select::Cut& cut) {
-    double submit = 0, raster = 0;
-    for (const select::CutItem& item : cut.items) {
-        submit += static_cast<double>(of.prepared.choices[item.choice].cost.submit_us);
-        raster += static_cast<double>(of.prepared.choices[item.choice].cost.raster_us);
-    }
-    return static_cast<double>(of.combine.submit_weight) * submit + static_cast<double>(of.combine.raster_weight) * raster +
-           static_cast<double>(of.combine.max_weight) * std::max(submit, raster);
-}
-
 /// 1/rad; infinite: exact.
-double worst_accuracy(const capture::Capture& of, const select::Cut& cut) {
-    double error = 0;
-    for (const select::CutItem& item : cut.items)
-        error = std::max(error, static_cast<double>(of.prepared.choices[item.choice].error_rad));
-    return 1 / error;
-}
+double worst_accuracy(const capture::Capture& of, const select::Cut& cut) { return 1 / test::worst_error(of, cut.items); }
 
 bool is_full_detail(const capture::Capture& of, const select::Cut& cut) {
     return std::all_of(cut.items.begin(), cut.items.end(), [&](const select::CutItem& item) {
@@ -77,15 +30,16 @@ bool is_full_detail(const capture::Capture& of, const select::Cut& cut) {
 /// The greatest accuracy whose bound is within what the items of the budget may take: halving, on logarithms.
 double best_accuracy(const capture::Capture& of, double room_us) {
     double fine = std::log(1e-9), coarse = std::log(1e3);
-    if (bound_us(of, 0) <= room_us) return std::numeric_limits<double>::infinity();
+    if (test::bound_us(of, 0) <= room_us) return std::numeric_limits<double>::infinity();
     for (int i = 0; i < 40; ++i) {
         const double middle = 0.5 * (fine + coarse);
-        (bound_us(of, std::exp(middle)) <= room_us ? coarse : fine) = middle;
+        (test::bound_us(of, std::exp(middle)) <= room_us ? coarse : fine) = middle;
     }
     double best = 0;  // errors are those of forms: the greatest within
-    for (const prepare::Choice& choice : of.prepared.choices)
-        if (static_cast<double>(choice.error_rad) <= std::exp(coarse))
-            best = std::max(best, static_cast<double>(choice.error_rad));
+    for (const prepare::Candidate& at : of.prepared.candidates)
+        for (std::uint32_t k = at.first_choice; k < at.first_choice + at.choice_count; ++k)
+            if (const double error = test::weighted_error(at, of.prepared.choices[k]); error <= std::exp(coarse))
+                best = std::max(best, error);
     return 1 / best;
 }
 
@@ -110,10 +64,7 @@ Result<void> measure(const char* file, Figures& figures) {
         return {};
     }
     const double reached = worst_accuracy(of, *ours);
-    // What the items may take, from a cut's prediction: it is linear in it.
-    const double ends = 1 + static_cast<double>(of.combine.submit_weight) * static_cast<double>(of.slice_end_us) / of.slice_us;
-    const double factor = of.correction * static_cast<double>(of.headroom) * ends;
-    const double room_us = items_us(of, *ours) + (of.budget_us - static_cast<double>(ours->predicted_us)) / factor;
+    const double room_us = test::room_us(of, ours->items, static_cast<double>(ours->predicted_us));
     const double best = best_accuracy(of, room_us);
     figures.of_best.push_back(reached / best);
     figures.to_two_stage.push_back(reached / worst_accuracy(of, *two_stage));

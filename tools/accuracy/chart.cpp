@@ -1,5 +1,5 @@
-// What accuracy costs in time: accuracy, SNR and SSIM against frame time, a line a selector. The chart in the
-// README.
+// What accuracy costs in time, a line a selector: accuracy, SNR and SSIM against frame time, the chart in the README; and the
+// worst place against the slowest frames, PSNR and FLIP.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,11 +28,21 @@ struct Panel {
     std::string_view title, unit;
     double (*value)(const AccuracyPoint&);
     bool log;
+    double (*time_ms)(const AccuracyPoint&) = [](const AccuracyPoint& p) { return p.frame_ms_p50; };
+    bool (*on_front)(const AccuracyPoint&) = [](const AccuracyPoint&) { return false; };
 };
 constexpr std::array<Panel, 3> panels = {{
     {"Accuracy, rad⁻¹", "", [](const AccuracyPoint& p) { return p.accuracy_mean; }, true},
     {"SNR, dB", "", [](const AccuracyPoint& p) { return p.snr_db; }, false},
     {"SSIM", "", [](const AccuracyPoint& p) { return p.ssim; }, false},
+}};
+constexpr std::array<Panel, 3> worst_case_panels = {{
+    {"Worst accuracy, rad⁻¹, against p99", "", [](const AccuracyPoint& p) { return p.accuracy_worst; }, true,
+     [](const AccuracyPoint& p) { return p.frame_ms_p99; }, [](const AccuracyPoint& p) { return p.accuracy_front; }},
+    {"PSNR, dB, against the median", "",
+     [](const AccuracyPoint& p) { return p.psnr_db < report::max_psnr_db ? p.psnr_db : std::numeric_limits<double>::infinity(); },
+     false, [](const AccuracyPoint& p) { return p.frame_ms_p50; }, [](const AccuracyPoint& p) { return p.psnr_front; }},
+    {"FLIP (less is better)", "", [](const AccuracyPoint& p) { return p.flip; }, false},
 }};
 
 /// One selector's points, in order of budget.
@@ -77,10 +87,10 @@ struct Range {
     [[nodiscard]] bool empty() const { return low > high; }
 };
 
-report::Scale time_scale(const AccuracyRun& run, const report::PlotArea& area) {
+report::Scale time_scale(const AccuracyRun& run, const Panel& panel, const report::PlotArea& area) {
     Range range;
     for (const AccuracyPoint& p : run.points)
-        if (p.frame_ms_p50 > 0) range.grow(p.frame_ms_p50);
+        if (panel.time_ms(p) > 0) range.grow(panel.time_ms(p));
     if (run.full_frame_ms > 0) range.grow(run.full_frame_ms);
     if (range.empty()) return {1, 10, area.left, area.right, true};
     return {range.low * 0.9, std::max(range.high * 1.12, range.low * 1.5), area.left, area.right, true};
@@ -99,19 +109,22 @@ report::Scale value_scale(const AccuracyRun& run, const Panel& panel, const repo
 }
 
 bool drawable(const AccuracyPoint& p, double value, const Panel& panel) {
-    return p.frame_ms_p50 > 0 && std::isfinite(value) && (!panel.log || value > 0);
+    return panel.time_ms(p) > 0 && std::isfinite(value) && (!panel.log || value > 0);
 }
 
 std::string tip_of(const AccuracyPoint& p) {
-    return fmt::format("{}, budget {} ms: frame {:.1f} ms (p90 {:.1f}), accuracy {} rad⁻¹, SNR {}, SSIM {:.3f}, {} triangles",
-                       report::escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited",
-                       p.frame_ms_p50, p.frame_ms_p90, report::short_number(p.accuracy_mean), report::decibels(p.snr_db), p.ssim,
-                       report::short_number(p.triangles));
+    return fmt::format(
+        "{}, budget {} ms: frame {:.1f} ms (p90 {:.1f}, p99 {:.1f}), accuracy {} rad⁻¹ (worst {}), SNR {}, PSNR {}, SSIM {:.3f}, "
+        "FLIP {:.4f}, {} triangles",
+        report::escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited",
+        p.frame_ms_p50, p.frame_ms_p90, p.frame_ms_p99, report::short_number(p.accuracy_mean),
+        report::short_number(p.accuracy_worst), report::decibels(p.snr_db), report::decibels(p.psnr_db), p.ssim, p.flip,
+        report::short_number(p.triangles));
 }
 
 std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, const Panel& panel,
                         const report::PlotArea& area) {
-    const report::Scale x = time_scale(run, area);
+    const report::Scale x = time_scale(run, panel, area);
     const report::Scale y = value_scale(run, panel, area);
     std::string out = report::text_at(area.left, area.top - 14, "title", panel.title);
     out += report::y_axis(area, y, panel.log ? report::log_ticks(y.from, y.to) : report::nice_ticks(y.from, y.to, 5), panel.unit);
@@ -126,7 +139,10 @@ std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, 
         for (const AccuracyPoint* p : s.points) {
             const double v = panel.value(*p);
             if (!drawable(*p, v, panel)) continue;
-            line.push_back({x(p->frame_ms_p50), y(v), false});
+            line.push_back({x(panel.time_ms(*p)), y(v), false});
+            if (panel.on_front(*p))
+                dots +=
+                    fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"7\" class=\"front\"/>", line.back().x, line.back().y);
             dots += fmt::format(
                 "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" class=\"dot\" fill=\"var(--s{})\"><title>{}</title></circle>",
                 line.back().x, line.back().y, s.published ? 2.8 : 3.8, s.colour, tip_of(*p));
@@ -163,19 +179,28 @@ std::string legend_of(const std::vector<Series>& all, double top) {
     return out;
 }
 
+std::string chart_of(const AccuracyRun& run, const std::array<Panel, 3>& three, std::string_view title,
+                     std::string_view x_title) {
+    const auto all = series_of(run);
+    std::string out = report::open_chart(chart_width, chart_height, title);
+    out += legend_of(all, 24);
+    constexpr double panel_width = chart_width / 3;
+    for (std::size_t i = 0; i < three.size(); ++i) {
+        const double left = panel_width * static_cast<double>(i);
+        out += panel_chart(run, all, three[i], {left + 52, 96, left + panel_width - 14, chart_height - 46});
+    }
+    out += report::text_at(chart_width / 2, chart_height - 8, "note mid", x_title);
+    return out + report::close_chart();
+}
+
 }  // namespace
 
 std::string accuracy_chart(const AccuracyRun& run) {
-    const auto all = series_of(run);
-    std::string out = report::open_chart(chart_width, chart_height, "What accuracy costs in time");
-    out += legend_of(all, 24);
-    constexpr double panel_width = chart_width / 3;
-    for (std::size_t i = 0; i < panels.size(); ++i) {
-        const double left = panel_width * static_cast<double>(i);
-        out += panel_chart(run, all, panels[i], {left + 52, 96, left + panel_width - 14, chart_height - 46});
-    }
-    out += report::text_at(chart_width / 2, chart_height - 8, "note mid", "median frame time, ms (logarithmic)");
-    return out + report::close_chart();
+    return chart_of(run, panels, "What accuracy costs in time", "median frame time, ms (logarithmic)");
+}
+
+std::string worst_case_chart(const AccuracyRun& run) {
+    return chart_of(run, worst_case_panels, "The worst place and the slowest frames", "frame time, ms (logarithmic)");
 }
 
 std::string accuracy_svg(const AccuracyRun& run, bool dark) { return report::stand_alone(accuracy_chart(run), dark); }

@@ -23,6 +23,7 @@ struct AccuracyRequest {
     int repeats = 3;  ///< submissions a pose and budget; the median counts
     int workers = 0, rasterisers = 0;
     double lift_m = 0;
+    double rate_hz = 30;              ///< what one more millisecond buys is measured at the budget that it allows
     double shift_x = 0, shift_y = 0;  ///< off axis, as model::Viewport has it
     std::vector<std::string> selectors = compared_selectors();
     std::vector<double> budgets_ms;  ///< empty: eight, from an eighth of the full frame's time to all of it

@@ -9,6 +9,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/cli/walk_settings.hpp"
+#include "tools/report/report.hpp"
 #include "tools/report/terminal.hpp"
 
 namespace surefoot::cli {
@@ -41,12 +42,26 @@ void print_points(const accuracy::AccuracyRun& run) {
                                         std::to_string(p.exact), text(p.snr_db, 2), text(p.ssim, 4), text(p.triangles, 0)}));
 }
 
+void print_one_more_ms(const accuracy::AccuracyRun& run) {
+    if (run.one_more_ms.empty()) return;
+    fmt::print("One more millisecond than {:.1f} ms ({:g} Hz) buys:\n", run.working_ms, run.rate_hz);
+    const auto per_rad = [](double a) { return std::isfinite(a) ? fmt::format("{:.1f}", a) : std::string("exact"); };
+    const auto decibels = [](const accuracy::AccuracyPoint& p) {
+        return p.psnr_db < report::max_psnr_db ? fmt::format("{:.2f} dB", p.psnr_db) : std::string("equal");
+    };
+    for (const accuracy::OneMoreMs& m : run.one_more_ms)
+        fmt::print("  {:<16} worst accuracy {} to {} rad^-1, mean {} to {}, PSNR {} to {}, value {:.2f} to {:.2f} %\n",
+                   m.now.selector, per_rad(m.now.accuracy_worst), per_rad(m.more.accuracy_worst), per_rad(m.now.accuracy_mean),
+                   per_rad(m.more.accuracy_mean), decibels(m.now), decibels(m.more), 100 * m.now.value, 100 * m.more.value);
+}
+
 void put_settings(const config::Settings& s, accuracy::AccuracyRequest& r) {
     r.width = s.width;
     r.height = s.height;
     r.shift_x = s.shift_x;
     r.shift_y = s.shift_y;
     r.lift_m = s.lift_m;
+    r.rate_hz = s.rate_hz;
     r.workers = s.workers;
     r.rasterisers = s.rasterisers;
 }
@@ -66,6 +81,7 @@ int run_accuracy_command(AccuracyArguments& a, const Context& context) {
         fmt::print("{}\n", accuracy::accuracy_json(*run));
     } else {
         print_points(*run);
+        print_one_more_ms(*run);
         fmt::print("page: {}/index.html\n", a.out);
     }
     return exit_success;
@@ -78,7 +94,8 @@ void add_accuracy(CLI::App& app, Context& context) {
         app, "accuracy", "Measure accuracy, SNR and SSIM against frame time over a range of budgets",
         "surefoot accuracy town.walk --path town.path.csv -o accuracy\n\n"
         "The accuracy of a point is the mean over its poses. Poses drawn exactly have no finite accuracy: they are left out\n"
-        "of the mean and counted apart. A point with only such poses is 'exact'.",
+        "of the mean and counted apart. A point with only such poses is 'exact'.\n"
+        "The page also has the worst accuracy, PSNR, FLIP, and what one more millisecond buys at the budget of --rate.",
         a->json);
     accuracy::AccuracyRequest& r = a->request;
     c->add_option("model", r.model_file, "The .walk model")->required();
@@ -99,6 +116,7 @@ void add_accuracy(CLI::App& app, Context& context) {
     c->add_option("--budget", r.budgets_ms, "Frame budgets in ms (else eight fractions of the time of a full frame)")
         ->check(number_within(0.001, 1e5, "ms"));
     add_setting(c, a->settings, "--lift", "lift_m");
+    add_setting(c, a->settings, "--rate", "rate_hz", "Frame rate at whose budget one more millisecond is bought.");
     c->add_option("--backend", r.backend, "Backend that draws: " + gl::drawing_backends())
         ->check(drawing_backend())
         ->capture_default_str();

@@ -27,6 +27,7 @@ nlohmann::ordered_json cut_json(const std::string& selector, const select::Cut& 
             {"refinements", cut.refinements},
             {"value", cut.value + cut.bought.value},
             {"bought_items", cut.bought.count},
+            {"guarantee", rt::name_of(cut.guarantee)},
             {"accuracy", cut.worst_error_rad > model::exact_up_to_rad ? nlohmann::ordered_json(1.0 / cut.worst_error_rad)
                                                                       : nlohmann::ordered_json(nullptr)}};
 }

@@ -232,6 +232,8 @@ void add_now(Exposition& e, const MonitorPage& p) {
     e.gauge("surefoot_accuracy_per_radian",
             "Accuracy that the newest frame reached: 1 / its largest angular error; +Inf where all was exact.",
             any ? double{f.last.accuracy} : unknown);
+    e.gauge("surefoot_guaranteed_accuracy_per_radian", "Accuracy that frames guarantee; 0: none.",
+            any ? double{f.last.guaranteed_accuracy} : unknown);
     e.gauge("surefoot_accuracy_least_per_radian", "Least accuracy of the last 256 frames.", any ? min_accuracy : unknown);
     e.gauge("surefoot_prepared_age_frames", "Age of the prepared set that the newest frame used; 1 is the newest possible.",
             any ? f.last.prepared_age : unknown);

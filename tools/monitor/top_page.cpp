@@ -82,11 +82,13 @@ void add_chart(const json& s, const TerminalStyle& style, std::vector<std::strin
 }
 
 std::string guarantee_line(const json& s, const TerminalStyle& style, double guaranteed) {
-    const double broken = number_at(s, "/totals/broken_guarantees");
     const std::string now = text_at(s, "/now/guarantee");
-    return fmt::format("guaranteed {} /rad: {}, {} frames without it", short_number(guaranteed),
-                       now == rt::name_of(rt::Guarantee::kept) ? inked(style, Ink::good, now) : inked(style, Ink::bad, now),
-                       grouped(broken));
+    const Ink ink = now == rt::name_of(rt::Guarantee::kept) ? Ink::good : Ink::bad;
+    const double reached = number_at(s, "/now/reached_accuracy"), node = number_at(s, "/now/binding_node");
+    return fmt::format(
+        "guaranteed {} /rad: {}, {}; {} frames without it", short_number(guaranteed), inked(style, ink, now),
+        std::isnan(reached) ? "all is exact" : fmt::format("reached {} by node {:.0f}", short_number(reached), node),
+        grouped(number_at(s, "/totals/broken_guarantees")));
 }
 
 void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {

@@ -139,6 +139,10 @@ std::string tiles(const WalkSummary& s) {
     if (s.rest_frames > 0)
         out += tile("At rest", fmt::format("{}", s.rest_frames), "frames",
                     fmt::format("{} in full detail, up to {} samples", s.rested_frames, s.rest_samples));
+    if (s.guarantee.accuracy > 0)
+        out += tile("Guaranteed accuracy", short_number(s.guarantee.accuracy), "rad⁻¹",
+                    fmt::format("kept in {} frames of {}; at worst {}", s.guarantee.kept, s.frames,
+                                std::isfinite(s.guarantee.reached_min) ? short_number(s.guarantee.reached_min) : "exact"));
     if (s.resolution_min < 1)
         out += tile("Resolution", fmt::format("{:.0f}", s.resolution_mean * 100), "%",
                     fmt::format("of the sides on average, at least {:.0f}", s.resolution_min * 100));

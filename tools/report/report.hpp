@@ -109,6 +109,11 @@ struct GuaranteeSummary {
     std::string binding_name;                     ///< the node's; may be empty
 };
 
+/// Adds a frame of the walk.
+void count_guarantee(const rt::FrameRecord& frame, GuaranteeSummary& guarantee);
+/// "100 /rad in 580 frames; not in 20 (over_budget); worst 88 /rad in frame 77: node 12 (door)".
+std::string guarantee_words(const GuaranteeSummary& guarantee);
+
 /// All that `walk --json` prints, computed once from the records. Its fields are a contract: names are added, never changed.
 struct WalkSummary {
     std::string model, path, selector, backend, renderer, machine, late_policy, clock;

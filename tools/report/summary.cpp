@@ -72,20 +72,7 @@ void accuracy_figures(std::span<const FrameRecord* const> frames, WalkSummary& s
 
 void guarantee_figures(std::span<const FrameRecord* const> frames, WalkSummary& s) {
     s.guarantee = {};
-    if (frames.empty()) return;
-    s.guarantee.accuracy = frames.back()->guaranteed_accuracy;  // the same in all frames
-    if (!(s.guarantee.accuracy > 0)) return;
-    s.guarantee.reached_min = std::numeric_limits<double>::infinity();
-    for (const FrameRecord* f : frames) {
-        if (f->guarantee == rt::Guarantee::kept)
-            ++s.guarantee.kept;
-        else
-            ++s.guarantee.broken[std::string(rt::name_of(f->guarantee))];
-        if (!(double{f->reached_accuracy} < s.guarantee.reached_min)) continue;
-        s.guarantee.reached_min = f->reached_accuracy;
-        s.guarantee.worst_frame = f->frame;
-        s.guarantee.binding_node = f->binding_node;
-    }
+    for (const FrameRecord* f : frames) count_guarantee(*f, s.guarantee);
 }
 
 void budget_figures(std::span<const FrameRecord* const> frames, std::int64_t period_ns, WalkSummary& s) {
@@ -163,6 +150,20 @@ void clear_counts(WalkSummary& s) {
 }
 
 }  // namespace
+
+void count_guarantee(const rt::FrameRecord& frame, GuaranteeSummary& guarantee) {
+    if (frame.guarantee == rt::Guarantee::none) return;
+    if (!(guarantee.accuracy > 0)) guarantee.reached_min = std::numeric_limits<double>::infinity();
+    guarantee.accuracy = frame.guaranteed_accuracy;  // the same in all frames
+    if (frame.guarantee == rt::Guarantee::kept)
+        ++guarantee.kept;
+    else
+        ++guarantee.broken[std::string(rt::name_of(frame.guarantee))];
+    if (!(double{frame.reached_accuracy} < guarantee.reached_min)) return;
+    guarantee.reached_min = frame.reached_accuracy;
+    guarantee.worst_frame = frame.frame;
+    guarantee.binding_node = frame.binding_node;
+}
 
 void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, WalkSummary& summary) {
     std::vector<const FrameRecord*> frames;

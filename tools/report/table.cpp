@@ -38,14 +38,6 @@ void timing_rows(LabelledText& table, const WalkSummary& s) {
         1, "");
 }
 
-std::string guarantee_words(const GuaranteeSummary& g) {
-    std::string words = fmt::format("{} /rad in {} frames", short_number(g.accuracy), g.kept);
-    for (const auto& [reason, frames] : g.broken) words += fmt::format("; not in {} ({})", frames, reason);
-    if (g.binding_node == rt::no_node) return words + "; all was exact";
-    return words + fmt::format("; worst {} /rad in frame {}: node {}{}", short_number(g.reached_min), g.worst_frame,
-                               g.binding_node, g.binding_name.empty() ? "" : fmt::format(" ({})", g.binding_name));
-}
-
 void quality_rows(LabelledText& table, const WalkSummary& s) {
     table.row("budget", fmt::format("{:.2f} ms a frame; used {} of the grid (p99 {}), {} of the budget in wall time", s.budget_ms,
                                     percent(s.budget_used_mean), percent(s.budget_used_p99), percent(s.budget_used_wall_mean)));
@@ -104,6 +96,14 @@ void real_time_rows(LabelledText& table, const WalkSummary& s) {
 }
 
 }  // namespace
+
+std::string guarantee_words(const GuaranteeSummary& g) {
+    std::string words = fmt::format("{} /rad in {} frames", short_number(g.accuracy), g.kept);
+    for (const auto& [reason, frames] : g.broken) words += fmt::format("; not in {} ({})", frames, reason);
+    if (g.binding_node == rt::no_node) return words + "; all was exact";
+    return words + fmt::format("; worst {} /rad in frame {}: node {}{}", short_number(g.reached_min), g.worst_frame,
+                               g.binding_node, g.binding_name.empty() ? "" : fmt::format(" ({})", g.binding_name));
+}
 
 std::string to_table(const WalkSummary& s, bool colour) {
     LabelledText table(colour);

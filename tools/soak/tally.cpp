@@ -89,6 +89,7 @@ void SoakTally::add_walk_frame(const rt::FrameRecord& r) {
     column.high_ms = std::max(column.high_ms, frame_ms);
     column.sum_ms += frame_ms;
     ++column.frames;
+    report::count_guarantee(r, guarantee_);
     const double accuracy = double{r.accuracy};
     if (std::isfinite(accuracy) && accuracy > 0) {
         accuracy_sum_ += accuracy;
@@ -129,6 +130,7 @@ void SoakTally::fill(SoakSummary& s) const {
     w.prepared_age = quantiles_of(prepared_age_, 1);
     const double frames = std::max(1.0, static_cast<double>(w.frames));
     w.accuracy_min = accuracy_min_;
+    w.guarantee = guarantee_;
     w.accuracy_mean = accuracy_frames_ > 0 ? accuracy_sum_ / static_cast<double>(accuracy_frames_) : 0;
     w.triangles_mean = triangles_sum_ / frames;
     w.triangles_max = triangles_max_;

@@ -52,6 +52,7 @@ private:
     std::vector<SoakMiss> misses_;
     std::uint64_t misses_unlisted_ = 0, skipped_ = 0, missed_ = 0, own_missed_ = 0;
     double accuracy_min_ = 0, accuracy_sum_ = 0, triangles_sum_ = 0;
+    report::GuaranteeSummary guarantee_;
     std::uint64_t accuracy_frames_ = 0, triangles_max_ = 0, downgrades_ = 0, floor_bound_ = 0, switches_ = 0;
     std::uint64_t page_faults_ = 0, driver_faults_ = 0, driver_allocations_ = 0, guard_violations_ = 0;
     // The grid.

@@ -79,6 +79,7 @@ std::string soak_table(const SoakSummary& s, bool colour) {
     table.row("accuracy", fmt::format("mean {} /rad ({}), worst {} /rad ({})", report::short_number(s.walk.accuracy_mean),
                                       report::accuracy_words(s.walk.accuracy_mean), report::short_number(s.walk.accuracy_min),
                                       report::accuracy_words(s.walk.accuracy_min)));
+    if (s.walk.guarantee.accuracy > 0) table.row("guarantee", report::guarantee_words(s.walk.guarantee));
     table.row("machine", fmt::format("{}; {:.0f} ms stolen by the host", s.machine.kernel, s.machine.steal_ms));
     if (!s.walk.uncalibrated.empty()) table.row("uncalibrated", s.walk.uncalibrated, report::Ink::warn);
     for (const rt::Lack& d : s.walk.degraded) table.row("degraded", d.text(), report::Ink::warn);

@@ -14,6 +14,7 @@
 #include "rt/frame/loop.hpp"
 #include "rt/threads/guard.hpp"
 #include "rt/threads/memory.hpp"
+#include "tools/walk/frame_share.hpp"
 #include "tools/walk/input_session.hpp"
 #include "tools/walk/path_source.hpp"
 #include "tools/walk/placing.hpp"
@@ -23,10 +24,6 @@
 #include "tools/walk/worker_places.hpp"
 
 namespace surefoot::walk {
-
-/// Share of the period by which a frame is to be done: the limit of the in-frame check, and the budget if none is set. The rest
-/// is for what the machine does late.
-constexpr double frame_share = 0.88;
 
 /// The costs with Maciel's overhead factor on all that they predict (Maciel 1994, sections 3.3.1 and 4). A user sets it by hand,
 /// for overheads that the table cannot know.
