@@ -22,7 +22,6 @@ namespace {
 
 constexpr double chart_width = 900;
 constexpr double chart_height = 420;
-constexpr std::string_view published_ending = "-1994";
 
 struct Panel {
     std::string_view title, unit;
@@ -37,12 +36,12 @@ constexpr std::array<Panel, 3> panels = {{
     {"SSIM", "", [](const AccuracyPoint& p) { return p.ssim; }, false},
 }};
 constexpr std::array<Panel, 3> worst_case_panels = {{
-    {"Worst accuracy, rad⁻¹, against p99", "", [](const AccuracyPoint& p) { return p.accuracy_worst; }, true,
+    {"Worst accuracy, rad⁻¹ (p99)", "", [](const AccuracyPoint& p) { return p.accuracy_worst; }, true,
      [](const AccuracyPoint& p) { return p.frame_ms_p99; }, [](const AccuracyPoint& p) { return p.accuracy_front; }},
-    {"PSNR, dB, against the median", "",
+    {"PSNR, dB (median)", "",
      [](const AccuracyPoint& p) { return p.psnr_db < report::max_psnr_db ? p.psnr_db : std::numeric_limits<double>::infinity(); },
      false, [](const AccuracyPoint& p) { return p.frame_ms_p50; }, [](const AccuracyPoint& p) { return p.psnr_front; }},
-    {"FLIP (less is better)", "", [](const AccuracyPoint& p) { return p.flip; }, false},
+    {"FLIP, less is better", "", [](const AccuracyPoint& p) { return p.flip; }, false},
 }};
 
 /// One selector's points, in order of budget.

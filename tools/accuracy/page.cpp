@@ -45,13 +45,14 @@ std::string one_more_ms_of(const AccuracyRun& run) {
         run.rate_hz, run.working_ms, run.working_ms + 1);
     const auto ms = [](double time_ms) { return fmt::format("{:.2f}", time_ms); };
     for (const OneMoreMs& m : run.one_more_ms)
-        out +=
-            fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                        report::escaped(m.now.selector), from_to(per_rad(m.now.accuracy_worst), per_rad(m.more.accuracy_worst)),
-                        from_to(per_rad(m.now.accuracy_mean), per_rad(m.more.accuracy_mean)),
-                        from_to(decibels_of(m.now), decibels_of(m.more)),
-                        from_to(fmt::format("{:.4f}", m.now.flip), fmt::format("{:.4f}", m.more.flip)),
-                        from_to(fmt::format("{:.2f}", 100 * m.now.value), fmt::format("{:.2f}", 100 * m.more.value)));
+        out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                           report::escaped(m.now.selector), from_to(ms(m.now.frame_ms_p50), ms(m.more.frame_ms_p50)),
+                           from_to(ms(m.now.frame_ms_p99), ms(m.more.frame_ms_p99)),
+                           from_to(per_rad(m.now.accuracy_worst), per_rad(m.more.accuracy_worst)),
+                           from_to(per_rad(m.now.accuracy_mean), per_rad(m.more.accuracy_mean)),
+                           from_to(decibels_of(m.now), decibels_of(m.more)),
+                           from_to(fmt::format("{:.4f}", m.now.flip), fmt::format("{:.4f}", m.more.flip)),
+                           from_to(fmt::format("{:.2f}", 100 * m.now.value), fmt::format("{:.2f}", 100 * m.more.value)));
     return out + "</table></div>\n";
 }
 

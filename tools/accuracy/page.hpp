@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rt/base/result.hpp"
@@ -23,6 +24,9 @@ struct AccuracyPoint {
     /// No other point shows more in the same time, or as much in less: the worst accuracy in the p99, and PSNR in the median.
     bool accuracy_front = false, psnr_front = false;
 };
+/// Selectors with the published accounting are named so.
+constexpr std::string_view published_ending = "-1994";
+
 /// What one more millisecond buys at the budget that a rate allows.
 struct OneMoreMs {
     AccuracyPoint now, more;  ///< at the budget, and at one millisecond more

@@ -29,8 +29,6 @@ double mean_snr(double sum_db, std::uint32_t finite, std::uint32_t infinite) {
     return infinite > 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
 }
 
-constexpr std::string_view published_ending = "-1994";
-
 /// One pose, its full-detail picture, and its prepared arrays.
 struct Station {
     Pose pose;
