@@ -88,8 +88,7 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         number("shift_y", "half heights", -8, 8, "Off-axis projection: offset of the image centre upwards.", &S::shift_y),
         number("budget_ms", "ms", 0, 1000, "Time that a frame may spend; 0: what the rate allows.", &S::budget_ms),
         number("accuracy", "1/rad", 0, 1e6, "Stop refining at this accuracy; 0: refine as far as the budget goes.", &S::accuracy),
-        number("min_accuracy", "1/rad", 0, 5e4, "Accuracy times importance that frames buy first; 0: none is guaranteed.",
-               &S::min_accuracy),
+        number("min_accuracy", "1/rad", 0, 5e4, "Accuracy that every frame buys first; 0: none is guaranteed.", &S::min_accuracy),
         number(
             "resolution", "%", 0, 100,
             "Share of the picture's width and height that is drawn, then enlarged, in steps of 12.5 from 50; 0: what shows most.",

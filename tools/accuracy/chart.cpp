@@ -113,8 +113,8 @@ bool drawable(const AccuracyPoint& p, double value, const Panel& panel) {
 
 std::string tip_of(const AccuracyPoint& p) {
     return fmt::format(
-        "{}, budget {} ms: frame {:.1f} ms (p90 {:.1f}, p99 {:.1f}), accuracy {} rad⁻¹ (worst {}), SNR {}, PSNR {}, SSIM {:.3f}, "
-        "FLIP {:.4f}, {} triangles",
+        "{}, budget {} ms. Frame {:.1f} ms (p90 {:.1f}, p99 {:.1f}). Accuracy {} rad⁻¹ (worst {}). SNR {}, PSNR {}, SSIM {:.3f}, "
+        "FLIP {:.4f}. {} triangles.",
         report::escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited",
         p.frame_ms_p50, p.frame_ms_p90, p.frame_ms_p99, report::short_number(p.accuracy_mean),
         report::short_number(p.accuracy_worst), report::decibels(p.snr_db), report::decibels(p.psnr_db), p.ssim, p.flip,
