@@ -23,7 +23,7 @@ void Engine::Impl::count_error(model::Index node, float error_rad, float importa
     if (weighted_rad > model::exact_up_to_rad) report.worst_node = node;
 }
 
-/// Items outside the pose's view are not drawn: so it may be kept although the cut did not.
+/// It may be kept although the cut breaks it: items outside the pose's view are not drawn.
 rt::Guarantee Engine::Impl::guarantee_of(const SubmitReport& report) const {
     if (!(options.max_error_rad > 0.0)) return rt::Guarantee::none;
     if (static_cast<double>(report.worst_weighted_rad) <= options.max_error_rad) return rt::Guarantee::kept;

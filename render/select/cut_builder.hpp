@@ -45,7 +45,7 @@ public:
     /// Largest weighted error of take_start(), where start_with() was called.
     [[nodiscard]] float start_worst_rad() const { return has_starts() ? starts_[0].worst_rad : 0.0F; }
     [[nodiscard]] bool has_starts() const { return max_error_rad_ < std::numeric_limits<float>::infinity(); }
-    /// Whether full detail lacks a guarantee that another cut keeps: a leaf may be cut off by a limit, above what is in it.
+    /// Whether full detail breaks the guarantee: where a limit cuts the tree off, a leaf may have more error than a form above.
     [[nodiscard]] bool finest_breaks_guarantee() const;
     /// What the input guarantees; 0: nothing.
     [[nodiscard]] float guaranteed_rad() const { return guaranteed_rad_; }

@@ -21,7 +21,7 @@ struct SelectorEntry {
     GoesBy goes_by = GoesBy::budget;
     bool compared = true;  ///< by `surefoot accuracy`, if no selector is named
     const Selector& (*make)() = nullptr;
-    bool guarantees = false;  ///< buys SelectInput::max_error_rad first; others heed it not at all
+    bool guarantees = false;  ///< buys SelectInput::max_error_rad first; others ignore it
 };
 
 constexpr std::string_view usual_selector = "threshold";

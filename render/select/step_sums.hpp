@@ -56,9 +56,8 @@ bool for_steps(const CutBuilder& builder, const Steps& steps, Index c, const Use
 
 /// What the walk over all steps noted of a candidate.
 constexpr std::uint32_t last_bucket = key_buckets - 1;  ///< mask: the bucket of its last step
-constexpr std::uint32_t opens_below =
-    1U << 16U;  ///< its children may be opened: the target error, and the guaranteed one, allow all its steps
-constexpr std::uint32_t refined_before = 1U << 17U;  ///< its first step was taken in the last frame
+constexpr std::uint32_t opens_below = 1U << 16U;        ///< its children may be opened: no limit of errors forbids it
+constexpr std::uint32_t refined_before = 1U << 17U;     ///< its first step was taken in the last frame
 
 /// Adds up all steps behind what the builder holds: the start, or forms that a search starts from. notes: one a candidate.
 inline void sum_steps(const CutBuilder& builder, const Steps& steps, StepSums& sums, std::span<std::uint32_t> notes) {

@@ -28,9 +28,9 @@ enum class TextureFilter : std::uint8_t { automatic, bilinear, trilinear, adapti
 /// Whether a steered eye walks: on floors and around walls, or flies through them.
 enum class WalkingMode : std::uint8_t { automatic, walk, fly };
 
-/// What became of the accuracy that a frame guarantees. none: nothing is guaranteed. Why it was not kept: over_budget: no legal
-/// cut has it within the budget. no_form: what is prepared has nothing better. stand_ins: the frame ran out of time, so the rest
-/// of its cut was drawn coarse. unprepared: no prepared set was new enough.
+/// What became of the accuracy that a frame guarantees. none: nothing is guaranteed. Why it was not kept: over_budget: no
+/// cut of it was found within the budget. no_form: what is prepared has nothing better. stand_ins: the frame ran out of time, so
+/// the rest of its cut was drawn coarse. unprepared: no prepared set was new enough.
 enum class Guarantee : std::uint8_t { none, kept, over_budget, no_form, stand_ins, unprepared };
 
 /// In the enums' order.

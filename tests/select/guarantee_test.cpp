@@ -135,7 +135,7 @@ TEST(Guarantee, IsKeptWhereverALegalCutOfItFits) {
     EXPECT_GT(broken, 150U);
 }
 
-TEST(Guarantee, ThatCannotBePaidIsComeAsNearAsTheBudgetAllows) {
+TEST(Guarantee, ThatCannotBePaidIsApproachedAsFarAsTheBudgetGoes) {
     std::size_t compared = 0;
     Random random(31);
     for (std::uint64_t seed = 0; seed < 300; ++seed) {

@@ -100,8 +100,8 @@ std::string body_of(const AccuracyRun& run) {
                        worst_case_chart(run));
     out +=
         "<p class=\"sub\">Left: the accuracy of the worst place against the time of the slowest frames (p99). <b>PSNR</b>: of "
-        "the "
-        "mean squared error over all places. <b>FLIP</b>: how different an eye finds the pictures. Rings: no other point shows "
+        "the mean squared error over all places. <b>FLIP</b>: how different an eye finds the pictures. Rings: no other point "
+        "shows "
         "more in the same time.</p>\n<h2>Figures</h2>\n<p class=\"sub\"><b>Accuracy</b> is "
         "relative to the distance: 1 / angle. <b>Error</b> is absolute: the largest geometric error in metres that is drawn, the "
         "mean over the places. <b>Value</b>: share of what full detail shows, as the selectors count it.</p>\n";
