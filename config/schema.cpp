@@ -61,7 +61,7 @@ std::vector<Entry> walker_entries() {
 }
 
 std::vector<Entry> make_entries(const Registry& selectors, const Registry& backends) {
-    std::vector<Entry> entries = {
+    return {
         file_name("model", "The .walk model, relative to this file's folder; \"\": none, so the command line must name one.",
                   &S::model_file),
         file_name("path",
@@ -127,8 +127,6 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),
         integer("worker_priority", "FIFO", 1, 98, "Priority of the workers; below the rasterisers'.", &S::worker_priority),
     };
-    std::find_if(entries.begin(), entries.end(), [](const Entry& e) { return e.key == "backend"; })->absent = backends.absent;
-    return entries;
 }
 
 }  // namespace
@@ -159,6 +157,8 @@ Schema::Schema(Registry selectors, Registry backends, std::span<const Renamed> r
       backends_(std::move(backends)),
       renamed_(renamed),
       entries_(make_entries(selectors_, backends_)) {
+    for (const auto& [key, registry] : {std::pair{"selector", &selectors_}, std::pair{"backend", &backends_}})
+        std::find_if(entries_.begin(), entries_.end(), [key](const Entry& e) { return e.key == key; })->absent = registry->absent;
     const std::vector<Entry> walker = walker_entries();
     entries_.insert(entries_.begin() + 5, walker.begin(), walker.end());  // after "steering"
     defaults_.selector = selectors_.usual;

@@ -158,7 +158,21 @@ select::SelectInput Engine::Impl::input_of(const prepare::PreparedFrame& set, do
             &costs,           budget_us,
             by.factor,        target_error_rad,
             options.slice_us, by.headroom,
-            &offered,         options.max_error_rad};
+            &offered,         options.max_error_rad,
+            options.benefit,  last_report.finished_us};
+}
+
+double Engine::Impl::gain_of_one_more_ms(const select::SelectInput& input) const {
+    const prepare::PreparedFrame& set = *input.prepared;
+    if (!by_budget || !(set.full_value > 0.0)) return 0;
+    const auto value_with = [&](double more_us) {
+        select::SelectInput longer = input;
+        longer.budget_us += more_us;
+        select::Budget budget(longer);
+        budget.spend(cut.bought.cost_us + cut.bought.prepaid_us);
+        return static_cast<double>(set.curve.value_at(static_cast<float>(budget.room_us())));
+    };
+    return std::max(0.0, value_with(1000) - value_with(0)) / set.full_value;
 }
 
 /// The price is that of full detail, since a frame that shows less has no time for it.
@@ -247,6 +261,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     const select::SelectInput input = e.input_of(prepared, budget_us, correction, target_error_rad);
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
+    e.one_more_ms = e.gain_of_one_more_ms(input);
     e.offers_used = true;
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
     e.take_filter();

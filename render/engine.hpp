@@ -36,7 +36,8 @@ struct EngineOptions {
     float resolution = 1;
     /// How long the pose must stay before the picture at rest is drawn, ms; 0: never. SubmitLimits::frame_ns is its clock.
     double rest_after_ms = 0;
-    double max_error_rad = 0;    ///< SelectInput::max_error_rad; refused for selectors that do not guarantee it
+    double max_error_rad = 0;  ///< SelectInput::max_error_rad; refused for selectors that do not guarantee it
+    select::BenefitModel benefit = select::BenefitModel::surefoot;  ///< of the 1994 selectors
     bool in_frame_check = true;  ///< checks slices against the time left; off only for comparison
 };
 
@@ -88,6 +89,9 @@ struct SubmitReport {
     model::Index worst_node = model::none;          ///< the node of worst_weighted_rad; none: all is exact
     rt::Guarantee guarantee = rt::Guarantee::none;  ///< of EngineOptions::max_error_rad: kept, or why not
     double value = 0;  ///< share of PreparedFrame::full_value that is drawn; 0: no prepared frame is; 1: nothing has value
+    /// The share that the best cut would show more, had the budget been a millisecond longer. As estimated by the prepared frame.
+    double one_more_ms = 0;
+    std::uint32_t dropped_objects = 0;  ///< select::Dropped::count
     /// The picture that was shown stays, or full detail replaces it (RestPicture). slices, predicted_us and times are of what was
     /// drawn beside it; all else describes the shown picture.
     bool at_rest = false;

@@ -56,6 +56,7 @@ struct Engine::Impl {
 
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
+    double one_more_ms GUARDED_BY(draws) = 0;
     SubmitReport last_report GUARDED_BY(draws);  ///< of the last frame that drew a cut
 
     void use(const select::SelectorEntry& entry);
@@ -82,6 +83,7 @@ struct Engine::Impl {
     };
     [[nodiscard]] select::SelectInput input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,
                                                double target_error_rad) const REQUIRES(draws);
+    [[nodiscard]] double gain_of_one_more_ms(const select::SelectInput& input) const REQUIRES(draws);
     static void count_error(model::Index node, float error_rad, float importance, SubmitReport& report);
     [[nodiscard]] rt::Guarantee guarantee_of(const SubmitReport& report) const REQUIRES(draws);
     void begin_offers() REQUIRES(draws);

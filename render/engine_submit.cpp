@@ -129,6 +129,12 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
         ++report.slices;
         if (!full) ++report.downgraded_slices;
     }
+    report.one_more_ms = one_more_ms;
+    report.dropped_objects = cut.dropped.count;
+    if (cut.dropped.count > 0) {
+        const model::Index missing = cut.dropped.node;
+        count_error(missing, cut.dropped.error_rad, model.nodes[missing].importance, report);
+    }
     report.predicted = so_far;
     report.value = prepared->full_value > 0.0F ? report.value / static_cast<double>(prepared->full_value) : 1.0;
     report.predicted_us = static_cast<double>(combine.frame_us(so_far.submit_us, so_far.raster_us) + enlarge_us()) + beside_us();

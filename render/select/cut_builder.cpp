@@ -38,6 +38,7 @@ void SelectState::reserve(const model::Model& model, std::uint32_t max_candidate
     shown.assign(model.nodes.size(), none);
     bought.clear();
     bought_before.clear();
+    size_factor = 1;
     for (std::vector<Shown>* list : {&touched, &before}) {
         list->clear();
         list->reserve(max_candidates);
@@ -63,6 +64,7 @@ void clear(Cut& cut) {
     cut.guarantee = rt::Guarantee::none;
     cut.benefit = cut.value = 0;
     cut.bought = {};
+    cut.dropped = {};
     cut.triangles = cut.hash = 0;
     cut.switches = cut.refinements = 0;
 }

@@ -16,5 +16,8 @@ extern const SelectorEntry curve_accuracy_entry;
 extern const SelectorEntry depth_first_1994_entry;
 extern const SelectorEntry best_first_1994_entry;
 extern const SelectorEntry two_stage_1994_entry;
+extern const SelectorEntry greedy_entry;
+extern const SelectorEntry static_entry;
+extern const SelectorEntry reactive_entry;
 
 }  // namespace surefoot::select

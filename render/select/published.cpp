@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/model/view.hpp"
+#include "render/select/benefit_model.hpp"
 #include "render/select/bucket_queue.hpp"
 #include "render/select/cut_builder.hpp"
 #include "render/select/entries.hpp"
@@ -22,6 +23,32 @@ std::uint32_t fixed_form(const CutBuilder& builder, Index c, float threshold_rad
 }
 
 enum class Priority { depth, own, subtree };
+
+/// Candidates, the greatest benefit first, the lowest number first among equals. For benefits that may rise down the tree.
+class CandidateHeap {
+public:
+    CandidateHeap(std::span<std::uint32_t> memory, std::span<const float> benefits) : memory_(memory), later_{benefits} {}
+    void push(float, Index c) {
+        memory_[size_++] = c;
+        std::push_heap(memory_.begin(), end(), later_);
+    }
+    Index pop() {
+        std::pop_heap(memory_.begin(), end(), later_);
+        return memory_[--size_];
+    }
+    [[nodiscard]] bool empty() const { return size_ == 0; }
+
+private:
+    struct Later {
+        std::span<const float> benefits;
+        bool operator()(Index a, Index b) const { return benefits[a] != benefits[b] ? benefits[a] < benefits[b] : a > b; }
+    };
+    [[nodiscard]] std::span<std::uint32_t>::iterator end() const { return memory_.begin() + static_cast<std::ptrdiff_t>(size_); }
+
+    std::span<std::uint32_t> memory_;
+    Later later_;
+    std::size_t size_ = 0;
+};
 
 class Published final : public Selector {
 public:
@@ -45,7 +72,7 @@ public:
         } else if (priority_ == Priority::depth) {
             refinements = depth_first(builder, budget, threshold, total);
         } else {
-            refinements = best_first(builder, state, budget, threshold, total);
+            refinements = best_first(input, builder, state, budget, threshold, total);
         }
         builder.finish(budget, refinements, cut);
     }
@@ -86,12 +113,26 @@ private:
         return refinements;
     }
     // Figures 3.15 and 3.19: the same loop, by the cluster's own benefit or by the greatest below it.
-    std::uint32_t best_first(CutBuilder& builder, SelectState& state, const Budget& budget, float threshold, Sum total) const {
-        BucketQueue queue(state.scratch().queue_heads, state.scratch().links);
+    std::uint32_t best_first(const SelectInput& input, CutBuilder& builder, SelectState& state, const Budget& budget,
+                             float threshold, Sum total) const {
+        const bool of_subtree = priority_ == Priority::subtree;
+        if (input.benefit == BenefitModel::surefoot) {
+            BucketQueue queue(state.scratch().queue_heads, state.scratch().links);
+            return best_first_by(builder, budget, threshold, total, queue, [&](Index c) {
+                const prepare::Choice& now = builder.current(c);
+                return of_subtree ? now.subtree_benefit : now.benefit;
+            });
+        }
+        const std::span<float> benefits = std::span(state.scratch().lacks).first(builder.size());
+        find_benefits(input, of_subtree, benefits);
+        CandidateHeap heap(std::span(state.scratch().links).first(builder.size()), benefits);
+        return best_first_by(builder, budget, threshold, total, heap, [&](Index c) { return benefits[c]; });
+    }
+    template <class Queue, class Benefit>
+    static std::uint32_t best_first_by(CutBuilder& builder, const Budget& budget, float threshold, Sum total, Queue& queue,
+                                       const Benefit& benefit) {
         const auto push = [&](Index c) {
-            const prepare::Choice& now = builder.current(c);
-            if (builder.candidate(c).child_count > 0)
-                queue.push(priority_ == Priority::subtree ? now.subtree_benefit : now.benefit, c);
+            if (builder.candidate(c).child_count > 0) queue.push(benefit(c), c);
         };
         std::uint32_t refinements = 0;
         push(0);

@@ -16,8 +16,32 @@ std::span<const SelectorEntry> selectors() {
     return all;
 }
 
+std::span<const SelectorEntry> dropping_selectors() {
+    static const std::array all = {greedy_entry, static_entry, reactive_entry};
+    return all;
+}
+
+std::span<const Named> refused_selectors() {
+    static const std::vector<Named> all = [] {
+        std::vector<Named> names;
+        for (const SelectorEntry& entry : dropping_selectors())
+            names.push_back({entry.name, "leaves visible objects out; only surefoot compare and surefoot accuracy try it"});
+        return names;
+    }();
+    return all;
+}
+
+namespace {
+
+const SelectorEntry* find_entry(std::string_view name) {
+    const SelectorEntry* entry = find_named(selectors(), name);
+    return entry != nullptr ? entry : find_named(dropping_selectors(), name);
+}
+
+}  // namespace
+
 Result<const SelectorEntry*> selector_named(std::string_view name) {
-    if (const SelectorEntry* entry = find_named(selectors(), name)) return entry;
+    if (const SelectorEntry* entry = find_entry(name)) return entry;
     return Error{"selector '" + std::string(name) + "'", "There is no such selector",
                  "Use one of: " + names_in_words(selectors()), ErrorKind::misuse};
 }
@@ -32,7 +56,7 @@ Result<void> can_guarantee(const SelectorEntry& selector, double max_error_rad) 
 }
 
 const Selector* find_selector(std::string_view name) {
-    const SelectorEntry* entry = find_named(selectors(), name);
+    const SelectorEntry* entry = find_entry(name);
     return entry == nullptr ? nullptr : &entry->make();
 }
 
@@ -42,6 +66,12 @@ std::span<const std::string_view> selector_names() {
         for (const SelectorEntry& entry : selectors()) out.push_back(entry.name);
         return out;
     }();
+    return names;
+}
+
+std::vector<std::string_view> compared_names() {
+    std::vector<std::string_view> names(selector_names().begin(), selector_names().end());
+    for (const SelectorEntry& entry : dropping_selectors()) names.push_back(entry.name);
     return names;
 }
 

@@ -28,7 +28,14 @@ struct CutItem {
     Index choice = 0;  ///< in PreparedFrame::choices
 };
 
-/// The chosen items, in candidate order. Legal: every visible leaf is covered exactly once.
+/// Visible objects that a cut leaves out. Only the selectors of dropping_selectors() do that.
+struct Dropped {
+    std::uint32_t count = 0;
+    Index node = none;    ///< the one whose absence shows most
+    float error_rad = 0;  ///< the angle under which it would be seen
+};
+
+/// The chosen items, in candidate order. Legal: every visible leaf is covered exactly once, or counted as dropped.
 struct Cut {
     std::vector<CutItem> items;                     ///< reserved; never grows after
     model::ItemCost sum;                            ///< over items
@@ -40,12 +47,16 @@ struct Cut {
     rt::Guarantee guarantee = rt::Guarantee::none;  ///< of max_error_rad: kept, or why not
     double benefit = 0;  ///< sum over items of 1 - benefit of the next finer step; 0..items, items: nothing is left to gain
     double value = 0;    ///< sum over items, weighted pixels; PreparedFrame::full_value: nothing is left to gain
+    Dropped dropped;
     BoughtItems bought;  ///< beside the forms; in predicted_us, not in sum and value
     std::uint64_t triangles = 0;
     std::uint32_t switches = 0;     ///< representations that differ from the previous frame's
     std::uint64_t hash = 0;         ///< of (node, rep) in order
     std::uint32_t refinements = 0;  ///< steps taken
 };
+
+/// What a cluster's benefit is in the published searches; benefit_model.hpp names them.
+enum class BenefitModel : std::uint8_t { surefoot, distance_centre, distance_vertex, distance_point, subtree_max };
 
 /// All that a selection depends on, besides SelectState.
 struct SelectInput {
@@ -59,6 +70,8 @@ struct SelectInput {
     double headroom = 0;              ///< headroom on corrected predictions; 0: that of the cost table
     const ItemList* items = nullptr;  ///< what else may be bought; null: nothing
     double max_error_rad = 0;         ///< bought first: no error times importance is more, if the budget allows; 0: none
+    BenefitModel benefit = BenefitModel::surefoot;  ///< of the 1994 searches; others go by their own
+    double last_frame_us = 0;                       ///< how long the last frame took; 0: unknown. For `reactive`
 };
 
 inline double headroom_of(const SelectInput& input) {
@@ -83,6 +96,7 @@ struct SelectState {
     /// With hysteresis: share of the budget that steps of the last frame alone may use, 0..1. The rest of the frame's budget
     /// serves all steps.
     float reserve_share = 0.03F;
+    double size_factor = 1;  ///< of `reactive`: on its size threshold
 
     struct Scratch;  ///< private to the searches
     SelectState();

@@ -85,6 +85,7 @@ std::span<std::uint32_t> find_units(const SelectInput& input, const CutTree& tre
     if (tree.size() > 0) room[--bottom] = 0;
     while (bottom < room.size()) {
         const Index c = room[bottom++];
+        if (!tree.in_cut(c)) continue;  // dropped
         if (tree.is_item(c) || tree.below_us(c) <= slice_us) {
             distance_m[c] = static_cast<float>(input.model->nodes[tree.candidate(c).node].box.distance(eye));
             room[units++] = c;
@@ -108,6 +109,7 @@ void append_unit(const CutTree& tree, Index unit, std::span<std::uint32_t> stack
     stack[top++] = unit;
     while (top > 0) {
         const Index c = stack[--top];
+        if (!tree.in_cut(c)) continue;
         if (tree.is_item(c)) {
             plan.order.push_back(tree.item(c));
             slice.cost += tree.choice(tree.item(c)).cost;
@@ -119,6 +121,7 @@ void append_unit(const CutTree& tree, Index unit, std::span<std::uint32_t> stack
     stack[top++] = unit;
     while (top > 0) {
         const Index c = stack[--top];
+        if (!tree.in_cut(c)) continue;
         const prepare::Candidate& candidate = tree.candidate(c);
         if (!tree.is_item(c) && candidate.floor_open) {  // the children are no dearer than the node, but for rounding
             for (Index k = candidate.child_count; k-- > 0;) stack[top++] = candidate.first_child + k;

@@ -75,11 +75,13 @@ struct FrameRecord {
     float reached_accuracy = 0;     ///< as accuracy, of errors times importance
     Guarantee guarantee = Guarantee::none;
     std::uint32_t binding_node = no_node;  ///< of the model: the node of reached_accuracy; no_node: all is exact
-    float value = 0;            ///< share of full detail's value that is drawn, 0..1, without blur; 0: not known, no set was used
-    float floor_share = 0;      ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones
-    bool floor_frame = false;   ///< over half of the picture fell to floor forms, although the cut before would have fitted
-    float resolution = 1;       ///< share of the picture's sides at which it was drawn
-    std::uint32_t samples = 1;  ///< of a pixel
+    float value = 0;        ///< share of full detail's value that is drawn, 0..1, without blur; 0: not known, no set was used
+    float one_more_ms = 0;  ///< share of full detail's value that one more millisecond would have shown, as estimated
+    std::uint32_t dropped_objects = 0;  ///< visible ones that were left out; only by selectors that are for comparison
+    float floor_share = 0;       ///< of the picture, as estimated: what shows the cheapest forms of nodes that have finer ones
+    bool floor_frame = false;    ///< over half of the picture fell to floor forms, although the cut before would have fitted
+    float resolution = 1;        ///< share of the picture's sides at which it was drawn
+    std::uint32_t samples = 1;   ///< of a pixel
     bool other_samples = false;  ///< the driver lacks the requested number
     TextureFilter filter = TextureFilter::bilinear;
     bool missed = false, own_miss = false, floor_binds = false, control = false, snapped = false;

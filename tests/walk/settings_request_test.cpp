@@ -73,6 +73,17 @@ TEST(SettingsRequest, TheSchemaHoldsWhatTheRegistriesHold) {
     EXPECT_EQ((*gl::backend_named(WalkRequest().backend))->kind, EngineOptions().device.kind);
 }
 
+TEST(SettingsRequest, SelectorsThatLeaveObjectsOutAreRefusedByName) {
+    for (const select::SelectorEntry& entry : select::dropping_selectors()) {
+        config::Configuration c(settings_schema());
+        const auto loaded = config::load_text(c, "selector = \"" + std::string(entry.name) + "\"\n", "s.toml");
+        ASSERT_FALSE(loaded.ok());
+        EXPECT_NE(loaded.error().what.find("leaves visible objects out"), std::string::npos) << loaded.error().what;
+        EXPECT_EQ(loaded.error().remedy.find(entry.name), std::string::npos) << "it is not offered";
+        EXPECT_TRUE(select::selector_named(entry.name).ok()) << "commands that compare know it";
+    }
+}
+
 TEST(SettingsRequest, ABackendOfAnotherVersionIsRefusedByName) {
     config::Configuration c(settings_schema());
     const auto loaded = config::load_text(c, "backend = \"kms\"\n", "s.toml");

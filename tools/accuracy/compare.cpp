@@ -59,6 +59,7 @@ ComparedSelector medians(const std::string& selector, const Summaries& rounds) {
         c.misses += s.misses;
         c.coarse_frames += s.coarse_frames;
         c.floor_frames += s.floor_frames;
+        c.dropped_per_frame += s.dropped_per_frame / static_cast<double>(rounds.size());
     }
     return c;
 }
@@ -177,7 +178,8 @@ std::string compare_json(const Comparison& c) {
                              {"frames", s.frames},
                              {"misses", s.misses},
                              {"coarse_frames", s.coarse_frames},
-                             {"floor_frames", s.floor_frames}});
+                             {"floor_frames", s.floor_frames},
+                             {"dropped_per_frame", rounded(s.dropped_per_frame)}});
     const Json json = {{"model", c.model},
                        {"path", c.path},
                        {"renderer", c.renderer},
@@ -239,6 +241,9 @@ std::string compare_table(const Comparison& c) {
                            text(s.switches_per_frame, 2), value_text(c, s), std::to_string(s.frames), std::to_string(s.misses),
                            std::to_string(s.coarse_frames), std::to_string(s.floor_frames)}) +
                "\n";
+    for (const ComparedSelector& s : c.selectors)
+        if (s.dropped_per_frame > 0)
+            out += fmt::format("{}: leaves out {:.1f} visible objects a frame\n", s.selector, s.dropped_per_frame);
     if (c.value.frames > 0)
         out += fmt::format(
             "value: {} frames off line; the greatest is proven for {}; bounds are {:.2f} % above the best in the mean\n",

@@ -37,6 +37,7 @@ struct ComparedSelector {
     double popped_share = 0, pop_psnr_db = 0;    ///< of one pose by a frame's cut and by the cut before it
     double frame_ms_p50 = 0, frame_ms_p99 = 0, unused_ms = 0, switches_per_frame = 0;
     std::uint64_t frames = 0, misses = 0, coarse_frames = 0, floor_frames = 0;  ///< sums
+    double dropped_per_frame = 0;                                               ///< visible objects that were left out
     bool goes_by_budget = true;                                                 ///< else no share of a budget's value is stated
     ValueShare value;                                                           ///< of the frames in Comparison::value
 };

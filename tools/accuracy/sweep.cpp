@@ -151,6 +151,7 @@ Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, mode
     options.prepare.workers =
         request.workers > 0 ? request.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     options.in_frame_check = false;
+    options.benefit = request.benefit;
     options.hysteresis = 1;  // places are apart: none remembers another
     std::string note;
     const std::string state = walk::state_directory(request.state_dir);

@@ -6,6 +6,7 @@
 
 #include "render/gl/backends.hpp"
 #include "render/model/view.hpp"
+#include "render/select/select.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
 #include "tools/accuracy/page.hpp"
@@ -26,6 +27,7 @@ struct AccuracyRequest {
     double rate_hz = 30;              ///< what one more millisecond buys is measured at the budget that it allows
     double shift_x = 0, shift_y = 0;  ///< off axis, as model::Viewport has it
     std::vector<std::string> selectors = compared_selectors();
+    select::BenefitModel benefit = select::BenefitModel::surefoot;  ///< of the 1994 selectors
     std::vector<double> budgets_ms;  ///< empty: eight, from an eighth of the full frame's time to all of it
 
     [[nodiscard]] model::Viewport viewport() const { return {width, height, shift_x, shift_y}; }

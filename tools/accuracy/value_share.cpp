@@ -100,6 +100,7 @@ Result<ValueShares> value_shares(const model::Model& model, const model::CostMod
             preparer.run(region, request.viewport, i, speed_mps, 2.0 * std::acos(w) / request.period_s, frame);
         if (frame.candidates.empty()) continue;
         select::SelectInput input{&model, &frame, &costs, request.budget_us, 1.0, 0.0, request.slice_us};
+        input.benefit = request.benefit;
         if (!(request.budget_us > 0.0)) input.budget_us = request.share_of_full * full_detail_us(input);
         add_frame(input, request.limits, shares);
     }
@@ -122,6 +123,7 @@ Result<ValueShares> value_shares_of_walk(const walk::WalkRequest& walk, ShareReq
     request.viewport = {walk.width, walk.height, walk.shift_x, walk.shift_y};
     request.period_s = 1.0 / walk.rate_hz;
     request.slice_us = walk.slice_us;
+    request.benefit = walk.benefit;
     request.sky = config::colour_of(walk.sky);
     request.workers = std::max(1, walk.workers);
     return value_shares(*model, *costs, path->path, request, progress);

@@ -43,6 +43,7 @@ struct ShareRequest {
     double share_of_full = 0.5;  ///< of the predicted time of the frame's full detail
     double period_s = 1.0 / 30;  ///< from one pose to the next
     double slice_us = 1000;
+    select::BenefitModel benefit = select::BenefitModel::surefoot;
     int workers = 1;
     std::array<float, 3> sky = model::usual_sky;
     model::Viewport viewport;

@@ -66,10 +66,19 @@ void put_settings(const config::Settings& s, accuracy::AccuracyRequest& r) {
     r.rasterisers = s.rasterisers;
 }
 
+Result<void> check_selectors(const accuracy::AccuracyRequest& request) {
+    for (const std::string& name : request.selectors)
+        if (const auto entry = select::selector_named(name); entry && (*entry)->follows_time)
+            return Error{"--selector " + name, "This selector follows the time of the frame before, and single places have none",
+                         "Use surefoot compare, which walks", ErrorKind::misuse};
+    return check_benefit(request.benefit, request.selectors);
+}
+
 int run_accuracy_command(AccuracyArguments& a, const Context& context) {
     const auto read = read_settings(*a.settings);
     if (!read) return misuse(read.error());
     put_settings(read->values, a.request);
+    if (auto ok = check_selectors(a.request); !ok) return misuse(ok.error());
     gl::prepare_process(a.request.rasterisers);
     if (auto ok = accuracy::probe_accuracy_page(a.out); !ok) return fail(ok.error());
     auto run = accuracy::run_accuracy(a.request, terminal_progress(context));
@@ -111,8 +120,9 @@ void add_accuracy(CLI::App& app, Context& context) {
         ->check(whole_number_within(1, 100))
         ->capture_default_str();
     c->add_option("--selector", r.selectors, "Selectors to compare")
-        ->check(one_of(select::selector_names()))
+        ->check(one_of(select::compared_names()))
         ->capture_default_str();
+    add_benefit(c, r.benefit);
     c->add_option("--budget", r.budgets_ms, "Frame budgets in ms (else eight fractions of the time of a full frame)")
         ->check(number_within(0.001, 1e5, "ms"));
     add_setting(c, a->settings, "--lift", "lift_m");

@@ -86,6 +86,7 @@ Result<walk::WalkRequest> walk_with(const CompareArguments& a, const std::string
 Result<void> fill_request(CompareArguments& a) {
     if (a.request.walk.frames > 0 && a.request.walk.seconds > 0)
         return Error{"--seconds", "--seconds and --frames both set the length", "Remove one of them", ErrorKind::misuse};
+    if (auto ok = check_benefit(a.request.walk.benefit, a.request.selectors); !ok) return ok;
     auto base = walk_with(a, {});
     if (!base) return base.error();
     if (!a.with.empty()) a.request.settings.push_back({"as set", *base});
@@ -136,8 +137,9 @@ void add_compare(CLI::App& app, Context& context) {
     c->add_option("model", r.model_file, "The .walk model")->required();
     c->add_option("--path", r.path_file, "CSV file of poses over time (else MODEL.path.csv, else a tour)");
     c->add_option("--selector", a->request.selectors, "Selectors to compare")
-        ->check(one_of(select::selector_names()))
+        ->check(one_of(select::compared_names()))
         ->capture_default_str();
+    add_benefit(c, a->request.walk.benefit);
     c->add_option("--with", a->with,
                   "Compare settings, not selectors: one walk as it is set, and one with each KEY=VALUE, or KEY=VALUE,KEY=VALUE. "
                   "Keys are those of surefoot config")

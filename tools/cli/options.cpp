@@ -10,6 +10,7 @@
 #include "config/values.hpp"
 #include "render/gl/backends.hpp"
 #include "rt/base/text.hpp"
+#include "tools/accuracy/page.hpp"
 #include "tools/walk/settings_request.hpp"
 
 namespace surefoot::cli {
@@ -61,6 +62,32 @@ CLI::Validator drawing_backend() {
                 return refused_value(text, why, "one of " + gl::drawing_backends()).text();
             },
             ""};
+}
+
+void add_benefit(CLI::App* command, select::BenefitModel& model) {
+    std::string help = "Benefit of a cluster for best-first-1994 and two-stage-1994. ";
+    std::vector<std::string_view> names;
+    for (const select::BenefitModelEntry& entry : select::benefit_models()) {
+        help += fmt::format("{}{}: {}", names.empty() ? "" : "; ", entry.name, entry.help);
+        names.push_back(entry.name);
+    }
+    command
+        ->add_option_function<std::string>(
+            "--benefit",
+            [&model](const std::string& name) {
+                if (const auto named = select::benefit_model_named(name)) model = *named;
+            },
+            help + " [" + std::string(select::usual_benefit_model) + "]")
+        ->check(one_of(names));
+}
+
+Result<void> check_benefit(select::BenefitModel model, std::span<const std::string> selectors) {
+    const auto goes_by_it = [](const std::string& name) {
+        return name.ends_with(accuracy::published_ending) && !name.starts_with("depth-first");
+    };
+    if (model == select::BenefitModel::surefoot || std::any_of(selectors.begin(), selectors.end(), goes_by_it)) return {};
+    return Error{"--benefit", "None of the compared selectors goes by a benefit that can be chosen",
+                 "Add --selector best-first-1994 two-stage-1994", ErrorKind::misuse};
 }
 
 CLI::Validator names_something() {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "config/settings.hpp"
+#include "render/select/benefit_model.hpp"
 #include "rt/base/result.hpp"
 
 namespace surefoot::cli {
@@ -25,6 +26,10 @@ CLI::Validator whole_number_within(std::uint64_t min, std::uint64_t max);
 CLI::Validator one_of(std::span<const std::string_view> words);
 /// A backend of this version that draws pictures.
 CLI::Validator drawing_backend();
+/// --benefit: the benefit by which the 1994 selectors go.
+void add_benefit(CLI::App* command, select::BenefitModel& model);
+/// An error where a benefit is chosen, and none of the selectors goes by it.
+Result<void> check_benefit(select::BenefitModel model, std::span<const std::string> selectors);
 /// Any text but the empty one: an empty variable of a script is no wish for no output.
 CLI::Validator names_something();
 

@@ -194,6 +194,8 @@ std::string status_json(const MonitorPage& p) {
                 {"reached_accuracy", f.frames > 0 ? known(double{f.last.reached_accuracy}) : ordered_json(nullptr)},
                 {"guarantee", std::string(rt::name_of(f.last.guarantee))},
                 {"binding_node", f.last.binding_node != rt::no_node ? ordered_json(f.last.binding_node) : ordered_json(nullptr)},
+                {"value", f.last.value > 0 ? known(double{f.last.value}) : ordered_json(nullptr)},
+                {"one_more_ms_value", f.last.value > 0 ? known(double{f.last.one_more_ms}) : ordered_json(nullptr)},
                 {"exact", f.frames > 0 && std::isinf(f.last.accuracy)},
                 {"budget_ms", f.frames > 0 ? known(double{f.last.budget_us} * 1e-3) : ordered_json(nullptr)},
                 {"resolution", f.frames > 0 ? known(double{f.last.resolution}) : ordered_json(nullptr)},

@@ -109,6 +109,7 @@ void add_recent(const json& s, const TerminalStyle& style, std::vector<std::stri
                                          : fmt::format("  accuracy {} /rad, min {}; {} triangles now", short_number(accuracy),
                                                        short_number(number_at(s, "/recent/accuracy/min")),
                                                        grouped(number_at(s, "/now/triangles"))));
+    if (const std::string value = value_text(s); !value.empty()) lines.push_back("  value: " + value);
 }
 
 void add_input(const json& s, const TerminalStyle& style, std::vector<std::string>& lines) {

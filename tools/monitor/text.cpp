@@ -81,6 +81,14 @@ std::string duration(double seconds) {
 
 std::string mebibytes(double bytes) { return std::isfinite(bytes) ? fmt::format("{:.0f} MiB", bytes / 1048576.0) : "-"; }
 
+std::string value_text(const nlohmann::json& status) {
+    const double value = number_at(status, "/now/value"), more = number_at(status, "/now/one_more_ms_value");
+    if (std::isnan(value)) return {};
+    std::string text = fmt::format("{:.2f} % of full detail", 100 * value);
+    if (more > 0) text += fmt::format(", one more millisecond would add {:.2f} %", 100 * more);
+    return text;
+}
+
 std::string causes_text(const json& causes) {
     std::string text;
     if (!causes.is_object()) return text;

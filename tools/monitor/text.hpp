@@ -31,6 +31,8 @@ std::string short_number(double value);
 std::string duration(double seconds);
 std::string mebibytes(double bytes);
 
+/// "98.2 % of full detail, one more millisecond would add 0.4 %"; empty where no prepared set was used.
+std::string value_text(const nlohmann::json& status);
 /// "raster 2, stolen 1"; empty where there are none.
 std::string causes_text(const nlohmann::json& causes);
 

@@ -107,6 +107,7 @@ void add_gauges(const json& s, const TerminalStyle& style, std::vector<std::stri
                                          : fmt::format("accuracy {} /rad, least {}, {} triangles", short_number(accuracy),
                                                        short_number(number_at(s, "/recent/accuracy/min")),
                                                        grouped(number_at(s, "/now/triangles"))));
+    if (const std::string value = value_text(s); !value.empty()) lines.push_back("value    " + value);
     if (const double guaranteed = number_at(s, "/now/guaranteed_accuracy"); guaranteed > 0)
         lines.push_back(guarantee_line(s, style, guaranteed));
     if (flag_at(s, "/now/at_rest"))

@@ -26,7 +26,7 @@ void add(fmt::memory_buffer& row, fmt::format_string<Args...> format, Args&&... 
 }
 
 // clang-format off
-constexpr std::array<Column, 76> columns = {{
+constexpr std::array<Column, 78> columns = {{
     {"frame", [](auto& r, auto& f) { add(r, "{}", f.frame); }},
     {"slot", [](auto& r, auto& f) { add(r, "{}", f.slot); }},
     {"due_ns", [](auto& r, auto& f) { add(r, "{}", f.due_ns); }},
@@ -94,6 +94,8 @@ constexpr std::array<Column, 76> columns = {{
     {"reached_accuracy", [](auto& r, auto& f) { add(r, "{:.3f}", f.reached_accuracy); }},
     {"guarantee", [](auto& r, auto& f) { add(r, "{}", rt::name_of(f.guarantee)); }},
     {"binding_node", [](auto& r, auto& f) { if (f.binding_node != rt::no_node) add(r, "{}", f.binding_node); }},
+    {"one_more_ms", [](auto& r, auto& f) { add(r, "{:.5f}", f.one_more_ms); }},
+    {"dropped_objects", [](auto& r, auto& f) { add(r, "{}", f.dropped_objects); }},
     {"snapped", [](auto& r, auto& f) { add(r, "{:d}", f.snapped); }},
     {"cost_scale", [](auto& r, auto& f) { add(r, "{:.4f}", f.cost_scale); }},
     {"x", [](auto& r, auto& f) { add(r, "{:.4f}", f.eye[0]); }},

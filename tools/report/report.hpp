@@ -127,6 +127,7 @@ struct WalkSummary {
     double cost_scale = 1;  ///< the setting
     double budget_ms = 0, budget_used_mean = 0, budget_used_p99 = 0, budget_used_wall_mean = 0;
     double accuracy_min = 0, accuracy_mean = 0, triangles_mean = 0, switches_per_frame = 0;
+    double dropped_per_frame = 0;  ///< visible objects that were left out; only by selectors that are for comparison
     GuaranteeSummary guarantee;
     std::uint64_t rest_frames = 0, rested_frames = 0;  ///< that drew no cut; those of them that showed full detail
     std::uint32_t rest_samples = 0;                    ///< of the smoothest picture at rest

@@ -193,6 +193,7 @@ void summarize(std::span<const FrameRecord> records, std::int64_t period_ns, Wal
     summary.visits = quantiles_of(frames, [](const FrameRecord& f) { return double(f.visits); });
     summary.hidden = quantiles_of(frames, [](const FrameRecord& f) { return double(f.hidden); });
     summary.triangles_mean = quantiles_of(frames, [](const FrameRecord& f) { return static_cast<double>(f.triangles); }).mean;
+    summary.dropped_per_frame = quantiles_of(frames, [](const FrameRecord& f) { return double(f.dropped_objects); }).mean;
     summary.switches_per_frame = quantiles_of(frames, [](const FrameRecord& f) { return double(f.switches); }).mean;
 }
 

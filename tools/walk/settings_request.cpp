@@ -56,7 +56,7 @@ Result<void> check_real_time(const WalkRequest& r) {
 WalkRequest::WalkRequest() : config::Settings(settings_schema().defaults()) {}
 
 const config::Schema& settings_schema() {
-    static const config::Schema schema({named(select::selectors()), select::usual_selector},
+    static const config::Schema schema({named(select::selectors()), select::usual_selector, named(select::refused_selectors())},
                                        {named(gl::backends()), gl::usual_backend, named(gl::absent_backends())});
     return schema;
 }

@@ -13,6 +13,7 @@
 #include "config/settings.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
+#include "render/select/select.hpp"
 #include "rt/frame/record.hpp"
 #include "tools/report/report.hpp"
 
@@ -42,6 +43,7 @@ struct WalkRequest : config::Settings {
     bool keep_records = true;  ///< false: records go only to the observer, and no outputs are made of them
     bool endless = false;      ///< until progress.stop: records go only to the observer and are not kept, so there are no outputs
     double cost_noise = 0;     ///< relative, seeded (virtual clock)
+    select::BenefitModel benefit = select::BenefitModel::surefoot;  ///< of the 1994 selectors
     bool correct_costs = true;  ///< online correction of predictions; false: frozen at 1
     std::uint32_t control_pairs = 90;
     double control_block_s = 2.0;

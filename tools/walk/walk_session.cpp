@@ -88,6 +88,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.resolution = r.resolution_pct == 0 && !may_choose ? 1.0F : static_cast<float>(r.resolution_pct * 0.01);
     options.max_error_rad = r.min_accuracy > 0 ? 1.0 / r.min_accuracy : 0;
     options.in_frame_check = r.in_frame_check;
+    options.benefit = r.benefit;
     options.rest_after_ms = r.rest_after_ms;
     return options;
 }

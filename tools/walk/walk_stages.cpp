@@ -324,6 +324,8 @@ void WalkStages::account(rt::FrameRecord& record) {
     record.guarantee = report_.guarantee;
     record.binding_node = report_.worst_node;
     record.value = static_cast<float>(report_.value);
+    record.one_more_ms = static_cast<float>(report_.one_more_ms);
+    record.dropped_objects = report_.dropped_objects;
     record.predicted_us = static_cast<float>(report_.predicted_us * record.correction);
     const double actual_us = report_.finished_us - static_cast<double>(record.stolen_ns) * 1e-3;
     record.actual_us = static_cast<float>(actual_us);
