@@ -159,7 +159,7 @@ select::SelectInput Engine::Impl::input_of(const prepare::PreparedFrame& set, do
             by.factor,        target_error_rad,
             options.slice_us, by.headroom,
             &offered,         options.max_error_rad,
-            options.benefit,  last_report.finished_us};
+            options.benefit,  last_frame_us()};
 }
 
 double Engine::Impl::gain_of_one_more_ms(const select::SelectInput& input) const {

@@ -83,6 +83,10 @@ struct Engine::Impl {
     };
     [[nodiscard]] select::SelectInput input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,
                                                double target_error_rad) const REQUIRES(draws);
+    /// How long the last frame took; on a clock that does not run within frames, as it was predicted.
+    [[nodiscard]] double last_frame_us() const REQUIRES(draws) {
+        return last_report.finished_us > 0 ? last_report.finished_us : last_report.predicted_us * correction.factor;
+    }
     [[nodiscard]] double gain_of_one_more_ms(const select::SelectInput& input) const REQUIRES(draws);
     static void count_error(model::Index node, float error_rad, float importance, SubmitReport& report);
     [[nodiscard]] rt::Guarantee guarantee_of(const SubmitReport& report) const REQUIRES(draws);

@@ -89,6 +89,10 @@ ChainOptions chain_options(const BakeOptions& options, model::Index proxy) {
     ChainOptions chain;
     chain.slack = options.quality == Quality::full ? 0.1F : 0.3F;
     chain.ratio = options.quality == Quality::full ? 0.6 : 0.45;
+    if (options.level_ratio > 0) {
+        chain.ratio = options.level_ratio;
+        chain.slack = std::min(chain.slack, static_cast<float>(1.0 - options.level_ratio));
+    }
     chain.proxy_material = proxy;
     return chain;
 }
@@ -168,7 +172,7 @@ bool BakeContext::make_forms() {
             stand_ins_of(scene, static_cast<importer::Index>(m), model, geometry, notes[m]);
         const CutLimits limits =
             cut_limits({std::max({extent.x, extent.y, extent.z}), stretch[m], std::uint64_t{placements[m]} * geometry.triangles(),
-                        has_pictures(geometry, chain), max_triangles(options), !stand_ins.empty()});
+                        has_pictures(geometry, chain), max_triangles(options), !stand_ins.empty() || options.whole_objects});
         by_mesh[m] = bake::make_forms(std::move(geometry), limits, chain, stand_ins, &notes[m]);
         if (!stage.step()) go = false;
     });

@@ -17,6 +17,8 @@ enum class Quality { draft, full };
 /// Settings of a bake.
 struct BakeOptions {
     Quality quality = Quality::draft;
+    double level_ratio = 0;                        ///< of triangles, from a level to the next coarser; 0: by the quality
+    bool whole_objects = false;                    ///< objects are cut for too many triangles alone, not for their length
     int workers = 0;                               ///< 0: all cores
     double frame_us = 33333;                       ///< the frame of the 1/16 rule, at 30 Hz
     const model::CostModel* costs = nullptr;       ///< calibrated; null: default_costs()

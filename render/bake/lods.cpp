@@ -13,6 +13,7 @@
 #include "render/bake/geometry.hpp"
 #include "render/bake/mesh_surface.hpp"
 #include "render/bake/picture_shift.hpp"
+#include "render/bake/round_shapes.hpp"
 #include "render/measure/mesh_distance.hpp"
 
 namespace surefoot::bake {
@@ -296,8 +297,9 @@ bool may_lose_pictures(const Level& level, const ChainOptions& options, double d
 }
 
 /// Drops levels that are hardly better than the next coarser one: such a step costs time and shows nothing. Keeps full detail.
-void drop_little_gains(std::vector<Level>& levels) {
-    constexpr float gain = 0.9F;
+/// Where levels are to be close together, all are kept that are better at all.
+void drop_little_gains(std::vector<Level>& levels, double ratio) {
+    const float gain = ratio > 0.8 ? 0.999F : 0.9F;
     std::vector<Level> kept;
     for (Level& level : levels)
         if (kept.empty() || level.error_m <= gain * kept.back().error_m) kept.push_back(std::move(level));
@@ -342,7 +344,7 @@ std::optional<Level> next_level(ChainWork& work) {
     const double ratio = work.options.ratio, before = work.levels.back().triangles;
     const auto propose = [&](Step step) { return simplify(work.full, work.own_vertices, work.thinned, work.parts, ratio, step); };
     const double wanted = before * expected_share(work.thinned, work.parts, ratio);
-    const double max_triangles = 0.8 * before;  // above this it is no level of its own
+    const double max_triangles = std::max(0.8, (1.0 + ratio) / 2) * before;  // above this it is no level of its own
     const auto is_level = [&](const Level& level) { return level.triangles > 0 && level.triangles <= max_triangles; };
     Level next = propose(Step::fixed_borders);
     if (work.options.is_piece && is_level(next)) return next;
@@ -420,11 +422,9 @@ void colour_coarse_levels(ChainWork& work) {
     }
 }
 
-}  // namespace
-
-LodChain make_chain(Geometry full, const ChainOptions& options) {
-    ChainWork work(full, options);
-    while (work.levels.back().triangles > options.smallest) {
+/// Levels by collapsed edges, each of the one before.
+void collapse_levels(ChainWork& work) {
+    while (work.levels.back().triangles > work.options.smallest) {
         std::optional<Level> next = next_level(work);
         if (!next) break;
         work.parts = next->parts;
@@ -434,10 +434,23 @@ LodChain make_chain(Geometry full, const ChainOptions& options) {
     }
     add_box_level(work);
     colour_coarse_levels(work);
+}
+
+}  // namespace
+
+LodChain make_chain(Geometry full, const ChainOptions& options) {
+    std::vector<Level> round = round_levels(full, options);
     LodChain chain;
-    chain.levels = std::move(work.levels);
+    if (round.empty()) {
+        ChainWork work(full, options);
+        collapse_levels(work);
+        chain.levels = std::move(work.levels);
+    } else {
+        chain.levels = {{full.parts, static_cast<std::uint32_t>(full.triangles()), 0}};
+        std::move(round.begin(), round.end(), std::back_inserter(chain.levels));
+    }
     std::reverse(chain.levels.begin(), chain.levels.end());
-    drop_little_gains(chain.levels);
+    drop_little_gains(chain.levels, options.ratio);
     chain.full = std::move(full);
     return chain;
 }

@@ -29,7 +29,7 @@ Resources value(const CurvePart& part, double accuracy) {
     return r;
 }
 
-CurvePart constant(double from, const Resources& takes) { return {from, takes, {}}; }
+CurvePart constant(double from, const Resources& takes, double raised = 1) { return {from, takes, {}, raised}; }
 
 double after(double accuracy) { return std::nextafter(accuracy, infinite); }
 
@@ -41,11 +41,11 @@ bool same_line(const CurvePart& a, const CurvePart& b) {
 /// The line that a curve follows from `from` on, its ends extended to both sides.
 CurvePart line_at(const Curve& curve, double from) {
     const auto parts = curve.parts();
-    if (from > curve.end()) return constant(from, value(parts.back(), curve.end()));
-    if (from < parts[0].from) return constant(from, value(parts[0], parts[0].from));
+    if (from > curve.end()) return constant(from, value(parts.back(), curve.end()), parts.back().raised);
+    if (from < parts[0].from) return constant(from, value(parts[0], parts[0].from), parts[0].raised);
     const auto next = std::upper_bound(parts.begin(), parts.end(), from,
                                        [](double accuracy, const CurvePart& part) { return accuracy < part.from; });
-    return {from, (next - 1)->base, (next - 1)->slope};
+    return {from, (next - 1)->base, (next - 1)->slope, (next - 1)->raised};
 }
 
 /// Where the lines of either curve begin or end, ascending, each once.
@@ -68,39 +68,56 @@ private:
     std::size_t count_ = 0;
 };
 
-/// The part that takes no less than two neighbours on [first.from, to]: it ends where the second does. As little more as a line
-/// can: in each resource, from the hull of the two parts' ends.
-CurvePart merged(const CurvePart& first, const CurvePart& second, double to) {
-    CurvePart part;
-    part.from = first.from;
-    const double x0 = first.from, x1 = second.from;
-    const Resources begins = value(first, x0), before = value(first, x1), joint = value(second, x1);
-    const Resources ends = value(second, to);
+/// Two neighbours that may become one: from first.from to `to`, where the next part begins or the curve ends.
+struct Pair {
+    const CurvePart &first, &second;
+    double to;
+    const CurvePart* next;  ///< null: the second ends the curve
+};
+
+/// A part that takes no less than either on its range. In each resource the line goes along the chord of both, or through the
+/// higher of the two where they meet. `early`: as steep there as the next part's beginning and the first one's allow; else as the
+/// second ends.
+CurvePart merged(const Pair& pair, bool early) {
+    CurvePart part = constant(pair.first.from, {});
+    const double x0 = pair.first.from, x1 = pair.second.from, x2 = pair.to;
+    const Resources begins = value(pair.first, x0), before = value(pair.first, x1), joint = value(pair.second, x1);
+    const Resources ends = value(pair.second, x2), after = pair.next != nullptr ? value(*pair.next, x2) : ends;
     for (const auto axis : axes) {
         const double y0 = begins.*axis, y1 = std::max(before.*axis, joint.*axis), y2 = ends.*axis;
-        if (!std::isfinite(to) || !(to > x1)) {
+        if (!std::isfinite(x2) || !(x2 > x1)) {
             part.base.*axis = std::max({y0, y1, y2});
             continue;
         }
-        const double chord = (y2 - y0) / (to - x0), late = (y2 - y1) / (to - x1);
-        const double slope = y0 + chord * (x1 - x0) >= y1 ? chord : late;
+        const double low = (y2 - y1) / (x2 - x1), high = (y1 - y0) / (x1 - x0);
+        if (low > high) {
+            const double chord = (y2 - y0) / (x2 - x0);
+            part.slope.*axis = chord;
+            part.base.*axis = y2 - chord * x2;
+            continue;
+        }
+        const double slope = early ? std::clamp((after.*axis - y1) / (x2 - x1), low, high) : low;
         part.slope.*axis = slope;
-        part.base.*axis = y2 - slope * to;
+        part.base.*axis = y1 - slope * x1;
     }
     return part;
 }
 
-/// How many times as much a merged part takes at the worse end of its range. Infinite: it may not replace the two.
-double growth(const CurvePart& part, const CurvePart& first, const CurvePart& second, double to, bool last,
-              const Resources& weights) {
-    if (!last && weighed(part.slope, weights) < 0) return infinite;
-    double most = 1;
-    for (const auto& [accuracy, whole] : {std::pair{first.from, &first}, std::pair{second.from, &second}}) {
-        const double was = weighed(value(*whole, accuracy), weights), is = weighed(value(part, accuracy), weights);
-        most = std::max(most, is / std::max(was, std::numeric_limits<double>::min()));
-    }
-    const double was = weighed(value(second, to), weights), is = weighed(value(part, to), weights);
-    return std::max(most, is / std::max(was, std::numeric_limits<double>::min()));
+/// CurvePart::raised of a merged part. Infinite: it may not replace the two, because the curve would fall.
+double raised_by(const CurvePart& part, const Pair& pair, const Resources& weights) {
+    if (weighed(part.slope, weights) < 0) return infinite;
+    const double ends = weighed(value(part, pair.to), weights);
+    if (pair.next != nullptr && ends > weighed(value(*pair.next, pair.to), weights) * (1 + 1e-13)) return infinite;
+    double most = std::max(pair.first.raised, pair.second.raised);
+    const auto compare = [&](const CurvePart& whole, double accuracy) {
+        const double was = weighed(value(whole, accuracy), weights), is = weighed(value(part, accuracy), weights);
+        most = std::max(most, whole.raised * is / std::max(was, std::numeric_limits<double>::min()));
+    };
+    compare(pair.first, pair.first.from);
+    compare(pair.first, pair.second.from);
+    compare(pair.second, pair.second.from);
+    compare(pair.second, pair.to);
+    return most;
 }
 
 }  // namespace
@@ -116,7 +133,7 @@ Curve Curve::of_form(double accuracy, const Resources& takes) {
 
 Curve Curve::of_line(double from, double to, const Resources& base, const Resources& slope) {
     Curve curve;
-    const CurvePart part{from, base, slope};
+    const CurvePart part{from, base, slope, 1};
     if (!(from > 0) || !(to >= from) || !std::isfinite(to) || !is_amount(slope) || !is_amount(value(part, from)) ||
         !is_amount(value(part, to)))
         return curve;
@@ -153,7 +170,7 @@ CurveParts CurveParts::sum(const Curve& a, const Curve& b) {
     const Breaks breaks(a, b);
     for (const double from : breaks.all()) {
         const CurvePart one = line_at(a, from), other = line_at(b, from);
-        out.add({from, one.base + other.base, one.slope + other.slope});
+        out.add({from, one.base + other.base, one.slope + other.slope, std::max(one.raised, other.raised)});
     }
     return out;
 }
@@ -192,32 +209,68 @@ CurveParts CurveParts::cheaper(const Curve& a, const Curve& b, const Resources& 
 Curve CurveParts::compacted(const Resources& weights) const {
     std::array<CurvePart, capacity> parts = parts_;
     std::size_t count = count_;
-    const auto to_of = [&](std::size_t i) { return i + 1 < count ? parts[i + 1].from : end_; };
     while (count > Curve::max_parts) {
-        std::size_t best = count - 2;
-        CurvePart best_part{};
-        double best_growth = infinite;
+        std::size_t at = 0;
+        CurvePart best;
+        double least = infinite;
+        const auto offer = [&](std::size_t i, CurvePart part, const Pair& pair, double preference) {
+            part.raised = raised_by(part, pair, weights);
+            if (!(part.raised * preference < least)) return;
+            at = i;
+            best = part;
+            least = part.raised * preference;
+        };
+        constexpr double sloped = 0.97;  // a line joins the next part with less loss than a step
         for (std::size_t i = 0; i + 1 < count; ++i) {
             const bool last = i + 2 == count;
-            const double to = to_of(i + 1);
-            CurvePart part = merged(parts[i], parts[i + 1], to);
-            if (last && weighed(part.slope, weights) < 0) part = merged(parts[i], parts[i + 1], infinite);
-            const double grows = growth(part, parts[i], parts[i + 1], to, last, weights);
-            if (grows < best_growth || (last && !std::isfinite(best_growth))) {
-                best = i;
-                best_part = part;
-                best_growth = grows;
-            }
+            const Pair pair{parts[i], parts[i + 1], last ? end_ : parts[i + 2].from, last ? nullptr : &parts[i + 2]};
+            offer(i, merged(pair, false), pair, 1);
+            offer(i, merged(pair, true), pair, sloped);
+            // Always allowed, and seldom good: what the curve's end takes, from here on.
+            if (last) offer(i, merged({parts[i], parts[i + 1], infinite, nullptr}, false), pair, 1);
         }
-        parts[best] = best_part;
-        std::copy(parts.begin() + static_cast<std::ptrdiff_t>(best) + 2, parts.begin() + static_cast<std::ptrdiff_t>(count),
-                  parts.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+        parts[at] = best;
+        std::copy(parts.begin() + static_cast<std::ptrdiff_t>(at) + 2, parts.begin() + static_cast<std::ptrdiff_t>(count),
+                  parts.begin() + static_cast<std::ptrdiff_t>(at) + 1);
         --count;
     }
     Curve curve;
     std::copy_n(parts.begin(), count, curve.parts_.begin());
     curve.count_ = count;
     curve.end_ = end_;
+    return curve;
+}
+
+CurveParts CurveParts::of_forms(std::span<const CurvePoint> forms, const Resources& weights) {
+    std::array<const CurvePoint*, max_forms> used{};  // from the finest: those that take less than all finer ones
+    std::size_t count = 0;
+    for (std::size_t i = forms.size(); i-- > 0;) {
+        if (count > 0 && !(weighed(forms[i].takes, weights) < weighed(used[count - 1]->takes, weights))) continue;
+        if (count > 0 && used[count - 1]->accuracy == forms[i].accuracy) --count;  // the same, and cheaper
+        used[count++] = &forms[i];
+    }
+    CurveParts out;
+    double from = count > 0 ? Curve::of_form(used[count - 1]->accuracy, {}).begin() : 0;
+    for (std::size_t i = count; i-- > 0;) {
+        out.add(constant(from, used[i]->takes));
+        from = after(used[i]->accuracy);
+        out.end_ = used[i]->accuracy;
+    }
+    return out;
+}
+
+Curve curve_of_forms(std::span<const CurvePoint> forms, const Resources& weights) {
+    std::vector<CurvePoint> known;
+    for (const CurvePoint& form : forms)
+        if (Curve::of_form(form.accuracy, form.takes).known()) known.push_back(form);
+    std::stable_sort(known.begin(), known.end(),
+                     [](const CurvePoint& a, const CurvePoint& b) { return a.accuracy < b.accuracy; });
+    Curve curve;
+    const std::span all(known);
+    for (std::size_t first = 0; first < all.size(); first += CurveParts::max_forms) {
+        const auto some = all.subspan(first, std::min(CurveParts::max_forms, all.size() - first));
+        curve = cheaper_of(curve, CurveParts::of_forms(some, weights).compacted(weights), weights);
+    }
     return curve;
 }
 

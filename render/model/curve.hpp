@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace surefoot::model {
 
@@ -14,10 +15,12 @@ struct Resources {
     double submit_us = 0, raster_us = 0, triangles = 0, texels = 0;
 };
 
-/// From the accuracy `from` up to the next part: base + slope * accuracy.
+/// From the accuracy `from` up to the next part: base + slope * accuracy. What merging has made of it is at most `raised` times
+/// what is needed, by the weights.
 struct CurvePart {
     double from = 0;
     Resources base, slope;
+    double raised = 1;
 };
 
 /// The accuracies of a curve go from its first part's `from` to `end`, that included; infinite: exact. A smaller accuracy takes
@@ -49,6 +52,12 @@ private:
     double end_ = 0;
 };
 
+/// A form of an object: what it takes for its accuracy.
+struct CurvePoint {
+    double accuracy = 0;  ///< infinite: exact
+    Resources takes;
+};
+
 /// An operation's result before it is cut down to a Curve: exact, with more parts. On the stack; allocates nothing.
 class CurveParts {
 public:
@@ -57,9 +66,14 @@ public:
     /// Of an object with two forms: what takes less, by `weights`. No form serves above its end. The other, where one is unknown.
     static CurveParts cheaper(const Curve& a, const Curve& b, const Resources& weights);
 
+    /// Of at most `max_forms` forms, ascending by accuracy, each known.
+    static CurveParts of_forms(std::span<const CurvePoint> forms, const Resources& weights);
+    static constexpr std::size_t max_forms = 6 * Curve::max_parts;
+
     [[nodiscard]] std::span<const CurvePart> parts() const { return std::span(parts_).first(count_); }
     [[nodiscard]] double end() const { return end_; }
-    /// At most Curve::max_parts parts. Neighbours are merged into one that takes no less anywhere: no promise grows.
+    /// At most Curve::max_parts parts. Neighbours are merged into one that takes no less anywhere: no promise grows. Those go
+    /// first whose merged part is raised least, with what earlier merging has raised.
     [[nodiscard]] Curve compacted(const Resources& weights) const;
 
 private:
@@ -70,6 +84,10 @@ private:
     std::size_t count_ = 0;
     double end_ = 0;
 };
+
+/// Of an object with these forms, in any order; unknown ones are left out. Nearer to them than cheaper_of() one by one, which
+/// merges without knowing the next.
+Curve curve_of_forms(std::span<const CurvePoint> forms, const Resources& weights);
 
 /// sum() and cheaper(), compacted.
 Curve sum_of(const Curve& a, const Curve& b, const Resources& weights);

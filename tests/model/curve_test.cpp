@@ -166,6 +166,62 @@ TEST(Curve, LinesCrossWhereTheyTakeTheSame) {
     EXPECT_DOUBLE_EQ(both.scaled(0.5).at(40).submit_us, 50) << "the same at half the accuracy";
 }
 
+TEST(Curve, ALongStaircaseStaysNearWhatItTakes) {
+    Curve curve;
+    for (int level = 0; level < 80; ++level) {  // a twentieth more each: about a line
+        const double takes = std::floor(12 * std::pow(1.05, level));
+        curve = cheaper_of(curve, Curve::of_form(0.34 * takes + 3, {0, 0, takes, 0}), {0, 0, 1, 0});
+    }
+    EXPECT_EQ(curve.parts().size(), Curve::max_parts);
+    double most = 1;
+    for (int level = 0; level < 80; ++level) {
+        const double takes = std::floor(12 * std::pow(1.05, level));
+        most = std::max(most, curve.at(0.34 * takes + 3).triangles / takes);
+    }
+    EXPECT_LT(most, 1.35);
+    std::vector<CurvePoint> forms;
+    for (int level = 80; level-- > 0;) {
+        const double takes = std::floor(12 * std::pow(1.05, level));
+        forms.push_back({0.34 * takes + 3, {0, 0, takes, 0}});
+        forms.push_back({0.3 * takes, {0, 0, 1.5 * takes, 0}});  // never the cheaper one
+    }
+    const Curve at_once = curve_of_forms(forms, {0, 0, 1, 0});
+    EXPECT_EQ(at_once.parts().size(), Curve::max_parts);
+    double most_at_once = 1;
+    for (std::size_t i = 0; i < forms.size(); i += 2) {
+        const double takes = forms[i].takes.triangles;
+        most_at_once = std::max(most_at_once, at_once.at(forms[i].accuracy).triangles / takes);
+        EXPECT_GE(at_once.at(forms[i].accuracy).triangles, takes * (1 - 1e-12));
+    }
+    EXPECT_LT(most_at_once, 1.1) << "of " << most << " one by one";
+}
+
+TEST(Curve, OfManyFormsIsTheCheapestOfThem) {
+    Random random(31);
+    for (int run = 0; run < 300; ++run) {
+        std::vector<CurvePoint> forms;
+        const int count = run < 200 ? 14 : 250;
+        for (int i = 0; i < count; ++i)
+            forms.push_back({random.range(0, 1) < 0.1 ? infinity : std::exp(random.range(-2, 8)), random_amount(random, 100)});
+        if (run % 7 == 0) forms.push_back({std::nan(""), {}});
+        const Curve curve = curve_of_forms(forms, usual_weights);
+        for (int i = 0; i < 60; ++i) {
+            const double accuracy = i < count ? forms[static_cast<std::size_t>(i)].accuracy : std::exp(random.range(-3, 9));
+            double least = infinity;
+            for (const CurvePoint& form : forms)
+                if (form.accuracy >= accuracy) least = std::min(least, weighed(form.takes, usual_weights));
+            if (std::isinf(least)) continue;
+            const double takes = weighed(curve.at(accuracy), usual_weights);
+            if (count < 20) {
+                ASSERT_NEAR(takes, least, 1e-12 * least) << "run " << run << " at " << accuracy;
+            } else {
+                ASSERT_GE(takes, least * (1 - 1e-12)) << "run " << run << " at " << accuracy;
+            }
+        }
+    }
+    EXPECT_FALSE(curve_of_forms({}, usual_weights).known());
+}
+
 TEST(Curve, SaysWhichAccuracyARoomBuys) {
     const Curve line = Curve::of_line(10, 100, {0, 20, 0, 0}, {1, 0, 0, 0});
     const Curve exact = cheaper_of(line, Curve::of_form(infinity, {300, 20, 0, 0}), {1, 1, 0, 0});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -121,6 +122,7 @@ Result<Comparison> compare_selectors(const CompareRequest& request, const RunWal
                                      const Progress& progress) {
     const std::vector<NamedWalk> walks = walks_of(request);
     std::vector<Summaries> rounds(walks.size());
+    std::vector<std::vector<report::PictureFigures>> pictures(walks.size());
     const auto count = static_cast<double>(walks.size() * request.rounds);
     double number = 0;
     for (std::uint32_t round = 0; round < request.rounds; ++round) {
@@ -135,6 +137,7 @@ Result<Comparison> compare_selectors(const CompareRequest& request, const RunWal
                 return Error{one.model_file, "The walk is too short: no frame was compared", "Walk longer with --seconds",
                              ErrorKind::misuse};
             rounds[i].push_back(std::move(outcome->summary));
+            if (round == 0) pictures[i] = std::move(outcome->pictures);
         }
     }
     Comparison c;
@@ -151,11 +154,49 @@ Result<Comparison> compare_selectors(const CompareRequest& request, const RunWal
     c.rounds = request.rounds;
     c.pictures = first.picture.frames;
     for (std::size_t i = 0; i < rounds.size(); ++i) c.selectors.push_back(medians(walks[i].name, rounds[i]));
+    for (std::size_t i = 0; i < rounds.size(); ++i) c.selectors[i].pictures = std::move(pictures[i]);
+    c.in_triangles = request.in_triangles;
     c.of_settings = !request.settings.empty();
     if (c.of_settings) return c;
     if (auto shared = add_shares(find_shares, progress, c); !shared) return shared.error();
     return c;
 }
+
+namespace {
+
+/// Over the compared pictures.
+struct TriangleFigures {
+    std::uint64_t min = std::numeric_limits<std::uint64_t>::max(), max = 0;
+    double snr_min_db = std::numeric_limits<double>::infinity(), snr_max_db = -snr_min_db;
+};
+
+TriangleFigures triangle_figures(const ComparedSelector& s) {
+    TriangleFigures figures;
+    for (const report::PictureFigures& p : s.pictures) {
+        figures.min = std::min(figures.min, p.triangles);
+        figures.max = std::max(figures.max, p.triangles);
+        if (!std::isfinite(p.snr_db)) continue;
+        figures.snr_min_db = std::min(figures.snr_min_db, p.snr_db);
+        figures.snr_max_db = std::max(figures.snr_max_db, p.snr_db);
+    }
+    return figures;
+}
+
+nlohmann::ordered_json triangles_json(const ComparedSelector& s) {
+    if (s.pictures.empty()) return nullptr;
+    const TriangleFigures figures = triangle_figures(s);
+    return {{"min", figures.min},
+            {"max", figures.max},
+            {"snr_db", {{"min", report::rounded(figures.snr_min_db)}, {"max", report::rounded(figures.snr_max_db)}}}};
+}
+
+std::string triangles_line(const ComparedSelector& s) {
+    const TriangleFigures figures = triangle_figures(s);
+    return fmt::format("{}: {} to {} triangles a picture, SNR {:.1f} to {:.1f} dB\n", s.selector, figures.min, figures.max,
+                       figures.snr_min_db, figures.snr_max_db);
+}
+
+}  // namespace
 
 std::string compare_json(const Comparison& c) {
     using report::rounded;
@@ -179,7 +220,8 @@ std::string compare_json(const Comparison& c) {
                              {"misses", s.misses},
                              {"coarse_frames", s.coarse_frames},
                              {"floor_frames", s.floor_frames},
-                             {"dropped_per_frame", rounded(s.dropped_per_frame)}});
+                             {"dropped_per_frame", rounded(s.dropped_per_frame)},
+                             {"triangles", triangles_json(s)}});
     const Json json = {{"model", c.model},
                        {"path", c.path},
                        {"renderer", c.renderer},
@@ -188,7 +230,8 @@ std::string compare_json(const Comparison& c) {
                        {"width", c.width},
                        {"height", c.height},
                        {"rate_hz", rounded(c.rate_hz)},
-                       {"budget_ms", rounded(c.budget_ms)},
+                       {"budget_ms", c.in_triangles ? Json(nullptr) : rounded(c.budget_ms)},
+                       {"budget_triangles", c.in_triangles ? Json(std::floor(c.budget_ms * 1e3)) : Json(nullptr)},
                        {"rounds", c.rounds},
                        {"pictures", c.pictures},
                        {"value_frames",
@@ -201,9 +244,10 @@ std::string compare_json(const Comparison& c) {
 }
 
 std::string compare_table(const Comparison& c) {
-    std::string out =
-        fmt::format("{}, {}x{} at {:.4g} Hz, budget {:.1f} ms: {} pictures of a walk, {} {}\n", c.model, c.width, c.height,
-                    c.rate_hz, c.budget_ms, c.pictures, c.rounds, c.rounds == 1 ? "round" : "rounds, medians");
+    std::string out = fmt::format(
+        "{}, {}x{} at {:.4g} Hz, budget {}: {} pictures of a walk, {} {}\n", c.model, c.width, c.height, c.rate_hz,
+        c.in_triangles ? fmt::format("{:.0f} triangles", std::floor(c.budget_ms * 1e3)) : fmt::format("{:.1f} ms", c.budget_ms),
+        c.pictures, c.rounds, c.rounds == 1 ? "round" : "rounds, medians");
     const auto text = [](double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); };
     const auto accuracy = [&](double value) { return std::isfinite(value) ? text(value, 1) : "exact"; };
     std::size_t name_columns = 18;
@@ -241,6 +285,8 @@ std::string compare_table(const Comparison& c) {
                            text(s.switches_per_frame, 2), value_text(c, s), std::to_string(s.frames), std::to_string(s.misses),
                            std::to_string(s.coarse_frames), std::to_string(s.floor_frames)}) +
                "\n";
+    for (const ComparedSelector& s : c.selectors)
+        if (c.in_triangles && !s.pictures.empty()) out += triangles_line(s);
     for (const ComparedSelector& s : c.selectors)
         if (s.dropped_per_frame > 0)
             out += fmt::format("{}: leaves out {:.1f} visible objects a frame\n", s.selector, s.dropped_per_frame);

@@ -25,6 +25,7 @@ struct CompareRequest {
     std::vector<std::string> selectors;  ///< names of the registry; at least one
     std::vector<NamedWalk> settings;     ///< not empty: these are compared, and no selectors
     std::uint32_t rounds = 1;            ///< all walk in turns, so often
+    bool in_triangles = false;           ///< the budget is of triangles: triangle_costs() are the walk's
 };
 
 /// Medians over the rounds, and sums where said.
@@ -37,6 +38,7 @@ struct ComparedSelector {
     double popped_share = 0, pop_psnr_db = 0;    ///< of one pose by a frame's cut and by the cut before it
     double frame_ms_p50 = 0, frame_ms_p99 = 0, unused_ms = 0, switches_per_frame = 0;
     std::uint64_t frames = 0, misses = 0, coarse_frames = 0, floor_frames = 0;  ///< sums
+    std::vector<report::PictureFigures> pictures;                               ///< of the first round
     double dropped_per_frame = 0;                                               ///< visible objects that were left out
     bool goes_by_budget = true;                                                 ///< else no share of a budget's value is stated
     ValueShare value;                                                           ///< of the frames in Comparison::value
@@ -47,10 +49,19 @@ struct Comparison {
     std::string model, path, renderer, machine, uncalibrated;
     std::uint32_t width = 0, height = 0, rounds = 0, pictures = 0;
     double rate_hz = 0, budget_ms = 0;
+    bool in_triangles = false;                ///< CompareRequest::in_triangles
     bool of_settings = false;                 ///< CompareRequest::settings were compared
     ValueShares value;                        ///< frames 0: not compared, or none had anything to choose
     std::vector<ComparedSelector> selectors;  ///< in the order of the request
 };
+
+/// Costs of one us a triangle, and nothing else: a budget of us is one of triangles.
+model::CostModel triangle_costs();
+/// The time that a walk with these costs may spend on as many triangles.
+double triangle_budget_ms(double triangles);
+/// Lets a walk spend triangles in place of time: by these costs, on the virtual clock, without correction, headroom or
+/// hysteresis.
+void spend_triangles(walk::WalkRequest& request);
 
 /// How a walk is run: walk::run_walk, or a test's stand-in.
 using RunWalk = std::function<Result<walk::WalkOutcome>(const walk::WalkRequest&, const Progress&)>;
@@ -68,5 +79,9 @@ Result<Comparison> compare_selectors(const CompareRequest& request, const RunWal
 std::string compare_json(const Comparison& comparison);
 /// At most 100 columns; after a line that says what was walked, a line a selector of the pictures, then one of the frames.
 std::string compare_table(const Comparison& comparison);
+
+/// DIR/index.html: triangles, accuracy and SNR picture by picture, a chart each; and DIR/pictures.csv.
+Result<void> probe_compare_page(const std::string& dir);
+Result<void> write_compare_page(const std::string& dir, const Comparison& comparison);
 
 }  // namespace surefoot::accuracy

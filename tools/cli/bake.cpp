@@ -24,8 +24,9 @@ namespace {
 struct BakeArguments {
     std::vector<std::string> in;
     std::string out, quality = "draft", state;
+    double level_ratio = 0;
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
-    bool allow_incomplete = false, json = false;
+    bool allow_incomplete = false, whole_objects = false, json = false;
 };
 
 constexpr std::array<std::string_view, 2> qualities = {"draft", "full"};
@@ -102,6 +103,8 @@ int run_bake(const BakeArguments& a, const Context& context) {
     if (!a.allow_incomplete && !scene->damage.empty()) return end_progress(context), fail(incomplete(scene->damage));
     bake::BakeOptions options;
     options.quality = a.quality == "full" ? bake::Quality::full : bake::Quality::draft;
+    options.whole_objects = a.whole_objects;
+    options.level_ratio = a.level_ratio * 0.01;
     options.workers = settings->values.workers;
     options.frame_us = 1e6 / settings->values.rate_hz;
     options.costs = &*costs;
@@ -149,6 +152,13 @@ void add_bake(CLI::App& app, Context& context) {
     c->add_option("--quality", a->quality, "draft: at most one minute per million triangles; full: tighter error bounds")
         ->check(one_of(qualities))
         ->capture_default_str();
+    c->add_option(
+         "--level-ratio", a->level_ratio,
+         "Triangles of a level in % of the next finer one's, 30 to 97: more levels, and a longer bake. Default: 45, or 60 "
+         "with --quality full")
+        ->check(number_within(30, 97, "%"));
+    c->add_flag("--whole-objects", a->whole_objects,
+                "Cut an object into pieces only if it has too many triangles for one frame, and not because it is long");
     add_setting(c, a->settings, "--workers", "workers", "Threads; 0: one per core. The result does not depend on it.");
     add_setting(c, a->settings, "--rate", "rate_hz", "Frame rate; no item of the model may cost more than 1/16 of a frame.");
     c->add_flag("--allow-incomplete", a->allow_incomplete,

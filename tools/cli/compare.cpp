@@ -19,9 +19,12 @@ namespace surefoot::cli {
 
 namespace {
 
+constexpr std::array<std::string_view, 2> resources = {"time", "triangles"};
+
 struct CompareArguments {
     accuracy::CompareRequest request;
     std::uint32_t value_frames = 20;
+    std::string resource{resources[0]}, out;
     std::vector<std::string> with;  ///< KEY=VALUE[,KEY=VALUE...], a walk each
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
     bool json = false;
@@ -82,11 +85,28 @@ Result<walk::WalkRequest> walk_with(const CompareArguments& a, const std::string
     return request;
 }
 
+/// --budget is a number of triangles: the time that these are given replaces it.
+Result<void> take_triangles(CompareArguments& a) {
+    constexpr double max_triangles = 999'999;
+    a.value_frames = 0;
+    auto& values = a.settings->values;
+    const auto budget = std::find_if(values.begin(), values.end(), [](const auto& s) { return s.key == "budget_ms"; });
+    const auto number = budget == values.end() ? std::nullopt : number_in<double>(budget->text);
+    if (!number || !(*number >= 1 && *number <= max_triangles))
+        return Error{"--resource triangles", "The budget is no number of triangles",
+                     fmt::format("Add --budget N, with N from 1 to {:.0f}", max_triangles), ErrorKind::misuse};
+    budget->text = fmt::format("{}", accuracy::triangle_budget_ms(*number));
+    return {};
+}
+
 /// Selectors at full resolution; or the walk as it is set, and with each of --with.
 Result<void> fill_request(CompareArguments& a) {
     if (a.request.walk.frames > 0 && a.request.walk.seconds > 0)
         return Error{"--seconds", "--seconds and --frames both set the length", "Remove one of them", ErrorKind::misuse};
     if (auto ok = check_benefit(a.request.walk.benefit, a.request.selectors); !ok) return ok;
+    a.request.in_triangles = a.resource == resources[1];
+    if (a.request.in_triangles)
+        if (auto ok = take_triangles(a); !ok) return ok;
     auto base = walk_with(a, {});
     if (!base) return base.error();
     if (!a.with.empty()) a.request.settings.push_back({"as set", *base});
@@ -97,17 +117,24 @@ Result<void> fill_request(CompareArguments& a) {
     }
     a.request.walk = std::move(*base);
     if (a.with.empty()) a.request.walk.resolution_pct = 100;  // forms are compared
+    if (!a.request.in_triangles) return {};
+    for (accuracy::NamedWalk& named : a.request.settings) accuracy::spend_triangles(named.walk);
+    accuracy::spend_triangles(a.request.walk);
     return {};
 }
 
 int run_compare_command(CompareArguments& a, const Context& context) {
     if (auto ok = fill_request(a); !ok) return misuse(ok.error());
+    if (!a.out.empty())
+        if (auto ok = accuracy::probe_compare_page(a.out); !ok) return fail(ok.error());
     walk::prepare_process(a.request.walk);
     auto comparison = accuracy::compare_selectors(
         a.request, [](const walk::WalkRequest& one, const Progress& progress) { return walk::run_walk(one, progress, {}); },
         find_shares(a), terminal_progress(context));
     end_progress(context);
     if (!comparison) return fail(comparison.error());
+    if (!a.out.empty())
+        if (auto w = accuracy::write_compare_page(a.out, *comparison); !w) return fail(w.error());
     if (!comparison->uncalibrated.empty()) notify("The figures are uncalibrated: " + comparison->uncalibrated + ".");
     fmt::print("{}", a.json ? accuracy::compare_json(*comparison) : accuracy::compare_table(*comparison));
     return exit_success;
@@ -145,6 +172,12 @@ void add_compare(CLI::App& app, Context& context) {
                   "Keys are those of surefoot config")
         ->type_name("KEY=VALUE")
         ->excludes("--selector");
+    c->add_option("--resource", a->resource,
+                  "What --budget is of: time, or triangles. With triangles the walk is on the virtual clock, and its budget is a "
+                  "number of triangles")
+        ->check(one_of(resources))
+        ->capture_default_str();
+    c->add_option("-o,--out", a->out, "Folder for a page of every compared picture, and pictures.csv")->check(names_something());
     c->add_option("--seconds", r.seconds, "Length of each walk in seconds (else as the path is long)")
         ->check(number_within(0.001, 1e6, "s"));
     c->add_option("--frames", r.frames, "Length of each walk in frames, instead of --seconds")
@@ -163,6 +196,7 @@ void add_compare(CLI::App& app, Context& context) {
                                                                                               {"--rate", "rate_hz"},
                                                                                               {"--budget", "budget_ms"},
                                                                                               {"--late", "late"},
+                                                                                              {"--sky", "sky"},
                                                                                               {"--clock", "clock"},
                                                                                               {"--workers", "workers"},
                                                                                               {"--rasterisers", "rasterisers"}})

@@ -10,6 +10,7 @@
 #include "rt/base/file.hpp"
 #include "rt/base/statistics.hpp"
 #include "tools/accuracy/form_pictures.hpp"
+#include "tools/accuracy/model_curve.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/options.hpp"
 #include "tools/report/floor_plan.hpp"
@@ -24,6 +25,7 @@ struct InspectArguments {
     bool json = false;
     std::optional<std::string> pictures;    ///< folder of the page
     std::string map, path;                  ///< the floor plan's file; the path on it
+    std::string curve;                      ///< the chart's file
     accuracy::FormPicturesRequest request;  ///< its model is `file`
 };
 
@@ -145,8 +147,26 @@ int run_map(const InspectArguments& a) {
     return exit_success;
 }
 
+int run_curve(const InspectArguments& a) {
+    if (!a.curve.ends_with(".svg"))
+        return misuse(
+            {"--curve " + a.curve, "The chart's name does not end in .svg", "Name a file CURVE.svg", ErrorKind::misuse});
+    if (auto ok = probe_writable(a.curve); !ok) return fail(ok.error());
+    auto m = model::read_walk(a.file);
+    if (!m) return fail(m.error());
+    const auto found = accuracy::find_curve(a.file, *m, a.request.name);
+    if (!found) return misuse(found.error());
+    if (auto w = write_text(a.curve, accuracy::curve_svg(*found)); !w) return fail(w.error());
+    if (a.json)
+        fmt::print("{}\n", accuracy::curve_json(*found));
+    else
+        fmt::print("{}chart: {}\n", accuracy::curve_table(*found), a.curve);
+    return exit_success;
+}
+
 int run_inspect(InspectArguments& a, const Context& context) {
     if (!a.map.empty()) return run_map(a);
+    if (!a.curve.empty()) return run_curve(a);
     if (a.pictures) return run_pictures(a, context);
     model::WalkFileInfo info;
     auto m = model::read_walk(a.file, &info);
@@ -220,7 +240,15 @@ void add_inspect(CLI::App& app, Context& context) {
         ->check(whole_number_within(0, 1'000'000))
         ->capture_default_str()
         ->needs(pictures);
-    c->add_option("--node", a->request.name, "Of --pictures: only nodes whose name contains this")->needs(pictures);
+    CLI::Option* node = c->add_option("--node", a->request.name,
+                                      "Of --pictures: only nodes whose name contains this. Of --curve: the first of these");
+    c->add_option(
+         "--curve", a->curve,
+         "SVG file for an accuracy curve instead: the triangles that each relative accuracy takes, of the model or of --node")
+        ->excludes(tree)
+        ->excludes(pictures)
+        ->excludes(map);
+    node->excludes(tree)->excludes(map);
     c->add_option("--backend", a->request.backend, "Of --pictures: backend that draws: " + gl::drawing_backends())
         ->check(drawing_backend())
         ->capture_default_str()

@@ -13,7 +13,7 @@ namespace surefoot::cli {
 
 namespace {
 struct SceneArguments {
-    std::string name, out;
+    std::string name, out, statue;
     double scale = 1;
     std::uint64_t seed = 1;
     bool json = false;
@@ -25,7 +25,12 @@ int run_scene(const SceneArguments& a, const Context& context) {
     for (const std::string& out : {a.out, path}) {
         if (auto ok = probe_writable(out); !ok) return fail(ok.error());
     }
-    auto scene = scenes::generate(a.name, a.scale, a.seed);
+    if (!a.statue.empty() && a.name != scenes::gallery_name)
+        return misuse({"--cow", "Only the gallery has a place for a statue",
+                       "Remove the option, or write `surefoot scene gallery`", ErrorKind::misuse});
+    auto scene = a.statue.empty() ? scenes::generate(a.name, a.scale, a.seed)
+                                  : scenes::generate_gallery(a.scale, a.statue, terminal_progress(context));
+    end_progress(context);
     if (!scene) return fail(scene.error());
     if (context.stop->load())
         return fail({a.out, "The work was stopped by the user, and nothing was written", "", ErrorKind::stopped});
@@ -55,9 +60,12 @@ void add_scene(CLI::App& app, Context& context) {
     const std::vector<std::string> words = scenes::scene_names();
     const std::vector<std::string_view> names(words.begin(), words.end());
     c->add_option("name", a->name,
-                  "Scene: forest (100 trees at scale 1), room, town (about 1 M triangles at scale 1), or garden (masked plants)")
+                  "Scene: forest (100 trees at scale 1), room, town (about 1 M triangles at scale 1), garden (masked plants), "
+                  "or gallery (two spheres, a cylinder and a statue)")
         ->required()
         ->check(one_of(names));
+    c->add_option("--cow", a->statue, "Of the gallery: model file of its statue, in place of a knot. It is made 1.2 m long")
+        ->check(names_something());
     c->add_option("--scale", a->scale, "Factor on the size of the scene")
         ->check(number_within(scenes::min_scale, scenes::max_scale))
         ->capture_default_str();

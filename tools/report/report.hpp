@@ -194,6 +194,14 @@ struct ReportSnapshot {
     std::array<double, 4> world_xz{};         ///< min x, min z, max x, max z
 };
 
+/// One compared picture of a walk, without its pixels.
+struct PictureFigures {
+    std::uint64_t frame = 0, triangles = 0, full_triangles = 0;
+    float accuracy = 0;  ///< rad^-1; infinite: exact
+    double snr_db = 0, mse = 0, ssim = 0, flip = 0;
+};
+PictureFigures figures_of(const ReportSnapshot& snapshot);
+
 /// Of snapshots with pictures; those without are passed over.
 PictureSummary compare_pictures(std::span<const ReportSnapshot> snapshots);
 

@@ -202,6 +202,10 @@ double psnr_db(double mse) {
     return mse > 0 ? std::min(max_psnr_db, 10 * std::log10(white * white / mse)) : max_psnr_db;
 }
 
+PictureFigures figures_of(const ReportSnapshot& s) {
+    return {s.frame, s.triangles, s.full_triangles, s.accuracy, s.snr_db, s.mse, s.ssim, s.flip};
+}
+
 PictureSummary compare_pictures(std::span<const ReportSnapshot> snapshots) {
     PictureSummary p;
     double mse = 0, worst_mse = -1, pop_mse = 0;

@@ -17,11 +17,11 @@ namespace {
 
 using importer::none;
 
-/// A room spans x 0..width, z 0..depth; doors in the west and east walls lie on one line.
-constexpr double width = 7.2, depth = 5.6, height = 2.8, wall_thickness = 0.2;
-constexpr double pitch = width + wall_thickness;
+/// A room spans x 0..room_width, z 0..room_depth; doors in the west and east walls lie on one line.
+constexpr double room_width = 7.2, room_depth = 5.6, room_height = 2.8, wall_thickness = 0.2;
+constexpr double room_pitch = room_width + wall_thickness;
 constexpr double door_from = 4.0, door_to = 4.95, door_height = 2.15, lane = 4.475;
-constexpr double eye = 1.68;
+constexpr double room_eye = 1.68;
 
 /// Meshes made once and placed in every room.
 struct Pieces {
@@ -71,18 +71,18 @@ WallStyle style_of(const WallSurfaces& surfaces) { return {surfaces.ceiling, sur
 importer::Mesh shell(const Stuff& stuff, const WallSurfaces& surfaces, bool open_east) {
     MeshMaker maker("room");
     const WallStyle style = style_of(surfaces);
-    const double t = 0.5 * wall_thickness, w = width, d = depth;
+    const double t = 0.5 * wall_thickness, w = room_width, d = room_depth;
     const std::array<Opening, 1> window_hole{Opening{w - 3.8, w - 1.9, 0.85, 2.35}};
     // Around with the outside to the right of the way: +z wall eastwards, east wall northwards, and so on.
-    wall(maker, {{0, d + t}, {w, d + t}, 0, height, wall_thickness}, {}, style);
-    if (!open_east) wall(maker, {{w + t, d}, {w + t, 0}, 0, height, wall_thickness}, {}, style);
-    wall(maker, {{w, -t}, {0, -t}, 0, height, wall_thickness}, window_hole, style);
+    wall(maker, {{0, d + t}, {w, d + t}, 0, room_height, wall_thickness}, {}, style);
+    if (!open_east) wall(maker, {{w + t, d}, {w + t, 0}, 0, room_height, wall_thickness}, {}, style);
+    wall(maker, {{w, -t}, {0, -t}, 0, room_height, wall_thickness}, window_hole, style);
     const std::array<Opening, 1> west_door{Opening{door_from, door_to, 0, door_height}};
-    wall(maker, {{-t, 0}, {-t, d}, 0, height, wall_thickness}, west_door, style);
+    wall(maker, {{-t, 0}, {-t, d}, 0, room_height, wall_thickness}, west_door, style);
     maker.brush = {surfaces.floor, {255, 255, 255, 255}, dmat4(1.0), 0.7};
     maker.quad({-wall_thickness, 0, d}, {w, 0, d}, {w, 0, 0}, {-wall_thickness, 0, 0});
     maker.brush = {surfaces.ceiling, {255, 255, 255, 255}, dmat4(1.0), 0.5};
-    maker.quad({0, height, 0}, {w, height, 0}, {w, height, d}, {0, height, d});
+    maker.quad({0, room_height, 0}, {w, room_height, 0}, {w, room_height, d}, {0, room_height, d});
     maker.brush = {stuff.plain, rgb(240, 238, 230), dmat4(1.0), 1.0};
     maker.box({0, 0, 0}, {w, 0.09, 0.018});
     maker.box({0, 0, d - 0.018}, {w, 0.09, d});
@@ -100,13 +100,13 @@ importer::Mesh corridor(const WallSurfaces& surfaces) {
     MeshMaker maker("corridor");
     const WallStyle style = style_of(surfaces);
     const double t = wall_thickness, x0 = -4.0, x1 = -t, z0 = 3.4, z1 = 5.6;
-    wall(maker, {{x0, z1 + 0.5 * t}, {x1, z1 + 0.5 * t}, 0, height, t}, {}, style);
-    wall(maker, {{x1, z0 - 0.5 * t}, {x0, z0 - 0.5 * t}, 0, height, t}, {}, style);
-    wall(maker, {{x0 - 0.5 * t, z0}, {x0 - 0.5 * t, z1}, 0, height, t}, {}, style);
+    wall(maker, {{x0, z1 + 0.5 * t}, {x1, z1 + 0.5 * t}, 0, room_height, t}, {}, style);
+    wall(maker, {{x1, z0 - 0.5 * t}, {x0, z0 - 0.5 * t}, 0, room_height, t}, {}, style);
+    wall(maker, {{x0 - 0.5 * t, z0}, {x0 - 0.5 * t, z1}, 0, room_height, t}, {}, style);
     maker.brush = {surfaces.floor, {255, 255, 255, 255}, dmat4(1.0), 0.7};
     maker.quad({x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0}, {x0, 0, z0});
     maker.brush = {surfaces.ceiling, {255, 255, 255, 255}, dmat4(1.0), 0.5};
-    maker.quad({x0, height, z0}, {x1, height, z0}, {x1, height, z1}, {x0, height, z1});
+    maker.quad({x0, room_height, z0}, {x1, room_height, z0}, {x1, room_height, z1}, {x0, room_height, z1});
     return maker.take();
 }
 
@@ -138,7 +138,7 @@ void lay_table(const Placer& place, const Pieces& p, const dvec3& at) {
     place.put("bowl of fruit", p.fruit, {0.0, 0.752, 0}, 0.4, table);
     place.put("teapot", p.teapot, {0.36, 0.752, 0.04}, place.random.range(0, 6), table);
     for (const double x : {-0.34, -0.24}) place.put("candlestick", p.candle, {x, 0.752, place.about(0, 0.05)}, 0, table);
-    place.put("pendant lamp", p.pendant, at + dvec3(0, height, 0));
+    place.put("pendant lamp", p.pendant, at + dvec3(0, room_height, 0));
 }
 
 void fill_shelf(const Placer& place, const Pieces& p, const dvec3& at) {
@@ -159,9 +159,9 @@ void fill_shelf(const Placer& place, const Pieces& p, const dvec3& at) {
 void furnish(SceneMaker& maker, const Pieces& p, Index room, Random& random) {
     const Placer place{maker, room, random};
     lay_table(place, p, {2.55, 0, 2.15});
-    fill_shelf(place, p, {3.6, 0, depth - 0.005});
+    fill_shelf(place, p, {3.6, 0, room_depth - 0.005});
     place.put("rug", p.rug, {5.25, 0, 2.0}, place.about(0, 0.06));
-    place.put("sofa", p.sofa, {width - 0.02, 0, 2.1}, -pi / 2);
+    place.put("sofa", p.sofa, {room_width - 0.02, 0, 2.1}, -pi / 2);
     const double turned = place.about(0.15, 0.1);
     place.put("armchair", p.armchair, {place.about(5.0, 0.05), 0, 0.25}, turned);
     const Index coffee = place.put("coffee table", p.coffee, {5.35, 0.0, 2.1}, pi / 2);
@@ -179,16 +179,16 @@ void furnish(SceneMaker& maker, const Pieces& p, Index room, Random& random) {
     place.put("candlestick", p.candle, {0.05, 0.857, 0.18}, 0, board);
     place.put("books", p.books[0], {0.05, 0.857, -0.02}, 0, board);
     place.put("picture", p.pictures[0], {0, 1.6, 2.3}, pi / 2);
-    place.put("picture", p.pictures[1], {width, 1.65, 1.5}, -pi / 2);
-    place.put("picture", p.pictures[2], {width, 1.65, 2.7}, -pi / 2);
-    place.put("picture", p.pictures[3], {1.2, 1.6, depth}, pi);
-    place.put("clock", p.clock, {5.6, 1.9, depth}, pi);
+    place.put("picture", p.pictures[1], {room_width, 1.65, 1.5}, -pi / 2);
+    place.put("picture", p.pictures[2], {room_width, 1.65, 2.7}, -pi / 2);
+    place.put("picture", p.pictures[3], {1.2, 1.6, room_depth}, pi);
+    place.put("clock", p.clock, {5.6, 1.9, room_depth}, pi);
 }
 
 /// In at the door, along the clutter of the table, the books, the seats, a look back over all, and out or to the window.
 void pass_room(std::vector<Waypoint>& way, double x0, bool last) {
-    const auto go = [&](double x, double z, double y = eye) { way.push_back({{x0 + x, y, z}, {}, true, 0}); };
-    const auto look = [&](double x, double z, const dvec3& at, double pause_s, double y = eye) {
+    const auto go = [&](double x, double z, double y = room_eye) { way.push_back({{x0 + x, y, z}, {}, true, 0}); };
+    const auto look = [&](double x, double z, const dvec3& at, double pause_s, double y = room_eye) {
         way.push_back({{x0 + x, y, z}, at + dvec3(x0, 0, 0), false, pause_s});
     };
     go(-0.9, lane);
@@ -226,12 +226,12 @@ GeneratedScene make_room(double scale, std::uint64_t seed) {
                 shell_last = maker.mesh(shell(stuff, surfaces, false));
     const Index entry = maker.node("corridor", none, maker.mesh(corridor(surfaces)), dmat4(1.0));
     maker.node("door", entry, pieces.door, move({-0.02, 0, door_to}) * turn_y(-0.06));
-    std::vector<Waypoint> way{{{-3.2, eye, lane}, {}, true, 0}};
+    std::vector<Waypoint> way{{{-3.2, room_eye, lane}, {}, true, 0}};
     for (int i = 0; i < rooms; ++i) {
-        const Index room = maker.node(fmt::format("room {}", i), none, none, move({i * pitch, 0, 0}));
+        const Index room = maker.node(fmt::format("room {}", i), none, none, move({i * room_pitch, 0, 0}));
         maker.node("shell", room, i + 1 < rooms ? shell_open : shell_last, dmat4(1.0));
         furnish(maker, pieces, room, random);
-        pass_room(way, i * pitch, i + 1 == rooms);
+        pass_room(way, i * room_pitch, i + 1 == rooms);
     }
     return {std::move(maker.scene), make_path(way, 60.0 * rooms)};
 }

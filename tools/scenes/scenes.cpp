@@ -11,6 +11,7 @@
 #include "render/import/ostf.hpp"
 #include "rt/base/named.hpp"
 #include "tools/scenes/forest.hpp"
+#include "tools/scenes/gallery.hpp"
 #include "tools/scenes/garden.hpp"
 #include "tools/scenes/room.hpp"
 #include "tools/scenes/town.hpp"
@@ -24,7 +25,8 @@ struct Maker {
 };
 
 constexpr std::array makers{Maker{"forest", make_forest}, Maker{"room", make_room}, Maker{"town", make_town},
-                            Maker{"garden", make_garden}};
+                            Maker{"garden", make_garden},
+                            Maker{gallery_name, [](double scale, std::uint64_t) { return make_gallery(scale, {}); }}};
 
 struct Writer {
     std::string_view name;  ///< the ending of its files
@@ -58,6 +60,17 @@ Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64
     }
     return Error{std::string(name), "There is no scene of this name", "Choose one of " + names_in_words(makers),
                  ErrorKind::not_found};
+}
+
+Result<GeneratedScene> generate_gallery(double scale, const std::string& statue_file, const Progress& progress) {
+    auto statue = importer::import_files({statue_file}, progress);
+    if (!statue) return statue.error();
+    if (!(scale >= min_scale && scale <= max_scale))
+        return Error{std::string(gallery_name), fmt::format("The scale {} is out of range", scale),
+                     fmt::format("Choose {} to {}", min_scale, max_scale), ErrorKind::misuse};
+    GeneratedScene made = make_gallery(scale, std::move(*statue));
+    made.scene.sources.push_back(fmt::format("generated: {} at scale {}, with {}", gallery_name, scale, statue_file));
+    return made;
 }
 
 std::string written_endings() { return names_in_words(writers); }

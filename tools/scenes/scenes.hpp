@@ -1,7 +1,7 @@
 // Generated scenes and the paths through them: the same bits from the same (name, scale, seed).
 // forest: 100 trees, 105 000 polygons at scale 1 (the scene of Schaufler & Stuerzlinger 1996, figure 7). room: furniture
 // that interpenetrates, about 60 000. town: streets, houses with rooms, furniture, trees, lamps, about a million.
-// garden: plants of masked cards, fences and wires, about 140 000.
+// garden: plants of masked cards, fences and wires, about 140 000. gallery: two spheres, a cylinder and a statue.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,9 @@ struct GeneratedScene {
     Path path;              ///< 60 s at scale 1, at walking height but for its overlook; smooth
 };
 
-/// forest, room, town, garden.
+constexpr std::string_view gallery_name = "gallery";
+
+/// forest, room, town, garden, gallery.
 std::vector<std::string> scene_names();
 
 constexpr double min_scale = 0.01, max_scale = 200.0;
@@ -29,6 +31,9 @@ constexpr double min_scale = 0.01, max_scale = 200.0;
 /// scale > 0 multiplies what there is (trees, rooms' area, blocks of houses), 1 is the size named above; 0.01 to 200.
 /// Errors: unknown name, scale out of range.
 Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed);
+
+/// The gallery with another statue, of a model file that the importer reads. Errors: of the importer, scale out of range.
+Result<GeneratedScene> generate_gallery(double scale, const std::string& statue_file, const Progress& progress);
 
 /// ".glb, .ostf".
 std::string written_endings();

@@ -65,6 +65,7 @@ struct WalkOutcome {
     std::vector<std::string> notes;  ///< messages for the user, one line each
     bool stopped = false;            ///< ended before its last frame, by progress.stop
     bool lost = false;               ///< ended because the graphics context was lost; failures has the error
+    std::vector<report::PictureFigures> pictures;  ///< that were compared with full detail, in order
     std::string report_page;         ///< the report's index.html, if requested
 };
 

@@ -157,6 +157,7 @@ void write_outputs(const WalkRequest& request, const KeptFrame& kept, Engine& en
             outcome.failures.push_back(drawn.error());
     }
     outcome.summary.picture = report::compare_pictures(rendered);
+    for (const report::ReportSnapshot& snapshot : rendered) outcome.pictures.push_back(report::figures_of(snapshot));
     put(request.report_dir, [&] { return find_worst_forms(engine, snapshots, rendered, outcome.summary.picture, progress); });
     put(request.report_dir, [&]() -> Result<void> {
         if (auto written = report::write_report(request.report_dir, outcome.summary, outcome.records, rendered); !written)
