@@ -165,11 +165,12 @@ select::SelectInput Engine::Impl::input_of(const prepare::PreparedFrame& set, do
 double Engine::Impl::gain_of_one_more_ms(const select::SelectInput& input) const {
     const prepare::PreparedFrame& set = *input.prepared;
     if (!by_budget || !(set.full_value > 0.0)) return 0;
+    const double bought_us = cut.bought.cost_us + cut.bought.prepaid_us;
     const auto value_with = [&](double more_us) {
         select::SelectInput longer = input;
         longer.budget_us += more_us;
         select::Budget budget(longer);
-        budget.spend(cut.bought.cost_us + cut.bought.prepaid_us);
+        budget.spend(bought_us);
         return static_cast<double>(set.curve.value_at(static_cast<float>(budget.room_us())));
     };
     return std::max(0.0, value_with(1000) - value_with(0)) / set.full_value;

@@ -16,8 +16,8 @@ struct Means {
     std::uint64_t dropped = 0;
 };
 
-Means means_at(double budget_ms, const std::string& selector = "threshold", double rate_hz = 30, std::uint64_t frames = 60) {
-    walk::WalkRequest request = test::Forest::get().virtual_request(frames);
+Means means_at(double budget_ms, const std::string& selector = "threshold", double rate_hz = 30, std::uint64_t length = 60) {
+    walk::WalkRequest request = test::Forest::get().virtual_request(length);
     request.rest_after_ms = 0;
     request.resolution_pct = 100;
     request.backend = "null";

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "config/settings.hpp"
+#include "render/select/select.hpp"
 #include "rt/base/progress.hpp"
 #include "rt/base/result.hpp"
-#include "render/select/select.hpp"
 #include "rt/frame/record.hpp"
 #include "tools/report/report.hpp"
 
@@ -44,7 +44,7 @@ struct WalkRequest : config::Settings {
     bool endless = false;      ///< until progress.stop: records go only to the observer and are not kept, so there are no outputs
     double cost_noise = 0;     ///< relative, seeded (virtual clock)
     select::BenefitModel benefit = select::BenefitModel::surefoot;  ///< of the 1994 selectors
-    bool correct_costs = true;  ///< online correction of predictions; false: frozen at 1
+    bool correct_costs = true;                                      ///< online correction of predictions; false: frozen at 1
     std::uint32_t control_pairs = 90;
     double control_block_s = 2.0;
     std::shared_ptr<const model::CostModel> given_costs;  ///< in place of the state folder's and of the model's fit; null: those
@@ -61,12 +61,12 @@ struct WalkRequest : config::Settings {
 struct WalkOutcome {
     report::WalkSummary summary;
     std::vector<rt::FrameRecord> records;
-    std::vector<Error> failures;     ///< outputs that could not be written; the others are complete
-    std::vector<std::string> notes;  ///< messages for the user, one line each
-    bool stopped = false;            ///< ended before its last frame, by progress.stop
-    bool lost = false;               ///< ended because the graphics context was lost; failures has the error
+    std::vector<Error> failures;                   ///< outputs that could not be written; the others are complete
+    std::vector<std::string> notes;                ///< messages for the user, one line each
+    bool stopped = false;                          ///< ended before its last frame, by progress.stop
+    bool lost = false;                             ///< ended because the graphics context was lost; failures has the error
     std::vector<report::PictureFigures> pictures;  ///< that were compared with full detail, in order
-    std::string report_page;         ///< the report's index.html, if requested
+    std::string report_page;                       ///< the report's index.html, if requested
 };
 
 /// The step of a walk. An Error of run_walk() belongs to the last notified step.

@@ -1,0 +1,40 @@
+# Read by tests/bench/run: the group gallery. Not run by itself.
+# shellcheck shell=bash
+
+# The runs of Pasman and Jansen 2002, section 5: 100 poses of two spheres, a cylinder and a cow, 640 x 480, on black.
+gallery_walk() { # LABEL OPTIONS...: measures, and leaves pictures in WORK/gallery-LABEL/pictures.csv
+  local label=gallery-$1
+  shift
+  measure "$label" "$surefoot" compare "$work/gallery.walk" --resource triangles --frames 100 --pictures 100 --rate 10 --size 640x480 \
+    --sky '#000000' --state "$work/no-table" "$@" -o "$work/$label" --json
+}
+
+# gallery_rows LABEL SELECTOR AWK: over the pictures of one walk, with t (triangles), full, accuracy and snr set for each.
+gallery_rows() {
+  awk -F, -v name="\"$2\"" 'FNR > 1 && index($0, name) == 1 { t = $(NF - 6); full = $(NF - 5); accuracy = $(NF - 4); snr = $(NF - 3); '"$3" \
+    "$work/gallery-$1/pictures.csv"
+}
+
+gallery_group() {
+  local accuracy='selector=curve-accuracy,accuracy=200' range
+  if [[ -z "$data" || ! -f "$data/classic/cow/cow.obj" ]]; then
+    echo "tests/bench/run: skipped: gallery: SUREFOOT_DATA names no folder with classic/cow/cow.obj" >&2
+    return 0
+  fi
+  "$surefoot" scene gallery --cow "$data/classic/cow/cow.obj" -o "$work/gallery.glb" >&2 || { failed=1; return 0; }
+  measure gallery-bake "$surefoot" bake "$work/gallery.glb" --level-ratio 95 --whole-objects --rate 1 --state "$work/no-table" -o "$work/gallery.walk" --json || return 0
+  measure cow-curve "$surefoot" inspect "$work/gallery.walk" --curve "$work/cow.svg" --node object --json || return 0
+  keep cow_line "$(value line.r_squared)" --scene cow \
+    --note "triangles = $(rounded line.triangles) + $(rounded line.per_accuracy) x relative accuracy, by least squares over its levels; the source shows a straight line without a figure."
+  gallery_walk budget --budget 200 --selector curve-budget || return 0
+  keep gallery_triangles "$(gallery_rows budget curve-budget 'if (t > most) most = t } END { print most }')" --scene "gallery, 200 triangles"
+  range=$(gallery_rows budget curve-budget 'if (snr + 0 == snr && snr < 1e9) { if (!n++ || snr < low) low = snr; if (n == 1 || snr > high) high = snr } } END { printf "%.1f to %.1f", low, high }')
+  keep gallery_filled "$(gallery_rows budget curve-budget 'if (full > 200) { ++n; if (t >= 190) ++filled } } END { printf "%.1f", 100 * filled / n }')" \
+    --scene "gallery, 200 triangles" --note "SNR $range dB." \
+    --why "Objects out of view that may come into it share the budget, and the cow has no level between 168 and 198 triangles: its next ones are no nearer." \
+    --next "Spend what is left over by value, as a guaranteed accuracy does."
+  gallery_walk accuracy --budget 100000 --with "$accuracy" || return 0
+  range=$(gallery_rows accuracy "$accuracy" 'if (t > most) most = t; if (snr + 0 == snr && snr < 1e9) { if (!n++ || snr < low) low = snr; if (n == 1 || snr > high) high = snr } } END { printf "SNR %.1f to %.1f dB with up to %d triangles", low, high, most }')
+  keep gallery_accuracy "$(gallery_rows accuracy "$accuracy" 'if (accuracy != "inf" && (!n++ || accuracy + 0 < low)) low = accuracy + 0 } END { printf "%.1f", low }')" \
+    --scene "gallery, 200 rad^-1" --note "$range; published: 9 to 13 dB with up to 1200 polygons, for objects and a path of its own."
+}
