@@ -159,7 +159,7 @@ select::SelectInput Engine::Impl::input_of(const prepare::PreparedFrame& set, do
             by.factor,        target_error_rad,
             options.slice_us, by.headroom,
             &offered,         options.max_error_rad,
-            options.benefit,  last_frame_us()};
+            options.benefit,  last_frame_us};
 }
 
 double Engine::Impl::gain_of_one_more_ms(const select::SelectInput& input) const {
@@ -263,6 +263,7 @@ const select::Cut& Engine::select(const prepare::PreparedFrame& prepared, double
     e.headroom = select::headroom_of(input);
     e.selector->run(input, e.state, e.cut);
     e.one_more_ms = e.gain_of_one_more_ms(input);
+    e.last_frame_us = 0;
     e.offers_used = true;
     select::plan_slices(input, e.cut, e.options.slice_us, e.plan);
     e.take_filter();

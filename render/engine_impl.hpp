@@ -57,6 +57,8 @@ struct Engine::Impl {
     RestWatch watch GUARDED_BY(draws);
     RestPicture rest_picture GUARDED_BY(draws);
     double one_more_ms GUARDED_BY(draws) = 0;
+    /// How long the frame before took; on a clock that does not run within frames, as predicted. 0: it drew no cut.
+    double last_frame_us GUARDED_BY(draws) = 0;
     SubmitReport last_report GUARDED_BY(draws);  ///< of the last frame that drew a cut
 
     void use(const select::SelectorEntry& entry);
@@ -83,10 +85,6 @@ struct Engine::Impl {
     };
     [[nodiscard]] select::SelectInput input_of(const prepare::PreparedFrame& set, double budget_us, const Correction& by,
                                                double target_error_rad) const REQUIRES(draws);
-    /// How long the last frame took; on a clock that does not run within frames, as it was predicted.
-    [[nodiscard]] double last_frame_us() const REQUIRES(draws) {
-        return last_report.finished_us > 0 ? last_report.finished_us : last_report.predicted_us * correction.factor;
-    }
     [[nodiscard]] double gain_of_one_more_ms(const select::SelectInput& input) const REQUIRES(draws);
     static void count_error(model::Index node, float error_rad, float importance, SubmitReport& report);
     [[nodiscard]] rt::Guarantee guarantee_of(const SubmitReport& report) const REQUIRES(draws);

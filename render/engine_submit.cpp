@@ -131,9 +131,10 @@ void Engine::Impl::submit_cut(const SubmitLimits& limits, double start_us, Submi
     }
     report.one_more_ms = one_more_ms;
     report.dropped_objects = cut.dropped.count;
-    if (cut.dropped.count > 0) {
-        const model::Index missing = cut.dropped.node;
-        count_error(missing, cut.dropped.error_rad, model.nodes[missing].importance, report);
+    report.worst_error_rad = std::max(report.worst_error_rad, cut.dropped.error_rad);
+    if (cut.dropped.weighted_rad > report.worst_weighted_rad) {
+        report.worst_weighted_rad = cut.dropped.weighted_rad;
+        report.worst_node = cut.dropped.node;
     }
     report.predicted = so_far;
     report.value = prepared->full_value > 0.0F ? report.value / static_cast<double>(prepared->full_value) : 1.0;
@@ -259,6 +260,7 @@ SubmitReport Engine::submit(const Pose& pose, const SubmitLimits& limits) {
     report.guarantee = e.guarantee_of(report);
     e.report_items(report);
     e.last_report = report;
+    e.last_frame_us = timed ? report.finished_us : report.predicted_us * e.correction.factor;
     return report;
 }
 

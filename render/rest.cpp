@@ -177,6 +177,8 @@ void RestPicture::describe(SubmitReport& report) const {
     report.worst_node = model::none;
     if (report.guarantee != rt::Guarantee::none) report.guarantee = rt::Guarantee::kept;
     report.value = 1;
+    report.one_more_ms = 0;
+    report.dropped_objects = 0;
     report.floor_share = 0;
 }
 

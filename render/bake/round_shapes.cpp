@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
+#include <utility>
 
 namespace surefoot::bake {
 
@@ -48,7 +51,45 @@ double plane_distance(const Corners& c) {
     return length > 0 ? std::abs(glm::dot(normal, c[0])) / length : glm::length(c[0]);
 }
 
-bool is_closed(const Geometry& g, const dvec3& centre) {
+/// The geometry's corners as points: those of one place count as one, within 10^-5 of the size.
+class Welded {
+public:
+    Welded(const Geometry& g, double size) {
+        std::map<std::array<std::int64_t, 3>, std::uint32_t> points;
+        const double cell = 1e-5 * size;
+        for (const std::uint32_t index : g.parts[0].indices) {
+            const dvec3 at(position_of(g.vertices[index]));
+            const std::array<std::int64_t, 3> key{std::llround(at.x / cell), std::llround(at.y / cell),
+                                                  std::llround(at.z / cell)};
+            const auto [entry, fresh] = points.try_emplace(key, static_cast<std::uint32_t>(points.size()));
+            if (fresh) middle_ += at;
+            of_.push_back(entry->second);
+        }
+        middle_ /= std::max<double>(1.0, static_cast<double>(points.size()));
+    }
+    /// The mean of all points: of a whole round shape with even sides, its middle.
+    [[nodiscard]] const dvec3& middle() const { return middle_; }
+    /// Whether each side of a triangle has just one neighbour, which goes along it the other way.
+    [[nodiscard]] bool closed() const {
+        std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+        for (std::size_t i = 0; i + 2 < of_.size(); i += 3) {
+            const std::array<std::uint32_t, 3> p{of_[i], of_[i + 1], of_[i + 2]};
+            if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;  // at a pole: no area
+            for (std::size_t k = 0; k < 3; ++k)
+                if (++sides[{p[k], p[(k + 1) % 3]}] > 1) return false;
+        }
+        return std::all_of(sides.begin(), sides.end(), [&](const auto& side) {
+            return sides.contains({side.first.second, side.first.first});
+        });
+    }
+
+private:
+    std::vector<std::uint32_t> of_;  ///< by index of the part: its point
+    dvec3 middle_{0.0};
+};
+
+/// Each direction from the middle meets the surface once, from within.
+bool surrounds(const Geometry& g, const dvec3& centre) {
     double sum = 0;
     bool outward = true;
     for_corners(g, centre, [&](const Corners& c) {
@@ -56,16 +97,41 @@ bool is_closed(const Geometry& g, const dvec3& centre) {
         outward = outward && angle > -1e-6;
         sum += angle;
     });
-    return outward && std::abs(sum - 4 * pi) < 1e-3;
+    return outward && std::abs(sum - 4 * pi) < 1e-2;
 }
 
-std::optional<Round> find_sphere(const Geometry& g, const Box& box) {
+/// Whether the vertices' normals are those of the shape, to about six degrees: what is shaded flat looks otherwise.
+bool has_round_normals(const Geometry& g, const Round& shape) {
+    constexpr double alike = 0.994;
+    const auto& indices = g.parts[0].indices;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+        const auto along = [&](std::size_t k) {
+            return dvec3(position_of(g.vertices[indices[i + k]]))[shape.axis] - shape.centre[shape.axis];
+        };
+        const bool cap = shape.half_height > 0 && (along(0) > 0) == (along(1) > 0) && (along(1) > 0) == (along(2) > 0);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const model::Vertex& v = g.vertices[indices[i + k]];
+            dvec3 out = dvec3(position_of(v)) - shape.centre;
+            if (cap) {
+                const double up = out[shape.axis];
+                out = dvec3(0);
+                out[shape.axis] = up;
+            } else if (shape.half_height > 0) {
+                out[shape.axis] = 0;
+            }
+            const dvec3 normal(v.normal[0], v.normal[1], v.normal[2]);
+            if (glm::dot(normal, out) < alike * glm::length(normal) * glm::length(out) || !(glm::length(normal) > 0))
+                return false;
+        }
+    }
+    return true;
+}
+
+std::optional<Round> find_sphere(const Geometry& g, const dvec3& middle) {
     Round shape;
-    shape.centre = box.centre();
-    const dvec3 half = box.half();
-    shape.radius = (half.x + half.y + half.z) / 3;
+    shape.centre = middle;
+    shape.radius = glm::length(dvec3(position_of(g.vertices[g.parts[0].indices[0]])) - middle);
     double off = 0;
-    shape.sag_m = 0;
     for_corners(g, shape.centre, [&](const Corners& c) {
         for (const dvec3& corner : c) off = std::max(off, std::abs(glm::length(corner) - shape.radius));
         shape.sag_m = std::max(shape.sag_m, shape.radius - plane_distance(c));
@@ -74,14 +140,16 @@ std::optional<Round> find_sphere(const Geometry& g, const Box& box) {
     return shape;
 }
 
-std::optional<Round> find_cylinder(const Geometry& g, const Box& box, int axis) {
+std::optional<Round> find_cylinder(const Geometry& g, const Box& box, const dvec3& middle, int axis) {
     Round shape;
-    shape.centre = box.centre();
+    shape.centre = middle;
+    shape.centre[axis] = box.centre()[axis];
     shape.axis = axis;
     const int u = (axis + 1) % 3, w = (axis + 2) % 3;
-    const dvec3 half = box.half();
-    shape.radius = std::max(half[u], half[w]);
-    shape.half_height = half[axis];
+    shape.half_height = box.half()[axis];
+    for_corners(g, shape.centre, [&](const Corners& c) {
+        for (const dvec3& corner : c) shape.radius = std::max(shape.radius, glm::length(dvec2(corner[u], corner[w])));
+    });
     if (!(shape.half_height > 0)) return std::nullopt;
     bool fits = true;
     for_corners(g, shape.centre, [&](const Corners& c) {
@@ -98,7 +166,7 @@ std::optional<Round> find_cylinder(const Geometry& g, const Box& box, int axis) 
         if (!cap && !side) fits = false;
         if (!cap) shape.sag_m = std::max(shape.sag_m, shape.radius - inner);
     });
-    if (!fits || shape.sag_m > 0.25 * shape.radius) return std::nullopt;
+    if (!fits || shape.sag_m > 0.05 * shape.radius) return std::nullopt;  // below ten sides, or one side cut flat
     return shape;
 }
 
@@ -114,12 +182,17 @@ std::optional<Round> find_round(const Geometry& g, const ChainOptions& options) 
     const Box box = g.box();
     const dvec3 half = box.half();
     const double largest = std::max({half.x, half.y, half.z});
-    const auto alike = [&](double a, double b) { return std::abs(a - b) <= 0.02 * largest; };
+    if (!(largest > 0)) return std::nullopt;
+    const auto alike = [&](double a, double b) { return std::abs(a - b) <= 0.15 * std::max(a, b); };  // sides may stand anyhow
+    const bool cube = alike(half.x, half.y) && alike(half.y, half.z),
+               prism = alike(half.x, half.y) || alike(half.y, half.z) || alike(half.z, half.x);
+    if (!cube && !prism) return std::nullopt;
+    const Welded welded(g, largest);
     std::optional<Round> found;
-    if (alike(half.x, half.y) && alike(half.y, half.z)) found = find_sphere(g, box);
+    if (cube) found = find_sphere(g, welded.middle());
     for (int axis = 0; axis < 3 && !found; ++axis)
-        if (alike(half[(axis + 1) % 3], half[(axis + 2) % 3])) found = find_cylinder(g, box, axis);
-    if (found && !is_closed(g, found->centre)) return std::nullopt;
+        if (alike(half[(axis + 1) % 3], half[(axis + 2) % 3])) found = find_cylinder(g, box, welded.middle(), axis);
+    if (!found || !welded.closed() || !surrounds(g, found->centre) || !has_round_normals(g, *found)) return std::nullopt;
     return found;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "rt/base/check.hpp"
 
@@ -76,16 +77,18 @@ struct Pair {
 };
 
 /// A part that takes no less than either on its range. In each resource the line goes along the chord of both, or through the
-/// higher of the two where they meet. `early`: as steep there as the next part's beginning and the first one's allow; else as the
-/// second ends.
-CurvePart merged(const Pair& pair, bool early) {
+/// higher of the two where they meet: `early` as steep there as the next part's beginning and the first one's allow, `late` as
+/// the second ends. `flat`: what the most of both takes.
+enum class Slope : std::uint8_t { late, early, flat };
+
+CurvePart merged(const Pair& pair, Slope how) {
     CurvePart part = constant(pair.first.from, {});
     const double x0 = pair.first.from, x1 = pair.second.from, x2 = pair.to;
     const Resources begins = value(pair.first, x0), before = value(pair.first, x1), joint = value(pair.second, x1);
     const Resources ends = value(pair.second, x2), after = pair.next != nullptr ? value(*pair.next, x2) : ends;
     for (const auto axis : axes) {
         const double y0 = begins.*axis, y1 = std::max(before.*axis, joint.*axis), y2 = ends.*axis;
-        if (!std::isfinite(x2) || !(x2 > x1)) {
+        if (how == Slope::flat || !std::isfinite(x2) || !(x2 > x1)) {
             part.base.*axis = std::max({y0, y1, y2});
             continue;
         }
@@ -96,7 +99,7 @@ CurvePart merged(const Pair& pair, bool early) {
             part.base.*axis = y2 - chord * x2;
             continue;
         }
-        const double slope = early ? std::clamp((after.*axis - y1) / (x2 - x1), low, high) : low;
+        const double slope = how == Slope::early ? std::clamp((after.*axis - y1) / (x2 - x1), low, high) : low;
         part.slope.*axis = slope;
         part.base.*axis = y1 - slope * x1;
     }
@@ -224,11 +227,11 @@ Curve CurveParts::compacted(const Resources& weights) const {
         for (std::size_t i = 0; i + 1 < count; ++i) {
             const bool last = i + 2 == count;
             const Pair pair{parts[i], parts[i + 1], last ? end_ : parts[i + 2].from, last ? nullptr : &parts[i + 2]};
-            offer(i, merged(pair, false), pair, 1);
-            offer(i, merged(pair, true), pair, sloped);
-            // Always allowed, and seldom good: what the curve's end takes, from here on.
-            if (last) offer(i, merged({parts[i], parts[i + 1], infinite, nullptr}, false), pair, 1);
+            offer(i, merged(pair, Slope::late), pair, 1);
+            offer(i, merged(pair, Slope::early), pair, sloped);
+            if (last) offer(i, merged(pair, Slope::flat), pair, 1);  // always allowed, and seldom good
         }
+        CHECK(std::isfinite(least), "The last two parts of a curve may always be merged");
         parts[at] = best;
         std::copy(parts.begin() + static_cast<std::ptrdiff_t>(at) + 2, parts.begin() + static_cast<std::ptrdiff_t>(count),
                   parts.begin() + static_cast<std::ptrdiff_t>(at) + 1);

@@ -1,5 +1,6 @@
-// The selectors that leave objects out: `greedy`, `static` and `reactive`. They know no groups: an object is a visible node
-// without visible children, and it is drawn in one of its own forms or not at all. For comparison only; no service runs them.
+// The selectors that leave objects out: `greedy`, `static` and `reactive`. They choose no groups: an object is a visible node
+// that preparation did not open, and it is drawn in one of its own forms or not at all. That is a leaf, or a cluster so far away
+// that its error is not seen. For comparison only; no service runs them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -42,15 +43,19 @@ void finish_dropping(const SelectInput& input, CutBuilder& builder, Budget& budg
         const prepare::Candidate& object = builder.candidate(c);
         const float error_rad = missing_error_rad(input, input.model->nodes[object.node].box);
         ++cut.dropped.count;
-        if (error_rad > cut.dropped.error_rad) cut.dropped = {cut.dropped.count, object.node, error_rad};
-        cut.worst_error_rad = std::max(cut.worst_error_rad, error_rad);
-        cut.worst_weighted_rad = std::max(cut.worst_weighted_rad, error_rad * object.importance);
+        cut.dropped.error_rad = std::max(cut.dropped.error_rad, error_rad);
+        if (!(error_rad * object.importance > cut.dropped.weighted_rad)) continue;
+        cut.dropped.weighted_rad = error_rad * object.importance;
+        cut.dropped.node = object.node;
     }
+    cut.worst_error_rad = std::max(cut.worst_error_rad, cut.dropped.error_rad);
+    cut.worst_weighted_rad = std::max(cut.worst_weighted_rad, cut.dropped.weighted_rad);
 }
 
 /// Funkhouser and Sequin 1993, as Maciel 1994, 2.2.2, has it: pairs of an object and one of its forms, the greatest value per us
-/// first, until the budget is spent. Of an object's pairs the finest that was taken counts. A pair that does not fit is passed
-/// over, and objects of which none fits are not drawn. Values per us that differ by less than 0.8 % count as equal.
+/// first, until the budget is spent. Of an object's pairs the finest that was taken counts. A pair that does not fit, or has no
+/// value, is passed over; objects of which none is taken are not drawn. Values per us that differ by less than 0.8 % count as
+/// equal.
 class Greedy final : public Selector {
 public:
     void run(const SelectInput& input, SelectState& state, Cut& cut) const override {

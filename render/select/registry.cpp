@@ -25,7 +25,8 @@ std::span<const Named> refused_selectors() {
     static const std::vector<Named> all = [] {
         std::vector<Named> names;
         for (const SelectorEntry& entry : dropping_selectors())
-            names.push_back({entry.name, "leaves visible objects out; only surefoot compare and surefoot accuracy try it"});
+            names.push_back(
+                {entry.name, "leaves visible objects out; only --selector of surefoot compare and surefoot accuracy takes it"});
         return names;
     }();
     return all;

@@ -31,8 +31,9 @@ struct CutItem {
 /// Visible objects that a cut leaves out. Only the selectors of dropping_selectors() do that.
 struct Dropped {
     std::uint32_t count = 0;
-    Index node = none;    ///< the one whose absence shows most
-    float error_rad = 0;  ///< the angle under which it would be seen
+    float error_rad = 0;     ///< the largest angle under which one would be seen
+    float weighted_rad = 0;  ///< the largest of these angles times importance
+    Index node = none;       ///< of weighted_rad
 };
 
 /// The chosen items, in candidate order. Legal: every visible leaf is covered exactly once, or counted as dropped.

@@ -5,7 +5,7 @@
 gallery_walk() { # LABEL OPTIONS...: measures, and leaves pictures in WORK/gallery-LABEL/pictures.csv
   local label=gallery-$1
   shift
-  measure "$label" "$surefoot" compare "$work/gallery.walk" --resource triangles --frames 100 --pictures 100 --rate 10 --size 640x480 \
+  measure "$label" "$surefoot" compare "$work/gallery.walk" --resource triangles --frames 100 --pictures 100 --rate 1.6667 --size 640x480 \
     --sky '#000000' --state "$work/no-table" "$@" -o "$work/$label" --json
 }
 
@@ -29,7 +29,7 @@ gallery_group() {
   gallery_walk budget --budget 200 --selector curve-budget || return 0
   keep gallery_triangles "$(gallery_rows budget curve-budget 'if (t > most) most = t } END { print most }')" --scene "gallery, 200 triangles"
   range=$(gallery_rows budget curve-budget 'if (snr + 0 == snr && snr < 1e9) { if (!n++ || snr < low) low = snr; if (n == 1 || snr > high) high = snr } } END { printf "%.1f to %.1f", low, high }')
-  keep gallery_filled "$(gallery_rows budget curve-budget 'if (full > 200) { ++n; if (t >= 190) ++filled } } END { printf "%.1f", 100 * filled / n }')" \
+  keep gallery_filled "$(gallery_rows budget curve-budget 'if (full > 200) { ++n; if (t >= 190) ++filled } } END { if (n) printf "%.1f", 100 * filled / n }')" \
     --scene "gallery, 200 triangles" --note "SNR $range dB." \
     --why "Objects out of view that may come into it share the budget, and the cow has no level between 168 and 198 triangles: its next ones are no nearer." \
     --next "Spend what is left over by value, as a guaranteed accuracy does."

@@ -196,6 +196,19 @@ TEST(Curve, ALongStaircaseStaysNearWhatItTakes) {
     EXPECT_LT(most_at_once, 1.1) << "of " << most << " one by one";
 }
 
+TEST(Curve, ResourcesThatFallAsOthersRiseStillMerge) {
+    Curve curve = Curve::of_line(1000, 4000, {2000, 0, 0, 0}, {1, 0, 0, 0});
+    for (int level = 30; level-- > 0;) {  // by turns submit and raster time; their sum hardly rises
+        const double takes = 1000 + level;
+        const Resources form = level % 2 == 0 ? Resources{takes, 0, 0, 0} : Resources{0, takes, 0, 0};
+        const Curve next = cheaper_of(curve, Curve::of_form(10 + level, form), {1, 1, 0, 0});
+        for (int below = 0; below < 30; ++below)
+            EXPECT_GE(weighed(next.at(10 + below), {1, 1, 0, 0}), (below >= level ? 1000 + below : 1000 + level) * (1 - 1e-12));
+        EXPECT_GE(next.at(2000).submit_us, 4000 * (1 - 1e-12));
+        curve = next;
+    }
+}
+
 TEST(Curve, OfManyFormsIsTheCheapestOfThem) {
     Random random(31);
     for (int run = 0; run < 300; ++run) {

@@ -70,7 +70,9 @@ Result<void> add_shares(const FindShares& find_shares, const Progress& progress,
     std::vector<std::string> names;
     for (ComparedSelector& s : c.selectors) {
         const auto entry = select::selector_named(s.selector);
-        s.goes_by_budget = entry.ok() && (*entry)->goes_by == select::GoesBy::budget;
+        const bool drops =
+            find_named(select::dropping_selectors(), s.selector) != nullptr;  // it owes no floor: no share of a cut
+        s.goes_by_budget = entry.ok() && (*entry)->goes_by == select::GoesBy::budget && !drops;
         if (s.goes_by_budget) names.push_back(s.selector);
     }
     if (find_shares == nullptr || names.empty()) return {};
@@ -192,8 +194,10 @@ nlohmann::ordered_json triangles_json(const ComparedSelector& s) {
 
 std::string triangles_line(const ComparedSelector& s) {
     const TriangleFigures figures = triangle_figures(s);
-    return fmt::format("{}: {} to {} triangles a picture, SNR {:.1f} to {:.1f} dB\n", s.selector, figures.min, figures.max,
-                       figures.snr_min_db, figures.snr_max_db);
+    const std::string snr = figures.snr_min_db <= figures.snr_max_db
+                                ? fmt::format("SNR {:.1f} to {:.1f} dB", figures.snr_min_db, figures.snr_max_db)
+                                : std::string("all equal to full detail");
+    return fmt::format("{}: {} to {} triangles a picture, {}\n", s.selector, figures.min, figures.max, snr);
 }
 
 }  // namespace
@@ -249,6 +253,7 @@ std::string compare_table(const Comparison& c) {
         c.in_triangles ? fmt::format("{:.0f} triangles", std::floor(c.budget_ms * 1e3)) : fmt::format("{:.1f} ms", c.budget_ms),
         c.pictures, c.rounds, c.rounds == 1 ? "round" : "rounds, medians");
     const auto text = [](double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); };
+    const auto ms = [&](double value) { return c.in_triangles ? "-" : text(value, 1); };  // no time was spent
     const auto accuracy = [&](double value) { return std::isfinite(value) ? text(value, 1) : "exact"; };
     std::size_t name_columns = 18;
     for (const ComparedSelector& s : c.selectors) name_columns = std::clamp(s.selector.size(), name_columns, std::size_t{24});
@@ -281,9 +286,9 @@ std::string compare_table(const Comparison& c) {
                                   {"floor", -7}});
     out += frames.heading() + "\n";
     for (const ComparedSelector& s : c.selectors)
-        out += frames.row({s.selector, text(s.frame_ms_p50, 1), text(s.frame_ms_p99, 1), text(s.unused_ms, 1),
-                           text(s.switches_per_frame, 2), value_text(c, s), std::to_string(s.frames), std::to_string(s.misses),
-                           std::to_string(s.coarse_frames), std::to_string(s.floor_frames)}) +
+        out += frames.row({s.selector, ms(s.frame_ms_p50), ms(s.frame_ms_p99), ms(s.unused_ms), text(s.switches_per_frame, 2),
+                           value_text(c, s), std::to_string(s.frames), std::to_string(s.misses), std::to_string(s.coarse_frames),
+                           std::to_string(s.floor_frames)}) +
                "\n";
     for (const ComparedSelector& s : c.selectors)
         if (c.in_triangles && !s.pictures.empty()) out += triangles_line(s);

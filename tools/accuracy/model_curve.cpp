@@ -18,6 +18,11 @@ namespace {
 
 constexpr model::Resources triangles_alone{0, 0, 1, 0};
 
+std::size_t inexact(const std::vector<model::CurvePoint>& points) {
+    return static_cast<std::size_t>(
+        std::count_if(points.begin(), points.end(), [](const model::CurvePoint& p) { return std::isfinite(p.accuracy); }));
+}
+
 model::FittedLine line_of(const std::vector<model::CurvePoint>& points) {
     std::vector<double> accuracy, triangles;
     for (const model::CurvePoint& p : points) {
@@ -56,8 +61,7 @@ Result<ModelCurve> find_curve(const std::string& file, const model::Model& model
     of.diameter_m = model::diameter_of(node);
     of.points = model::form_points(model, n);
     of.curve = model::relative_curve(model, n, triangles_alone);
-    if (std::count_if(of.points.begin(), of.points.end(), [](const auto& p) { return std::isfinite(p.accuracy); }) >= 3)
-        of.line = line_of(of.points);
+    if (inexact(of.points) >= 3) of.line = line_of(of.points);
     return of;
 }
 
@@ -72,30 +76,30 @@ std::string curve_json(const ModelCurve& of) {
                          {"triangles", rounded(part.base.triangles)},
                          {"per_accuracy", part.slope.triangles},
                          {"texels", rounded(part.base.texels)}});
-    const Json json = {
-        {"file", of.file},
-        {"node", of.index},
-        {"name", of.node},
-        {"diameter_m", rounded(of.diameter_m)},
-        {"forms", points},
-        {"curve", parts},
-        {"line",
-         {{"triangles", rounded(of.line.base)}, {"per_accuracy", rounded(of.line.slope)}, {"r_squared", of.line.r_squared}}}};
+    Json line = nullptr;  // too few forms
+    if (of.line.r_squared > 0)
+        line = {{"triangles", rounded(of.line.base)}, {"per_accuracy", rounded(of.line.slope)}, {"r_squared", of.line.r_squared}};
+    const Json json = {{"file", of.file}, {"node", of.index}, {"name", of.node}, {"diameter_m", rounded(of.diameter_m)},
+                       {"forms", points}, {"curve", parts},   {"line", line}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string curve_table(const ModelCurve& of) {
-    std::string out = fmt::format("{}, node {} ({}): {:.4g} m across\n  accuracy from   triangles   each accuracy more\n",
-                                  of.file, of.index, of.node, of.diameter_m);
-    for (const model::CurvePart& part : of.curve.parts()) {
-        const std::string from = part.from < 1e300 ? fmt::format("{:.2f}", part.from) : "exact";
+    std::string out = fmt::format("{}, node {} ({}): {:.4g} m across\n", of.file, of.index, of.node, of.diameter_m);
+    if (!of.curve.known()) return out + "It has no curve: it has no size, or something below it has none.\n";
+    out += "    accuracy up to   triangles   each accuracy more\n";
+    const auto parts = of.curve.parts();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const model::CurvePart& part = parts[i];
+        const double to = i + 1 < parts.size() ? parts[i + 1].from : of.curve.end();
         const double begins =
             part.slope.triangles != 0 ? part.base.triangles + part.slope.triangles * part.from : part.base.triangles;
-        out += fmt::format("{:>15}{:>12.0f}{:>21.3f}\n", from, begins, part.slope.triangles);
+        out += fmt::format("{:>18}{:>12.0f}{:>21.3f}\n", to < 1e300 ? fmt::format("{:.2f}", to) : "exact", begins,
+                           part.slope.triangles);
     }
     if (of.line.r_squared > 0)
-        out += fmt::format("line through its {} forms: {:.1f} + {:.2f} triangles a unit of accuracy, R^2 {:.4f}\n",
-                           of.points.size(), of.line.base, of.line.slope, of.line.r_squared);
+        out += fmt::format("line through {} forms that are not exact: {:.1f} + {:.2f} triangles a unit of accuracy, R^2 {:.4f}\n",
+                           inexact(of.points), of.line.base, of.line.slope, of.line.r_squared);
     return out;
 }
 
@@ -115,9 +119,14 @@ std::string curve_svg(const ModelCurve& of) {
     out += report::text_at(area.right, height - 8, "note end", "relative accuracy: size over error");
     out += report::text_at(area.left, 22, "title", title);
     if (of.line.r_squared > 0) {
-        const double from = std::max(0.0, -of.line.base / std::max(of.line.slope, 1e-12));
-        out += report::line_between(x(from), y(of.line.base + of.line.slope * from), x(last),
-                                    y(of.line.base + of.line.slope * last), "budget");
+        double from = last, to = 0;  // where it was fitted
+        for (const model::CurvePoint& p : of.points) {
+            if (!std::isfinite(p.accuracy)) continue;
+            from = std::min(from, p.accuracy);
+            to = std::max(to, p.accuracy);
+        }
+        const auto on_line = [&](double accuracy) { return y(std::max(0.0, of.line.base + of.line.slope * accuracy)); };
+        out += report::line_between(x(from), on_line(from), x(to), on_line(to), "budget");
         out += report::text_at(area.right - 6, 22, "note end",
                                fmt::format("dashed: least-squares line, R² {:.4f}", of.line.r_squared));
     }
@@ -127,6 +136,10 @@ std::string curve_svg(const ModelCurve& of) {
         const double to = std::min(last, i + 1 < parts.size() ? parts[i + 1].from : last), from = i == 0 ? 0 : parts[i].from;
         steps.push_back({x(from), y(of.curve.at(from).triangles), i == 0});
         steps.push_back({x(to), y(of.curve.at(std::nextafter(to, 0.0)).triangles), false});
+    }
+    if (steps.empty() && of.curve.known()) {  // full detail alone
+        steps.push_back({x(0), y(of.curve.at(last).triangles), true});
+        steps.push_back({x(last), y(of.curve.at(last).triangles), false});
     }
     out += report::polyline(steps, "line");
     for (const model::CurvePoint& p : of.points)

@@ -47,8 +47,12 @@ accuracy::FindShares find_shares(const CompareArguments& a) {
 constexpr std::array of_all = {"rasterisers", "width",   "height",  "rate_hz", "backend",
                                "clock",       "shift_x", "shift_y", "lift_m",  "control"};
 
+/// With --resource triangles, these are the same for all walks too.
+constexpr std::array of_triangles = {"budget_ms", "resolution",    "filter",   "hysteresis",
+                                     "reserve",   "rest_after_ms", "slice_us", "in_frame_check"};
+
 /// A setting that is checked as an option of the command line would be.
-Result<SettingArguments::Setting> setting_of(const std::string& pair) {
+Result<SettingArguments::Setting> setting_of(const std::string& pair, bool in_triangles) {
     const std::size_t equals = pair.find('=');
     if (equals == std::string::npos || equals == 0)
         return Error{"--with " + pair, "This is no KEY=VALUE", "Write for example --with resolution=100", ErrorKind::misuse};
@@ -59,9 +63,12 @@ Result<SettingArguments::Setting> setting_of(const std::string& pair) {
     if (entry->kind == config::Kind::file)
         return Error{"--with " + pair, fmt::format("{} names a file, and no way of walking", entry->key),
                      "Name it by its own option", ErrorKind::misuse};
-    if (std::find(of_all.begin(), of_all.end(), entry->key) != of_all.end())
-        return Error{"--with " + pair, fmt::format("{} is the same for all walks of a comparison", entry->key),
-                     "Set it by its own option, and compare twice", ErrorKind::misuse};
+    const bool fixed = in_triangles && std::find(of_triangles.begin(), of_triangles.end(), entry->key) != of_triangles.end();
+    if (fixed || std::find(of_all.begin(), of_all.end(), entry->key) != of_all.end())
+        return Error{
+            "--with " + pair,
+            fmt::format("{} is the same for all walks of {}", entry->key, fixed ? "--resource triangles" : "a comparison"),
+            fixed ? "Remove it" : "Set it by its own option, and compare twice", ErrorKind::misuse};
     return setting;
 }
 
@@ -72,7 +79,7 @@ Result<walk::WalkRequest> walk_with(const CompareArguments& a, const std::string
     settings.no_fifo = false;
     for (const std::string_view pair : split(text, ",")) {
         if (pair.empty()) continue;
-        auto setting = setting_of(std::string(pair));
+        auto setting = setting_of(std::string(pair), a.request.in_triangles);
         if (!setting) return setting.error();
         settings.values.push_back(std::move(*setting));
     }
@@ -87,15 +94,22 @@ Result<walk::WalkRequest> walk_with(const CompareArguments& a, const std::string
 
 /// --budget is a number of triangles: the time that these are given replaces it.
 Result<void> take_triangles(CompareArguments& a) {
-    constexpr double max_triangles = 999'999;
+    constexpr std::uint32_t max_triangles = 999'999;
     a.value_frames = 0;
     auto& values = a.settings->values;
-    const auto budget = std::find_if(values.begin(), values.end(), [](const auto& s) { return s.key == "budget_ms"; });
-    const auto number = budget == values.end() ? std::nullopt : number_in<double>(budget->text);
-    if (!number || !(*number >= 1 && *number <= max_triangles))
+    const auto given = [&](std::string_view key) {
+        return std::find_if(values.begin(), values.end(), [key](const auto& s) { return s.key == key; });
+    };
+    if (const auto clock = given("clock"); clock != values.end() && clock->text == rt::name_of(rt::ClockKind::real))
+        return Error{"--clock real", "Triangles are counted on the virtual clock", "Remove --clock, or --resource triangles",
+                     ErrorKind::misuse};
+    const auto budget = given("budget_ms");
+    const auto number = budget == values.end() ? std::nullopt : number_in<std::uint32_t>(budget->text);
+    if (!number || *number < 1 || *number > max_triangles)
         return Error{"--resource triangles", "The budget is no number of triangles",
-                     fmt::format("Add --budget N, with N from 1 to {:.0f}", max_triangles), ErrorKind::misuse};
-    budget->text = fmt::format("{}", accuracy::triangle_budget_ms(*number));
+                     fmt::format("Add --budget N, with a whole number from 1 to {}", max_triangles), ErrorKind::misuse};
+    budget->text = fmt::format("{:.4f}", accuracy::triangle_budget_ms(*number));
+    if (given("late") == values.end()) values.push_back({"--late", "late", "float"});  // no frame is too short for its triangles
     return {};
 }
 
@@ -103,7 +117,6 @@ Result<void> take_triangles(CompareArguments& a) {
 Result<void> fill_request(CompareArguments& a) {
     if (a.request.walk.frames > 0 && a.request.walk.seconds > 0)
         return Error{"--seconds", "--seconds and --frames both set the length", "Remove one of them", ErrorKind::misuse};
-    if (auto ok = check_benefit(a.request.walk.benefit, a.request.selectors); !ok) return ok;
     a.request.in_triangles = a.resource == resources[1];
     if (a.request.in_triangles)
         if (auto ok = take_triangles(a); !ok) return ok;
@@ -117,6 +130,12 @@ Result<void> fill_request(CompareArguments& a) {
     }
     a.request.walk = std::move(*base);
     if (a.with.empty()) a.request.walk.resolution_pct = 100;  // forms are compared
+    std::vector<std::string> selectors = a.request.selectors;
+    if (!a.with.empty()) {
+        selectors.clear();
+        for (const accuracy::NamedWalk& named : a.request.settings) selectors.push_back(named.walk.selector);
+    }
+    if (auto ok = check_benefit(a.request.walk.benefit, selectors); !ok) return ok;
     if (!a.request.in_triangles) return {};
     for (accuracy::NamedWalk& named : a.request.settings) accuracy::spend_triangles(named.walk);
     accuracy::spend_triangles(a.request.walk);

@@ -167,6 +167,9 @@ int run_curve(const InspectArguments& a) {
 int run_inspect(InspectArguments& a, const Context& context) {
     if (!a.map.empty()) return run_map(a);
     if (!a.curve.empty()) return run_curve(a);
+    if (!a.request.name.empty() && !a.pictures)
+        return misuse({"--node " + a.request.name, "This option has an effect with --pictures or --curve alone",
+                       "Add one of them, or remove it", ErrorKind::misuse});
     if (a.pictures) return run_pictures(a, context);
     model::WalkFileInfo info;
     auto m = model::read_walk(a.file, &info);
@@ -245,6 +248,7 @@ void add_inspect(CLI::App& app, Context& context) {
     c->add_option(
          "--curve", a->curve,
          "SVG file for an accuracy curve instead: the triangles that each relative accuracy takes, of the model or of --node")
+        ->check(names_something())
         ->excludes(tree)
         ->excludes(pictures)
         ->excludes(map);

@@ -87,7 +87,7 @@ Result<void> check_benefit(select::BenefitModel model, std::span<const std::stri
     };
     if (model == select::BenefitModel::surefoot || std::any_of(selectors.begin(), selectors.end(), goes_by_it)) return {};
     return Error{"--benefit", "None of the compared selectors goes by a benefit that can be chosen",
-                 "Add --selector best-first-1994 two-stage-1994", ErrorKind::misuse};
+                 "Compare best-first-1994 or two-stage-1994", ErrorKind::misuse};
 }
 
 CLI::Validator names_something() {

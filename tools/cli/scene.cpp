@@ -29,12 +29,13 @@ int run_scene(const SceneArguments& a, const Context& context) {
         return misuse({"--cow", "Only the gallery has a place for a statue",
                        "Remove the option, or write `surefoot scene gallery`", ErrorKind::misuse});
     auto scene = a.statue.empty() ? scenes::generate(a.name, a.scale, a.seed)
-                                  : scenes::generate_gallery(a.scale, a.statue, terminal_progress(context));
+                                  : scenes::generate_gallery(a.scale, a.seed, a.statue, terminal_progress(context));
     end_progress(context);
     if (!scene) return fail(scene.error());
     if (context.stop->load())
         return fail({a.out, "The work was stopped by the user, and nothing was written", "", ErrorKind::stopped});
     if (auto written = scenes::write_scene(a.out, *scene); !written) return fail(written.error());
+    for (const importer::Damage& damage : scene->scene.damage) notify(damage.file + ": " + damage.what + ".");
     const std::uint64_t triangles = scene->scene.triangles();
     if (a.json) {
         print_json({{"scene", a.name},

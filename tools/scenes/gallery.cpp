@@ -1,4 +1,4 @@
-// Spheres and cylinder of the gallery, its knot, the place of the statue, and the path of 10 s past them.
+// Spheres and cylinder of the gallery, its knot, the place of the statue, and the path of a minute past them.
 #include "tools/scenes/gallery.hpp"
 
 #include <algorithm>
@@ -6,13 +6,14 @@
 #include <cmath>
 #include <vector>
 
+#include "rt/base/random.hpp"
 #include "tools/scenes/path_maker.hpp"
 #include "tools/scenes/scene_maker.hpp"
 
 namespace surefoot::scenes {
 namespace {
 
-constexpr double eye_m = 0.6, path_s = 10, statue_length_m = 1.2;
+constexpr double eye_m = 0.6, path_s = 60, statue_length_m = 1.2;
 constexpr dvec3 first_sphere(0.7, eye_m, 0.5), second_sphere(3.3, eye_m, 1.2), cylinder(0.8, eye_m, 2.1),
     statue_at(2.6, eye_m, 3.0);
 
@@ -63,33 +64,39 @@ void place_statue(importer::Scene& statue) {
 
 /// Each object comes into view alone, with nothing in view between them.
 Path gallery_path() {
-    const std::array<Waypoint, 11> way{Waypoint{{1.9, eye_m, -0.9}, first_sphere, false, 0.3},
+    const std::array<Waypoint, 11> way{Waypoint{{1.9, eye_m, -0.9}, first_sphere, false, 2},
                                        Waypoint{{2.0, eye_m, -0.6}, first_sphere, false, 0.0},
                                        Waypoint{{2.0, eye_m, -0.3}, {2.0, eye_m, -3.0}, false, 0.0},
                                        Waypoint{{2.1, eye_m, 0.1}, {4.2, eye_m, 0.2}, false, 0.0},
-                                       Waypoint{{2.1, eye_m, 0.5}, second_sphere, false, 0.3},
+                                       Waypoint{{2.1, eye_m, 0.5}, second_sphere, false, 2},
                                        Waypoint{{2.0, eye_m, 0.9}, second_sphere, false, 0.0},
                                        Waypoint{{1.9, eye_m, 1.2}, {2.0, eye_m, -3.0}, false, 0.0},
-                                       Waypoint{{1.8, eye_m, 1.4}, cylinder, false, 0.3},
+                                       Waypoint{{1.8, eye_m, 1.4}, cylinder, false, 2},
                                        Waypoint{{1.8, eye_m, 1.7}, cylinder, false, 0.0},
                                        Waypoint{{1.9, eye_m, 1.8}, statue_at, false, 0.0},
-                                       Waypoint{{2.3, eye_m, 2.1}, statue_at, false, 0.5}};
+                                       Waypoint{{2.3, eye_m, 2.1}, statue_at, false, 3}};
     return make_path(way, path_s);
 }
 
 }  // namespace
 
-GeneratedScene make_gallery(double scale, importer::Scene statue) {
+GeneratedScene make_gallery(double scale, std::uint64_t seed, importer::Scene statue) {
     SceneMaker maker;
     const Index material = maker.material("plaster");
-    const int sides = std::clamp(2 * static_cast<int>(std::lround(32 * std::sqrt(scale))), 8, 512);
+    const int sides = std::max(8, 4 * static_cast<int>(std::lround(16 * std::sqrt(scale))));
+    const int drum_sides = std::max(12, static_cast<int>(std::lround(128 * scale)));
+    Random random(seed);
+    const auto placed = [&](const dvec3& at) {
+        const dvec3 aside(random.range(-0.05, 0.05), 0, random.range(-0.05, 0.05));
+        return move(at + aside) * turn_y(random.range(0, 2 * pi));
+    };
     const Index sphere_mesh = maker.mesh(ball(sides));
     for (importer::Primitive& part : maker.scene.meshes[sphere_mesh].primitives) part.material = material;
-    maker.node("first sphere", importer::none, sphere_mesh, move(first_sphere));
-    maker.node("second sphere", importer::none, sphere_mesh, move(second_sphere));
-    const Index drum_mesh = maker.mesh(drum(2 * sides));
+    maker.node("first sphere", importer::none, sphere_mesh, placed(first_sphere));
+    maker.node("second sphere", importer::none, sphere_mesh, placed(second_sphere));
+    const Index drum_mesh = maker.mesh(drum(drum_sides));
     for (importer::Primitive& part : maker.scene.meshes[drum_mesh].primitives) part.material = material;
-    maker.node("cylinder", importer::none, drum_mesh, move(cylinder));
+    maker.node("cylinder", importer::none, drum_mesh, placed(cylinder));
     if (statue.nodes.empty()) {
         const Index knot_mesh = maker.mesh(knot());
         for (importer::Primitive& part : maker.scene.meshes[knot_mesh].primitives) part.material = material;

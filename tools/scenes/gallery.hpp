@@ -6,7 +6,8 @@
 
 namespace surefoot::scenes {
 
-/// `scale` multiplies the triangles of spheres and cylinder. statue: placed at the end of the room, 1.2 m long; empty: a knot.
-GeneratedScene make_gallery(double scale, importer::Scene statue);
+/// `scale` multiplies the triangles of spheres and cylinder; `seed` moves them by up to 5 cm. statue: placed at the end of the
+/// room, 1.2 m long; empty: a knot.
+GeneratedScene make_gallery(double scale, std::uint64_t seed, importer::Scene statue);
 
 }  // namespace surefoot::scenes

@@ -26,7 +26,7 @@ struct Maker {
 
 constexpr std::array makers{Maker{"forest", make_forest}, Maker{"room", make_room}, Maker{"town", make_town},
                             Maker{"garden", make_garden},
-                            Maker{gallery_name, [](double scale, std::uint64_t) { return make_gallery(scale, {}); }}};
+                            Maker{gallery_name, [](double scale, std::uint64_t seed) { return make_gallery(scale, seed, {}); }}};
 
 struct Writer {
     std::string_view name;  ///< the ending of its files
@@ -62,14 +62,16 @@ Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64
                  ErrorKind::not_found};
 }
 
-Result<GeneratedScene> generate_gallery(double scale, const std::string& statue_file, const Progress& progress) {
+Result<GeneratedScene> generate_gallery(double scale, std::uint64_t seed, const std::string& statue_file,
+                                        const Progress& progress) {
     auto statue = importer::import_files({statue_file}, progress);
     if (!statue) return statue.error();
     if (!(scale >= min_scale && scale <= max_scale))
         return Error{std::string(gallery_name), fmt::format("The scale {} is out of range", scale),
                      fmt::format("Choose {} to {}", min_scale, max_scale), ErrorKind::misuse};
-    GeneratedScene made = make_gallery(scale, std::move(*statue));
-    made.scene.sources.push_back(fmt::format("generated: {} at scale {}, with {}", gallery_name, scale, statue_file));
+    GeneratedScene made = make_gallery(scale, seed, std::move(*statue));
+    made.scene.sources.push_back(
+        fmt::format("generated: {} at scale {}, seed {}, with {}", gallery_name, scale, seed, statue_file));
     return made;
 }
 

@@ -33,7 +33,8 @@ constexpr double min_scale = 0.01, max_scale = 200.0;
 Result<GeneratedScene> generate(std::string_view name, double scale, std::uint64_t seed);
 
 /// The gallery with another statue, of a model file that the importer reads. Errors: of the importer, scale out of range.
-Result<GeneratedScene> generate_gallery(double scale, const std::string& statue_file, const Progress& progress);
+Result<GeneratedScene> generate_gallery(double scale, std::uint64_t seed, const std::string& statue_file,
+                                        const Progress& progress);
 
 /// ".glb, .ostf".
 std::string written_endings();
