@@ -229,8 +229,8 @@ std::vector<Tessellation> all_tessellations(const Round& shape, std::size_t belo
         plan.error_m = std::max(sag * shape.radius, shape.sag_m) + 2 * tolerance * shape.radius;
         if (plan.triangles() < below) all.push_back(plan);
     };
-    const int most = static_cast<int>(below) / 2;
-    for (int sides = 3; sides <= std::min(most, 512); ++sides) {
+    const int max_sides = static_cast<int>(below) / 2;
+    for (int sides = 3; sides <= std::min(max_sides, 512); ++sides) {
         if (shape.half_height > 0) {
             add({sides, 0, 0}, 1 - std::cos(pi / sides));
             continue;

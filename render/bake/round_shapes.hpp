@@ -8,10 +8,11 @@
 
 namespace surefoot::bake {
 
-/// Levels from fine to coarse, full detail left out, each of at most `ratio` times the triangles of the one before, down to
-/// `smallest`; empty: the geometry is no whole sphere, and no whole cylinder along an axis of its frame, of one material and one
-/// colour, without a picture, with the normals of its shape. Their vertices are added to the geometry. Errors bound the two-sided distance to it: both surfaces
-/// have their vertices on one round shape, and lie within the larger of two sags of it.
+/// Levels from fine to coarse, full detail left out. Each has at most `ratio` times the triangles of the one before, down to
+/// `smallest`. Their vertices are added to the geometry. Empty: it is no whole sphere, and no whole cylinder along an axis of its
+/// frame. Round shapes have one material and one colour, no picture, and the normals of their shape.
+/// Errors bound the two-sided distance to the geometry. Both have their vertices on one shape, and lie within the larger of two
+/// sags of it.
 std::vector<Level> round_levels(Geometry& geometry, const ChainOptions& options);
 
 }  // namespace surefoot::bake

@@ -111,16 +111,16 @@ double raised_by(const CurvePart& part, const Pair& pair, const Resources& weigh
     if (weighed(part.slope, weights) < 0) return infinite;
     const double ends = weighed(value(part, pair.to), weights);
     if (pair.next != nullptr && ends > weighed(value(*pair.next, pair.to), weights) * (1 + 1e-13)) return infinite;
-    double most = std::max(pair.first.raised, pair.second.raised);
+    double max_raised = std::max(pair.first.raised, pair.second.raised);
     const auto compare = [&](const CurvePart& whole, double accuracy) {
         const double was = weighed(value(whole, accuracy), weights), is = weighed(value(part, accuracy), weights);
-        most = std::max(most, whole.raised * is / std::max(was, std::numeric_limits<double>::min()));
+        max_raised = std::max(max_raised, whole.raised * is / std::max(was, std::numeric_limits<double>::min()));
     };
     compare(pair.first, pair.first.from);
     compare(pair.first, pair.second.from);
     compare(pair.second, pair.second.from);
     compare(pair.second, pair.to);
-    return most;
+    return max_raised;
 }
 
 }  // namespace
@@ -215,13 +215,13 @@ Curve CurveParts::compacted(const Resources& weights) const {
     while (count > Curve::max_parts) {
         std::size_t at = 0;
         CurvePart best;
-        double least = infinite;
+        double min_key = infinite;
         const auto offer = [&](std::size_t i, CurvePart part, const Pair& pair, double preference) {
             part.raised = raised_by(part, pair, weights);
-            if (!(part.raised * preference < least)) return;
+            if (!(part.raised * preference < min_key)) return;
             at = i;
             best = part;
-            least = part.raised * preference;
+            min_key = part.raised * preference;
         };
         constexpr double sloped = 0.97;  // a line joins the next part with less loss than a step
         for (std::size_t i = 0; i + 1 < count; ++i) {
@@ -231,7 +231,7 @@ Curve CurveParts::compacted(const Resources& weights) const {
             offer(i, merged(pair, Slope::early), pair, sloped);
             if (last) offer(i, merged(pair, Slope::flat), pair, 1);  // always allowed, and seldom good
         }
-        CHECK(std::isfinite(least), "The last two parts of a curve may always be merged");
+        CHECK(std::isfinite(min_key), "The last two parts of a curve may always be merged");
         parts[at] = best;
         std::copy(parts.begin() + static_cast<std::ptrdiff_t>(at) + 2, parts.begin() + static_cast<std::ptrdiff_t>(count),
                   parts.begin() + static_cast<std::ptrdiff_t>(at) + 1);

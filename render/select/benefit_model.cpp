@@ -40,6 +40,11 @@ std::span<const BenefitModelEntry> benefit_models() {
     return all;
 }
 
+std::span<const std::string_view> searches_by_benefit() {
+    static constexpr std::array<std::string_view, 2> names = {"best-first-1994", "two-stage-1994"};
+    return names;
+}
+
 Result<BenefitModel> benefit_model_named(std::string_view name) {
     if (const BenefitModelEntry* entry = find_named(benefit_models(), name)) return entry->model;
     return Error{"benefit model '" + std::string(name) + "'", "There is no such model of the benefit",

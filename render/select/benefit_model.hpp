@@ -20,6 +20,8 @@ struct BenefitModelEntry {
 constexpr std::string_view usual_benefit_model = "surefoot";
 
 std::span<const BenefitModelEntry> benefit_models();
+/// The selectors that go by SelectInput::benefit.
+std::span<const std::string_view> searches_by_benefit();
 /// An unknown name is an Error that lists the known ones.
 Result<BenefitModel> benefit_model_named(std::string_view name);
 

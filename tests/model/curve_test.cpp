@@ -187,13 +187,13 @@ TEST(Curve, ALongStaircaseStaysNearWhatItTakes) {
     }
     const Curve at_once = curve_of_forms(forms, {0, 0, 1, 0});
     EXPECT_EQ(at_once.parts().size(), Curve::max_parts);
-    double most_at_once = 1;
+    double max_at_once = 1;
     for (std::size_t i = 0; i < forms.size(); i += 2) {
         const double takes = forms[i].takes.triangles;
-        most_at_once = std::max(most_at_once, at_once.at(forms[i].accuracy).triangles / takes);
+        max_at_once = std::max(max_at_once, at_once.at(forms[i].accuracy).triangles / takes);
         EXPECT_GE(at_once.at(forms[i].accuracy).triangles, takes * (1 - 1e-12));
     }
-    EXPECT_LT(most_at_once, 1.1) << "of " << most << " one by one";
+    EXPECT_LT(max_at_once, 1.1) << "of " << most << " one by one";
 }
 
 TEST(Curve, ResourcesThatFallAsOthersRiseStillMerge) {
@@ -265,12 +265,12 @@ TEST(Curve, IsUnknownWhereAFigureIsNone) {
 }
 
 TEST(Curve, ALineIsFittedByLeastSquares) {
-    const std::vector<double> accuracy{1, 2, 3, 4, infinity}, line{5, 7, 9, 11, 99}, bent{1, 0, 0, 1, 99};
+    const std::vector<double> accuracy{1, 2, 3, 4, infinity}, line{5, 7, 9, 11, 99}, curved{1, 0, 0, 1, 99};
     const FittedLine fit = fit_line(accuracy, line);
     EXPECT_DOUBLE_EQ(fit.slope, 2);
     EXPECT_DOUBLE_EQ(fit.base, 3);
     EXPECT_DOUBLE_EQ(fit.r_squared, 1);
-    EXPECT_NEAR(fit_line(accuracy, bent).r_squared, 0, 1e-12);
+    EXPECT_NEAR(fit_line(accuracy, curved).r_squared, 0, 1e-12);
     EXPECT_EQ(fit_line({}, {}).slope, 0);
 }
 

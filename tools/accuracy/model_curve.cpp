@@ -107,11 +107,11 @@ std::string curve_svg(const ModelCurve& of) {
     constexpr double width = 720, height = 420;
     const report::PlotArea area{64, 40, width - 24, height - 44};
     const double last = last_accuracy(of);
-    double most = of.curve.at(last).triangles;
+    double max_takes = of.curve.at(last).triangles;
     for (const model::CurvePoint& p : of.points)
-        if (std::isfinite(p.accuracy)) most = std::max(most, p.takes.triangles);
+        if (std::isfinite(p.accuracy)) max_takes = std::max(max_takes, p.takes.triangles);
     const report::Scale x{0, report::nice_ceiling(last), area.left, area.right, false};
-    const report::Scale y{0, report::nice_ceiling(std::max(1.0, most)), area.bottom, area.top, false};
+    const report::Scale y{0, report::nice_ceiling(std::max(1.0, max_takes)), area.bottom, area.top, false};
     const std::string title = fmt::format("What accuracy takes: {}", report::escaped(of.node));
     std::string out = report::open_chart(width, height, title);
     out += report::y_axis(area, y, report::nice_ticks(0, y.to, 6), "triangles") +

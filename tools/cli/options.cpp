@@ -10,7 +10,6 @@
 #include "config/values.hpp"
 #include "render/gl/backends.hpp"
 #include "rt/base/text.hpp"
-#include "tools/accuracy/page.hpp"
 #include "tools/walk/settings_request.hpp"
 
 namespace surefoot::cli {
@@ -65,7 +64,7 @@ CLI::Validator drawing_backend() {
 }
 
 void add_benefit(CLI::App* command, select::BenefitModel& model) {
-    std::string help = "Benefit of a cluster for best-first-1994 and two-stage-1994. ";
+    std::string help = fmt::format("Benefit of a cluster for {}. ", fmt::join(select::searches_by_benefit(), " and "));
     std::vector<std::string_view> names;
     for (const select::BenefitModelEntry& entry : select::benefit_models()) {
         help += fmt::format("{}{}: {}", names.empty() ? "" : "; ", entry.name, entry.help);
@@ -82,12 +81,13 @@ void add_benefit(CLI::App* command, select::BenefitModel& model) {
 }
 
 Result<void> check_benefit(select::BenefitModel model, std::span<const std::string> selectors) {
-    const auto goes_by_it = [](const std::string& name) {
-        return name.ends_with(accuracy::published_ending) && !name.starts_with("depth-first");
+    const auto searches = select::searches_by_benefit();
+    const auto goes_by_it = [&](const std::string& name) {
+        return std::find(searches.begin(), searches.end(), name) != searches.end();
     };
     if (model == select::BenefitModel::surefoot || std::any_of(selectors.begin(), selectors.end(), goes_by_it)) return {};
     return Error{"--benefit", "None of the compared selectors goes by a benefit that can be chosen",
-                 "Compare best-first-1994 or two-stage-1994", ErrorKind::misuse};
+                 fmt::format("Compare {}", fmt::join(searches, " or ")), ErrorKind::misuse};
 }
 
 CLI::Validator names_something() {
