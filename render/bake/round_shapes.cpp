@@ -16,7 +16,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846, tolerance = 1e-4;  // of the radius
 constexpr std::size_t min_triangles = 48;                        // below, nothing is gained
 
-/// A sphere, or a cylinder along `axis` of half its height.
+/// A sphere, or a cylinder along `axis`.
 struct Round {
     dvec3 centre{0.0};
     double radius = 0, half_height = 0;  ///< half_height 0: a sphere
@@ -44,7 +44,7 @@ double solid_angle(const Corners& c) {
     return 2 * std::atan2(volume, sum);
 }
 
-/// The least distance of a triangle from the middle; from its plane, which is no more, where that is below the triangle.
+/// How far a triangle's plane is from the middle. The triangle itself is no nearer.
 double plane_distance(const Corners& c) {
     const dvec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
     const double length = glm::length(normal);

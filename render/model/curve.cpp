@@ -111,10 +111,11 @@ double raised_by(const CurvePart& part, const Pair& pair, const Resources& weigh
     if (weighed(part.slope, weights) < 0) return infinite;
     const double ends = weighed(value(part, pair.to), weights);
     if (pair.next != nullptr && ends > weighed(value(*pair.next, pair.to), weights) * (1 + 1e-13)) return infinite;
+    constexpr double nothing = 1e-200;  // what takes nothing counts as this: any more is a great deal, and a number
     double max_raised = std::max(pair.first.raised, pair.second.raised);
     const auto compare = [&](const CurvePart& whole, double accuracy) {
         const double was = weighed(value(whole, accuracy), weights), is = weighed(value(part, accuracy), weights);
-        max_raised = std::max(max_raised, whole.raised * is / std::max(was, std::numeric_limits<double>::min()));
+        max_raised = std::max(max_raised, whole.raised * is / std::max(was, nothing));
     };
     compare(pair.first, pair.first.from);
     compare(pair.first, pair.second.from);

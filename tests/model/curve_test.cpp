@@ -127,14 +127,14 @@ void check_random_curve(std::uint64_t seed, int objects) {
     }
 }
 
-/// Each makes about 20 curves.
+/// Each makes 17 curves in the mean.
 void check_random_curves(std::uint64_t first, std::uint64_t count) {
     for (std::uint64_t seed = first; seed < first + count && !testing::Test::HasFatalFailure(); ++seed)
         check_random_curve(seed, 4);
 }
 
 TEST(Curve, SumsAndMinimaEqualPlainEvaluation) { check_random_curves(1, 2000); }
-TEST(Nightly, AMillionCurvesEqualPlainEvaluation) { check_random_curves(100'000, 50'000); }
+TEST(Nightly, AMillionCurvesEqualPlainEvaluation) { check_random_curves(100'000, 60'000); }
 
 TEST(Curve, ADiscreteFormServesUpToItsAccuracyAndIncludesIt) {
     const Curve coarse = Curve::of_form(10, {1, 0, 0, 0}), fine = Curve::of_form(50, {4, 0, 0, 0});
@@ -207,6 +207,17 @@ TEST(Curve, ResourcesThatFallAsOthersRiseStillMerge) {
         EXPECT_GE(next.at(2000).submit_us, 4000 * (1 - 1e-12));
         curve = next;
     }
+}
+
+TEST(Curve, FormsThatTakeNothingMergeToo) {
+    Curve curve;
+    for (int level = 0; level < 40; ++level) {  // nothing by the weights, but for the last ones
+        const double takes = level < 36 ? 0 : 1e6 * level;
+        curve = cheaper_of(curve, Curve::of_form(10 + level, {takes, 0, static_cast<double>(level), 0}), {1, 0, 0, 0});
+        curve = sum_of(curve, Curve::of_form(3.5 + level, {0, 0, 1, 0}), {1, 0, 0, 0});
+    }
+    EXPECT_LE(curve.parts().size(), Curve::max_parts);
+    EXPECT_GE(curve.at(49).submit_us, 39e6 * (1 - 1e-12));
 }
 
 TEST(Curve, OfManyFormsIsTheCheapestOfThem) {

@@ -202,6 +202,10 @@ std::string triangles_line(const ComparedSelector& s) {
 
 }  // namespace
 
+std::string budget_text(const Comparison& c) {
+    return c.in_triangles ? fmt::format("{} triangles", triangles_of_budget(c.budget_ms)) : fmt::format("{:.1f} ms", c.budget_ms);
+}
+
 std::string compare_json(const Comparison& c) {
     using report::rounded;
     using Json = nlohmann::ordered_json;
@@ -235,7 +239,7 @@ std::string compare_json(const Comparison& c) {
                        {"height", c.height},
                        {"rate_hz", rounded(c.rate_hz)},
                        {"budget_ms", c.in_triangles ? Json(nullptr) : rounded(c.budget_ms)},
-                       {"budget_triangles", c.in_triangles ? Json(std::floor(c.budget_ms * 1e3)) : Json(nullptr)},
+                       {"budget_triangles", c.in_triangles ? Json(triangles_of_budget(c.budget_ms)) : Json(nullptr)},
                        {"rounds", c.rounds},
                        {"pictures", c.pictures},
                        {"value_frames",
@@ -248,10 +252,8 @@ std::string compare_json(const Comparison& c) {
 }
 
 std::string compare_table(const Comparison& c) {
-    std::string out = fmt::format(
-        "{}, {}x{} at {:.4g} Hz, budget {}: {} pictures of a walk, {} {}\n", c.model, c.width, c.height, c.rate_hz,
-        c.in_triangles ? fmt::format("{:.0f} triangles", std::floor(c.budget_ms * 1e3)) : fmt::format("{:.1f} ms", c.budget_ms),
-        c.pictures, c.rounds, c.rounds == 1 ? "round" : "rounds, medians");
+    std::string out = fmt::format("{}, {}x{} at {:.4g} Hz, budget {}: {} pictures of a walk, {} {}\n", c.model, c.width, c.height,
+                                  c.rate_hz, budget_text(c), c.pictures, c.rounds, c.rounds == 1 ? "round" : "rounds, medians");
     const auto text = [](double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); };
     const auto ms = [&](double value) { return c.in_triangles ? "-" : text(value, 1); };  // no time was spent
     const auto accuracy = [&](double value) { return std::isfinite(value) ? text(value, 1) : "exact"; };

@@ -49,7 +49,7 @@ struct Comparison {
     std::string model, path, renderer, machine, uncalibrated;
     std::uint32_t width = 0, height = 0, rounds = 0, pictures = 0;
     double rate_hz = 0, budget_ms = 0;
-    bool in_triangles = false;                ///< CompareRequest::in_triangles
+    bool in_triangles = false;                ///< CompareRequest::in_triangles: budget_ms is triangle_budget_ms() of them
     bool of_settings = false;                 ///< CompareRequest::settings were compared
     ValueShares value;                        ///< frames 0: not compared, or none had anything to choose
     std::vector<ComparedSelector> selectors;  ///< in the order of the request
@@ -57,8 +57,9 @@ struct Comparison {
 
 /// Costs of one us a triangle, and nothing else: a budget of us is one of triangles.
 model::CostModel triangle_costs();
-/// The time that a walk with these costs may spend on as many triangles.
+/// The time that a walk with these costs may spend on as many triangles; and back.
 double triangle_budget_ms(double triangles);
+std::uint64_t triangles_of_budget(double budget_ms);
 /// Lets a walk spend triangles in place of time: by these costs, on the virtual clock, without correction, headroom or
 /// hysteresis.
 void spend_triangles(walk::WalkRequest& request);
@@ -80,8 +81,12 @@ std::string compare_json(const Comparison& comparison);
 /// At most 100 columns; after a line that says what was walked, a line a selector of the pictures, then one of the frames.
 std::string compare_table(const Comparison& comparison);
 
-/// DIR/index.html: triangles, accuracy and SNR picture by picture, a chart each; and DIR/pictures.csv.
+/// "200 triangles", or "26.7 ms".
+std::string budget_text(const Comparison& comparison);
+
+/// Whether the page could be written to `dir` now. Call it before the walks.
 Result<void> probe_compare_page(const std::string& dir);
+/// DIR/index.html: triangles, accuracy and SNR picture by picture, a chart each; and DIR/pictures.csv.
 Result<void> write_compare_page(const std::string& dir, const Comparison& comparison);
 
 }  // namespace surefoot::accuracy

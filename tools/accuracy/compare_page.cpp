@@ -45,13 +45,10 @@ std::string chart_of(const ComparedSelector& of, const Shown& what, double rate_
 }
 
 std::string body_of(const Comparison& c) {
-    const std::string budget = c.in_triangles ? fmt::format("{:.0f} triangles a frame", c.budget_ms * 1e3 - 0.5)
-                                              : fmt::format("{:.1f} ms a frame", c.budget_ms);
     std::string out = fmt::format(
-        "<header><p class=\"brand\"><b>Surefoot</b> · comparison</p><h1>{}</h1><p class=\"lead\">{} pictures of one walk, {}x{} "
-        "at "
-        "{:.4g} Hz, {}.</p></header>\n",
-        report::escaped(c.model), c.pictures, c.width, c.height, c.rate_hz, budget);
+        "<header><p class=\"brand\"><b>Surefoot</b> · comparison</p><h1>{}</h1>"
+        "<p class=\"lead\">{} pictures of one walk, {}x{} at {:.4g} Hz, {} a frame.</p></header>\n",
+        report::escaped(c.model), c.pictures, c.width, c.height, c.rate_hz, budget_text(c));
     for (const ComparedSelector& s : c.selectors) {
         out += fmt::format("<h2>{}</h2>\n", report::escaped(s.selector));
         for (const Shown& what : shown) out += chart_of(s, what, c.rate_hz);

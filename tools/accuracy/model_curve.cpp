@@ -97,6 +97,10 @@ std::string curve_table(const ModelCurve& of) {
         out += fmt::format("{:>18}{:>12.0f}{:>21.3f}\n", to < 1e300 ? fmt::format("{:.2f}", to) : "exact", begins,
                            part.slope.triangles);
     }
+    const double tenth = std::floor(of.curve.at(of.curve.end()).triangles / 10);
+    if (const double bought = model::accuracy_within(of.curve, triangles_alone, triangles_alone, tenth); bought > 0)
+        out += bought < 1e300 ? fmt::format("{:.0f} triangles, a tenth, are sure to buy an accuracy of {:.2f}\n", tenth, bought)
+                              : fmt::format("{:.0f} triangles, a tenth, show it exactly\n", tenth);
     if (of.line.r_squared > 0)
         out += fmt::format("line through {} forms that are not exact: {:.1f} + {:.2f} triangles a unit of accuracy, R^2 {:.4f}\n",
                            inexact(of.points), of.line.base, of.line.slope, of.line.r_squared);

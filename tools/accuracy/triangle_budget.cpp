@@ -21,10 +21,12 @@ model::CostModel triangle_costs() {
     return costs;
 }
 
-double triangle_budget_ms(double triangles) {
-    constexpr double us_to_ms = 1e-3, half = 0.5;  // half a triangle more: a frame of exactly as many fits, whatever the rounding
-    return (triangles + half) * us_to_ms;
+namespace {
+constexpr double us_a_ms = 1e3, half = 0.5;  // half a triangle more: a frame of exactly as many fits, whatever the rounding
 }
+
+double triangle_budget_ms(double triangles) { return (triangles + half) / us_a_ms; }
+std::uint64_t triangles_of_budget(double budget_ms) { return static_cast<std::uint64_t>(budget_ms * us_a_ms); }
 
 void spend_triangles(walk::WalkRequest& request) {
     request.given_costs = std::make_shared<const model::CostModel>(triangle_costs());

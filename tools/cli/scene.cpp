@@ -61,9 +61,8 @@ void add_scene(CLI::App& app, Context& context) {
     const std::vector<std::string> words = scenes::scene_names();
     const std::vector<std::string_view> names(words.begin(), words.end());
     c->add_option("name", a->name,
-                  "Scene: forest (100 trees at scale 1), room, town (about 1 M triangles at scale 1), garden (masked plants). Or "
-                  "gallery: two "
-                  "spheres, a cylinder and a statue")
+                  "Scene: forest (100 trees at scale 1), room, town (about 1 M triangles at scale 1), garden (masked plants). "
+                  "Or gallery: two spheres, a cylinder and a statue")
         ->required()
         ->check(one_of(names));
     c->add_option("--cow", a->statue, "Of the gallery: model file of its statue, in place of a knot. It is made 1.2 m long")
