@@ -157,8 +157,11 @@ Schema::Schema(Registry selectors, Registry backends, std::span<const Renamed> r
       backends_(std::move(backends)),
       renamed_(renamed),
       entries_(make_entries(selectors_, backends_)) {
-    for (const auto& [key, registry] : {std::pair{"selector", &selectors_}, std::pair{"backend", &backends_}})
-        std::find_if(entries_.begin(), entries_.end(), [key](const Entry& e) { return e.key == key; })->absent = registry->absent;
+    for (Entry& entry : entries_)
+        if (entry.key == "selector")
+            entry.absent = selectors_.absent;
+        else if (entry.key == "backend")
+            entry.absent = backends_.absent;
     const std::vector<Entry> walker = walker_entries();
     entries_.insert(entries_.begin() + 5, walker.begin(), walker.end());  // after "steering"
     defaults_.selector = selectors_.usual;
