@@ -7,63 +7,20 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <map>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include "render/capture/capture.hpp"
 #include "render/model/walk_file.hpp"
-#include "rt/base/file.hpp"
 #include "tests/bench/bench_scene.hpp"
+#include "tests/bench/ledger_rows.hpp"
 #include "tests/cut_bounds.hpp"
 
 namespace {
 
 using namespace surefoot;
 
-struct Row {
-    double guaranteed = 0, reached = 0;
-    std::string guarantee, node, cut;
-    Pose pose;
-};
-
-std::vector<std::string> cells_of(const std::string& line) {
-    std::vector<std::string> cells(1);
-    for (const char c : line) {
-        if (c == ',')
-            cells.emplace_back();
-        else
-            cells.back() += c;
-    }
-    return cells;
-}
-
-/// By the frame's number.
-Result<std::map<std::uint64_t, Row>> rows_of(const char* file) {
-    auto text = read_text(file);
-    if (!text) return text.error();
-    std::istringstream lines(*text);
-    std::string line;
-    std::getline(lines, line);
-    std::map<std::string, std::size_t> columns;
-    for (const std::string& name : cells_of(line)) columns.emplace(name, columns.size());
-    for (const char* name : {"frame", "guaranteed_accuracy", "reached_accuracy", "guarantee", "binding_node", "cut_hash", "x",
-                             "y", "z", "qx", "qy", "qz", "qw"})
-        if (columns.count(name) == 0) return Error{file, fmt::format("There is no column {}", name), "Walk with --ledger"};
-    std::map<std::uint64_t, Row> rows;
-    while (std::getline(lines, line)) {
-        const std::vector<std::string> cells = cells_of(line);
-        const auto cell = [&](const char* name) { return cells.at(columns.at(name)); };
-        const auto number = [&](const char* name) { return std::strtod(cell(name).c_str(), nullptr); };
-        Row& row = rows[std::strtoull(cell("frame").c_str(), nullptr, 10)];
-        row = {number("guaranteed_accuracy"), number("reached_accuracy"), cell("guarantee"),
-               cell("binding_node"),          cell("cut_hash"),           {}};
-        row.pose.position = {number("x"), number("y"), number("z")};
-        row.pose.orientation = dquat(number("qw"), number("qx"), number("qy"), number("qz"));
-    }
-    return rows;
-}
+using bench::LedgerRow;
+using bench::LedgerRows;
 
 struct Figures {
     std::size_t kept = 0, over_budget = 0, other = 0, untrue = 0, captures = 0;
@@ -74,7 +31,7 @@ struct Figures {
     }
 };
 
-void judge_rows(const std::map<std::uint64_t, Row>& rows, double accuracy, Figures& figures) {
+void judge_rows(const LedgerRows& rows, double accuracy, Figures& figures) {
     constexpr double printed = 1e-3;  // the ledger's last digit
     for (const auto& [frame, row] : rows) {
         figures.min_reached = std::min(figures.min_reached, row.reached);
@@ -91,13 +48,13 @@ void judge_rows(const std::map<std::uint64_t, Row>& rows, double accuracy, Figur
     }
 }
 
-Result<void> judge_capture(const char* file, const model::Model& model, const std::map<std::uint64_t, Row>& rows, double accuracy,
+Result<void> judge_capture(const char* file, const model::Model& model, const LedgerRows& rows, double accuracy,
                            Figures& figures) {
     const auto of = capture::read_capture(file);
     if (!of) return of.error();
     const auto found = rows.find(of->frame);
     if (found == rows.end()) return Error{file, "The ledger has no such frame", "Capture a frame of the same walk"};
-    const Row& row = found->second;
+    const LedgerRow& row = found->second;
     ++figures.captures;
     if (row.cut != fmt::format("{:016x}", of->hash)) figures.refute(fmt::format("{}: the ledger has another cut", file));
     Pose pose = row.pose;
@@ -124,7 +81,7 @@ int main(int argc, char** argv) {
     const double accuracy = std::strtod(argv[1], nullptr);
     const auto model = model::read_walk(argv[2], nullptr);
     if (!model) return bench::fail(model.error());
-    const auto rows = rows_of(argv[3]);
+    const auto rows = bench::read_ledger_rows(argv[3]);
     if (!rows) return bench::fail(rows.error());
     Figures figures;
     judge_rows(*rows, accuracy, figures);

@@ -1,4 +1,4 @@
-# Read by tests/bench/run: the group guarantee. Not run by itself.
+# Read by tests/bench/run: the groups guarantee and points. Not run by itself.
 # shellcheck shell=bash
 
 # 600 frames of a tour with a guaranteed accuracy, and four of them captured: is all that the records say true?
@@ -23,4 +23,29 @@ guarantee_scene() { # NAME BUDGET_MS ACCURACY...
   shift 2
   path_of "$name"
   for accuracy in "$@"; do guarantee_walk "$name" "$budget" "$accuracy" "${path[@]}"; done
+}
+
+# 100 000 points of the true surface in three frames of `curve-accuracy` at 400 rad^-1: is each of them drawn within that?
+points_scene() { # NAME: adds to points, beyond and least
+  local name=$1 label=points-$1 frame captures=() walk=()
+  path_of "$name"
+  walk=("$surefoot" walk "$work/$name.walk" "${path[@]}" --clock virtual --backend null --resolution 100 --filter bilinear --rest-after 0
+    --state "$work/no-table" --selector curve-accuracy --accuracy 400 --json)
+  measure "$label" "${walk[@]}" --frames 600 --ledger "$work/$label.csv" || return 1
+  for frame in 60 300 580; do
+    captures+=("$work/$label-$frame.cap")
+    measure "$label-$frame" "${walk[@]}" --frames $((frame + 1)) --capture "${captures[-1]}" --capture-frame "$frame" || return 1
+  done
+  measure "$label-judged" "$build/tests/bench_surface_points" 400 100000 "$work/$name.walk" "$work/$label.csv" "${captures[@]}" || return 1
+  beyond=$((beyond + $(value beyond)))
+  points+="${points:+, }$name $(value points) on $(value forms) coarse forms, the worst $(value worst_accuracy) rad^-1"
+}
+
+points_group() {
+  local name beyond=0 points=''
+  for name in forest town hospital candela; do
+    baked "$name" || continue
+    points_scene "$name" || return 0
+  done
+  keep points_beyond "$beyond" --note "Points: $points."
 }

@@ -9,6 +9,7 @@
 #include "render/capture/capture.hpp"
 #include "render/model/walk_file.hpp"
 #include "tests/cut_bounds.hpp"
+#include "tests/surface_points.hpp"
 #include "tests/walk/walk_fixture.hpp"
 #include "tools/report/report.hpp"
 
@@ -97,6 +98,36 @@ TEST(GuaranteeWalk, IsReachedByCapturedCutsAndBrokenOnlyWhereNoCutFits) {
         }
     EXPECT_GT(kept, 0);
     EXPECT_GT(broken, 0);
+}
+
+TEST(AccuracyWalk, NoPointOfTheTrueSurfaceIsFartherFromWhatIsDrawn) {
+    constexpr double accuracy = 400;
+    constexpr std::size_t points = 20000;
+    const auto model = model::read_walk(test::Forest::get().model_file, nullptr);
+    ASSERT_TRUE(model.ok());
+    walk::WalkRequest request = test::Forest::get().virtual_request(61);
+    request.selector = "curve-accuracy";
+    request.accuracy = accuracy;
+    request.rest_after_ms = 0;
+    request.capture_file = test::Forest::get().dir + "/accuracy.cap";
+    request.capture_frame = 60;
+    const walk::WalkOutcome outcome = test::walk(request);
+    const auto read = capture::read_capture(request.capture_file);
+    ASSERT_TRUE(read.ok());
+    const rt::FrameRecord& record = outcome.records.back();
+    ASSERT_EQ(read->hash, record.cut_hash);
+    Pose pose;
+    pose.position = {record.eye[0], record.eye[1], record.eye[2]};
+    pose.orientation = dquat(record.orientation[3], record.orientation[0], record.orientation[1], record.orientation[2]);
+    pose.fov_y_rad = read->prepared.region.centre.fov_y_rad;
+    const test::SurfacePoints seen = test::judge_surface_points(*read, *model, pose, 1 / accuracy, points);
+    EXPECT_GE(seen.points, points);
+    EXPECT_GT(seen.items, 50U);
+    EXPECT_EQ(seen.beyond, 0U) << "the worst: 1/" << 1 / seen.worst_rad << " rad, of "
+                               << model->name_of(model->nodes[seen.worst_node]);
+    std::printf("%zu points on %zu coarse forms: at most 1/%.1f rad off\n", seen.points, seen.items, 1 / seen.worst_rad);
+    const test::SurfacePoints finer = test::judge_surface_points(*read, *model, pose, seen.worst_rad / 2, points);
+    EXPECT_GT(finer.beyond, 0U) << "points that are farther off are found";
 }
 
 TEST(GuaranteeWalk, OfALateFrameIsToldFromOneThatCannotBePaid) {

@@ -1,0 +1,83 @@
+# The group `distance` of tests/bench/run, which sources this: in real time, the accuracy of the worst object in each frame, by a budget
+# and by a fixed angle that takes as long.
+# shellcheck shell=bash
+# shellcheck disable=SC2034,SC2154 # work, surefoot, state, path, build: of run
+
+distance_seconds=20 distance_turns=3 distance_tries=9
+
+# One walk in real time. Sets p99 of its frames, ms; the ledger is WORK/distance-LABEL.csv.
+distance_walk() { # LABEL NAME RATE OPTIONS...
+  local label=distance-$1 name=$2 rate=$3
+  shift 3
+  measure "$label" "$surefoot" walk "$work/$name.walk" "${path[@]}" --rate "$rate" --seconds "$distance_seconds" --resolution 100 \
+    --rest-after 0 --state "$state" --ledger "$work/$label.csv" "$@" --json || return 1
+  p99=$(value frame_ms.p99) missed=$(value misses) steal=$(rounded steal_ms)
+}
+
+# The accuracy at which `distance` takes as long as $1 ms (p99), within 5 %: halving, on logarithms. Sets accuracy.
+# What a frame cannot finish is drawn all the same (--no-check): else the check would bound the time at any accuracy.
+distance_accuracy() { # P99 NAME RATE
+  local wanted=$1 low=4 high=8000 try
+  for (( try = 1; try <= distance_tries; ++try )); do
+    accuracy=$(awk "BEGIN { printf \"%.4g\", sqrt($low * $high) }")
+    distance_walk "$2-try-$try" "$2" "$3" --selector distance --no-check --late float --accuracy "$accuracy" || return 1
+    echo "tests/bench/run: $2: distance at $accuracy rad^-1 has p99 $p99 ms, wanted $wanted" >&2
+    if awk "BEGIN { r = $p99 / $wanted; exit !(r <= 1.05 && r >= 1 / 1.05) }"; then return 0; fi
+    if awk "BEGIN { exit !($p99 > $wanted) }"; then high=$accuracy; else low=$accuracy; fi
+  done
+  return 0
+}
+
+# distance_figures LABEL: median and least of the frames' accuracies, and how many frames are exact.
+distance_figures() {
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+    { a = $at["accuracy"]; if (a == "inf" || a == "") { ++exact; next } print a > "/dev/stderr" }
+    END { print exact + 0 }' "$work/distance-$1.csv" 2>"$work/distance-accuracies" >"$work/distance-exact"
+  sort -g "$work/distance-accuracies" | awk -v exact="$(cat "$work/distance-exact")" '{ all[NR] = $1 }
+    END { if (NR == 0) print "inf inf", exact; else print all[int((NR + 1) / 2)], all[1], exact }'
+}
+
+# Pictures of both, every two seconds, against full detail at the same pose: no promise.
+distance_pictures() { # NAME RATE: the walks of the last turn again, with pictures; prints words for the note
+  local which at every frames words='' options=()
+  every=$(awk "BEGIN { printf \"%.0f\", 2 * $2 }")
+  for which in budget angle; do
+    options=(--selector curve-budget)
+    [[ $which == budget ]] || options=(--selector distance --no-check --late float --accuracy "$accuracy")
+    at=$work/distance-$1-$which
+    rm -rf "$at"
+    mkdir -p "$at"
+    distance_walk "$1-pictures" "$1" "$2" "${options[@]}" --snap "$at/walk" --every "$every" || return 1
+    measure "distance poses $1" "$build/tests/bench_ledger_poses" "${path[1]:-$work/$1.path.csv}" "${path[3]:-0}" "$2" \
+      "$work/distance-$1-pictures.csv" "$every" "$at/poses.csv" || return 1
+    frames=$(value frames)
+    measure "distance reference $1" "$surefoot" walk "$work/$1.walk" --path "$at/poses.csv" --selector flat --clock virtual --cost-scale 0.01 \
+      --no-check --no-occlusion --rate 30 --frames "$frames" --state "$state" --snap "$at/full" --every 4 --json || return 1
+    measure "distance difference $1" "$build/tests/bench_picture_difference" "$at/walk" "$at/full" || return 1
+    words+="${words:+, }$which $(rounded psnr_db) dB and FLIP $(rounded flip)"
+  done
+  echo "$words"
+}
+
+distance_scene() { # NAME RATE
+  local name=$1 rate=$2 turn ours theirs medians=() worsts=() note='' times=''
+  fit "$name"
+  path_of "$name"
+  distance_walk "$name-first" "$name" "$rate" --selector curve-budget || return 0
+  distance_accuracy "$p99" "$name" "$rate" || return 0
+  for (( turn = 1; turn <= distance_turns; ++turn )); do
+    distance_walk "$name-budget" "$name" "$rate" --selector curve-budget || return 0
+    times+="${times:+; }$(sum "$p99" 3) ($missed missed) and "
+    distance_walk "$name-angle" "$name" "$rate" --selector distance --no-check --late float --accuracy "$accuracy" || return 0
+    times+="$(sum "$p99" 3) ($missed)"
+    read -r -a ours <<<"$(distance_figures "$name-budget")"
+    read -r -a theirs <<<"$(distance_figures "$name-angle")"
+    medians+=("$(awk "BEGIN { printf \"%.3f\", ${ours[0]} / ${theirs[0]} }")") worsts+=("$(awk "BEGIN { printf \"%.3f\", ${ours[1]} / ${theirs[1]} }")")
+    note="Median ${ours[0]} against ${theirs[0]} rad^-1, worst frame ${ours[1]} against ${theirs[1]}, exact frames ${ours[2]} and ${theirs[2]}"
+  done
+  note+=" (last turn); p99 in ms: $times; at $rate Hz."
+  local words
+  words=$(distance_pictures "$name" "$rate") || words="no pictures"
+  keep distance_median "$(middle_of "${medians[@]}")" --scene "$name" --spread "$(min_and_max "${medians[@]}")" --note "$note Pictures: $words."
+  keep distance_worst "$(middle_of "${worsts[@]}")" --scene "$name" --spread "$(min_and_max "${worsts[@]}")"
+}
