@@ -86,13 +86,16 @@ inline SurfacePoints points_of_item(const model::Model& model, const select::Cut
 }
 
 /// The cut of a capture, seen from a pose of its region: about `points` points in view, spread evenly over the coarse forms in
-/// view. Full detail is its own surface, so it is left out.
+/// view. Full detail is its own surface, so it is left out, also where it is cut to its masks: what is cut off is transparent.
 inline SurfacePoints judge_surface_points(const capture::Capture& of, const model::Model& model, const Pose& pose,
                                           double error_rad, std::size_t points) {
     const model::Frustum frustum = model::make_frustum(pose, of.prepared.viewport, model::far_corners_m(model.nodes[0].box));
     std::vector<select::CutItem> coarse;
-    for (const select::CutItem& item : of.items)
-        if (model.reps[item.rep].error_m > 0 && model::visible(frustum, model.nodes[item.node].box)) coarse.push_back(item);
+    for (const select::CutItem& item : of.items) {
+        const model::Node& node = model.nodes[item.node];
+        const bool full = model::is_full_detail(node, item.rep, model.reps[item.rep].error_m);
+        if (!full && model::visible(frustum, node.box)) coarse.push_back(item);
+    }
     SurfacePoints out;
     std::size_t left = coarse.size();
     for (const select::CutItem& item : coarse) {

@@ -30,15 +30,17 @@ points_scene() { # NAME: adds to points, beyond and least
   local name=$1 label=points-$1 frame captures=() walk=()
   path_of "$name"
   walk=("$surefoot" walk "$work/$name.walk" "${path[@]}" --clock virtual --backend null --resolution 100 --filter bilinear --rest-after 0
-    --state "$work/no-table" --selector curve-accuracy --accuracy 400 --json)
+    --cost-scale 0.01 --no-check --state "$work/no-table" --selector curve-accuracy --accuracy 400 --json)  # no slice is drawn as its stand-in
   measure "$label" "${walk[@]}" --frames 600 --ledger "$work/$label.csv" || return 1
+  local reached
+  reached=$(value accuracy.min)
   for frame in 60 300 580; do
     captures+=("$work/$label-$frame.cap")
     measure "$label-$frame" "${walk[@]}" --frames $((frame + 1)) --capture "${captures[-1]}" --capture-frame "$frame" || return 1
   done
   measure "$label-judged" "$build/tests/bench_surface_points" 400 100000 "$work/$name.walk" "$work/$label.csv" "${captures[@]}" || return 1
   beyond=$((beyond + $(value beyond)))
-  points+="${points:+, }$name $(value points) on $(value forms) coarse forms, the worst $(value worst_accuracy) rad^-1"
+  points+="${points:+, }$name $(value points) on $(value forms) coarse forms, the worst $(value worst_accuracy) rad^-1 (600 frames say $(sum "$reached" 4) at least)"
 }
 
 points_group() {
