@@ -122,6 +122,8 @@ std::vector<Entry> make_entries(const Registry& selectors, const Registry& backe
         number("reserve", "%", 0, 50,
                "Share of the budget that new forms leave free, so that others need not change. No effect at hysteresis 1.",
                &S::reserve_pct),
+        number("gestalt", "", 0, 1, "Share of a coarse group's loss that is forgiven where its members are all alike.",
+               &S::gestalt),
         {"sky", Kind::colour, {}, 0, 0, {}, "Background, as \"#rrggbb\".", &S::sky},
         integer("frame_priority", "FIFO", 1, 98, "Priority of the frame thread.", &S::frame_priority),
         integer("raster_priority", "FIFO", 1, 98, "Priority of the rasterisers; below the frame thread's.", &S::raster_priority),

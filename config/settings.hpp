@@ -51,6 +51,7 @@ struct Settings {
     double rest_after_ms = 500;  ///< 0: never
     double slice_us = 1000;
     double hysteresis = 1.25;
+    double gestalt = 0;      ///< PrepareOptions::gestalt
     double reserve_pct = 3;  ///< of the budget, for forms of the last frame alone
     std::string sky = "#9eb8d1";
     int frame_priority = 80, raster_priority = 70, worker_priority = 60;

@@ -1,5 +1,5 @@
-// Points of the true surface against what a captured cut draws: how far the drawn form is from them, as an angle at the eye. Taken
-// from the model's meshes and the pose alone, by code that shares nothing with render/prepare and render/select.
+// Points of the true surface against what a captured cut draws: how far the drawn form is from them, as an angle at the eye.
+// Taken from the model's meshes and the pose alone, by code that shares nothing with render/prepare and render/select.
 #pragma once
 
 #include <algorithm>

@@ -10,6 +10,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "render/prepare/alike.hpp"
 #include "render/prepare/evaluate.hpp"
 #include "render/prepare/occlusion.hpp"
 #include "render/prepare/prepared.hpp"
@@ -83,6 +84,7 @@ struct Preparer::Impl {
     std::span<const float> shown_px;  ///< of the last run()'s candidates
     ValuePass values;
     std::unique_ptr<model::LossGroups> groups;  ///< null: no losses of groups are known
+    std::vector<float> forgiven;                ///< Looks::forgiven
     std::uint32_t choice_bound = 0;             ///< choices that the visits may need
     float used_factor = 1;                      ///< of the last run(), for value_at() too
     float target_factor = 1;                    ///< of the error target, raised while frames look at too many nodes
@@ -123,6 +125,10 @@ Preparer::Impl::Impl(const model::Model& m, const model::CostModel& c, const Pre
     }
     options.max_choices = std::max(options.max_choices, max_reps);
     const std::size_t max_nodes = std::min<std::size_t>(options.max_candidates, std::max<std::size_t>(m.nodes.size(), 1));
+    if (options.gestalt > 0) {
+        forgiven = alike_members(m);
+        for (float& share : forgiven) share *= static_cast<float>(std::min(options.gestalt, 1.0));
+    }
     visits.reserve(max_nodes);
     slots.resize(std::max<std::size_t>(std::min<std::size_t>(min_slots, m.nodes.size()), max_children));
     block.reserve(slots.size());
@@ -341,8 +347,9 @@ void Preparer::Impl::evaluate_all(const RegionView& view, PreparedFrame& out) {
 }
 
 void Preparer::Impl::set_values(const RegionView& view, PreparedFrame& out) {
-    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks_of(model, options.sky, groups.get()),
-               shown.before_sky());
+    Looks looks = looks_of(model, options.sky, groups.get());
+    looks.forgiven = forgiven;
+    values.run(costs.combine, view.pixel_angle_rad, weights, shown_px, out, looks, shown.before_sky());
 }
 
 // A band between raising and lowering, so that the target does not swing while the eye stands still.

@@ -107,10 +107,12 @@ struct PrepareOptions {
     std::uint32_t max_candidates = 1U << 18U;
     std::uint32_t max_choices = 1U << 20U;
     double focus_strength = 0.5;  ///< 0: the periphery counts as much as the centre
-    int workers = 1;              ///< with the caller of run()
-    WorkerHooks worker_hooks;     ///< if set, workers start with the Preparer, else at first use
-    bool occlusion = true;        ///< occlusion culling for the whole region
-    bool full_depth = false;      ///< open all nodes down to the leaves (reference images, `flat`)
+    /// 0..1: this share of what a group's own forms lose is forgiven where all its members are alike; 0: none.
+    double gestalt = 0;
+    int workers = 1;           ///< with the caller of run()
+    WorkerHooks worker_hooks;  ///< if set, workers start with the Preparer, else at first use
+    bool occlusion = true;     ///< occlusion culling for the whole region
+    bool full_depth = false;   ///< open all nodes down to the leaves (reference images, `flat`)
     /// Bounds the CPU time on any model: 7 to 9 ms, 3 of them for shown pixels. A visit takes about 0.2 us, and 0.1 us more with
     /// occlusion. After a frame with more visits, the next frames raise target_error_rad by at least a tenth each. They lower it
     /// when there is room. 0: no limit.

@@ -166,9 +166,10 @@ void ValuePass::set_values(std::size_t i, float pixel_angle_rad, const Weight& s
         for (std::size_t s = 0; known > 0.0F && s < loss.colour.size(); ++s)
             loss.colour[s] = lost_[k].colour[s] / sums.weight + (1.0F - known) * loss.colour[s];
         const float error_rad = choice.error_rad * seen.distance_m * per_m, error_px = error_rad / pixel_angle_rad;
-        const float right = looks.losses.empty()
-                                ? looks_right(error_px, choice.surface_px, sums.surface_px)
-                                : looks_right_measured(error_px, error_rad, loss_at(loss, size_px), looks.of_missing, size_px);
+        const float looked = looks.losses.empty()
+                                 ? looks_right(error_px, choice.surface_px, sums.surface_px)
+                                 : looks_right_measured(error_px, error_rad, loss_at(loss, size_px), looks.of_missing, size_px);
+        const float right = looks.forgiven.empty() ? looked : looked + looks.forgiven[candidate.node] * (1.0F - looked);
         const float uncovered = looks.losses.empty() ? 0.0F : std::max(std::min(1.0F, loss.coverage), elsewhere(error_rad));
         value = std::max(value, sums.full - sums.weight * (1.0F - right) - more * sums.sky * uncovered);
         choice.value = value;

@@ -20,7 +20,8 @@ struct Looks {
     const model::LossGroups* groups = nullptr;      ///< null: forms lose the same on all that they show
     std::span<const model::LossOfGroup> of_groups;  ///< as Model::group_losses
     std::span<const model::Node> nodes;
-    float before_sky = 1;  ///< what a missing thing loses before the sky, as a multiple of that; 1 or more
+    float before_sky = 1;                  ///< what a missing thing loses before the sky, as a multiple of that; 1 or more
+    std::span<const float> forgiven = {};  ///< by node, 0..1: share of g that does not count; empty: all counts
 };
 /// sky: its colour, 0..1. groups: of this model, and they must outlive the result; null: forms lose the same on all they show.
 Looks looks_of(const model::Model& model, const std::array<float, 3>& sky, const model::LossGroups* groups = nullptr);
@@ -34,7 +35,7 @@ Looks looks_of(const model::Model& model, const std::array<float, 3>& sky, const
 /// the node's size on the screen, as a share of what a missing thing loses. For a cluster it is the mean over groups of leaves,
 /// by the W of each. What is in no known group counts by the form's whole loss. Nearer than was measured, an error in pixels
 /// counts more. Without losses, a quarter is by the error in pixels. Then the rest is the share of the leaves' surface that the
-/// choice lacks: a fence that is missing, a tree that is a shard.
+/// choice lacks: a fence that is missing, a tree that is a shard. Looks::forgiven lowers g.
 ///
 /// rate = value per us of the next step, where a step into the children counts all that follows below at that rate. It is the
 /// slope of the upper convex hull of (cost, value), for one node and for whole subtrees. Rates fall along the choices of a

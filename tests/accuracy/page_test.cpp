@@ -109,6 +109,27 @@ TEST(AccuracyPage, SaysWhatOneMoreMillisecondBuys) {
     EXPECT_EQ(json["working_ms"], 29.3);
 }
 
+TEST(AccuracyPage, MarksWhatEachLeverChanges) {
+    auto run = sweep();
+    EXPECT_EQ(nlohmann::json::parse(accuracy_json(run))["levers"].size(), 0U);
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(write_accuracy_page(folder / "without", run).ok());
+    EXPECT_EQ(read_text(folder / "without/index.html")->find("One lever"), std::string::npos);
+    run.working_ms = 29.3;
+    run.levers = {{"as set", point(29, 50, 40.25)}, {"no occlusion culling", point(290, 7, 31)}};
+    ASSERT_TRUE(write_accuracy_page(folder / "a", run).ok());
+    const auto page = *read_text(folder / "a/index.html");
+    for (const char* part : {"One lever set otherwise", "<td>no occlusion culling</td><td>290.00</td>", "at the same 29.3 ms"})
+        EXPECT_NE(page.find(part), std::string::npos) << part;
+    EXPECT_EQ(test::count_of(page, "<title>threshold, no occlusion culling, "), 6U) << "one a panel";
+    EXPECT_EQ(test::count_of(page, "class=\"as-set\""), 6U);
+    EXPECT_EQ(test::split(*read_text(folder / "a/accuracy.csv"), '\n').size(), run.points.size() + run.levers.size() + 1);
+    EXPECT_NE(read_text(folder / "a/accuracy.csv")->find("threshold (no occlusion culling),"), std::string::npos);
+    const auto json = nlohmann::json::parse(*read_text(folder / "a/accuracy.json"));
+    EXPECT_EQ(json["levers"][1]["lever"], "no occlusion culling");
+    EXPECT_EQ(json["levers"][1]["accuracy_worst"], 7);
+}
+
 TEST(AccuracyPage, OfNoPointsDoesNotDivideByZero) {
     const auto svg = accuracy_svg({}, false);
     EXPECT_EQ(svg.find("nan"), std::string::npos);

@@ -1,7 +1,7 @@
-// Bench: is every point of the true surface drawn within the accuracy that was asked? Points in view, sampled on full detail, against
-// what captured cuts of `walk --selector curve-accuracy --accuracy ACCURACY` draw there. Each capture stands with the ledger of
-// its walk, which knows the pose. bench_surface_points ACCURACY POINTS MODEL LEDGER CAPTURE... -> one JSON object; exit status 1
-// where a point is farther off.
+// Bench: is every point of the true surface drawn within the accuracy that was asked? Points in view, sampled on full detail,
+// against what captured cuts of `walk --selector curve-accuracy --accuracy ACCURACY` draw there. Each capture stands with the
+// ledger of its walk, which knows the pose. bench_surface_points ACCURACY POINTS MODEL LEDGER CAPTURE... -> one JSON object; exit
+// status 1 where a point is farther off.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -17,8 +17,8 @@ namespace {
 
 using namespace surefoot;
 
-Result<void> judge(const char* file, const model::Model& model, const bench::LedgerRows& rows, double error_rad, std::size_t points,
-                   test::SurfacePoints& all) {
+Result<void> judge(const char* file, const model::Model& model, const bench::LedgerRows& rows, double error_rad,
+                   std::size_t points, test::SurfacePoints& all) {
     const auto of = capture::read_capture(file);
     if (!of) return of.error();
     const auto found = rows.find(of->frame);
@@ -28,8 +28,8 @@ Result<void> judge(const char* file, const model::Model& model, const bench::Led
     Pose pose = found->second.pose;
     pose.fov_y_rad = of->prepared.region.centre.fov_y_rad;
     const test::SurfacePoints here = test::judge_surface_points(*of, model, pose, error_rad, points);
-    fmt::print(stderr, "{}: {} points on {} coarse forms, {} beyond; the worst 1/{:.1f} rad, of {}\n", file, here.points, here.items,
-               here.beyond, 1 / here.worst_rad, model.name_of(model.nodes[here.worst_node]));
+    fmt::print(stderr, "{}: {} points on {} coarse forms, {} beyond; the worst 1/{:.1f} rad, of {}\n", file, here.points,
+               here.items, here.beyond, 1 / here.worst_rad, model.name_of(model.nodes[here.worst_node]));
     all.add(here);
     return {};
 }

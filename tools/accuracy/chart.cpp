@@ -90,6 +90,8 @@ report::Scale time_scale(const AccuracyRun& run, const Panel& panel, const repor
     Range range;
     for (const AccuracyPoint& p : run.points)
         if (panel.time_ms(p) > 0) range.grow(panel.time_ms(p));
+    for (const LeverMark& mark : run.levers)
+        if (panel.time_ms(mark.point) > 0) range.grow(panel.time_ms(mark.point));
     if (run.full_frame_ms > 0) range.grow(run.full_frame_ms);
     if (range.empty()) return {1, 10, area.left, area.right, true};
     return {range.low * 0.9, std::max(range.high * 1.12, range.low * 1.5), area.left, area.right, true};
@@ -97,10 +99,12 @@ report::Scale time_scale(const AccuracyRun& run, const Panel& panel, const repor
 
 report::Scale value_scale(const AccuracyRun& run, const Panel& panel, const report::PlotArea& area) {
     Range range;
-    for (const AccuracyPoint& p : run.points) {
+    const auto grow = [&](const AccuracyPoint& p) {
         const double v = panel.value(p);
         if (!panel.log || v > 0) range.grow(v);
-    }
+    };
+    for (const AccuracyPoint& p : run.points) grow(p);
+    for (const LeverMark& mark : run.levers) grow(mark.point);
     if (range.empty()) return {panel.log ? 1.0 : 0.0, 10, area.bottom, area.top, panel.log};
     if (panel.log) return {range.low / 1.25, std::max(range.high * 1.25, range.low * 2), area.bottom, area.top, true};
     const double margin = std::max((range.high - range.low) * 0.08, std::max(1e-3, std::abs(range.high) * 0.01));
@@ -111,14 +115,28 @@ bool drawable(const AccuracyPoint& p, double value, const Panel& panel) {
     return panel.time_ms(p) > 0 && std::isfinite(value) && (!panel.log || value > 0);
 }
 
-std::string tip_of(const AccuracyPoint& p) {
+std::string tip_of(const AccuracyPoint& p, std::string_view lever = {}) {
     return fmt::format(
-        "{}, budget {} ms. Frame {:.1f} ms (p90 {:.1f}, p99 {:.1f}). Accuracy {} rad⁻¹ (worst {}). SNR {}, PSNR {}, SSIM {:.3f}, "
+        "{}{}, budget {} ms. Frame {:.1f} ms (p90 {:.1f}, p99 {:.1f}). Accuracy {} rad⁻¹ (worst {}). SNR {}, PSNR {}, SSIM "
+        "{:.3f}, "
         "FLIP {:.4f}. {} triangles.",
-        report::escaped(p.selector), std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited",
-        p.frame_ms_p50, p.frame_ms_p90, p.frame_ms_p99, report::short_number(p.accuracy_mean),
-        report::short_number(p.accuracy_worst), report::decibels(p.snr_db), report::decibels(p.psnr_db), p.ssim, p.flip,
-        report::short_number(p.triangles));
+        report::escaped(p.selector), lever.empty() ? "" : fmt::format(", {}", lever),
+        std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited", p.frame_ms_p50, p.frame_ms_p90,
+        p.frame_ms_p99, report::short_number(p.accuracy_mean), report::short_number(p.accuracy_worst), report::decibels(p.snr_db),
+        report::decibels(p.psnr_db), p.ssim, p.flip, report::short_number(p.triangles));
+}
+
+/// A square a lever; the first, as set, is filled.
+std::string lever_marks(const AccuracyRun& run, const Panel& panel, const report::Scale& x, const report::Scale& y) {
+    std::string out;
+    for (const LeverMark& mark : run.levers) {
+        const double v = panel.value(mark.point);
+        if (!drawable(mark.point, v, panel)) continue;
+        out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"8\" height=\"8\" class=\"{}\"><title>{}</title></rect>",
+                           x(panel.time_ms(mark.point)) - 4, y(v) - 4, &mark == &run.levers.front() ? "as-set" : "front",
+                           tip_of(mark.point, mark.lever));
+    }
+    return out;
 }
 
 std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, const Panel& panel,
@@ -155,7 +173,7 @@ std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, 
                 s.colour, s.published ? 1.6 : 2.2, s.published ? " stroke-dasharray=\"5 4\"" : "");
         out += dots;
     }
-    return out;
+    return out + lever_marks(run, panel, x, y);
 }
 
 std::string legend_of(const std::vector<Series>& all, double top) {

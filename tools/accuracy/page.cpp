@@ -56,6 +56,25 @@ std::string one_more_ms_of(const AccuracyRun& run) {
     return out + "</table></div>\n";
 }
 
+std::string levers_of(const AccuracyRun& run) {
+    if (run.levers.empty()) return {};
+    const AccuracyPoint& as_set = run.levers.front().point;
+    std::string out = fmt::format(
+        "<h2>One lever set otherwise</h2>\n<p class=\"sub\">By <b>{}</b> at the same {:.1f} ms: what each lever changes. In the "
+        "charts these are squares.</p>\n<div class=\"card scroll\"><table>\n<tr><th>lever</th><th>frame p50, "
+        "ms</th><th>p99, ms</th><th>worst accuracy, rad⁻¹</th><th>mean accuracy, rad⁻¹</th><th>PSNR, "
+        "dB</th><th>FLIP</th><th>triangles</th></tr>\n",
+        report::escaped(as_set.selector), run.working_ms);
+    for (const LeverMark& mark : run.levers) {
+        const AccuracyPoint& p = mark.point;
+        out += fmt::format(
+            "<tr><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.4f}</td><td>{}</td></tr>\n",
+            report::escaped(mark.lever), p.frame_ms_p50, p.frame_ms_p99, per_rad(p.accuracy_worst), per_rad(p.accuracy_mean),
+            decibels_of(p), p.flip, report::grouped(p.triangles));
+    }
+    return out + "</table></div>\n";
+}
+
 std::string table_of(const AccuracyRun& run) {
     std::string out =
         "<div class=\"card scroll\"><table>\n<tr><th>selector</th><th>budget, ms</th><th>frame p50, "
@@ -96,6 +115,7 @@ std::string body_of(const AccuracyRun& run) {
         "place. Up and to the left is better. Points where every picture equals full detail have no finite SNR and are left "
         "out of that panel.</p>\n";
     out += one_more_ms_of(run);
+    out += levers_of(run);
     out += fmt::format("<h2>The worst place and the slowest frames</h2>\n<div class=\"card wide\">{}</div>\n",
                        worst_case_chart(run));
     out +=
@@ -134,7 +154,12 @@ std::string accuracy_csv(const AccuracyRun& run) {
     std::string out =
         "selector,budget_ms,frame_ms_p50,frame_ms_p90,accuracy_per_rad,snr_db,ssim,triangles,cost_us,frames,snr_infinite,snr_"
         "undefined,exact,frame_ms_p99,accuracy_worst_per_rad,error_m,psnr_db,flip,value,accuracy_front,psnr_front\n";
-    for (const AccuracyPoint& p : run.points)
+    std::vector<AccuracyPoint> rows = run.points;
+    for (const LeverMark& mark : run.levers) {
+        rows.push_back(mark.point);
+        rows.back().selector += fmt::format(" ({})", mark.lever);
+    }
+    for (const AccuracyPoint& p : rows)
         out += fmt::format(
             "{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.6f},{:.1f},{:.2f},{},{},{},{},{:.4f},{:.4f},{:.6g},{:.4f},{:.6f},"
             "{:.6f},{:d},{:d}\n",
@@ -171,7 +196,11 @@ Json json_of(const AccuracyPoint& p) {
 }  // namespace
 
 std::string accuracy_json(const AccuracyRun& run) {
-    Json points = Json::array(), more = Json::array();
+    Json points = Json::array(), more = Json::array(), levers = Json::array();
+    for (const LeverMark& mark : run.levers) {
+        levers.push_back(json_of(mark.point));
+        levers.back()["lever"] = mark.lever;
+    }
     for (const AccuracyPoint& p : run.points) points.push_back(json_of(p));
     for (const OneMoreMs& m : run.one_more_ms) more.push_back({{"now", json_of(m.now)}, {"more", json_of(m.more)}});
     const Json json = {{"model", run.model},
@@ -188,7 +217,8 @@ std::string accuracy_json(const AccuracyRun& run) {
                        {"points", points},
                        {"rate_hz", run.rate_hz},
                        {"working_ms", run.working_ms},
-                       {"one_more_ms", more}};
+                       {"one_more_ms", more},
+                       {"levers", levers}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -2,6 +2,7 @@
 #include "tools/accuracy/sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -138,8 +139,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
 }
 
 Result<std::unique_ptr<Engine>> open_engine(const AccuracyRequest& request, model::Model model, std::uint64_t model_hash,
-                                            AccuracyRun& run) {
-    EngineOptions options;
+                                            EngineOptions options, AccuracyRun& run) {
     const auto backend = gl::backend_named(request.backend);
     if (!backend) return backend.error();
     if (!(*backend)->draws())
@@ -218,6 +218,61 @@ Result<void> sweep_selector(Sweep& sweep, const AccuracyRequest& request, const 
     return {};
 }
 
+/// One lever set otherwise than a walk sets it.
+struct Lever {
+    std::string_view name;
+    void (*set)(EngineOptions&);
+};
+constexpr std::array<Lever, 3> levers = {{
+    {"no occlusion culling", [](EngineOptions& o) { o.prepare.occlusion = false; }},
+    {"no focus on the middle", [](EngineOptions& o) { o.prepare.focus_strength = 0; }},
+    {"resolution 75 %", [](EngineOptions& o) { o.resolution = 0.75F; }},
+}};
+
+/// Prepares and draws all places by `selector` at the budget of the rate.
+Result<void> mark_lever(Sweep& sweep, std::string_view lever, const std::string& selector, AccuracyRun& run) {
+    if (auto set = sweep.engine.set_selector(selector); !set) return set;
+    for (Station& station : sweep.stations) sweep.engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
+    auto measured = sweep.measure(selector, run.working_ms * 1e3, 0.0);
+    if (!measured) return measured.error();
+    run.levers.push_back({std::string(lever), std::move(*measured)});
+    return {};
+}
+
+/// Marks of the first swept selector that goes by a budget: as set, then with one lever at a time set otherwise. Each has an
+/// engine of its own, since levers are fixed when one is opened.
+Result<void> sweep_levers(Sweep& as_set, const AccuracyRequest& request, const Progress& progress, AccuracyRun& run) {
+    const auto buys = [](const std::string& name) {
+        const auto entry = select::selector_named(name);
+        return entry && (*entry)->goes_by == select::GoesBy::budget && !name.ends_with(published_ending);
+    };
+    const auto selector = std::find_if(request.selectors.begin(), request.selectors.end(), buys);
+    if (selector == request.selectors.end()) return {};
+    if (auto ok = mark_lever(as_set, "as set", *selector, run); !ok) return ok;
+    for (std::size_t i = 0; i < levers.size(); ++i) {
+        if (progress.stopped()) return Error{request.model_file, "The sweep was stopped by the user", "", ErrorKind::stopped};
+        progress.update(std::string(levers[i].name), static_cast<double>(i) / static_cast<double>(levers.size()));
+        model::WalkFileInfo file;
+        auto model = model::read_walk(request.model_file, &file);
+        if (!model) return model.error();
+        EngineOptions options;
+        levers[i].set(options);
+        auto engine = open_engine(request, std::move(*model), file.hash, options, run);
+        if (!engine) return engine.error();
+        (*engine)->device().bind();
+        Sweep sweep{**engine, std::vector<Station>(as_set.stations.size()), as_set.repeats};
+        for (std::size_t s = 0; s < sweep.stations.size(); ++s) {
+            sweep.stations[s].pose = as_set.stations[s].pose;
+            sweep.stations[s].full = as_set.stations[s].full;
+            (*engine)->reserve(sweep.stations[s].prepared);
+        }
+        auto marked = mark_lever(sweep, levers[i].name, *selector, run);
+        (*engine)->device().release();
+        if (!marked) return marked;
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress& progress) {
@@ -234,7 +289,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
     run.shift_x = request.shift_x;
     run.shift_y = request.shift_y;
     run.poses = request.poses;
-    auto opened = open_engine(request, std::move(*model), file.hash, run);
+    auto opened = open_engine(request, std::move(*model), file.hash, {}, run);
     if (!opened) return opened.error();
     Engine& engine = **opened;
     engine.device().bind();
@@ -263,6 +318,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
         if (auto ok = sweep_selector(sweep, request, request.selectors[i], {progress, part}, run); !ok) return ok.error();
     }
     mark_fronts(run.points);
+    if (auto ok = sweep_levers(sweep, request, progress, run); !ok) return ok.error();
     return run;
 }
 

@@ -42,17 +42,27 @@ void print_points(const accuracy::AccuracyRun& run) {
                                         std::to_string(p.exact), text(p.snr_db, 2), text(p.ssim, 4), text(p.triangles, 0)}));
 }
 
+std::string per_rad(double accuracy) { return std::isfinite(accuracy) ? fmt::format("{:.1f}", accuracy) : "exact"; }
+
+std::string decibels(const accuracy::AccuracyPoint& p) {
+    return p.psnr_db < report::max_psnr_db ? fmt::format("{:.2f} dB", p.psnr_db) : "equal";
+}
+
 void print_one_more_ms(const accuracy::AccuracyRun& run) {
     if (run.one_more_ms.empty()) return;
     fmt::print("One more millisecond than {:.1f} ms ({:g} Hz) buys:\n", run.working_ms, run.rate_hz);
-    const auto per_rad = [](double a) { return std::isfinite(a) ? fmt::format("{:.1f}", a) : std::string("exact"); };
-    const auto decibels = [](const accuracy::AccuracyPoint& p) {
-        return p.psnr_db < report::max_psnr_db ? fmt::format("{:.2f} dB", p.psnr_db) : std::string("equal");
-    };
     for (const accuracy::OneMoreMs& m : run.one_more_ms)
         fmt::print("  {:<16} worst accuracy {} to {} rad^-1, mean {} to {}, PSNR {} to {}, value {:.2f} to {:.2f} %\n",
                    m.now.selector, per_rad(m.now.accuracy_worst), per_rad(m.more.accuracy_worst), per_rad(m.now.accuracy_mean),
                    per_rad(m.more.accuracy_mean), decibels(m.now), decibels(m.more), 100 * m.now.value, 100 * m.more.value);
+}
+
+void print_levers(const accuracy::AccuracyRun& run) {
+    if (run.levers.empty()) return;
+    fmt::print("One lever set otherwise, {} at {:.1f} ms:\n", run.levers.front().point.selector, run.working_ms);
+    for (const accuracy::LeverMark& mark : run.levers)
+        fmt::print("  {:<24} frame {:.1f} ms, worst accuracy {} rad^-1, PSNR {}, FLIP {:.4f}\n", mark.lever,
+                   mark.point.frame_ms_p50, per_rad(mark.point.accuracy_worst), decibels(mark.point), mark.point.flip);
 }
 
 void put_settings(const config::Settings& s, accuracy::AccuracyRequest& r) {
@@ -91,6 +101,7 @@ int run_accuracy_command(AccuracyArguments& a, const Context& context) {
     } else {
         print_points(*run);
         print_one_more_ms(*run);
+        print_levers(*run);
         fmt::print("page: {}/index.html\n", a.out);
     }
     return exit_success;
@@ -104,7 +115,8 @@ void add_accuracy(CLI::App& app, Context& context) {
         "surefoot accuracy town.walk --path town.path.csv -o accuracy\n\n"
         "The accuracy of a point is the mean over its poses. Poses drawn exactly have no finite accuracy: they are left out\n"
         "of the mean and counted apart. A point with only such poses is 'exact'.\n"
-        "The page also has the worst accuracy, PSNR, FLIP, and what one more millisecond buys at the budget of --rate.",
+        "The page also has the worst accuracy, PSNR, FLIP, and what one more millisecond buys at the budget of --rate.\n"
+        "There, one lever at a time is set otherwise too: occlusion culling, focus, resolution.",
         a->json);
     accuracy::AccuracyRequest& r = a->request;
     c->add_option("model", r.model_file, "The .walk model")->required();

@@ -79,6 +79,7 @@ Result<EngineOptions> engine_options(const WalkRequest& r, int others) {
     options.device.null.noise = r.cost_noise;
     options.prepare.workers = r.workers > 0 ? r.workers : std::max(1, others);
     options.prepare.occlusion = r.occlusion;
+    options.prepare.gestalt = r.gestalt;
     options.selector = r.selector;
     options.slice_us = r.slice_us;
     options.hysteresis = static_cast<float>(r.hysteresis);
