@@ -78,15 +78,16 @@ inline SurfacePoints points_of_item(const model::Model& model, const select::Cut
         if (!(eye_m > 0) || !model::visible(frustum, Box{point, point})) continue;
         const double off_m = nothing ? node.box.diagonal() : static_cast<double>(tree.nearest(local).distance);
         ++out.points;
-        if (off_m - rounding_m > error_rad * eye_m) ++out.beyond;
-        if (off_m / eye_m > out.worst_rad) out.worst_rad = off_m / eye_m, out.worst_node = item.node;
+        const double off_rad = std::max(0.0, off_m - rounding_m) / eye_m;
+        if (off_rad > error_rad) ++out.beyond;
+        if (off_rad > out.worst_rad) out.worst_rad = off_rad, out.worst_node = item.node;
     }
     out.items = out.points > 0 ? 1 : 0;
     return out;
 }
 
 /// The cut of a capture, seen from a pose of its region: about `points` points in view, spread evenly over the coarse forms in
-/// view. Full detail is its own surface, so it is left out, also where it is cut to its masks: what is cut off is transparent.
+/// view. Full detail is its own surface, so it is left out, also without what its masks hide.
 inline SurfacePoints judge_surface_points(const capture::Capture& of, const model::Model& model, const Pose& pose,
                                           double error_rad, std::size_t points) {
     const model::Frustum frustum = model::make_frustum(pose, of.prepared.viewport, model::far_corners_m(model.nodes[0].box));

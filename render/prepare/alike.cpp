@@ -29,7 +29,7 @@ std::vector<float> alike_members(const model::Model& model) {
             }
             from += count;
         }
-        alike[n] = members.size() > 1 ? static_cast<float>(max_count) / static_cast<float>(members.size()) : 0.0F;
+        alike[n] = members.size() > 1 ? static_cast<float>(max_count - 1) / static_cast<float>(members.size() - 1) : 0.0F;
     }
     return alike;
 }

@@ -7,9 +7,10 @@
 
 namespace surefoot::prepare {
 
-/// By node, 0..1: the share of the children that are of the most frequent kind. A leaf's kind is the mesh of its full detail. A
-/// group is of its members' kind if more than half of them are of one, else of its own. Leaves have 0, a row of equal dots 1.
-/// Source: Maciel 1994, section 3.3.2 and figure 3.6, which gives no formula.
+/// By node, 0..1: 0 where no two children are of one kind, 1 where all are; between, by those of the most frequent kind. A leaf's
+/// kind is the mesh of its full detail. A group is of its members' kind if more than half of them are of one, else of its own.
+/// Leaves have 0. Source: the law of similarity in Maciel 1994, 3.4.3 and figure 3.9; 3.3.2 asks for it in the benefit and gives
+/// no formula.
 std::vector<float> alike_members(const model::Model& model);
 
 }  // namespace surefoot::prepare

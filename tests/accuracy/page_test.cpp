@@ -11,6 +11,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/text_pieces.hpp"
 #include "tools/accuracy/page.hpp"
+#include "tools/accuracy/sweep.hpp"
 #include "tools/report/report.hpp"
 
 namespace surefoot::accuracy {
@@ -109,25 +110,32 @@ TEST(AccuracyPage, SaysWhatOneMoreMillisecondBuys) {
     EXPECT_EQ(json["working_ms"], 29.3);
 }
 
-TEST(AccuracyPage, MarksWhatEachLeverChanges) {
+TEST(AccuracyPage, MarksWhatOneSettingChanges) {
     auto run = sweep();
-    EXPECT_EQ(nlohmann::json::parse(accuracy_json(run))["levers"].size(), 0U);
+    EXPECT_EQ(nlohmann::json::parse(accuracy_json(run))["changes"].size(), 0U);
     const test::TemporaryFolder folder;
     ASSERT_TRUE(write_accuracy_page(folder / "without", run).ok());
-    EXPECT_EQ(read_text(folder / "without/index.html")->find("One lever"), std::string::npos);
+    EXPECT_EQ(read_text(folder / "without/index.html")->find("One setting"), std::string::npos);
     run.working_ms = 29.3;
-    run.levers = {{"as set", point(29, 50, 40.25)}, {"no occlusion culling", point(290, 7, 31)}};
+    run.changes = {{"as swept", point(29, 50, 40.25)}, {"no occlusion culling", point(290, 7, 31)}};
     ASSERT_TRUE(write_accuracy_page(folder / "a", run).ok());
     const auto page = *read_text(folder / "a/index.html");
-    for (const char* part : {"One lever set otherwise", "<td>no occlusion culling</td><td>290.00</td>", "at the same 29.3 ms"})
+    for (const char* part : {"One setting changed", "<td>no occlusion culling</td><td>290.00</td>", "at the same 29.3 ms"})
         EXPECT_NE(page.find(part), std::string::npos) << part;
     EXPECT_EQ(test::count_of(page, "<title>threshold, no occlusion culling, "), 6U) << "one a panel";
-    EXPECT_EQ(test::count_of(page, "class=\"as-set\""), 6U);
-    EXPECT_EQ(test::split(*read_text(folder / "a/accuracy.csv"), '\n').size(), run.points.size() + run.levers.size() + 1);
-    EXPECT_NE(read_text(folder / "a/accuracy.csv")->find("threshold (no occlusion culling),"), std::string::npos);
+    EXPECT_EQ(test::count_of(page, "class=\"as-swept\""), 6U);
+    EXPECT_EQ(test::split(*read_text(folder / "a/accuracy.csv"), '\n').size(), run.points.size() + run.changes.size() + 1);
+    EXPECT_NE(read_text(folder / "a/accuracy.csv")->find(",no occlusion culling\n"), std::string::npos);
     const auto json = nlohmann::json::parse(*read_text(folder / "a/accuracy.json"));
-    EXPECT_EQ(json["levers"][1]["lever"], "no occlusion culling");
-    EXPECT_EQ(json["levers"][1]["accuracy_worst"], 7);
+    EXPECT_EQ(json["changes"][1]["change"], "no occlusion culling");
+    EXPECT_EQ(json["changes"][1]["accuracy_worst"], 7);
+}
+
+TEST(AccuracyPage, ChangesSettingsOfTheUsualSelectorOrTheFirstThatHasABudget) {
+    EXPECT_EQ(changed_selector(compared_selectors()), "threshold");
+    EXPECT_EQ(changed_selector({"distance", "two-stage-1994", "best-first", "two-stage"}), "best-first");
+    EXPECT_EQ(changed_selector({"distance", "two-stage-1994"}), "");
+    EXPECT_EQ(changed_selector({}), "");
 }
 
 TEST(AccuracyPage, OfNoPointsDoesNotDivideByZero) {

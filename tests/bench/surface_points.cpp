@@ -40,7 +40,8 @@ int main(int argc, char** argv) {
     if (argc < 6)
         return bench::fail({"ACCURACY POINTS MODEL LEDGER CAPTURE...", "is missing",
                             "give files of one `surefoot walk --selector curve-accuracy --accuracy ACCURACY`"});
-    const double error_rad = 1 / std::strtod(argv[1], nullptr);
+    const double accuracy = std::strtod(argv[1], nullptr), error_rad = 1 / accuracy;
+    if (!(accuracy > 0)) return bench::fail({argv[1], "is no accuracy", "give one above 0, in rad^-1"});
     const auto points = static_cast<std::size_t>(std::strtoull(argv[2], nullptr, 10));
     const auto model = model::read_walk(argv[3], nullptr);
     if (!model) return bench::fail(model.error());

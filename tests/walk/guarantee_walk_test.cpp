@@ -121,7 +121,7 @@ TEST(AccuracyWalk, NoPointOfTheTrueSurfaceIsFartherFromWhatIsDrawn) {
     pose.orientation = dquat(record.orientation[3], record.orientation[0], record.orientation[1], record.orientation[2]);
     pose.fov_y_rad = read->prepared.region.centre.fov_y_rad;
     const test::SurfacePoints seen = test::judge_surface_points(*read, *model, pose, 1 / accuracy, points);
-    EXPECT_GE(seen.points, points);
+    EXPECT_GE(seen.points, points * 9 / 10);
     EXPECT_GT(seen.items, 50U);
     EXPECT_EQ(seen.beyond, 0U) << "the worst: 1/" << 1 / seen.worst_rad << " rad, of "
                                << model->name_of(model->nodes[seen.worst_node]);

@@ -90,7 +90,7 @@ report::Scale time_scale(const AccuracyRun& run, const Panel& panel, const repor
     Range range;
     for (const AccuracyPoint& p : run.points)
         if (panel.time_ms(p) > 0) range.grow(panel.time_ms(p));
-    for (const LeverMark& mark : run.levers)
+    for (const ChangeMark& mark : run.changes)
         if (panel.time_ms(mark.point) > 0) range.grow(panel.time_ms(mark.point));
     if (run.full_frame_ms > 0) range.grow(run.full_frame_ms);
     if (range.empty()) return {1, 10, area.left, area.right, true};
@@ -104,7 +104,7 @@ report::Scale value_scale(const AccuracyRun& run, const Panel& panel, const repo
         if (!panel.log || v > 0) range.grow(v);
     };
     for (const AccuracyPoint& p : run.points) grow(p);
-    for (const LeverMark& mark : run.levers) grow(mark.point);
+    for (const ChangeMark& mark : run.changes) grow(mark.point);
     if (range.empty()) return {panel.log ? 1.0 : 0.0, 10, area.bottom, area.top, panel.log};
     if (panel.log) return {range.low / 1.25, std::max(range.high * 1.25, range.low * 2), area.bottom, area.top, true};
     const double margin = std::max((range.high - range.low) * 0.08, std::max(1e-3, std::abs(range.high) * 0.01));
@@ -115,26 +115,26 @@ bool drawable(const AccuracyPoint& p, double value, const Panel& panel) {
     return panel.time_ms(p) > 0 && std::isfinite(value) && (!panel.log || value > 0);
 }
 
-std::string tip_of(const AccuracyPoint& p, std::string_view lever = {}) {
+std::string tip_of(const AccuracyPoint& p, std::string_view change = {}) {
     return fmt::format(
         "{}{}, budget {} ms. Frame {:.1f} ms (p90 {:.1f}, p99 {:.1f}). Accuracy {} rad⁻¹ (worst {}). SNR {}, PSNR {}, SSIM "
         "{:.3f}, "
         "FLIP {:.4f}. {} triangles.",
-        report::escaped(p.selector), lever.empty() ? "" : fmt::format(", {}", lever),
+        report::escaped(p.selector), change.empty() ? "" : fmt::format(", {}", change),
         std::isfinite(p.budget_ms) ? fmt::format("{:.1f}", p.budget_ms) : "unlimited", p.frame_ms_p50, p.frame_ms_p90,
         p.frame_ms_p99, report::short_number(p.accuracy_mean), report::short_number(p.accuracy_worst), report::decibels(p.snr_db),
         report::decibels(p.psnr_db), p.ssim, p.flip, report::short_number(p.triangles));
 }
 
-/// A square a lever; the first, as set, is filled.
-std::string lever_marks(const AccuracyRun& run, const Panel& panel, const report::Scale& x, const report::Scale& y) {
+/// A square a change; the first, as swept, is full.
+std::string change_marks(const AccuracyRun& run, const Panel& panel, const report::Scale& x, const report::Scale& y) {
     std::string out;
-    for (const LeverMark& mark : run.levers) {
+    for (const ChangeMark& mark : run.changes) {
         const double v = panel.value(mark.point);
         if (!drawable(mark.point, v, panel)) continue;
         out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"8\" height=\"8\" class=\"{}\"><title>{}</title></rect>",
-                           x(panel.time_ms(mark.point)) - 4, y(v) - 4, &mark == &run.levers.front() ? "as-set" : "front",
-                           tip_of(mark.point, mark.lever));
+                           x(panel.time_ms(mark.point)) - 4, y(v) - 4, &mark == &run.changes.front() ? "as-swept" : "change",
+                           tip_of(mark.point, mark.change));
     }
     return out;
 }
@@ -173,10 +173,10 @@ std::string panel_chart(const AccuracyRun& run, const std::vector<Series>& all, 
                 s.colour, s.published ? 1.6 : 2.2, s.published ? " stroke-dasharray=\"5 4\"" : "");
         out += dots;
     }
-    return out + lever_marks(run, panel, x, y);
+    return out + change_marks(run, panel, x, y);
 }
 
-std::string legend_of(const std::vector<Series>& all, double top) {
+std::string legend_of(const AccuracyRun& run, const std::vector<Series>& all, double top) {
     std::string out;
     double at = 52;
     double y = top;
@@ -193,6 +193,14 @@ std::string legend_of(const std::vector<Series>& all, double top) {
         out += report::text_at(at + 28, y, "", s.name);
         at += length;
     }
+    if (!run.changes.empty()) {
+        if (at + 190 > chart_width - 8) {
+            at = 52;
+            y += 20;
+        }
+        out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"8\" height=\"8\" class=\"change\"/>", at + 7, y - 8);
+        out += report::text_at(at + 28, y, "", "one setting changed");
+    }
     return out;
 }
 
@@ -200,7 +208,7 @@ std::string chart_of(const AccuracyRun& run, const std::array<Panel, 3>& three, 
                      std::string_view x_title) {
     const auto all = series_of(run);
     std::string out = report::open_chart(chart_width, chart_height, title);
-    out += legend_of(all, 24);
+    out += legend_of(run, all, 24);
     constexpr double panel_width = chart_width / 3;
     for (std::size_t i = 0; i < three.size(); ++i) {
         const double left = panel_width * static_cast<double>(i);

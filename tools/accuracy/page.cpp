@@ -56,20 +56,20 @@ std::string one_more_ms_of(const AccuracyRun& run) {
     return out + "</table></div>\n";
 }
 
-std::string levers_of(const AccuracyRun& run) {
-    if (run.levers.empty()) return {};
-    const AccuracyPoint& as_set = run.levers.front().point;
+std::string changes_of(const AccuracyRun& run) {
+    if (run.changes.empty()) return {};
+    const AccuracyPoint& as_swept = run.changes.front().point;
     std::string out = fmt::format(
-        "<h2>One lever set otherwise</h2>\n<p class=\"sub\">By <b>{}</b> at the same {:.1f} ms: what each lever changes. In the "
-        "charts these are squares.</p>\n<div class=\"card scroll\"><table>\n<tr><th>lever</th><th>frame p50, "
+        "<h2>One setting changed</h2>\n<p class=\"sub\">By <b>{}</b> at the same {:.1f} ms. In the charts these are "
+        "squares; the full one is as swept.</p>\n<div class=\"card scroll\"><table>\n<tr><th>change</th><th>frame p50, "
         "ms</th><th>p99, ms</th><th>worst accuracy, rad⁻¹</th><th>mean accuracy, rad⁻¹</th><th>PSNR, "
         "dB</th><th>FLIP</th><th>triangles</th></tr>\n",
-        report::escaped(as_set.selector), run.working_ms);
-    for (const LeverMark& mark : run.levers) {
+        report::escaped(as_swept.selector), run.working_ms);
+    for (const ChangeMark& mark : run.changes) {
         const AccuracyPoint& p = mark.point;
         out += fmt::format(
             "<tr><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.4f}</td><td>{}</td></tr>\n",
-            report::escaped(mark.lever), p.frame_ms_p50, p.frame_ms_p99, per_rad(p.accuracy_worst), per_rad(p.accuracy_mean),
+            report::escaped(mark.change), p.frame_ms_p50, p.frame_ms_p99, per_rad(p.accuracy_worst), per_rad(p.accuracy_mean),
             decibels_of(p), p.flip, report::grouped(p.triangles));
     }
     return out + "</table></div>\n";
@@ -115,7 +115,7 @@ std::string body_of(const AccuracyRun& run) {
         "place. Up and to the left is better. Points where every picture equals full detail have no finite SNR and are left "
         "out of that panel.</p>\n";
     out += one_more_ms_of(run);
-    out += levers_of(run);
+    out += changes_of(run);
     out += fmt::format("<h2>The worst place and the slowest frames</h2>\n<div class=\"card wide\">{}</div>\n",
                        worst_case_chart(run));
     out +=
@@ -153,19 +153,17 @@ void mark_fronts(std::vector<AccuracyPoint>& points) {
 std::string accuracy_csv(const AccuracyRun& run) {
     std::string out =
         "selector,budget_ms,frame_ms_p50,frame_ms_p90,accuracy_per_rad,snr_db,ssim,triangles,cost_us,frames,snr_infinite,snr_"
-        "undefined,exact,frame_ms_p99,accuracy_worst_per_rad,error_m,psnr_db,flip,value,accuracy_front,psnr_front\n";
-    std::vector<AccuracyPoint> rows = run.points;
-    for (const LeverMark& mark : run.levers) {
-        rows.push_back(mark.point);
-        rows.back().selector += fmt::format(" ({})", mark.lever);
-    }
-    for (const AccuracyPoint& p : rows)
+        "undefined,exact,frame_ms_p99,accuracy_worst_per_rad,error_m,psnr_db,flip,value,accuracy_front,psnr_front,change\n";
+    const auto add = [&](const AccuracyPoint& p, std::string_view change) {
         out += fmt::format(
             "{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.6f},{:.1f},{:.2f},{},{},{},{},{:.4f},{:.4f},{:.6g},{:.4f},{:.6f},"
-            "{:.6f},{:d},{:d}\n",
+            "{:.6f},{:d},{:d},{}\n",
             p.selector, p.budget_ms, p.frame_ms_p50, p.frame_ms_p90, p.accuracy_mean, p.snr_db, p.ssim, p.triangles, p.cost_us,
             p.frames, p.snr_infinite, p.snr_undefined, p.exact, p.frame_ms_p99, p.accuracy_worst, p.error_m, p.psnr_db, p.flip,
-            p.value, p.accuracy_front, p.psnr_front);
+            p.value, p.accuracy_front, p.psnr_front, change);
+    };
+    for (const AccuracyPoint& p : run.points) add(p, "");
+    for (const ChangeMark& mark : run.changes) add(mark.point, mark.change);
     return out;
 }
 
@@ -196,10 +194,10 @@ Json json_of(const AccuracyPoint& p) {
 }  // namespace
 
 std::string accuracy_json(const AccuracyRun& run) {
-    Json points = Json::array(), more = Json::array(), levers = Json::array();
-    for (const LeverMark& mark : run.levers) {
-        levers.push_back(json_of(mark.point));
-        levers.back()["lever"] = mark.lever;
+    Json points = Json::array(), more = Json::array(), changes = Json::array();
+    for (const ChangeMark& mark : run.changes) {
+        changes.push_back(json_of(mark.point));
+        changes.back()["change"] = mark.change;
     }
     for (const AccuracyPoint& p : run.points) points.push_back(json_of(p));
     for (const OneMoreMs& m : run.one_more_ms) more.push_back({{"now", json_of(m.now)}, {"more", json_of(m.more)}});
@@ -218,7 +216,7 @@ std::string accuracy_json(const AccuracyRun& run) {
                        {"rate_hz", run.rate_hz},
                        {"working_ms", run.working_ms},
                        {"one_more_ms", more},
-                       {"levers", levers}};
+                       {"changes", changes}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -31,9 +31,9 @@ constexpr std::string_view published_ending = "-1994";
 struct OneMoreMs {
     AccuracyPoint now, more;  ///< at the budget, and at one millisecond more
 };
-/// The usual selector at the same budget with one lever set otherwise. The first of a run is as set.
-struct LeverMark {
-    std::string lever;  ///< "as set", "no occlusion culling"
+/// One selector at the same budget with one setting changed. The first of a run is as swept.
+struct ChangeMark {
+    std::string change;  ///< "as swept", "no occlusion culling"
     AccuracyPoint point;
 };
 /// Marks the points that no other point beats.
@@ -48,7 +48,7 @@ struct AccuracyRun {
     std::vector<AccuracyPoint> points;
     double rate_hz = 0, working_ms = 0;  ///< the rate, and the budget that it allows
     std::vector<OneMoreMs> one_more_ms;  ///< by selectors that go by a budget, the published ones left out
-    std::vector<LeverMark> levers;       ///< at the same budget; empty: no selector that goes by one was swept
+    std::vector<ChangeMark> changes;     ///< at the same budget; empty: no selector that goes by one was swept
 };
 /// The chart as a file of its own.
 std::string accuracy_svg(const AccuracyRun& run, bool dark);

@@ -174,6 +174,15 @@ std::vector<std::string> compared_selectors() {
     return names;
 }
 
+std::string changed_selector(const std::vector<std::string>& swept) {
+    if (std::find(swept.begin(), swept.end(), select::usual_selector) != swept.end()) return std::string(select::usual_selector);
+    for (const std::string& name : swept) {
+        const auto entry = select::selector_named(name);
+        if (entry && (*entry)->goes_by == select::GoesBy::budget && !name.ends_with(published_ending)) return name;
+    }
+    return {};
+}
+
 namespace {
 
 /// How far one selector is.
@@ -218,55 +227,55 @@ Result<void> sweep_selector(Sweep& sweep, const AccuracyRequest& request, const 
     return {};
 }
 
-/// One lever set otherwise than a walk sets it.
-struct Lever {
+/// One option of the sweep's engine, set otherwise.
+struct Change {
     std::string_view name;
     void (*set)(EngineOptions&);
 };
-constexpr std::array<Lever, 3> levers = {{
+constexpr std::array<Change, 4> changes = {{
     {"no occlusion culling", [](EngineOptions& o) { o.prepare.occlusion = false; }},
     {"no focus on the middle", [](EngineOptions& o) { o.prepare.focus_strength = 0; }},
+    {"gestalt 1", [](EngineOptions& o) { o.prepare.gestalt = 1; }},
     {"resolution 75 %", [](EngineOptions& o) { o.resolution = 0.75F; }},
 }};
 
-/// Prepares and draws all places by `selector` at the budget of the rate.
-Result<void> mark_lever(Sweep& sweep, std::string_view lever, const std::string& selector, AccuracyRun& run) {
+/// Prepares and draws all places by `selector` at the budget of the rate. Each is drawn once untimed before: a new engine's first
+/// frames take longer.
+Result<void> mark_change(Sweep& sweep, std::string_view change, const std::string& selector, AccuracyRun& run) {
     if (auto set = sweep.engine.set_selector(selector); !set) return set;
     for (Station& station : sweep.stations) sweep.engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
-    auto measured = sweep.measure(selector, run.working_ms * 1e3, 0.0);
-    if (!measured) return measured.error();
-    run.levers.push_back({std::string(lever), std::move(*measured)});
+    for (const bool timed : {false, true}) {
+        auto measured = sweep.measure(selector, run.working_ms * 1e3, 0.0);
+        if (!measured) return measured.error();
+        if (timed) run.changes.push_back({std::string(change), std::move(*measured)});
+    }
     return {};
 }
 
-/// Marks of the first swept selector that goes by a budget: as set, then with one lever at a time set otherwise. Each has an
-/// engine of its own, since levers are fixed when one is opened.
-Result<void> sweep_levers(Sweep& as_set, const AccuracyRequest& request, const Progress& progress, AccuracyRun& run) {
-    const auto buys = [](const std::string& name) {
-        const auto entry = select::selector_named(name);
-        return entry && (*entry)->goes_by == select::GoesBy::budget && !name.ends_with(published_ending);
-    };
-    const auto selector = std::find_if(request.selectors.begin(), request.selectors.end(), buys);
-    if (selector == request.selectors.end()) return {};
-    if (auto ok = mark_lever(as_set, "as set", *selector, run); !ok) return ok;
-    for (std::size_t i = 0; i < levers.size(); ++i) {
+/// As swept, then with one option at a time set otherwise. Each has an engine of its own, since options are fixed when one is
+/// opened.
+Result<void> sweep_changes(Sweep& as_swept, const AccuracyRequest& request, const Progress& progress, AccuracyRun& run) {
+    const std::string selector = changed_selector(request.selectors);
+    if (selector.empty()) return {};
+    if (auto ok = mark_change(as_swept, "as swept", selector, run); !ok) return ok;
+    for (std::size_t i = 0; i < changes.size(); ++i) {
         if (progress.stopped()) return Error{request.model_file, "The sweep was stopped by the user", "", ErrorKind::stopped};
-        progress.update(std::string(levers[i].name), static_cast<double>(i) / static_cast<double>(levers.size()));
+        progress.update(std::string(changes[i].name), static_cast<double>(i) / static_cast<double>(changes.size()));
         model::WalkFileInfo file;
         auto model = model::read_walk(request.model_file, &file);
         if (!model) return model.error();
         EngineOptions options;
-        levers[i].set(options);
+        changes[i].set(options);
         auto engine = open_engine(request, std::move(*model), file.hash, options, run);
         if (!engine) return engine.error();
         (*engine)->device().bind();
-        Sweep sweep{**engine, std::vector<Station>(as_set.stations.size()), as_set.repeats};
+        Sweep sweep{**engine, std::vector<Station>(as_swept.stations.size()), as_swept.repeats};
         for (std::size_t s = 0; s < sweep.stations.size(); ++s) {
-            sweep.stations[s].pose = as_set.stations[s].pose;
-            sweep.stations[s].full = as_set.stations[s].full;
+            sweep.stations[s].pose = as_swept.stations[s].pose;
+            sweep.stations[s].full = as_swept.stations[s].full;
             (*engine)->reserve(sweep.stations[s].prepared);
         }
-        auto marked = mark_lever(sweep, levers[i].name, *selector, run);
+        auto marked = mark_change(sweep, changes[i].name, selector, run);
         (*engine)->device().release();
         if (!marked) return marked;
     }
@@ -318,7 +327,7 @@ Result<AccuracyRun> run_accuracy(const AccuracyRequest& request, const Progress&
         if (auto ok = sweep_selector(sweep, request, request.selectors[i], {progress, part}, run); !ok) return ok.error();
     }
     mark_fronts(run.points);
-    if (auto ok = sweep_levers(sweep, request, progress, run); !ok) return ok.error();
+    if (auto ok = sweep_changes(sweep, request, progress, run); !ok) return ok.error();
     return run;
 }
 

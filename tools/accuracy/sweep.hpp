@@ -16,6 +16,10 @@ namespace surefoot::accuracy {
 /// The selectors that are compared by default.
 std::vector<std::string> compared_selectors();
 
+/// The swept selector by which single settings are changed. The usual one, else the first that goes by a budget. Published ones
+/// are left out. Empty: there is none.
+std::string changed_selector(const std::vector<std::string>& swept);
+
 /// Settings of a sweep.
 struct AccuracyRequest {
     std::string model_file, path_file, state_dir;

@@ -57,11 +57,11 @@ void print_one_more_ms(const accuracy::AccuracyRun& run) {
                    per_rad(m.more.accuracy_mean), decibels(m.now), decibels(m.more), 100 * m.now.value, 100 * m.more.value);
 }
 
-void print_levers(const accuracy::AccuracyRun& run) {
-    if (run.levers.empty()) return;
-    fmt::print("One lever set otherwise, {} at {:.1f} ms:\n", run.levers.front().point.selector, run.working_ms);
-    for (const accuracy::LeverMark& mark : run.levers)
-        fmt::print("  {:<24} frame {:.1f} ms, worst accuracy {} rad^-1, PSNR {}, FLIP {:.4f}\n", mark.lever,
+void print_changes(const accuracy::AccuracyRun& run) {
+    if (run.changes.empty()) return;
+    fmt::print("One setting changed, {} at {:.1f} ms:\n", run.changes.front().point.selector, run.working_ms);
+    for (const accuracy::ChangeMark& mark : run.changes)
+        fmt::print("  {:<24} frame {:.1f} ms, worst accuracy {} rad^-1, PSNR {}, FLIP {:.4f}\n", mark.change,
                    mark.point.frame_ms_p50, per_rad(mark.point.accuracy_worst), decibels(mark.point), mark.point.flip);
 }
 
@@ -101,7 +101,7 @@ int run_accuracy_command(AccuracyArguments& a, const Context& context) {
     } else {
         print_points(*run);
         print_one_more_ms(*run);
-        print_levers(*run);
+        print_changes(*run);
         fmt::print("page: {}/index.html\n", a.out);
     }
     return exit_success;
@@ -116,7 +116,7 @@ void add_accuracy(CLI::App& app, Context& context) {
         "The accuracy of a point is the mean over its poses. Poses drawn exactly have no finite accuracy: they are left out\n"
         "of the mean and counted apart. A point with only such poses is 'exact'.\n"
         "The page also has the worst accuracy, PSNR, FLIP, and what one more millisecond buys at the budget of --rate.\n"
-        "There, one lever at a time is set otherwise too: occlusion culling, focus, resolution.",
+        "There it also draws without occlusion culling, without focus, with gestalt, and at 75 % resolution.",
         a->json);
     accuracy::AccuracyRequest& r = a->request;
     c->add_option("model", r.model_file, "The .walk model")->required();

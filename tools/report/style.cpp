@@ -36,7 +36,7 @@ constexpr std::string_view chart_rules = R"css(
 .chart .snapshot{fill:var(--panel);stroke:var(--accent);stroke-width:1.8}
 .chart .snapshot-line{stroke:var(--accent);stroke-width:1;stroke-dasharray:2 3;opacity:.6}
 .chart .hit{fill:var(--ink);fill-opacity:0}.chart .hit:hover{fill-opacity:.07}
-.chart .dot{stroke:var(--panel);stroke-width:1.5}.chart .front{fill:none;stroke:var(--ink);stroke-width:1.2}.chart .as-set{fill:var(--ink)}
+.chart .dot{stroke:var(--panel);stroke-width:1.5}.chart .front{fill:none;stroke:var(--ink);stroke-width:1.2}.chart .as-swept{fill:var(--ink)}.chart .change{fill:transparent;stroke:var(--ink);stroke-width:1.2}
 .chart .cone{fill:var(--accent);opacity:.13}.chart .cone-edge{stroke:var(--accent);stroke-width:1;opacity:.55}
 .chart .eye{fill:var(--accent);stroke:var(--panel);stroke-width:2}
 .chart .world{fill:none;stroke:var(--rule);stroke-width:1}
