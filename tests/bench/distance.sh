@@ -1,4 +1,4 @@
-# The group `distance` of tests/bench/run, which sources this: in real time, the accuracy of the worst object in each frame, by a budget
+# The group `distance` of tests/bench/run, which sources this: in real time, the accuracy of the worst object in each frame, by a budget and
 # by a fixed angle that takes as long. Costs are the machine's table, without a fit: p99 is made equal, whatever was predicted.
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154 # work, surefoot, state, path, build: of run
