@@ -3,27 +3,38 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154 # work, surefoot, state, path, build: of run
 
-distance_seconds=20 distance_turns=3 distance_tries=9
+distance_frames=300 distance_turns=3 distance_tries=9
 
 # One walk in real time. Sets p99 of its frames, ms; the ledger is WORK/distance-LABEL.csv.
 distance_walk() { # LABEL NAME RATE OPTIONS...
   local label=distance-$1 name=$2 rate=$3
   shift 3
-  measure "$label" "$surefoot" walk "$work/$name.walk" "${path[@]}" --rate "$rate" --seconds "$distance_seconds" --resolution 100 \
+  measure "$label" "$surefoot" walk "$work/$name.walk" "${path[@]}" --rate "$rate" --frames "$distance_frames" --resolution 100 \
     --rest-after 0 --state "$state" --ledger "$work/$label.csv" "$@" --json || return 1
   p99=$(value frame_ms.p99) missed=$(value misses) steal=$(rounded steal_ms)
 }
 
-# The accuracy at which `distance` takes as long as $1 ms (p99), within 5 %: halving, on logarithms. Sets accuracy.
+# A rate that suits this machine: 30 Hz where full detail of the forest takes 65 ms. Sets rate.
+distance_rate() {
+  path_of forest
+  measure "distance full detail" "$surefoot" walk "$work/forest.walk" --selector flat --late float --no-check --no-occlusion --rate 3 --frames 20 \
+    --state "$state" --json || return 1
+  rate=$(awk "BEGIN { printf \"%.3f\", 30 * 65 / $(value frame_ms.p50) }")
+}
+
+# The accuracy at which `distance` takes as long as $1 ms (p99), within 5 %: between the two nearest, on logarithms. Sets accuracy.
 # What a frame cannot finish is drawn all the same (--no-check): else the check would bound the time at any accuracy.
 distance_accuracy() { # P99 NAME RATE
-  local wanted=$1 low=4 high=4000 try
+  local wanted=$1 low=2 high=5000 low_ms=0 high_ms=0 try
+  accuracy=40
   for (( try = 1; try <= distance_tries; ++try )); do
-    accuracy=$(awk "BEGIN { printf \"%.4g\", sqrt($low * $high) }")
     distance_walk "$2-try-$try" "$2" "$3" --selector distance --no-check --accuracy "$accuracy" || return 1
     echo "tests/bench/run: $2: distance at $accuracy rad^-1 has p99 $p99 ms, wanted $wanted" >&2
     if agree "$p99" "$wanted"; then return 0; fi
-    if awk "BEGIN { exit !($p99 > $wanted) }"; then high=$accuracy; else low=$accuracy; fi
+    if awk "BEGIN { exit !($p99 > $wanted) }"; then high=$accuracy high_ms=$p99; else low=$accuracy low_ms=$p99; fi
+    accuracy=$(awk "BEGIN { part = $low_ms > 0 && $high_ms > $low_ms ? log($wanted / $low_ms) / log($high_ms / $low_ms) : 0.5
+      if (part < 0.1) part = 0.1; if (part > 0.9) part = 0.9
+      printf \"%.4g\", $low * ($high / $low) ^ part }")
   done
   echo "tests/bench/run: $2: no angle of distance takes $wanted ms within 5 %" >&2
   failed=1
