@@ -17,7 +17,7 @@ distance_walk() { # LABEL NAME RATE OPTIONS...
 # A rate that suits this machine: 30 Hz where full detail of the forest takes 65 ms. Sets rate.
 distance_rate() {
   path_of forest
-  measure "distance full detail" "$surefoot" walk "$work/forest.walk" --selector flat --late float --no-check --no-occlusion --rate 3 --frames 20 \
+  measure "distance full detail" "$surefoot" walk "$work/forest.walk" --selector flat --late float --no-check --no-occlusion --rate 1 --frames 20 \
     --state "$state" --json || return 1
   rate=$(awk "BEGIN { printf \"%.3f\", 30 * 65 / $(value frame_ms.p50) }")
 }
