@@ -87,7 +87,7 @@ inline SurfacePoints points_of_item(const model::Model& model, const select::Cut
 }
 
 /// The cut of a capture, seen from a pose of its region: about `points` points in view, spread evenly over the coarse forms in
-/// view. Full detail is its own surface, so it is left out, also without what its masks hide.
+/// view. Forms that show full detail are left out.
 inline SurfacePoints judge_surface_points(const capture::Capture& of, const model::Model& model, const Pose& pose,
                                           double error_rad, std::size_t points) {
     const model::Frustum frustum = model::make_frustum(pose, of.prepared.viewport, model::far_corners_m(model.nodes[0].box));

@@ -1,4 +1,4 @@
-// Shares of the most frequent kind among the children of each node, children first.
+// Counts the most frequent kind among the children of each node, children first.
 #include "render/prepare/alike.hpp"
 
 #include <algorithm>

@@ -107,7 +107,7 @@ struct PrepareOptions {
     std::uint32_t max_candidates = 1U << 18U;
     std::uint32_t max_choices = 1U << 20U;
     double focus_strength = 0.5;  ///< 0: the periphery counts as much as the centre
-    /// 0..1: this share of what a group's own forms lose is forgiven where all its members are alike; 0: none.
+    /// 0..1: how much of its loss a group's own form is forgiven if all members are alike; 0: none.
     double gestalt = 0;
     int workers = 1;           ///< with the caller of run()
     WorkerHooks worker_hooks;  ///< if set, workers start with the Preparer, else at first use

@@ -53,7 +53,7 @@ distance_figures() {
 
 # Pictures of both, every two seconds, against full detail at the same pose: no promise.
 distance_pictures() { # NAME RATE: the walks of the last turn again, with pictures; prints words for the note
-  local which at every frames words='' options=()
+  local which at every words='' options=()
   every=$(awk "BEGIN { printf \"%.0f\", 2 * $2 }")
   for which in budget angle; do
     options=(--selector curve-budget)
@@ -62,12 +62,9 @@ distance_pictures() { # NAME RATE: the walks of the last turn again, with pictur
     rm -rf "$at"
     mkdir -p "$at"
     distance_walk "$1-pictures" "$1" "$2" "${options[@]}" --snap "$at/walk" --every "$every" || return 1
-    measure "distance poses $1" "$build/tests/bench_ledger_poses" "${path[1]:-$work/$1.path.csv}" "${path[3]:-0}" "$2" \
-      "$work/distance-$1-pictures.csv" "$every" "$at/poses.csv" || return 1
-    frames=$(value frames)
-    measure "distance reference $1" "$surefoot" walk "$work/$1.walk" --path "$at/poses.csv" --selector flat --clock virtual --cost-scale 0.01 \
-      --no-check --no-occlusion --rate 30 --frames "$frames" --state "$state" --snap "$at/full" --every 4 --json || return 1
-    measure "distance difference $1" "$build/tests/bench_picture_difference" "$at/walk" "$at/full" || return 1
+    mv "$work/distance-$1-pictures.csv" "$at/ledger.csv"
+    beside_full_detail "distance $1 $which" "$at" "${path[1]:-$work/$1.path.csv}" "${path[3]:-0}" "$2" "$every" "$surefoot" "$work/$1.walk" \
+      "$state" || return 1
     words+="${words:+, }$which $(rounded psnr_db) dB and FLIP $(rounded flip)"
   done
   echo "$words"

@@ -55,9 +55,21 @@ full_detail_ms() {
   full_ms=$(value frame_ms.p50) || return 1
 }
 
+# The pictures AT/walk of a walk with the ledger AT/ledger.csv, against full detail at the same poses, which goes to AT/full. Values are those of
+# bench_picture_difference.
+beside_full_detail() { # LABEL AT PATH LIFT RATE EVERY SUREFOOT MODEL STATE
+  local frames
+  measure "$1 poses" "$build/tests/bench_ledger_poses" "$3" "$4" "$5" "$2/ledger.csv" "$6" "$2/poses.csv" || return 1
+  frames=$(value frames)
+  # Four frames at each pose, for the prepared region to settle; every fourth is a picture.
+  measure "$1 reference" "$7" walk "$8" --path "$2/poses.csv" --selector flat --clock virtual --cost-scale 0.01 --no-check --no-occlusion \
+    --rate 30 --frames "$frames" --state "$9" --snap "$2/full" --every 4 --json || return 1
+  measure "$1 difference" "$build/tests/bench_picture_difference" "$2/walk" "$2/full"
+}
+
 # One walk and its pictures against old's full detail. Sets psnr, worst, ssim, missed, walked, and unused of new.
 picture_walk() { # LABEL BUILD STATE RATE NAME PATH LIFT
-  local folder at=$picture_work/walks/$5-$1 every
+  local folder old_folder at=$picture_work/walks/$5-$1 every
   folder=$(picture_folder "$2")
   every=$(awk "BEGIN { printf \"%.0f\", 2 * $4 }")
   rm -rf "$at"
@@ -66,14 +78,8 @@ picture_walk() { # LABEL BUILD STATE RATE NAME PATH LIFT
     --state "$3" --ledger "$at/ledger.csv" --snap "$at/walk" --every "$every" --json || return 1
   missed=$(value misses) walked=$(value frames) unused=
   [[ $2 == "$old" ]] || unused=$(awk "BEGIN { printf \"%.3f\", 0.1 * $4 * $(value unused_ms.mean) }")  # of the period, in per cent
-  measure "picture poses $1 $5" "$build/tests/bench_ledger_poses" "$6" "$7" "$4" "$at/ledger.csv" "$every" "$at/poses.csv" || return 1
-  local frames old_folder
-  frames=$(value frames)
   old_folder=$(picture_folder "$old")
-  # Four frames at each pose, for the prepared region to settle; every fourth is a picture.
-  measure "picture reference $1 $5" "$old/surefoot" walk "$old_folder/$5.walk" --path "$at/poses.csv" --selector flat --clock virtual \
-    --cost-scale 0.01 --no-check --no-occlusion --rate 30 --frames "$frames" --state "$old_folder/state" --snap "$at/full" --every 4 --json || return 1
-  measure "picture difference $1 $5" "$build/tests/bench_picture_difference" "$at/walk" "$at/full" || return 1
+  beside_full_detail "picture $1 $5" "$at" "$6" "$7" "$4" "$every" "$old/surefoot" "$old_folder/$5.walk" "$old_folder/state" || return 1
   psnr=$(value psnr_db) worst=$(value worst_psnr_db) ssim=$(value ssim)
   echo "tests/bench/run: $5, $1: $psnr dB, worst $worst ($at/walk/$(value worst)), SSIM $ssim, FLIP $(value flip), $missed of $walked missed" >&2
 }

@@ -152,6 +152,16 @@ function missed_list(    p, scenes, count, i, n, key, reason, reasons, order_of_
   for (i = 1; i <= r; ++i) paragraph("* " reasons[order_of_reasons[i]] ". " order_of_reasons[i], "  ")
 }
 
+# A figure without a scene gives way to newer ones of scenes: since then the promise is measured scene by scene.
+function give_way(    key, parts, whole, gone) {
+  for (key in newest) {
+    split(key, parts, SUBSEP)
+    whole = parts[1] SUBSEP ""
+    if (parts[2] != "" && (whole in newest) && time_of[newest[key]] > time_of[newest[whole]]) gone[whole] = 1
+  }
+  for (whole in gone) delete newest[whole]
+}
+
 # The command that all promises of a group share; empty where there are several.
 function command_of_group(group,    p, command) {
   for (p = 1; p <= promises; ++p) {
@@ -163,6 +173,7 @@ function command_of_group(group,    p, command) {
 }
 
 function write_page(    p, g, groups, group_list, has_figures, count, with, whole, held, all, scenes, i, ok, without, text) {
+  give_way()
   for (p = 1; p <= promises; ++p) {
     if (bound_of[order[p]] == "-") continue
     if (!(group_of[order[p]] in groups)) { groups[group_of[order[p]]] = 1; group_list[++g] = group_of[order[p]] }

@@ -57,6 +57,18 @@ has_text made/RESULTS.md "hill: 1, lake: 2, moor: 2 | yes | abc1234, def5678 |" 
 mv before.jsonl figures.jsonl
 report || fault "making it again"
 
+# ---- a figure without a scene gives way to newer ones of scenes, and stays beside older ones ----
+cp figures.jsonl before.jsonl
+figure 2026-01-08T00:00:00Z late '' 7 '<=2' false '' >>figures.jsonl
+report || { fault "a figure without a scene is refused"; cat output; }
+has_text made/RESULTS.md "**7**" "the newest without a scene stays"
+figure 2026-01-09T00:00:00Z late hill 1 '<=2' true '' >>figures.jsonl
+report || { fault "a newer scene is refused"; cat output; }
+lacks_text made/RESULTS.md "**7**" "a newer scene takes its place"
+has_text made/history.csv "late,,7," "it stays in the CSV"
+mv before.jsonl figures.jsonl
+report || fault "making it again"
+
 # ---- --check ----
 report --check || { fault "--check refuses what was just made"; cat output; }
 echo >>made/RESULTS.md

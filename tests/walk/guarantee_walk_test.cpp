@@ -31,6 +31,15 @@ walk::WalkRequest guaranteed(double min_accuracy, std::uint64_t length) {
     return request;
 }
 
+/// Where the eye was. A record has no field of view.
+Pose pose_of(const rt::FrameRecord& record, const capture::Capture& of) {
+    Pose pose;
+    pose.position = {record.eye[0], record.eye[1], record.eye[2]};
+    pose.orientation = dquat(record.orientation[3], record.orientation[0], record.orientation[1], record.orientation[2]);
+    pose.fov_y_rad = of.prepared.region.centre.fov_y_rad;
+    return pose;
+}
+
 TEST(GuaranteeWalk, EveryRecordSaysWhatWasPromisedAndReached) {
     for (const double accuracy : {20.0, 2000.0}) {
         const walk::WalkOutcome outcome = test::walk(guaranteed(accuracy, frames));
@@ -78,10 +87,7 @@ TEST(GuaranteeWalk, IsReachedByCapturedCutsAndBrokenOnlyWhereNoCutFits) {
             ASSERT_TRUE(read.ok());
             EXPECT_TRUE(capture::verify(*read).ok()) << "the guarantee is in the file";
             const rt::FrameRecord& record = outcome.records.back();
-            Pose pose;
-            pose.position = {record.eye[0], record.eye[1], record.eye[2]};
-            pose.orientation = dquat(record.orientation[3], record.orientation[0], record.orientation[1], record.orientation[2]);
-            pose.fov_y_rad = read->prepared.region.centre.fov_y_rad;
+            const Pose pose = pose_of(record, *read);
             ASSERT_EQ(read->hash, record.cut_hash);
             const double seen = test::worst_seen_error(*read, *model, pose);
             ASSERT_NEAR(double{record.reached_accuracy} * seen, 1, 1e-5) << "frame " << frame;
@@ -116,10 +122,7 @@ TEST(AccuracyWalk, NoPointOfTheTrueSurfaceIsFartherFromWhatIsDrawn) {
     ASSERT_TRUE(read.ok());
     const rt::FrameRecord& record = outcome.records.back();
     ASSERT_EQ(read->hash, record.cut_hash);
-    Pose pose;
-    pose.position = {record.eye[0], record.eye[1], record.eye[2]};
-    pose.orientation = dquat(record.orientation[3], record.orientation[0], record.orientation[1], record.orientation[2]);
-    pose.fov_y_rad = read->prepared.region.centre.fov_y_rad;
+    const Pose pose = pose_of(record, *read);
     const test::SurfacePoints seen = test::judge_surface_points(*read, *model, pose, 1 / accuracy, points);
     EXPECT_GE(seen.points, points * 9 / 10);
     EXPECT_GT(seen.items, 50U);

@@ -49,6 +49,8 @@ struct Sweep {
     int repeats;
 
     double time_full(const Station& station, const std::vector<gl::DrawItem>& items);
+    /// Draws each place once: the first frames of an engine take longer than later ones.
+    void warm_up(double budget_us);
     Result<AccuracyPoint> measure(const std::string& selector, double budget_us, double target_error_rad);
     /// Pictures of the last submission against the station's full detail.
     Result<void> compare(const Station& station, AccuracyPoint& point, PictureSums& sums);
@@ -62,6 +64,22 @@ double Sweep::time_full(const Station& station, const std::vector<gl::DrawItem>&
         ms.push_back(static_cast<double>(rt::monotonic_ns() - begun) * 1e-6);
     }
     return quantile_of(ms, 0.5);
+}
+
+/// On this clock, without an end.
+SubmitLimits no_limits() {
+    SubmitLimits limits;
+    limits.now_ns = [](void*) { return rt::monotonic_ns(); };
+    limits.limit_us = 1e12;
+    return limits;
+}
+
+void Sweep::warm_up(double budget_us) {
+    engine.device().draws.plays();
+    for (const Station& station : stations) {
+        engine.select(station.prepared, budget_us, {}, 0.0);
+        engine.submit(station.pose, no_limits());
+    }
 }
 
 Result<void> Sweep::compare(const Station& station, AccuracyPoint& point, PictureSums& sums) {
@@ -98,9 +116,7 @@ Result<AccuracyPoint> Sweep::measure(const std::string& selector, double budget_
     double accuracy = 0, triangles = 0, cost = 0, worst_rad = 0;
     PictureSums sums;
     engine.device().draws.plays();
-    SubmitLimits limits;
-    limits.now_ns = [](void*) { return rt::monotonic_ns(); };
-    limits.limit_us = 1e12;
+    const SubmitLimits limits = no_limits();
     const auto n = static_cast<double>(stations.size());
     for (const Station& station : stations) {
         const select::Cut& cut = engine.select(station.prepared, budget_us, {}, target_error_rad);
@@ -239,16 +255,14 @@ constexpr std::array<Change, 4> changes = {{
     {"resolution 75 %", [](EngineOptions& o) { o.resolution = 0.75F; }},
 }};
 
-/// Prepares and draws all places by `selector` at the budget of the rate. Each is drawn once untimed before: a new engine's first
-/// frames take longer.
+/// Prepares and draws all places by `selector` at the budget of the rate.
 Result<void> mark_change(Sweep& sweep, std::string_view change, const std::string& selector, AccuracyRun& run) {
     if (auto set = sweep.engine.set_selector(selector); !set) return set;
     for (Station& station : sweep.stations) sweep.engine.prepare({station.pose, 0.0, 0.0}, 0, 0.0, 0.0, station.prepared);
-    for (const bool timed : {false, true}) {
-        auto measured = sweep.measure(selector, run.working_ms * 1e3, 0.0);
-        if (!measured) return measured.error();
-        if (timed) run.changes.push_back({std::string(change), std::move(*measured)});
-    }
+    sweep.warm_up(run.working_ms * 1e3);
+    auto measured = sweep.measure(selector, run.working_ms * 1e3, 0.0);
+    if (!measured) return measured.error();
+    run.changes.push_back({std::string(change), std::move(*measured)});
     return {};
 }
 
