@@ -194,12 +194,12 @@ std::string legend_of(const AccuracyRun& run, const std::vector<Series>& all, do
         at += length;
     }
     if (!run.changes.empty()) {
-        if (at + 190 > chart_width - 8) {
+        if (at + 300 > chart_width - 8) {
             at = 52;
             y += 20;
         }
         out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"8\" height=\"8\" class=\"change\"/>", at + 7, y - 8);
-        out += report::text_at(at + 28, y, "", "one setting changed");
+        out += report::text_at(at + 28, y, "", "one setting changed; full: as swept");
     }
     return out;
 }
