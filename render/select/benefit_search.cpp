@@ -55,6 +55,12 @@ public:
         }
         return taken_;
     }
+    /// From the builder's start on, what still fits, without a search. Returns the number of steps.
+    std::uint32_t run_rest() {
+        sum_ = builder_.start_sum();
+        fill_up();
+        return taken_;
+    }
 
 private:
     [[nodiscard]] StepPlace step_of(const prepare::Choice& now, Index shown) const { return place_of(steps_, now, shown); }
@@ -364,6 +370,10 @@ const Selector& make_two_stage() {
 }
 
 }  // namespace
+
+std::uint32_t fill_by_rate(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget) {
+    return ThresholdSearch(input, state, builder, budget, Key::rate).run_rest();
+}
 
 const SelectorEntry best_first_entry{
     "best-first", "the node of the greatest own benefit next, within the budget", GoesBy::budget, true, make_best_first, true};

@@ -134,6 +134,15 @@ bool CommonErrorCuts::find_within_budget(float min_error_rad) {
     return true;
 }
 
+bool CommonErrorCuts::start_with_taken() {
+    const float limit = std::min(taken_error_, taken_worst_);  // the second is larger where a leaf has nothing better
+    if (!(limit < no_limit)) return false;
+    (void)find(taken_error_);  // the decisions that were taken once more
+    builder_.start_with(decisions_, limit);
+    builder_.take_start();
+    return true;
+}
+
 float CommonErrorCuts::coarsest_error() const {
     float worst = 0;
     for (Index c = 0; c < builder_.size(); ++c) worst = std::max(worst, builder_.weighted_error(c, builder_.choices(c).front()));
@@ -191,11 +200,29 @@ public:
         builder.buy_items(budget);
         const bool finest = full_detail_fits(input, state, budget) || builder.finest_is_cheapest(budget);
         if (finest && !builder.finest_breaks_guarantee()) return builder.finish(budget, builder.take_finest(), cut);
+        if (find_start(input, state, builder, budget)) {
+            const std::uint32_t refinements = fill_by_rate(input, state, builder, budget);
+            return builder.finish(budget, refinements, cut);
+        }
+        builder.finish(budget, 0, cut);
+    }
+
+private:
+    /// Gives the builder the cut of the smallest error. True: it is a start, and the rest of the budget goes by value.
+    static bool find_start(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget) {
+        if (builder.guarantee() == rt::Guarantee::over_budget && builder.has_starts()) {  // that was looked for already
+            builder.take_start();
+            return true;
+        }
+        if (!budget.fits(builder.floor_sum())) return false;  // the floor is drawn
         CommonErrorCuts cuts(input, state, builder, budget);
         const auto target = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : 0.0);
-        const bool found = budget.fits(builder.floor_sum()) && cuts.find_within_budget(target);  // else the floor is drawn
-        if (found && cuts.taken_worst_rad() > builder.max_error_rad()) builder.take_start();     // what was shown had more error
-        builder.finish(budget, 0, cut);
+        if (!cuts.find_within_budget(target)) return false;
+        if (cuts.taken_worst_rad() > builder.max_error_rad()) {
+            builder.take_start();  // what was shown had more error
+            return true;
+        }
+        return !(target > 0.0F) && cuts.start_with_taken();
     }
 };
 

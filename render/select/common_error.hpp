@@ -41,6 +41,8 @@ public:
 
     /// Of the cut that find_within_budget() gave to the builder.
     [[nodiscard]] float taken_worst_rad() const { return taken_worst_; }
+    /// Lets the builder start with that cut: no item gets more error. False: its error has no limit, and nothing changes.
+    [[nodiscard]] bool start_with_taken();
     [[nodiscard]] float two_pixels_rad() const { return two_pixels_rad_; }
 
 private:
@@ -71,5 +73,9 @@ private:
 /// Before a search, with the floor in the builder: its start, so that no item has more than the input's `max_error_rad`. Nothing
 /// changes if that is 0.
 void guarantee_error(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget);
+
+/// From the builder's start on: the steps of greatest value per cost that still fit the budget, in at most four rounds. Returns
+/// how many were taken. Uses the state's scratch memory; allocates nothing.
+std::uint32_t fill_by_rate(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget);
 
 }  // namespace surefoot::select

@@ -119,6 +119,44 @@ TEST(CommonError, IsTheSmallestThatTheBudgetBuys) {
     EXPECT_GT(compared, 200U);
 }
 
+/// Beside the cheapest cut of the same worst error: more value, no more error, within the budget.
+void expect_more_value(Scene& s, double budget, double& left, double& left_before) {
+    const Cut cut = s.run("curve-budget", budget);
+    const Cut common = s.run("curve-accuracy", 0, static_cast<double>(cut.worst_error_rad));
+    ASSERT_EQ(check_legal(s.frame, cut), "");
+    ASSERT_LE(static_cast<double>(cut.predicted_us), budget);
+    ASSERT_GE(cut.value, common.value * (1 - 1e-5));
+    left = (budget - static_cast<double>(cut.predicted_us)) / budget;
+    left_before = (budget - static_cast<double>(common.predicted_us)) / budget;
+}
+
+TEST(CommonError, LeavesTheRestOfTheBudgetToValue) {
+    double left = 0, left_before = 0;
+    std::size_t compared = 0;
+    for_frames(300, 60, [&](Scene& s, Random& random) {
+        const double full = static_cast<double>(s.run("flat", infinity).predicted_us),
+                     floor = static_cast<double>(s.cut.floor_us);
+        const double budget = floor + (full - floor) * random.range(0.1, 0.9);
+        const Cut& cut = s.run("curve-budget", budget);
+        if (cut.floor_binds || !(cut.worst_error_rad > 0)) return;
+        if (!(static_cast<double>(s.run("curve-accuracy", 0, static_cast<double>(cut.worst_error_rad)).predicted_us) <= budget))
+            return;
+        expect_more_value(s, budget, left, left_before);
+        ++compared;
+    });
+    EXPECT_GT(compared, 100U);
+    Scene s(test::town(6));  // small steps, so something always fits
+    s.state.hysteresis = 1;
+    s.look({{dvec3(0, 3, 100), Pose{}.orientation}, 0, 0});
+    const double full = static_cast<double>(s.run("flat", infinity).predicted_us);
+    for (const double share : {0.3, 0.5, 0.7, 0.9}) {
+        expect_more_value(s, share * full, left, left_before);
+        std::printf("with %.1f of full detail's time: %.5f of the budget is left, after the common error %.5f\n", share, left,
+                    left_before);
+        EXPECT_LT(left, 0.002) << share;
+    }
+}
+
 TEST(CommonError, StopsAtTheAccuracyThatIsAsked) {
     Scene s(test::town(6));
     prepare::Region region;

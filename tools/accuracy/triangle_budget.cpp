@@ -33,6 +33,7 @@ void spend_triangles(walk::WalkRequest& request) {
     request.clock = rt::ClockKind::virtual_time;
     request.correct_costs = false;
     request.in_frame_check = false;
+    request.stills = true;  // else triangles are spent on what is beside the picture
     request.slice_us = 1e5;
     request.rest_after_ms = 0;
     request.hysteresis = 1;

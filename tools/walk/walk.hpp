@@ -45,6 +45,7 @@ struct WalkRequest : config::Settings {
     double cost_noise = 0;     ///< relative, seeded (virtual clock)
     select::BenefitModel benefit = select::BenefitModel::surefoot;  ///< of the 1994 selectors
     bool correct_costs = true;                                      ///< online correction of predictions; false: frozen at 1
+    bool stills = false;  ///< each frame is prepared where it looks from, as if the eye stood there (virtual clock only)
     std::uint32_t control_pairs = 90;
     double control_block_s = 2.0;
     std::shared_ptr<const model::CostModel> given_costs;  ///< in place of the state folder's and of the model's fit; null: those

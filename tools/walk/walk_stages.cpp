@@ -149,7 +149,14 @@ void WalkStages::sample(rt::FrameRecord& record) {
     const double period_s = static_cast<double>(options_.period_ns) * 1e-9;
     // With a control, the walk goes on where its last block ended: slots of the bare loop do not advance the path.
     path_slot_ = request_.control ? walked_ - rehearsed_ : record.slot;
-    const FramePose newest = pose_source_.sample(frame_time(record));
+    FramePose newest = pose_source_.sample(frame_time(record));
+    if (request_.stills && virtual_clock_) {
+        newest.jumped = true;
+        newest.before = newest.pose;
+        newest.predicted = {};
+        newest.predicted.known = true;
+        newest.predicted.region = {newest.pose, 0, 0};
+    }
     const bool unseen = !now_.valid || newest.jumped;  // no frame has seen where this one's motion comes from
     if (virtual_clock_) {
         // Prepares from the pose of one frame ago, as the workers would. A jump of the eye is known to them, so it is used at
