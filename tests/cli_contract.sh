@@ -18,6 +18,15 @@ json replay c.cap --selector best-first
 [ "$(wc -l < l.csv)" -eq 31 ] || complain "the ledger has not one row a frame"
 valid_json t.json || complain "the trace is not JSON"
 
+# Levels closer to each other, and objects in one piece.
+json bake f.glb -o dense.walk --level-ratio 90 --whole-objects
+json inspect dense.walk
+grep -q '"pieces": 0' out || complain "a model of whole objects has pieces"
+forms() { grep -o '"mesh": [0-9]*' out | head -1 | tr -dc 0-9; }
+dense=$(forms); json inspect f.walk; usual=$(forms)
+(( dense > usual )) || complain "a level ratio of 90 % gives $dense meshes, the usual one $usual"
+expect 2 'level-ratio' bake f.glb -o x.walk --level-ratio 100
+
 # Hard cases: named rows, one line at the end, wrong names are wrong use, Ctrl-C ends it.
 json selftest --hard N10 L4
 grep -q '"digest"' out || complain "selftest --json has no digest"
@@ -132,6 +141,7 @@ for option in --ledger --trace --capture; do
 done
 expect 2 'seconds and --frames both' compare f.walk --frames 3 --seconds 2
 expect 2 'null: The value draws nothing' compare f.walk --backend null
+expect 2 'value-frames: Values are weighed against time' compare f.walk --resource triangles --budget 200 --value-frames 5
 expect 2 'backend is the same for all walks' compare f.walk --with backend=null
 expect 2 'rasterisers is the same for all walks' compare f.walk --with reserve=0,rasterisers=2
 expect 2 'selector excludes --with' compare f.walk --selector flat --with reserve=0

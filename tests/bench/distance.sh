@@ -1,5 +1,6 @@
 # The group `distance` of tests/bench/run, which sources this: in real time, the accuracy of the worst object in each frame, by a budget and
-# by a fixed angle that takes as long. Costs are the machine's table, without a fit: p99 is made equal, whatever was predicted.
+# by a fixed angle that takes as long. Neither has the check in the frame (--no-check): it bounds the time of a fixed angle at any accuracy,
+# and its stand-ins have none. Costs are those of the state folder, fitted or not: p99 is made equal, whatever was predicted.
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154 # work, surefoot, state, path, build: of run
 
@@ -10,7 +11,7 @@ distance_walk() { # LABEL NAME RATE OPTIONS...
   local label=distance-$1 name=$2 rate=$3
   shift 3
   measure "$label" "$surefoot" walk "$work/$name.walk" "${path[@]}" --rate "$rate" --frames "$distance_frames" --resolution 100 \
-    --rest-after 0 --state "$state" --ledger "$work/$label.csv" "$@" --json || return 1
+    --no-check --rest-after 0 --state "$state" --ledger "$work/$label.csv" "$@" --json || return 1
   p99=$(value frame_ms.p99) missed=$(value misses) steal=$(rounded steal_ms)
 }
 
@@ -23,12 +24,11 @@ distance_rate() {
 }
 
 # The accuracy at which `distance` takes as long as $1 ms (p99), within 5 %: between the two nearest, on logarithms. Sets accuracy.
-# What a frame cannot finish is drawn all the same (--no-check): else the check would bound the time at any accuracy.
 distance_accuracy() { # P99 NAME RATE
   local wanted=$1 low=2 high=5000 low_ms=0 high_ms=0 try
   accuracy=40
   for (( try = 1; try <= distance_tries; ++try )); do
-    distance_walk "$2-try-$try" "$2" "$3" --selector distance --no-check --accuracy "$accuracy" || return 1
+    distance_walk "$2-try-$try" "$2" "$3" --selector distance --accuracy "$accuracy" || return 1
     echo "tests/bench/run: $2: distance at $accuracy rad^-1 has p99 $p99 ms, wanted $wanted" >&2
     if agree "$p99" "$wanted"; then return 0; fi
     if awk "BEGIN { exit !($p99 > $wanted) }"; then high=$accuracy high_ms=$p99; else low=$accuracy low_ms=$p99; fi
@@ -57,7 +57,7 @@ distance_pictures() { # NAME RATE: the walks of the last turn again, with pictur
   every=$(awk "BEGIN { printf \"%.0f\", 2 * $2 }")
   for which in budget angle; do
     options=(--selector curve-budget)
-    [[ $which == budget ]] || options=(--selector distance --no-check --accuracy "$accuracy")
+    [[ $which == budget ]] || options=(--selector distance --accuracy "$accuracy")
     at=$work/distance-$1-$which
     rm -rf "$at"
     mkdir -p "$at"
@@ -78,7 +78,7 @@ distance_in_turns() { # NAME RATE
     distance_walk "$1-budget" "$1" "$2" --selector curve-budget || return 1
     our_p99+=("$p99")
     times+="${times:+; }$(sum "$p99" 3) ($missed missed, $steal ms stolen) and "
-    distance_walk "$1-angle" "$1" "$2" --selector distance --no-check --accuracy "$accuracy" || return 1
+    distance_walk "$1-angle" "$1" "$2" --selector distance --accuracy "$accuracy" || return 1
     their_p99+=("$p99")
     times+="$(sum "$p99" 3) ($missed, $steal)"
     read -r -a ours <<<"$(distance_figures "$1-budget")"

@@ -24,6 +24,7 @@ constexpr std::array<std::string_view, 2> resources = {"time", "triangles"};
 struct CompareArguments {
     accuracy::CompareRequest request;
     std::uint32_t value_frames = 20;
+    bool value_frames_given = false;
     std::string resource{resources[0]}, out;
     std::vector<std::string> with;  ///< KEY=VALUE[,KEY=VALUE...], a walk each
     std::shared_ptr<SettingArguments> settings = std::make_shared<SettingArguments>();
@@ -95,6 +96,9 @@ Result<walk::WalkRequest> walk_with(const CompareArguments& a, const std::string
 /// --budget is a number of triangles: the time that these are given replaces it.
 Result<void> take_triangles(CompareArguments& a) {
     constexpr std::uint32_t max_triangles = 999'999;
+    if (a.value_frames_given && a.value_frames > 0)
+        return Error{"--value-frames", "Values are weighed against time, not against triangles",
+                     "Remove --value-frames, or --resource triangles", ErrorKind::misuse};
     a.value_frames = 0;
     auto& values = a.settings->values;
     const auto given = [&](std::string_view key) {
@@ -229,7 +233,10 @@ void add_compare(CLI::App& app, Context& context) {
          "Backend that draws: " + gl::drawing_backends() + " [" + std::string(gl::usual_backend) + "]")
         ->check(drawing_backend());
     c->add_option("--state", r.state_dir, "Folder of the calibrated cost table");
-    c->callback([&context, a] { context.run = [a, &context] { return run_compare_command(*a, context); }; });
+    c->callback([&context, a, c] {
+        a->value_frames_given = c->count("--value-frames") > 0;
+        context.run = [a, &context] { return run_compare_command(*a, context); };
+    });
 }
 
 }  // namespace surefoot::cli
