@@ -334,6 +334,33 @@ TEST(Walker, ThatIsStuckGoesBackAndIsCounted) {
     EXPECT_EQ(walker.barrier(), Barrier::stuck) << "said for a second";
 }
 
+TEST(Walker, StuckAgainAndAgainItGoesBackFurther) {
+    // A platform, and from it a way down that is as narrow as the body: six drops of half a metre, none of which is climbed.
+    Triangles t;
+    constexpr double narrow = 0.32, step = 0.62, drop = 0.5;
+    constexpr int drops = 6;
+    add_floor(t, -10, 2, -10, 10, 0);
+    for (int i = 0; i < drops; ++i) {
+        const double x = 2 + i * step, y = -drop * i;
+        add_wall(t, {x, -narrow}, {x, narrow}, y - drop, y);
+        add_floor(t, x, x + step, -narrow, narrow, y - drop);
+    }
+    for (const double z : {-narrow, narrow}) add_wall(t, {2, z}, {2 + drops * step, z}, -4, 4);
+    add_wall(t, {2, -10}, {2, -narrow}, -4, 4), add_wall(t, {2, narrow}, {2, 10}, -4, 4);
+    add_wall(t, {2 + drops * step, -narrow}, {2 + drops * step, narrow}, -4, 4);
+    const Ground ground = ground_of(t);
+    Walker walker(ground, {});
+    dvec3 eye = push(walker, {-2, 1.7, 0}, 1.4 * right, 8);
+    EXPECT_NEAR(walker.feet().y, -drop * drops, 0.01) << "at the bottom";
+    double s = 0;
+    for (; s < 60 && walker.feet().y < -0.01; s += test::tick_s) eye = walker.walk(eye, eye + right * test::tick_s, test::tick_s);
+    std::printf("back on the platform after %.1f s and %llu returns\n", s, static_cast<unsigned long long>(walker.returns()));
+    EXPECT_NEAR(walker.feet().y, 0, 0.01) << "back on the platform";
+    EXPECT_LE(walker.returns(), 3U);
+    eye = push(walker, eye, -1.4 * right, 5);
+    EXPECT_LT(eye.x, 0) << "and off";
+}
+
 TEST(Walker, PutWhereItIsStuckItIsPutBesideIt) {
     Triangles t = level();
     add_box(t, {5, 0, -1}, {5.5, 3, 1});

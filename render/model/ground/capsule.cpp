@@ -21,6 +21,9 @@ struct Nearest {
     }
 };
 
+/// Below it a triangle is a sliver: its normal, squared, over the fourth power of its sides.
+constexpr double min_shape = 1e-6;
+
 double part_of(double numerator, double denominator) {
     return denominator > 0 ? std::clamp(numerator / denominator, 0.0, 1.0) : 0.0;
 }
@@ -52,19 +55,32 @@ Separation separation(const Capsule& capsule, const GroundTriangle& t) {
     const dvec3 n = glm::cross(t.b - t.a, t.c - t.a);
     const double n2 = glm::dot(n, n);
     Nearest nearest;
+    bool within = false;  // of the triangle: no edge is nearer
     if (n2 > 0) {
         const double from_low = glm::dot(low - t.a, n), from_high = glm::dot(high - t.a, n);
-        if ((from_low < 0) != (from_high < 0)) {
+        const bool crosses = (from_low < 0) != (from_high < 0);
+        if (crosses) {
             const double s = from_low / (from_low - from_high);
             const dvec3 through = low + s * axis;
             if (covers(t, n, through)) return {0, n / std::sqrt(n2)};
         }
-        if (covers(t, n, low)) nearest.offer(low, low - n * (from_low / n2));
-        if (covers(t, n, high)) nearest.offer(high, high - n * (from_high / n2));
+        const auto offer_end = [&](const dvec3& end, double from) {
+            const bool covered = covers(t, n, end);
+            if (covered) nearest.offer(end, end - n * (from / n2));
+            return covered;
+        };
+        const bool low_is_nearer = std::abs(from_low) <= std::abs(from_high);
+        const bool of_nearer = low_is_nearer ? offer_end(low, from_low) : offer_end(high, from_high);
+        if (!of_nearer) (void)(low_is_nearer ? offer_end(high, from_high) : offer_end(low, from_low));
+        // On one side of the plane no point of the segment is nearer to it than that end. Slivers have no exact normal.
+        const double sides2 = glm::dot(t.b - t.a, t.b - t.a) + glm::dot(t.c - t.a, t.c - t.a);
+        within = of_nearer && !crosses && n2 > min_shape * sides2 * sides2;
     }
-    offer_edge(nearest, low, axis, t.a, t.b - t.a);
-    offer_edge(nearest, low, axis, t.b, t.c - t.b);
-    offer_edge(nearest, low, axis, t.c, t.a - t.c);
+    if (!within) {
+        offer_edge(nearest, low, axis, t.a, t.b - t.a);
+        offer_edge(nearest, low, axis, t.b, t.c - t.b);
+        offer_edge(nearest, low, axis, t.c, t.a - t.c);
+    }
     const double distance = std::sqrt(nearest.distance2);
     if (distance > 0) return {distance, nearest.apart / distance};
     return {0, n2 > 0 ? n / std::sqrt(n2) : dvec3(0, 1, 0)};

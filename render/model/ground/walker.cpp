@@ -24,7 +24,6 @@ constexpr double gather_m = 0.25;                     // triangles are gathered 
 constexpr double close_m = 0.12;
 constexpr std::size_t max_close = 4096;
 constexpr double wall_max_up = 0.7;  // of a normal: what is more level is a floor or a ceiling, and the eye is not led through it
-constexpr double free_every_m = 0.5;
 
 }  // namespace
 
@@ -219,11 +218,7 @@ void Walker::travel(const dvec3& move) {
     steep_ = best.steep;
     if (!supported_) return;
     fall_m_s = 0;
-    const dvec3& last = free_count_ > 0 ? free_places_[0] : stood_up_at_;
-    if (glm::length(feet_ - last) < free_every_m || glm::length(feet_ - stood_up_at_) < free_every_m) return;
-    free_places_[1] = free_places_[0];
-    free_places_[0] = feet_;
-    free_count_ = std::min<std::uint32_t>(free_count_ + 1, 2);
+    remember_free_place();
 }
 
 void Walker::fall(double dt_s) {

@@ -126,6 +126,9 @@ private:
     void stand_at(const dvec3& feet);
     [[nodiscard]] bool trial_gets_on();
     void watch(const dvec3& move, double dt_s);
+    [[nodiscard]] const dvec3& newest_free_place() const;
+    void remember_free_place();
+    void go_back();
     void prepare_near(const dvec3& feet, double reach_m);
 
     const Ground& ground_;
@@ -152,8 +155,11 @@ private:
     dvec3 trial_from_{0.0};    ///< where the trial of a direction began
     Attempt trial_at_;         ///< where it has come to
     dvec3 stood_up_at_{0.0};
-    std::array<dvec3, 2> free_places_{};  ///< newest first: each half a metre's walk from where it began and from the last one
-    std::uint32_t free_count_ = 0;
+    static constexpr std::uint32_t max_free_places = 128;
+    std::array<dvec3, max_free_places> free_places_{};  ///< a ring: each half a metre from where it began and from the last one
+    std::uint32_t free_first_ = 0, free_count_ = 0;
+    std::uint32_t back_places_ = 0;  ///< how many places the last return went back by
+    std::uint32_t new_places_ = 0;   ///< remembered since then
     std::uint64_t returns_ = 0, freed_ = 0;
 };
 

@@ -14,6 +14,7 @@ constexpr double trial_m = 0.1, min_step_m = 1e-6, stuck_after_s = 1;
 constexpr std::uint32_t search_rings = 40, search_a_tick = 2, search_places = 2 * search_rings * trials;
 constexpr double below_floor_m = 1, max_push_out_m = 0.35, shown_stuck_s = 1;
 constexpr double ring_m = 0.25;
+constexpr double free_every_m = 0.5;
 
 }  // namespace
 
@@ -49,7 +50,7 @@ void Walker::stand_up() {
     steep_ = under.any > under.floor;
     feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
     stood_up_at_ = feet_;
-    free_count_ = 0;
+    free_count_ = back_places_ = new_places_ = 0;
     if (!supported_) {  // perhaps a vehicle's recorded path, whose heights are the road's
         const double above = footing(eye_, eye_.y + below_floor_m, eye_.y).floor;
         if (above > -walker_parts::infinity && is_free({eye_.x, above, eye_.z})) {
@@ -164,13 +165,42 @@ void Walker::watch(const dvec3& move, double dt_s) {
         trial_ = 0;
         pushed_s_ = 0;
         stuck_s_ = shown_stuck_s;
-        if (free_count_ > 0) {
-            ++returns_;
-            stand_at(free_places_[free_count_ - 1]);
-        } else {
-            searching_ = true;
-            search_at_ = 1;
-        }
+        go_back();
+    }
+}
+
+const dvec3& Walker::newest_free_place() const { return free_places_[(free_first_ + free_count_ - 1) % max_free_places]; }
+
+void Walker::remember_free_place() {
+    if (steep_) return;  // one only slides on from there
+    const dvec3& last = free_count_ > 0 ? newest_free_place() : stood_up_at_;
+    if (glm::length(feet_ - last) < free_every_m || glm::length(feet_ - stood_up_at_) < free_every_m) return;
+    if (free_count_ == max_free_places)
+        free_first_ = (free_first_ + 1) % max_free_places;
+    else
+        ++free_count_;
+    free_places_[(free_first_ + free_count_ - 1) % max_free_places] = feet_;
+    ++new_places_;
+}
+
+/// To the place before the newest. If it is stuck again soon, a way in may have no way out: each time four times as far, and at
+/// last to where it stood up.
+void Walker::go_back() {
+    const bool again = back_places_ > 0 && new_places_ <= 2 * back_places_;
+    back_places_ = again ? std::min(4 * back_places_, max_free_places) : 1;
+    new_places_ = 0;
+    if (free_count_ == 0) {
+        searching_ = true;
+        search_at_ = 1;
+        return;
+    }
+    ++returns_;
+    if (back_places_ < free_count_ || !again) {
+        free_count_ -= std::min(back_places_, free_count_ - 1);
+        stand_at(newest_free_place());
+    } else {
+        free_count_ = 0;
+        stand_at(stood_up_at_);
     }
 }
 
