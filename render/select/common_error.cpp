@@ -135,7 +135,7 @@ bool CommonErrorCuts::find_within_budget(float min_error_rad) {
 }
 
 bool CommonErrorCuts::start_with_taken() {
-    const float limit = std::min(taken_error_, taken_worst_);  // the second is larger where a leaf has nothing better
+    const float limit = taken_limit_rad();
     if (!(limit < no_limit)) return false;
     (void)find(taken_error_);  // the decisions that were taken once more
     builder_.start_with(decisions_, limit);
@@ -208,21 +208,23 @@ public:
     }
 
 private:
-    /// Gives the builder the cut of the smallest error. True: it is a start, and the rest of the budget goes by value.
+    /// Gives the builder the cut of the smallest error. True: it is a start, and the rest of the budget goes by value. Where an
+    /// accuracy is asked for, nothing more is.
     static bool find_start(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget) {
+        const auto target = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : 0.0);
+        const bool spends_rest = !(target > 0.0F);
         if (builder.guarantee() == rt::Guarantee::over_budget && builder.has_starts()) {  // that was looked for already
             builder.take_start();
-            return true;
+            return spends_rest;
         }
         if (!budget.fits(builder.floor_sum())) return false;  // the floor is drawn
         CommonErrorCuts cuts(input, state, builder, budget);
-        const auto target = static_cast<float>(input.target_error_rad > 0.0 ? input.target_error_rad : 0.0);
         if (!cuts.find_within_budget(target)) return false;
-        if (cuts.taken_worst_rad() > builder.max_error_rad()) {
-            builder.take_start();  // what was shown had more error
-            return true;
+        if (cuts.taken_limit_rad() > builder.max_error_rad()) {  // what was shown has more error than is guaranteed
+            builder.take_start();
+            return spends_rest;
         }
-        return !(target > 0.0F) && cuts.start_with_taken();
+        return spends_rest && cuts.start_with_taken();
     }
 };
 

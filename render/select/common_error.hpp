@@ -39,9 +39,9 @@ public:
     /// with that of the smallest error that does. The floor, if nothing does.
     [[nodiscard]] rt::Guarantee guarantee(float max_error_rad);
 
-    /// Of the cut that find_within_budget() gave to the builder.
-    [[nodiscard]] float taken_worst_rad() const { return taken_worst_; }
-    /// Lets the builder start with that cut: no item gets more error. False: its error has no limit, and nothing changes.
+    /// Of the cut that find_within_budget() gave to the builder: its worst error. Leaves that have nothing better do not count.
+    [[nodiscard]] float taken_limit_rad() const { return std::min(taken_error_, taken_worst_); }
+    /// Lets the builder start with that cut: no item gets more error than this. False: it has no limit, and nothing changes.
     [[nodiscard]] bool start_with_taken();
     [[nodiscard]] float two_pixels_rad() const { return two_pixels_rad_; }
 
@@ -74,8 +74,8 @@ private:
 /// changes if that is 0.
 void guarantee_error(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget);
 
-/// From the builder's start on: the steps of greatest value per cost that still fit the budget, in at most four rounds. Returns
-/// how many were taken. Uses the state's scratch memory; allocates nothing.
+/// Call it after CutBuilder::take_start(). Takes the steps of greatest value per cost that still fit the budget, in at most four
+/// rounds, and undoes those that lose value. Returns how many were taken. Uses the state's scratch memory; allocates nothing.
 std::uint32_t fill_by_rate(const SelectInput& input, SelectState& state, CutBuilder& builder, const Budget& budget);
 
 }  // namespace surefoot::select

@@ -334,31 +334,87 @@ TEST(Walker, ThatIsStuckGoesBackAndIsCounted) {
     EXPECT_EQ(walker.barrier(), Barrier::stuck) << "said for a second";
 }
 
-TEST(Walker, StuckAgainAndAgainItGoesBackFurther) {
-    // A platform, and from it a way down that is as narrow as the body: six drops of half a metre, none of which is climbed.
+namespace {
+
+/// Pushes a stuck walker on until it is back on the platform at height 0, for at most a minute. Returns where its eye is.
+dvec3 push_until_back(Walker& walker, dvec3 eye, const dvec3& way) {
+    for (double s = 0; s < 60 && walker.feet().y < -0.01; s += test::tick_s)
+        eye = walker.walk(eye, eye + way * test::tick_s, test::tick_s);
+    EXPECT_NEAR(walker.feet().y, 0, 0.01) << "back on the platform";
+    return eye;
+}
+
+/// Pushes to the right until the feet are down at this height, for at most a minute.
+dvec3 push_down_to(Walker& walker, dvec3 eye, double speed, double height) {
+    for (double s = 0; s < 60 && !(walker.stands() && walker.feet().y < height + 0.01); s += test::tick_s)
+        eye = walker.walk(eye, eye + right * (speed * test::tick_s), test::tick_s);
+    EXPECT_LT(walker.feet().y, height + 0.01) << "it is down";
+    return eye;
+}
+
+/// A platform up to x = 2, open at the right for |z| < 0.32; what is beyond has walls at both sides up to `until`.
+Triangles platform_with_a_gap(double until) {
+    constexpr double narrow = 0.32;
     Triangles t;
+    add_floor(t, -10, 2, -10, 10, 0);
+    for (const double z : {-narrow, narrow}) add_wall(t, {2, z}, {until, z}, -6, 4);
+    add_wall(t, {2, -10}, {2, -narrow}, -6, 4), add_wall(t, {2, narrow}, {2, 10}, -6, 4);
+    add_wall(t, {until, -narrow}, {until, narrow}, -6, 4);
+    return t;
+}
+
+}  // namespace
+
+TEST(Walker, StuckAgainAndAgainItGoesBackFurther) {
+    // A way down as narrow as the body: six drops of half a metre, none of which is climbed.
     constexpr double narrow = 0.32, step = 0.62, drop = 0.5;
     constexpr int drops = 6;
-    add_floor(t, -10, 2, -10, 10, 0);
+    Triangles t = platform_with_a_gap(2 + drops * step);
     for (int i = 0; i < drops; ++i) {
         const double x = 2 + i * step, y = -drop * i;
         add_wall(t, {x, -narrow}, {x, narrow}, y - drop, y);
         add_floor(t, x, x + step, -narrow, narrow, y - drop);
     }
-    for (const double z : {-narrow, narrow}) add_wall(t, {2, z}, {2 + drops * step, z}, -4, 4);
-    add_wall(t, {2, -10}, {2, -narrow}, -4, 4), add_wall(t, {2, narrow}, {2, 10}, -4, 4);
-    add_wall(t, {2 + drops * step, -narrow}, {2 + drops * step, narrow}, -4, 4);
+    const Ground ground = ground_of(t);
+    for (const double start : {-2.0, 1.5}) {  // the second has no places before the way down: back to where it stood up
+        Walker walker(ground, {});
+        dvec3 eye = push_down_to(walker, {start, 1.7, 0}, 1.4, -drop * drops);
+        eye = push_until_back(walker, eye, right);
+        EXPECT_LE(walker.returns(), 3U) << start;
+        if (start == 1.5) {
+            EXPECT_NEAR(eye.x, start, 0.1);
+        }
+        eye = push(walker, eye, -1.4 * right, 5);
+        EXPECT_LT(eye.x, 0) << "and off";
+    }
+}
+
+TEST(Walker, ItGoesBackToNoPlaceOnWhatIsTooSteep) {
+    // Over a step of 0.9 m it falls onto a slope of 50 degrees that ends at a wall.
+    constexpr double narrow = 0.32, slope_from = 2.4, until = 5;
+    Triangles t = platform_with_a_gap(until);
+    add_wall(t, {2, -narrow}, {2, narrow}, -0.9, 0);
+    add_floor(t, 2, slope_from, -narrow, narrow, -0.9);
+    const double low = -0.9 - (until - slope_from) * std::tan(50 * std::numbers::pi / 180);
+    add_quad(t, {slope_from, -0.9, -narrow}, {slope_from, -0.9, narrow}, {until, low, narrow}, {until, low, -narrow});
     const Ground ground = ground_of(t);
     Walker walker(ground, {});
-    dvec3 eye = push(walker, {-2, 1.7, 0}, 1.4 * right, 8);
-    EXPECT_NEAR(walker.feet().y, -drop * drops, 0.01) << "at the bottom";
-    double s = 0;
-    for (; s < 60 && walker.feet().y < -0.01; s += test::tick_s) eye = walker.walk(eye, eye + right * test::tick_s, test::tick_s);
-    std::printf("back on the platform after %.1f s and %llu returns\n", s, static_cast<unsigned long long>(walker.returns()));
-    EXPECT_NEAR(walker.feet().y, 0, 0.01) << "back on the platform";
-    EXPECT_LE(walker.returns(), 3U);
-    eye = push(walker, eye, -1.4 * right, 5);
-    EXPECT_LT(eye.x, 0) << "and off";
+    const dvec3 eye = push_down_to(walker, {-2, 1.7, 0}, 1.4, -2.5);
+    push_until_back(walker, eye, right);
+    EXPECT_EQ(walker.returns(), 1U);
+}
+
+TEST(Walker, StuckFarFromWhereItStoodUpItGoesBackALittle) {
+    // Ninety metres to a shaft as narrow as the body: more places than are remembered do not count.
+    Triangles t = platform_with_a_gap(2.63);
+    add_floor(t, -100, -10, -10, 10, 0);
+    add_floor(t, 2, 2.63, -0.32, 0.32, -0.9);
+    const Ground ground = ground_of(t);
+    Walker walker(ground, {});
+    dvec3 eye = push_down_to(walker, {-90, 1.7, 0}, 4, -0.9);
+    eye = push_until_back(walker, eye, right);
+    EXPECT_EQ(walker.returns(), 1U);
+    EXPECT_GT(eye.x, 0);
 }
 
 TEST(Walker, PutWhereItIsStuckItIsPutBesideIt) {

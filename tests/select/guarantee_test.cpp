@@ -266,6 +266,35 @@ TEST(Guarantee, WithoutAFormOfItIsToldAndTheRestIsBoughtAllTheSame) {
     EXPECT_GT(formless, 100U);
 }
 
+/// An accuracy that is asked for ends the search, whatever is guaranteed.
+TEST(Guarantee, OfCurveBudgetSpendsNoRestWhereAnAccuracyIsAsked) {
+    std::size_t compared = 0, less = 0;
+    Random random(47);
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        Scene s(test::random_model(seed, 10 + random.below(60)));
+        s.look({test::random_pose(random), 0.2, 0.05});
+        const Room room(s);
+        if (!room.any()) continue;
+        SelectInput input = s.input(room.budget_at(random.range(0.2, 0.9)), 0.05);
+        input.max_error_rad = 1e-6;  // over budget
+        const Selector* selector = find_selector("curve-budget");
+        s.forget();
+        selector->run(input, s.state, s.cut);
+        if (s.cut.guarantee != Guarantee::over_budget) continue;
+        const double with = s.cut.value;
+        const std::uint32_t steps = s.cut.refinements;
+        input.target_error_rad = 0;
+        s.forget();
+        selector->run(input, s.state, s.cut);
+        ++compared;
+        less += with < s.cut.value ? 1U : 0U;
+        ASSERT_EQ(steps, 0U) << "seed " << seed;
+    }
+    std::printf("%zu compared; in %zu the rest had bought value\n", compared, less);
+    EXPECT_GT(compared, 50U);
+    EXPECT_GT(less, 5U);
+}
+
 /// With the larger of two sums in a frame's time the cost of a cut is not the sum of its items': most is found, not all.
 TEST(Guarantee, IsSeldomMissedWhereAFrameTakesTheLargerOfTwoSums) {
     std::size_t kept = 0, missed = 0;

@@ -196,8 +196,8 @@ void add_compare(CLI::App& app, Context& context) {
         ->type_name("KEY=VALUE")
         ->excludes("--selector");
     c->add_option("--resource", a->resource,
-                  "What --budget is of: time, or triangles. With triangles the walk is on the virtual clock, and its budget is a "
-                  "number of triangles")
+                  "What --budget is of: time, or triangles. With triangles the walk is on the virtual clock, its budget is a "
+                  "number of triangles, and each frame is prepared for its own pose alone")
         ->check(one_of(resources))
         ->capture_default_str();
     c->add_option("-o,--out", a->out, "Folder for a page of every compared picture, and pictures.csv")->check(names_something());
@@ -211,7 +211,8 @@ void add_compare(CLI::App& app, Context& context) {
     c->add_option("--rounds", a->request.rounds, "Number of walks by each selector, in turns; medians are printed")
         ->check(whole_number_within(1, 100))
         ->capture_default_str();
-    c->add_option("--value-frames", a->value_frames, "Number of frames whose best cut is searched for, evenly spread; 0: none")
+    c->add_option("--value-frames", a->value_frames,
+                  "Number of frames whose best cut is searched for, evenly spread; 0: none. Of a budget of time only")
         ->check(whole_number_within(0, 1000))
         ->capture_default_str();
     c->add_option("--size", a->settings->size, "Size of the picture in pixels [1280x720]");

@@ -42,7 +42,7 @@ void offer_edge(Nearest& nearest, const dvec3& p, const dvec3& u, const dvec3& q
     nearest.offer(p + s * u, q + t * v);
 }
 
-/// Whether the triangle with normal n covers p, seen along n. On the rim either answer will do: the edges are offered too.
+/// Whether the triangle with normal n covers p, seen along n. On the rim either answer will do: there the edge is as near.
 bool covers(const GroundTriangle& t, const dvec3& n, const dvec3& p) {
     return glm::dot(glm::cross(t.b - t.a, p - t.a), n) >= 0 && glm::dot(glm::cross(t.c - t.b, p - t.b), n) >= 0 &&
            glm::dot(glm::cross(t.a - t.c, p - t.c), n) >= 0;

@@ -124,6 +124,7 @@ private:
     [[nodiscard]] bool sees(const dvec3& to) const;
     void look_for_a_free_place();
     void stand_at(const dvec3& feet);
+    void free_at(const dvec3& feet);
     [[nodiscard]] bool trial_gets_on();
     void watch(const dvec3& move, double dt_s);
     [[nodiscard]] const dvec3& newest_free_place() const;
@@ -158,8 +159,9 @@ private:
     static constexpr std::uint32_t max_free_places = 128;
     std::array<dvec3, max_free_places> free_places_{};  ///< a ring: each half a metre from where it began and from the last one
     std::uint32_t free_first_ = 0, free_count_ = 0;
-    std::uint32_t back_places_ = 0;  ///< how many places the last return went back by
-    std::uint32_t new_places_ = 0;   ///< remembered since then
+    std::uint32_t gone_back_ = 0;   ///< by how many places the last return went back, at least 1; 0: none, or to the start
+    std::uint32_t new_places_ = 0;  ///< remembered since then
+    bool start_is_free_ = false;    ///< stood_up_at_ is a place to go back to
     std::uint64_t returns_ = 0, freed_ = 0;
 };
 

@@ -50,16 +50,17 @@ void Walker::stand_up() {
     steep_ = under.any > under.floor;
     feet_ = dvec3(eye_.x, supported_ ? std::max(under.floor, under.any) : eye_.y - body_.eye_m, eye_.z);
     stood_up_at_ = feet_;
-    free_count_ = back_places_ = new_places_ = 0;
+    free_count_ = gone_back_ = new_places_ = 0;
+    start_is_free_ = false;
     if (!supported_) {  // perhaps a vehicle's recorded path, whose heights are the road's
         const double above = footing(eye_, eye_.y + below_floor_m, eye_.y).floor;
         if (above > -walker_parts::infinity && is_free({eye_.x, above, eye_.z})) {
-            ++freed_;
-            stand_at({eye_.x, above, eye_.z});
+            free_at({eye_.x, above, eye_.z});
             return;
         }
     }
     searching_ = !is_free(feet_) || is_inside_solid(feet_, start_sight_m);
+    start_is_free_ = supported_ && !steep_ && !searching_;
     search_at_ = 0;
 }
 
@@ -83,7 +84,7 @@ bool Walker::push_out() {
     }
     at.y = footing(at, feet_.y + body_.step_m, feet_.y - body_.step_m).floor;
     if (!std::isfinite(at.y) || !is_free(at) || is_inside_solid(at, place_sight_m)) return false;
-    stand_at(at);
+    free_at(at);
     return true;
 }
 
@@ -100,10 +101,7 @@ bool Walker::sees(const dvec3& to) const {
 /// where the body is free. At first only floors of about this height, from where nothing is between; then any.
 void Walker::look_for_a_free_place() {
     barrier_ = Barrier::inside;
-    if (search_at_ == 0 && supported_ && push_out()) {
-        ++freed_;
-        return;
-    }
+    if (search_at_ == 0 && supported_ && push_out()) return;
     for (std::uint32_t i = 0; i < search_a_tick && searching_; ++i, ++search_at_) {
         if (search_at_ >= search_places) {  // nothing is free: the walker stays, and walls let it out but not in
             searching_ = false;
@@ -116,9 +114,16 @@ void Walker::look_for_a_free_place() {
         const dvec3 feet{at.x, footing(at, top, eye_.y - body_.eye_m - 1.0).floor, at.z};
         if (!std::isfinite(feet.y) || !is_free(feet) || is_inside_solid(feet, place_sight_m)) continue;
         if (picky && !sees(feet + dvec3(0, body_.eye_m, 0))) continue;
-        ++freed_;
-        stand_at(feet);
+        free_at(feet);
     }
+}
+
+/// Put beside what it was in: that is where it stood up.
+void Walker::free_at(const dvec3& feet) {
+    ++freed_;
+    stand_at(feet);
+    stood_up_at_ = feet;
+    start_is_free_ = true;
 }
 
 void Walker::stand_at(const dvec3& feet) {
@@ -186,21 +191,25 @@ void Walker::remember_free_place() {
 /// To the place before the newest. If it is stuck again soon, a way in may have no way out: each time four times as far, and at
 /// last to where it stood up.
 void Walker::go_back() {
-    const bool again = back_places_ > 0 && new_places_ <= 2 * back_places_;
-    back_places_ = again ? std::min(4 * back_places_, max_free_places) : 1;
+    const bool again = gone_back_ > 0 && new_places_ <= 2 * gone_back_;
+    const std::uint32_t wanted = again ? 4 * gone_back_ : 1;
     new_places_ = 0;
-    if (free_count_ == 0) {
-        searching_ = true;
-        search_at_ = 1;
+    if (wanted < free_count_ || (!again && free_count_ > 0)) {
+        const std::uint32_t by = std::min(wanted, free_count_ - 1);
+        gone_back_ = std::max(by, 1U);
+        free_count_ -= by;
+        ++returns_;
+        stand_at(newest_free_place());
         return;
     }
-    ++returns_;
-    if (back_places_ < free_count_ || !again) {
-        free_count_ -= std::min(back_places_, free_count_ - 1);
-        stand_at(newest_free_place());
-    } else {
-        free_count_ = 0;
+    const bool to_start = free_count_ > 0 && start_is_free_;
+    free_count_ = gone_back_ = 0;
+    if (to_start) {
+        ++returns_;
         stand_at(stood_up_at_);
+    } else {
+        searching_ = true;
+        search_at_ = 1;
     }
 }
 
