@@ -354,12 +354,12 @@ dvec3 push_down_to(Walker& walker, dvec3 eye, double speed, double height) {
 
 /// A platform up to x = 2, open at the right for |z| < 0.32; what is beyond has walls at both sides up to `until`.
 Triangles platform_with_a_gap(double until) {
-    constexpr double narrow = 0.32;
+    constexpr double half_m = 0.32;
     Triangles t;
     add_floor(t, -10, 2, -10, 10, 0);
-    for (const double z : {-narrow, narrow}) add_wall(t, {2, z}, {until, z}, -6, 4);
-    add_wall(t, {2, -10}, {2, -narrow}, -6, 4), add_wall(t, {2, narrow}, {2, 10}, -6, 4);
-    add_wall(t, {until, -narrow}, {until, narrow}, -6, 4);
+    for (const double z : {-half_m, half_m}) add_wall(t, {2, z}, {until, z}, -6, 4);
+    add_wall(t, {2, -10}, {2, -half_m}, -6, 4), add_wall(t, {2, half_m}, {2, 10}, -6, 4);
+    add_wall(t, {until, -half_m}, {until, half_m}, -6, 4);
     return t;
 }
 
@@ -367,13 +367,13 @@ Triangles platform_with_a_gap(double until) {
 
 TEST(Walker, StuckAgainAndAgainItGoesBackFurther) {
     // A way down as narrow as the body: six drops of half a metre, none of which is climbed.
-    constexpr double narrow = 0.32, step = 0.62, drop = 0.5;
+    constexpr double half_m = 0.32, step = 0.62, drop = 0.5;
     constexpr int drops = 6;
     Triangles t = platform_with_a_gap(2 + drops * step);
     for (int i = 0; i < drops; ++i) {
         const double x = 2 + i * step, y = -drop * i;
-        add_wall(t, {x, -narrow}, {x, narrow}, y - drop, y);
-        add_floor(t, x, x + step, -narrow, narrow, y - drop);
+        add_wall(t, {x, -half_m}, {x, half_m}, y - drop, y);
+        add_floor(t, x, x + step, -half_m, half_m, y - drop);
     }
     const Ground ground = ground_of(t);
     for (const double start : {-2.0, 1.5}) {  // the second has no places before the way down: back to where it stood up
@@ -391,12 +391,12 @@ TEST(Walker, StuckAgainAndAgainItGoesBackFurther) {
 
 TEST(Walker, ItGoesBackToNoPlaceOnWhatIsTooSteep) {
     // Over a step of 0.9 m it falls onto a slope of 50 degrees that ends at a wall.
-    constexpr double narrow = 0.32, slope_from = 2.4, until = 5;
+    constexpr double half_m = 0.32, slope_from = 2.4, until = 5;
     Triangles t = platform_with_a_gap(until);
-    add_wall(t, {2, -narrow}, {2, narrow}, -0.9, 0);
-    add_floor(t, 2, slope_from, -narrow, narrow, -0.9);
+    add_wall(t, {2, -half_m}, {2, half_m}, -0.9, 0);
+    add_floor(t, 2, slope_from, -half_m, half_m, -0.9);
     const double low = -0.9 - (until - slope_from) * std::tan(50 * std::numbers::pi / 180);
-    add_quad(t, {slope_from, -0.9, -narrow}, {slope_from, -0.9, narrow}, {until, low, narrow}, {until, low, -narrow});
+    add_quad(t, {slope_from, -0.9, -half_m}, {slope_from, -0.9, half_m}, {until, low, half_m}, {until, low, -half_m});
     const Ground ground = ground_of(t);
     Walker walker(ground, {});
     const dvec3 eye = push_down_to(walker, {-2, 1.7, 0}, 1.4, -2.5);

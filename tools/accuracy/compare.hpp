@@ -60,8 +60,8 @@ model::CostModel triangle_costs();
 /// The time that a walk with these costs may spend on as many triangles; and back.
 double triangle_budget_ms(double triangles);
 std::uint64_t triangles_of_budget(double budget_ms);
-/// Lets a walk spend triangles in place of time: by these costs, on the virtual clock, each frame prepared for its own pose
-/// alone, without correction, headroom or hysteresis.
+/// Lets a walk spend triangles in place of time: by these costs, on the virtual clock, without correction, headroom or
+/// hysteresis. Each frame is prepared for its own pose alone.
 void spend_triangles(walk::WalkRequest& request);
 
 /// How a walk is run: walk::run_walk, or a test's stand-in.

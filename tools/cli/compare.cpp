@@ -163,6 +163,14 @@ int run_compare_command(CompareArguments& a, const Context& context) {
     return exit_success;
 }
 
+void add_resource(CLI::App* c, const std::shared_ptr<CompareArguments>& a) {
+    c->add_option("--resource", a->resource,
+                  "What --budget is of: time, or triangles. With triangles the walk is on the virtual clock, and its budget is a "
+                  "number of triangles. Each frame is prepared for its own pose alone then")
+        ->check(one_of(resources))
+        ->capture_default_str();
+}
+
 }  // namespace
 
 void add_compare(CLI::App& app, Context& context) {
@@ -195,11 +203,7 @@ void add_compare(CLI::App& app, Context& context) {
                   "Keys are those of surefoot config")
         ->type_name("KEY=VALUE")
         ->excludes("--selector");
-    c->add_option("--resource", a->resource,
-                  "What --budget is of: time, or triangles. With triangles the walk is on the virtual clock, its budget is a "
-                  "number of triangles, and each frame is prepared for its own pose alone")
-        ->check(one_of(resources))
-        ->capture_default_str();
+    add_resource(c, a);
     c->add_option("-o,--out", a->out, "Folder for a page of every compared picture, and pictures.csv")->check(names_something());
     c->add_option("--seconds", r.seconds, "Length of each walk in seconds (else as the path is long)")
         ->check(number_within(0.001, 1e6, "s"));
