@@ -72,7 +72,7 @@ Separation separation(const Capsule& capsule, const GroundTriangle& t) {
         const bool low_is_nearer = std::abs(from_low) <= std::abs(from_high);
         const bool of_nearer = low_is_nearer ? offer_end(low, from_low) : offer_end(high, from_high);
         if (!of_nearer) (void)(low_is_nearer ? offer_end(high, from_high) : offer_end(low, from_low));
-        // On one side of the plane no point of the segment is nearer to it than that end. Slivers have no exact normal.
+        // On one side of the plane no point of the segment is nearer to it than its nearer end. Slivers have no exact normal.
         const double sides2 = glm::dot(t.b - t.a, t.b - t.a) + glm::dot(t.c - t.a, t.c - t.a);
         within = of_nearer && !crosses && n2 > min_shape * sides2 * sides2;
     }
