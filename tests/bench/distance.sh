@@ -4,7 +4,7 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154 # work, surefoot, state, path, build: of run
 
-distance_frames=300 distance_turns=3 distance_tries=9
+distance_frames=1200 distance_turns=3 distance_tries=9
 
 # One walk in real time. Sets p99 of its frames, ms; the ledger is WORK/distance-LABEL.csv.
 distance_walk() { # LABEL NAME RATE OPTIONS...
